@@ -1,0 +1,36 @@
+//! The soft body between the jaws: its shape, its layers, and what its contact layer does (section IV of the paper).
+//!
+//! | file | what | equations |
+//! |---|---|---|
+//! | `specimen.rs` | shape, modulus, contact area, equilibrium strain | (6), (7), (8), (11) |
+//! | `layers.rs` | how the body is cut into layers and how travel of the jaw becomes drive | section IV, steps 1–2 |
+//! | `element.rs` | the contact layer through one straight piece of motion: hold or ramp | section IV, step 3 |
+//! | `free_surface.rs` | the surface once the jaw has left it | |
+//!
+//! Layer i never feels layer i + 1, so the contact force needs the contact layer alone, whatever the number of
+//! layers; the interior is solved only to show the strain wave (`simulate::cascade`).
+
+mod element;
+mod free_surface;
+mod layers;
+mod specimen;
+
+pub(crate) use element::Element;
+pub(crate) use free_surface::FreeSurface;
+pub use layers::{Layers, LayersError};
+pub use specimen::{Shape, Sides, Specimen, SpecimenError};
+
+/// What a simulation cost, in counts that do not depend on the machine.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Work {
+    /// Holds and recoveries solved by the closed form.
+    pub closed_forms: u64,
+    /// Ramps integrated.
+    pub ramps: u64,
+    /// Integration steps taken in ramps (and, for a strain wave, in holds).
+    pub steps: u64,
+    /// Evaluations of the law's rate by the integrator.
+    pub evaluations: u64,
+    /// Contacts lost or regained.
+    pub events: u64,
+}

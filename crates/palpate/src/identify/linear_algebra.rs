@@ -1,0 +1,107 @@
+//! Cholesky factorisation for the small matrices of a fit (up to a few dozen rows).
+
+/// Lower triangle of a symmetric positive definite matrix, factored.
+pub(super) struct Cholesky {
+    size: usize,
+    lower: Vec<f64>,
+    scale: Vec<f64>,
+}
+
+impl Cholesky {
+    /// Factors `matrix` (row-major, `size` × `size`) after scaling its diagonal to one; `None` if it is singular to rounding.
+    pub(super) fn new(matrix: &[f64], size: usize) -> Option<Self> {
+        let scale: Vec<f64> = (0..size).map(|i| 1.0 / matrix[i * size + i].sqrt()).collect();
+        if scale.iter().any(|s| !s.is_finite()) {
+            return None;
+        }
+        let mut lower = vec![0.0; size * size];
+        for i in 0..size {
+            for j in 0..=i {
+                let mut sum = matrix[i * size + j] * scale[i] * scale[j];
+                for k in 0..j {
+                    sum -= lower[i * size + k] * lower[j * size + k];
+                }
+                if i == j {
+                    // The diagonal was one; what is left of it is the squared distance from the rows before.
+                    if sum <= size as f64 * f64::EPSILON {
+                        return None;
+                    }
+                    lower[i * size + i] = sum.sqrt();
+                } else {
+                    lower[i * size + j] = sum / lower[j * size + j];
+                }
+            }
+        }
+        Some(Self { size, lower, scale })
+    }
+
+    /// Solves in place.
+    pub(super) fn solve(&self, right: &mut [f64]) {
+        let n = self.size;
+        for i in 0..n {
+            let mut sum = right[i] * self.scale[i];
+            for k in 0..i {
+                sum -= self.lower[i * n + k] * right[k];
+            }
+            right[i] = sum / self.lower[i * n + i];
+        }
+        for i in (0..n).rev() {
+            let mut sum = right[i];
+            for k in i + 1..n {
+                sum -= self.lower[k * n + i] * right[k];
+            }
+            right[i] = sum / self.lower[i * n + i];
+        }
+        for (value, scale) in right.iter_mut().zip(&self.scale) {
+            *value *= scale;
+        }
+    }
+
+    /// The inverse, row-major.
+    pub(super) fn inverse(&self) -> Vec<f64> {
+        let n = self.size;
+        let mut inverse = vec![0.0; n * n];
+        for j in 0..n {
+            let mut column = vec![0.0; n];
+            column[j] = 1.0;
+            self.solve(&mut column);
+            for i in 0..n {
+                inverse[i * n + j] = column[i];
+            }
+        }
+        inverse
+    }
+}
+
+/// Σ aᵢ bᵢ with eight running sums, which vector units take side by side.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (a_blocks, a_rest) = a.as_chunks::<8>();
+    let (b_blocks, b_rest) = b.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for (x, y) in a_blocks.iter().zip(b_blocks) {
+        for lane in 0..8 {
+            sums[lane] += x[lane] * y[lane];
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| x * y).sum();
+    sums.iter().sum::<f64>() + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn solves_and_refuses() {
+        let matrix = [4.0, 2.0, 0.6, 2.0, 5.0, 1.0, 0.6, 1.0, 3.0];
+        let factor = Cholesky::new(&matrix, 3).unwrap();
+        let mut x = [1.0, -2.0, 0.5];
+        factor.solve(&mut x);
+        for i in 0..3 {
+            let back = dot(&matrix[3 * i..3 * i + 3], &x);
+            assert!((back - [1.0, -2.0, 0.5][i]).abs() < 1e-14);
+        }
+        assert!(Cholesky::new(&[1.0, 1.0, 1.0, 1.0], 2).is_none());
+        assert!(Cholesky::new(&[1.0, 0.0, 0.0, 0.0], 2).is_none());
+    }
+}

@@ -1,0 +1,306 @@
+//! Separable least squares: y ≈ Σ_l a_l c_l(θ), linear in a, nonlinear in the few numbers θ.
+//!
+//! Variable projection after Golub and Pereyra in Kaufman's form: at every θ the best a is solved for, and the
+//! Gauss–Newton step in θ is taken with the part of the Jacobian that no change of a can imitate. Steps are damped
+//! (Levenberg–Marquardt) and kept inside bounds. The residual is always formed explicitly, so that a noise-free
+//! signal is fitted to rounding.
+
+use serde::{Deserialize, Serialize};
+
+use super::linear_algebra::{Cholesky, dot};
+
+/// The columns of a separable model and their derivatives.
+pub(super) trait Shapes {
+    /// Number of linear columns.
+    fn columns(&self) -> usize;
+    /// The column that nonlinear number `index` shapes.
+    fn column_of(&self, index: usize) -> usize;
+    /// Bounds of nonlinear number `index`.
+    fn bounds(&self, index: usize) -> (f64, f64);
+    /// What it means when nonlinear number `index` ends at a bound.
+    fn at_bound(&self, index: usize) -> Termination;
+    /// Fills the columns at `theta` and the derivative of column `column_of(p)` by each number p.
+    fn fill(&self, theta: &[f64], columns: &mut [Vec<f64>], derivatives: &mut [Vec<f64>]);
+}
+
+/// Why a fit ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Termination {
+    /// No step makes the residual smaller: the optimum was found.
+    Converged,
+    /// The optimum lies at the edge of the range of the relative rate: the data do not say how fast, or from where, it relaxes.
+    RateAtBound,
+    /// The optimum lies at the edge of the range of the exponent.
+    ExponentAtBound,
+    /// The optimum lies at the edge of the range of the equilibrium strain (rate domain).
+    EquilibriumAtBound,
+    /// Two numbers cannot be told apart by these data.
+    Singular,
+    /// The allowed number of steps was used up.
+    IterationLimit,
+}
+
+impl Termination {
+    /// Whether the estimates and their errors may be used as they are.
+    #[must_use]
+    pub fn is_good(self) -> bool {
+        self == Self::Converged
+    }
+}
+
+/// What a fit cost, in counts that do not depend on the machine.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Work {
+    /// Points of the coarse search.
+    pub grid_points: u64,
+    /// Starts refined.
+    pub starts: u64,
+    /// Evaluations of the columns over all samples.
+    pub evaluations: u64,
+    /// Accepted steps.
+    pub iterations: u64,
+}
+
+/// Where the search ended: everything that estimates and errors are made of.
+#[derive(Debug, Clone)]
+pub(super) struct Solution {
+    pub(super) linear: Vec<f64>,
+    pub(super) nonlinear: Vec<f64>,
+    pub(super) residuals: Vec<f64>,
+    pub(super) residual_square: f64,
+    /// (JᵀJ)⁻¹ over linear, then nonlinear numbers, row-major; `None` if singular.
+    pub(super) inverse_normal: Option<Vec<f64>>,
+    pub(super) termination: Termination,
+}
+
+/// State of the model at one θ.
+struct Point {
+    theta: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+    derivatives: Vec<Vec<f64>>,
+    linear: Vec<f64>,
+    residuals: Vec<f64>,
+    square: f64,
+    singular: bool,
+}
+
+impl Point {
+    fn new(shapes: &impl Shapes, numbers: usize, samples: usize) -> Self {
+        Self {
+            theta: vec![0.0; numbers],
+            columns: vec![vec![0.0; samples]; shapes.columns()],
+            derivatives: vec![vec![0.0; samples]; numbers],
+            linear: vec![0.0; shapes.columns()],
+            residuals: vec![0.0; samples],
+            square: f64::INFINITY,
+            singular: false,
+        }
+    }
+
+    /// Solves for the linear numbers at `theta` and forms the residuals.
+    fn evaluate(&mut self, shapes: &impl Shapes, theta: &[f64], values: &[f64]) {
+        self.theta.copy_from_slice(theta);
+        shapes.fill(theta, &mut self.columns, &mut self.derivatives);
+        let size = self.columns.len();
+        let mut normal = vec![0.0; size * size];
+        for i in 0..size {
+            for j in 0..=i {
+                let product = dot(&self.columns[i], &self.columns[j]);
+                normal[i * size + j] = product;
+                normal[j * size + i] = product;
+            }
+        }
+        for (right, column) in self.linear.iter_mut().zip(&self.columns) {
+            *right = dot(column, values);
+        }
+        let factor = Cholesky::new(&normal, size);
+        self.singular = factor.is_none();
+        match factor {
+            Some(factor) => {
+                factor.solve(&mut self.linear);
+                self.form_residuals(values);
+                // One round of refinement recovers what squaring the condition number lost.
+                let mut correction: Vec<f64> = self.columns.iter().map(|c| dot(c, &self.residuals)).collect();
+                factor.solve(&mut correction);
+                for (value, change) in self.linear.iter_mut().zip(correction) {
+                    *value += change;
+                }
+            }
+            None => self.linear.fill(0.0),
+        }
+        self.form_residuals(values);
+        self.square = dot(&self.residuals, &self.residuals);
+        if !self.square.is_finite() {
+            self.square = f64::INFINITY;
+        }
+    }
+
+    fn form_residuals(&mut self, values: &[f64]) {
+        self.residuals.copy_from_slice(values);
+        for (column, amplitude) in self.columns.iter().zip(&self.linear) {
+            for (residual, entry) in self.residuals.iter_mut().zip(column) {
+                *residual -= amplitude * entry;
+            }
+        }
+    }
+
+    /// JᵀJ over linear, then nonlinear numbers; row-major.
+    fn normal(&self, shapes: &impl Shapes) -> Vec<f64> {
+        let (l, size) = (self.columns.len(), self.columns.len() + self.theta.len());
+        let column = |i: usize| if i < l { &self.columns[i] } else { &self.derivatives[i - l] };
+        let factor = |i: usize| if i < l { 1.0 } else { self.linear[shapes.column_of(i - l)] };
+        let mut normal = vec![0.0; size * size];
+        for i in 0..size {
+            for j in 0..=i {
+                let product = dot(column(i), column(j)) * factor(i) * factor(j);
+                normal[i * size + j] = product;
+                normal[j * size + i] = product;
+            }
+        }
+        normal
+    }
+
+    /// Jᵀr by the nonlinear numbers.
+    fn gradient(&self, shapes: &impl Shapes) -> Vec<f64> {
+        let part = |(p, derivative): (usize, &Vec<f64>)| self.linear[shapes.column_of(p)] * dot(derivative, &self.residuals);
+        self.derivatives.iter().enumerate().map(part).collect()
+    }
+}
+
+/// Relative fall of the residual square below which a step counts as none.
+const SMALLEST_GAIN: f64 = 1e-15;
+
+/// Refines θ from `start` to the nearest local optimum inside the bounds.
+pub(super) fn refine(shapes: &impl Shapes, values: &[f64], start: &[f64], most_iterations: usize, work: &mut Work) -> Solution {
+    let numbers = start.len();
+    let mut here = Point::new(shapes, numbers, values.len());
+    let mut trial = Point::new(shapes, numbers, values.len());
+    here.evaluate(shapes, start, values);
+    work.evaluations += 1;
+    work.starts += 1;
+    let mut damping = 1e-4;
+    let mut termination = Termination::IterationLimit;
+    // The floor under which a fall of the residual is rounding.
+    let floor = dot(values, values) * 1e-31;
+    'search: for _ in 0..most_iterations {
+        let Some((hessian, gradient)) = projected(&here, shapes) else {
+            termination = Termination::Singular;
+            break;
+        };
+        loop {
+            let theta = stepped(&here.theta, &hessian, &gradient, damping, shapes);
+            let moved = theta.iter().zip(&here.theta).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            if moved <= 1e-14 || damping > 1e12 {
+                termination = Termination::Converged;
+                break 'search;
+            }
+            trial.evaluate(shapes, &theta, values);
+            work.evaluations += 1;
+            if trial.square < here.square {
+                let gain = here.square - trial.square;
+                std::mem::swap(&mut here, &mut trial);
+                work.iterations += 1;
+                damping = (damping * 0.1).max(1e-14);
+                if gain <= SMALLEST_GAIN * here.square + floor {
+                    termination = Termination::Converged;
+                    break 'search;
+                }
+                break;
+            }
+            // At a flat bottom rounding decides; a step that would gain nothing measurable is the end.
+            if moved < 1e-7 && trial.square <= here.square * (1.0 + 1e-14) + floor {
+                termination = Termination::Converged;
+                break 'search;
+            }
+            damping = (damping * 8.0).max(1e-6);
+        }
+    }
+    finish(here, shapes, termination)
+}
+
+/// The Gauss–Newton matrix and gradient in θ with the linear numbers projected out.
+fn projected(here: &Point, shapes: &impl Shapes) -> Option<(Vec<f64>, Vec<f64>)> {
+    if here.singular {
+        return None;
+    }
+    let (l, p) = (here.columns.len(), here.theta.len());
+    let size = l + p;
+    let normal = here.normal(shapes);
+    let block = |rows: usize, columns: usize, from: (usize, usize)| -> Vec<f64> {
+        (0..rows * columns)
+            .map(|i| normal[(from.0 + i / columns) * size + from.1 + i % columns])
+            .collect()
+    };
+    let linear = Cholesky::new(&block(l, l, (0, 0)), l)?;
+    let mut hessian = block(p, p, (l, l));
+    for j in 0..p {
+        let mut cross: Vec<f64> = (0..l).map(|i| normal[i * size + l + j]).collect();
+        linear.solve(&mut cross);
+        for i in 0..p {
+            let imitated: f64 = (0..l).map(|k| normal[k * size + l + i] * cross[k]).sum();
+            hessian[i * p + j] -= imitated;
+        }
+    }
+    Some((hessian, here.gradient(shapes)))
+}
+
+/// θ after a damped step, clipped to the bounds; a number that sits at a bound and is pushed outwards stays out of the step.
+fn stepped(theta: &[f64], hessian: &[f64], gradient: &[f64], damping: f64, shapes: &impl Shapes) -> Vec<f64> {
+    let p = theta.len();
+    let pinned = |i: usize| {
+        let (low, high) = shapes.bounds(i);
+        (theta[i] <= low && gradient[i] < 0.0) || (theta[i] >= high && gradient[i] > 0.0)
+    };
+    let free: Vec<usize> = (0..p).filter(|&i| !pinned(i)).collect();
+    let mut matrix = vec![0.0; free.len() * free.len()];
+    let mut step: Vec<f64> = free.iter().map(|&i| gradient[i]).collect();
+    for (a, &i) in free.iter().enumerate() {
+        for (b, &j) in free.iter().enumerate() {
+            matrix[a * free.len() + b] = hessian[i * p + j];
+        }
+        // Scaled damping, with a floor for a number that the data do not feel at all.
+        matrix[a * free.len() + a] = hessian[i * p + i].max(f64::MIN_POSITIVE) * (1.0 + damping);
+    }
+    match Cholesky::new(&matrix, free.len()) {
+        Some(factor) => factor.solve(&mut step),
+        None => {
+            for (value, &i) in step.iter_mut().zip(&free) {
+                *value /= hessian[i * p + i].max(f64::MIN_POSITIVE) * (1.0 + damping);
+            }
+        }
+    }
+    let mut next = theta.to_vec();
+    for (&i, change) in free.iter().zip(step) {
+        let (low, high) = shapes.bounds(i);
+        // No step longer than a quarter of the range: the model is trusted only so far.
+        let most = 0.25 * (high - low);
+        next[i] = (theta[i] + change.clamp(-most, most)).clamp(low, high);
+    }
+    next
+}
+
+fn finish(here: Point, shapes: &impl Shapes, mut termination: Termination) -> Solution {
+    let size = here.columns.len() + here.theta.len();
+    let inverse_normal = Cholesky::new(&here.normal(shapes), size).map(|factor| factor.inverse());
+    if termination == Termination::Converged {
+        let at_bound = |(i, value): (usize, &f64)| {
+            let (low, high) = shapes.bounds(i);
+            let near = 1e-9 * (high - low);
+            *value <= low + near || *value >= high - near
+        };
+        match here.theta.iter().enumerate().position(|pair| at_bound(pair)) {
+            Some(index) => termination = shapes.at_bound(index),
+            None if inverse_normal.is_none() || here.singular => termination = Termination::Singular,
+            None => {}
+        }
+    }
+    Solution {
+        linear: here.linear,
+        nonlinear: here.theta,
+        residual_square: here.square,
+        residuals: here.residuals,
+        inverse_normal,
+        termination,
+    }
+}

@@ -1,0 +1,23 @@
+//! The nonlinear latency law: strain rate against excess strain, equations (1)–(5) and (10).
+//!
+//! A soft contact whose strain ε differs from the equilibrium strain ε_e drifts towards it at a rate
+//! set by the excess x = ε − ε_e alone:
+//!
+//! ẋ = −v · sgn(x) · |x|ⁿ
+//!
+//! One real exponent n > 0 spans the classics: n = 1 is the exponential of a Maxwell arm, n = 2 the
+//! hyperbola known as Peleg's, large n a logarithm of time, and n < 1 reaches equilibrium in finite time.
+//!
+//! | file | what | equations |
+//! |---|---|---|
+//! | `law.rs` | the law with its numbers put in, and the linear law | (1), (2), (3), (10) |
+//! | `decay.rs` | the closed form φ and its derivatives, one value at a time | (4), (5) |
+//! | `batch.rs` | the same for many times at once, at the speed of vector units | (4), (5) |
+
+mod batch;
+mod decay;
+mod law;
+
+pub use batch::{decay_many, decay_with_gradient_many, decay_with_log_rate_many};
+pub use decay::{Decay, decay, decay_with_gradient};
+pub use law::{LatencyLaw, LawError, LinearLatency};

@@ -1,0 +1,10 @@
+//! Soft contact that remembers.
+pub mod contact;
+pub mod latency;
+pub mod identify;
+mod ode;
+pub mod record;
+pub mod simulate;
+mod statistics;
+pub mod test_problems;
+pub mod units;

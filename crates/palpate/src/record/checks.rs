@@ -1,0 +1,144 @@
+//! What every record must be.
+
+/// Columns that make no record. Rows count from 0.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RecordError {
+    /// Columns of different lengths.
+    #[error("columns must be of equal length, found {time} times, {other} values of {column}")]
+    Lengths {
+        /// Number of times.
+        time: usize,
+        /// The other column.
+        column: &'static str,
+        /// Its number of values.
+        other: usize,
+    },
+    /// Too few rows.
+    #[error("a record needs {needed} rows or more, found {found}")]
+    TooShort {
+        /// Least number of rows.
+        needed: usize,
+        /// Rows found.
+        found: usize,
+    },
+    /// NaN or infinity.
+    #[error("{column} must be a finite number, found {found} in row {row}")]
+    NotFinite {
+        /// Which column.
+        column: &'static str,
+        /// Which row.
+        row: usize,
+        /// The value.
+        found: f64,
+    },
+    /// Time stands still or runs backwards.
+    #[error("time must rise from row to row, found {found} s after {before} s in row {row}")]
+    TimeNotRising {
+        /// Which row.
+        row: usize,
+        /// Time of the row before, s.
+        before: f64,
+        /// Time found, s.
+        found: f64,
+    },
+    /// A force that never changes says nothing about relaxation.
+    #[error("the force is {found} N in all {rows} rows: nothing relaxes")]
+    ConstantForce {
+        /// The one value, N.
+        found: f64,
+        /// Number of rows.
+        rows: usize,
+    },
+    /// Two clocks that share no time.
+    #[error(
+        "displacement ({displacement_from} to {displacement_until} s) and force ({force_from} to {force_until} s) share no time"
+    )]
+    ClocksApart {
+        /// First time stamp of the displacement, s.
+        displacement_from: f64,
+        /// Last time stamp of the displacement, s.
+        displacement_until: f64,
+        /// First time stamp of the force, s.
+        force_from: f64,
+        /// Last time stamp of the force, s.
+        force_until: f64,
+    },
+}
+
+impl RecordError {
+    /// The row that is wrong, counted from 0, where there is one.
+    #[must_use]
+    pub fn row(&self) -> Option<usize> {
+        match self {
+            Self::NotFinite { row, .. } | Self::TimeNotRising { row, .. } => Some(*row),
+            _ => None,
+        }
+    }
+
+    /// What would help.
+    #[must_use]
+    pub fn hint(&self) -> &'static str {
+        match self {
+            Self::Lengths { .. } => "give every column the same number of rows",
+            Self::TooShort { .. } => "check that the whole table was exported, and that the right table was read",
+            Self::NotFinite { .. } => "remove the row, or export the record again without gaps",
+            Self::TimeNotRising { .. } => {
+                "sort the rows by time and drop repeated stamps, or check that the time column is the right one"
+            }
+            Self::ConstantForce { .. } => "check that the force column is the right one and that the load cell was connected",
+            Self::ClocksApart { .. } => "check the units and the columns of the two clocks",
+        }
+    }
+}
+
+pub(super) fn lengths(time: &[f64], displacement: Option<&[f64]>, force: &[f64]) -> Result<(), RecordError> {
+    let others = [("displacement", displacement.map_or(time.len(), <[f64]>::len)), ("force", force.len())];
+    for (column, other) in others {
+        if other != time.len() {
+            return Err(RecordError::Lengths {
+                time: time.len(),
+                column,
+                other,
+            });
+        }
+    }
+    if time.len() < 2 {
+        return Err(RecordError::TooShort {
+            needed: 2,
+            found: time.len(),
+        });
+    }
+    Ok(())
+}
+
+pub(super) fn finite(column: &'static str, values: &[f64]) -> Result<(), RecordError> {
+    match values.iter().position(|value| !value.is_finite()) {
+        Some(row) => Err(RecordError::NotFinite {
+            column,
+            row,
+            found: values[row],
+        }),
+        None => Ok(()),
+    }
+}
+
+pub(super) fn rising(time: &[f64]) -> Result<(), RecordError> {
+    match time.windows(2).position(|pair| pair[1] <= pair[0]) {
+        Some(before) => Err(RecordError::TimeNotRising {
+            row: before + 1,
+            before: time[before],
+            found: time[before + 1],
+        }),
+        None => Ok(()),
+    }
+}
+
+pub(super) fn changing(force: &[f64]) -> Result<(), RecordError> {
+    if force.iter().all(|value| *value == force[0]) {
+        return Err(RecordError::ConstantForce {
+            found: force[0],
+            rows: force.len(),
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,93 @@
+//! A measured record: time, displacement and force, checked and in SI.
+//!
+//! | file | what |
+//! |---|---|
+//! | `checks.rs` | what every record must be: finite, of equal lengths, time rising |
+//! | `clocks.rs` | force and displacement stamped by different clocks brought onto one |
+//! | `corrections.rs` | tare, air-run subtraction, repair of single-row dropouts |
+
+mod checks;
+mod clocks;
+mod corrections;
+
+pub use checks::RecordError;
+pub use corrections::Tare;
+
+/// A force record of a squeeze-and-hold test; SI units, the direction of loading is positive.
+///
+/// The direction of loading is compression for a squeezed body and stretch for a strip in grips; displacement and
+/// force share it. A record may lack the displacement (phases are then found from the force).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    time: Vec<f64>,
+    displacement: Option<Vec<f64>>,
+    force: Vec<f64>,
+}
+
+impl Record {
+    /// A record from columns of equal length: time in s, displacement in m, force in N.
+    ///
+    /// # Errors
+    /// [`RecordError`] for unequal lengths, fewer than two rows, values that are not finite, time that does not rise,
+    /// or a force that never changes.
+    ///
+    /// ```
+    /// use palpate::record::Record;
+    /// let record = Record::new(vec![0.0, 0.1, 0.2], Some(vec![0.0, 1e-3, 1e-3]), vec![0.0, 2.0, 1.9])?;
+    /// assert_eq!(record.len(), 3);
+    /// assert!(Record::new(vec![0.0, 0.1, 0.1], None, vec![0.0, 2.0, 1.9]).is_err());
+    /// # Ok::<(), palpate::record::RecordError>(())
+    /// ```
+    pub fn new(time: Vec<f64>, displacement: Option<Vec<f64>>, force: Vec<f64>) -> Result<Self, RecordError> {
+        checks::lengths(&time, displacement.as_deref(), &force)?;
+        checks::finite("time", &time)?;
+        if let Some(displacement) = &displacement {
+            checks::finite("displacement", displacement)?;
+        }
+        checks::finite("force", &force)?;
+        checks::rising(&time)?;
+        checks::changing(&force)?;
+        Ok(Self {
+            time,
+            displacement,
+            force,
+        })
+    }
+
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Never true: a record has two samples at least.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+
+    /// Time, s.
+    #[must_use]
+    pub fn time(&self) -> &[f64] {
+        &self.time
+    }
+
+    /// Displacement, m, if it was recorded.
+    #[must_use]
+    pub fn displacement(&self) -> Option<&[f64]> {
+        self.displacement.as_deref()
+    }
+
+    /// Force, N.
+    #[must_use]
+    pub fn force(&self) -> &[f64] {
+        &self.force
+    }
+
+    /// Median time between samples, s.
+    #[must_use]
+    pub fn sample_interval(&self) -> f64 {
+        let mut steps: Vec<f64> = self.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        crate::statistics::median(&mut steps)
+    }
+}

@@ -1,0 +1,77 @@
+//! From a motion of the jaw to the force of the contact.
+//!
+//! | file | what |
+//! |---|---|
+//! | `motion.rs` | the displacement of the jaw: a protocol's steps, or a measured series; straight between its knots |
+//! | `model.rs` | the contact model: specimen, law, layers, and whether the jaw can pull |
+//! | `walk.rs` | goes through a motion piece by piece: in contact, jaw off, in contact again |
+//! | `trajectory.rs` | the series at the asked times |
+//! | `wave.rs` | all layers over time (the strain wave) |
+
+mod model;
+mod motion;
+mod trajectory;
+mod walk;
+mod wave;
+
+pub use crate::contact::Work;
+pub use model::{ContactModel, Separation};
+pub use motion::{Motion, MotionError, ProtocolStep, protocol};
+pub use trajectory::{Sampling, Trajectory, simulate};
+pub use walk::{ContactEvent, ContactEventKind};
+pub use wave::{StrainWave, strain_wave};
+
+use crate::contact::SpecimenError;
+
+/// Why a simulation could not run.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SimulateError {
+    /// The motion asks for a displacement that the specimen cannot take.
+    #[error("at t = {time} s the jaw is at {displacement} m: {source}")]
+    Displacement {
+        /// Time of the knot, s.
+        time: f64,
+        /// Displacement of the jaw there, m.
+        displacement: f64,
+        /// What the specimen says.
+        source: SpecimenError,
+    },
+    /// A sample time outside the motion, or before the one before it.
+    #[error("sample times must rise from {from} s to {until} s at most, found {found} s at index {index}")]
+    SampleTime {
+        /// Start of the motion, s.
+        from: f64,
+        /// End of the motion, s.
+        until: f64,
+        /// The time that is out of place, s.
+        found: f64,
+        /// Its index.
+        index: usize,
+    },
+    /// More samples than a trajectory holds.
+    #[error("{found:.3e} samples are asked for, at most {limit:.0e} are made: lower the sample rate")]
+    TooManySamples {
+        /// How many are asked for.
+        found: f64,
+        /// The limit.
+        limit: f64,
+    },
+    /// A sample rate that is not a finite number above zero.
+    #[error("sample rate must be above 0 Hz, found {found} Hz")]
+    SampleRate {
+        /// What was given, Hz.
+        found: f64,
+    },
+    /// A number of layers that is not whole has a force but no layers to show.
+    #[error("the strain wave needs a whole number of layers, found {found}; the contact force is defined for any real number")]
+    FractionalLayers {
+        /// m.
+        found: f64,
+    },
+    /// The numbers ran out of the range of doubles.
+    #[error("the simulation left the range of double precision at t = {time} s")]
+    OutOfRange {
+        /// Time, s.
+        time: f64,
+    },
+}

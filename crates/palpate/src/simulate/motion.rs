@@ -1,0 +1,228 @@
+//! Displacement of the jaw over time, straight between knots.
+
+use serde::{Deserialize, Serialize};
+
+/// A piecewise-linear motion of the jaw: displacement d (m) since first contact over time (s).
+///
+/// Both a commanded protocol and a measured displacement series are one. The body is relaxed at the first knot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Motion {
+    times: Vec<f64>,
+    displacements: Vec<f64>,
+}
+
+/// Numbers that make no motion.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MotionError {
+    /// Fewer than two knots.
+    #[error("a motion needs two points or more, found {found}")]
+    TooShort {
+        /// Number of points.
+        found: usize,
+    },
+    /// As many times as displacements are needed.
+    #[error("a motion needs a displacement for every time, found {times} times and {displacements} displacements")]
+    Lengths {
+        /// Number of times.
+        times: usize,
+        /// Number of displacements.
+        displacements: usize,
+    },
+    /// A number that is NaN or infinite.
+    #[error("{what} must be finite, found {found} at point {index}")]
+    NotFinite {
+        /// `time` or `displacement`.
+        what: &'static str,
+        /// The value.
+        found: f64,
+        /// Its index.
+        index: usize,
+    },
+    /// Time stands still or runs backwards.
+    #[error("time must rise, found {found} s after {before} s at point {index}")]
+    TimeNotRising {
+        /// Time before, s.
+        before: f64,
+        /// Time found, s.
+        found: f64,
+        /// Its index.
+        index: usize,
+    },
+    /// A speed that is not a finite number above zero.
+    #[error("step {step}: rate must be above 0 m/s, found {found} m/s")]
+    Rate {
+        /// Number of the step, from 1.
+        step: usize,
+        /// What was given, m/s.
+        found: f64,
+    },
+    /// A hold that is not zero or a finite number above.
+    #[error("step {step}: hold must be 0 s or more, found {found} s")]
+    Hold {
+        /// Number of the step, from 1.
+        step: usize,
+        /// What was given, s.
+        found: f64,
+    },
+    /// A step that neither moves nor holds.
+    #[error("step {step} neither moves nor holds")]
+    EmptyStep {
+        /// Number of the step, from 1.
+        step: usize,
+    },
+}
+
+/// One step of a protocol: go to a displacement at constant speed, then stay.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ProtocolStep {
+    /// Displacement of the jaw at the end of the ramp, m.
+    pub to: f64,
+    /// Speed of the jaw in the ramp, m/s, always positive.
+    pub rate: f64,
+    /// Time at the new displacement, s.
+    pub hold: f64,
+}
+
+/// The motion of a protocol that starts at first touch at time 0.
+///
+/// ```
+/// use palpate::simulate::{ProtocolStep, protocol};
+/// let step = ProtocolStep { to: 0.005, rate: 0.5 / 60.0, hold: 10.0 };
+/// let motion = protocol(&[step])?;
+/// assert!((motion.end() - 10.6).abs() < 1e-12);
+/// assert_eq!(motion.displacement_at(3.0), 0.005);
+/// # Ok::<(), palpate::simulate::MotionError>(())
+/// ```
+///
+/// # Errors
+/// [`MotionError`] for a rate that is not above zero, a negative hold, or no movement at all.
+pub fn protocol(steps: &[ProtocolStep]) -> Result<Motion, MotionError> {
+    let (mut times, mut displacements) = (vec![0.0], vec![0.0]);
+    let (mut time, mut at) = (0.0, 0.0);
+    for (index, step) in steps.iter().enumerate() {
+        let number = index + 1;
+        if !(step.rate.is_finite() && step.rate > 0.0) {
+            return Err(MotionError::Rate {
+                step: number,
+                found: step.rate,
+            });
+        }
+        if !(step.hold.is_finite() && step.hold >= 0.0) {
+            return Err(MotionError::Hold {
+                step: number,
+                found: step.hold,
+            });
+        }
+        if step.to == at && step.hold == 0.0 {
+            return Err(MotionError::EmptyStep { step: number });
+        }
+        if step.to != at {
+            time += (step.to - at).abs() / step.rate;
+            at = step.to;
+            times.push(time);
+            displacements.push(at);
+        }
+        if step.hold > 0.0 {
+            time += step.hold;
+            times.push(time);
+            displacements.push(at);
+        }
+    }
+    Motion::new(times, displacements)
+}
+
+impl Motion {
+    /// A motion through the given points.
+    ///
+    /// # Errors
+    /// [`MotionError`] for fewer than two points, numbers that are not finite, or time that does not rise.
+    pub fn new(times: Vec<f64>, displacements: Vec<f64>) -> Result<Self, MotionError> {
+        if times.len() != displacements.len() {
+            return Err(MotionError::Lengths {
+                times: times.len(),
+                displacements: displacements.len(),
+            });
+        }
+        if times.len() < 2 {
+            return Err(MotionError::TooShort { found: times.len() });
+        }
+        for (what, values) in [("time", &times), ("displacement", &displacements)] {
+            if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+                return Err(MotionError::NotFinite {
+                    what,
+                    found: values[index],
+                    index,
+                });
+            }
+        }
+        if let Some(index) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
+            return Err(MotionError::TimeNotRising {
+                before: times[index],
+                found: times[index + 1],
+                index: index + 1,
+            });
+        }
+        Ok(Self { times, displacements })
+    }
+
+    /// Times of the knots, s.
+    #[must_use]
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Displacements at the knots, m.
+    #[must_use]
+    pub fn displacements(&self) -> &[f64] {
+        &self.displacements
+    }
+
+    /// Time of the first knot, s.
+    #[must_use]
+    pub fn start(&self) -> f64 {
+        self.times[0]
+    }
+
+    /// Time of the last knot, s.
+    #[must_use]
+    pub fn end(&self) -> f64 {
+        self.times[self.times.len() - 1]
+    }
+
+    /// Displacement of the jaw at `time`, m; constant before the first knot and after the last.
+    #[must_use]
+    pub fn displacement_at(&self, time: f64) -> f64 {
+        let after = self.times.partition_point(|&knot| knot <= time);
+        if after == 0 {
+            return self.displacements[0];
+        }
+        if after == self.times.len() {
+            return self.displacements[after - 1];
+        }
+        let (t0, t1) = (self.times[after - 1], self.times[after]);
+        let (d0, d1) = (self.displacements[after - 1], self.displacements[after]);
+        if d0 == d1 {
+            return d0;
+        }
+        d0 + (d1 - d0) * ((time - t0) / (t1 - t0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrong_motions_say_where() {
+        let step = |to, rate, hold| ProtocolStep { to, rate, hold };
+        assert!(matches!(protocol(&[]), Err(MotionError::TooShort { .. })));
+        assert!(matches!(
+            protocol(&[step(1.0, 1.0, 0.0), step(2.0, 0.0, 1.0)]),
+            Err(MotionError::Rate { step: 2, .. })
+        ));
+        assert!(matches!(protocol(&[step(1.0, 1.0, -1.0)]), Err(MotionError::Hold { step: 1, .. })));
+        assert!(matches!(protocol(&[step(0.0, 1.0, 0.0)]), Err(MotionError::EmptyStep { step: 1 })));
+        let rising = Motion::new(vec![0.0, 1.0, 1.0], vec![0.0; 3]);
+        assert!(matches!(rising, Err(MotionError::TimeNotRising { index: 2, .. })));
+    }
+}

@@ -1,0 +1,92 @@
+//! Small robust statistics that several steps share.
+
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+
+/// Median; reorders `values`. NaN for an empty slice.
+pub(crate) fn median(values: &mut [f64]) -> f64 {
+    quantile(values, 0.5)
+}
+
+/// The value that a share `share` of `values` lies below; reorders `values`. NaN for an empty slice.
+pub(crate) fn quantile(values: &mut [f64], share: f64) -> f64 {
+    if values.is_empty() {
+        return f64::NAN;
+    }
+    let index = ((values.len() - 1) as f64 * share).round() as usize;
+    *values.select_nth_unstable_by(index, f64::total_cmp).1
+}
+
+/// Arithmetic mean. NaN for an empty slice.
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Standard deviation of white noise on top of a signal that is straight over three samples.
+///
+/// From the median absolute second difference, so that ramps, holds and the odd spike do not count:
+/// second differences of white noise have √6 times its deviation, and 0.6745 turns a median into a deviation.
+pub(crate) fn noise(values: &[f64]) -> f64 {
+    if values.len() < 3 {
+        return 0.0;
+    }
+    let mut second: Vec<f64> = values
+        .windows(3)
+        .map(|w| (w[0] - 2.0 * w[1] + w[2]).abs())
+        .collect();
+    median(&mut second) / (0.674_489_750_196_081_7 * 6f64.sqrt())
+}
+
+/// Correlation of neighbouring values about zero; 0 for fewer than three or for none at all.
+pub(crate) fn lag_one_correlation(residuals: &[f64]) -> f64 {
+    let square: f64 = residuals.iter().map(|r| r * r).sum();
+    if residuals.len() < 3 || square == 0.0 {
+        return 0.0;
+    }
+    let product: f64 = residuals.windows(2).map(|w| w[0] * w[1]).sum();
+    (product / square).clamp(-1.0, 1.0)
+}
+
+/// How many independent samples carry as much as `count` samples whose neighbours correlate by `correlation`.
+///
+/// N (1 − ρ)/(1 + ρ) for an AR(1) series; a negative ρ counts as none, and two samples are always left.
+pub(crate) fn effective_count(count: usize, correlation: f64) -> f64 {
+    let rho = correlation.clamp(0.0, 0.9999);
+    (count as f64 * (1.0 - rho) / (1.0 + rho)).max(2.0)
+}
+
+/// Two-sided probability that a standard normal number is at least `z` away from zero.
+pub(crate) fn two_sided_p(z: f64) -> f64 {
+    if z.is_infinite() {
+        return 0.0;
+    }
+    2.0 * Normal::standard().sf(z.abs())
+}
+
+/// The factor that turns a standard error into half a confidence interval of `level` with `freedom` degrees of freedom.
+pub(crate) fn coverage_factor(level: f64, freedom: f64) -> f64 {
+    match StudentsT::new(0.0, 1.0, freedom.max(1.0)) {
+        Ok(t) => t.inverse_cdf(0.5 + 0.5 * level),
+        Err(_) => f64::INFINITY,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_does_not_count_ramps() {
+        let wiggle = |i: u32| [1.0, -0.3, -1.2, 0.7, 0.1, -0.4, 1.3][(i * i % 7) as usize];
+        let flat: Vec<f64> = (0..700).map(wiggle).collect();
+        let ramp: Vec<f64> = (0..700).map(|i| wiggle(i) + 5.0 * f64::from(i)).collect();
+        assert!((noise(&flat) - noise(&ramp)).abs() < 1e-9);
+        assert_eq!(noise(&[1.0, 2.0, 3.0, 4.0]), 0.0);
+    }
+
+    #[test]
+    fn quantiles_of_known_distributions() {
+        // Student t, 10 degrees of freedom, 95 %: 2.228139 (standard table)
+        assert!((coverage_factor(0.95, 10.0) - 2.228_139).abs() < 1e-5);
+        assert!((two_sided_p(1.959_964) - 0.05).abs() < 1e-6);
+    }
+}

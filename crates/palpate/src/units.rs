@@ -1,0 +1,313 @@
+//! Quantities as people write them: `"35 mm"`, `"28 kPa"`, `"500 mm/min"`, `"2e4 /s"`.
+//!
+//! Inside the library every number is in SI. At the borders a quantity is a number and a unit; this
+//! module holds the whole list of units that are understood. The list is strict: a unit that is not
+//! in it is an error that names what would be accepted, never a guess.
+//!
+//! ```
+//! use palpate::units::{Dimension, parse};
+//! assert_eq!(parse("500 mm/min", Dimension::Speed)?, 0.5 / 60.0);
+//! assert_eq!(parse("28 kPa", Dimension::Pressure)?, 28_000.0);
+//! # Ok::<(), palpate::units::UnitError>(())
+//! ```
+
+use serde::{Deserialize, Serialize};
+
+/// What kind of quantity a number is; decides which units are accepted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Dimension {
+    /// Length in m.
+    Length,
+    /// Area in m².
+    Area,
+    /// Time in s.
+    Time,
+    /// Force in N.
+    Force,
+    /// Stress, pressure or modulus in Pa.
+    Pressure,
+    /// Speed in m/s.
+    Speed,
+    /// Rate in 1/s (also the rate coefficient of the latency law, whose strain is a pure number).
+    Rate,
+    /// Frequency in Hz.
+    Frequency,
+}
+
+impl Dimension {
+    /// The name used in messages.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Length => "length",
+            Self::Area => "area",
+            Self::Time => "time",
+            Self::Force => "force",
+            Self::Pressure => "pressure or modulus",
+            Self::Speed => "speed",
+            Self::Rate => "rate",
+            Self::Frequency => "frequency",
+        }
+    }
+
+    /// Accepted unit symbols with the factor that turns them to SI; the SI unit stands first.
+    #[must_use]
+    pub fn units(self) -> &'static [(&'static str, f64)] {
+        match self {
+            Self::Length => LENGTH,
+            Self::Area => AREA,
+            Self::Time => TIME,
+            Self::Force => FORCE,
+            Self::Pressure => PRESSURE,
+            Self::Speed => SPEED,
+            Self::Rate => RATE,
+            Self::Frequency => FREQUENCY,
+        }
+    }
+
+    /// The accepted symbols as one line for a message: `m, mm, µm, …`.
+    #[must_use]
+    pub fn accepted(self) -> String {
+        let symbols: Vec<_> = self.units().iter().map(|(symbol, _)| *symbol).collect();
+        symbols.join(", ")
+    }
+}
+
+const INCH: f64 = 0.0254;
+const POUND_FORCE: f64 = 4.448_221_615_260_5;
+const KILOGRAM_FORCE: f64 = 9.806_65;
+
+const LENGTH: &[(&str, f64)] = &[
+    ("m", 1.0),
+    ("cm", 1e-2),
+    ("mm", 1e-3),
+    ("µm", 1e-6),
+    ("um", 1e-6),
+    ("nm", 1e-9),
+    ("in", INCH),
+];
+const AREA: &[(&str, f64)] = &[
+    ("m²", 1.0),
+    ("m^2", 1.0),
+    ("m2", 1.0),
+    ("cm²", 1e-4),
+    ("cm^2", 1e-4),
+    ("cm2", 1e-4),
+    ("mm²", 1e-6),
+    ("mm^2", 1e-6),
+    ("mm2", 1e-6),
+    ("µm²", 1e-12),
+    ("um^2", 1e-12),
+];
+const TIME: &[(&str, f64)] = &[
+    ("s", 1.0),
+    ("sec", 1.0),
+    ("ms", 1e-3),
+    ("µs", 1e-6),
+    ("us", 1e-6),
+    ("min", 60.0),
+    ("h", 3600.0),
+];
+const FORCE: &[(&str, f64)] = &[
+    ("N", 1.0),
+    ("kN", 1e3),
+    ("mN", 1e-3),
+    ("µN", 1e-6),
+    ("uN", 1e-6),
+    ("nN", 1e-9),
+    ("pN", 1e-12),
+    ("gf", KILOGRAM_FORCE * 1e-3),
+    ("kgf", KILOGRAM_FORCE),
+    ("lbf", POUND_FORCE),
+];
+const PRESSURE: &[(&str, f64)] = &[
+    ("Pa", 1.0),
+    ("kPa", 1e3),
+    ("MPa", 1e6),
+    ("GPa", 1e9),
+    ("N/mm²", 1e6),
+    ("N/mm^2", 1e6),
+    ("N/mm2", 1e6),
+    ("N/m^2", 1.0),
+    ("bar", 1e5),
+    ("psi", POUND_FORCE / (INCH * INCH)),
+];
+const SPEED: &[(&str, f64)] = &[
+    ("m/s", 1.0),
+    ("m/min", 1.0 / 60.0),
+    ("cm/s", 1e-2),
+    ("mm/s", 1e-3),
+    ("mm/min", 1e-3 / 60.0),
+    ("µm/s", 1e-6),
+    ("um/s", 1e-6),
+    ("nm/s", 1e-9),
+    ("in/min", INCH / 60.0),
+];
+const RATE: &[(&str, f64)] = &[
+    ("/s", 1.0),
+    ("1/s", 1.0),
+    ("s^-1", 1.0),
+    ("s⁻¹", 1.0),
+    ("/min", 1.0 / 60.0),
+    ("1/min", 1.0 / 60.0),
+];
+const FREQUENCY: &[(&str, f64)] = &[("Hz", 1.0), ("kHz", 1e3), ("/s", 1.0), ("1/s", 1.0)];
+
+/// Why a quantity could not be read.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum UnitError {
+    /// The text does not start with a number.
+    #[error("expected a {dimension} such as \"{example}\", found \"{found}\"", dimension = .dimension.name(), example = example(*.dimension))]
+    NotANumber {
+        /// What was asked for.
+        dimension: Dimension,
+        /// What stood there.
+        found: String,
+    },
+    /// A number without a unit.
+    #[error("expected a unit after the number in \"{found}\" (a {dimension}: {accepted})", dimension = .dimension.name(), accepted = .dimension.accepted())]
+    MissingUnit {
+        /// What was asked for.
+        dimension: Dimension,
+        /// What stood there.
+        found: String,
+    },
+    /// A unit that this quantity does not take.
+    #[error("\"{unit}\" is not a unit of {dimension} (accepted: {accepted})", dimension = .dimension.name(), accepted = .dimension.accepted())]
+    UnknownUnit {
+        /// What was asked for.
+        dimension: Dimension,
+        /// The unit that stood there.
+        unit: String,
+    },
+    /// The number is NaN or infinite.
+    #[error("expected a finite {dimension}, found \"{found}\"", dimension = .dimension.name())]
+    NotFinite {
+        /// What was asked for.
+        dimension: Dimension,
+        /// What stood there.
+        found: String,
+    },
+}
+
+fn example(dimension: Dimension) -> &'static str {
+    match dimension {
+        Dimension::Length => "35 mm",
+        Dimension::Area => "40 mm^2",
+        Dimension::Time => "10 s",
+        Dimension::Force => "5 N",
+        Dimension::Pressure => "28 kPa",
+        Dimension::Speed => "500 mm/min",
+        Dimension::Rate => "2e4 /s",
+        Dimension::Frequency => "100 Hz",
+    }
+}
+
+/// The factor that turns a unit symbol into SI, or `None` if the symbol is not a unit of `dimension`.
+///
+/// Greek mu (U+03BC) and the micro sign (U+00B5) are one letter here; case matters (`mN` is not `MN`).
+#[must_use]
+pub fn factor(unit: &str, dimension: Dimension) -> Option<f64> {
+    let unit = unit.trim().replace('\u{3bc}', "\u{b5}");
+    dimension
+        .units()
+        .iter()
+        .find(|(symbol, _)| *symbol == unit)
+        .map(|(_, factor)| *factor)
+}
+
+/// Reads a quantity with its unit and returns it in SI.
+///
+/// # Errors
+/// [`UnitError`] when there is no number, no unit, a unit of another kind, or a value that is not finite.
+pub fn parse(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
+    let trimmed = text.trim();
+    let (number, unit) = split_number(trimmed);
+    let value: f64 = number.parse().map_err(|_| UnitError::NotANumber {
+        dimension,
+        found: text.to_owned(),
+    })?;
+    if unit.is_empty() {
+        return Err(UnitError::MissingUnit {
+            dimension,
+            found: text.to_owned(),
+        });
+    }
+    let factor = factor(unit, dimension).ok_or_else(|| UnitError::UnknownUnit {
+        dimension,
+        unit: unit.to_owned(),
+    })?;
+    let scaled = scale(value, factor);
+    if scaled.is_finite() {
+        Ok(scaled)
+    } else {
+        Err(UnitError::NotFinite {
+            dimension,
+            found: text.to_owned(),
+        })
+    }
+}
+
+/// Multiplies by `factor`, dividing instead where the factor is 1/k for a whole k: 35 mm is then
+/// exactly the double 0.035, which 35 × 0.001 is not.
+#[must_use]
+pub fn scale(value: f64, factor: f64) -> f64 {
+    let inverse = (1.0 / factor).round();
+    if factor < 1.0 && inverse < 1e15 && 1.0 / inverse == factor {
+        value / inverse
+    } else {
+        value * factor
+    }
+}
+
+/// Splits `"2e4 /s"` into the longest leading text that reads as a number and the rest.
+fn split_number(text: &str) -> (&str, &str) {
+    let mut end = 0;
+    for (index, character) in text.char_indices() {
+        let next = index + character.len_utf8();
+        if text[..next].parse::<f64>().is_ok() {
+            end = next;
+        } else if !(character.is_ascii_digit() || matches!(character, '.' | '+' | '-' | 'e' | 'E')) {
+            break;
+        }
+    }
+    (&text[..end], text[end..].trim())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantities_as_people_write_them() {
+        for (text, dimension, si) in [
+            ("35 mm", Dimension::Length, 0.035),
+            ("4.375mm", Dimension::Length, 0.004_375),
+            ("28 kPa", Dimension::Pressure, 28e3),
+            ("2e4 /s", Dimension::Rate, 2e4),
+            ("2E+4 s^-1", Dimension::Rate, 2e4),
+            ("10 s", Dimension::Time, 10.0),
+            ("3 \u{3bc}m", Dimension::Length, 3e-6),
+            ("-1.5 N", Dimension::Force, -1.5),
+            ("1 lbf", Dimension::Force, 4.448_221_615_260_5),
+            ("100 Hz", Dimension::Frequency, 100.0),
+        ] {
+            assert_eq!(parse(text, dimension), Ok(si), "{text}");
+        }
+        assert!((parse("1 psi", Dimension::Pressure).unwrap_or(0.0) - 6_894.757_293).abs() < 1e-5);
+    }
+
+    #[test]
+    fn wrong_quantities_say_what_is_accepted() {
+        let missing = parse("35", Dimension::Length).unwrap_err().to_string();
+        assert!(missing.contains("m, cm, mm"), "{missing}");
+        let unknown = parse("35 furlong", Dimension::Length).unwrap_err().to_string();
+        assert!(unknown.contains("furlong") && unknown.contains("mm"), "{unknown}");
+        assert!(parse("wide", Dimension::Length).is_err());
+        assert!(parse("", Dimension::Length).is_err());
+        assert!(parse("inf m", Dimension::Length).is_err());
+        assert!(parse("nan m", Dimension::Length).is_err());
+        assert!(parse("28 mm", Dimension::Pressure).is_err());
+    }
+}
