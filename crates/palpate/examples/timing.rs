@@ -6,12 +6,16 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use palpate::identify::{ExponentChoice, FitOptions, fit_hold};
-use palpate::simulate::{Sampling, Separation, simulate};
+use palpate::simulate::{Sampling, Separation, simulate, simulate_force};
 use palpate::test_problems::{noisy_hold, paper_ball, paper_test_a};
 
 fn main() {
     let (motion, model) = (paper_test_a(), paper_ball(Separation::Bonded));
     let sampling = Sampling::Rate(100.0);
+    let times: Vec<f64> = (0..=6600).map(|i| f64::from(i) / 100.0).collect();
+    report("simulate_protocol_a_force", 400, || {
+        black_box(simulate_force(black_box(&motion), &model, &times)).is_ok()
+    });
     report("simulate_protocol_a", 400, || {
         black_box(simulate(black_box(&motion), &model, &sampling)).is_ok()
     });

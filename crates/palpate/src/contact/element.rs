@@ -4,19 +4,23 @@
 //!
 //! ẋ = g − v sgn(x) |x|ⁿ,  g = u̇₁ (m − 1)/depth.
 //!
-//! A hold (g = 0) has the closed form (4), (5). A ramp tends to the steady excess x* = sgn(g)(|g|/v)^(1/n); it is
-//! integrated by an error-controlled Runge–Kutta method with dense output until it is so near to x* that the rest is a
-//! closed form too, so that neither long ramps nor fast layers cost more steps.
+//! A hold (g = 0) has the closed form (4), (5). A ramp tends to the steady excess x* = sgn(g)(|g|/v)^(1/n). With z = x/x*
+//! and y = −ln|1 − z| its equation becomes
+//!
+//! ẏ = (g/x*) q(z),  q(z) = (1 − sgn(z)|z|ⁿ)/(1 − z),
+//!
+//! which is smooth, turns into a straight line of slope n g/x* as the steady state is neared, and keeps 1 − z to full
+//! relative accuracy on the way. An error-controlled Runge–Kutta method with dense output takes about a dozen steps
+//! for it, however long the ramp and however fast the layer.
 
 use super::Work;
 use crate::latency::LatencyLaw;
 use crate::ode::{Dop853, Step};
 
-/// Relative distance from the steady state below which the second-order expansion around it is exact to rounding:
-/// the third-order term is of relative size (1e-6)² against the distance itself.
-const NEAR_STEADY: f64 = 1e-6;
+/// Past y = 40 the distance from the steady state, e⁻⁴⁰, is below rounding.
+const STEADY_FROM: f64 = 40.0;
 
-/// Tolerance of ramps, relative to the larger of the start and the steady excess.
+/// Tolerance of a step, relative to the larger of x* and its distance from x.
 const TOLERANCE: f64 = 1e-13;
 
 /// Excess strain x(t) of the contact layer over one straight piece, from t = 0 at its start.
@@ -24,21 +28,19 @@ const TOLERANCE: f64 = 1e-13;
 pub(crate) enum Element {
     /// The jaw stands still: closed form.
     Hold { law: LatencyLaw, initial: f64 },
-    /// The jaw moves: integrated part, then the closed-form approach to the steady excess.
-    Ramp {
-        steps: Vec<Step<[f64; 1]>>,
-        approach: Option<Approach>,
-    },
+    /// The jaw moves.
+    Ramp(Ramp),
 }
 
-/// x = x* (1 + δ) with δ' = −κ δ (1 + c δ): the law expanded to second order around its steady state.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Approach {
-    from: f64,
+/// The way to the steady excess.
+#[derive(Debug)]
+pub(crate) struct Ramp {
+    /// x*.
     steady: f64,
-    deviation: f64,
-    rate: f64,
-    curvature: f64,
+    /// Sign of 1 − z; zero if the ramp begins at its steady state.
+    side: f64,
+    /// y over time, until the steady state is reached or the piece ends.
+    steps: Vec<Step<[f64; 1]>>,
 }
 
 impl Element {
@@ -48,63 +50,119 @@ impl Element {
             work.closed_forms += 1;
             return Self::Hold { law, initial };
         }
-        let steady = law.steady_excess(drive);
-        // Rate at which a small deviation from the steady state dies: n v |x*|ⁿ⁻¹ = n g/x*.
-        let rate = law.exponent() * drive / steady;
-        let approach = |from: f64, excess: f64| Approach {
-            from,
-            steady,
-            deviation: excess / steady - 1.0,
-            rate,
-            curvature: 0.5 * (law.exponent() - 1.0),
-        };
-        let scale = steady.abs().max(initial.abs());
-        let slope = (drive + law.rate(initial)).abs();
-        let first = duration.min(0.1 * scale / slope);
-        let mut solver = Dop853::new([initial], TOLERANCE * scale, if first > 0.0 { first } else { duration });
-        let is_near = |x: f64| (x / steady - 1.0).abs() < NEAR_STEADY;
-        let mut steps = Vec::new();
-        while !is_near(solver.state()[0]) && solver.time() < duration {
-            steps.push(solver.step(duration, |_, &[x]| [drive + law.rate(x)]));
-        }
         work.ramps += 1;
+        let steady = law.steady_excess(drive);
+        let start = 1.0 - initial / steady;
+        let side = if start == 0.0 { 0.0 } else { start.signum() };
+        let rate = drive / steady;
+        let slope = |y: f64| rate * attraction(side * (-y).exp(), law.exponent());
+        let initial = -start.abs().ln();
+        let first = duration.min(0.5 / slope(initial));
+        let mut solver = Dop853::new([initial], TOLERANCE, if first > 0.0 { first } else { duration });
+        let mut steps = Vec::with_capacity(16);
+        while side != 0.0 && solver.time() < duration && solver.state()[0] < STEADY_FROM {
+            // An error of y matters as far as it moves x = x* (1 ∓ e^(−y)).
+            let [y] = *solver.state();
+            solver.set_tolerance(TOLERANCE * y.exp().clamp(1.0, 1e9));
+            steps.push(solver.step(duration, |_, &[y]| [slope(y)]));
+        }
         work.steps += solver.steps;
         work.evaluations += solver.evaluations;
-        let excess = solver.state()[0];
-        Self::Ramp {
-            approach: is_near(excess).then(|| approach(solver.time(), excess)),
-            steps,
-        }
+        Self::Ramp(Ramp { steady, side, steps })
     }
 
     /// Excess strain a time `elapsed` (s) after the start of the piece.
     pub(crate) fn excess_at(&self, elapsed: f64) -> f64 {
         match self {
             Self::Hold { law, initial } => law.excess_after(*initial, elapsed),
-            Self::Ramp { steps, approach } => match approach {
-                Some(approach) if elapsed >= approach.from => approach.excess_at(elapsed),
-                _ => {
-                    let index = steps.partition_point(|step| step.end() < elapsed);
-                    steps[index.min(steps.len() - 1)].at(elapsed)[0]
-                }
-            },
+            Self::Ramp(ramp) => ramp.excess_at(elapsed),
+        }
+    }
+
+    /// Appends the excess strain at every one of `times`, which lie in the piece that began at `start`.
+    pub(crate) fn extend_excess(&self, start: f64, times: &[f64], out: &mut Vec<f64>) {
+        let elapsed = times.iter().map(|time| time - start);
+        match self {
+            Self::Hold { law, initial } => {
+                let from = out.len();
+                out.extend(elapsed);
+                law.relax(*initial, &mut out[from..]);
+            }
+            Self::Ramp(ramp) => out.extend(elapsed.map(|elapsed| ramp.excess_at(elapsed))),
         }
     }
 
     /// Ends of the integration steps (s from the start of the piece); between two of them the excess is smooth.
     pub(crate) fn step_ends(&self) -> impl Iterator<Item = f64> + '_ {
         let steps = match self {
-            Self::Ramp { steps, .. } => steps.as_slice(),
+            Self::Ramp(ramp) => ramp.steps.as_slice(),
             Self::Hold { .. } => &[],
         };
         steps.iter().map(Step::end)
     }
 }
 
-impl Approach {
+impl Ramp {
     fn excess_at(&self, elapsed: f64) -> f64 {
-        let decay = (-self.rate * (elapsed - self.from)).exp();
-        let deviation = self.deviation * decay / (1.0 + self.curvature * self.deviation * (1.0 - decay));
-        self.steady * (1.0 + deviation)
+        let index = self.steps.partition_point(|step| step.end() < elapsed);
+        match self.steps.get(index) {
+            Some(step) => {
+                let [y] = step.at(elapsed);
+                self.steady * (1.0 - self.side * (-y).exp())
+            }
+            None => self.at_end(),
+        }
+    }
+
+    /// Where the steps end: the steady state, or the end of the piece (a rounding error past the last step).
+    fn at_end(&self) -> f64 {
+        match self.steps.last() {
+            Some(step) if step.at(step.end())[0] < STEADY_FROM => {
+                self.steady * (1.0 - self.side * (-step.at(step.end())[0]).exp())
+            }
+            _ => self.steady,
+        }
+    }
+}
+
+/// q = (1 − sgn(z)|z|ⁿ)/(1 − z) from `distance` = 1 − z ≠ 0; positive, and n at z = 1.
+fn attraction(distance: f64, n: f64) -> f64 {
+    let z = 1.0 - distance;
+    // Whole odd n: the geometric sum, without a power and without cancellation.
+    match n {
+        1.0 => 1.0,
+        3.0 => 1.0 + z * (1.0 + z),
+        5.0 => 1.0 + z * (1.0 + z * (1.0 + z * (1.0 + z))),
+        _ if z > 0.0 => -(n * (-distance).ln_1p()).exp_m1() / distance,
+        _ => (1.0 + (-z).powf(n)) / distance,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ramp_from_rest_follows_the_hyperbolic_tangent_for_n_2() {
+        // ẋ = g − v x² from 0: x = √(g/v) tanh(√(g v) t)
+        let law = LatencyLaw::new(2.0, 3.0).unwrap();
+        let element = Element::solve(law, 0.0, 0.7, 9.0, &mut Work::default());
+        for i in 0..=90 {
+            let t = 0.1 * f64::from(i);
+            let exact = (0.7f64 / 3.0).sqrt() * ((0.7f64 * 3.0).sqrt() * t).tanh();
+            let error = (element.excess_at(t) - exact).abs();
+            assert!(error < 2e-12, "t = {t}: {error:e}");
+        }
+    }
+
+    #[test]
+    fn long_and_fast_ramps_cost_no_more_steps() {
+        for (v, duration) in [(2e4, 0.6), (2e4, 6e5), (2e14, 6e5)] {
+            let law = LatencyLaw::new(5.0, v).unwrap();
+            let mut work = Work::default();
+            let element = Element::solve(law, 0.0, 0.83, duration, &mut work);
+            assert!(work.steps < 60, "{work:?}");
+            assert!(element.excess_at(duration) > 0.999 * law.steady_excess(0.83));
+        }
     }
 }

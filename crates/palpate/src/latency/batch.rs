@@ -18,21 +18,26 @@ const EXPONENTIAL_WITHIN: f64 = 1e-16;
 /// # Panics
 /// If the slices differ in length.
 pub fn decay_many(times: &[f64], rate: f64, exponent: f64, out: &mut [f64]) {
-    assert_eq!(times.len(), out.len(), "one output a time");
+    out.copy_from_slice(times);
+    decay_in_place(out, rate, exponent);
+}
+
+/// Replaces every time by φ(λ t; n).
+pub(crate) fn decay_in_place(times: &mut [f64], rate: f64, exponent: f64) {
     let p = exponent - 1.0;
     if p.abs() <= EXPONENTIAL_WITHIN {
-        map(times, out, |t| exp(-rate * t));
+        map(times, |t| exp(-rate * t));
     } else if exponent == 2.0 {
-        map(times, out, |t| 1.0 / (1.0 + rate * t));
+        map(times, |t| 1.0 / (1.0 + rate * t));
     } else if exponent == 3.0 {
-        map(times, out, |t| 1.0 / (1.0 + 2.0 * rate * t).sqrt());
+        map(times, |t| 1.0 / (1.0 + 2.0 * rate * t).sqrt());
     } else if exponent == 5.0 {
-        map(times, out, |t| 1.0 / (1.0 + 4.0 * rate * t).sqrt().sqrt());
+        map(times, |t| 1.0 / (1.0 + 4.0 * rate * t).sqrt().sqrt());
     } else if p > 0.0 {
         let inverse = 1.0 / p;
-        map(times, out, |t| exp(-ln_1p(p * rate * t) * inverse));
+        map(times, |t| exp(-ln_1p(p * rate * t) * inverse));
     } else {
-        map(times, out, |t| decay(rate * t, exponent));
+        map(times, |t| decay(rate * t, exponent));
     }
 }
 
@@ -88,17 +93,15 @@ pub fn decay_with_log_rate_many(
 
 /// Applies `f` in blocks of eight, which the compiler unrolls into vector registers.
 #[inline(always)]
-fn map(times: &[f64], out: &mut [f64], f: impl Fn(f64) -> f64) {
-    const BLOCK: usize = 8;
-    let (blocks, rest) = times.as_chunks::<BLOCK>();
-    let (out_blocks, out_rest) = out.as_chunks_mut::<BLOCK>();
-    for (block, slots) in blocks.iter().zip(out_blocks) {
-        for lane in 0..BLOCK {
-            slots[lane] = f(block[lane]);
+fn map(values: &mut [f64], f: impl Fn(f64) -> f64) {
+    let (blocks, rest) = values.as_chunks_mut::<8>();
+    for block in blocks {
+        for slot in block {
+            *slot = f(*slot);
         }
     }
-    for (t, slot) in rest.iter().zip(out_rest) {
-        *slot = f(*t);
+    for slot in rest {
+        *slot = f(*slot);
     }
 }
 

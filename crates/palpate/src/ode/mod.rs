@@ -111,6 +111,11 @@ impl<S: State> Dop853<S> {
         }
     }
 
+    /// Changes the error allowed in the steps to come.
+    pub(crate) fn set_tolerance(&mut self, tolerance: f64) {
+        self.tolerance = tolerance;
+    }
+
     pub(crate) fn time(&self) -> f64 {
         self.time
     }

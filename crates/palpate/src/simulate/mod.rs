@@ -17,7 +17,7 @@ mod wave;
 pub use crate::contact::Work;
 pub use model::{ContactModel, Separation};
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};
-pub use trajectory::{Sampling, Trajectory, simulate};
+pub use trajectory::{Sampling, Trajectory, simulate, simulate_force};
 pub use walk::{ContactEvent, ContactEventKind};
 pub use wave::{StrainWave, strain_wave};
 

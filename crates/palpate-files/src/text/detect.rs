@@ -1,0 +1,152 @@
+//! Finding out how a file is written.
+
+use std::path::Path;
+
+use super::{
+    block::{self, Block},
+    decimal,
+    error::{FileError, shorten},
+    fields::cells,
+    header::{self, Header},
+    layout::{ColumnInfo, ColumnKind, Delimiter, Layout, LayoutOptions, Metadata},
+    metadata,
+    sample::Sample,
+};
+
+/// Finds out how a file of delimited text is written, from at most its first 256 KiB.
+///
+/// What `options` fix is taken as given; the rest is judged by content, never by the name of the file.
+///
+/// # Errors
+///
+/// Where the file cannot be opened, is empty, is no delimited text ([`FileError::Foreign`]), has a
+/// single column, no rows of numbers, or numbers that can be read in two ways ([`FileError::AmbiguousDecimal`]).
+pub fn detect(path: &Path, options: &LayoutOptions) -> Result<Layout, FileError> {
+    let sample = Sample::take(path, options.encoding)?;
+    let lines = sample.lines();
+    let skip = options.skip_lines.unwrap_or(0).min(lines.len());
+    let mut block = find_block(path, &lines, skip, options)?;
+    let decimal = decimal::decide(&lines, &block, options.decimal).map_err(|doubt| {
+        FileError::AmbiguousDecimal {
+            path: path.to_owned(),
+            line: doubt.line + 1,
+            found: shorten(&doubt.found),
+            doubt: doubt.doubt,
+        }
+    })?;
+    let header = header::find(&lines, skip, &mut block, options.header);
+    let columns = columns(&lines, &block, &header);
+    Ok(Layout {
+        encoding: sample.encoding,
+        delimiter: block.delimiter,
+        decimal,
+        header_line: header.names_line.map(|index| index + 1),
+        units_line: header.units_line.map(|index| index + 1),
+        first_data_line: block.first + 1,
+        metadata: named_values(&lines, skip, &block, &header),
+        columns,
+    })
+}
+
+fn find_block(
+    path: &Path,
+    lines: &[&str],
+    skip: usize,
+    options: &LayoutOptions,
+) -> Result<Block, FileError> {
+    let fixed = options.delimiter.as_slice();
+    let delimiters = if fixed.is_empty() {
+        &Delimiter::ALL
+    } else {
+        fixed
+    };
+    let Some(block) = block::find(lines, skip, delimiters) else {
+        return Err(without_numbers(path, lines, skip, options.delimiter));
+    };
+    if block.kinds.len() < 2 {
+        return Err(FileError::OneColumn {
+            path: path.to_owned(),
+            line: block.first + 1,
+            found: shorten(lines[block.first]),
+            delimiter: options.delimiter,
+        });
+    }
+    Ok(block)
+}
+
+/// Why no line holds a number: the delimiter does not cut the rows, or there are no rows.
+fn without_numbers(
+    path: &Path,
+    lines: &[&str],
+    skip: usize,
+    fixed: Option<Delimiter>,
+) -> FileError {
+    if let Some(elsewise) = fixed.and_then(|_| block::find(lines, skip, &Delimiter::ALL)) {
+        return FileError::OneColumn {
+            path: path.to_owned(),
+            line: elsewise.first + 1,
+            found: shorten(lines[elsewise.first]),
+            delimiter: fixed,
+        };
+    }
+    let separated = |line: &&str| {
+        [Delimiter::Tab, Delimiter::Semicolon, Delimiter::Comma]
+            .iter()
+            .any(|&delimiter| {
+                let row = cells(line, delimiter);
+                row.len() > 1 && row.iter().all(|cell| cell.len() <= 60)
+            })
+    };
+    FileError::NoDataRows {
+        path: path.to_owned(),
+        lines: lines.len(),
+        header_line: lines
+            .iter()
+            .skip(skip)
+            .position(separated)
+            .map(|index| skip + index + 1),
+    }
+}
+
+fn columns(lines: &[&str], block: &Block, header: &Header) -> Vec<ColumnInfo> {
+    let mut columns: Vec<ColumnInfo> = header
+        .labels
+        .iter()
+        .zip(&block.kinds)
+        .enumerate()
+        .map(|(index, ((name, unit), &kind))| ColumnInfo {
+            number: index + 1,
+            name: name.clone(),
+            unit: unit.clone(),
+            kind,
+            sample: first_filled(lines, block, index),
+        })
+        .collect();
+    // What a delimiter at the end of every row leaves behind is no column.
+    while columns
+        .last()
+        .is_some_and(|last| last.kind == ColumnKind::Empty && last.name.is_none())
+    {
+        columns.pop();
+    }
+    columns
+}
+
+fn first_filled(lines: &[&str], block: &Block, column: usize) -> String {
+    let cell = |(line, _)| -> Option<&str> {
+        let line: &str = lines[line];
+        cells(line, block.delimiter).get(column).copied()
+    };
+    block
+        .rows()
+        .filter_map(|(line, row)| cell((line, row)))
+        .find(|cell| !cell.is_empty())
+        .map_or_else(String::new, shorten)
+}
+
+fn named_values(lines: &[&str], skip: usize, block: &Block, header: &Header) -> Vec<Metadata> {
+    (skip..block.first)
+        .filter(|&index| header.names_line != Some(index) && header.units_line != Some(index))
+        .flat_map(|index| metadata::in_line(lines[index], block.delimiter, index + 1))
+        .collect()
+}

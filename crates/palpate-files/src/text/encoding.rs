@@ -1,0 +1,230 @@
+//! Telling character encodings apart by content.
+
+use std::{fmt, str::FromStr};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Character encoding of a text file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+pub enum Encoding {
+    /// UTF-8, with or without a byte order mark; plain ASCII too.
+    #[serde(rename = "utf-8")]
+    Utf8,
+    /// UTF-16, low byte first.
+    #[serde(rename = "utf-16le")]
+    Utf16Le,
+    /// UTF-16, high byte first.
+    #[serde(rename = "utf-16be")]
+    Utf16Be,
+    /// GBK (simplified Chinese), which contains GB 2312; read as its superset GB 18030 where it is one.
+    #[serde(rename = "gbk")]
+    Gbk,
+    /// Windows-1252, which contains Latin-1.
+    #[serde(rename = "windows-1252")]
+    Windows1252,
+}
+
+impl Encoding {
+    /// Every encoding that can be read.
+    pub const ALL: [Self; 5] = [
+        Self::Utf8,
+        Self::Utf16Le,
+        Self::Utf16Be,
+        Self::Gbk,
+        Self::Windows1252,
+    ];
+
+    /// Its usual name, in lower case.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Utf8 => "utf-8",
+            Self::Utf16Le => "utf-16le",
+            Self::Utf16Be => "utf-16be",
+            Self::Gbk => "gbk",
+            Self::Windows1252 => "windows-1252",
+        }
+    }
+
+    /// Whether line ends, delimiters, quotes and digits are the same bytes as in ASCII and occur in no other
+    /// role, so that rows can be split without decoding. Second bytes of GBK start at 0x40 ('@'); the digits
+    /// inside four-byte GB 18030 sequences are harmless, because no digit splits anything.
+    pub(crate) fn splits_like_ascii(self) -> bool {
+        !matches!(self, Self::Utf16Le | Self::Utf16Be)
+    }
+
+    pub(crate) fn codec(self) -> &'static encoding_rs::Encoding {
+        match self {
+            Self::Utf8 => encoding_rs::UTF_8,
+            Self::Utf16Le => encoding_rs::UTF_16LE,
+            Self::Utf16Be => encoding_rs::UTF_16BE,
+            Self::Gbk => encoding_rs::GBK,
+            Self::Windows1252 => encoding_rs::WINDOWS_1252,
+        }
+    }
+
+    /// Length in bytes of the byte order mark of this encoding at the start of `bytes`, 0 if there is none.
+    pub(crate) fn mark_length(self, bytes: &[u8]) -> usize {
+        match encoding_rs::Encoding::for_bom(bytes) {
+            Some((codec, length)) if codec == self.codec() => length,
+            _ => 0,
+        }
+    }
+}
+
+impl fmt::Display for Encoding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The text names no encoding that can be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("unknown encoding `{found}`; expected one of utf-8, utf-16le, utf-16be, gbk, windows-1252")]
+pub struct UnknownEncoding {
+    /// What was given.
+    pub found: String,
+}
+
+impl FromStr for Encoding {
+    type Err = UnknownEncoding;
+
+    /// Reads a name or one of its usual synonyms (`latin1`, `gb2312`, `utf8` ...), in any case.
+    fn from_str(label: &str) -> Result<Self, Self::Err> {
+        let codec = encoding_rs::Encoding::for_label(label.as_bytes());
+        let codec = codec.map(|codec| {
+            if codec == encoding_rs::GB18030 {
+                encoding_rs::GBK
+            } else {
+                codec
+            }
+        });
+        Self::ALL
+            .into_iter()
+            .find(|encoding| codec == Some(encoding.codec()))
+            .ok_or_else(|| UnknownEncoding {
+                found: label.to_owned(),
+            })
+    }
+}
+
+/// The encoding that `sample`, the beginning of a file, is most likely written in.
+///
+/// `None`: it holds NUL bytes and is no UTF-16, so it is no text.
+pub(crate) fn recognise(sample: &[u8]) -> Option<Encoding> {
+    if let Some((codec, _)) = encoding_rs::Encoding::for_bom(sample) {
+        return Encoding::ALL.into_iter().find(|own| own.codec() == codec);
+    }
+    if sample.contains(&0) {
+        return unmarked_utf16(sample);
+    }
+    match std::str::from_utf8(sample) {
+        Ok(_) => Some(Encoding::Utf8),
+        // No error length: the sample merely ends inside a character.
+        Err(error) if error.error_len().is_none() => Some(Encoding::Utf8),
+        Err(_) if looks_chinese(sample) => Some(Encoding::Gbk),
+        Err(_) => Some(Encoding::Windows1252),
+    }
+}
+
+/// UTF-16 of mostly Western text has NUL as every second byte; which second byte gives the order.
+fn unmarked_utf16(sample: &[u8]) -> Option<Encoding> {
+    let pairs = sample.len() / 2;
+    let zeros = |odd: usize| {
+        sample
+            .iter()
+            .skip(odd)
+            .step_by(2)
+            .filter(|&&byte| byte == 0)
+            .count()
+    };
+    let (even, odd) = (zeros(0), zeros(1));
+    if pairs >= 2 && odd * 10 > pairs * 6 && even * 100 <= pairs {
+        Some(Encoding::Utf16Le)
+    } else if pairs >= 2 && even * 10 > pairs * 6 && odd * 100 <= pairs {
+        Some(Encoding::Utf16Be)
+    } else {
+        None
+    }
+}
+
+/// Whether the bytes above ASCII pair up as everyday Chinese.
+///
+/// Almost any Latin-1 text decodes as GBK without an error ("°C" is one rare character), so validity says
+/// little. What tells is the share of pairs in the rows of GB 2312 that hold punctuation (A1-A3) and the
+/// common characters (B0-D7).
+fn looks_chinese(sample: &[u8]) -> bool {
+    let (mut common, mut rare) = (0_usize, 0_usize);
+    let mut bytes = sample.iter().copied();
+    while let Some(lead) = bytes.next() {
+        if lead < 0x80 {
+            continue;
+        }
+        match (lead, bytes.next()) {
+            // The sample ends between the two bytes of a pair.
+            (_, None) => break,
+            (0xA1..=0xA3 | 0xB0..=0xD7, Some(0xA1..=0xFE)) => common += 1,
+            (0x81..=0xFE, Some(0x40..=0x7E | 0x80..=0xFE)) => rare += 1,
+            _ => return false,
+        }
+    }
+    common > 0 && common >= 2 * rare
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_and_plain_text() {
+        assert_eq!(recognise(b"\xEF\xBB\xBFa,b"), Some(Encoding::Utf8));
+        assert_eq!(recognise(b"\xFF\xFEa\0"), Some(Encoding::Utf16Le));
+        assert_eq!(recognise(b"\xFE\xFF\0a"), Some(Encoding::Utf16Be));
+        assert_eq!(recognise(b"a,b\n1,2\n"), Some(Encoding::Utf8));
+        assert_eq!(recognise("Kraft µ".as_bytes()), Some(Encoding::Utf8));
+        assert_eq!(recognise(&"µ".as_bytes()[..1]), Some(Encoding::Utf8));
+    }
+
+    #[test]
+    fn utf16_without_a_mark() {
+        assert_eq!(
+            recognise(b"1\0,\x002\0\n\x003\0,\0"),
+            Some(Encoding::Utf16Le)
+        );
+        assert_eq!(
+            recognise(b"\x001\0,\x002\0\n\x003\0,"),
+            Some(Encoding::Utf16Be)
+        );
+        assert_eq!(recognise(b"1,2\0\0\0\0\0\0"), None);
+    }
+
+    #[test]
+    fn chinese_against_western() {
+        // "时间,位移,力"
+        assert_eq!(
+            recognise(b"\xCA\xB1\xBC\xE4,\xCE\xBB\xD2\xC6,\xC1\xA6\n"),
+            Some(Encoding::Gbk)
+        );
+        for western in [
+            &b"Temp (\xB0C), d (\xB5m)"[..],
+            b"Gr\xF6\xDFe;Weg (\xB5m)",
+            b"d\xE9placement,temps",
+            b"fin \xE9\n",
+        ] {
+            assert_eq!(recognise(western), Some(Encoding::Windows1252));
+        }
+    }
+
+    #[test]
+    fn labels() {
+        assert_eq!("Latin1".parse(), Ok(Encoding::Windows1252));
+        assert_eq!("GB2312".parse(), Ok(Encoding::Gbk));
+        assert_eq!("gb18030".parse(), Ok(Encoding::Gbk));
+        assert_eq!("UTF8".parse(), Ok(Encoding::Utf8));
+        assert!("klingon".parse::<Encoding>().is_err());
+        for own in Encoding::ALL {
+            assert_eq!(own.name().parse(), Ok(own));
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Reading the chosen cells of one row, and saying what is wrong where that fails.
+
+use std::path::Path;
+
+use super::{
+    block,
+    error::{CellPlace, FileError, shorten},
+    fields::Fields,
+    layout::{ColumnKind, Layout},
+    number::{self, Cell},
+};
+
+/// How to read the rows of one file.
+#[derive(Debug)]
+pub(crate) struct RowPlan<'a> {
+    path: &'a Path,
+    layout: &'a Layout,
+    /// What to do with the cell of each column.
+    tasks: Vec<Task>,
+    /// Fewest cells a row must have.
+    fewest: usize,
+    /// Index of the first column of numbers, which tells rows of data from other lines.
+    leading: usize,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Task {
+    /// Pass over it.
+    Pass,
+    /// See that it could be a number: a line with a word in the leading column is no row of data.
+    Check,
+    /// Read it into this place of the output.
+    Read(usize),
+}
+
+/// What is wrong with a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Fault {
+    /// A cell, by index, holds no number.
+    Cell(usize),
+    /// There are too few cells; so many were found.
+    TooFew(usize),
+    /// There are cells beyond the last column.
+    TooMany,
+}
+
+impl<'a> RowPlan<'a> {
+    /// Plans to read `columns` (numbers from 1, each once) of every row.
+    pub(crate) fn new(
+        path: &'a Path,
+        layout: &'a Layout,
+        columns: &[usize],
+    ) -> Result<Self, FileError> {
+        let kinds: Vec<ColumnKind> = layout.columns.iter().map(|column| column.kind).collect();
+        let mut tasks = vec![Task::Pass; kinds.len()];
+        let leading = block::first_number(&kinds).unwrap_or(0);
+        if let Some(task) = tasks.get_mut(leading) {
+            *task = Task::Check;
+        }
+        for (place, &column) in columns.iter().enumerate() {
+            let task = column.checked_sub(1).and_then(|index| tasks.get_mut(index));
+            let Some(task) = task else {
+                return Err(FileError::NoSuchColumn {
+                    path: path.to_owned(),
+                    column,
+                    columns: kinds.len(),
+                });
+            };
+            *task = Task::Read(place);
+        }
+        // Remarks at the end of a row may be left out; numbers may not.
+        let last_number = kinds.iter().rposition(|&kind| kind == ColumnKind::Number);
+        let last_read = columns.iter().copied().max().unwrap_or(0);
+        Ok(Self {
+            path,
+            layout,
+            tasks,
+            fewest: last_read.max(last_number.map_or(0, |index| index + 1)),
+            leading,
+        })
+    }
+
+    /// Reads the chosen cells of a line into `row`, which has one place for each.
+    #[inline]
+    pub(crate) fn read(&self, line: &[u8], row: &mut [f64]) -> Result<(), Fault> {
+        let mut count = 0;
+        for cell in Fields::of(line, self.layout.delimiter) {
+            match self.tasks.get(count) {
+                Some(&Task::Read(place)) => match number::parse(cell, self.layout.decimal) {
+                    Some(value) => row[place] = value,
+                    None => return Err(Fault::Cell(count)),
+                },
+                Some(Task::Pass) => {}
+                Some(Task::Check) => {
+                    let digit = cell.first().is_some_and(u8::is_ascii_digit);
+                    if !digit && number::classify(cell) == Cell::Text {
+                        return Err(Fault::Cell(count));
+                    }
+                }
+                None if cell.is_empty() => {}
+                None => return Err(Fault::TooMany),
+            }
+            count += 1;
+        }
+        if count < self.fewest {
+            return Err(Fault::TooFew(count));
+        }
+        Ok(())
+    }
+
+    /// Whether a faulty line is a row of data all the same, going by its cell in the leading column of numbers.
+    pub(crate) fn is_data(&self, line: &[u8]) -> bool {
+        Fields::of(line, self.layout.delimiter)
+            .nth(self.leading)
+            .is_some_and(|cell| number::classify(cell).is_numeric())
+    }
+
+    /// The error for a fault of `line`, which is line `number` of the file.
+    #[cold]
+    pub(crate) fn error(&self, fault: Fault, line: &[u8], number: usize) -> FileError {
+        let path = self.path.to_owned();
+        match fault {
+            Fault::TooFew(found) => FileError::TooFewCells {
+                path,
+                line: number,
+                expected: self.fewest,
+                found,
+            },
+            Fault::TooMany => FileError::TooManyCells {
+                path,
+                line: number,
+                expected: self.tasks.len(),
+                found: Fields::of(line, self.layout.delimiter).count(),
+            },
+            Fault::Cell(index) => self.cell_error(index, line, number),
+        }
+    }
+
+    fn cell_error(&self, index: usize, line: &[u8], number: usize) -> FileError {
+        let place = CellPlace {
+            path: self.path.to_owned(),
+            line: number,
+            column: index + 1,
+            name: self
+                .layout
+                .columns
+                .get(index)
+                .and_then(|column| column.name.clone()),
+        };
+        let cell = Fields::of(line, self.layout.delimiter).nth(index);
+        let cell = cell.unwrap_or_default();
+        let found = self.text(cell);
+        match number::classify(cell) {
+            Cell::Empty => FileError::EmptyCell { place },
+            Cell::NotFinite => FileError::NotFinite { place, found },
+            _ => FileError::TextInNumbers {
+                place,
+                found,
+                decimal: self.layout.decimal,
+            },
+        }
+    }
+
+    /// Bytes of the file as shortened text for a message.
+    pub(crate) fn text(&self, bytes: &[u8]) -> String {
+        let encoding = self.layout.encoding;
+        if encoding.splits_like_ascii() {
+            let (text, _) = encoding.codec().decode_without_bom_handling(bytes);
+            shorten(&text)
+        } else {
+            // Such a file was decoded as a whole before it was split.
+            shorten(&String::from_utf8_lossy(bytes))
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Looking at the beginning of a file.
+
+use std::{fs::File, io::Read, path::Path};
+
+use super::{
+    encoding::{self, Encoding},
+    error::FileError,
+    foreign::{self, Foreign},
+    lines::{self, LONGEST_LINE},
+};
+
+/// Most lines looked at; what they do not show of a layout, more would not either.
+const MOST_LINES: usize = 4000;
+
+/// The beginning of a file, decoded.
+#[derive(Debug)]
+pub(crate) struct Sample {
+    pub(crate) encoding: Encoding,
+    text: String,
+    /// The file goes on behind the sample.
+    cut: bool,
+}
+
+impl Sample {
+    /// Reads the beginning of a file and decodes it, as `fixed` or as what it looks like.
+    pub(crate) fn take(path: &Path, fixed: Option<Encoding>) -> Result<Self, FileError> {
+        let bytes = beginning(path).map_err(|error| FileError::from_io(path, error))?;
+        let cut = bytes.len() > LONGEST_LINE;
+        let foreign = |looks_like| FileError::Foreign {
+            path: path.to_owned(),
+            looks_like,
+        };
+        if let Some(looks_like) = foreign::recognise(&bytes) {
+            return Err(foreign(looks_like));
+        }
+        let encoding = fixed
+            .or_else(|| encoding::recognise(&bytes))
+            .ok_or_else(|| foreign(Foreign::Binary))?;
+        let body = &bytes[encoding.mark_length(&bytes)..];
+        let (text, _) = encoding.codec().decode_without_bom_handling(body);
+        if foreign::mostly_control(&text) {
+            return Err(foreign(Foreign::Binary));
+        }
+        if text.trim().is_empty() && !cut {
+            return Err(FileError::Empty {
+                path: path.to_owned(),
+            });
+        }
+        let text = text.into_owned();
+        if cut && memchr::memchr2(b'\n', b'\r', text.as_bytes()).is_none() {
+            return Err(FileError::LineTooLong {
+                path: path.to_owned(),
+                line: 1,
+                limit: LONGEST_LINE,
+            });
+        }
+        Ok(Self {
+            encoding,
+            text,
+            cut,
+        })
+    }
+
+    /// The lines that are in the sample from end to end.
+    pub(crate) fn lines(&self) -> Vec<&str> {
+        let mut lines = lines::of_text(&self.text);
+        if self.cut && lines.len() > 1 {
+            lines.pop();
+        }
+        lines.truncate(MOST_LINES);
+        lines
+    }
+}
+
+/// Up to one byte more than the sample wants, which tells whether there is more.
+fn beginning(path: &Path) -> std::io::Result<Vec<u8>> {
+    let file = File::open(path)?;
+    if file.metadata()?.is_dir() {
+        return Err(std::io::ErrorKind::IsADirectory.into());
+    }
+    let mut bytes = Vec::new();
+    file.take(LONGEST_LINE as u64 + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}

@@ -1,0 +1,183 @@
+//! Telling a unit from the name it is written behind.
+//!
+//! Units are recognised here, never interpreted: what comes out is the text as written less its brackets.
+
+/// Words that units are made of, in lower case.
+const WORDS: &[&str] = &[
+    // time and frequency
+    "s", "sec", "secs", "second", "seconds", "ms", "msec", "us", "µs", "μs", "ns", "min", "mins",
+    "minute", "minutes", "h", "hr", "hrs", "hour", "hours", "d", "day", "days", "hz", "khz", "mhz",
+    "sekunde", "sekunden", "秒", "毫秒", "分", "分钟", "小时", // length and angle
+    "m", "dm", "cm", "mm", "um", "µm", "μm", "nm", "pm", "km", "in", "inch", "inches", "ft", "mil",
+    "deg", "°", "rad", "mrad", "米", "厘米", "毫米", "微米", "度", // force and mass
+    "n", "kn", "mn", "un", "µn", "μn", "nn", "pn", "newton", "newtons", "lbf", "lb", "lbs", "kgf",
+    "gf", "g", "kg", "mg", "ug", "µg", "μg", "牛", "牛顿", "千牛", "毫牛", "克", "千克",
+    // stress and pressure
+    "pa", "hpa", "kpa", "mpa", "gpa", "psi", "bar", "mbar", "atm", "帕", "千帕", "兆帕",
+    // ratios and arbitrary units
+    "%", "pct", "percent", "ppm", "strain", "1", "au", "a", "u", "count", "counts",
+    // temperature
+    "°c", "℃", "degc", "c", "°f", "degf", "f", "k", "°k", // electricity, work, textiles
+    "v", "mv", "uv", "µv", "μv", "ma", "ua", "ohm", "ohms", "ω", "kω", "mω", "kohm", "pf", "nf",
+    "uf", "µf", "μf", "j", "mj", "uj", "w", "mw", "tex", "dtex", "den",
+];
+
+/// Units that are taken for one behind an underscore. Single letters that often number or label something else
+/// (`sensor_A`, `run_C`) are left out.
+const SUFFIXES: &[&str] = &[
+    "s", "sec", "secs", "seconds", "ms", "us", "µs", "μs", "ns", "hz", "khz", "m", "cm", "mm",
+    "um", "µm", "μm", "nm", "n", "kn", "mn", "un", "µn", "μn", "nn", "pn", "lbf", "kgf", "gf",
+    "kg", "mg", "pa", "kpa", "mpa", "gpa", "psi", "percent", "pct", "deg", "rad", "degc",
+];
+
+/// Opening and closing brackets that enclose units.
+const BRACKETS: [(char, char); 5] = [
+    ('(', ')'),
+    ('[', ']'),
+    ('{', '}'),
+    ('（', '）'),
+    ('【', '】'),
+];
+
+/// A name less its unit, and the unit, from a cell such as `Force (N)`, `Kraft [N]`, `Force_N`, `F / N` or
+/// `Force, N`. Either is `None` if it is not there.
+pub(crate) fn split(cell: &str) -> (Option<String>, Option<String>) {
+    let cell = cell.trim();
+    let (name, unit) = bracketed(cell)
+        .or_else(|| behind_slash(cell))
+        .or_else(|| behind_word(cell))
+        .or_else(|| behind_underscore(cell))
+        .unwrap_or((cell, ""));
+    let owned = |text: &str| Some(text.trim().to_owned()).filter(|text| !text.is_empty());
+    (owned(name), owned(unit))
+}
+
+/// The unit in a cell of its own, less its brackets.
+pub(crate) fn alone(cell: &str) -> Option<String> {
+    let cell = cell.trim();
+    let inside = inside_brackets(cell).unwrap_or(cell).trim();
+    Some(inside.to_owned()).filter(|unit| !unit.is_empty())
+}
+
+/// Whether a cell is a unit in a cell of its own: anything in brackets, or a known unit.
+pub(crate) fn stands_alone(cell: &str) -> bool {
+    inside_brackets(cell.trim()).is_some() || cell.trim() == "-" || is_known(cell)
+}
+
+/// Whether all of a cell is in one pair of brackets.
+pub(crate) fn inside_brackets(cell: &str) -> Option<&str> {
+    BRACKETS.iter().find_map(|&(open, close)| {
+        let inside = cell.strip_prefix(open)?.strip_suffix(close)?;
+        (!inside.contains([open, close])).then_some(inside)
+    })
+}
+
+/// Whether `text` is made of words that units are made of: `mm`, `N/mm²`, `mN·m`, `1/s`, `kg m^-3`.
+pub(crate) fn is_known(text: &str) -> bool {
+    let mut words = text
+        .split(|character: char| {
+            "/*·⋅×^-−. ()²³⁻¹".contains(character) || character.is_ascii_digit()
+        })
+        .filter(|word| !word.is_empty())
+        .peekable();
+    let only_one = text.trim() == "1";
+    only_one || (words.peek().is_some() && words.all(|word| is_one_of(WORDS, word)))
+}
+
+fn is_one_of(known: &[&str], word: &str) -> bool {
+    let word = word.to_lowercase();
+    known.contains(&word.as_str())
+}
+
+fn bracketed(cell: &str) -> Option<(&str, &str)> {
+    BRACKETS.iter().find_map(|&(open, close)| {
+        let body = cell.strip_suffix(close)?;
+        // The bracket that matches the last one: units may hold brackets, as in "(N/(m s))".
+        let mut depth = 1;
+        let opening = body.char_indices().rev().find(|&(_, character)| {
+            depth += i32::from(character == close) - i32::from(character == open);
+            depth == 0
+        });
+        let (place, _) = opening?;
+        let unit = body[place + open.len_utf8()..].trim();
+        // Round brackets also hold remarks: "Strain (Extension)".
+        let remark = matches!(open, '(' | '（') && !is_known(unit) && unit != "-";
+        (!remark).then_some((&cell[..place], unit))
+    })
+}
+
+fn behind_slash(cell: &str) -> Option<(&str, &str)> {
+    let (name, unit) = match cell.split_once(" / ") {
+        Some(parts) => parts,
+        // "mm/s" is a unit, no name with a unit.
+        None => cell.split_once('/').filter(|(name, _)| !is_known(name))?,
+    };
+    (!name.trim().is_empty() && is_known(unit)).then_some((name, unit))
+}
+
+fn behind_word(cell: &str) -> Option<(&str, &str)> {
+    let parts = cell.rsplit_once(", ").or_else(|| cell.rsplit_once(" in "));
+    parts.filter(|(name, unit)| !name.trim().is_empty() && is_known(unit))
+}
+
+fn behind_underscore(cell: &str) -> Option<(&str, &str)> {
+    let (name, unit) = cell.rsplit_once('_')?;
+    let lower = name.to_lowercase();
+    // "force_min" is the least force, "time_min" a time in minutes.
+    let minutes = unit.eq_ignore_ascii_case("min") && (lower == "t" || lower.ends_with("time"));
+    (!name.is_empty() && (minutes || is_one_of(SUFFIXES, unit))).then_some((name, unit))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_with_units() {
+        for (cell, name, unit) in [
+            ("Force (N)", "Force", "N"),
+            ("Kraft [N]", "Kraft", "N"),
+            ("displacement_mm", "displacement", "mm"),
+            ("Force_N", "Force", "N"),
+            ("Time_S", "Time", "S"),
+            ("Time_min", "Time", "min"),
+            ("Displacement / mm", "Displacement", "mm"),
+            ("Weg/mm", "Weg", "mm"),
+            ("Stress (N/mm²)", "Stress", "N/mm²"),
+            ("k (N/(m s))", "k", "N/(m s)"),
+            ("时间（秒）", "时间", "秒"),
+            ("Force, kN", "Force", "kN"),
+            ("Temp (°C)", "Temp", "°C"),
+            ("Weg in mm", "Weg", "mm"),
+        ] {
+            assert_eq!(split(cell), (Some(name.to_owned()), Some(unit.to_owned())));
+        }
+    }
+
+    #[test]
+    fn names_without() {
+        for cell in [
+            "Tensile strain (Extension)",
+            "Force_max",
+            "Force_min",
+            "sensor_A",
+            "mm/s",
+            "PIP count",
+            "Force (filtered)",
+            "_mm",
+        ] {
+            assert_eq!(split(cell), (Some(cell.to_owned()), None));
+        }
+        assert_eq!(split(" "), (None, None));
+        assert_eq!(split("(N)"), (None, Some("N".to_owned())));
+    }
+
+    #[test]
+    fn units_alone() {
+        assert_eq!(alone("(mm/mm)"), Some("mm/mm".to_owned()));
+        assert_eq!(alone("[°C]"), Some("°C".to_owned()));
+        assert_eq!(alone(""), None);
+        assert!(stands_alone("(anything)") && stands_alone("-") && stands_alone("mN·m"));
+        assert!(!stands_alone("Force") && !stands_alone(""));
+    }
+}

@@ -1,0 +1,313 @@
+//! The many ways in which machines write the same table.
+
+use palpate_files::text::{
+    ColumnKind, DecimalMark, Delimiter, Encoding, LayoutOptions, read_columns,
+};
+
+use super::{layout, layout_with, names, read, units, written};
+
+fn utf16(text: &str, low_first: bool, mark: bool) -> Vec<u8> {
+    let mark = mark.then_some(0xFEFF);
+    mark.into_iter()
+        .chain(text.encode_utf16())
+        .flat_map(|unit: u16| {
+            if low_first {
+                unit.to_le_bytes()
+            } else {
+                unit.to_be_bytes()
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn delimiters_and_decimal_marks() {
+    for (text, delimiter, decimal) in [
+        ("t,F\n0,1.5\n1,2.5\n", Delimiter::Comma, DecimalMark::Point),
+        (
+            "t;F\n0;1.5\n1;2.5\n",
+            Delimiter::Semicolon,
+            DecimalMark::Point,
+        ),
+        (
+            "t;F\n0;1,5\n1;2,5\n",
+            Delimiter::Semicolon,
+            DecimalMark::Comma,
+        ),
+        ("t\tF\n0\t1,5\n1\t2,5\n", Delimiter::Tab, DecimalMark::Comma),
+        (
+            "t   F\n 0   1.5\n 1   2.5\n",
+            Delimiter::Blanks,
+            DecimalMark::Point,
+        ),
+        ("t F\n0 1,5\n1 2,5\n", Delimiter::Blanks, DecimalMark::Comma),
+        (
+            "t,F\n\"0\",\"1.5\"\n\"1\",\"2.5\"\n",
+            Delimiter::Comma,
+            DecimalMark::Point,
+        ),
+        (
+            "t,F\n\"0\",\"1,5\"\n\"1\",\"2,5\"\n",
+            Delimiter::Comma,
+            DecimalMark::Comma,
+        ),
+    ] {
+        let layout = layout(text);
+        assert_eq!(
+            (layout.delimiter, layout.decimal),
+            (delimiter, decimal),
+            "{text}"
+        );
+        assert_eq!(names(&layout), ["t", "F"], "{text}");
+        let columns = read(text, &[1, 2]).expect("columns");
+        assert_eq!(columns.values, [[0.0, 1.0], [1.5, 2.5]], "{text}");
+    }
+}
+
+#[test]
+fn encodings() {
+    let text = "Zeit [s];Temp [°C]\n0,5;20,25\n1,5;21,25\n";
+    let latin: Vec<u8> = text.chars().map(|character| character as u8).collect();
+    for (bytes, encoding) in [
+        (text.as_bytes().to_vec(), Encoding::Utf8),
+        ([b"\xEF\xBB\xBF", text.as_bytes()].concat(), Encoding::Utf8),
+        (latin, Encoding::Windows1252),
+        (utf16(text, true, true), Encoding::Utf16Le),
+        (utf16(text, false, true), Encoding::Utf16Be),
+        (utf16(text, true, false), Encoding::Utf16Le),
+        (utf16(text, false, false), Encoding::Utf16Be),
+    ] {
+        let layout = layout(&bytes);
+        assert_eq!(layout.encoding, encoding);
+        assert_eq!(names(&layout), ["Zeit", "Temp"]);
+        assert_eq!(units(&layout), ["s", "°C"]);
+        let columns = read(&bytes, &[2]).expect("columns");
+        assert_eq!(columns.values, [[20.25, 21.25]]);
+        assert_eq!(columns.line_of(1), Some(3));
+    }
+}
+
+#[test]
+fn chinese_machine_with_blank_first_line_and_units_row() {
+    let text = b"\r\n\xCA\xB1\xBC\xE4,\xCE\xBB\xD2\xC6,\xC1\xA6\r\n(s),(mm),(N)\r\n\"0.0\",\"0.0\",\"-0.1\"\r\n\"0.1\",\"0.2\",\"0.3\"\r\n\r\n";
+    let layout = layout(text);
+    assert_eq!(layout.encoding, Encoding::Gbk);
+    assert_eq!(names(&layout), ["时间", "位移", "力"]);
+    assert_eq!(units(&layout), ["s", "mm", "N"]);
+    assert_eq!((layout.header_line, layout.units_line), (Some(2), Some(3)));
+    assert_eq!(layout.first_data_line, 4);
+    let columns = read(text, &[3]).expect("columns");
+    assert_eq!(columns.values, [[-0.1, 0.3]]);
+    assert_eq!(columns.ignored.blank, 1);
+}
+
+#[test]
+fn line_ends() {
+    for end in ["\n", "\r\n", "\r"] {
+        let text = ["t,F", "0,1.5", "1,2.5", ""].join(end);
+        let columns = read(&text, &[2]).expect("columns");
+        assert_eq!(columns.values, [[1.5, 2.5]]);
+        assert_eq!(columns.line_of(0), Some(2));
+        assert_eq!(columns.line_of(2), None);
+    }
+    assert_eq!(read("t,F\n0,1.5\n1,2.5", &[2]).expect("no end").rows(), 2);
+}
+
+#[test]
+fn named_values_above_the_names() {
+    let text = "Properties : Label,\"one\"\r\nProperties : Diameter,\"0.399\",mm\r\nTest : Rate,\"5.0\",mm/min\r\n\r\nExtension,Load,Count\r\n(mm),(N),\r\n\"0.0\",\"0.1\",\"0\"\r\n\"0.1\",\"0.2\",\"0\"\r\n";
+    let layout = layout(text);
+    assert_eq!(names(&layout), ["Extension", "Load", "Count"]);
+    assert_eq!(units(&layout), ["mm", "N", "-"]);
+    assert_eq!(layout.metadata.len(), 3);
+    let diameter = &layout.metadata[1];
+    assert_eq!(diameter.name, "Properties : Diameter");
+    assert_eq!(diameter.value, "0.399");
+    assert_eq!(diameter.unit.as_deref(), Some("mm"));
+    assert_eq!(diameter.line, 2);
+}
+
+#[test]
+fn units_in_the_names() {
+    let text = "Force (N),displacement_mm,Force_N,Time_S,Kraft [N],Displacement / mm\n0,1,2,3,4,5.5\n1,2,3,4,5,6.5\n";
+    let layout = layout(text);
+    assert_eq!(
+        names(&layout),
+        [
+            "Force",
+            "displacement",
+            "Force",
+            "Time",
+            "Kraft",
+            "Displacement"
+        ]
+    );
+    assert_eq!(units(&layout), ["N", "mm", "N", "S", "N", "mm"]);
+    assert_eq!(
+        layout.column_named("kraft").map(|column| column.number),
+        Some(5)
+    );
+    assert_eq!(layout.column_named("Force"), None);
+}
+
+#[test]
+fn units_on_a_line_without_brackets() {
+    let text = "chem=PE;T=150;\nt\tstrain\tstress\ns\t-\tPa\n0.01\t1E-5\t10\n0.02\t2E-5\t10\n";
+    let layout = layout(text);
+    assert_eq!(names(&layout), ["t", "strain", "stress"]);
+    assert_eq!(units(&layout), ["s", "-", "Pa"]);
+    assert_eq!(layout.metadata.len(), 2);
+}
+
+#[test]
+fn symbols_that_are_also_units() {
+    let layout = layout("Operator,me\ns,F\n0,1.5\n1,2.5\n");
+    assert_eq!(names(&layout), ["s", "F"]);
+    assert_eq!(layout.units_line, None);
+    assert_eq!(layout.metadata[0].value, "me");
+}
+
+#[test]
+fn separator_told_to_a_spreadsheet() {
+    let layout = layout("sep=;\nt;F\n0;1,5\n1;2,5\n");
+    assert_eq!((layout.header_line, layout.first_data_line), (Some(2), 3));
+    assert_eq!(layout.metadata, []);
+}
+
+#[test]
+fn index_column_and_no_header() {
+    let indexed = layout(",Time,Force\n0,1724504945.19,0.5\n1,1724504945.20,0.6\n");
+    assert_eq!(names(&indexed), ["-", "Time", "Force"]);
+    let bare = layout("0.5,1.5\n0.6,1.6\n");
+    assert_eq!((bare.header_line, bare.first_data_line), (None, 1));
+    assert_eq!(names(&bare), ["-", "-"]);
+    let labelled = layout("\"Time\" \"Force\"\n\"1\" 0.5 1.5\n\"2\" 0.6 1.6\n");
+    assert_eq!(names(&labelled), ["-", "Time", "Force"]);
+}
+
+#[test]
+fn text_columns_and_trailing_delimiter() {
+    let text = "Set,Cycle,Time_S,Force_N,\nfoam one,1-Hold,0.1,2.5,\nfoam one,1-Hold,0.2,2.6,\n";
+    let layout = layout(text);
+    let kinds: Vec<ColumnKind> = layout.columns.iter().map(|column| column.kind).collect();
+    let (word, number) = (ColumnKind::Text, ColumnKind::Number);
+    assert_eq!(kinds, [word, word, number, number]);
+    assert_eq!(layout.columns[1].sample, "1-Hold");
+    assert_eq!(
+        read(text, &[4, 3]).expect("columns").values,
+        [[2.5, 2.6], [0.1, 0.2]]
+    );
+}
+
+#[test]
+fn comments_and_titles_above() {
+    let text = "# made by hand\n# Length: 12.5 mm\n# time (s)  force (N)\n 0.0  1.0\n 0.1  1.5\n";
+    let layout = layout(text);
+    assert_eq!(names(&layout), ["time", "force"]);
+    assert_eq!(units(&layout), ["s", "N"]);
+    assert_eq!(layout.metadata[0].unit.as_deref(), Some("mm"));
+}
+
+#[test]
+fn rheometer_export() {
+    let text = "Test:\tstep\r\nInterval:\t1\r\nPoint No.\tTime\tStress\tStatus\r\n\t\t\t\r\n\t[s]\t[Pa]\t\r\n1\t0,010\t1,1347E+05\tDy_auto\r\n2\t0,021\t-2,9152\tDy_auto\r\n\r\n";
+    let layout = layout(utf16(text, true, true));
+    assert_eq!(names(&layout), ["Point No.", "Time", "Stress", "Status"]);
+    assert_eq!(units(&layout), ["-", "s", "Pa", "-"]);
+    assert_eq!(layout.metadata[0].value, "step");
+    let columns = read(utf16(text, true, true), &[3]).expect("columns");
+    assert_eq!(columns.values, [[113_470.0, -2.9152]]);
+}
+
+#[test]
+fn footer_is_passed_over_and_told() {
+    let text = "t,F\n0,1.5\n\n1,2.5\n\nEnd of test\nOperator,me\n,\n";
+    let columns = read(text, &[1, 2]).expect("columns");
+    assert_eq!(columns.rows(), 2);
+    assert_eq!(columns.ignored.blank, 2);
+    let footer = columns.ignored.footer.as_ref().expect("a footer");
+    assert_eq!((footer.first_line, footer.lines), (6, 3));
+    assert_eq!(footer.sample, "End of test");
+    assert_eq!((columns.line_of(0), columns.line_of(1)), (Some(2), Some(4)));
+}
+
+#[test]
+fn summary_behind_the_data_is_no_row() {
+    // Only the second column is asked for, but the first tells the summary from a row.
+    let columns = read("t,F\n0,1.5\n1,2.5\nMax,2.5\n", &[2]).expect("columns");
+    assert_eq!(columns.values, [[1.5, 2.5]]);
+    assert!(columns.ignored.footer.is_some());
+}
+
+#[test]
+fn columns_in_any_order_and_repeated() {
+    let columns = read("1,2,3.5\n4,5,6.5\n", &[3, 1, 3]).expect("columns");
+    assert_eq!(columns.values, [[3.5, 6.5], [1.0, 4.0], [3.5, 6.5]]);
+}
+
+#[test]
+fn options_override() {
+    let fixed = LayoutOptions {
+        decimal: Some(DecimalMark::Comma),
+        ..LayoutOptions::default()
+    };
+    let thousands = "1,234;5,678\n2,345;6,789\n";
+    assert_eq!(
+        layout_with(thousands, fixed).expect("a layout").decimal,
+        DecimalMark::Comma
+    );
+    let named = LayoutOptions {
+        header: Some(true),
+        ..LayoutOptions::default()
+    };
+    let numbered = layout_with("0,1\n0.5,1.5\n0.6,1.6\n", named).expect("a layout");
+    assert_eq!(
+        (names(&numbered), numbered.first_data_line),
+        (vec!["0", "1"], 2)
+    );
+    let nameless = LayoutOptions {
+        header: Some(false),
+        ..LayoutOptions::default()
+    };
+    assert_eq!(
+        layout_with("t,F\n0,1.5\n1,2.5\n", nameless)
+            .expect("a layout")
+            .header_line,
+        None
+    );
+    let skipping = LayoutOptions {
+        skip_lines: Some(2),
+        ..LayoutOptions::default()
+    };
+    let skipped = layout_with("7,8\nold,names\nt,F\n0,1.5\n", skipping).expect("a layout");
+    assert_eq!((skipped.header_line, skipped.first_data_line), (Some(3), 4));
+    let blanks = LayoutOptions {
+        delimiter: Some(Delimiter::Blanks),
+        encoding: Some(Encoding::Windows1252),
+        ..LayoutOptions::default()
+    };
+    let layout = layout_with("1\t2.5\n2\t3.5\n", blanks).expect("a layout");
+    assert_eq!(
+        (layout.delimiter, layout.encoding),
+        (Delimiter::Blanks, Encoding::Windows1252)
+    );
+}
+
+#[test]
+fn progress_reaches_the_end() {
+    let rows: String = (0..200_000).map(|row| format!("{row},0.25\n")).collect();
+    let file = written(&rows);
+    let layout = layout(&rows);
+    let mut told = Vec::new();
+    let columns = read_columns(&file.path, &layout, &[1, 2], &mut |done, total| {
+        told.push((done, total));
+    })
+    .expect("columns");
+    assert_eq!(columns.rows(), 200_000);
+    assert_eq!(columns.values[0][199_999], 199_999.0);
+    assert_eq!(columns.line_of(199_999), Some(200_000));
+    let size = rows.len() as u64;
+    assert_eq!(columns.bytes, size);
+    assert_eq!(told.last(), Some(&(size, size)));
+    assert!(told.len() > 5 && told.is_sorted());
+}

@@ -1,0 +1,51 @@
+//! Reading delimited text: habits of machines, errors, and real records where they are at hand.
+
+mod errors;
+mod habits;
+mod records;
+
+use std::path::PathBuf;
+
+use palpate_files::text::{Columns, FileError, Layout, LayoutOptions, detect, read_columns};
+
+/// A file on disk for as long as this lives.
+struct Written {
+    _folder: tempfile::TempDir,
+    path: PathBuf,
+}
+
+fn written(bytes: impl AsRef<[u8]>) -> Written {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("record.csv");
+    std::fs::write(&path, bytes).expect("a file written");
+    Written {
+        _folder: folder,
+        path,
+    }
+}
+
+fn layout_with(bytes: impl AsRef<[u8]>, options: LayoutOptions) -> Result<Layout, FileError> {
+    detect(&written(bytes).path, &options)
+}
+
+fn layout(bytes: impl AsRef<[u8]>) -> Layout {
+    layout_with(bytes, LayoutOptions::default()).expect("a layout")
+}
+
+fn read(bytes: impl AsRef<[u8]>, columns: &[usize]) -> Result<Columns, FileError> {
+    let file = written(bytes);
+    let layout = detect(&file.path, &LayoutOptions::default())?;
+    read_columns(&file.path, &layout, columns, &mut |_, _| {})
+}
+
+/// Names of the columns, `-` for none.
+fn names(layout: &Layout) -> Vec<&str> {
+    let names = layout.columns.iter().map(|column| column.name.as_deref());
+    names.map(|name| name.unwrap_or("-")).collect()
+}
+
+/// Units of the columns, `-` for none.
+fn units(layout: &Layout) -> Vec<&str> {
+    let units = layout.columns.iter().map(|column| column.unit.as_deref());
+    units.map(|unit| unit.unwrap_or("-")).collect()
+}

@@ -1,0 +1,35 @@
+//! What can go wrong while drawing.
+
+/// Why a figure could not be drawn.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FigureError {
+    /// The columns of one layer do not belong together.
+    #[error("figure {figure:?}: {what} has {found} values where {expected} are needed")]
+    Length {
+        /// Name of the figure.
+        figure: String,
+        /// The column at fault.
+        what: &'static str,
+        /// How many values it has.
+        found: usize,
+        /// How many it should have.
+        expected: usize,
+    },
+    /// A picture inside the figure could not be encoded.
+    #[error("figure {figure:?}: the heat map could not be encoded: {reason}")]
+    Image {
+        /// Name of the figure.
+        figure: String,
+        /// What the encoder said.
+        reason: String,
+    },
+    /// The figure could not be turned into pixels.
+    #[error("figure {figure:?} could not be turned into pixels: {reason}")]
+    Raster {
+        /// Name of the figure.
+        figure: String,
+        /// What the renderer said.
+        reason: String,
+    },
+}

@@ -1,0 +1,98 @@
+//! What stands in one place of a table.
+
+use crate::number::{exact, significant, with_error};
+
+/// One value of a table.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Cell {
+    /// A number, rounded for people.
+    Number {
+        /// The exact value.
+        value: f64,
+        /// Significant digits that people see.
+        digits: usize,
+    },
+    /// A number whose error decides how far people see it; machines get the value alone.
+    Uncertain {
+        /// The exact value.
+        value: f64,
+        /// Its standard error.
+        error: f64,
+    },
+    /// A count.
+    Integer(i64),
+    /// Words.
+    Text(String),
+    /// No value, and why.
+    Missing(String),
+}
+
+impl Cell {
+    /// A number with the significant digits that people see.
+    #[must_use]
+    pub fn number(value: f64, digits: usize) -> Self {
+        Self::Number { value, digits }
+    }
+
+    /// A number with its standard error.
+    #[must_use]
+    pub fn uncertain(value: f64, error: f64) -> Self {
+        Self::Uncertain { value, error }
+    }
+
+    /// Words.
+    #[must_use]
+    pub fn text(text: impl Into<String>) -> Self {
+        Self::Text(text.into())
+    }
+
+    /// No value, and why.
+    #[must_use]
+    pub fn missing(reason: impl Into<String>) -> Self {
+        Self::Missing(reason.into())
+    }
+
+    /// A number if there is one, otherwise why there is none.
+    #[must_use]
+    pub fn number_or(value: Option<f64>, digits: usize, reason: &str) -> Self {
+        value.map_or_else(
+            || Self::missing(reason),
+            |value| Self::number(value, digits),
+        )
+    }
+
+    /// What a person reads; a missing value is a dash.
+    #[must_use]
+    pub fn shown(&self) -> String {
+        match self {
+            Self::Number { value, digits } => significant(*value, *digits),
+            Self::Uncertain { value, error } => with_error(*value, *error),
+            Self::Integer(value) => value.to_string().replace('-', "−"),
+            Self::Text(text) => text.clone(),
+            Self::Missing(_) => "–".to_owned(),
+        }
+    }
+
+    /// What a machine reads; a missing value is empty.
+    #[must_use]
+    pub fn stored(&self) -> String {
+        match self {
+            Self::Number { value, .. } | Self::Uncertain { value, .. } => exact(*value),
+            Self::Integer(value) => value.to_string(),
+            Self::Text(text) => text.clone(),
+            Self::Missing(_) => String::new(),
+        }
+    }
+
+    pub(crate) fn is_numeric(&self) -> bool {
+        matches!(
+            self,
+            Self::Number { .. } | Self::Uncertain { .. } | Self::Integer(_)
+        )
+    }
+
+    pub(crate) fn is_written_text(&self) -> bool {
+        matches!(self, Self::Text(text) if !text.is_empty())
+    }
+}

@@ -1,0 +1,183 @@
+//! Tables: written once, read as CSV by machines and as text or HTML by people.
+//!
+//! ```
+//! use palpate_report::table::{Cell, Table, TableColumn};
+//!
+//! let table = Table::new("law", "Fitted law.")
+//!     .column(TableColumn::new("Hold", "hold", ""))
+//!     .column(TableColumn::new("Rate coefficient", "rate_coefficient_per_s", "s⁻¹"))
+//!     .row(vec![Cell::Integer(1), Cell::number(0.012_345, 3)])
+//!     .row(vec![Cell::Integer(2), Cell::missing("hold too short")]);
+//! assert_eq!(table.to_csv(), "hold,rate_coefficient_per_s\r\n1,0.012345\r\n2,\r\n");
+//! ```
+
+mod cell;
+mod csv;
+mod plain;
+
+pub use cell::Cell;
+
+/// One column of a table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TableColumn {
+    /// What a person reads.
+    pub heading: String,
+    /// What a machine reads, with a suffix for the unit, as in `rate_coefficient_per_s`.
+    pub key: String,
+    /// Unit as a person reads it; empty for a pure number or for text.
+    pub unit: String,
+}
+
+impl TableColumn {
+    /// A column.
+    #[must_use]
+    pub fn new(
+        heading: impl Into<String>,
+        key: impl Into<String>,
+        unit: impl Into<String>,
+    ) -> Self {
+        Self {
+            heading: heading.into(),
+            key: key.into(),
+            unit: unit.into(),
+        }
+    }
+
+    /// Heading with its unit, as in `Force (N)`.
+    #[must_use]
+    pub fn title(&self) -> String {
+        if self.unit.is_empty() {
+            self.heading.clone()
+        } else {
+            format!("{} ({})", self.heading, self.unit)
+        }
+    }
+}
+
+/// Named columns with their rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// Name of the table, fit for a file name without extension.
+    pub name: String,
+    /// Caption.
+    pub caption: String,
+    /// Columns from left to right.
+    pub columns: Vec<TableColumn>,
+    /// Rows from top to bottom; a short row is read as if filled up with empty text.
+    pub rows: Vec<Vec<Cell>>,
+    /// Remarks below the table.
+    pub notes: Vec<String>,
+}
+
+impl Table {
+    /// A table without columns and rows.
+    #[must_use]
+    pub fn new(name: impl Into<String>, caption: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            caption: caption.into(),
+            columns: Vec::new(),
+            rows: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// Adds a column on the right.
+    #[must_use]
+    pub fn column(mut self, column: TableColumn) -> Self {
+        self.columns.push(column);
+        self
+    }
+
+    /// Adds a row at the bottom.
+    #[must_use]
+    pub fn row(mut self, row: Vec<Cell>) -> Self {
+        self.rows.push(row);
+        self
+    }
+
+    /// Adds a remark below the table.
+    #[must_use]
+    pub fn note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
+
+    /// The table as CSV after RFC 4180: keys as header, numbers that read back exactly.
+    #[must_use]
+    pub fn to_csv(&self) -> String {
+        csv::write(self)
+    }
+
+    /// The table as aligned text for a terminal.
+    #[must_use]
+    pub fn to_plain_text(&self) -> String {
+        plain::write(self)
+    }
+
+    /// The cell at a place; places outside the rows hold empty text.
+    pub(crate) fn cell(&self, row: usize, column: usize) -> &Cell {
+        const EMPTY: &Cell = &Cell::Text(String::new());
+        self.rows
+            .get(row)
+            .and_then(|row| row.get(column))
+            .unwrap_or(EMPTY)
+    }
+
+    /// Whether a column holds numbers and is set flush right.
+    pub(crate) fn is_numeric(&self, column: usize) -> bool {
+        let mut cells = (0..self.rows.len()).map(|row| self.cell(row, column));
+        cells.any(Cell::is_numeric)
+            && !(0..self.rows.len()).any(|row| self.cell(row, column).is_written_text())
+    }
+
+    /// Why values are missing, in order of appearance; a reason is listed once.
+    pub(crate) fn reasons(&self) -> Vec<&str> {
+        let mut reasons: Vec<&str> = Vec::new();
+        for cell in self.rows.iter().flatten() {
+            if let Cell::Missing(reason) = cell
+                && !reason.is_empty()
+                && !reasons.contains(&reason.as_str())
+            {
+                reasons.push(reason);
+            }
+        }
+        reasons
+    }
+}
+
+/// The mark that ties a missing value to its reason: a, b, …, z, aa, ab, …
+pub(crate) fn mark(index: usize) -> String {
+    let letter = char::from(b'a' + u8::try_from(index % 26).unwrap_or(0));
+    if index < 26 {
+        letter.to_string()
+    } else {
+        format!("{}{letter}", mark(index / 26 - 1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_go_on_after_z() {
+        assert_eq!(
+            (mark(0), mark(25), mark(26), mark(52)),
+            ("a".into(), "z".into(), "aa".into(), "ba".into())
+        );
+    }
+
+    #[test]
+    fn numeric_columns_may_lack_values_but_hold_no_text() {
+        let table = Table::new("t", "")
+            .column(TableColumn::new("A", "a", "s"))
+            .column(TableColumn::new("B", "b", ""))
+            .row(vec![Cell::number(1.0, 2), Cell::Integer(1)])
+            .row(vec![Cell::missing("none"), Cell::text("x")])
+            .row(vec![]);
+        assert!(table.is_numeric(0) && !table.is_numeric(1) && !table.is_numeric(7));
+        assert_eq!(table.reasons(), ["none"]);
+        assert_eq!(table.columns[0].title(), "A (s)");
+    }
+}

@@ -1,0 +1,92 @@
+//! Pages seen from outside: complete, escaped, and without anything fetched.
+
+use palpate_report::figure::{Axis, Figure, Layer, Panel, Role};
+use palpate_report::page::{Block, Check, Finding, Outcome, Page, Section, Severity};
+use palpate_report::table::{Cell, Table, TableColumn};
+
+const HOSTILE: &str = "<script>alert('&')</script>";
+
+fn page() -> String {
+    let panel = Panel::new(Axis::linear(HOSTILE, HOSTILE), Axis::linear("y", "N"))
+        .layer(Layer::line(vec![0.0, 1.0], vec![0.0, 1.0], Role::Measured).label(HOSTILE));
+    let figure = Figure::new("f", HOSTILE).panel(panel);
+    let table = Table::new("t", HOSTILE)
+        .column(TableColumn::new(HOSTILE, "a", HOSTILE))
+        .column(TableColumn::new("Force", "force_n", "N"))
+        .row(vec![Cell::text(HOSTILE), Cell::number(-1.5e-7, 2)])
+        .row(vec![Cell::text("b"), Cell::missing(HOSTILE)])
+        .note(HOSTILE);
+    let text = || HOSTILE.to_owned();
+    let finding = Finding {
+        severity: Severity::Caution,
+        code: text(),
+        seen: text(),
+        meaning: text(),
+        remedy: text(),
+    };
+    let check = Check {
+        name: text(),
+        criterion: text(),
+        found: text(),
+        outcome: Outcome::Fail,
+    };
+    Page::new(HOSTILE, HOSTILE)
+        .section(
+            Section::new("Results")
+                .block(Block::Subheading(text()))
+                .block(Block::paragraph(HOSTILE))
+                .block(Block::List(vec![text()]))
+                .block(Block::figure(&figure).expect("a drawing"))
+                .block(Block::figure(&figure).expect("a drawing"))
+                .block(Block::Table(table)),
+        )
+        .section(
+            Section::new("Results")
+                .block(Block::Findings(vec![finding]))
+                .block(Block::Findings(vec![]))
+                .block(Block::KeyValues(vec![(text(), text())]))
+                .block(Block::Checks(vec![check]))
+                .block(Block::Code(text())),
+        )
+        .provenance(HOSTILE, HOSTILE)
+        .to_html()
+}
+
+#[test]
+fn no_text_reaches_the_page_as_markup() {
+    let html = page();
+    assert!(!html.contains("<script") && html.contains("&lt;script&gt;"));
+    assert_eq!(html, page());
+}
+
+#[test]
+fn nothing_is_fetched_from_elsewhere() {
+    let html = page().replace("http://www.w3.org/2000/svg", "");
+    for word in ["http:", "https:", "@import", "url(", "<link"] {
+        assert!(!html.contains(word), "{word}");
+    }
+}
+
+#[test]
+fn anchors_are_unique_and_numbers_run_on() {
+    let html = page();
+    let ids: Vec<&str> = html
+        .split(" id=\"")
+        .skip(1)
+        .filter_map(|rest| rest.split('"').next())
+        .collect();
+    assert_eq!(
+        ids,
+        ["results", "figure-1", "figure-2", "table-1", "results-2"]
+    );
+    assert!(html.contains("<b>Figure 2.</b>") && html.contains("href=\"#results-2\""));
+}
+
+#[test]
+fn tables_are_accessible_and_typeset() {
+    let html = page();
+    assert!(html.contains("<th scope=\"col\" class=\"n\">Force <span class=\"unit\">(N)</span>"));
+    assert!(html.contains("<td class=\"n\">−1.5×10<sup>−7</sup></td>"));
+    assert!(html.contains("<td class=\"n\">–<sup>a</sup></td>"));
+    assert!(html.contains("role=\"img\""));
+}

@@ -1,0 +1,133 @@
+//! Phases from the force alone, where no displacement was recorded.
+//!
+//! In a ramp the force runs; in a hold it slows down until it hardly moves. Where it hardly moves is the core of a hold;
+//! going back from there, the last turning point of the force is where the ramp ended and relaxation began. A hold that
+//! goes on in the direction of its ramp has no such point and begins at its core.
+
+use super::edges::Level;
+use super::ramps::fill_gaps;
+use super::slope::{slopes, travel_median};
+use super::{Phase, SegmentError, SegmentOptions, SegmentSettings, Segmentation};
+use crate::statistics::{median, noise};
+
+/// Speed of the core of a hold as a share of the speed of the ramps.
+const STILL_BELOW: f64 = 0.08;
+/// Fewest samples of a hold.
+const MINIMUM_SAMPLES: usize = 12;
+/// Shortest hold as a share of the median duration of what lies between cores.
+const SHORTEST: f64 = 0.25;
+
+pub(super) fn phases(time: &[f64], force: &[f64], options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
+    let (low, high) = force.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
+    let (range, noise) = (high - low, noise(force));
+    if range == 0.0 || range < 12.0 * noise {
+        return Err(SegmentError::NoMotion {
+            column: "force",
+            range,
+            noise,
+            unit: "N",
+        });
+    }
+    let (window, ramp_speed, still) = thresholds(time, force, noise, options);
+    let speeds = slopes(time, force, window);
+    let turn = (6.0 * noise).max(0.004 * range);
+    let cores = cores(&speeds, still);
+    let mut gaps: Vec<f64> = cores.windows(2).map(|pair| time[pair[1].0] - time[pair[0].1 - 1]).collect();
+    if let Some((start, _)) = cores.first() {
+        gaps.push(time[*start] - time[0]);
+    }
+    gaps.retain(|gap| *gap > 0.0);
+    let typical = if gaps.is_empty() { 0.0 } else { median(&mut gaps) };
+    let minimum_hold = options.minimum_hold.unwrap_or(SHORTEST * typical);
+    let minimum_samples = if options.minimum_hold.is_some() { 3 } else { MINIMUM_SAMPLES };
+    let settings = SegmentSettings {
+        from_displacement: false,
+        noise,
+        tolerance: turn,
+        ramp_speed,
+        still_speed: still,
+        slope_window: window,
+        minimum_hold,
+        minimum_samples,
+    };
+    let (mut levels, mut before): (Vec<Level>, usize) = (Vec::new(), 0);
+    let (mut longest, mut samples) = (0.0f64, 0);
+    for (core_start, end) in cores {
+        let duration = time[end - 1] - time[core_start];
+        if core_start > 0 && duration > longest {
+            (longest, samples) = (duration, end - core_start);
+        }
+        if duration >= minimum_hold && end - core_start >= minimum_samples {
+            let start = if core_start == 0 { 0 } else { last_turn(force, before, core_start, turn).unwrap_or(core_start) };
+            let value = median(&mut force[core_start..end].to_vec());
+            levels.push(Level { start, end, value });
+            before = end;
+        }
+    }
+    let segments = fill_gaps(force, &levels, turn);
+    if !segments.iter().any(|segment| segment.phase == Phase::Hold) {
+        return Err(SegmentError::NoHold {
+            longest,
+            samples,
+            minimum_hold,
+            minimum_samples,
+        });
+    }
+    Ok(Segmentation { segments, settings })
+}
+
+fn thresholds(time: &[f64], force: &[f64], noise: f64, options: &SegmentOptions) -> (usize, f64, f64) {
+    let share = options.still_below.unwrap_or(STILL_BELOW);
+    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let interval = median(&mut steps);
+    let mut window = 1;
+    loop {
+        let slope_noise = noise * (2.0 / window as f64).sqrt() / (window as f64 * interval);
+        let ramp = travel_median(time, &slopes(time, force, window), 4.0 * slope_noise);
+        let still = (share * ramp).max(4.0 * slope_noise);
+        if still <= 1.5 * share * ramp || window * 16 > force.len() || ramp == 0.0 {
+            return (window, ramp, still);
+        }
+        window *= 2;
+    }
+}
+
+/// Runs of samples over which the force hardly moves.
+fn cores(speeds: &[f64], still: f64) -> Vec<(usize, usize)> {
+    let mut runs = Vec::new();
+    let mut start = None;
+    for gap in 0..=speeds.len() {
+        match (speeds.get(gap).is_some_and(|speed| speed.abs() < still), start) {
+            (true, None) => start = Some(gap),
+            (false, Some(first)) => {
+                runs.push((first, gap + 1));
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    runs
+}
+
+/// The last sample of from..until at which the force turns by more than `turn`.
+fn last_turn(force: &[f64], from: usize, until: usize, turn: f64) -> Option<usize> {
+    let settled = force[until];
+    let mut highest = until;
+    let mut lowest = until;
+    for i in (from..until).rev() {
+        if force[i] > force[highest] {
+            highest = i;
+        }
+        if force[i] < force[lowest] {
+            lowest = i;
+        }
+        // Going back in time: first away from the settled force, then back towards and past it.
+        if force[highest] - settled > turn && force[highest] - force[i] > turn {
+            return Some(highest);
+        }
+        if settled - force[lowest] > turn && force[i] - force[lowest] > turn {
+            return Some(lowest);
+        }
+    }
+    None
+}

@@ -1,0 +1,173 @@
+//! Phases of a test found without labels: loading, hold, unloading; first touch; Type I and Type II.
+//!
+//! | file | what |
+//! |---|---|
+//! | `options.rs` | every threshold as an option, and the value it took |
+//! | `slope.rs` | local slopes of a noisy column |
+//! | `from_displacement.rs` | phases where the displacement was recorded |
+//! | `from_force.rs` | phases where only the force was |
+//! | `edges.rs` | where exactly a hold begins and ends |
+//! | `ramps.rs` | what lies between the holds: loading and unloading |
+//! | `relaxation.rs` | Type I or Type II, and how sure |
+//! | `contact_point.rs` | first touch and the zero of the force |
+
+mod contact_point;
+mod edges;
+mod from_displacement;
+mod from_force;
+mod options;
+mod ramps;
+mod relaxation;
+mod slope;
+
+pub use contact_point::{ContactChoice, ContactPoint, find_contact};
+pub use options::{HoldStart, SegmentOptions, SegmentSettings};
+pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
+
+use serde::{Deserialize, Serialize};
+
+use crate::record::Record;
+
+/// What the jaw does in a segment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Phase {
+    /// Standing still before anything moved.
+    Rest,
+    /// The displacement grows.
+    Loading,
+    /// The displacement stays.
+    Hold,
+    /// The displacement falls.
+    Unloading,
+}
+
+/// What came before a hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum After {
+    /// The displacement had grown.
+    Loading,
+    /// The displacement had fallen.
+    Unloading,
+}
+
+/// A stretch of the record in one phase.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Segment {
+    /// What the jaw does.
+    pub phase: Phase,
+    /// First sample.
+    pub start: usize,
+    /// Sample after the last.
+    pub end: usize,
+    /// For a hold: what came before it.
+    pub after: Option<After>,
+    /// For a hold: the sample from which laws are fitted, see [`HoldStart`].
+    pub fit_start: usize,
+}
+
+impl Segment {
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.end - self.start
+    }
+
+    /// Never true.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.end == self.start
+    }
+}
+
+/// All segments of a record in order, and the thresholds that found them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Segmentation {
+    /// Segments; together they cover the record without gaps.
+    pub segments: Vec<Segment>,
+    /// The thresholds used.
+    pub settings: SegmentSettings,
+}
+
+impl Segmentation {
+    /// The holds, in order.
+    pub fn holds(&self) -> impl Iterator<Item = &Segment> {
+        self.segments.iter().filter(|segment| segment.phase == Phase::Hold)
+    }
+}
+
+/// Why no phases were found.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SegmentError {
+    /// Too few samples to see phases.
+    #[error("phases need {needed} samples or more, found {found}")]
+    TooShort {
+        /// Least number.
+        needed: usize,
+        /// Samples found.
+        found: usize,
+    },
+    /// The displacement (or force) never leaves its noise.
+    #[error("nothing moves: the {column} stays within {range:.3e} {unit}, its noise is {noise:.1e} {unit}")]
+    NoMotion {
+        /// Which column.
+        column: &'static str,
+        /// Its range.
+        range: f64,
+        /// Its noise.
+        noise: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// It moves all the time.
+    #[error(
+        "no hold found: the longest standstill after a ramp lasts {longest:.3} s ({samples} samples), a hold needs {minimum_hold:.3} s and {minimum_samples} samples"
+    )]
+    NoHold {
+        /// Longest standstill, s.
+        longest: f64,
+        /// Its samples.
+        samples: usize,
+        /// Least duration of a hold, s.
+        minimum_hold: f64,
+        /// Least number of samples of a hold.
+        minimum_samples: usize,
+    },
+}
+
+impl SegmentError {
+    /// What would help.
+    #[must_use]
+    pub fn hint(&self) -> &'static str {
+        match self {
+            Self::TooShort { .. } => "check that the whole test was exported",
+            Self::NoMotion { .. } => "check the displacement column and its unit; a record without motion has no relaxation to fit",
+            Self::NoHold { .. } => {
+                "a cyclic test has no hold; for a short one lower the least duration with --minimum-hold, for a drifting one raise --tolerance"
+            }
+        }
+    }
+}
+
+/// Finds the phases of a record: from its displacement, or from its force where the displacement is missing.
+///
+/// # Errors
+/// [`SegmentError`] when nothing moves, or when no standstill after a ramp is long enough to be a hold.
+pub fn find_phases(record: &Record, options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
+    const NEEDED: usize = 8;
+    if record.len() < NEEDED {
+        return Err(SegmentError::TooShort {
+            needed: NEEDED,
+            found: record.len(),
+        });
+    }
+    let mut segmentation = match record.displacement() {
+        Some(displacement) => from_displacement::phases(record.time(), displacement, options)?,
+        None => from_force::phases(record.time(), record.force(), options)?,
+    };
+    for segment in &mut segmentation.segments {
+        segment.fit_start = options.hold_start.sample(record, segment);
+    }
+    Ok(segmentation)
+}
