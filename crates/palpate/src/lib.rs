@@ -1,4 +1,5 @@
 //! Soft contact that remembers.
+pub mod analysis;
 pub mod contact;
 pub mod latency;
 pub mod identify;

@@ -26,7 +26,7 @@ pub struct OrderSelection {
     pub candidates: Vec<Candidate>,
     /// Index of the lowest listed exponent that is as good as the best one.
     pub lowest_order: Option<usize>,
-    /// Index of the candidate with the lowest information criterion.
+    /// Index of the candidate with the lowest information criterion among those whose fit ended well.
     pub preferred: Option<usize>,
     /// Samples that count as independent in these comparisons.
     pub effective_samples: f64,
@@ -70,7 +70,11 @@ pub fn select_order(fits: &[LatencyFit]) -> OrderSelection {
     let lowest_order = (0..fits.len())
         .filter(|&i| listed(&fits[i]) && candidates[i].as_good_as_best)
         .min_by(order);
-    let preferred = (0..fits.len()).min_by(|a, b| candidates[*a].delta_bic.total_cmp(&candidates[*b].delta_bic));
+    // A fit that ended at the edge of its range has no errors to go with its numbers.
+    let any_good = fits.iter().any(|fit| fit.termination.is_good());
+    let preferred = (0..fits.len())
+        .filter(|&i| fits[i].termination.is_good() || !any_good)
+        .min_by(|a, b| candidates[*a].delta_bic.total_cmp(&candidates[*b].delta_bic));
     OrderSelection {
         lowest_order,
         preferred,

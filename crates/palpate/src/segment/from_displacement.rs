@@ -93,8 +93,8 @@ fn thresholds(time: &[f64], values: &[f64], noise: f64, range: f64, options: &Se
         let speeds = slopes(time, values, window);
         let ramp = travel_median(time, &speeds, 4.0 * slope_noise);
         let still = (share * ramp).max(4.0 * slope_noise);
-        // Wider windows only while the noise alone would set the threshold.
-        if still <= 2.0 * share * ramp || window * 16 > values.len() || ramp == 0.0 {
+        // Wider windows until the noise alone never crosses the threshold.
+        if 6.0 * slope_noise <= share * ramp || window * 16 > values.len() || ramp == 0.0 {
             let floor = 1e-9 * range / (time[time.len() - 1] - time[0]);
             return (window, ramp, still.max(floor));
         }
@@ -155,7 +155,8 @@ fn median_ramp(time: &[f64], runs: &[(usize, usize)], tolerance: f64, values: &[
         .filter(|(start, end)| end > start && (values[*end] - values[*start]).abs() > 4.0 * tolerance)
         .map(|(start, end)| time[end] - time[start])
         .collect();
-    if durations.is_empty() { 0.0 } else { median(&mut durations) }
+    // A jaw that only comes back to where it was counts as one long ramp.
+    if durations.is_empty() { time[time.len() - 1] - time[0] } else { median(&mut durations) }
 }
 
 /// The column with every sample replaced by the median of itself and its neighbours: spikes of one row vanish, edges stay.

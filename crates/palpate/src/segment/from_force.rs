@@ -31,7 +31,7 @@ pub(super) fn phases(time: &[f64], force: &[f64], options: &SegmentOptions) -> R
     let (window, ramp_speed, still) = thresholds(time, force, noise, options);
     let speeds = slopes(time, force, window);
     let turn = (6.0 * noise).max(0.004 * range);
-    let cores = cores(&speeds, still);
+    let cores = merged(cores(&speeds, still), time, force, 2.0 * still, 6.0 * noise, 0.03 * range);
     let mut gaps: Vec<f64> = cores.windows(2).map(|pair| time[pair[1].0] - time[pair[0].1 - 1]).collect();
     if let Some((start, _)) = cores.first() {
         gaps.push(time[*start] - time[0]);
@@ -58,7 +58,7 @@ pub(super) fn phases(time: &[f64], force: &[f64], options: &SegmentOptions) -> R
             (longest, samples) = (duration, end - core_start);
         }
         if duration >= minimum_hold && end - core_start >= minimum_samples {
-            let start = if core_start == 0 { 0 } else { last_turn(force, before, core_start, turn).unwrap_or(core_start) };
+            let start = if core_start == 0 { 0 } else { beginning(time, force, before, core_start, turn, (low, high)) };
             let value = median(&mut force[core_start..end].to_vec());
             levels.push(Level { start, end, value });
             before = end;
@@ -80,12 +80,16 @@ fn thresholds(time: &[f64], force: &[f64], noise: f64, options: &SegmentOptions)
     let share = options.still_below.unwrap_or(STILL_BELOW);
     let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let interval = median(&mut steps);
+    let slope_noise = |window: usize| noise * (2.0 / window as f64).sqrt() / (window as f64 * interval);
+    // A jaw that starts or stops makes the force ring; a window of a two-hundredth of the record sees the ramp instead.
+    let wide = (force.len() / 200).max(1);
+    let ramp = travel_median(time, &slopes(time, force, wide), 4.0 * slope_noise(wide));
     let mut window = 1;
     loop {
-        let slope_noise = noise * (2.0 / window as f64).sqrt() / (window as f64 * interval);
-        let ramp = travel_median(time, &slopes(time, force, window), 4.0 * slope_noise);
+        let slope_noise = slope_noise(window);
         let still = (share * ramp).max(4.0 * slope_noise);
-        if still <= 1.5 * share * ramp || window * 16 > force.len() || ramp == 0.0 {
+        // Wider windows until the noise alone never crosses the threshold.
+        if 6.0 * slope_noise <= share * ramp || window * 16 > force.len() || ramp == 0.0 {
             return (window, ramp, still);
         }
         window *= 2;
@@ -107,6 +111,45 @@ fn cores(speeds: &[f64], still: f64) -> Vec<(usize, usize)> {
         }
     }
     runs
+}
+
+/// Cores with nothing but noise or slow relaxation between them become one: on the way the force neither runs faster
+/// than `speed` on the whole (give or take `noise`) nor leaves the straight line between them by more than `stray`.
+fn merged(
+    cores: Vec<(usize, usize)>,
+    time: &[f64],
+    force: &[f64],
+    speed: f64,
+    noise: f64,
+    stray: f64,
+) -> Vec<(usize, usize)> {
+    let mut merged: Vec<(usize, usize)> = Vec::new();
+    for core in cores {
+        if let Some(last) = merged.last_mut() {
+            let (a, b) = (last.1 - 1, core.0);
+            let (rise, run) = (force[b] - force[a], time[b] - time[a]);
+            let straight = (a..b).all(|i| (force[i] - force[a] - rise / run * (time[i] - time[a])).abs() <= stray + noise);
+            if rise.abs() <= speed * run + noise && straight {
+                last.1 = core.1;
+                continue;
+            }
+        }
+        merged.push(core);
+    }
+    merged
+}
+
+/// Where the hold begins whose core begins at `core`: the last turning point of the force since `from`, if what follows
+/// it is relaxation and not a ramp.
+///
+/// Relaxation is fast first and slow later: most of its change is done half way. The end of a ramp to the lowest force
+/// of the record (a contact that opens) bends the same way, so there the change must be further on.
+fn beginning(time: &[f64], force: &[f64], from: usize, core: usize, turn: f64, (low, high): (f64, f64)) -> usize {
+    let Some(start) = last_turn(force, from, core, turn) else { return core };
+    let half = time.partition_point(|t| *t < 0.5 * (time[start] + time[core]));
+    let done = (force[half] - force[start]) / (force[core] - force[start]);
+    let opens = force[core] - low < 0.08 * (high - low);
+    if done > if opens { 0.8 } else { 0.6 } { start } else { core }
 }
 
 /// The last sample of from..until at which the force turns by more than `turn`.

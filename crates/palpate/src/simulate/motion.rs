@@ -208,6 +208,41 @@ impl Motion {
     }
 }
 
+impl Motion {
+    /// The motion with fewer knots: straight lines that pass within `tolerance` (m) of every knot left out.
+    ///
+    /// A single pass ("swinging door"): a line is prolonged from its first knot as long as one slope serves all knots on
+    /// the way. Its ends are knots of the motion, so that noise of a held jaw turns into a standstill and corners stay.
+    #[must_use]
+    pub fn simplified(&self, tolerance: f64) -> Self {
+        let (times, displacements) = (&self.times, &self.displacements);
+        let mut kept = vec![0];
+        let mut from = 0;
+        let (mut lowest, mut highest) = (f64::NEG_INFINITY, f64::INFINITY);
+        for i in 1..times.len() {
+            let run = times[i] - times[from];
+            let rise = displacements[i] - displacements[from];
+            let (low, high) = ((rise - tolerance) / run, (rise + tolerance) / run);
+            let slope = rise / run;
+            if slope < lowest || slope > highest {
+                from = i - 1;
+                kept.push(from);
+                let run = times[i] - times[from];
+                let rise = displacements[i] - displacements[from];
+                (lowest, highest) = ((rise - tolerance) / run, (rise + tolerance) / run);
+            } else {
+                (lowest, highest) = (lowest.max(low), highest.min(high));
+            }
+        }
+        kept.push(times.len() - 1);
+        kept.dedup();
+        Self {
+            times: kept.iter().map(|i| times[*i]).collect(),
+            displacements: kept.iter().map(|i| displacements[*i]).collect(),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -224,5 +259,18 @@ mod tests {
         assert!(matches!(protocol(&[step(0.0, 1.0, 0.0)]), Err(MotionError::EmptyStep { step: 1 })));
         let rising = Motion::new(vec![0.0, 1.0, 1.0], vec![0.0; 3]);
         assert!(matches!(rising, Err(MotionError::TimeNotRising { index: 2, .. })));
+    }
+
+    #[test]
+    fn simplifying_keeps_corners_and_drops_noise() {
+        let times: Vec<f64> = (0..1000).map(|i| 0.01 * f64::from(i)).collect();
+        let noise = |i: usize| 1e-6 * [1.0, -1.0, 0.5, -0.3][i % 4];
+        let displacement: Vec<f64> = times.iter().enumerate().map(|(i, t)| (0.01 * t).min(0.02) + noise(i)).collect();
+        let motion = Motion::new(times.clone(), displacement).unwrap();
+        let simple = motion.simplified(2e-5);
+        assert!(simple.times().len() < 12, "{}", simple.times().len());
+        for t in times {
+            assert!((simple.displacement_at(t) - motion.displacement_at(t)).abs() < 3e-5);
+        }
     }
 }

@@ -1,0 +1,254 @@
+//! What the user should know: what was seen, what it may mean, what helps.
+
+use serde::{Deserialize, Serialize};
+
+/// How much a finding matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Severity {
+    /// Good to know.
+    Info,
+    /// Read the numbers with care.
+    Caution,
+    /// A number is missing or must not be used.
+    Warning,
+}
+
+/// Something suspicious but usable. Each has a stable code; the words may change.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "code", rename_all = "snake_case")]
+pub enum Finding {
+    /// The fitted equilibrium lies well beyond what the hold reached.
+    EquilibriumExtrapolated {
+        /// Share of the fitted relaxation that lies beyond the end of the hold.
+        beyond: f64,
+    },
+    /// The data do not determine the exponent.
+    ExponentUndetermined {
+        /// What the free fit says, if it ended well.
+        interval: Option<(f64, f64)>,
+    },
+    /// Several listed exponents fit equally well.
+    ExponentsAlike {
+        /// Those exponents.
+        exponents: Vec<f64>,
+    },
+    /// The fit ended at the edge of its range.
+    RateAtBound {
+        /// The exponent of that fit.
+        exponent: f64,
+    },
+    /// Residuals of neighbouring samples go together.
+    ResidualsCorrelated {
+        /// Their correlation.
+        correlation: f64,
+        /// Samples that count as independent.
+        independent: f64,
+    },
+    /// The signal does not change in the hold as far as its noise lets one see.
+    NoRelaxation {
+        /// Change, in the unit of the force.
+        change: f64,
+        /// Its standard error.
+        standard_error: f64,
+    },
+    /// Too few samples to fit.
+    TooFewSamples {
+        /// Samples in the hold.
+        found: usize,
+        /// Samples needed.
+        needed: usize,
+    },
+    /// Much of the relaxation happens between the first two samples.
+    SampledTooSlowly {
+        /// Share of the relaxation in the first sample interval.
+        share: f64,
+    },
+    /// No contact area at this displacement, hence no strain.
+    NoContactArea,
+    /// More samples than are fitted.
+    Thinned {
+        /// One in this many is fitted.
+        every: usize,
+    },
+    /// Dropouts of a single row in the displacement.
+    DropoutsRepaired {
+        /// How many.
+        count: usize,
+    },
+    /// No displacement column: phases come from the force.
+    PhasesFromForce,
+    /// The jaw travelled through air first.
+    AirTravel {
+        /// How far, m.
+        travel: f64,
+    },
+    /// The modulus was not given.
+    ModulusEstimated {
+        /// What the relaxed forces say, Pa.
+        modulus: f64,
+    },
+    /// The given modulus and the relaxed forces disagree.
+    ModulusMismatch {
+        /// Given, Pa.
+        given: f64,
+        /// Implied by the relaxed forces, Pa.
+        implied: f64,
+    },
+    /// The overlay could not be simulated.
+    NoOverlay {
+        /// Why.
+        reason: String,
+    },
+}
+
+impl Finding {
+    /// The stable code.
+    #[must_use]
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::EquilibriumExtrapolated { .. } => "equilibrium_extrapolated",
+            Self::ExponentUndetermined { .. } => "exponent_undetermined",
+            Self::ExponentsAlike { .. } => "exponents_alike",
+            Self::RateAtBound { .. } => "rate_at_bound",
+            Self::ResidualsCorrelated { .. } => "residuals_correlated",
+            Self::NoRelaxation { .. } => "no_relaxation",
+            Self::TooFewSamples { .. } => "too_few_samples",
+            Self::SampledTooSlowly { .. } => "sampled_too_slowly",
+            Self::NoContactArea => "no_contact_area",
+            Self::Thinned { .. } => "thinned",
+            Self::DropoutsRepaired { .. } => "dropouts_repaired",
+            Self::PhasesFromForce => "phases_from_force",
+            Self::AirTravel { .. } => "air_travel",
+            Self::ModulusEstimated { .. } => "modulus_estimated",
+            Self::ModulusMismatch { .. } => "modulus_mismatch",
+            Self::NoOverlay { .. } => "no_overlay",
+        }
+    }
+
+    /// How much it matters.
+    #[must_use]
+    pub fn severity(&self) -> Severity {
+        match self {
+            Self::ExponentsAlike { .. }
+            | Self::Thinned { .. }
+            | Self::PhasesFromForce
+            | Self::AirTravel { .. }
+            | Self::NoRelaxation { .. }
+            | Self::ModulusEstimated { .. } => Severity::Info,
+            Self::EquilibriumExtrapolated { .. }
+            | Self::ExponentUndetermined { .. }
+            | Self::ResidualsCorrelated { .. }
+            | Self::SampledTooSlowly { .. }
+            | Self::DropoutsRepaired { .. }
+            | Self::ModulusMismatch { .. } => Severity::Caution,
+            Self::RateAtBound { .. } | Self::TooFewSamples { .. } | Self::NoContactArea | Self::NoOverlay { .. } => {
+                Severity::Warning
+            }
+        }
+    }
+
+    /// What was seen.
+    #[must_use]
+    pub fn seen(&self) -> String {
+        match self {
+            Self::EquilibriumExtrapolated { beyond } => format!(
+                "{:.0} % of the fitted relaxation lies beyond the end of the hold",
+                100.0 * beyond
+            ),
+            Self::ExponentUndetermined { interval: Some((low, high)) } => {
+                format!("the interval of the free exponent runs from {low:.1} to {high:.1}")
+            }
+            Self::ExponentUndetermined { interval: None } => {
+                "the free exponent ended at the edge of its range".to_owned()
+            }
+            Self::ExponentsAlike { exponents } => {
+                let list: Vec<String> = exponents.iter().map(|n| format!("{n}")).collect();
+                format!("the exponents {} fit equally well", list.join(", "))
+            }
+            Self::RateAtBound { exponent } => {
+                format!("the fit with n = {exponent:.3} ended at the edge of the range of its rate")
+            }
+            Self::ResidualsCorrelated { correlation, independent } => format!(
+                "neighbouring residuals correlate by {correlation:.2}; the samples count as {independent:.0} independent ones"
+            ),
+            Self::NoRelaxation { change, standard_error } => {
+                format!("the force changes by {change:.2e} N with a standard error of {standard_error:.1e} N")
+            }
+            Self::TooFewSamples { found, needed } => format!("the hold has {found} samples, a fit needs {needed}"),
+            Self::SampledTooSlowly { share } => format!(
+                "{:.0} % of the relaxation happens within the first sample interval",
+                100.0 * share
+            ),
+            Self::NoContactArea => "the contact has no area at this displacement".to_owned(),
+            Self::Thinned { every } => format!("one sample in {every} is fitted"),
+            Self::DropoutsRepaired { count: 1 } => "one row of the displacement strays alone".to_owned(),
+            Self::DropoutsRepaired { count } => format!("{count} rows of the displacement stray alone"),
+            Self::PhasesFromForce => "the record has no displacement".to_owned(),
+            Self::AirTravel { travel } => format!("the jaw travels {:.3} mm before the force rises", 1e3 * travel),
+            Self::ModulusEstimated { modulus } => {
+                format!("no modulus was given; the relaxed forces imply {modulus:.4e} Pa")
+            }
+            Self::ModulusMismatch { given, implied } => format!(
+                "the given modulus is {given:.3e} Pa, the relaxed forces imply {implied:.3e} Pa (force over area times displacement over depth)"
+            ),
+            Self::NoOverlay { reason } => format!("the record could not be simulated: {reason}"),
+        }
+    }
+
+    /// What it may mean.
+    #[must_use]
+    pub fn meaning(&self) -> &'static str {
+        match self {
+            Self::EquilibriumExtrapolated { .. } => {
+                "the equilibrium and the exponent lean on each other; another exponent would put the equilibrium elsewhere"
+            }
+            Self::ExponentUndetermined { .. } | Self::ExponentsAlike { .. } => {
+                "the hold is too short or too noisy to tell these laws apart"
+            }
+            Self::RateAtBound { .. } => {
+                "over this hold the law is a straight line, a pure power or a step: its rate and amplitude cannot be told apart"
+            }
+            Self::ResidualsCorrelated { .. } => {
+                "either the law misses part of the shape, or the noise is slow (drift, quantisation, filtering); plain standard errors are too small, the intervals given are widened for it"
+            }
+            Self::NoRelaxation { .. } => "the contact is relaxed, or open, or its relaxation is below the noise",
+            Self::TooFewSamples { .. } => "nothing was fitted to this hold",
+            Self::SampledTooSlowly { .. } => "the rate and the amplitude at the start of the hold rest on a few samples",
+            Self::NoContactArea => "the jaw is at or before first touch, so that no strain can be told from the force; the hold is not fitted",
+            Self::Thinned { .. } => "the fit loses nothing but time",
+            Self::DropoutsRepaired { .. } => "the encoder or the logger lost a value; the mean of the neighbours stands in its place",
+            Self::PhasesFromForce => "phases come from the force; the edges of holds are less sure, and there are no strains",
+            Self::AirTravel { .. } => "displacement and force are counted from first touch",
+            Self::ModulusEstimated { .. } => "strains and v rest on this estimate; n and the relative rate do not",
+            Self::ModulusMismatch { .. } => {
+                "the body is stiffer or softer than described, bonded or friction-locked, or its first touch is elsewhere; strains scale with the modulus"
+            }
+            Self::NoOverlay { .. } => "the report has no simulated curve",
+        }
+    }
+
+    /// What helps.
+    #[must_use]
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::EquilibriumExtrapolated { .. } => "hold longer, or compare holds with one fixed exponent",
+            Self::ExponentUndetermined { .. } | Self::ExponentsAlike { .. } => {
+                "hold longer, sample the first second faster, or fix the exponent from longer holds"
+            }
+            Self::RateAtBound { .. } => "hold longer or sample faster; do not use the numbers of this fit",
+            Self::ResidualsCorrelated { .. } => "look at the residuals in the report; try a free exponent or a later start of the hold",
+            Self::NoRelaxation { .. } => "nothing, if the contact was meant to be open or at rest",
+            Self::TooFewSamples { .. } => "sample faster or hold longer",
+            Self::SampledTooSlowly { .. } => "sample faster at the start of holds",
+            Self::NoContactArea => "check first touch (touch = \"...\" in the test description)",
+            Self::Thinned { .. } => "nothing",
+            Self::DropoutsRepaired { .. } => "check the logger",
+            Self::PhasesFromForce => "record the displacement, or give the hold's limits",
+            Self::AirTravel { .. } => "set touch in the test description if this is not where they met",
+            Self::ModulusEstimated { .. } => "give the modulus in the test description if it is known",
+            Self::ModulusMismatch { .. } => "leave the modulus out to have it estimated, or check geometry and first touch",
+            Self::NoOverlay { .. } => "check geometry, first touch and units",
+        }
+    }
+}

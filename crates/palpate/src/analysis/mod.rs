@@ -1,0 +1,27 @@
+//! The whole study of one record: phases, strains, laws, tables' rows, overlay, findings.
+//!
+//! | file | what |
+//! |---|---|
+//! | `options.rs` | everything that may be asked, with defaults |
+//! | `pipeline.rs` | the order of the steps |
+//! | `hold.rs` | one hold: signal, fits in both domains, prediction beyond the window |
+//! | `across.rs` | several holds: common exponent, trend of v, agreement of equilibrium strains |
+//! | `modulus.rs` | the modulus that the relaxed forces imply |
+//! | `overlay.rs` | the same displacement simulated with the fitted numbers |
+//! | `finding.rs` | what the user should know, in plain words |
+
+mod across;
+mod finding;
+mod hold;
+mod modulus;
+mod options;
+mod overlay;
+mod pipeline;
+
+pub use across::{Across, LevelAgreement, Trend};
+pub use finding::{Finding, Severity};
+pub use hold::{HoldAnalysis, Prediction, Signal};
+pub use modulus::ModulusSource;
+pub use options::{AnalysisOptions, Geometry, LayersChoice};
+pub use overlay::Overlay;
+pub use pipeline::{Analysis, AnalysisError, analyze};

@@ -1,0 +1,76 @@
+//! What may be asked of an analysis.
+
+use serde::{Deserialize, Serialize};
+
+use crate::contact::{Shape, Sides};
+use crate::identify::FitOptions;
+use crate::segment::{ContactChoice, SegmentOptions};
+use crate::simulate::Separation;
+use crate::strain::RateWindow;
+
+/// The body as far as it is known; SI units.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Geometry {
+    /// Shape.
+    pub shape: Shape,
+    /// From how many sides it is squeezed.
+    pub sides: Sides,
+    /// Young's modulus, Pa; estimated from the relaxed forces if it is not known.
+    pub modulus: Option<f64>,
+}
+
+/// Layers of the simulation that is laid over the record.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LayersChoice {
+    /// m.
+    Count(f64),
+    /// ℓ in m.
+    Thickness(f64),
+}
+
+/// Options of [`analyze`](super::analyze).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct AnalysisOptions {
+    /// The body; without it the force is fitted as it is.
+    pub geometry: Option<Geometry>,
+    /// How phases are found.
+    pub segment: SegmentOptions,
+    /// How first touch is found.
+    pub touch: ContactChoice,
+    /// Whether the jaw can pull (for the overlay).
+    pub separation: Separation,
+    /// Layers of the overlay; fitted to the ramps if not given.
+    pub layers: Option<LayersChoice>,
+    /// Exponents that are tried as given.
+    pub exponents: Vec<f64>,
+    /// Whether n is also left free.
+    pub free_exponent: bool,
+    /// Options of every fit.
+    pub fit: FitOptions,
+    /// Fit only this long from the start of the fit, s, and predict the rest of the hold.
+    pub fit_until: Option<f64>,
+    /// Window of the strain rates.
+    pub rate_window: RateWindow,
+    /// Samples of a hold that are fitted at most; more are thinned evenly, and that is said.
+    pub most_samples: usize,
+}
+
+impl Default for AnalysisOptions {
+    fn default() -> Self {
+        Self {
+            geometry: None,
+            segment: SegmentOptions::default(),
+            touch: ContactChoice::default(),
+            separation: Separation::default(),
+            layers: None,
+            exponents: vec![1.0, 2.0, 3.0, 5.0, 7.0],
+            free_exponent: true,
+            fit: FitOptions::default(),
+            fit_until: None,
+            rate_window: RateWindow::default(),
+            most_samples: 1_000_000,
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! Contact force, strain wave and separation against mpmath and SciPy (`contact_force.json`, `cascade.json`,
+//! `separation.json`).
+
+mod common;
+
+use common::reference;
+use palpate::contact::{Layers, Shape, Sides, Specimen};
+use palpate::latency::LatencyLaw;
+use palpate::simulate::{
+    ContactEventKind, ContactModel, Motion, Sampling, Separation, simulate, simulate_force, strain_wave,
+};
+use serde::Deserialize;
+
+/// What all cases of a contact share.
+#[derive(Deserialize)]
+struct Contact {
+    name: String,
+    radius: f64,
+    modulus: f64,
+    exponent: f64,
+    rate_coefficient: f64,
+    layers: f64,
+    sides: u32,
+    knots: Vec<(f64, f64)>,
+    times: Vec<f64>,
+}
+
+impl Contact {
+    fn model(&self, separation: Separation) -> ContactModel {
+        let sides = if self.sides == 2 { Sides::Two } else { Sides::One };
+        ContactModel {
+            specimen: Specimen::new(Shape::Ball { radius: self.radius }, self.modulus, sides).unwrap(),
+            law: LatencyLaw::new(self.exponent, self.rate_coefficient).unwrap(),
+            layers: Layers::new(self.layers).unwrap(),
+            separation,
+        }
+    }
+
+    fn motion(&self) -> Motion {
+        let (times, displacements) = self.knots.iter().copied().unzip();
+        Motion::new(times, displacements).unwrap()
+    }
+}
+
+/// Largest distance between two series; NaN counts as infinitely far.
+fn distance(found: &[f64], expected: &[f64]) -> f64 {
+    assert_eq!(found.len(), expected.len());
+    let far = |(a, b): (&f64, &f64)| if (a - b).is_nan() { f64::INFINITY } else { (a - b).abs() };
+    found.iter().zip(expected).map(far).fold(0.0, f64::max)
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most: f64, value| most.max(value.abs()))
+}
+
+/// Prints one line a case and fails at the end, so that a failure shows all cases.
+struct Verdict {
+    beyond: Vec<String>,
+}
+
+impl Verdict {
+    fn new() -> Self {
+        Self { beyond: Vec::new() }
+    }
+
+    fn add(&mut self, case: &str, what: &str, error: f64, tolerance: f64) {
+        let line = format!("{case}: {what} off by {error:.1e}, tolerance {tolerance:.0e}");
+        println!("{line}");
+        if error.is_nan() || error > tolerance {
+            self.beyond.push(line);
+        }
+    }
+
+    fn finish(self) {
+        assert!(self.beyond.is_empty(), "\n{}", self.beyond.join("\n"));
+    }
+}
+
+#[derive(Deserialize)]
+struct ForceTolerance {
+    excess_strain: f64,
+    force_relative_to_largest: f64,
+}
+
+#[derive(Deserialize)]
+struct ForceCase {
+    #[serde(flatten)]
+    contact: Contact,
+    excess_strain: Vec<f64>,
+    force: Vec<f64>,
+}
+
+#[test]
+fn bonded_force() {
+    let (tolerance, cases) = reference::<ForceTolerance, ForceCase>("contact_force");
+    let mut verdict = Verdict::new();
+    for case in &cases {
+        let (motion, model) = (case.contact.motion(), case.contact.model(Separation::Bonded));
+        let result = simulate(&motion, &model, &Sampling::Times(case.contact.times.clone())).unwrap();
+        let name = &case.contact.name;
+        verdict.add(name, "excess strain", distance(&result.excess_strain, &case.excess_strain), tolerance.excess_strain);
+        let force = distance(&result.force, &case.force) / largest(&case.force);
+        verdict.add(name, "force", force, tolerance.force_relative_to_largest);
+        assert!(result.events.is_empty());
+    }
+    verdict.finish();
+}
+
+#[derive(Deserialize)]
+struct WaveTolerance {
+    displacement: f64,
+    excess_strain: f64,
+}
+
+#[derive(Deserialize)]
+struct WaveCase {
+    #[serde(flatten)]
+    contact: Contact,
+    /// One row a time, one column a layer.
+    displacement: Vec<Vec<f64>>,
+    excess_strain: Vec<Vec<f64>>,
+}
+
+#[test]
+fn every_layer() {
+    let (tolerance, cases) = reference::<WaveTolerance, WaveCase>("cascade");
+    let mut verdict = Verdict::new();
+    for case in &cases {
+        let (motion, model) = (case.contact.motion(), case.contact.model(Separation::Bonded));
+        let wave = strain_wave(&motion, &model, &Sampling::Times(case.contact.times.clone())).unwrap();
+        let layers = wave.strain.len();
+        assert_eq!(layers as f64, case.contact.layers);
+        let thickness = case.contact.radius / layers as f64;
+        let (mut displacement, mut excess) = (0.0f64, 0.0f64);
+        for k in 0..wave.time.len() {
+            let nodes: Vec<f64> = (0..layers).map(|i| wave.displacement[i][k]).collect();
+            let below = |i: usize| case.contact.radius - thickness * i as f64;
+            let excesses: Vec<f64> = (0..layers).map(|i| wave.strain[i][k] - nodes[i] / below(i)).collect();
+            displacement = displacement.max(distance(&nodes, &case.displacement[k]));
+            excess = excess.max(distance(&excesses, &case.excess_strain[k]));
+        }
+        verdict.add(&case.contact.name, "displacement", displacement, tolerance.displacement);
+        verdict.add(&case.contact.name, "excess strain", excess, tolerance.excess_strain);
+    }
+    verdict.finish();
+}
+
+#[derive(Deserialize)]
+struct SeparationTolerance {
+    event_time: f64,
+    displacement: f64,
+    force: f64,
+}
+
+#[derive(Deserialize)]
+struct Event {
+    kind: String,
+    time: f64,
+}
+
+#[derive(Deserialize)]
+struct SeparationCase {
+    #[serde(flatten)]
+    contact: Contact,
+    events: Vec<Event>,
+    in_contact: Vec<bool>,
+    surface_displacement: Vec<f64>,
+    jaw_share: Vec<f64>,
+    force: Vec<f64>,
+}
+
+#[test]
+fn a_jaw_that_cannot_pull() {
+    let (tolerance, cases) = reference::<SeparationTolerance, SeparationCase>("separation");
+    let mut verdict = Verdict::new();
+    for case in &cases {
+        let (motion, model) = (case.contact.motion(), case.contact.model(Separation::Unilateral));
+        let times = &case.contact.times;
+        let result = simulate(&motion, &model, &Sampling::Times(times.clone())).unwrap();
+        let name = &case.contact.name;
+        let kinds: Vec<&str> = result
+            .events
+            .iter()
+            .map(|event| match event.kind {
+                ContactEventKind::Lost => "loss",
+                ContactEventKind::Regained => "contact",
+            })
+            .collect();
+        let expected: Vec<&str> = case.events.iter().map(|event| event.kind.as_str()).collect();
+        assert_eq!(kinds, expected, "{name}");
+        let found_times: Vec<f64> = result.events.iter().map(|event| event.time).collect();
+        let event_times: Vec<f64> = case.events.iter().map(|event| event.time).collect();
+        verdict.add(name, "event time", distance(&found_times, &event_times), tolerance.event_time);
+        let surface = distance(&result.contact_displacement, &case.surface_displacement);
+        verdict.add(name, "surface", surface, tolerance.displacement);
+        let jaw: Vec<f64> = result.displacement.iter().map(|d| d / f64::from(case.contact.sides)).collect();
+        verdict.add(name, "jaw", distance(&jaw, &case.jaw_share), tolerance.displacement);
+        verdict.add(name, "force", distance(&result.force, &case.force), tolerance.force);
+        for (k, &touching) in case.in_contact.iter().enumerate() {
+            let passed = found_times.iter().filter(|time| **time <= times[k]).count();
+            assert_eq!(passed % 2 == 0, touching, "{name} at {} s", times[k]);
+            let meets = (result.contact_displacement[k] - jaw[k]).abs() <= tolerance.displacement;
+            assert_eq!(meets, touching, "{name} at {} s", times[k]);
+            if !touching {
+                assert_eq!((result.force[k], result.strain[k]), (0.0, 0.0), "{name} at {} s", times[k]);
+            }
+        }
+        for event in &result.events {
+            let share = model.specimen.contact_displacement(motion.displacement_at(event.time));
+            assert!((event.contact_displacement - share).abs() <= tolerance.displacement, "{name}: {event:?}");
+        }
+    }
+    verdict.finish();
+}
+
+#[test]
+fn force_alone_equals_the_whole_trajectory() {
+    let (_, forces) = reference::<ForceTolerance, ForceCase>("contact_force");
+    let (_, separations) = reference::<SeparationTolerance, SeparationCase>("separation");
+    let bonded = forces.into_iter().map(|case| (case.contact, Separation::Bonded));
+    let unilateral = separations.into_iter().map(|case| (case.contact, Separation::Unilateral));
+    for (contact, separation) in bonded.chain(unilateral) {
+        let (motion, model) = (contact.motion(), contact.model(separation));
+        let step = (motion.end() - motion.start()) / 997.0;
+        let mut times: Vec<f64> = (0..997).map(|i| motion.start() + step * f64::from(i)).collect();
+        times.extend(motion.times());
+        times.sort_by(f64::total_cmp);
+        let force = simulate_force(&motion, &model, &times).unwrap();
+        let result = simulate(&motion, &model, &Sampling::Times(times)).unwrap();
+        let apart = distance(&force, &result.force) / largest(&force);
+        println!("{}: {apart:.1e}", contact.name);
+        assert!(apart <= 4e-16, "{}: {apart:e}", contact.name);
+    }
+}
