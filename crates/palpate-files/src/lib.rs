@@ -1,6 +1,12 @@
-//! File formats of palpate: from bytes on a disk to columns of numbers with names and units.
+//! File formats of palpate: from bytes on a disk to columns of numbers with names and units, to records and
+//! to descriptions of tests.
 //!
-//! [`text`] reads delimited text: it finds out how a file is written ([`text::detect`]) and
-//! streams chosen columns out of it ([`text::read_columns`]).
+//! - [`text`] reads delimited text: it finds out how a file is written ([`text::detect`]) and streams chosen
+//!   columns out of it ([`text::read_columns`]).
+//! - [`description`] reads what people write in TOML: protocols to simulate ([`description::read_protocol`])
+//!   and tests to evaluate ([`description::read_test`]).
+//! - [`record_file`] puts both together: a file becomes a checked record in SI ([`record_file::read_record`]).
 
+pub mod description;
+pub mod record_file;
 pub mod text;

@@ -25,14 +25,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ];
     let mut section = Section::new("Figures");
     for figure in &figures {
-        std::fs::write(
-            folder.join(format!("{}.svg", figure.name)),
-            figure.to_svg()?,
-        )?;
-        std::fs::write(
-            folder.join(format!("{}.png", figure.name)),
-            figure.to_png(200.0)?,
-        )?;
+        std::fs::write(folder.join(format!("{}.svg", figure.name)), figure.to_svg()?)?;
+        std::fs::write(folder.join(format!("{}.png", figure.name)), figure.to_png(200.0)?)?;
         section = section.block(Block::figure(figure)?);
     }
     let table = law_table();
@@ -43,9 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 fn steps(count: usize, from: f64, to: f64) -> Vec<f64> {
-    (0..count)
-        .map(|i| from + (to - from) * i as f64 / (count - 1) as f64)
-        .collect()
+    (0..count).map(|i| from + (to - from) * i as f64 / (count - 1) as f64).collect()
 }
 
 fn apply(x: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> {
@@ -95,14 +87,11 @@ fn record() -> Figure {
             .layer(Layer::line(t.clone(), apply(&t, force), Role::Fitted).label("fitted law")),
     )
     .panel(
-        Panel::new(
-            Axis::linear("Time", "s"),
-            Axis::linear("Displacement", "mm"),
-        )
-        .share(0.7)
-        .layers(tints())
-        .layer(Layer::line(t.clone(), apply(&t, squeeze), Role::Measured))
-        .layer(Layer::horizontal(3.6, Role::Reference).label("commanded, 3.6 mm")),
+        Panel::new(Axis::linear("Time", "s"), Axis::linear("Displacement", "mm"))
+            .share(0.7)
+            .layers(tints())
+            .layer(Layer::line(t.clone(), apply(&t, squeeze), Role::Measured))
+            .layer(Layer::horizontal(3.6, Role::Reference).label("commanded, 3.6 mm")),
     )
 }
 
@@ -117,12 +106,8 @@ fn strain_rates() -> Figure {
         let label = format!("{} N", 2 * (hold + 1));
         panel = panel
             .layer(
-                Layer::points(
-                    e.clone(),
-                    apply(&e, |e| law(e) * (1.0 + wiggle(e))),
-                    Role::Series(hold),
-                )
-                .label(label.clone()),
+                Layer::points(e.clone(), apply(&e, |e| law(e) * (1.0 + wiggle(e))), Role::Series(hold))
+                    .label(label.clone()),
             )
             .layer(Layer::line(e.clone(), apply(&e, law), Role::Series(hold)).label(label));
         let percent = apply(&e, |e| 100.0 * wiggle(e));
@@ -155,29 +140,20 @@ fn relaxation() -> Figure {
     .width_mm(85.0)
     .height_mm(65.0)
     .panel(
-        Panel::new(
-            Axis::log("Time", "s"),
-            Axis::linear("Relaxation modulus E(t)", "Pa"),
-        )
-        .layer(Layer::band(t.clone(), low, high, Role::Fitted).label("95 % band"))
-        .layer(
-            Layer::points(t_measured, measured, Role::Measured)
-                .error_bars(errors)
-                .label("measured"),
-        )
-        .layer(Layer::line(t.clone(), apply(&t, modulus), Role::Fitted).label("stretched"))
-        .layer(Layer::line(t.clone(), curve(0.93), Role::Alternative(0)).label("one rate"))
-        .layer(Layer::line(t.clone(), curve(1.06), Role::Alternative(1)).label("power law"))
-        .layer(Layer::horizontal(4.2e3, Role::Reference).label("equilibrium modulus E₀"))
-        .layer(Layer::vertical(9.0, Role::Reference).label("τ = 9 s")),
+        Panel::new(Axis::log("Time", "s"), Axis::linear("Relaxation modulus E(t)", "Pa"))
+            .layer(Layer::band(t.clone(), low, high, Role::Fitted).label("95 % band"))
+            .layer(Layer::points(t_measured, measured, Role::Measured).error_bars(errors).label("measured"))
+            .layer(Layer::line(t.clone(), apply(&t, modulus), Role::Fitted).label("stretched"))
+            .layer(Layer::line(t.clone(), curve(0.93), Role::Alternative(0)).label("one rate"))
+            .layer(Layer::line(t.clone(), curve(1.06), Role::Alternative(1)).label("power law"))
+            .layer(Layer::horizontal(4.2e3, Role::Reference).label("equilibrium modulus E₀"))
+            .layer(Layer::vertical(9.0, Role::Reference).label("τ = 9 s")),
     )
 }
 
 fn layers(count: usize) -> Figure {
     let t = steps(500, 0.0, 120.0);
-    let depth: Vec<f64> = (0..count)
-        .map(|i| 10.0 * (i as f64 + 0.5) / count as f64)
-        .collect();
+    let depth: Vec<f64> = (0..count).map(|i| 10.0 * (i as f64 + 0.5) / count as f64).collect();
     let mut values = Vec::new();
     for z in &depth {
         for t in &t {
@@ -185,67 +161,47 @@ fn layers(count: usize) -> Figure {
         }
     }
     let mean = apply(&t, |t| squeeze(t) / 12.0 * 0.6);
-    Figure::new(
-        format!("layers-{count}"),
-        format!("Strain in {count} layers over time (a) and its mean (b)."),
-    )
-    .panel(
-        Panel::new(Axis::linear("Time", "s"), Axis::linear("Depth", "mm")).layer(Layer::map(
+    Figure::new(format!("layers-{count}"), format!("Strain in {count} layers over time (a) and its mean (b)."))
+        .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Depth", "mm")).layer(Layer::map(
             t.clone(),
             depth,
             values,
             "Layer strain",
             "",
-        )),
-    )
-    .panel(
-        Panel::new(Axis::linear("Time", "s"), Axis::linear("Mean strain", ""))
-            .share(0.5)
-            .layer(Layer::line(t, mean, Role::Simulated)),
-    )
+        )))
+        .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Mean strain", "")).share(0.5).layer(Layer::line(
+            t,
+            mean,
+            Role::Simulated,
+        )))
 }
 
 fn latencies() -> Figure {
     let n = apply(&steps(10, 0.0, 9.0), |i| 2f64.powf(i));
     let panel = |title: &str, factor: f64| {
-        Panel::new(
-            Axis::log("Number of layers", ""),
-            Axis::log("Time per step", "s"),
-        )
-        .title(title)
-        .layer(
-            Layer::points(
-                n.clone(),
-                apply(&n, |n| factor * n * (1.0 + 0.2 * noise(n))),
-                Role::Measured,
+        Panel::new(Axis::log("Number of layers", ""), Axis::log("Time per step", "s"))
+            .title(title)
+            .layer(
+                Layer::points(n.clone(), apply(&n, |n| factor * n * (1.0 + 0.2 * noise(n))), Role::Measured)
+                    .label("measured"),
             )
-            .label("measured"),
-        )
-        .layer(Layer::line(n.clone(), apply(&n, |n| factor * n), Role::Fitted).label("linear in n"))
+            .layer(Layer::line(n.clone(), apply(&n, |n| factor * n), Role::Fitted).label("linear in n"))
     };
-    Figure::new(
-        "latencies",
-        "Cost of one step, in two units beside each other.",
-    )
-    .arrangement(Arrangement::SideBySide)
-    .panel(panel("One specimen", 3e-8))
-    .panel(panel("Batch of 1024", 2.4e-6))
+    Figure::new("latencies", "Cost of one step, in two units beside each other.")
+        .arrangement(Arrangement::SideBySide)
+        .panel(panel("One specimen", 3e-8))
+        .panel(panel("Batch of 1024", 2.4e-6))
 }
 
 fn long_record() -> Figure {
     let t = steps(2_000_000, 0.0, 3600.0);
-    let y = apply(&t, |t| {
-        (t / 90.0).sin() + 0.3 * noise(t) + if (t - 1800.0).abs() < 1e-3 { 3.0 } else { 0.0 }
-    });
-    Figure::new(
-        "long-record",
-        "Two million noisy samples with a single-sample peak at 1800 s.",
-    )
-    .width_mm(174.0)
-    .panel(
-        Panel::new(Axis::linear("Time", "s"), Axis::linear("Force", "N"))
-            .layer(Layer::line(t, y, Role::Measured).label("measured")),
-    )
+    let y = apply(&t, |t| (t / 90.0).sin() + 0.3 * noise(t) + if (t - 1800.0).abs() < 1e-3 { 3.0 } else { 0.0 });
+    Figure::new("long-record", "Two million noisy samples with a single-sample peak at 1800 s.")
+        .width_mm(174.0)
+        .panel(
+            Panel::new(Axis::linear("Time", "s"), Axis::linear("Force", "N"))
+                .layer(Layer::line(t, y, Role::Measured).label("measured")),
+        )
 }
 
 fn crowded() -> Figure {
@@ -255,32 +211,17 @@ fn crowded() -> Figure {
         let y = apply(&x, |x| 1e-6 * (x * 2.0 + phase).sin());
         Layer::line(x.clone(), y, Role::Series(i)).label(format!("specimen {} & <{i}>", i + 1))
     });
-    Figure::new(
-        "crowded",
-        "No room inside: the legend moves above the axes.",
-    )
-    .panel(
-        Panel::new(
-            Axis::linear("Time", "s"),
-            Axis::linear("Drift rate ε̇ of the pad", "s⁻¹"),
-        )
-        .layers(waves),
-    )
+    Figure::new("crowded", "No room inside: the legend moves above the axes.")
+        .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Drift rate ε̇ of the pad", "s⁻¹")).layers(waves))
 }
 
 fn degenerate() -> Figure {
-    let axes = |title: &str| {
-        Panel::new(Axis::linear("Time", "s"), Axis::linear("Force", "N")).title(title)
-    };
-    let gaps = apply(&steps(60, 0.0, 59.0), |i| {
-        if i % 20.0 > 14.0 { f64::NAN } else { i.sqrt() }
-    });
+    let axes = |title: &str| Panel::new(Axis::linear("Time", "s"), Axis::linear("Force", "N")).title(title);
+    let gaps = apply(&steps(60, 0.0, 59.0), |i| if i % 20.0 > 14.0 { f64::NAN } else { i.sqrt() });
     Figure::new("degenerate", "Panels with little or nothing to show.")
         .arrangement(Arrangement::Grid(2))
         .panel(axes("Empty").layer(Layer::line(vec![], vec![], Role::Measured).label("none")))
-        .panel(
-            axes("One point").layer(Layer::points(vec![3.0], vec![2.0], Role::Fitted).label("fit")),
-        )
+        .panel(axes("One point").layer(Layer::points(vec![3.0], vec![2.0], Role::Fitted).label("fit")))
         .panel(axes("Constant").layer(Layer::line(vec![0.0, 9.0], vec![5.0, 5.0], Role::Measured)))
         .panel(axes("Gaps").layer(Layer::line(steps(60, 0.0, 59.0), gaps, Role::Measured)))
 }
@@ -289,16 +230,8 @@ fn law_table() -> Table {
     let mut table = Table::new("law", "Fitted law of each hold; ± is one standard error.")
         .column(TableColumn::new("Specimen", "specimen", ""))
         .column(TableColumn::new("Hold", "hold", ""))
-        .column(TableColumn::new(
-            "Equilibrium strain",
-            "equilibrium_strain",
-            "",
-        ))
-        .column(TableColumn::new(
-            "Rate coefficient",
-            "rate_coefficient_per_s",
-            "s⁻¹",
-        ))
+        .column(TableColumn::new("Equilibrium strain", "equilibrium_strain", ""))
+        .column(TableColumn::new("Rate coefficient", "rate_coefficient_per_s", "s⁻¹"))
         .column(TableColumn::new("Root mean square", "rms_n", "N"))
         .note("Strains are positive in compression.");
     for hold in 1..=4i64 {
@@ -335,62 +268,33 @@ fn page(table: Table, figures: Section) -> Page {
         found: found.to_owned(),
         outcome,
     };
-    let pairs = [
-        ("Record", "pad-a.csv"),
-        ("Samples", "4000"),
-        ("Rate", "33.3 s⁻¹"),
-    ];
-    Page::new(
-        "Gallery of figures",
-        "What palpate can draw, from made-up data",
-    )
-    .section(
-        Section::new("Summary")
-            .block(Block::paragraph(text))
-            .block(Block::KeyValues(
-                pairs.map(|(k, v)| (k.to_owned(), v.to_owned())).to_vec(),
-            ))
-            .block(Block::Table(table)),
-    )
-    .section(
-        Section::new("Findings")
-            .block(Block::Findings(vec![
-                finding(
-                    Severity::Warning,
-                    "hold-too-short",
-                    "Hold 3 lasts 12 s; the slowest rate needs 40 s.",
-                ),
-                finding(
-                    Severity::Caution,
-                    "drift",
-                    "The force falls by 0.4 % after the last rate has died out.",
-                ),
-                finding(
-                    Severity::Info,
-                    "resampled",
-                    "Samples are uneven; 4 gaps were found.",
-                ),
-            ]))
-            .block(Block::Checks(vec![
-                check("Recovered rate", "1.3 %", Outcome::Pass),
-                check("Recovered equilibrium strain", "7.9 %", Outcome::Fail),
-                check("Recovered exponent", "no record", Outcome::NotRun),
-            ])),
-    )
-    .section(figures)
-    .section(
-        Section::new("How to repeat this")
-            .block(Block::List(vec![
-                "Choose a folder.".into(),
-                "Run the example.".into(),
-            ]))
-            .block(Block::Code(
-                "cargo run -p palpate-report --example gallery -- FOLDER".into(),
-            )),
-    )
-    .provenance(
-        "Software",
-        concat!("palpate-report ", env!("CARGO_PKG_VERSION")),
-    )
-    .provenance("Data", "made up by the example itself")
+    let pairs = [("Record", "pad-a.csv"), ("Samples", "4000"), ("Rate", "33.3 s⁻¹")];
+    Page::new("Gallery of figures", "What palpate can draw, from made-up data")
+        .section(
+            Section::new("Summary")
+                .block(Block::paragraph(text))
+                .block(Block::KeyValues(pairs.map(|(k, v)| (k.to_owned(), v.to_owned())).to_vec()))
+                .block(Block::Table(table)),
+        )
+        .section(
+            Section::new("Findings")
+                .block(Block::Findings(vec![
+                    finding(Severity::Warning, "hold-too-short", "Hold 3 lasts 12 s; the slowest rate needs 40 s."),
+                    finding(Severity::Caution, "drift", "The force falls by 0.4 % after the last rate has died out."),
+                    finding(Severity::Info, "resampled", "Samples are uneven; 4 gaps were found."),
+                ]))
+                .block(Block::Checks(vec![
+                    check("Recovered rate", "1.3 %", Outcome::Pass),
+                    check("Recovered equilibrium strain", "7.9 %", Outcome::Fail),
+                    check("Recovered exponent", "no record", Outcome::NotRun),
+                ])),
+        )
+        .section(figures)
+        .section(
+            Section::new("How to repeat this")
+                .block(Block::List(vec!["Choose a folder.".into(), "Run the example.".into()]))
+                .block(Block::Code("cargo run -p palpate-report --example gallery -- FOLDER".into())),
+        )
+        .provenance("Software", concat!("palpate-report ", env!("CARGO_PKG_VERSION")))
+        .provenance("Data", "made up by the example itself")
 }

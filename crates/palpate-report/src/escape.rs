@@ -24,9 +24,6 @@ mod tests {
 
     #[test]
     fn markup_and_forbidden_characters_are_neutralised() {
-        assert_eq!(
-            escape("a<b & \"c\" 'd'>\u{0}\u{1b}\u{FFFF}"),
-            "a&lt;b &amp; &quot;c&quot; &#39;d&#39;&gt;"
-        );
+        assert_eq!(escape("a<b & \"c\" 'd'>\u{0}\u{1b}\u{FFFF}"), "a&lt;b &amp; &quot;c&quot; &#39;d&#39;&gt;");
     }
 }

@@ -95,10 +95,7 @@ pub fn superscript(exponent: i32) -> String {
             '1' => '¹',
             '2' => '²',
             '3' => '³',
-            c => c
-                .to_digit(10)
-                .and_then(|d| char::from_u32(0x2070 + d))
-                .unwrap_or(c),
+            c => c.to_digit(10).and_then(|d| char::from_u32(0x2070 + d)).unwrap_or(c),
         })
         .collect()
 }
@@ -131,11 +128,7 @@ fn fixed(value: f64, digits: usize, exponent: i32) -> String {
 fn without_negative_zero(text: &str) -> String {
     let (head, tail) = text.split_at(text.find(" ± ").unwrap_or(text.len()));
     let is_zero = head.contains('-') && !head.chars().any(|c| ('1'..='9').contains(&c));
-    if is_zero {
-        format!("{}{tail}", head.replace('-', ""))
-    } else {
-        text.to_owned()
-    }
+    if is_zero { format!("{}{tail}", head.replace('-', "")) } else { text.to_owned() }
 }
 
 #[cfg(test)]
@@ -169,15 +162,7 @@ mod tests {
 
     #[test]
     fn exact_text_reads_back() {
-        for value in [
-            0.1,
-            1.0 / 3.0,
-            1e300,
-            5e-324,
-            -0.0,
-            123_456_789.125,
-            f64::INFINITY,
-        ] {
+        for value in [0.1, 1.0 / 3.0, 1e300, 5e-324, -0.0, 123_456_789.125, f64::INFINITY] {
             let back: f64 = exact(value).parse().expect("a number");
             assert_eq!(back.to_bits(), value.to_bits());
         }

@@ -47,12 +47,8 @@ mod tests {
     #[test]
     fn levels_change_where_characters_do() {
         let run = |level, text: &str| (level, text.to_owned());
-        let expected = [
-            run(Level::Base, "E"),
-            run(Level::Lowered, "0"),
-            run(Level::Base, " ×10"),
-            run(Level::Raised, "−12"),
-        ];
+        let expected =
+            [run(Level::Base, "E"), run(Level::Lowered, "0"), run(Level::Base, " ×10"), run(Level::Raised, "−12")];
         assert_eq!(runs("E₀ ×10⁻¹²"), expected);
         assert!(runs("").is_empty());
     }

@@ -29,11 +29,7 @@ fn every_kind_of_layer_is_well_formed_and_repeatable() {
                 .layer(Layer::span(3.0, 9.0, Role::Simulated).label("hold <1>"))
                 .layer(Layer::band(x.clone(), x.clone(), ramp(50), Role::Fitted).label("95 %"))
                 .layer(Layer::line(x.clone(), x.clone(), Role::Measured).label("F₀ & F¹"))
-                .layer(
-                    Layer::points(x.clone(), x.clone(), Role::Series(3))
-                        .error_bars(vec![0.5; 50])
-                        .label("'points'"),
-                )
+                .layer(Layer::points(x.clone(), x.clone(), Role::Series(3)).error_bars(vec![0.5; 50]).label("'points'"))
                 .layer(Layer::horizontal(10.0, Role::Reference).label("limit"))
                 .layer(Layer::vertical(20.0, Role::Alternative(200)).label("start")),
         )
@@ -41,14 +37,8 @@ fn every_kind_of_layer_is_well_formed_and_repeatable() {
     let svg = drawn(&figure);
     assert_eq!(svg, drawn(&figure));
     let document = roxmltree::Document::parse(&svg).expect("well-formed");
-    assert_eq!(
-        document.root_element().attribute("aria-label"),
-        Some("Everything & <more> \"quoted\"")
-    );
-    let texts: Vec<_> = document
-        .descendants()
-        .filter_map(|node| node.text())
-        .collect();
+    assert_eq!(document.root_element().attribute("aria-label"), Some("Everything & <more> \"quoted\""));
+    let texts: Vec<_> = document.descendants().filter_map(|node| node.text()).collect();
     assert!(texts.contains(&"a < b & c") && texts.contains(&"Time (s)"));
     assert!(!svg.contains(" id="));
     let png = figure.to_png(72.0).expect("a picture");
@@ -69,11 +59,8 @@ fn stacked_panels_share_their_horizontal_axis() {
 
 #[test]
 fn data_with_nothing_to_show_say_so() {
-    let nothing: [(Vec<f64>, Vec<f64>); 3] = [
-        (vec![], vec![]),
-        (vec![f64::NAN], vec![1.0]),
-        (vec![1.0], vec![f64::INFINITY]),
-    ];
+    let nothing: [(Vec<f64>, Vec<f64>); 3] =
+        [(vec![], vec![]), (vec![f64::NAN], vec![1.0]), (vec![1.0], vec![f64::INFINITY])];
     for (x, y) in nothing {
         for layer in [
             Layer::line(x.clone(), y.clone(), Role::Measured).label("gone"),
@@ -103,26 +90,12 @@ fn odd_data_and_sizes_are_drawn_without_panic() {
             for axis in [Axis::linear("q", ""), Axis::log("q", "Pa")] {
                 let panel = Panel::new(axis.clone(), axis)
                     .layer(Layer::line(x.clone(), y.clone(), Role::Fitted).label("l"))
-                    .layer(
-                        Layer::points(x.clone(), y.clone(), Role::Measured)
-                            .error_bars(y.clone())
-                            .label("p"),
-                    )
-                    .layer(Layer::band(
-                        x.clone(),
-                        y.clone(),
-                        x.clone(),
-                        Role::Simulated,
-                    ))
+                    .layer(Layer::points(x.clone(), y.clone(), Role::Measured).error_bars(y.clone()).label("p"))
+                    .layer(Layer::band(x.clone(), y.clone(), x.clone(), Role::Simulated))
                     .layer(Layer::map(x.clone(), y.clone(), vec![x[0]; 25], "m", ""))
                     .layer(Layer::span(y[1], x[0], Role::Measured).label("s"))
                     .layer(Layer::horizontal(y[3], Role::Reference).label("h"));
-                drawn(
-                    &Figure::new("odd", "")
-                        .width_mm(1.0)
-                        .height_mm(f64::NAN)
-                        .panel(panel),
-                );
+                drawn(&Figure::new("odd", "").width_mm(1.0).height_mm(f64::NAN).panel(panel));
             }
         }
     }
@@ -131,9 +104,7 @@ fn odd_data_and_sizes_are_drawn_without_panic() {
 #[test]
 fn columns_that_do_not_belong_together_are_refused() {
     let layer = Layer::line(ramp(3), ramp(2), Role::Measured);
-    let error = Figure::new("bad", "")
-        .panel(time_panel().layer(layer))
-        .to_svg();
+    let error = Figure::new("bad", "").panel(time_panel().layer(layer)).to_svg();
     assert!(matches!(
         error,
         Err(FigureError::Length {
@@ -150,9 +121,7 @@ fn columns_that_do_not_belong_together_are_refused() {
         unit: String::new(),
         range: None,
     };
-    let error = Figure::new("bad", "")
-        .panel(time_panel().layer(Layer::Map(map)))
-        .to_svg();
+    let error = Figure::new("bad", "").panel(time_panel().layer(Layer::Map(map))).to_svg();
     assert!(matches!(
         error,
         Err(FigureError::Length {
@@ -161,25 +130,16 @@ fn columns_that_do_not_belong_together_are_refused() {
             ..
         })
     ));
-    assert!(matches!(
-        Figure::new("big", "").to_png(1e9),
-        Err(FigureError::Raster { .. })
-    ));
+    assert!(matches!(Figure::new("big", "").to_png(1e9), Err(FigureError::Raster { .. })));
 }
 
 #[test]
 fn a_long_noisy_record_stays_small() {
     let x = ramp(500_000);
-    let noisy = |scale: f64| {
-        x.iter()
-            .map(|x| scale * (x * 1.7).sin())
-            .collect::<Vec<_>>()
-    };
+    let noisy = |scale: f64| x.iter().map(|x| scale * (x * 1.7).sin()).collect::<Vec<_>>();
     let panel = |y: Vec<f64>| time_panel().layer(Layer::line(x.clone(), y, Role::Measured));
     let loops = time_panel().layer(Layer::line(noisy(3.0), noisy(1.0), Role::Measured));
-    let figure = Figure::new("long", "")
-        .panel(panel(noisy(1.0)))
-        .panel(panel(noisy(20.0)));
+    let figure = Figure::new("long", "").panel(panel(noisy(1.0))).panel(panel(noisy(20.0)));
     let svg = drawn(&figure.panel(loops));
     assert!(svg.len() < 300_000, "{}", svg.len());
 }

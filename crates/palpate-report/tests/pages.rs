@@ -70,15 +70,8 @@ fn nothing_is_fetched_from_elsewhere() {
 #[test]
 fn anchors_are_unique_and_numbers_run_on() {
     let html = page();
-    let ids: Vec<&str> = html
-        .split(" id=\"")
-        .skip(1)
-        .filter_map(|rest| rest.split('"').next())
-        .collect();
-    assert_eq!(
-        ids,
-        ["results", "figure-1", "figure-2", "table-1", "results-2"]
-    );
+    let ids: Vec<&str> = html.split(" id=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    assert_eq!(ids, ["results", "figure-1", "figure-2", "table-1", "results-2"]);
     assert!(html.contains("<b>Figure 2.</b>") && html.contains("href=\"#results-2\""));
 }
 

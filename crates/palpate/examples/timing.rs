@@ -16,9 +16,7 @@ fn main() {
     report("simulate_protocol_a_force", 400, || {
         black_box(simulate_force(black_box(&motion), &model, &times)).is_ok()
     });
-    report("simulate_protocol_a", 400, || {
-        black_box(simulate(black_box(&motion), &model, &sampling)).is_ok()
-    });
+    report("simulate_protocol_a", 400, || black_box(simulate(black_box(&motion), &model, &sampling)).is_ok());
     let (times, values) = noisy_hold(1000, 5.0, 1e-3);
     let options = FitOptions::default();
     report("fit_hold_1000", 400, || {

@@ -1,8 +1,8 @@
 //! Soft contact that remembers.
 pub mod analysis;
 pub mod contact;
-pub mod latency;
 pub mod identify;
+pub mod latency;
 mod ode;
 pub mod record;
 pub mod segment;

@@ -29,10 +29,7 @@ pub(crate) fn noise(values: &[f64]) -> f64 {
     if values.len() < 3 {
         return 0.0;
     }
-    let mut second: Vec<f64> = values
-        .windows(3)
-        .map(|w| (w[0] - 2.0 * w[1] + w[2]).abs())
-        .collect();
+    let mut second: Vec<f64> = values.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs()).collect();
     median(&mut second) / (0.674_489_750_196_081_7 * 6f64.sqrt())
 }
 

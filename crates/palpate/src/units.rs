@@ -78,15 +78,8 @@ const INCH: f64 = 0.0254;
 const POUND_FORCE: f64 = 4.448_221_615_260_5;
 const KILOGRAM_FORCE: f64 = 9.806_65;
 
-const LENGTH: &[(&str, f64)] = &[
-    ("m", 1.0),
-    ("cm", 1e-2),
-    ("mm", 1e-3),
-    ("µm", 1e-6),
-    ("um", 1e-6),
-    ("nm", 1e-9),
-    ("in", INCH),
-];
+const LENGTH: &[(&str, f64)] =
+    &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6), ("um", 1e-6), ("nm", 1e-9), ("in", INCH)];
 const AREA: &[(&str, f64)] = &[
     ("m²", 1.0),
     ("m^2", 1.0),
@@ -100,15 +93,8 @@ const AREA: &[(&str, f64)] = &[
     ("µm²", 1e-12),
     ("um^2", 1e-12),
 ];
-const TIME: &[(&str, f64)] = &[
-    ("s", 1.0),
-    ("sec", 1.0),
-    ("ms", 1e-3),
-    ("µs", 1e-6),
-    ("us", 1e-6),
-    ("min", 60.0),
-    ("h", 3600.0),
-];
+const TIME: &[(&str, f64)] =
+    &[("s", 1.0), ("sec", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("us", 1e-6), ("min", 60.0), ("h", 3600.0)];
 const FORCE: &[(&str, f64)] = &[
     ("N", 1.0),
     ("kN", 1e3),
@@ -144,14 +130,8 @@ const SPEED: &[(&str, f64)] = &[
     ("nm/s", 1e-9),
     ("in/min", INCH / 60.0),
 ];
-const RATE: &[(&str, f64)] = &[
-    ("/s", 1.0),
-    ("1/s", 1.0),
-    ("s^-1", 1.0),
-    ("s⁻¹", 1.0),
-    ("/min", 1.0 / 60.0),
-    ("1/min", 1.0 / 60.0),
-];
+const RATE: &[(&str, f64)] =
+    &[("/s", 1.0), ("1/s", 1.0), ("s^-1", 1.0), ("s⁻¹", 1.0), ("/min", 1.0 / 60.0), ("1/min", 1.0 / 60.0)];
 const FREQUENCY: &[(&str, f64)] = &[("Hz", 1.0), ("kHz", 1e3), ("/s", 1.0), ("1/s", 1.0)];
 
 /// Why a quantity could not be read.
@@ -210,11 +190,7 @@ fn example(dimension: Dimension) -> &'static str {
 #[must_use]
 pub fn factor(unit: &str, dimension: Dimension) -> Option<f64> {
     let unit = unit.trim().replace('\u{3bc}', "\u{b5}");
-    dimension
-        .units()
-        .iter()
-        .find(|(symbol, _)| *symbol == unit)
-        .map(|(_, factor)| *factor)
+    dimension.units().iter().find(|(symbol, _)| *symbol == unit).map(|(_, factor)| *factor)
 }
 
 /// Reads a quantity with its unit and returns it in SI.

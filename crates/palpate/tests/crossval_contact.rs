@@ -98,7 +98,12 @@ fn bonded_force() {
         let (motion, model) = (case.contact.motion(), case.contact.model(Separation::Bonded));
         let result = simulate(&motion, &model, &Sampling::Times(case.contact.times.clone())).unwrap();
         let name = &case.contact.name;
-        verdict.add(name, "excess strain", distance(&result.excess_strain, &case.excess_strain), tolerance.excess_strain);
+        verdict.add(
+            name,
+            "excess strain",
+            distance(&result.excess_strain, &case.excess_strain),
+            tolerance.excess_strain,
+        );
         let force = distance(&result.force, &case.force) / largest(&case.force);
         verdict.add(name, "force", force, tolerance.force_relative_to_largest);
         assert!(result.events.is_empty());

@@ -59,7 +59,10 @@ fn compare(found: &Found, expected: &Expected<'_>, tolerance: &Tolerance) -> [f6
         }
     }
     worst[3] = (found.rss / expected.rss - 1.0).abs();
-    println!("{name}: parameters {:.1e} se, se {:.1e}, covariance {:.1e}, rss {:.1e}", worst[0], worst[1], worst[2], worst[3]);
+    println!(
+        "{name}: parameters {:.1e} se, se {:.1e}, covariance {:.1e}, rss {:.1e}",
+        worst[0], worst[1], worst[2], worst[3]
+    );
     let limits = [
         tolerance.parameters_in_standard_errors,
         tolerance.standard_errors_relative,
@@ -254,7 +257,9 @@ fn nist_problems() {
     let (tolerance, cases) = reference::<NistTolerance, NistCase>("nist");
     let mut compared = 0;
     for case in &cases {
-        let (Some(n), Some(expected)) = (case.fixed_n, &case.unconstrained) else { continue };
+        let (Some(n), Some(expected)) = (case.fixed_n, &case.unconstrained) else {
+            continue;
+        };
         let fit = fit_hold(&case.x, &case.y, ExponentChoice::Fixed(n), &options()).unwrap();
         assert_eq!(fit.termination, Termination::Converged, "{}", case.name);
         // NIST counts from x = 0, the fit from the first sample, at which λ has fallen to λ φ(λ x₀)ⁿ⁻¹ and Δ to Δ φ(λ x₀).

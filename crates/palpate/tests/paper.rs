@@ -29,7 +29,12 @@ fn first_layer_of_the_wave_is_the_contact_layer() {
         assert_eq!(wave.time, contact.time);
         for (k, t) in wave.time.iter().enumerate() {
             assert!((wave.strain[0][k] - contact.strain[k]).abs() < 1e-9, "{separation:?} {t} s");
-            assert!((wave.displacement[0][k] - contact.contact_displacement[k]).abs() < 1e-11, "{separation:?} {t} s {} {}",wave.displacement[0][k],contact.contact_displacement[k]);
+            assert!(
+                (wave.displacement[0][k] - contact.contact_displacement[k]).abs() < 1e-11,
+                "{separation:?} {t} s {} {}",
+                wave.displacement[0][k],
+                contact.contact_displacement[k]
+            );
         }
         println!("{:?} {:?} {:?}", contact.events, contact.work, wave.work);
     }

@@ -27,10 +27,17 @@ fn squeeze(n: f64, v: f64, m: f64) -> (Motion, ContactModel, f64) {
 }
 
 /// Times since the start of the hold that begins at knot `knot`, and strains there from force and displacement.
-fn hold_strains(motion: &Motion, model: &ContactModel, knot: usize, noise: f64, random: &mut Noise) -> (Vec<f64>, Vec<f64>) {
+fn hold_strains(
+    motion: &Motion,
+    model: &ContactModel,
+    knot: usize,
+    noise: f64,
+    random: &mut Noise,
+) -> (Vec<f64>, Vec<f64>) {
     const SAMPLES: u32 = 250;
     let (start, end) = (motion.times()[knot], motion.times()[knot + 1]);
-    let mut times: Vec<f64> = (0..=SAMPLES).map(|i| start + (end - start) * f64::from(i) / f64::from(SAMPLES)).collect();
+    let mut times: Vec<f64> =
+        (0..=SAMPLES).map(|i| start + (end - start) * f64::from(i) / f64::from(SAMPLES)).collect();
     times[SAMPLES as usize] = end;
     let result = simulate(motion, model, &Sampling::Times(times)).unwrap();
     let strain = |k: usize| {
@@ -153,9 +160,8 @@ fn random_problem(random: &mut Noise) -> Problem {
             (i, false) => duration * i as f64 / last,
         })
         .collect();
-    let value = |t: &f64| {
-        level + amplitude * (decay(scaled_rate * t / duration, n) + random.normal() / signal_to_noise)
-    };
+    let value =
+        |t: &f64| level + amplitude * (decay(scaled_rate * t / duration, n) + random.normal() / signal_to_noise);
     let values = times.iter().map(value).collect();
     Problem {
         times,
@@ -212,8 +218,8 @@ impl<'a> Brute<'a> {
         ]
     }
 
-    /// Lowest residual square found.
-    fn search(&mut self, random: &mut Noise) -> f64 {
+    /// Lowest residual square found, with its ln λT and n.
+    fn search(&mut self, random: &mut Noise) -> (f64, [f64; 2]) {
         const RATES: usize = 48;
         const RANDOM_STARTS: usize = 8;
         let (low, high) = self.exponents;
@@ -233,12 +239,12 @@ impl<'a> Brute<'a> {
             let log_rate = self.log_rates.0 + (self.log_rates.1 - self.log_rates.0) * random.uniform();
             starts.push([log_rate, low * (high / low).powf(random.uniform())]);
         }
-        let found: Vec<f64> = starts.into_iter().map(|start| self.simplex(start, width)).collect();
-        found.into_iter().fold(grid[0].0, f64::min)
+        let found = starts.into_iter().map(|start| self.simplex(start, width));
+        found.fold(grid[0], |best, next| if next.0 < best.0 { next } else { best })
     }
 
     /// Nelder and Mead, restarted twice.
-    fn simplex(&mut self, start: [f64; 2], width: f64) -> f64 {
+    fn simplex(&mut self, start: [f64; 2], width: f64) -> (f64, [f64; 2]) {
         let mut best = start;
         let mut lowest = self.square(start);
         for size in [width, 0.1 * width, 0.01 * width] {
@@ -274,7 +280,7 @@ impl<'a> Brute<'a> {
                 (lowest, best) = simplex[0];
             }
         }
-        lowest
+        (lowest, self.inside(best))
     }
 }
 
@@ -295,13 +301,21 @@ fn no_search_finds_a_better_fit() {
         let honest: f64 = problem.times.iter().zip(&problem.values).map(residual).sum();
         assert!((honest / fit.residual_square - 1.0).abs() < 1e-6, "{}: {honest} {fit:?}", problem.text);
         let exponents = fixed.map_or(options.exponent_range, |n| (n, n));
-        let brute = Brute::new(&problem, exponents).search(&mut random);
+        let (brute, point) = Brute::new(&problem, exponents).search(&mut random);
         let excess = fit.residual_square / brute - 1.0;
         best = best.min(excess);
         largest = largest.max(excess);
         converged += u32::from(fit.termination == Termination::Converged);
         if excess > 1e-6 {
-            worse.push(format!("{excess:.2e}: problem {index}, {}, {choice:?}: {fit:?}", problem.text));
+            let found = [
+                (fit.relative_rate.value * (problem.times[problem.times.len() - 1] - problem.times[0])).ln(),
+                fit.exponent.value,
+                fit.amplitude.value,
+            ];
+            worse.push(format!(
+                "{excess:.2e}: problem {index}, {}, {choice:?}: ended at {found:?} ({:?}), better at {point:?} (ln λT, n)",
+                problem.text, fit.termination
+            ));
         }
     }
     println!("{converged} of {PROBLEMS} converged; residual against brute force from {best:.1e} to {largest:.1e}");

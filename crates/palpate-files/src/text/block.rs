@@ -64,9 +64,7 @@ fn classify(lines: &[&str], skip: usize, delimiter: Delimiter) -> Vec<Vec<Cell>>
         if index < skip || line.trim().is_empty() {
             return Vec::new();
         }
-        Fields::of(line.as_bytes(), delimiter)
-            .map(number::classify)
-            .collect()
+        Fields::of(line.as_bytes(), delimiter).map(number::classify).collect()
     };
     lines.iter().enumerate().map(cells).collect()
 }
@@ -144,12 +142,7 @@ fn kinds(rows: &[Vec<Cell>], width: usize) -> Vec<ColumnKind> {
 /// a faulty row, which must not pass for a header.
 fn start(cells: &[Vec<Cell>], found: usize, kinds: &[ColumnKind]) -> usize {
     let fits = |row: &[Cell]| {
-        let numbers = || {
-            kinds
-                .iter()
-                .zip(row)
-                .filter(|(kind, _)| **kind == ColumnKind::Number)
-        };
+        let numbers = || kinds.iter().zip(row).filter(|(kind, _)| **kind == ColumnKind::Number);
         let held = numbers().filter(|(_, cell)| cell.is_numeric()).count();
         row.len() == kinds.len() && 2 * held > numbers().count()
     };
@@ -174,22 +167,15 @@ mod tests {
     use super::*;
 
     fn found(text: &[&str]) -> Option<(Delimiter, usize, usize)> {
-        find(text, 0, &Delimiter::ALL)
-            .map(|block| (block.delimiter, block.first, block.kinds.len()))
+        find(text, 0, &Delimiter::ALL).map(|block| (block.delimiter, block.first, block.kinds.len()))
     }
 
     #[test]
     fn delimiters() {
         assert_eq!(found(&["1.5,2", "2.5,3"]), Some((Delimiter::Comma, 0, 2)));
-        assert_eq!(
-            found(&["1,5;2", "2,5;3"]),
-            Some((Delimiter::Semicolon, 0, 2))
-        );
+        assert_eq!(found(&["1,5;2", "2,5;3"]), Some((Delimiter::Semicolon, 0, 2)));
         assert_eq!(found(&["1,5\t2", "2,5\t3"]), Some((Delimiter::Tab, 0, 2)));
-        assert_eq!(
-            found(&[" 1,5  2", " 2,5  3"]),
-            Some((Delimiter::Blanks, 0, 2))
-        );
+        assert_eq!(found(&[" 1,5  2", " 2,5  3"]), Some((Delimiter::Blanks, 0, 2)));
         assert_eq!(found(&["1.5, 2", "2.5, 3"]), Some((Delimiter::Comma, 0, 2)));
         assert_eq!(found(&["time,force"]), None);
     }

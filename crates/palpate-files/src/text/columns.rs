@@ -71,10 +71,7 @@ impl Columns {
 
     fn push(&mut self, row: &[f64], line: usize) {
         let index = self.rows;
-        let follows = self
-            .runs
-            .last()
-            .is_some_and(|run| run.line + (index - run.row) == line);
+        let follows = self.runs.last().is_some_and(|run| run.line + (index - run.row) == line);
         if !follows {
             self.runs.push(Run { row: index, line });
         }
@@ -178,10 +175,7 @@ fn arranged(values: Vec<Vec<f64>>, read: &[usize], chosen: &[usize]) -> Vec<Vec<
     let mut left: Vec<Option<Vec<f64>>> = values.into_iter().map(Some).collect();
     let mut arranged: Vec<Vec<f64>> = Vec::with_capacity(chosen.len());
     for (place, column) in chosen.iter().enumerate() {
-        let taken = read
-            .binary_search(column)
-            .ok()
-            .and_then(|index| left[index].take());
+        let taken = read.binary_search(column).ok().and_then(|index| left[index].take());
         let values = taken.unwrap_or_else(|| {
             let before = chosen[..place].iter().position(|other| other == column);
             before.map_or_else(Vec::new, |index| arranged[index].clone())
@@ -229,12 +223,7 @@ fn interrupted(path: &Path, suspect: Suspect, resumes: usize) -> FileError {
     }
 }
 
-fn finish(
-    path: &Path,
-    mut read: Columns,
-    suspect: Option<Suspect>,
-    lines: usize,
-) -> Result<Columns, FileError> {
+fn finish(path: &Path, mut read: Columns, suspect: Option<Suspect>, lines: usize) -> Result<Columns, FileError> {
     match suspect {
         Some(suspect) if read.rows() == 0 => return Err(suspect.error),
         Some(suspect) => read.ignored.footer = Some(suspect.footer),

@@ -20,11 +20,7 @@ pub(crate) struct Doubt {
 
 /// The decimal mark of the numbers in `block`. One that is `fixed` settles every doubt but this: a comma that
 /// also stands between the cells cannot be a decimal mark.
-pub(crate) fn decide(
-    lines: &[&str],
-    block: &Block,
-    fixed: Option<DecimalMark>,
-) -> Result<DecimalMark, Doubt> {
+pub(crate) fn decide(lines: &[&str], block: &Block, fixed: Option<DecimalMark>) -> Result<DecimalMark, Doubt> {
     if fixed != Some(DecimalMark::Point) && comma_splits_numbers(lines, block) {
         return Err(Doubt {
             line: block.first,
@@ -68,11 +64,7 @@ fn weigh(lines: &[&str], block: &Block) -> Result<DecimalMark, Doubt> {
 fn places(block: &Block, wanted: Cell) -> Vec<(usize, usize)> {
     block
         .rows()
-        .flat_map(|(line, row)| {
-            row.iter()
-                .enumerate()
-                .map(move |(column, cell)| (line, column, *cell))
-        })
+        .flat_map(|(line, row)| row.iter().enumerate().map(move |(column, cell)| (line, column, *cell)))
         .filter(|&(_, column, cell)| cell == wanted && block.kinds[column] == ColumnKind::Number)
         .map(|(line, column, _)| (line, column))
         .collect()
@@ -102,10 +94,7 @@ fn looks_like_thousands(cell: &str) -> bool {
 /// behind a mark, blanks behind every other comma, or rows of whole numbers that vary in length.
 fn comma_splits_numbers(lines: &[&str], block: &Block) -> bool {
     let width = block.kinds.len();
-    let all_whole = block.rows().all(|(_, row)| {
-        row.iter()
-            .all(|cell| !matches!(cell, Cell::Point | Cell::Comma))
-    });
+    let all_whole = block.rows().all(|(_, row)| row.iter().all(|cell| !matches!(cell, Cell::Point | Cell::Comma)));
     if block.delimiter != Delimiter::Comma || !all_whole {
         return false;
     }
@@ -122,9 +111,7 @@ fn half_as_many_names(lines: &[&str], block: &Block) -> bool {
         .map(|line| cells(line, Delimiter::Comma))
         .filter(|row| row.iter().any(|name| !name.is_empty()))
         .skip_while(|row| row.iter().all(|name| name.starts_with(['(', '['])));
-    names
-        .next()
-        .is_some_and(|names| 2 * names.len() == block.kinds.len())
+    names.next().is_some_and(|names| 2 * names.len() == block.kinds.len())
 }
 
 fn fractions(lines: &[&str], block: &Block) -> bool {
@@ -181,18 +168,9 @@ mod tests {
         assert_eq!(decided(&["t,F", "0,1,3,52", "0,2,3,53"], None), split);
         assert_eq!(decided(&["0,1, 3,52", "0,2, 3,53"], None), split);
         assert_eq!(decided(&["0,010,0,52"], Some(DecimalMark::Comma)), split);
-        assert_eq!(
-            decided(&["0,010,0,52"], Some(DecimalMark::Point)),
-            Ok(DecimalMark::Point)
-        );
-        assert_eq!(
-            decided(&["1,234;5,678"], None),
-            Err(DecimalDoubt::Thousands)
-        );
+        assert_eq!(decided(&["0,010,0,52"], Some(DecimalMark::Point)), Ok(DecimalMark::Point));
+        assert_eq!(decided(&["1,234;5,678"], None), Err(DecimalDoubt::Thousands));
         assert_eq!(decided(&["1.5;5,67"], None), Err(DecimalDoubt::Mixed));
-        assert_eq!(
-            decided(&["1.5;5,67"], Some(DecimalMark::Comma)),
-            Ok(DecimalMark::Comma)
-        );
+        assert_eq!(decided(&["1.5;5,67"], Some(DecimalMark::Comma)), Ok(DecimalMark::Comma));
     }
 }

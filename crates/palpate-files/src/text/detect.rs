@@ -26,13 +26,11 @@ pub fn detect(path: &Path, options: &LayoutOptions) -> Result<Layout, FileError>
     let lines = sample.lines();
     let skip = options.skip_lines.unwrap_or(0).min(lines.len());
     let mut block = find_block(path, &lines, skip, options)?;
-    let decimal = decimal::decide(&lines, &block, options.decimal).map_err(|doubt| {
-        FileError::AmbiguousDecimal {
-            path: path.to_owned(),
-            line: doubt.line + 1,
-            found: shorten(&doubt.found),
-            doubt: doubt.doubt,
-        }
+    let decimal = decimal::decide(&lines, &block, options.decimal).map_err(|doubt| FileError::AmbiguousDecimal {
+        path: path.to_owned(),
+        line: doubt.line + 1,
+        found: shorten(&doubt.found),
+        doubt: doubt.doubt,
     })?;
     let header = header::find(&lines, skip, &mut block, options.header);
     let columns = columns(&lines, &block, &header);
@@ -48,18 +46,9 @@ pub fn detect(path: &Path, options: &LayoutOptions) -> Result<Layout, FileError>
     })
 }
 
-fn find_block(
-    path: &Path,
-    lines: &[&str],
-    skip: usize,
-    options: &LayoutOptions,
-) -> Result<Block, FileError> {
+fn find_block(path: &Path, lines: &[&str], skip: usize, options: &LayoutOptions) -> Result<Block, FileError> {
     let fixed = options.delimiter.as_slice();
-    let delimiters = if fixed.is_empty() {
-        &Delimiter::ALL
-    } else {
-        fixed
-    };
+    let delimiters = if fixed.is_empty() { &Delimiter::ALL } else { fixed };
     let Some(block) = block::find(lines, skip, delimiters) else {
         return Err(without_numbers(path, lines, skip, options.delimiter));
     };
@@ -75,12 +64,7 @@ fn find_block(
 }
 
 /// Why no line holds a number: the delimiter does not cut the rows, or there are no rows.
-fn without_numbers(
-    path: &Path,
-    lines: &[&str],
-    skip: usize,
-    fixed: Option<Delimiter>,
-) -> FileError {
+fn without_numbers(path: &Path, lines: &[&str], skip: usize, fixed: Option<Delimiter>) -> FileError {
     if let Some(elsewise) = fixed.and_then(|_| block::find(lines, skip, &Delimiter::ALL)) {
         return FileError::OneColumn {
             path: path.to_owned(),
@@ -90,21 +74,15 @@ fn without_numbers(
         };
     }
     let separated = |line: &&str| {
-        [Delimiter::Tab, Delimiter::Semicolon, Delimiter::Comma]
-            .iter()
-            .any(|&delimiter| {
-                let row = cells(line, delimiter);
-                row.len() > 1 && row.iter().all(|cell| cell.len() <= 60)
-            })
+        [Delimiter::Tab, Delimiter::Semicolon, Delimiter::Comma].iter().any(|&delimiter| {
+            let row = cells(line, delimiter);
+            row.len() > 1 && row.iter().all(|cell| cell.len() <= 60)
+        })
     };
     FileError::NoDataRows {
         path: path.to_owned(),
         lines: lines.len(),
-        header_line: lines
-            .iter()
-            .skip(skip)
-            .position(separated)
-            .map(|index| skip + index + 1),
+        header_line: lines.iter().skip(skip).position(separated).map(|index| skip + index + 1),
     }
 }
 
@@ -123,10 +101,7 @@ fn columns(lines: &[&str], block: &Block, header: &Header) -> Vec<ColumnInfo> {
         })
         .collect();
     // What a delimiter at the end of every row leaves behind is no column.
-    while columns
-        .last()
-        .is_some_and(|last| last.kind == ColumnKind::Empty && last.name.is_none())
-    {
+    while columns.last().is_some_and(|last| last.kind == ColumnKind::Empty && last.name.is_none()) {
         columns.pop();
     }
     columns

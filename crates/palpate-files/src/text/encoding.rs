@@ -27,13 +27,7 @@ pub enum Encoding {
 
 impl Encoding {
     /// Every encoding that can be read.
-    pub const ALL: [Self; 5] = [
-        Self::Utf8,
-        Self::Utf16Le,
-        Self::Utf16Be,
-        Self::Gbk,
-        Self::Windows1252,
-    ];
+    pub const ALL: [Self; 5] = [Self::Utf8, Self::Utf16Le, Self::Utf16Be, Self::Gbk, Self::Windows1252];
 
     /// Its usual name, in lower case.
     #[must_use]
@@ -93,13 +87,7 @@ impl FromStr for Encoding {
     /// Reads a name or one of its usual synonyms (`latin1`, `gb2312`, `utf8` ...), in any case.
     fn from_str(label: &str) -> Result<Self, Self::Err> {
         let codec = encoding_rs::Encoding::for_label(label.as_bytes());
-        let codec = codec.map(|codec| {
-            if codec == encoding_rs::GB18030 {
-                encoding_rs::GBK
-            } else {
-                codec
-            }
-        });
+        let codec = codec.map(|codec| if codec == encoding_rs::GB18030 { encoding_rs::GBK } else { codec });
         Self::ALL
             .into_iter()
             .find(|encoding| codec == Some(encoding.codec()))
@@ -131,14 +119,7 @@ pub(crate) fn recognise(sample: &[u8]) -> Option<Encoding> {
 /// UTF-16 of mostly Western text has NUL as every second byte; which second byte gives the order.
 fn unmarked_utf16(sample: &[u8]) -> Option<Encoding> {
     let pairs = sample.len() / 2;
-    let zeros = |odd: usize| {
-        sample
-            .iter()
-            .skip(odd)
-            .step_by(2)
-            .filter(|&&byte| byte == 0)
-            .count()
-    };
+    let zeros = |odd: usize| sample.iter().skip(odd).step_by(2).filter(|&&byte| byte == 0).count();
     let (even, odd) = (zeros(0), zeros(1));
     if pairs >= 2 && odd * 10 > pairs * 6 && even * 100 <= pairs {
         Some(Encoding::Utf16Le)
@@ -188,30 +169,18 @@ mod tests {
 
     #[test]
     fn utf16_without_a_mark() {
-        assert_eq!(
-            recognise(b"1\0,\x002\0\n\x003\0,\0"),
-            Some(Encoding::Utf16Le)
-        );
-        assert_eq!(
-            recognise(b"\x001\0,\x002\0\n\x003\0,"),
-            Some(Encoding::Utf16Be)
-        );
+        assert_eq!(recognise(b"1\0,\x002\0\n\x003\0,\0"), Some(Encoding::Utf16Le));
+        assert_eq!(recognise(b"\x001\0,\x002\0\n\x003\0,"), Some(Encoding::Utf16Be));
         assert_eq!(recognise(b"1,2\0\0\0\0\0\0"), None);
     }
 
     #[test]
     fn chinese_against_western() {
         // "时间,位移,力"
-        assert_eq!(
-            recognise(b"\xCA\xB1\xBC\xE4,\xCE\xBB\xD2\xC6,\xC1\xA6\n"),
-            Some(Encoding::Gbk)
-        );
-        for western in [
-            &b"Temp (\xB0C), d (\xB5m)"[..],
-            b"Gr\xF6\xDFe;Weg (\xB5m)",
-            b"d\xE9placement,temps",
-            b"fin \xE9\n",
-        ] {
+        assert_eq!(recognise(b"\xCA\xB1\xBC\xE4,\xCE\xBB\xD2\xC6,\xC1\xA6\n"), Some(Encoding::Gbk));
+        for western in
+            [&b"Temp (\xB0C), d (\xB5m)"[..], b"Gr\xF6\xDFe;Weg (\xB5m)", b"d\xE9placement,temps", b"fin \xE9\n"]
+        {
             assert_eq!(recognise(western), Some(Encoding::Windows1252));
         }
     }

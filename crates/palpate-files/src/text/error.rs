@@ -48,12 +48,8 @@ pub enum DecimalDoubt {
 impl fmt::Display for DecimalDoubt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::CommaSplitsNumbers => {
-                "expected commas either between cells or inside numbers, they seem to be both"
-            }
-            Self::Thousands => {
-                "expected a decimal comma, but every comma could also set off thousands"
-            }
+            Self::CommaSplitsNumbers => "expected commas either between cells or inside numbers, they seem to be both",
+            Self::Thousands => "expected a decimal comma, but every comma could also set off thousands",
             Self::Mixed => "expected one decimal mark, found both points and commas",
         })
     }

@@ -28,10 +28,7 @@ struct Decoding {
 
 impl fmt::Debug for Feed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Feed")
-            .field("taken", &self.taken)
-            .field("size", &self.size)
-            .finish_non_exhaustive()
+        f.debug_struct("Feed").field("taken", &self.taken).field("size", &self.size).finish_non_exhaustive()
     }
 }
 
@@ -91,14 +88,9 @@ impl Decoding {
         self.finished = got == 0;
         let held = buffer.len();
         // The needed length overflows only for pieces of half the address space.
-        let room = self
-            .decoder
-            .max_utf8_buffer_length(got)
-            .unwrap_or(4 * PIECE);
+        let room = self.decoder.max_utf8_buffer_length(got).unwrap_or(4 * PIECE);
         buffer.resize(held + room, 0);
-        let (_, _, written, _) =
-            self.decoder
-                .decode_to_utf8(&self.raw[..got], &mut buffer[held..], self.finished);
+        let (_, _, written, _) = self.decoder.decode_to_utf8(&self.raw[..got], &mut buffer[held..], self.finished);
         buffer.truncate(held + written);
     }
 }

@@ -55,10 +55,7 @@ impl<'a> Fields<'a> {
         let cell = &line[..end];
         let behind = line.get(end + 1..).unwrap_or_default();
         self.rest = match self.delimiter {
-            Some(delimiter) => behind
-                .iter()
-                .position(|&byte| byte == delimiter)
-                .map(|place| &behind[place + 1..]),
+            Some(delimiter) => behind.iter().position(|&byte| byte == delimiter).map(|place| &behind[place + 1..]),
             None => Some(trim(behind, None)).filter(|rest| !rest.is_empty()),
         };
         trim(cell, None)
@@ -71,19 +68,14 @@ impl<'a> Iterator for Fields<'a> {
     #[inline]
     fn next(&mut self) -> Option<&'a [u8]> {
         let line = self.rest?;
-        let start = line
-            .iter()
-            .position(|&byte| !is_blank(byte, self.delimiter))
-            .unwrap_or(line.len());
+        let start = line.iter().position(|&byte| !is_blank(byte, self.delimiter)).unwrap_or(line.len());
         if line.get(start) == Some(&b'"') {
             return Some(self.quoted(&line[start + 1..]));
         }
         let tail = &line[start..];
         let Some(delimiter) = self.delimiter else {
             let end = tail.iter().position(|&byte| byte == b' ' || byte == b'\t');
-            self.rest = end
-                .map(|end| trim(&tail[end..], None))
-                .filter(|rest| !rest.is_empty());
+            self.rest = end.map(|end| trim(&tail[end..], None)).filter(|rest| !rest.is_empty());
             return Some(&tail[..end.unwrap_or(tail.len())]);
         };
         let end = tail.iter().position(|&byte| byte == delimiter);
@@ -135,28 +127,16 @@ mod tests {
     fn plain_and_quoted() {
         assert_eq!(cells("1,2,3", Delimiter::Comma), ["1", "2", "3"]);
         assert_eq!(cells(" 1 ; 2;", Delimiter::Semicolon), ["1", "2", ""]);
-        assert_eq!(
-            cells("\"1,5\",\"a\"\"b\" ,3\" pipe", Delimiter::Comma),
-            ["1,5", "a\"\"b", "3\" pipe"]
-        );
-        assert_eq!(
-            cells("\"never closed,2", Delimiter::Comma),
-            ["never closed,2"]
-        );
+        assert_eq!(cells("\"1,5\",\"a\"\"b\" ,3\" pipe", Delimiter::Comma), ["1,5", "a\"\"b", "3\" pipe"]);
+        assert_eq!(cells("\"never closed,2", Delimiter::Comma), ["never closed,2"]);
         assert_eq!(cells("\"\",\"", Delimiter::Comma), ["", ""]);
         assert_eq!(cells("", Delimiter::Comma), [""]);
     }
 
     #[test]
     fn tabs_keep_empty_cells_and_blanks_do_not() {
-        assert_eq!(
-            cells("\ta\t\tb c\t", Delimiter::Tab),
-            ["", "a", "", "b c", ""]
-        );
-        assert_eq!(
-            cells("  1   \t2 \"x y\" ", Delimiter::Blanks),
-            ["1", "2", "x y"]
-        );
+        assert_eq!(cells("\ta\t\tb c\t", Delimiter::Tab), ["", "a", "", "b c", ""]);
+        assert_eq!(cells("  1   \t2 \"x y\" ", Delimiter::Blanks), ["1", "2", "x y"]);
         assert!(cells("   ", Delimiter::Blanks).is_empty());
     }
 }

@@ -89,27 +89,16 @@ pub(crate) fn recognise(sample: &[u8]) -> Option<Foreign> {
         // Every part of an archive is listed by name in front of its content.
         let workbook = memchr::memmem::find(sample, b"xl/").is_some()
             || memchr::memmem::find(sample, b"[Content_Types].xml").is_some();
-        return Some(if workbook {
-            Foreign::ExcelWorkbook
-        } else {
-            Foreign::Zip
-        });
+        return Some(if workbook { Foreign::ExcelWorkbook } else { Foreign::Zip });
     }
-    let signed = SIGNATURES.iter().find(|(start, _)| {
-        sample
-            .get(..start.len())
-            .is_some_and(|first| first.eq_ignore_ascii_case(start))
-    });
+    let signed = SIGNATURES
+        .iter()
+        .find(|(start, _)| sample.get(..start.len()).is_some_and(|first| first.eq_ignore_ascii_case(start)));
     if let Some((_, foreign)) = signed {
         return Some(*foreign);
     }
     let text = sample.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(sample);
-    let head: Vec<u8> = text
-        .iter()
-        .copied()
-        .filter(|byte| !byte.is_ascii_whitespace())
-        .take(9)
-        .collect();
+    let head: Vec<u8> = text.iter().copied().filter(|byte| !byte.is_ascii_whitespace()).take(9).collect();
     if head.starts_with(b"{\"") || head.starts_with(b"[{\"") {
         return Some(Foreign::Json);
     }
@@ -124,8 +113,7 @@ pub(crate) fn mostly_control(text: &str) -> bool {
     let (mut all, mut control) = (0_usize, 0_usize);
     for character in text.chars() {
         all += 1;
-        control +=
-            usize::from(character.is_control() && !"\t\n\r\u{c}\u{1a}\u{85}".contains(character));
+        control += usize::from(character.is_control() && !"\t\n\r\u{c}\u{1a}\u{85}".contains(character));
         control += usize::from(character == '\0');
     }
     control * 20 > all
@@ -141,14 +129,8 @@ mod tests {
             let file = [start, b" more"].concat();
             assert_eq!(recognise(&file), Some(expected));
         }
-        assert_eq!(
-            recognise(b"PK\x03\x04....[Content_Types].xml"),
-            Some(Foreign::ExcelWorkbook)
-        );
-        assert_eq!(
-            recognise(b"PK\x03\x04....header.properties"),
-            Some(Foreign::Zip)
-        );
+        assert_eq!(recognise(b"PK\x03\x04....[Content_Types].xml"), Some(Foreign::ExcelWorkbook));
+        assert_eq!(recognise(b"PK\x03\x04....header.properties"), Some(Foreign::Zip));
         assert_eq!(recognise(b" \n{ \"a\": 1}"), Some(Foreign::Json));
         assert_eq!(recognise(b"<!DOCTYPE html>"), Some(Foreign::Markup));
         assert_eq!(recognise(b"Time,Force\n"), None);

@@ -28,12 +28,8 @@ pub(crate) fn find(lines: &[&str], skip: usize, block: &mut Block, wanted: Optio
     let above = candidates(lines, skip, block);
     let row = |index: usize| split(lines[index], block);
     let (names_line, units_line) = match above[..] {
-        [near, far, ..] if is_units(&row(near)) && is_names(&row(far), block) => {
-            (Some(far), Some(near))
-        }
-        [near, ..] if is_bracketed_units(&row(near)) && !has_names_too(&row(near)) => {
-            (None, Some(near))
-        }
+        [near, far, ..] if is_units(&row(near)) && is_names(&row(far), block) => (Some(far), Some(near)),
+        [near, ..] if is_bracketed_units(&row(near)) && !has_names_too(&row(near)) => (None, Some(near)),
         [near, ..] if is_names(&row(near), block) => (Some(near), None),
         [near, ..] if wanted == Some(true) => (Some(near), None),
         _ if wanted == Some(true) => (Some(take_first(block)), None),
@@ -54,11 +50,7 @@ fn take_first(block: &mut Block) -> usize {
 fn candidates(lines: &[&str], skip: usize, block: &Block) -> Vec<usize> {
     (skip..block.first)
         .rev()
-        .filter(|&index| {
-            split(lines[index], block)
-                .iter()
-                .any(|cell| !cell.is_empty())
-        })
+        .filter(|&index| split(lines[index], block).iter().any(|cell| !cell.is_empty()))
         .take(2)
         .collect()
 }
@@ -78,12 +70,9 @@ fn split(line: &str, block: &Block) -> Vec<String> {
         let parts = line.trim().split("  ").flat_map(|part| part.split('\t'));
         owned(parts.filter(|part| !part.trim().is_empty()).collect())
     };
-    let mut others = std::iter::once(gaps()).chain(
-        [Delimiter::Comma, Delimiter::Semicolon].map(|delimiter| owned(cells(line, delimiter))),
-    );
-    others
-        .find(|row| row.len() == width)
-        .unwrap_or_else(|| joined_units(own))
+    let mut others = std::iter::once(gaps())
+        .chain([Delimiter::Comma, Delimiter::Semicolon].map(|delimiter| owned(cells(line, delimiter))));
+    others.find(|row| row.len() == width).unwrap_or_else(|| joined_units(own))
 }
 
 /// Puts units in brackets back behind the names that a blank cut them off from.
@@ -106,9 +95,7 @@ fn owned(row: Vec<&str>) -> Vec<String> {
 }
 
 fn filled(row: &[String]) -> impl Iterator<Item = &str> {
-    row.iter()
-        .map(String::as_str)
-        .filter(|cell| !cell.is_empty())
+    row.iter().map(String::as_str).filter(|cell| !cell.is_empty())
 }
 
 /// Whether a row of cells holds units. A bare "F" is a force, not the farad.
@@ -133,21 +120,12 @@ fn is_names(row: &[String], block: &Block) -> bool {
     let kind = |cell: &str| number::classify(cell.as_bytes());
     // Blanks leave no room for empty cells, so more of them than columns are words of a sentence.
     let surplus = row.len() > width && block.delimiter == Delimiter::Blanks;
-    row.len() + 1 >= width
-        && !surplus
-        && count >= 2.min(width)
-        && filled(row).all(|cell| kind(cell) == Cell::Text)
+    row.len() + 1 >= width && !surplus && count >= 2.min(width) && filled(row).all(|cell| kind(cell) == Cell::Text)
 }
 
-fn label(
-    names_line: Option<usize>,
-    units_line: Option<usize>,
-    block: &Block,
-    lines: &[&str],
-) -> Header {
+fn label(names_line: Option<usize>, units_line: Option<usize>, block: &Block, lines: &[&str]) -> Header {
     let width = block.kinds.len();
-    let row =
-        |index: Option<usize>| index.map_or_else(Vec::new, |index| split(lines[index], block));
+    let row = |index: Option<usize>| index.map_or_else(Vec::new, |index| split(lines[index], block));
     let (names, units) = (row(names_line), row(units_line));
     // Tables with row labels, as R writes them, leave out the name of the labels.
     let shift = usize::from(names.len() + 1 == width && labels_rows(block, lines));
@@ -155,10 +133,7 @@ fn label(
         let name = column.checked_sub(shift).and_then(|place| names.get(place));
         let cell = name.map_or("", String::as_str);
         match units.get(column).and_then(|unit| unit::alone(unit)) {
-            Some(unit) => (
-                Some(cell.to_owned()).filter(|cell| !cell.is_empty()),
-                Some(unit),
-            ),
+            Some(unit) => (Some(cell.to_owned()).filter(|cell| !cell.is_empty()), Some(unit)),
             None => unit::split(cell),
         }
     };

@@ -17,16 +17,16 @@ impl FileError {
             Self::Unreadable { .. } => None,
             Self::Empty { .. } => Some("export the record again".to_owned()),
             Self::Foreign { looks_like, .. } => Some(foreign(*looks_like).to_owned()),
-            Self::LineTooLong { .. } => {
-                Some("check that the file has line ends and the right encoding".to_owned())
-            }
+            Self::LineTooLong { .. } => Some("check that the file has line ends and the right encoding".to_owned()),
             Self::OneColumn { delimiter, .. } => Some(match delimiter {
                 Some(delimiter) => format!("the delimiter was fixed to {delimiter}: leave it to be found out"),
-                None => "a record needs a time and a force side by side, separated by tab, semicolon, comma or blanks".to_owned(),
+                None => "a record needs a time and a force side by side, separated by tab, semicolon, comma or blanks"
+                    .to_owned(),
             }),
-            Self::NoDataRows { header_line: Some(line), .. } => {
-                Some(format!("line {line} looks like names of columns, but no numbers follow"))
-            }
+            Self::NoDataRows {
+                header_line: Some(line),
+                ..
+            } => Some(format!("line {line} looks like names of columns, but no numbers follow")),
             Self::NoDataRows { header_line: None, .. } => {
                 Some("check that this is the record itself, or skip the lines before it".to_owned())
             }
@@ -36,9 +36,7 @@ impl FileError {
             Self::NotFinite { .. } | Self::EmptyCell { .. } => {
                 Some("remove the row, or choose another column".to_owned())
             }
-            Self::TooFewCells { .. } => {
-                Some("the row is cut off or lacks a cell: complete it or remove it".to_owned())
-            }
+            Self::TooFewCells { .. } => Some("the row is cut off or lacks a cell: complete it or remove it".to_owned()),
             Self::TooManyCells { .. } => {
                 Some("look for a delimiter inside a cell, such as a decimal comma, that wants quotes".to_owned())
             }
@@ -54,9 +52,7 @@ fn foreign(looks_like: Foreign) -> &'static str {
         Foreign::ExcelWorkbook | Foreign::OldOffice | Foreign::Markup => {
             "open it in a spreadsheet program and save the sheet as CSV"
         }
-        Foreign::Gzip | Foreign::Zip | Foreign::Compressed => {
-            "unpack it first, or export the record as text"
-        }
+        Foreign::Gzip | Foreign::Zip | Foreign::Compressed => "unpack it first, or export the record as text",
         Foreign::Picture | Foreign::Pdf => "a record of numbers is needed, not a document",
         Foreign::Binary => "export the record as text, or fix its encoding if it is text",
         _ => "export the record as delimited text",
@@ -68,9 +64,7 @@ fn doubtful(doubt: DecimalDoubt) -> &'static str {
         DecimalDoubt::CommaSplitsNumbers => {
             "export with semicolons or tabs between cells; if the commas only separate whole numbers, fix the decimal mark to point"
         }
-        DecimalDoubt::Thousands => {
-            "fix the decimal mark to comma, or export without marks between thousands"
-        }
+        DecimalDoubt::Thousands => "fix the decimal mark to comma, or export without marks between thousands",
         DecimalDoubt::Mixed => "export with one decimal mark, or fix the decimal mark",
     }
 }
@@ -78,14 +72,10 @@ fn doubtful(doubt: DecimalDoubt) -> &'static str {
 fn text(found: &str, decimal: DecimalMark) -> Option<String> {
     let cell = found.as_bytes();
     match (number::classify(cell), decimal) {
-        _ if found.contains('\u{2212}') => {
-            Some("the minus sign is U+2212: replace it by a hyphen".to_owned())
-        }
+        _ if found.contains('\u{2212}') => Some("the minus sign is U+2212: replace it by a hyphen".to_owned()),
         (Cell::Comma, DecimalMark::Point) => Some("fix the decimal mark to comma".to_owned()),
         (Cell::Point, DecimalMark::Comma) => Some("fix the decimal mark to point".to_owned()),
-        _ if number::has_thousands(cell) => {
-            Some("export without marks between thousands".to_owned())
-        }
+        _ if number::has_thousands(cell) => Some("export without marks between thousands".to_owned()),
         _ => None,
     }
 }

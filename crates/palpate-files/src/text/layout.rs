@@ -84,10 +84,7 @@ impl Layout {
     #[must_use]
     pub fn column_named(&self, name: &str) -> Option<&ColumnInfo> {
         let only = |same: &dyn Fn(&str) -> bool| {
-            let mut hits = self
-                .columns
-                .iter()
-                .filter(|column| column.name.as_deref().is_some_and(same));
+            let mut hits = self.columns.iter().filter(|column| column.name.as_deref().is_some_and(same));
             hits.next().filter(|_| hits.next().is_none())
         };
         only(&|own| own == name).or_else(|| only(&|own| own.to_lowercase() == name.to_lowercase()))

@@ -101,9 +101,7 @@ impl<'a> LineReader<'a> {
         self.buffer.drain(..self.start);
         self.start = 0;
         let taken = self.feed.fill(&mut self.buffer);
-        taken
-            .map(|bytes| bytes > 0)
-            .map_err(|error| FileError::from_io(self.path, error))
+        taken.map(|bytes| bytes > 0).map_err(|error| FileError::from_io(self.path, error))
     }
 }
 

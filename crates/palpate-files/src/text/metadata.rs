@@ -24,9 +24,7 @@ pub(crate) fn in_line(text: &str, delimiter: Delimiter, line: usize) -> Vec<Meta
     let found = match row[..] {
         [name, value] => entry(name, value, None, line),
         [name, value, unit] => entry(name, value, Some(unit), line),
-        [single] => single
-            .split_once(':')
-            .and_then(|(name, value)| entry(name, value, None, line)),
+        [single] => single.split_once(':').and_then(|(name, value)| entry(name, value, None, line)),
         _ => None,
     };
     found.into_iter().collect()
@@ -35,23 +33,14 @@ pub(crate) fn in_line(text: &str, delimiter: Delimiter, line: usize) -> Vec<Meta
 /// `text` less a mark that makes it a comment in other programs.
 pub(crate) fn without_comment_mark(text: &str) -> &str {
     let bare = text.trim_start();
-    let inside = bare
-        .strip_prefix("//")
-        .unwrap_or_else(|| bare.trim_start_matches(['#', '%']));
-    if inside.len() == bare.len() {
-        text
-    } else {
-        inside.trim_start_matches(' ')
-    }
+    let inside = bare.strip_prefix("//").unwrap_or_else(|| bare.trim_start_matches(['#', '%']));
+    if inside.len() == bare.len() { text } else { inside.trim_start_matches(' ') }
 }
 
 /// The two sides of every `name=value` of a line that holds nothing else.
 fn equations<'a>(row: &[&'a str]) -> Option<Vec<(&'a str, &'a str)>> {
     let parts = row.iter().flat_map(|cell| cell.split(';'));
-    let pairs: Option<Vec<_>> = parts
-        .filter(|part| !part.trim().is_empty())
-        .map(|part| part.split_once('='))
-        .collect();
+    let pairs: Option<Vec<_>> = parts.filter(|part| !part.trim().is_empty()).map(|part| part.split_once('=')).collect();
     pairs.filter(|pairs| !pairs.is_empty())
 }
 
@@ -82,10 +71,7 @@ fn entry(name: &str, value: &str, unit: Option<&str>, line: usize) -> Option<Met
 }
 
 fn is_number(text: &str) -> bool {
-    matches!(
-        number::classify(text.as_bytes()),
-        Cell::Whole | Cell::Point | Cell::Comma
-    )
+    matches!(number::classify(text.as_bytes()), Cell::Whole | Cell::Point | Cell::Comma)
 }
 
 #[cfg(test)]
@@ -95,43 +81,28 @@ mod tests {
     fn only(text: &str, delimiter: Delimiter) -> (String, String, Option<String>) {
         let found = in_line(text, delimiter, 1);
         assert_eq!(found.len(), 1, "{text}");
-        let Metadata {
-            name, value, unit, ..
-        } = found[0].clone();
+        let Metadata { name, value, unit, .. } = found[0].clone();
         (name, value, unit)
     }
 
     #[test]
     fn forms() {
-        let expected = |name: &str, value: &str, unit: Option<&str>| {
-            (name.to_owned(), value.to_owned(), unit.map(str::to_owned))
-        };
+        let expected =
+            |name: &str, value: &str, unit: Option<&str>| (name.to_owned(), value.to_owned(), unit.map(str::to_owned));
         assert_eq!(
             only("Properties : Diameter,\"0.399\",mm", Delimiter::Comma),
             expected("Properties : Diameter", "0.399", Some("mm"))
         );
-        assert_eq!(
-            only("Test:\tstep 3", Delimiter::Tab),
-            expected("Test", "step 3", None)
-        );
-        assert_eq!(
-            only("# Length (mm): 12,5", Delimiter::Semicolon),
-            expected("Length", "12,5", Some("mm"))
-        );
-        assert_eq!(
-            only("Probe radius: 5.0 mm", Delimiter::Blanks),
-            expected("Probe radius", "5.0", Some("mm"))
-        );
+        assert_eq!(only("Test:\tstep 3", Delimiter::Tab), expected("Test", "step 3", None));
+        assert_eq!(only("# Length (mm): 12,5", Delimiter::Semicolon), expected("Length", "12,5", Some("mm")));
+        assert_eq!(only("Probe radius: 5.0 mm", Delimiter::Blanks), expected("Probe radius", "5.0", Some("mm")));
     }
 
     #[test]
     fn several_in_a_line_and_none() {
         let found = in_line("chem=PE;T=150;", Delimiter::Tab, 1);
         assert_eq!(found.len(), 2);
-        assert_eq!(
-            (found[1].name.as_str(), found[1].value.as_str()),
-            ("T", "150")
-        );
+        assert_eq!((found[1].name.as_str(), found[1].value.as_str()), ("T", "150"));
         assert!(in_line("A title", Delimiter::Comma, 1).is_empty());
         assert!(in_line("1,2", Delimiter::Comma, 1).is_empty());
         assert!(in_line("", Delimiter::Comma, 1).is_empty());

@@ -44,8 +44,8 @@ pub(crate) fn parse(cell: &[u8], decimal: DecimalMark) -> Option<f64> {
 
 /// Powers of ten that `f64` holds exactly.
 const EXACT_POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
-    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
+    1e21, 1e22,
 ];
 
 /// Reads a number of few digits without an exponent, which nearly every cell is; `None` is no verdict.
@@ -107,11 +107,7 @@ pub(crate) fn classify(cell: &[u8]) -> Cell {
     if cell.is_empty() {
         Cell::Empty
     } else if finite(cell).is_some() {
-        if cell.contains(&b'.') {
-            Cell::Point
-        } else {
-            Cell::Whole
-        }
+        if cell.contains(&b'.') { Cell::Point } else { Cell::Whole }
     } else if is_not_finite(cell) {
         Cell::NotFinite
     } else if parse_comma(cell).is_some() && !cell.ends_with(b",") {
@@ -123,16 +119,7 @@ pub(crate) fn classify(cell: &[u8]) -> Cell {
 
 /// Whether a cell spells "no number" or "infinite" in one of the usual ways, or overflows.
 pub(crate) fn is_not_finite(cell: &[u8]) -> bool {
-    const WORDS: [&[u8]; 8] = [
-        b"na",
-        b"n/a",
-        b"#n/a",
-        b"#value!",
-        b"#div/0!",
-        b"#num!",
-        b"null",
-        b"infinite",
-    ];
+    const WORDS: [&[u8]; 8] = [b"na", b"n/a", b"#n/a", b"#value!", b"#div/0!", b"#num!", b"null", b"infinite"];
     let bare = match cell {
         [b'+' | b'-', rest @ ..] => rest,
         all => all,
@@ -197,33 +184,16 @@ mod tests {
         let mut state = 1_u64;
         for _ in 0..20_000 {
             // Any step that mixes the bits will do.
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             let sign = ["", "-"][(state >> 63) as usize];
             let digits = ((state >> 20) % 1_000_000_000_000).to_string();
             let (whole, fraction) = digits.split_at((state >> 8) as usize % (digits.len() + 1));
             let text = format!("{sign}{whole}.{fraction}");
             let general = text.parse::<f64>().ok().map(f64::to_bits);
-            assert_eq!(
-                short(text.as_bytes(), b'.').map(f64::to_bits),
-                general,
-                "{text}"
-            );
+            assert_eq!(short(text.as_bytes(), b'.').map(f64::to_bits), general, "{text}");
         }
-        assert_eq!(
-            short(b"-0.0", b'.').map(f64::to_bits),
-            Some((-0.0_f64).to_bits())
-        );
-        for text in [
-            ".",
-            "-",
-            "",
-            "1.2.3",
-            "1e5",
-            "9007199254740993",
-            "1234567890123456789",
-        ] {
+        assert_eq!(short(b"-0.0", b'.').map(f64::to_bits), Some((-0.0_f64).to_bits()));
+        for text in [".", "-", "", "1.2.3", "1e5", "9007199254740993", "1234567890123456789"] {
             assert_eq!(short(text.as_bytes(), b'.'), None, "{text}");
         }
     }
@@ -236,28 +206,14 @@ mod tests {
         assert_eq!(classify(b"0,5"), Cell::Comma);
         assert_eq!(classify(b"0,"), Cell::Text);
         assert_eq!(classify(b"1-Hold"), Cell::Text);
-        for word in [
-            &b"NaN"[..],
-            b"-inf",
-            b"Infinity",
-            b"#N/A",
-            b"1.#QNAN",
-            b"-1.#IND",
-            b"1e999",
-        ] {
+        for word in [&b"NaN"[..], b"-inf", b"Infinity", b"#N/A", b"1.#QNAN", b"-1.#IND", b"1e999"] {
             assert_eq!(classify(word), Cell::NotFinite);
         }
     }
 
     #[test]
     fn thousands() {
-        for cell in [
-            &b"1,234"[..],
-            b"1,234,567.8",
-            b"1.234,5",
-            b"-12 345",
-            b"1'000",
-        ] {
+        for cell in [&b"1,234"[..], b"1,234,567.8", b"1.234,5", b"-12 345", b"1'000"] {
             assert!(has_thousands(cell));
         }
         for cell in [&b"1,23"[..], b"1234,567,8", b"abc", b"", b"1,2345", b","] {

@@ -46,11 +46,7 @@ pub(crate) enum Fault {
 
 impl<'a> RowPlan<'a> {
     /// Plans to read `columns` (numbers from 1, each once) of every row.
-    pub(crate) fn new(
-        path: &'a Path,
-        layout: &'a Layout,
-        columns: &[usize],
-    ) -> Result<Self, FileError> {
+    pub(crate) fn new(path: &'a Path, layout: &'a Layout, columns: &[usize]) -> Result<Self, FileError> {
         let kinds: Vec<ColumnKind> = layout.columns.iter().map(|column| column.kind).collect();
         let mut tasks = vec![Task::Pass; kinds.len()];
         let leading = block::first_number(&kinds).unwrap_or(0);
@@ -141,11 +137,7 @@ impl<'a> RowPlan<'a> {
             path: self.path.to_owned(),
             line: number,
             column: index + 1,
-            name: self
-                .layout
-                .columns
-                .get(index)
-                .and_then(|column| column.name.clone()),
+            name: self.layout.columns.get(index).and_then(|column| column.name.clone()),
         };
         let cell = Fields::of(line, self.layout.delimiter).nth(index);
         let cell = cell.unwrap_or_default();

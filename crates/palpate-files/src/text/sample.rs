@@ -33,18 +33,14 @@ impl Sample {
         if let Some(looks_like) = foreign::recognise(&bytes) {
             return Err(foreign(looks_like));
         }
-        let encoding = fixed
-            .or_else(|| encoding::recognise(&bytes))
-            .ok_or_else(|| foreign(Foreign::Binary))?;
+        let encoding = fixed.or_else(|| encoding::recognise(&bytes)).ok_or_else(|| foreign(Foreign::Binary))?;
         let body = &bytes[encoding.mark_length(&bytes)..];
         let (text, _) = encoding.codec().decode_without_bom_handling(body);
         if foreign::mostly_control(&text) {
             return Err(foreign(Foreign::Binary));
         }
         if text.trim().is_empty() && !cut {
-            return Err(FileError::Empty {
-                path: path.to_owned(),
-            });
+            return Err(FileError::Empty { path: path.to_owned() });
         }
         let text = text.into_owned();
         if cut && memchr::memchr2(b'\n', b'\r', text.as_bytes()).is_none() {
@@ -54,11 +50,7 @@ impl Sample {
                 limit: LONGEST_LINE,
             });
         }
-        Ok(Self {
-            encoding,
-            text,
-            cut,
-        })
+        Ok(Self { encoding, text, cut })
     }
 
     /// The lines that are in the sample from end to end.

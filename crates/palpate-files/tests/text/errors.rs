@@ -1,8 +1,6 @@
 //! Every error, with the place it names and what it suggests.
 
-use palpate_files::text::{
-    DecimalDoubt, DecimalMark, Delimiter, FileError, Foreign, LayoutOptions, detect,
-};
+use palpate_files::text::{DecimalDoubt, DecimalMark, Delimiter, FileError, Foreign, LayoutOptions, detect};
 
 use super::{layout_with, read, written};
 
@@ -16,10 +14,7 @@ fn missing_file_keeps_its_source() {
     let path = folder.path().join("absent.csv");
     let error = detect(&path, &LayoutOptions::default()).expect_err("no file");
     assert!(matches!(error, FileError::NotFound { .. }));
-    assert!(
-        std::error::Error::source(&error)
-            .is_some_and(<dyn std::error::Error>::is::<std::io::Error>)
-    );
+    assert!(std::error::Error::source(&error).is_some_and(<dyn std::error::Error>::is::<std::io::Error>));
     assert!(error.to_string().contains("absent.csv"));
     assert!(error.hint().is_some());
 }
@@ -41,10 +36,7 @@ fn empty() {
 #[test]
 fn no_text() {
     for (bytes, expected) in [
-        (
-            &b"PK\x03\x04\x14\0xl/workbook.xml"[..],
-            Foreign::ExcelWorkbook,
-        ),
+        (&b"PK\x03\x04\x14\0xl/workbook.xml"[..], Foreign::ExcelWorkbook),
         (b"PK\x03\x04\x14\0shared-data/header", Foreign::Zip),
         (b"\x1F\x8B\x08\0\0", Foreign::Gzip),
         (b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", Foreign::OldOffice),
@@ -56,10 +48,7 @@ fn no_text() {
         (b"{\"time\": [1, 2]}", Foreign::Json),
     ] {
         let error = refused(bytes);
-        assert!(
-            matches!(error, FileError::Foreign { looks_like, .. } if looks_like == expected),
-            "{error}"
-        );
+        assert!(matches!(error, FileError::Foreign { looks_like, .. } if looks_like == expected), "{error}");
         assert!(error.hint().is_some());
     }
 }
@@ -89,30 +78,18 @@ fn names_but_no_rows() {
         }
     ));
     let error = refused("Just some words.\n");
-    assert!(matches!(
-        error,
-        FileError::NoDataRows {
-            header_line: None,
-            ..
-        }
-    ));
+    assert!(matches!(error, FileError::NoDataRows { header_line: None, .. }));
 }
 
 #[test]
 fn uncertain_decimals() {
     for (text, expected) in [
-        (
-            "t,F\n0,01,0,52\n0,02,0,53\n",
-            DecimalDoubt::CommaSplitsNumbers,
-        ),
+        ("t,F\n0,01,0,52\n0,02,0,53\n", DecimalDoubt::CommaSplitsNumbers),
         ("1,234;5,678\n", DecimalDoubt::Thousands),
         ("1.5;2,25\n2.5;3,25\n", DecimalDoubt::Mixed),
     ] {
         let error = refused(text);
-        assert!(
-            matches!(error, FileError::AmbiguousDecimal { doubt, .. } if doubt == expected),
-            "{error}"
-        );
+        assert!(matches!(error, FileError::AmbiguousDecimal { doubt, .. } if doubt == expected), "{error}");
         assert!(error.hint().is_some());
     }
 }
@@ -126,9 +103,11 @@ fn text_in_a_column_of_numbers() {
     assert_eq!((place.line, place.column), (3, 2));
     assert_eq!(place.name.as_deref(), Some("F"));
     assert_eq!(found, "overload");
-    assert!(error.to_string().ends_with(
-        "line 3, column 2 (F): expected a number with a decimal point, found `overload`"
-    ));
+    assert!(
+        error
+            .to_string()
+            .ends_with("line 3, column 2 (F): expected a number with a decimal point, found `overload`")
+    );
 }
 
 #[test]
@@ -172,9 +151,7 @@ fn not_finite() {
 #[test]
 fn empty_cell() {
     let error = read("t,F\n0,1.5\n1,\n2,2.5\n", &[1, 2]).expect_err("empty");
-    assert!(
-        matches!(error, FileError::EmptyCell { place } if place.line == 3 && place.column == 2)
-    );
+    assert!(matches!(error, FileError::EmptyCell { place } if place.line == 3 && place.column == 2));
     let error = read("t,F\n0,1.5\n1,2.5\n2,\n", &[2]).expect_err("empty");
     assert!(matches!(error, FileError::EmptyCell { .. }));
 }
@@ -221,10 +198,7 @@ fn junk_between_rows() {
     assert!(std::error::Error::source(&error).is_some());
     let mut text = "t,F\n0,1.5\n1,2.5\n".to_owned();
     text.push_str(&"lost,lost\n".repeat(60));
-    assert!(matches!(
-        read(&text, &[1, 2]),
-        Err(FileError::TextInNumbers { .. })
-    ));
+    assert!(matches!(read(&text, &[1, 2]), Err(FileError::TextInNumbers { .. })));
 }
 
 #[test]
@@ -238,16 +212,10 @@ fn no_such_column() {
 #[test]
 fn endless_line() {
     let text = vec![b'7'; 600_000];
-    assert!(matches!(
-        refused(&text),
-        FileError::LineTooLong { line: 1, .. }
-    ));
+    assert!(matches!(refused(&text), FileError::LineTooLong { line: 1, .. }));
     let late = [b"0,1.5\n1,2.5\n".repeat(30_000), text].concat();
     let error = read(&late, &[1]).expect_err("a long line");
-    assert!(
-        matches!(error, FileError::LineTooLong { line: 60_001, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, FileError::LineTooLong { line: 60_001, .. }), "{error}");
 }
 
 #[test]

@@ -1,8 +1,6 @@
 //! The many ways in which machines write the same table.
 
-use palpate_files::text::{
-    ColumnKind, DecimalMark, Delimiter, Encoding, LayoutOptions, read_columns,
-};
+use palpate_files::text::{ColumnKind, DecimalMark, Delimiter, Encoding, LayoutOptions, read_columns};
 
 use super::{layout, layout_with, names, read, units, written};
 
@@ -10,13 +8,7 @@ fn utf16(text: &str, low_first: bool, mark: bool) -> Vec<u8> {
     let mark = mark.then_some(0xFEFF);
     mark.into_iter()
         .chain(text.encode_utf16())
-        .flat_map(|unit: u16| {
-            if low_first {
-                unit.to_le_bytes()
-            } else {
-                unit.to_be_bytes()
-            }
-        })
+        .flat_map(|unit: u16| if low_first { unit.to_le_bytes() } else { unit.to_be_bytes() })
         .collect()
 }
 
@@ -24,40 +16,16 @@ fn utf16(text: &str, low_first: bool, mark: bool) -> Vec<u8> {
 fn delimiters_and_decimal_marks() {
     for (text, delimiter, decimal) in [
         ("t,F\n0,1.5\n1,2.5\n", Delimiter::Comma, DecimalMark::Point),
-        (
-            "t;F\n0;1.5\n1;2.5\n",
-            Delimiter::Semicolon,
-            DecimalMark::Point,
-        ),
-        (
-            "t;F\n0;1,5\n1;2,5\n",
-            Delimiter::Semicolon,
-            DecimalMark::Comma,
-        ),
+        ("t;F\n0;1.5\n1;2.5\n", Delimiter::Semicolon, DecimalMark::Point),
+        ("t;F\n0;1,5\n1;2,5\n", Delimiter::Semicolon, DecimalMark::Comma),
         ("t\tF\n0\t1,5\n1\t2,5\n", Delimiter::Tab, DecimalMark::Comma),
-        (
-            "t   F\n 0   1.5\n 1   2.5\n",
-            Delimiter::Blanks,
-            DecimalMark::Point,
-        ),
+        ("t   F\n 0   1.5\n 1   2.5\n", Delimiter::Blanks, DecimalMark::Point),
         ("t F\n0 1,5\n1 2,5\n", Delimiter::Blanks, DecimalMark::Comma),
-        (
-            "t,F\n\"0\",\"1.5\"\n\"1\",\"2.5\"\n",
-            Delimiter::Comma,
-            DecimalMark::Point,
-        ),
-        (
-            "t,F\n\"0\",\"1,5\"\n\"1\",\"2,5\"\n",
-            Delimiter::Comma,
-            DecimalMark::Comma,
-        ),
+        ("t,F\n\"0\",\"1.5\"\n\"1\",\"2.5\"\n", Delimiter::Comma, DecimalMark::Point),
+        ("t,F\n\"0\",\"1,5\"\n\"1\",\"2,5\"\n", Delimiter::Comma, DecimalMark::Comma),
     ] {
         let layout = layout(text);
-        assert_eq!(
-            (layout.delimiter, layout.decimal),
-            (delimiter, decimal),
-            "{text}"
-        );
+        assert_eq!((layout.delimiter, layout.decimal), (delimiter, decimal), "{text}");
         assert_eq!(names(&layout), ["t", "F"], "{text}");
         let columns = read(text, &[1, 2]).expect("columns");
         assert_eq!(columns.values, [[0.0, 1.0], [1.5, 2.5]], "{text}");
@@ -131,22 +99,9 @@ fn named_values_above_the_names() {
 fn units_in_the_names() {
     let text = "Force (N),displacement_mm,Force_N,Time_S,Kraft [N],Displacement / mm\n0,1,2,3,4,5.5\n1,2,3,4,5,6.5\n";
     let layout = layout(text);
-    assert_eq!(
-        names(&layout),
-        [
-            "Force",
-            "displacement",
-            "Force",
-            "Time",
-            "Kraft",
-            "Displacement"
-        ]
-    );
+    assert_eq!(names(&layout), ["Force", "displacement", "Force", "Time", "Kraft", "Displacement"]);
     assert_eq!(units(&layout), ["N", "mm", "N", "S", "N", "mm"]);
-    assert_eq!(
-        layout.column_named("kraft").map(|column| column.number),
-        Some(5)
-    );
+    assert_eq!(layout.column_named("kraft").map(|column| column.number), Some(5));
     assert_eq!(layout.column_named("Force"), None);
 }
 
@@ -193,10 +148,7 @@ fn text_columns_and_trailing_delimiter() {
     let (word, number) = (ColumnKind::Text, ColumnKind::Number);
     assert_eq!(kinds, [word, word, number, number]);
     assert_eq!(layout.columns[1].sample, "1-Hold");
-    assert_eq!(
-        read(text, &[4, 3]).expect("columns").values,
-        [[2.5, 2.6], [0.1, 0.2]]
-    );
+    assert_eq!(read(text, &[4, 3]).expect("columns").values, [[2.5, 2.6], [0.1, 0.2]]);
 }
 
 #[test]
@@ -252,29 +204,18 @@ fn options_override() {
         ..LayoutOptions::default()
     };
     let thousands = "1,234;5,678\n2,345;6,789\n";
-    assert_eq!(
-        layout_with(thousands, fixed).expect("a layout").decimal,
-        DecimalMark::Comma
-    );
+    assert_eq!(layout_with(thousands, fixed).expect("a layout").decimal, DecimalMark::Comma);
     let named = LayoutOptions {
         header: Some(true),
         ..LayoutOptions::default()
     };
     let numbered = layout_with("0,1\n0.5,1.5\n0.6,1.6\n", named).expect("a layout");
-    assert_eq!(
-        (names(&numbered), numbered.first_data_line),
-        (vec!["0", "1"], 2)
-    );
+    assert_eq!((names(&numbered), numbered.first_data_line), (vec!["0", "1"], 2));
     let nameless = LayoutOptions {
         header: Some(false),
         ..LayoutOptions::default()
     };
-    assert_eq!(
-        layout_with("t,F\n0,1.5\n1,2.5\n", nameless)
-            .expect("a layout")
-            .header_line,
-        None
-    );
+    assert_eq!(layout_with("t,F\n0,1.5\n1,2.5\n", nameless).expect("a layout").header_line, None);
     let skipping = LayoutOptions {
         skip_lines: Some(2),
         ..LayoutOptions::default()
@@ -287,10 +228,7 @@ fn options_override() {
         ..LayoutOptions::default()
     };
     let layout = layout_with("1\t2.5\n2\t3.5\n", blanks).expect("a layout");
-    assert_eq!(
-        (layout.delimiter, layout.encoding),
-        (Delimiter::Blanks, Encoding::Windows1252)
-    );
+    assert_eq!((layout.delimiter, layout.encoding), (Delimiter::Blanks, Encoding::Windows1252));
 }
 
 #[test]

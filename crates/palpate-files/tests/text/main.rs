@@ -18,10 +18,7 @@ fn written(bytes: impl AsRef<[u8]>) -> Written {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("record.csv");
     std::fs::write(&path, bytes).expect("a file written");
-    Written {
-        _folder: folder,
-        path,
-    }
+    Written { _folder: folder, path }
 }
 
 fn layout_with(bytes: impl AsRef<[u8]>, options: LayoutOptions) -> Result<Layout, FileError> {

@@ -35,24 +35,12 @@ fn draw_ticks(svg: &mut Svg, frame: &Frame<'_>) {
     let x_minor = frame.x_ticks.minor.iter().map(minor);
     let x_major = frame.x_ticks.major.iter().map(|(v, _)| (*v, TICK_LENGTH));
     for (value, length) in x_major.chain(x_minor).filter(|(v, _)| frame.x.contains(*v)) {
-        let _ = write!(
-            d,
-            "M{} {}v{}",
-            short(frame.x.at(value)),
-            short(area.bottom()),
-            short(length)
-        );
+        let _ = write!(d, "M{} {}v{}", short(frame.x.at(value)), short(area.bottom()), short(length));
     }
     let y_minor = frame.y_ticks.minor.iter().map(minor);
     let y_major = frame.y_ticks.major.iter().map(|(v, _)| (*v, TICK_LENGTH));
     for (value, length) in y_major.chain(y_minor).filter(|(v, _)| frame.y.contains(*v)) {
-        let _ = write!(
-            d,
-            "M{} {}h-{}",
-            short(area.x),
-            short(frame.y.at(value)),
-            short(length)
-        );
+        let _ = write!(d, "M{} {}h-{}", short(area.x), short(frame.y.at(value)), short(length));
     }
     svg.path(&d, "stroke=\"#222\" stroke-width=\"0.6\"");
 }
@@ -61,29 +49,13 @@ fn draw_labels(svg: &mut Svg, frame: &Frame<'_>) {
     let Frame { area, .. } = frame;
     if frame.names_x {
         let y = area.bottom() + TICK_LENGTH + 2.0 + 0.78 * TICK;
-        for (value, label) in frame
-            .x_ticks
-            .major
-            .iter()
-            .filter(|(v, _)| frame.x.contains(*v))
-        {
+        for (value, label) in frame.x_ticks.major.iter().filter(|(v, _)| frame.x.contains(*v)) {
             svg.text(frame.x.at(*value), y, Anchor::Middle, font(TICK), label);
         }
     }
     let x = area.x - TICK_LENGTH - 2.0;
-    for (value, label) in frame
-        .y_ticks
-        .major
-        .iter()
-        .filter(|(v, _)| frame.y.contains(*v))
-    {
-        svg.text(
-            x,
-            frame.y.at(*value) + 0.36 * TICK,
-            Anchor::End,
-            font(TICK),
-            label,
-        );
+    for (value, label) in frame.y_ticks.major.iter().filter(|(v, _)| frame.y.contains(*v)) {
+        svg.text(x, frame.y.at(*value) + 0.36 * TICK, Anchor::End, font(TICK), label);
     }
 }
 
@@ -92,21 +64,10 @@ fn draw_captions(svg: &mut Svg, frame: &Frame<'_>) {
     if frame.names_x {
         let y = area.bottom() + TICK_LENGTH + 2.0 + TICK + 3.0 + CAPTION;
         let caption = panel.x.caption(frame.x_ticks.exponent);
-        svg.text(
-            area.x + area.w / 2.0,
-            y,
-            Anchor::Middle,
-            font(CAPTION),
-            &caption,
-        );
+        svg.text(area.x + area.w / 2.0, y, Anchor::Middle, font(CAPTION), &caption);
     }
     let caption = panel.y.caption(frame.y_ticks.exponent);
-    svg.upward_text(
-        frame.left + CAPTION,
-        area.y + area.h / 2.0,
-        font(CAPTION),
-        &caption,
-    );
+    svg.upward_text(frame.left + CAPTION, area.y + area.h / 2.0, font(CAPTION), &caption);
 }
 
 fn draw_heading(svg: &mut Svg, frame: &Frame<'_>) {
@@ -144,26 +105,13 @@ pub(crate) fn draw_colour_bar(svg: &mut Svg, frame: &Frame<'_>) {
         let h = area.h / f64::from(steps);
         let y = area.bottom() - h * f64::from(i + 1);
         let attributes = format!("fill=\"#{r:02x}{g:02x}{b:02x}\" shape-rendering=\"crispEdges\"");
-        svg.rect(
-            Rect {
-                y,
-                h: h + 0.2,
-                ..area
-            },
-            &attributes,
-        );
+        svg.rect(Rect { y, h: h + 0.2, ..area }, &attributes);
     }
     svg.rect(area, FRAME);
     let mut d = String::new();
     for (value, label) in ticks.major.iter().filter(|(v, _)| bar.contains(*v)) {
         let y = bar.at(*value);
-        let _ = write!(
-            d,
-            "M{} {}h{}",
-            short(area.right()),
-            short(y),
-            short(TICK_LENGTH)
-        );
+        let _ = write!(d, "M{} {}h{}", short(area.right()), short(y), short(TICK_LENGTH));
         let x = area.right() + TICK_LENGTH + 2.0;
         svg.text(x, y + 0.36 * TICK, Anchor::Start, font(TICK), label);
     }
@@ -180,11 +128,5 @@ pub(crate) fn draw_empty(svg: &mut Svg, frame: &Frame<'_>) {
         colour: "#777",
         ..font(CAPTION)
     };
-    svg.text(
-        x + w / 2.0,
-        y + h / 2.0 + 3.0,
-        Anchor::Middle,
-        grey,
-        &frame.panel.empty_note,
-    );
+    svg.text(x + w / 2.0, y + h / 2.0 + 3.0, Anchor::Middle, grey, &frame.panel.empty_note);
 }

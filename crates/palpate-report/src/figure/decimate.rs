@@ -173,18 +173,13 @@ mod tests {
         pieces
             .iter()
             .flatten()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
-                (low.min(p.1), high.max(p.1))
-            })
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p.1), high.max(p.1)))
     }
 
     #[test]
     fn short_lines_stay_as_they_are() {
         let pieces = line(5, 100.0, |i| (i as f64, 1.0));
-        assert_eq!(
-            pieces,
-            vec![(0..5).map(|i| (f64::from(i), 1.0)).collect::<Vec<_>>()]
-        );
+        assert_eq!(pieces, vec![(0..5).map(|i| (f64::from(i), 1.0)).collect::<Vec<_>>()]);
     }
 
     #[test]
@@ -193,31 +188,20 @@ mod tests {
         let at = |i: usize| {
             let peak = if i == 123_457 { 50.0 } else { 0.0 };
             let dip = if i == 777_777 { -40.0 } else { 0.0 };
-            (
-                i as f64 * 400.0 / n as f64,
-                (i as f64 * 0.37).sin() + peak + dip,
-            )
+            (i as f64 * 400.0 / n as f64, (i as f64 * 0.37).sin() + peak + dip)
         };
         let pieces = line(n, 400.0, at);
         let kept: usize = pieces.iter().map(Vec::len).sum();
         assert!(kept <= 4 * 601, "{kept}");
         let (low, high) = extremes(&pieces);
         assert!(high == at(123_457).1 && low == at(777_777).1);
-        assert_eq!(
-            (pieces[0][0], *pieces[0].last().expect("a line")),
-            (at(0), at(n - 1))
-        );
+        assert_eq!((pieces[0][0], *pieces[0].last().expect("a line")), (at(0), at(n - 1)));
     }
 
     #[test]
     fn a_line_running_back_and_forth_is_bounded_too() {
         let n = 300_000;
-        let at = |i: usize| {
-            (
-                200.0 + 200.0 * (i as f64 * 0.9).sin(),
-                (i as f64 * 0.11).cos(),
-            )
-        };
+        let at = |i: usize| (200.0 + 200.0 * (i as f64 * 0.9).sin(), (i as f64 * 0.11).cos());
         let pieces = line(n, 400.0, at);
         assert!(pieces.iter().map(Vec::len).sum::<usize>() <= 6 * (STRETCHES + 1));
         let (low, high) = extremes(&pieces);
@@ -226,12 +210,7 @@ mod tests {
 
     #[test]
     fn gaps_break_lines_and_bands() {
-        let at = |i: usize| {
-            (
-                i as f64 * 0.01,
-                if i % 1000 == 500 { f64::NAN } else { 0.0 },
-            )
-        };
+        let at = |i: usize| (i as f64 * 0.01, if i % 1000 == 500 { f64::NAN } else { 0.0 });
         assert_eq!(line(3000, 30.0, at).len(), 4);
         assert_eq!(band(3000, |i| (at(i).0, at(i).1, 1.0)).len(), 4);
         assert!(line(3, 10.0, |_| (f64::NAN, 0.0)).is_empty());
@@ -251,10 +230,7 @@ mod tests {
     fn crowded_points_are_thinned() {
         let many = (0..200_000).map(|i| {
             let t = f64::from(i);
-            (
-                300.0 + 280.0 * (t * 0.77).sin(),
-                100.0 + 90.0 * (t * 0.31).cos(),
-            )
+            (300.0 + 280.0 * (t * 0.77).sin(), 100.0 + 90.0 * (t * 0.31).cos())
         });
         let kept = points(many.clone().collect());
         assert!(kept.len() <= 2 * PLAIN + 6);

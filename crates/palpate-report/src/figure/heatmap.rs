@@ -10,8 +10,8 @@ use super::{Map, Scale};
 /// The colour map *viridis* at equal steps: perceptually uniform, safe for colour-blind readers,
 /// and rising steadily in lightness so that it survives a grey printer.
 const ANCHORS: [u32; 17] = [
-    0x440154, 0x48186A, 0x472D7B, 0x424086, 0x3B528B, 0x33638D, 0x2C728E, 0x26828E, 0x21918C,
-    0x1F9F88, 0x27AD81, 0x3DBC74, 0x5CC863, 0x81D34D, 0xAADC32, 0xD5E21A, 0xFDE725,
+    0x440154, 0x48186A, 0x472D7B, 0x424086, 0x3B528B, 0x33638D, 0x2C728E, 0x26828E, 0x21918C, 0x1F9F88, 0x27AD81,
+    0x3DBC74, 0x5CC863, 0x81D34D, 0xAADC32, 0xD5E21A, 0xFDE725,
 ];
 
 /// Colour of cells without a value.
@@ -40,31 +40,18 @@ pub(crate) fn edges(centres: &[f64], scale: Scale) -> Vec<f64> {
     let logarithmic = scale == Scale::Log;
     let to = |v: f64| if logarithmic { v.ln() } else { v };
     let from = |v: f64| if logarithmic { v.exp() } else { v };
-    let c: Vec<f64> = centres
-        .iter()
-        .copied()
-        .filter(|v| shows(*v, scale))
-        .map(to)
-        .collect();
+    let c: Vec<f64> = centres.iter().copied().filter(|v| shows(*v, scale)).map(to).collect();
     let (Some(&first), Some(&last)) = (c.first(), c.last()) else {
         return Vec::new();
     };
     if c.len() == 1 {
-        let half = if scale == Scale::Linear && first != 0.0 {
-            first.abs() * 0.05
-        } else {
-            0.5
-        };
+        let half = if scale == Scale::Linear && first != 0.0 { first.abs() * 0.05 } else { 0.5 };
         return vec![from(first - half), from(first + half)];
     }
     let start = first - (c[1] - first) / 2.0;
     let end = last + (last - c[c.len() - 2]) / 2.0;
     let middle = c.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));
-    std::iter::once(start)
-        .chain(middle)
-        .chain([end])
-        .map(from)
-        .collect()
+    std::iter::once(start).chain(middle).chain([end]).map(from).collect()
 }
 
 /// Values at the two ends of the colours.
@@ -73,9 +60,7 @@ pub(crate) fn limits(map: &Map) -> (f64, f64) {
         return range;
     }
     let finite = map.values.iter().copied().filter(|v| v.abs() < 1e300);
-    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-        (low.min(v), high.max(v))
-    });
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
     match (low, high) {
         (low, high) if low > high => (0.0, 1.0),
         range if usable(range) => range,
@@ -129,9 +114,7 @@ impl Cells {
     /// `centres` are shares of the picture; they may rise or fall.
     fn new(centres: impl Iterator<Item = f64>, count: usize) -> Self {
         let centres: Vec<f64> = centres.map(|c| c * count as f64).collect();
-        let mut order: Vec<usize> = (0..centres.len())
-            .filter(|i| centres[*i].is_finite())
-            .collect();
+        let mut order: Vec<usize> = (0..centres.len()).filter(|i| centres[*i].is_finite()).collect();
         let falls = order.len() > 1 && centres[order[0]] > centres[order[order.len() - 1]];
         if falls {
             order.reverse();
@@ -147,11 +130,7 @@ impl Cells {
                     (first, past)
                 } else {
                     let cell = borders.partition_point(|b| *b <= pixel as f64 + 0.5);
-                    if cell == 0 || cell > sorted.len() {
-                        (0, 0)
-                    } else {
-                        (cell - 1, cell)
-                    }
+                    if cell == 0 || cell > sorted.len() { (0, 0) } else { (cell - 1, cell) }
                 };
                 if first >= past {
                     0..0

@@ -143,32 +143,18 @@ impl Layer {
     /// A level across the panel.
     #[must_use]
     pub fn horizontal(at: f64, role: Role) -> Self {
-        Self::Horizontal {
-            at,
-            role,
-            label: None,
-        }
+        Self::Horizontal { at, role, label: None }
     }
 
     /// A position on the horizontal axis.
     #[must_use]
     pub fn vertical(at: f64, role: Role) -> Self {
-        Self::Vertical {
-            at,
-            role,
-            label: None,
-        }
+        Self::Vertical { at, role, label: None }
     }
 
     /// A heat map coloured from its smallest to its largest value.
     #[must_use]
-    pub fn map(
-        x: Vec<f64>,
-        y: Vec<f64>,
-        values: Vec<f64>,
-        label: impl Into<String>,
-        unit: impl Into<String>,
-    ) -> Self {
+    pub fn map(x: Vec<f64>, y: Vec<f64>, values: Vec<f64>, label: impl Into<String>, unit: impl Into<String>) -> Self {
         Self::Map(Map {
             x,
             y,
@@ -220,32 +206,20 @@ impl Layer {
             Self::Line { x, y, .. } => need("y of a line", y.len(), x.len()),
             Self::Points { x, y, error, .. } => {
                 need("y of points", y.len(), x.len())?;
-                need(
-                    "error of points",
-                    error.as_ref().map_or(x.len(), Vec::len),
-                    x.len(),
-                )
+                need("error of points", error.as_ref().map_or(x.len(), Vec::len), x.len())
             }
             Self::Band { x, low, high, .. } => {
                 need("lower edge of a band", low.len(), x.len())?;
                 need("upper edge of a band", high.len(), x.len())
             }
-            Self::Map(map) => need(
-                "values of a map",
-                map.values.len(),
-                map.x.len() * map.y.len(),
-            ),
+            Self::Map(map) => need("values of a map", map.values.len(), map.x.len() * map.y.len()),
             Self::Span { .. } | Self::Horizontal { .. } | Self::Vertical { .. } => Ok(()),
         }
     }
 
     /// Whether nothing of the layer can be drawn; spans and reference lines alone do not count.
     pub(crate) fn is_empty(&self, x_scale: Scale, y_scale: Scale) -> bool {
-        let none = |x: &[f64], y: &[f64]| {
-            !x.iter()
-                .zip(y)
-                .any(|(x, y)| shows(*x, x_scale) && shows(*y, y_scale))
-        };
+        let none = |x: &[f64], y: &[f64]| !x.iter().zip(y).any(|(x, y)| shows(*x, x_scale) && shows(*y, y_scale));
         match self {
             Self::Line { x, y, .. } | Self::Points { x, y, .. } => none(x, y),
             Self::Band { x, low, high, .. } => none(x, low) && none(x, high),

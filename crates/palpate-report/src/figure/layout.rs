@@ -164,30 +164,19 @@ impl Frame<'_> {
             let range = heatmap::limits(map);
             let bar = Transform::new(super::Scale::Linear, range, area.bottom(), area.y);
             let count = (area.h / 15.0).clamp(2.0, 8.0);
-            (
-                bar,
-                Ticks::new(super::Scale::Linear, range.0, range.1, count),
-            )
+            (bar, Ticks::new(super::Scale::Linear, range.0, range.1, count))
         });
     }
 
     /// Widest label of some ticks.
     pub(crate) fn widest(ticks: &Ticks) -> f64 {
-        ticks
-            .major
-            .iter()
-            .map(|(_, label)| width(label, TICK))
-            .fold(0.0, f64::max)
+        ticks.major.iter().map(|(_, label)| width(label, TICK)).fold(0.0, f64::max)
     }
 
     /// Height of the strip above the axes that names shaded stretches.
     pub(crate) fn span_strip(&self) -> f64 {
         let named = |l: &Layer| matches!(l, Layer::Span { label: Some(_), .. });
-        if self.panel.layers.iter().any(named) {
-            SPAN_STRIP
-        } else {
-            0.0
-        }
+        if self.panel.layers.iter().any(named) { SPAN_STRIP } else { 0.0 }
     }
 
     fn margins(&self) -> Margins {
@@ -234,10 +223,7 @@ impl Figure {
     }
 
     fn letter(&self, index: usize) -> Option<char> {
-        let letter = u8::try_from(index)
-            .ok()
-            .filter(|i| *i < 26)
-            .map(|i| char::from(b'a' + i));
+        let letter = u8::try_from(index).ok().filter(|i| *i < 26).map(|i| char::from(b'a' + i));
         letter.filter(|_| self.letters && self.panels.len() > 1)
     }
 }

@@ -50,19 +50,16 @@ pub(crate) fn entries(panel: &Panel) -> Vec<Entry> {
         if layer.is_empty(panel.x.scale, panel.y.scale) {
             continue;
         }
-        let index = entries
-            .iter()
-            .position(|e| &e.label == label)
-            .unwrap_or_else(|| {
-                let label = label.clone();
-                entries.push(Entry {
-                    label,
-                    line: None,
-                    points: None,
-                    band: None,
-                });
-                entries.len() - 1
+        let index = entries.iter().position(|e| &e.label == label).unwrap_or_else(|| {
+            let label = label.clone();
+            entries.push(Entry {
+                label,
+                line: None,
+                points: None,
+                band: None,
             });
+            entries.len() - 1
+        });
         let style = Some(role.style());
         match layer {
             Layer::Line { .. } => entries[index].line = style,
@@ -75,21 +72,13 @@ pub(crate) fn entries(panel: &Panel) -> Vec<Entry> {
 
 /// Size of a legend that lists its entries below each other.
 fn block_size(entries: &[Entry]) -> (f64, f64) {
-    let widest = entries
-        .iter()
-        .map(|e| width(&e.label, CAPTION))
-        .fold(0.0, f64::max);
-    (
-        SAMPLE + SPACE + widest + 4.0,
-        entries.len() as f64 * LEGEND_ROW + 2.0,
-    )
+    let widest = entries.iter().map(|e| width(&e.label, CAPTION)).fold(0.0, f64::max);
+    (SAMPLE + SPACE + widest + 4.0, entries.len() as f64 * LEGEND_ROW + 2.0)
 }
 
 /// How many rows the entries need when set one after the other.
 pub(crate) fn rows(entries: &[Entry], room: f64) -> usize {
-    row_positions(entries, room)
-        .last()
-        .map_or(0, |(row, _)| row + 1)
+    row_positions(entries, room).last().map_or(0, |(row, _)| row + 1)
 }
 
 fn row_positions(entries: &[Entry], room: f64) -> Vec<(usize, f64)> {
@@ -140,9 +129,7 @@ impl Occupancy {
     pub(crate) fn mark_line(&mut self, line: &[Position]) {
         for pair in line.windows(2) {
             let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
-            let steps = (dx.abs().max(dy.abs()) / CELL * 1.5)
-                .ceil()
-                .clamp(1.0, 20_000.0);
+            let steps = (dx.abs().max(dy.abs()) / CELL * 1.5).ceil().clamp(1.0, 20_000.0);
             for i in 0..=steps as usize {
                 let part = i as f64 / steps;
                 self.mark((pair[0].0 + part * dx, pair[0].1 + part * dy));
@@ -164,16 +151,9 @@ impl Occupancy {
     /// How many cells of `area` are taken.
     pub(crate) fn covered(&self, area: Rect) -> usize {
         let cell = |v: f64, most: usize| ((v / CELL).floor().max(0.0) as usize).min(most - 1);
-        let columns = cell(area.x - self.area.x, self.columns)
-            ..=cell(area.right() - self.area.x, self.columns);
-        let rows =
-            cell(area.y - self.area.y, self.rows)..=cell(area.bottom() - self.area.y, self.rows);
-        let hits = |r: usize| {
-            columns
-                .clone()
-                .filter(|c| self.taken[r * self.columns + c])
-                .count()
-        };
+        let columns = cell(area.x - self.area.x, self.columns)..=cell(area.right() - self.area.x, self.columns);
+        let rows = cell(area.y - self.area.y, self.rows)..=cell(area.bottom() - self.area.y, self.rows);
+        let hits = |r: usize| columns.clone().filter(|c| self.taken[r * self.columns + c]).count();
         rows.map(hits).sum()
     }
 }
@@ -208,11 +188,7 @@ pub(crate) fn free_place(entries: &[Entry], taken: &Occupancy) -> Option<Rect> {
         };
         taken.covered(wide) == 0
     };
-    corners
-        .into_iter()
-        .chain(edges)
-        .map(|(along, down)| at(along, down))
-        .find(free)
+    corners.into_iter().chain(edges).map(|(along, down)| at(along, down)).find(free)
 }
 
 /// Draws the entries below each other.
@@ -254,11 +230,5 @@ fn draw_entry(svg: &mut Svg, entry: &Entry, x: f64, middle: f64) {
         halo: false,
     };
     let baseline = middle + 0.36 * CAPTION;
-    svg.text(
-        x + SAMPLE + SPACE,
-        baseline,
-        Anchor::Start,
-        font,
-        &entry.label,
-    );
+    svg.text(x + SAMPLE + SPACE, baseline, Anchor::Start, font, &entry.label);
 }

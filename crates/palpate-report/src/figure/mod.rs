@@ -171,10 +171,7 @@ impl Figure {
             self.draw_map(svg, frame)?;
         }
         for layer in &frame.panel.layers {
-            if let Layer::Band {
-                x, low, high, role, ..
-            } = layer
-            {
+            if let Layer::Band { x, low, high, role, .. } = layer {
                 series::draw_band(svg, frame, (x, low, high), *role);
             }
         }
@@ -187,9 +184,7 @@ impl Figure {
                     series::draw_line(svg, frame, (x, y), *role);
                     svg.close_clip();
                 }
-                Layer::Points {
-                    x, y, error, role, ..
-                } => {
+                Layer::Points { x, y, error, role, .. } => {
                     series::draw_points(svg, frame, (x, y), error.as_deref(), *role);
                 }
                 _ => {}
@@ -230,22 +225,14 @@ impl Figure {
             Arrangement::SideBySide | Arrangement::Grid(_) => (174.0, 64.0 * rows),
         };
         let usable = |given: Option<f64>, otherwise: f64| {
-            given
-                .filter(|v| v.is_finite())
-                .unwrap_or(otherwise)
-                .clamp(20.0, 2000.0)
-                * 72.0
-                / 25.4
+            given.filter(|v| v.is_finite()).unwrap_or(otherwise).clamp(20.0, 2000.0) * 72.0 / 25.4
         };
         (usable(self.width_mm, width), usable(self.height_mm, height))
     }
 }
 
 /// Names of reference lines, and where the legend fits inside the axes without covering anything.
-fn inner_text<'a>(
-    frame: &'a Frame<'_>,
-    legend: &[legend::Entry],
-) -> (Vec<reference::Name<'a>>, Option<Rect>) {
+fn inner_text<'a>(frame: &'a Frame<'_>, legend: &[legend::Entry]) -> (Vec<reference::Name<'a>>, Option<Rect>) {
     let mut taken = Occupancy::new(frame.area);
     series::occupy(frame, &mut taken);
     let names = reference::reference_names(frame, &mut taken);

@@ -113,11 +113,7 @@ impl Panel {
     /// Height relative to the other rows of the figure (1 unless set); 0.4 suits residuals.
     #[must_use]
     pub fn share(mut self, share: f64) -> Self {
-        self.share = if share.is_finite() {
-            share.clamp(0.05, 20.0)
-        } else {
-            1.0
-        };
+        self.share = if share.is_finite() { share.clamp(0.05, 20.0) } else { 1.0 };
         self
     }
 
@@ -140,9 +136,7 @@ impl Panel {
 
     /// Whether any layer holds a value that can be drawn.
     pub(crate) fn is_empty(&self) -> bool {
-        self.layers
-            .iter()
-            .all(|layer| layer.is_empty(self.x.scale, self.y.scale))
+        self.layers.iter().all(|layer| layer.is_empty(self.x.scale, self.y.scale))
     }
 
     pub(crate) fn map(&self) -> Option<&super::Map> {

@@ -21,12 +21,7 @@ static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
 });
 
 /// PNG bytes of an SVG document at `scale` picture elements per point.
-pub(crate) fn png(
-    name: &str,
-    svg: &str,
-    points: (f64, f64),
-    dpi: f64,
-) -> Result<Vec<u8>, FigureError> {
+pub(crate) fn png(name: &str, svg: &str, points: (f64, f64), dpi: f64) -> Result<Vec<u8>, FigureError> {
     let fail = |reason: String| FigureError::Raster {
         figure: name.to_owned(),
         reason,
@@ -34,20 +29,17 @@ pub(crate) fn png(
     let scale = dpi / 72.0;
     let (width, height) = ((points.0 * scale).round(), (points.1 * scale).round());
     if !(width >= 1.0 && height >= 1.0 && width <= MOST && height <= MOST) {
-        return Err(fail(format!(
-            "{width} by {height} picture elements at {dpi} per inch"
-        )));
+        return Err(fail(format!("{width} by {height} picture elements at {dpi} per inch")));
     }
     let options = Options {
         fontdb: Arc::clone(&FONTS),
         ..Options::default()
     };
     let tree = Tree::from_str(svg, &options).map_err(|error| fail(error.to_string()))?;
-    let mut pixmap = Pixmap::new(width as u32, height as u32)
-        .ok_or_else(|| fail("no memory for the picture".to_owned()))?;
+    let mut pixmap =
+        Pixmap::new(width as u32, height as u32).ok_or_else(|| fail("no memory for the picture".to_owned()))?;
     let size = tree.size();
-    let transform =
-        Transform::from_scale(width as f32 / size.width(), height as f32 / size.height());
+    let transform = Transform::from_scale(width as f32 / size.width(), height as f32 / size.height());
     resvg::render(&tree, transform, &mut pixmap.as_mut());
     encode(&pixmap, dpi).map_err(|error| fail(error.to_string()))
 }
@@ -64,11 +56,7 @@ fn encode(pixmap: &Pixmap, dpi: f64) -> Result<Vec<u8>, png::EncodingError> {
         yppu: per_metre,
         unit: png::Unit::Meter,
     }));
-    let rgb: Vec<u8> = pixmap
-        .pixels()
-        .iter()
-        .flat_map(|p| [p.red(), p.green(), p.blue()])
-        .collect();
+    let rgb: Vec<u8> = pixmap.pixels().iter().flat_map(|p| [p.red(), p.green(), p.blue()]).collect();
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&rgb)?;
     writer.finish()?;

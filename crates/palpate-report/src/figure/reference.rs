@@ -46,14 +46,12 @@ pub(crate) fn draw_span_names(svg: &mut Svg, frame: &Frame<'_>) {
         let half = width(label, TICK) / 2.0;
         let leftmost = frame.area.x + half;
         let rightmost = leftmost.max(frame.area.right() - half);
-        let place = [0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9]
-            .into_iter()
-            .find_map(|shift| {
-                let middle = (f64::midpoint(from, to) + shift * half).clamp(leftmost, rightmost);
-                let (left, right) = (middle - half - 1.5, middle + half + 1.5);
-                let free = taken.iter().all(|(l, r)| right <= *l || left >= *r);
-                free.then_some((middle, left, right))
-            });
+        let place = [0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9].into_iter().find_map(|shift| {
+            let middle = (f64::midpoint(from, to) + shift * half).clamp(leftmost, rightmost);
+            let (left, right) = (middle - half - 1.5, middle + half + 1.5);
+            let free = taken.iter().all(|(l, r)| right <= *l || left >= *r);
+            free.then_some((middle, left, right))
+        });
         if let Some((middle, left, right)) = place {
             taken.push((left, right));
             let grey = Font {
@@ -69,13 +67,7 @@ pub(crate) fn draw_span_names(svg: &mut Svg, frame: &Frame<'_>) {
 fn spans<'a>(frame: &'a Frame<'_>) -> Vec<(f64, f64, Role, Option<&'a str>)> {
     let mut spans = Vec::new();
     for layer in &frame.panel.layers {
-        if let Layer::Span {
-            from,
-            to,
-            role,
-            label,
-        } = layer
-        {
+        if let Layer::Span { from, to, role, label } = layer {
             let (a, b) = (frame.x.at(from.min(*to)), frame.x.at(from.max(*to)));
             let (a, b) = (a.max(frame.area.x), b.min(frame.area.right()));
             if a < b {
@@ -89,10 +81,7 @@ fn spans<'a>(frame: &'a Frame<'_>) -> Vec<(f64, f64, Role, Option<&'a str>)> {
 /// Levels and positions across the panel.
 pub(crate) fn draw_references(svg: &mut Svg, frame: &Frame<'_>) {
     for (ends, role, _) in references(frame) {
-        svg.path(
-            &polyline(&ends, false),
-            &series::line_attributes(role.style()),
-        );
+        svg.path(&polyline(&ends, false), &series::line_attributes(role.style()));
     }
 }
 
@@ -140,15 +129,9 @@ pub(crate) fn reference_names<'a>(frame: &'a Frame<'_>, taken: &mut Occupancy) -
 fn places(area: Rect, [start, end]: Ends, w: f64) -> Vec<Rect> {
     let horizontal = start.1 == end.1;
     let (near, far) = if horizontal {
-        (
-            [start.1 - HEIGHT - 0.8, start.1 + 1.6],
-            [1.0, 0.0, 0.75, 0.5, 0.25],
-        )
+        ([start.1 - HEIGHT - 0.8, start.1 + 1.6], [1.0, 0.0, 0.75, 0.5, 0.25])
     } else {
-        (
-            [start.0 + 3.0, start.0 - w - 3.0],
-            [0.0, 1.0, 0.25, 0.5, 0.75],
-        )
+        ([start.0 + 3.0, start.0 - w - 3.0], [0.0, 1.0, 0.25, 0.5, 0.75])
     };
     let mut places = Vec::new();
     for along in far {

@@ -62,10 +62,7 @@ fn stretch(scale: Scale, value: f64) -> f64 {
 
 /// Limits of one axis shared by some panels.
 pub(crate) fn limits(axis: &Axis, panels: &[&Panel], direction: Direction) -> (f64, f64) {
-    if let Some(range) = axis
-        .range
-        .filter(|r| usable(*r) && r.0.min(r.1) > lowest(axis.scale))
-    {
+    if let Some(range) = axis.range.filter(|r| usable(*r) && r.0.min(r.1) > lowest(axis.scale)) {
         return range;
     }
     let mut extent = Extent {
@@ -77,21 +74,13 @@ pub(crate) fn limits(axis: &Axis, panels: &[&Panel], direction: Direction) -> (f
         extent.include(layer, direction, axis.scale);
     }
     if extent.low > extent.high {
-        return if axis.scale == Scale::Log {
-            (0.1, 10.0)
-        } else {
-            (0.0, 1.0)
-        };
+        return if axis.scale == Scale::Log { (0.1, 10.0) } else { (0.0, 1.0) };
     }
     extent.padded(axis.scale, direction)
 }
 
 fn lowest(scale: Scale) -> f64 {
-    if scale == Scale::Log {
-        1.0 / LARGEST
-    } else {
-        -LARGEST
-    }
+    if scale == Scale::Log { 1.0 / LARGEST } else { -LARGEST }
 }
 
 /// Whether the limits are apart by an amount that a drawing can resolve.
@@ -102,11 +91,7 @@ pub(crate) fn usable((low, high): (f64, f64)) -> bool {
 
 /// Limits around a value that does not vary.
 pub(crate) fn around(value: f64) -> (f64, f64) {
-    let room = if value.abs() > 1e-200 {
-        value.abs() * 0.1
-    } else {
-        1.0
-    };
+    let room = if value.abs() > 1e-200 { value.abs() * 0.1 } else { 1.0 };
     (value - room, value + room)
 }
 
@@ -129,10 +114,7 @@ enum Fit {
 
 impl Extent {
     fn take(&mut self, values: &[f64], scale: Scale) {
-        for value in values
-            .iter()
-            .filter(|v| **v > lowest(scale) && **v < LARGEST)
-        {
+        for value in values.iter().filter(|v| **v > lowest(scale) && **v < LARGEST) {
             self.low = self.low.min(*value);
             self.high = self.high.max(*value);
         }
@@ -185,16 +167,8 @@ impl Extent {
             return (low, high);
         }
         let room = 0.05 * (high - low);
-        let bottom = if low > 0.0 && low < 0.3 * high {
-            0.0
-        } else {
-            low - room
-        };
-        let top = if high < 0.0 && high > 0.3 * low {
-            0.0
-        } else {
-            high + room
-        };
+        let bottom = if low > 0.0 && low < 0.3 * high { 0.0 } else { low - room };
+        let top = if high < 0.0 && high > 0.3 * low { 0.0 } else { high + room };
         (bottom, top)
     }
 
@@ -214,21 +188,14 @@ mod tests {
 
     fn range(y: Vec<f64>, axis: &Axis) -> (f64, f64) {
         let x = (0..y.len()).map(|i| i as f64).collect();
-        let panel =
-            Panel::new(Axis::linear("x", ""), axis.clone()).layer(Layer::line(x, y, Role::Fitted));
+        let panel = Panel::new(Axis::linear("x", ""), axis.clone()).layer(Layer::line(x, y, Role::Fitted));
         limits(axis, &[&panel], Direction::Vertical)
     }
 
     #[test]
     fn degenerate_data_still_give_a_range() {
         let linear = Axis::linear("y", "");
-        for y in [
-            vec![],
-            vec![f64::NAN],
-            vec![3.0],
-            vec![0.0, 0.0],
-            vec![-1e300, 1e300],
-        ] {
+        for y in [vec![], vec![f64::NAN], vec![3.0], vec![0.0, 0.0], vec![-1e300, 1e300]] {
             let (low, high) = range(y, &linear);
             assert!(low < high && low.is_finite() && high.is_finite());
         }
@@ -238,13 +205,7 @@ mod tests {
 
     #[test]
     fn fixed_limits_win_unless_they_make_no_sense() {
-        assert_eq!(
-            range(vec![3.0], &Axis::linear("y", "").range(0.0, 9.0)),
-            (0.0, 9.0)
-        );
-        assert_ne!(
-            range(vec![3.0], &Axis::linear("y", "").range(9.0, 0.0)),
-            (9.0, 0.0)
-        );
+        assert_eq!(range(vec![3.0], &Axis::linear("y", "").range(0.0, 9.0)), (0.0, 9.0));
+        assert_ne!(range(vec![3.0], &Axis::linear("y", "").range(9.0, 0.0)), (9.0, 0.0));
     }
 }

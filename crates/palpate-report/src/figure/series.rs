@@ -13,11 +13,7 @@ use super::{Layer, Role};
 const CROWD: usize = 250;
 
 pub(crate) fn line_attributes(style: Style) -> String {
-    let dash = if style.dash.is_empty() {
-        String::new()
-    } else {
-        format!(" stroke-dasharray=\"{}\"", style.dash)
-    };
+    let dash = if style.dash.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{}\"", style.dash) };
     format!(
         "stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\"{dash}",
         style.colour,
@@ -43,25 +39,14 @@ pub(crate) fn draw_line(svg: &mut Svg, frame: &Frame<'_>, line: (&[f64], &[f64])
 }
 
 fn line_pieces(frame: &Frame<'_>, (x, y): (&[f64], &[f64])) -> Vec<Vec<Position>> {
-    decimate::line(x.len(), frame.area.w, |i| {
-        (frame.x.at(x[i]), frame.y.at(y[i]))
-    })
+    decimate::line(x.len(), frame.area.w, |i| (frame.x.at(x[i]), frame.y.at(y[i])))
 }
 
-pub(crate) fn draw_band(
-    svg: &mut Svg,
-    frame: &Frame<'_>,
-    (x, low, high): (&[f64], &[f64], &[f64]),
-    role: Role,
-) {
+pub(crate) fn draw_band(svg: &mut Svg, frame: &Frame<'_>, (x, low, high): (&[f64], &[f64], &[f64]), role: Role) {
     let pieces = decimate::band(x.len(), |i| {
         // On a logarithmic axis a band that reaches zero goes down to the frame.
         let floor = |v: f64| {
-            if v <= 0.0 {
-                frame.y.at(v.max(frame.y.low))
-            } else {
-                frame.y.at(v)
-            }
+            if v <= 0.0 { frame.y.at(v.max(frame.y.low)) } else { frame.y.at(v) }
         };
         (frame.x.at(x[i]), floor(low[i]), frame.y.at(high[i]))
     });
@@ -79,15 +64,8 @@ pub(crate) fn draw_band(
 
 /// Page positions of the points that lie within the axes.
 fn visible(frame: &Frame<'_>, x: &[f64], y: &[f64]) -> Vec<Position> {
-    let inside = x
-        .iter()
-        .zip(y)
-        .filter(|(x, y)| frame.x.contains(**x) && frame.y.contains(**y));
-    decimate::points(
-        inside
-            .map(|(x, y)| (frame.x.at(*x), frame.y.at(*y)))
-            .collect(),
-    )
+    let inside = x.iter().zip(y).filter(|(x, y)| frame.x.contains(**x) && frame.y.contains(**y));
+    decimate::points(inside.map(|(x, y)| (frame.x.at(*x), frame.y.at(*y))).collect())
 }
 
 /// Draws points, with error bars where half-lengths are given.
@@ -108,10 +86,7 @@ pub(crate) fn draw_points(
         for (x, y) in &positions {
             let _ = write!(d, "M{} {}h0", short(*x), short(*y));
         }
-        let attributes = format!(
-            "stroke=\"{}\" stroke-width=\"1.7\" stroke-linecap=\"round\"",
-            style.colour
-        );
+        let attributes = format!("stroke=\"{}\" stroke-width=\"1.7\" stroke-linecap=\"round\"", style.colour);
         svg.path(&d, &attributes);
     } else {
         let radius = if positions.len() > 80 { 1.6 } else { 2.0 };
@@ -119,12 +94,7 @@ pub(crate) fn draw_points(
     }
 }
 
-fn draw_error_bars(
-    svg: &mut Svg,
-    frame: &Frame<'_>,
-    (x, y, error): (&[f64], &[f64], &[f64]),
-    style: Style,
-) {
+fn draw_error_bars(svg: &mut Svg, frame: &Frame<'_>, (x, y, error): (&[f64], &[f64], &[f64]), style: Style) {
     let mut d = String::new();
     for ((x, y), error) in x.iter().zip(y).zip(error) {
         let px = frame.x.at(*x);
@@ -142,10 +112,7 @@ fn draw_error_bars(
             t = short(top.max(frame.area.y))
         );
     }
-    svg.path(
-        &d,
-        &format!("stroke=\"{}\" stroke-width=\"0.7\"", style.colour),
-    );
+    svg.path(&d, &format!("stroke=\"{}\" stroke-width=\"0.7\"", style.colour));
 }
 
 pub(crate) fn draw_markers(svg: &mut Svg, positions: &[Position], style: Style, radius: f64) {
@@ -181,36 +148,18 @@ fn marker(d: &mut String, shape: Marker, (x, y): Position, r: f64) {
             write!(d, "M{left} {top}h{side}v{side}h-{side}Z")
         }
         Marker::Triangle | Marker::TriangleDown => {
-            let up = if shape == Marker::Triangle {
-                1.2 * r
-            } else {
-                -1.2 * r
-            };
+            let up = if shape == Marker::Triangle { 1.2 * r } else { -1.2 * r };
             let (apex, base, half) = (short(y - up), short(1.8 * up), 1.15 * r);
-            write!(
-                d,
-                "M{} {apex}l{} {base}h-{}Z",
-                short(x),
-                short(half),
-                short(2.0 * half)
-            )
+            write!(d, "M{} {apex}l{} {base}h-{}Z", short(x), short(half), short(2.0 * half))
         }
         Marker::Diamond => {
             let s = short(1.35 * r);
-            write!(
-                d,
-                "M{} {}l{s} {s}l-{s} {s}l-{s} -{s}Z",
-                short(x),
-                short(y - 1.35 * r)
-            )
+            write!(d, "M{} {}l{s} {s}l-{s} {s}l-{s} -{s}Z", short(x), short(y - 1.35 * r))
         }
         Marker::Cross => {
             let (s, side) = (0.95 * r, short(1.9 * r));
             let (left, top, bottom) = (short(x - s), short(y - s), short(y + s));
-            write!(
-                d,
-                "M{left} {top}l{side} {side}M{left} {bottom}l{side} -{side}"
-            )
+            write!(d, "M{left} {top}l{side} {side}M{left} {bottom}l{side} -{side}")
         }
     };
 }

@@ -51,11 +51,7 @@ pub(crate) struct Svg {
 pub(crate) fn short(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" {
-        "0".to_owned()
-    } else {
-        text.to_owned()
-    }
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 impl Svg {
@@ -94,10 +90,7 @@ impl Svg {
 
     pub(crate) fn rect(&mut self, area: Rect, attributes: &str) {
         let [x, y, w, h] = [area.x, area.y, area.w, area.h].map(short);
-        let _ = writeln!(
-            self.body,
-            "<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" {attributes}/>"
-        );
+        let _ = writeln!(self.body, "<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" {attributes}/>");
     }
 
     pub(crate) fn path(&mut self, d: &str, attributes: &str) {
@@ -125,14 +118,7 @@ impl Svg {
         self.turned_text((x, y), Anchor::Middle, font, content, true);
     }
 
-    fn turned_text(
-        &mut self,
-        (x, y): (f64, f64),
-        anchor: Anchor,
-        font: Font,
-        content: &str,
-        upward: bool,
-    ) {
+    fn turned_text(&mut self, (x, y): (f64, f64), anchor: Anchor, font: Font, content: &str, upward: bool) {
         if content.is_empty() {
             return;
         }
@@ -147,11 +133,7 @@ impl Svg {
             Anchor::Middle => " text-anchor=\"middle\"",
             Anchor::End => " text-anchor=\"end\"",
         };
-        let bold = if font.bold {
-            " font-weight=\"bold\""
-        } else {
-            ""
-        };
+        let bold = if font.bold { " font-weight=\"bold\"" } else { "" };
         let halo = if font.halo {
             " stroke=\"#fff\" stroke-width=\"2\" stroke-linejoin=\"round\" paint-order=\"stroke\""
         } else {
@@ -202,9 +184,6 @@ mod tests {
     #[test]
     fn one_position_is_a_dot() {
         assert_eq!(polyline(&[(1.0, 2.5)], false), "M1 2.5h0");
-        assert_eq!(
-            polyline(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], true),
-            "M0 0L1 0 1 1Z"
-        );
+        assert_eq!(polyline(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], true), "M0 0L1 0 1 1Z");
     }
 }

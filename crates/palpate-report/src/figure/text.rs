@@ -7,11 +7,11 @@ use crate::script::{Level, runs};
 ///
 /// They are those of Arimo, which Arial, Helvetica and Liberation Sans share.
 const WIDTHS: [u16; 95] = [
-    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278, 556, 556, 556,
-    556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667,
-    611, 778, 722, 278, 500, 667, 556, 833, 722, 778, 667, 778, 722, 667, 611, 722, 667, 944, 667,
-    667, 611, 278, 278, 278, 469, 556, 333, 556, 556, 500, 556, 556, 278, 556, 556, 222, 222, 500,
-    222, 833, 556, 556, 556, 556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584,
+    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278, 556, 556, 556, 556, 556, 556, 556,
+    556, 556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667, 611, 778, 722, 278, 500, 667, 556, 833,
+    722, 778, 667, 778, 722, 667, 611, 722, 667, 944, 667, 667, 611, 278, 278, 278, 469, 556, 333, 556, 556, 500, 556,
+    556, 278, 556, 556, 222, 222, 500, 222, 833, 556, 556, 556, 556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334,
+    260, 334, 584,
 ];
 
 /// Size of raised and lowered characters relative to the text around them.
@@ -51,30 +51,16 @@ pub(crate) fn markup(text: &str, size: f64) -> String {
             Level::Lowered => (0.16 * size, size * SMALL),
         };
         // A dot steps back over its letter, and what follows steps forward again.
-        let aside = if level == Level::Dot {
-            -(letter + DOT * size) / 2.0
-        } else {
-            back
-        };
-        back = if level == Level::Dot {
-            (letter - DOT * size) / 2.0
-        } else {
-            0.0
-        };
+        let aside = if level == Level::Dot { -(letter + DOT * size) / 2.0 } else { back };
+        back = if level == Level::Dot { (letter - DOT * size) / 2.0 } else { 0.0 };
         letter = run.chars().last().map_or(0.0, advance) * font;
         let run = escape(&run);
         if level == Level::Base && height == 0.0 && aside == 0.0 {
             out.push_str(&run);
         } else {
-            let dx = if aside == 0.0 {
-                String::new()
-            } else {
-                format!(" dx=\"{aside:.2}\"")
-            };
+            let dx = if aside == 0.0 { String::new() } else { format!(" dx=\"{aside:.2}\"") };
             let dy = target - height;
-            out.push_str(&format!(
-                "<tspan{dx} dy=\"{dy:.2}\" font-size=\"{font:.2}\">{run}</tspan>"
-            ));
+            out.push_str(&format!("<tspan{dx} dy=\"{dy:.2}\" font-size=\"{font:.2}\">{run}</tspan>"));
         }
         height = target;
     }

@@ -44,11 +44,7 @@ fn linear(low: f64, high: f64, count: f64) -> Ticks {
         if ticks.major.len() >= wanted {
             break;
         }
-        ticks = spaced(
-            low,
-            high,
-            Step::above((high - low) / count / 2f64.powi(finer)),
-        );
+        ticks = spaced(low, high, Step::above((high - low) / count / 2f64.powi(finer)));
     }
     ticks
 }
@@ -72,11 +68,7 @@ impl Step {
             r if r <= 5.0 => (5.0, order, 5),
             _ => (1.0, order + 1, 5),
         };
-        Self {
-            mantissa,
-            order,
-            parts,
-        }
+        Self { mantissa, order, parts }
     }
 
     fn length(self) -> f64 {
@@ -92,22 +84,14 @@ impl Step {
 fn spaced(low: f64, high: f64, step: Step) -> Ticks {
     let largest = low.abs().max(high.abs());
     let order = largest.log10().floor() as i32;
-    let exponent = if (-2..=4).contains(&order) {
-        0
-    } else {
-        order.div_euclid(3) * 3
-    };
+    let exponent = if (-2..=4).contains(&order) { 0 } else { order.div_euclid(3) * 3 };
     let decimals = usize::try_from(exponent - step.order).unwrap_or(0).min(12);
     let length = step.length();
     let label = |index: i64| {
         let power = 10f64.powi(step.order - exponent);
         let text = format!("{:.decimals$}", index as f64 * step.mantissa * power);
         let zero = !text.chars().any(|c| ('1'..='9').contains(&c));
-        if zero {
-            "0".to_owned()
-        } else {
-            text.replace('-', "−")
-        }
+        if zero { "0".to_owned() } else { text.replace('-', "−") }
     };
     let between = |length: f64| {
         let first = (low / length - 1e-9).ceil() as i64;
@@ -116,13 +100,8 @@ fn spaced(low: f64, high: f64, step: Step) -> Ticks {
     };
     let minor = length / step.parts as f64;
     Ticks {
-        major: between(length)
-            .map(|i| (i as f64 * length, label(i)))
-            .collect(),
-        minor: between(minor)
-            .filter(|i| i % step.parts != 0)
-            .map(|i| i as f64 * minor)
-            .collect(),
+        major: between(length).map(|i| (i as f64 * length, label(i))).collect(),
+        minor: between(minor).filter(|i| i % step.parts != 0).map(|i| i as f64 * minor).collect(),
         exponent,
     }
 }
@@ -178,11 +157,7 @@ mod tests {
     use super::*;
 
     fn labels(ticks: &Ticks) -> Vec<&str> {
-        ticks
-            .major
-            .iter()
-            .map(|(_, label)| label.as_str())
-            .collect()
+        ticks.major.iter().map(|(_, label)| label.as_str()).collect()
     }
 
     #[test]
@@ -199,10 +174,7 @@ mod tests {
         assert_eq!(ticks.exponent, -6);
         assert_eq!(labels(&ticks), ["0", "200", "400"]);
         let ticks = Ticks::new(Scale::Linear, 0.0, 3.1e5, 4.0);
-        assert_eq!(
-            (ticks.exponent, labels(&ticks)),
-            (3, vec!["0", "100", "200", "300"])
-        );
+        assert_eq!((ticks.exponent, labels(&ticks)), (3, vec!["0", "100", "200", "300"]));
     }
 
     #[test]

@@ -20,10 +20,7 @@ pub(crate) fn document(page: &Page) -> String {
          <h1>{title}</h1>\n"
     );
     if !page.subtitle.is_empty() {
-        out.push_str(&format!(
-            "<p class=\"subtitle\">{}</p>\n",
-            rich(&page.subtitle)
-        ));
+        out.push_str(&format!("<p class=\"subtitle\">{}</p>\n", rich(&page.subtitle)));
     }
     out.push_str("</header>\n");
     contents(&mut out, page, &ids);
@@ -31,9 +28,7 @@ pub(crate) fn document(page: &Page) -> String {
     let mut counts = Counts::default();
     for (section, id) in page.sections.iter().zip(&ids) {
         let heading = rich(&section.heading);
-        out.push_str(&format!(
-            "<section aria-labelledby=\"{id}\">\n<h2 id=\"{id}\">{heading}</h2>\n"
-        ));
+        out.push_str(&format!("<section aria-labelledby=\"{id}\">\n<h2 id=\"{id}\">{heading}</h2>\n"));
         for block in &section.blocks {
             write_block(&mut out, block, &mut counts);
         }
@@ -61,22 +56,11 @@ fn section_ids(page: &Page) -> Vec<String> {
     page.sections
         .iter()
         .map(|section| {
-            let source = if section.id.is_empty() {
-                &section.heading
-            } else {
-                &section.id
-            };
-            let words: String = source
-                .to_lowercase()
-                .chars()
-                .map(|c| if c.is_ascii_alphanumeric() { c } else { ' ' })
-                .collect();
+            let source = if section.id.is_empty() { &section.heading } else { &section.id };
+            let words: String =
+                source.to_lowercase().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { ' ' }).collect();
             let stem = words.split_whitespace().collect::<Vec<_>>().join("-");
-            let stem = if stem.is_empty() {
-                "section".to_owned()
-            } else {
-                stem
-            };
+            let stem = if stem.is_empty() { "section".to_owned() } else { stem };
             let mut id = stem.clone();
             let mut number = 2;
             while !taken.insert(id.clone()) {
@@ -94,10 +78,7 @@ fn contents(out: &mut String, page: &Page, ids: &[String]) {
     }
     out.push_str("<nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ol>\n");
     for (section, id) in page.sections.iter().zip(ids) {
-        out.push_str(&format!(
-            "<li><a href=\"#{id}\">{}</a></li>\n",
-            rich(&section.heading)
-        ));
+        out.push_str(&format!("<li><a href=\"#{id}\">{}</a></li>\n", rich(&section.heading)));
     }
     out.push_str("</ol>\n</nav>\n");
 }
@@ -124,10 +105,7 @@ fn write_block(out: &mut String, block: &Block, counts: &mut Counts) {
         Block::Findings(findings) => write_findings(out, findings),
         Block::KeyValues(pairs) => key_values(out, pairs),
         Block::Code(text) => {
-            out.push_str(&format!(
-                "<pre tabindex=\"0\"><code>{}</code></pre>\n",
-                escape(text)
-            ));
+            out.push_str(&format!("<pre tabindex=\"0\"><code>{}</code></pre>\n", escape(text)));
         }
         Block::Checks(checks) => write_checks(out, checks),
     }
@@ -145,30 +123,16 @@ fn write_figure(out: &mut String, picture: &Picture, number: usize) {
 fn write_table(out: &mut String, table: &Table, number: usize) {
     let reasons = table.reasons();
     let columns = table.columns.len();
-    let class: Vec<&str> = (0..columns)
-        .map(|c| {
-            if table.is_numeric(c) {
-                " class=\"n\""
-            } else {
-                ""
-            }
-        })
-        .collect();
+    let class: Vec<&str> = (0..columns).map(|c| if table.is_numeric(c) { " class=\"n\"" } else { "" }).collect();
     out.push_str(&format!(
         "<div class=\"table\" id=\"table-{number}\">\n<table>\n\
          <caption><b>Table {number}.</b> {}</caption>\n<thead>\n<tr>",
         rich(&table.caption)
     ));
     for (column, class) in table.columns.iter().zip(&class) {
-        out.push_str(&format!(
-            "<th scope=\"col\"{class}>{}",
-            rich(&column.heading)
-        ));
+        out.push_str(&format!("<th scope=\"col\"{class}>{}", rich(&column.heading)));
         if !column.unit.is_empty() {
-            out.push_str(&format!(
-                " <span class=\"unit\">({})</span>",
-                rich(&column.unit)
-            ));
+            out.push_str(&format!(" <span class=\"unit\">({})</span>", rich(&column.unit)));
         }
         out.push_str("</th>");
     }
@@ -176,20 +140,13 @@ fn write_table(out: &mut String, table: &Table, number: usize) {
     for row in 0..table.rows.len() {
         out.push_str("<tr>");
         for (c, class) in class.iter().enumerate() {
-            out.push_str(&format!(
-                "<td{class}>{}</td>",
-                cell(table.cell(row, c), &reasons)
-            ));
+            out.push_str(&format!("<td{class}>{}</td>", cell(table.cell(row, c), &reasons)));
         }
         out.push_str("</tr>\n");
     }
     out.push_str("</tbody>\n</table>\n");
     for (i, reason) in reasons.iter().enumerate() {
-        out.push_str(&format!(
-            "<p class=\"note\"><sup>{}</sup> {}</p>\n",
-            mark(i),
-            rich(reason)
-        ));
+        out.push_str(&format!("<p class=\"note\"><sup>{}</sup> {}</p>\n", mark(i), rich(reason)));
     }
     for note in &table.notes {
         out.push_str(&format!("<p class=\"note\">{}</p>\n", rich(note)));
@@ -221,10 +178,7 @@ fn write_findings(out: &mut String, findings: &[Finding]) {
             escape(&finding.code),
             rich(&finding.seen)
         ));
-        for (name, text) in [
-            ("May mean", &finding.meaning),
-            ("What helps", &finding.remedy),
-        ] {
+        for (name, text) in [("May mean", &finding.meaning), ("What helps", &finding.remedy)] {
             if !text.is_empty() {
                 out.push_str(&format!("<p><i>{name}:</i> {}</p>\n", rich(text)));
             }

@@ -56,10 +56,7 @@ impl Cell {
     /// A number if there is one, otherwise why there is none.
     #[must_use]
     pub fn number_or(value: Option<f64>, digits: usize, reason: &str) -> Self {
-        value.map_or_else(
-            || Self::missing(reason),
-            |value| Self::number(value, digits),
-        )
+        value.map_or_else(|| Self::missing(reason), |value| Self::number(value, digits))
     }
 
     /// What a person reads; a missing value is a dash.
@@ -86,10 +83,7 @@ impl Cell {
     }
 
     pub(crate) fn is_numeric(&self) -> bool {
-        matches!(
-            self,
-            Self::Number { .. } | Self::Uncertain { .. } | Self::Integer(_)
-        )
+        matches!(self, Self::Number { .. } | Self::Uncertain { .. } | Self::Integer(_))
     }
 
     pub(crate) fn is_written_text(&self) -> bool {

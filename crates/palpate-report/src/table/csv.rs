@@ -4,15 +4,9 @@ use super::Table;
 
 pub(crate) fn write(table: &Table) -> String {
     let mut out = String::new();
-    line(
-        &mut out,
-        table.columns.iter().map(|column| column.key.clone()),
-    );
+    line(&mut out, table.columns.iter().map(|column| column.key.clone()));
     for row in 0..table.rows.len() {
-        line(
-            &mut out,
-            (0..table.columns.len()).map(|column| table.cell(row, column).stored()),
-        );
+        line(&mut out, (0..table.columns.len()).map(|column| table.cell(row, column).stored()));
     }
     out
 }
@@ -42,9 +36,11 @@ mod tests {
     fn another_reader_gets_every_value_back() {
         let values = [0.1 + 0.2, -1e-300, 6.022e23, 42.0];
         let words = ["plain", "a,b", "say \"so\"", "two\r\nlines"];
-        let mut table = Table::new("t", "")
-            .column(TableColumn::new("Value", "value_n", "N"))
-            .column(TableColumn::new("Remark, free", "remark", ""));
+        let mut table = Table::new("t", "").column(TableColumn::new("Value", "value_n", "N")).column(TableColumn::new(
+            "Remark, free",
+            "remark",
+            "",
+        ));
         for (value, word) in values.iter().zip(words) {
             table = table.row(vec![Cell::number(*value, 3), Cell::text(word)]);
         }
@@ -52,16 +48,10 @@ mod tests {
 
         let text = table.to_csv();
         let mut reader = csv::Reader::from_reader(text.as_bytes());
-        assert_eq!(
-            reader.headers().expect("a header"),
-            vec!["value_n", "remark"]
-        );
+        assert_eq!(reader.headers().expect("a header"), vec!["value_n", "remark"]);
         let rows: Vec<csv::StringRecord> = reader.records().flatten().collect();
         for (i, (value, word)) in values.iter().zip(words).enumerate() {
-            assert_eq!(
-                rows[i][0].parse::<f64>().map(f64::to_bits),
-                Ok(value.to_bits())
-            );
+            assert_eq!(rows[i][0].parse::<f64>().map(f64::to_bits), Ok(value.to_bits()));
             assert_eq!(&rows[i][1], word);
         }
         assert_eq!(rows[4], vec!["", "-7"]);
@@ -69,9 +59,7 @@ mod tests {
 
     #[test]
     fn a_lone_missing_value_is_not_a_blank_line() {
-        let table = Table::new("t", "")
-            .column(TableColumn::new("A", "a", ""))
-            .row(vec![Cell::missing("none")]);
+        let table = Table::new("t", "").column(TableColumn::new("A", "a", "")).row(vec![Cell::missing("none")]);
         assert_eq!(table.to_csv(), "a\r\n\"\"\r\n");
     }
 }

@@ -31,11 +31,7 @@ pub struct TableColumn {
 impl TableColumn {
     /// A column.
     #[must_use]
-    pub fn new(
-        heading: impl Into<String>,
-        key: impl Into<String>,
-        unit: impl Into<String>,
-    ) -> Self {
+    pub fn new(heading: impl Into<String>, key: impl Into<String>, unit: impl Into<String>) -> Self {
         Self {
             heading: heading.into(),
             key: key.into(),
@@ -118,17 +114,13 @@ impl Table {
     /// The cell at a place; places outside the rows hold empty text.
     pub(crate) fn cell(&self, row: usize, column: usize) -> &Cell {
         const EMPTY: &Cell = &Cell::Text(String::new());
-        self.rows
-            .get(row)
-            .and_then(|row| row.get(column))
-            .unwrap_or(EMPTY)
+        self.rows.get(row).and_then(|row| row.get(column)).unwrap_or(EMPTY)
     }
 
     /// Whether a column holds numbers and is set flush right.
     pub(crate) fn is_numeric(&self, column: usize) -> bool {
         let mut cells = (0..self.rows.len()).map(|row| self.cell(row, column));
-        cells.any(Cell::is_numeric)
-            && !(0..self.rows.len()).any(|row| self.cell(row, column).is_written_text())
+        cells.any(Cell::is_numeric) && !(0..self.rows.len()).any(|row| self.cell(row, column).is_written_text())
     }
 
     /// Why values are missing, in order of appearance; a reason is listed once.
@@ -149,11 +141,7 @@ impl Table {
 /// The mark that ties a missing value to its reason: a, b, …, z, aa, ab, …
 pub(crate) fn mark(index: usize) -> String {
     let letter = char::from(b'a' + u8::try_from(index % 26).unwrap_or(0));
-    if index < 26 {
-        letter.to_string()
-    } else {
-        format!("{}{letter}", mark(index / 26 - 1))
-    }
+    if index < 26 { letter.to_string() } else { format!("{}{letter}", mark(index / 26 - 1)) }
 }
 
 #[cfg(test)]
@@ -162,10 +150,7 @@ mod tests {
 
     #[test]
     fn marks_go_on_after_z() {
-        assert_eq!(
-            (mark(0), mark(25), mark(26), mark(52)),
-            ("a".into(), "z".into(), "aa".into(), "ba".into())
-        );
+        assert_eq!((mark(0), mark(25), mark(26), mark(52)), ("a".into(), "z".into(), "aa".into(), "ba".into()));
     }
 
     #[test]

@@ -8,17 +8,9 @@ const GUTTER: &str = "  ";
 pub(crate) fn write(table: &Table) -> String {
     let columns = table.columns.len();
     let reasons = table.reasons();
-    let heads: Vec<String> = table
-        .columns
-        .iter()
-        .map(super::TableColumn::title)
-        .collect();
+    let heads: Vec<String> = table.columns.iter().map(super::TableColumn::title).collect();
     let body: Vec<Vec<String>> = (0..table.rows.len())
-        .map(|row| {
-            (0..columns)
-                .map(|c| shown(table.cell(row, c), &reasons))
-                .collect()
-        })
+        .map(|row| (0..columns).map(|c| shown(table.cell(row, c), &reasons)).collect())
         .collect();
     let widths: Vec<usize> = (0..columns)
         .map(|c| {
@@ -56,19 +48,13 @@ fn shown(cell: &Cell, reasons: &[&str]) -> String {
         Cell::Missing(reason) => reasons.iter().position(|r| r == reason),
         _ => None,
     };
-    let text = cell
-        .shown()
-        .split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ");
+    let text = cell.shown().split_whitespace().collect::<Vec<_>>().join(" ");
     index.map_or(text.clone(), |i| format!("{text} [{}]", mark(i)))
 }
 
 /// Number of places a text takes in a terminal; accents that sit on a letter take none.
 fn extent(text: &str) -> usize {
-    text.chars()
-        .filter(|c| !('\u{300}'..='\u{36F}').contains(c))
-        .count()
+    text.chars().filter(|c| !('\u{300}'..='\u{36F}').contains(c)).count()
 }
 
 fn line(out: &mut String, cells: &[String], widths: &[usize], right: &[bool]) {
@@ -78,11 +64,7 @@ fn line(out: &mut String, cells: &[String], widths: &[usize], right: &[bool]) {
         .zip(right)
         .map(|((cell, width), right)| {
             let fill = " ".repeat(width - extent(cell).min(*width));
-            if *right {
-                format!("{fill}{cell}")
-            } else {
-                format!("{cell}{fill}")
-            }
+            if *right { format!("{fill}{cell}") } else { format!("{cell}{fill}") }
         })
         .collect();
     out.push_str(padded.join(GUTTER).trim_end());

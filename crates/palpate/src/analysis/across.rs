@@ -52,12 +52,10 @@ pub struct Across {
 
 pub(super) fn across(holds: &[HoldAnalysis], exponents: &[f64], displacement_tolerance: f64) -> Across {
     let evidence = summed_evidence(holds, exponents);
-    let common_exponent = evidence
-        .iter()
-        .filter(|(_, delta)| *delta <= 2.0)
-        .map(|(n, _)| *n)
-        .min_by(f64::total_cmp);
-    let fit = |hold: &HoldAnalysis| common_exponent.and_then(|n| hold.fit_with(n).cloned()).filter(|fit| fit.termination.is_good());
+    let common_exponent = evidence.iter().filter(|(_, delta)| *delta <= 2.0).map(|(n, _)| *n).min_by(f64::total_cmp);
+    let fit = |hold: &HoldAnalysis| {
+        common_exponent.and_then(|n| hold.fit_with(n).cloned()).filter(|fit| fit.termination.is_good())
+    };
     Across {
         trend: trend(holds, fit),
         agreements: agreements(holds, fit, displacement_tolerance),
@@ -92,7 +90,9 @@ fn trend(holds: &[HoldAnalysis], fit: impl Fn(&HoldAnalysis) -> Option<LatencyFi
         .collect();
     let count = points.len() as f64;
     let (mx, my) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / count, y + p.1 / count));
-    let (xx, xy) = points.iter().fold((0.0, 0.0), |(xx, xy), p| (xx + (p.0 - mx).powi(2), xy + (p.0 - mx) * (p.1 - my)));
+    let (xx, xy) = points
+        .iter()
+        .fold((0.0, 0.0), |(xx, xy), p| (xx + (p.0 - mx).powi(2), xy + (p.0 - mx) * (p.1 - my)));
     // Holds at one level show no trend.
     if points.len() < 2 || xx <= (1e-3 * mx).powi(2) * count {
         return None;
@@ -119,12 +119,16 @@ fn agreements(
 ) -> Vec<LevelAgreement> {
     let mut agreements = Vec::new();
     for unloading in holds.iter().filter(|hold| hold.after == Some(After::Unloading)) {
-        let (Some(level), Some(below)) = (unloading.displacement, fit(unloading)) else { continue };
+        let (Some(level), Some(below)) = (unloading.displacement, fit(unloading)) else {
+            continue;
+        };
         // The nearest earlier hold after loading at this displacement.
         let partner = holds.iter().rev().filter(|hold| hold.after == Some(After::Loading)).find(|hold| {
             hold.number < unloading.number && hold.displacement.is_some_and(|d| (d - level).abs() <= tolerance)
         });
-        let Some((loading, above)) = partner.and_then(|hold| Some((hold, fit(hold)?))) else { continue };
+        let Some((loading, above)) = partner.and_then(|hold| Some((hold, fit(hold)?))) else {
+            continue;
+        };
         let error = match (above.equilibrium.standard_error, below.equilibrium.standard_error) {
             (Some(a), Some(b)) => Some(a.hypot(b)),
             _ => None,

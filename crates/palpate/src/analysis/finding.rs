@@ -152,11 +152,12 @@ impl Finding {
     #[must_use]
     pub fn seen(&self) -> String {
         match self {
-            Self::EquilibriumExtrapolated { beyond } => format!(
-                "{:.0} % of the fitted relaxation lies beyond the end of the hold",
-                100.0 * beyond
-            ),
-            Self::ExponentUndetermined { interval: Some((low, high)) } => {
+            Self::EquilibriumExtrapolated { beyond } => {
+                format!("{:.0} % of the fitted relaxation lies beyond the end of the hold", 100.0 * beyond)
+            }
+            Self::ExponentUndetermined {
+                interval: Some((low, high)),
+            } => {
                 format!("the interval of the free exponent runs from {low:.1} to {high:.1}")
             }
             Self::ExponentUndetermined { interval: None } => {
@@ -169,17 +170,19 @@ impl Finding {
             Self::RateAtBound { exponent } => {
                 format!("the fit with n = {exponent:.3} ended at the edge of the range of its rate")
             }
-            Self::ResidualsCorrelated { correlation, independent } => format!(
+            Self::ResidualsCorrelated {
+                correlation,
+                independent,
+            } => format!(
                 "neighbouring residuals correlate by {correlation:.2}; the samples count as {independent:.0} independent ones"
             ),
             Self::NoRelaxation { change, standard_error } => {
                 format!("the force changes by {change:.2e} N with a standard error of {standard_error:.1e} N")
             }
             Self::TooFewSamples { found, needed } => format!("the hold has {found} samples, a fit needs {needed}"),
-            Self::SampledTooSlowly { share } => format!(
-                "{:.0} % of the relaxation happens within the first sample interval",
-                100.0 * share
-            ),
+            Self::SampledTooSlowly { share } => {
+                format!("{:.0} % of the relaxation happens within the first sample interval", 100.0 * share)
+            }
             Self::NoContactArea => "the contact has no area at this displacement".to_owned(),
             Self::Thinned { every } => format!("one sample in {every} is fitted"),
             Self::DropoutsRepaired { count: 1 } => "one row of the displacement strays alone".to_owned(),
@@ -214,11 +217,19 @@ impl Finding {
             }
             Self::NoRelaxation { .. } => "the contact is relaxed, or open, or its relaxation is below the noise",
             Self::TooFewSamples { .. } => "nothing was fitted to this hold",
-            Self::SampledTooSlowly { .. } => "the rate and the amplitude at the start of the hold rest on a few samples",
-            Self::NoContactArea => "the jaw is at or before first touch, so that no strain can be told from the force; the hold is not fitted",
+            Self::SampledTooSlowly { .. } => {
+                "the rate and the amplitude at the start of the hold rest on a few samples"
+            }
+            Self::NoContactArea => {
+                "the jaw is at or before first touch, so that no strain can be told from the force; the hold is not fitted"
+            }
             Self::Thinned { .. } => "the fit loses nothing but time",
-            Self::DropoutsRepaired { .. } => "the encoder or the logger lost a value; the mean of the neighbours stands in its place",
-            Self::PhasesFromForce => "phases come from the force; the edges of holds are less sure, and there are no strains",
+            Self::DropoutsRepaired { .. } => {
+                "the encoder or the logger lost a value; the mean of the neighbours stands in its place"
+            }
+            Self::PhasesFromForce => {
+                "phases come from the force; the edges of holds are less sure, and there are no strains"
+            }
             Self::AirTravel { .. } => "displacement and force are counted from first touch",
             Self::ModulusEstimated { .. } => "strains and v rest on this estimate; n and the relative rate do not",
             Self::ModulusMismatch { .. } => {
@@ -237,7 +248,9 @@ impl Finding {
                 "hold longer, sample the first second faster, or fix the exponent from longer holds"
             }
             Self::RateAtBound { .. } => "hold longer or sample faster; do not use the numbers of this fit",
-            Self::ResidualsCorrelated { .. } => "look at the residuals in the report; try a free exponent or a later start of the hold",
+            Self::ResidualsCorrelated { .. } => {
+                "look at the residuals in the report; try a free exponent or a later start of the hold"
+            }
             Self::NoRelaxation { .. } => "nothing, if the contact was meant to be open or at rest",
             Self::TooFewSamples { .. } => "sample faster or hold longer",
             Self::SampledTooSlowly { .. } => "sample faster at the start of holds",
@@ -247,7 +260,9 @@ impl Finding {
             Self::PhasesFromForce => "record the displacement, or give the hold's limits",
             Self::AirTravel { .. } => "set touch in the test description if this is not where they met",
             Self::ModulusEstimated { .. } => "give the modulus in the test description if it is known",
-            Self::ModulusMismatch { .. } => "leave the modulus out to have it estimated, or check geometry and first touch",
+            Self::ModulusMismatch { .. } => {
+                "leave the modulus out to have it estimated, or check geometry and first touch"
+            }
             Self::NoOverlay { .. } => "check geometry, first touch and units",
         }
     }

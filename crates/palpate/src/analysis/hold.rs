@@ -110,9 +110,7 @@ pub(super) fn analyze_hold(
 ) -> HoldAnalysis {
     let range = segment.fit_start..segment.end;
     let force = &record.force()[range.clone()];
-    let displacement = record
-        .displacement()
-        .map(|d| median(&mut d[segment.start..segment.end].to_vec()));
+    let displacement = record.displacement().map(|d| median(&mut d[segment.start..segment.end].to_vec()));
     let tail = (force.len() / 100).max(1);
     let mut hold = HoldAnalysis {
         number,
@@ -151,7 +149,12 @@ pub(super) fn analyze_hold(
 }
 
 /// Fills times and values, thinned if there are too many; `false` if there is no strain to be told.
-fn take_signal(hold: &mut HoldAnalysis, record: &Record, specimen: Option<&Specimen>, options: &AnalysisOptions) -> bool {
+fn take_signal(
+    hold: &mut HoldAnalysis,
+    record: &Record,
+    specimen: Option<&Specimen>,
+    options: &AnalysisOptions,
+) -> bool {
     let range = hold.segment.fit_start..hold.segment.end;
     let every = range.len().div_ceil(options.most_samples.max(8));
     if every > 1 {

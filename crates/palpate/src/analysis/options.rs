@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{Shape, Sides};
+use crate::contact::{Layers, LayersError, Shape, Sides};
 use crate::identify::FitOptions;
 use crate::segment::{ContactChoice, SegmentOptions};
 use crate::simulate::Separation;
@@ -29,6 +29,19 @@ pub enum LayersChoice {
     Thickness(f64),
 }
 
+impl LayersChoice {
+    /// The layers of a body of this depth (m).
+    ///
+    /// # Errors
+    /// [`LayersError`] for fewer than one layer, or a thickness that does not fit into the body.
+    pub fn layers(self, depth: f64) -> Result<Layers, LayersError> {
+        match self {
+            Self::Count(count) => Layers::new(count),
+            Self::Thickness(thickness) => Layers::of_thickness(thickness, depth),
+        }
+    }
+}
+
 /// Options of [`analyze`](super::analyze).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -37,7 +50,7 @@ pub struct AnalysisOptions {
     pub geometry: Option<Geometry>,
     /// How phases are found.
     pub segment: SegmentOptions,
-    /// How first touch is found.
+    /// How first touch is found; as recorded unless asked otherwise, since a strip in grips has no first touch.
     pub touch: ContactChoice,
     /// Whether the jaw can pull (for the overlay).
     pub separation: Separation,
@@ -62,7 +75,7 @@ impl Default for AnalysisOptions {
         Self {
             geometry: None,
             segment: SegmentOptions::default(),
-            touch: ContactChoice::default(),
+            touch: ContactChoice::AsRecorded,
             separation: Separation::default(),
             layers: None,
             exponents: vec![1.0, 2.0, 3.0, 5.0, 7.0],

@@ -1,6 +1,6 @@
 //! The same displacement simulated with the fitted numbers.
 
-use super::{AnalysisOptions, HoldAnalysis, LayersChoice};
+use super::{AnalysisOptions, HoldAnalysis};
 use crate::contact::{Layers, Specimen};
 use crate::identify::LatencyFit;
 use crate::latency::LatencyLaw;
@@ -44,7 +44,9 @@ pub(super) fn overlay(
     let n = exponent.ok_or("no exponent fits all holds")?;
     let usable = |after: Option<After>| -> Vec<f64> {
         let fits = holds.iter().filter(|hold| hold.after == after).filter_map(|hold| hold.fit_with(n));
-        fits.filter(|fit| fit.termination.is_good()).map(|fit: &LatencyFit| fit.rate_coefficient.value).collect()
+        fits.filter(|fit| fit.termination.is_good())
+            .map(|fit: &LatencyFit| fit.rate_coefficient.value)
+            .collect()
     };
     let mut coefficients = usable(Some(After::Loading));
     if coefficients.is_empty() {
@@ -65,13 +67,12 @@ pub(super) fn overlay(
             layers,
             separation: options.separation,
         };
-        simulate_force(&motion, &model, &time).map(|force| (model, force)).map_err(|error| error.to_string())
+        simulate_force(&motion, &model, &time)
+            .map(|force| (model, force))
+            .map_err(|error| error.to_string())
     };
     let (layers, layers_fitted) = match options.layers {
-        Some(LayersChoice::Count(count)) => (Layers::new(count).map_err(|error| error.to_string())?, false),
-        Some(LayersChoice::Thickness(thickness)) => {
-            (Layers::of_thickness(thickness, specimen.depth()).map_err(|error| error.to_string())?, false)
-        }
+        Some(choice) => (choice.layers(specimen.depth()).map_err(|error| error.to_string())?, false),
         None => {
             let error = |layers: Layers| simulated(layers).map_or(f64::INFINITY, |(_, force)| rms(&measured, &force));
             (fitted_layers(error).ok_or("no number of layers can be simulated")?, true)
@@ -91,7 +92,12 @@ pub(super) fn overlay(
 }
 
 /// The measured motion with its noise taken out: straight lines that stay within half the tolerance of a hold.
-fn motion(record: &Record, segmentation: &Segmentation, specimen: &Specimen, separation: Separation) -> Result<Motion, String> {
+fn motion(
+    record: &Record,
+    segmentation: &Segmentation,
+    specimen: &Specimen,
+    separation: Separation,
+) -> Result<Motion, String> {
     let displacement = record.displacement().ok_or("the record has no displacement")?;
     // A bonded ball has no area before first touch; noise there is no pull.
     let bonded_ball = separation == Separation::Bonded && specimen.contact_area(0.0) == 0.0;

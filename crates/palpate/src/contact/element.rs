@@ -10,7 +10,7 @@
 //! ẏ = (g/x*) q(z),  q(z) = (1 − sgn(z)|z|ⁿ)/(1 − z),
 //!
 //! which is smooth, turns into a straight line of slope n g/x* as the steady state is neared, and keeps 1 − z to full
-//! relative accuracy on the way. An error-controlled Runge–Kutta method with dense output takes about a dozen steps
+//! relative accuracy on the way. An error-controlled Runge–Kutta method with dense output takes a few dozen steps
 //! for it, however long the ramp and however fast the layer.
 
 use super::Work;

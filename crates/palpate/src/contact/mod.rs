@@ -8,7 +8,7 @@
 //! | `free_surface.rs` | the surface once the jaw has left it | |
 //!
 //! Layer i never feels layer i + 1, so the contact force needs the contact layer alone, whatever the number of
-//! layers; the interior is solved only to show the strain wave (`simulate::cascade`).
+//! layers; the interior is solved only to show the strain wave (`simulate::wave`).
 
 mod element;
 mod free_surface;

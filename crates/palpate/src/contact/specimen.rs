@@ -22,6 +22,20 @@ pub enum Shape {
     },
 }
 
+impl Shape {
+    /// Distance from an undeformed contact to the plane that does not move, in m: the depth that is cut into layers.
+    ///
+    /// The radius of a ball; the length of a prism, half of it when both ends move.
+    #[must_use]
+    pub fn depth(self, sides: Sides) -> f64 {
+        match (self, sides) {
+            (Self::Ball { radius }, _) => radius,
+            (Self::Prism { length, .. }, Sides::One) => length,
+            (Self::Prism { length, .. }, Sides::Two) => length / 2.0,
+        }
+    }
+}
+
 /// From how many sides the body is squeezed: decides which share of the jaw's travel one contact takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -115,16 +129,10 @@ impl Specimen {
         self.sides
     }
 
-    /// Distance from an undeformed contact to the plane that does not move, in m: the depth that is cut into layers.
-    ///
-    /// The radius of a ball; the length of a prism, half of it when both ends move.
+    /// Distance from an undeformed contact to the plane that does not move, in m; see [`Shape::depth`].
     #[must_use]
     pub fn depth(&self) -> f64 {
-        match (self.shape, self.sides) {
-            (Shape::Ball { radius }, _) => radius,
-            (Shape::Prism { length, .. }, Sides::One) => length,
-            (Shape::Prism { length, .. }, Sides::Two) => length / 2.0,
-        }
+        self.shape.depth(self.sides)
     }
 
     /// One contact's share u₁ of the jaw's travel d, in m: d/2 from two sides, d from one.

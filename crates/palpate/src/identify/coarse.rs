@@ -55,7 +55,13 @@ impl Condensed {
     }
 
     /// Starts worth refining, best first: the local minima of the residual over a grid of ln λ, for every exponent given.
-    pub(super) fn starts(&self, log_rates: (f64, f64), exponents: &[f64], most: usize, work: &mut Work) -> Vec<(f64, f64)> {
+    pub(super) fn starts(
+        &self,
+        log_rates: (f64, f64),
+        exponents: &[f64],
+        most: usize,
+        work: &mut Work,
+    ) -> Vec<(f64, f64)> {
         const STEP: f64 = 0.7;
         let steps = ((log_rates.1 - log_rates.0) / STEP).ceil().max(2.0) as usize;
         let rate = |i: usize| log_rates.0 + (log_rates.1 - log_rates.0) * i as f64 / steps as f64;

@@ -25,7 +25,12 @@ use super::{FitError, FitOptions};
 /// # Errors
 /// [`FitError`] for unequal lengths, too few samples, values that are not finite, strains or rates that are all the same,
 /// or rates that point away from every equilibrium.
-pub fn fit_rates(strains: &[f64], rates: &[f64], choice: ExponentChoice, options: &FitOptions) -> Result<LatencyFit, FitError> {
+pub fn fit_rates(
+    strains: &[f64],
+    rates: &[f64],
+    choice: ExponentChoice,
+    options: &FitOptions,
+) -> Result<LatencyFit, FitError> {
     check(strains, rates, choice)?;
     let scaled = Scaled::new(strains, rates)?;
     let shapes = RateShapes {
@@ -101,7 +106,14 @@ impl Scaled {
         })
     }
 
-    fn fit(&self, strains: &[f64], solution: &Solution, choice: ExponentChoice, options: &FitOptions, work: Work) -> LatencyFit {
+    fn fit(
+        &self,
+        strains: &[f64],
+        solution: &Solution,
+        choice: ExponentChoice,
+        options: &FitOptions,
+        work: Work,
+    ) -> LatencyFit {
         let scaled_v = solution.linear[0];
         let n = match choice {
             ExponentChoice::Fixed(n) => n,
@@ -122,11 +134,7 @@ impl Scaled {
         let log_v = [1.0 / scaled_v, 0.0, -self.range.ln()];
         let log_amplitude = amplitude.abs().ln();
         // ln λ = ln v + (n − 1) ln |Δ|, with ∂Δ/∂ε_e = −1.
-        let log_rate = [
-            1.0 / scaled_v,
-            -(n - 1.0) * self.range / amplitude,
-            log_amplitude - self.range.ln(),
-        ];
+        let log_rate = [1.0 / scaled_v, -(n - 1.0) * self.range / amplitude, log_amplitude - self.range.ln()];
         let covariance = inverse.map(|inverse| {
             // Rows of the map from (v', ε_e', n) to (ε_e, ln v, n).
             let rows = [[0.0, self.range, 0.0], log_v, [0.0, 0.0, 1.0]];

@@ -67,9 +67,7 @@ pub fn select_order(fits: &[LatencyFit]) -> OrderSelection {
         })
         .collect();
     let order = |a: &usize, b: &usize| candidates[*a].exponent.total_cmp(&candidates[*b].exponent);
-    let lowest_order = (0..fits.len())
-        .filter(|&i| listed(&fits[i]) && candidates[i].as_good_as_best)
-        .min_by(order);
+    let lowest_order = (0..fits.len()).filter(|&i| listed(&fits[i]) && candidates[i].as_good_as_best).min_by(order);
     // A fit that ended at the edge of its range has no errors to go with its numbers.
     let any_good = fits.iter().any(|fit| fit.termination.is_good());
     let preferred = (0..fits.len())

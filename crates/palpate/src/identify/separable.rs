@@ -163,7 +163,8 @@ impl Point {
 
     /// Jᵀr by the nonlinear numbers.
     fn gradient(&self, shapes: &impl Shapes) -> Vec<f64> {
-        let part = |(p, derivative): (usize, &Vec<f64>)| self.linear[shapes.column_of(p)] * dot(derivative, &self.residuals);
+        let part =
+            |(p, derivative): (usize, &Vec<f64>)| self.linear[shapes.column_of(p)] * dot(derivative, &self.residuals);
         self.derivatives.iter().enumerate().map(part).collect()
     }
 }
@@ -172,7 +173,13 @@ impl Point {
 const SMALLEST_GAIN: f64 = 1e-15;
 
 /// Refines θ from `start` to the nearest local optimum inside the bounds.
-pub(super) fn refine(shapes: &impl Shapes, values: &[f64], start: &[f64], most_iterations: usize, work: &mut Work) -> Solution {
+pub(super) fn refine(
+    shapes: &impl Shapes,
+    values: &[f64],
+    start: &[f64],
+    most_iterations: usize,
+    work: &mut Work,
+) -> Solution {
     let numbers = start.len();
     let mut here = Point::new(shapes, numbers, values.len());
     let mut trial = Point::new(shapes, numbers, values.len());
@@ -228,9 +235,7 @@ fn projected(here: &Point, shapes: &impl Shapes) -> Option<(Vec<f64>, Vec<f64>)>
     let size = l + p;
     let normal = here.normal(shapes);
     let block = |rows: usize, columns: usize, from: (usize, usize)| -> Vec<f64> {
-        (0..rows * columns)
-            .map(|i| normal[(from.0 + i / columns) * size + from.1 + i % columns])
-            .collect()
+        (0..rows * columns).map(|i| normal[(from.0 + i / columns) * size + from.1 + i % columns]).collect()
     };
     let linear = Cholesky::new(&block(l, l, (0, 0)), l)?;
     let mut hessian = block(p, p, (l, l));

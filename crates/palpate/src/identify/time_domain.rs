@@ -37,7 +37,12 @@ const EXPONENT_GRID: [f64; 13] = [0.3, 0.6, 1.0, 1.4, 2.0, 2.7, 3.6, 5.0, 7.0, 1
 /// # Errors
 /// [`FitError`] for unequal lengths, fewer samples than numbers plus one, values that are not finite, times that do not
 /// rise, an exponent that is no number above zero, or values that are all the same.
-pub fn fit_hold(times: &[f64], values: &[f64], choice: ExponentChoice, options: &FitOptions) -> Result<LatencyFit, FitError> {
+pub fn fit_hold(
+    times: &[f64],
+    values: &[f64],
+    choice: ExponentChoice,
+    options: &FitOptions,
+) -> Result<LatencyFit, FitError> {
     check(times, values, choice)?;
     let scaled = Scaled::new(times, values)?;
     let shapes = HoldShapes::new(&scaled, choice, options);

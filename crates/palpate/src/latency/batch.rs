@@ -73,13 +73,7 @@ pub fn decay_with_gradient_many(
 ///
 /// # Panics
 /// If the slices differ in length.
-pub fn decay_with_log_rate_many(
-    times: &[f64],
-    rate: f64,
-    exponent: f64,
-    value: &mut [f64],
-    by_log_rate: &mut [f64],
-) {
+pub fn decay_with_log_rate_many(times: &[f64], rate: f64, exponent: f64, value: &mut [f64], by_log_rate: &mut [f64]) {
     decay_many(times, rate, exponent, value);
     assert_eq!(times.len(), by_log_rate.len(), "one output a time");
     let p = exponent - 1.0;

@@ -208,11 +208,7 @@ mod tests {
         for n in [1.0f64, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0] {
             let law = LatencyLaw::new(n, 3.0).unwrap();
             for x in [-0.4f64, -1e-3, 0.0, 1e-3, 0.4] {
-                let paper = if n % 2.0 == 1.0 {
-                    -3.0 * x.powi(n as i32)
-                } else {
-                    -x.signum() * 3.0 * x.powi(n as i32)
-                };
+                let paper = if n % 2.0 == 1.0 { -3.0 * x.powi(n as i32) } else { -x.signum() * 3.0 * x.powi(n as i32) };
                 assert!((law.rate(x) - paper).abs() <= 1e-15 * paper.abs(), "n={n} x={x}");
             }
         }

@@ -171,9 +171,7 @@ impl<S: State> Dop853<S> {
     }
 
     fn advanced(&self, width: f64, weights: &[(usize, f64)], stages: &[S]) -> S {
-        S::build(self.state.len(), |i| {
-            self.state.get(i) + width * weighted(weights, stages, i)
-        })
+        S::build(self.state.len(), |i| self.state.get(i) + width * weighted(weights, stages, i))
     }
 
     /// Hairer's combination of the two estimates, in units of the tolerance.
@@ -221,10 +219,7 @@ impl<S: State> Dop853<S> {
 
 #[inline(always)]
 fn weighted<S: State>(weights: &[(usize, f64)], stages: &[S], component: usize) -> f64 {
-    weights
-        .iter()
-        .map(|&(stage, weight)| weight * stages[stage].get(component))
-        .sum()
+    weights.iter().map(|&(stage, weight)| weight * stages[stage].get(component)).sum()
 }
 
 #[cfg(test)]

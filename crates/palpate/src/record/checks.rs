@@ -85,7 +85,9 @@ impl RecordError {
             Self::TimeNotRising { .. } => {
                 "sort the rows by time and drop repeated stamps, or check that the time column is the right one"
             }
-            Self::ConstantForce { .. } => "check that the force column is the right one and that the load cell was connected",
+            Self::ConstantForce { .. } => {
+                "check that the force column is the right one and that the load cell was connected"
+            }
             Self::ClocksApart { .. } => "check the units and the columns of the two clocks",
         }
     }

@@ -16,10 +16,8 @@ impl Record {
         force_time: &[f64],
         force: &[f64],
     ) -> Result<Self, RecordError> {
-        for (column, time, values) in [
-            ("displacement", displacement_time, displacement),
-            ("force", force_time, force),
-        ] {
+        for (column, time, values) in [("displacement", displacement_time, displacement), ("force", force_time, force)]
+        {
             checks::lengths(time, None, values)?;
             checks::finite("time", time)?;
             checks::finite(column, values)?;

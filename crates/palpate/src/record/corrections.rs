@@ -102,7 +102,8 @@ mod tests {
 
     #[test]
     fn two_clocks_become_one() {
-        let record = Record::from_two_clocks(&[0.0, 1.0, 2.0], &[0.0, 2.0, 2.0], &[-0.1, 0.5, 1.5, 2.1], &[0.0, 1.0, 2.0, 3.0]);
+        let record =
+            Record::from_two_clocks(&[0.0, 1.0, 2.0], &[0.0, 2.0, 2.0], &[-0.1, 0.5, 1.5, 2.1], &[0.0, 1.0, 2.0, 3.0]);
         let record = record.unwrap();
         assert_eq!(record.time(), [0.5, 1.5]);
         assert_eq!(record.displacement(), Some([1.0, 2.0].as_slice()));

@@ -58,7 +58,12 @@ const AIR: f64 = 0.02;
 /// First touch: the rise of the force is drawn straight (force over displacement for a constant section, its square root
 /// for a ball, whose force grows as the square of the squeeze) and prolonged to zero.
 #[must_use]
-pub fn find_contact(record: &Record, segmentation: &Segmentation, shape: Option<Shape>, choice: ContactChoice) -> ContactPoint {
+pub fn find_contact(
+    record: &Record,
+    segmentation: &Segmentation,
+    shape: Option<Shape>,
+    choice: ContactChoice,
+) -> ContactPoint {
     let as_recorded = ContactPoint::at(record, 0.0);
     match (choice, record.displacement()) {
         (ContactChoice::AsRecorded, _) | (_, None) => as_recorded,
@@ -69,7 +74,12 @@ pub fn find_contact(record: &Record, segmentation: &Segmentation, shape: Option<
     }
 }
 
-fn automatic(record: &Record, displacement: &[f64], segmentation: &Segmentation, shape: Option<Shape>) -> Option<ContactPoint> {
+fn automatic(
+    record: &Record,
+    displacement: &[f64],
+    segmentation: &Segmentation,
+    shape: Option<Shape>,
+) -> Option<ContactPoint> {
     let ramp = segmentation.segments.iter().find(|segment| segment.phase == Phase::Loading)?;
     let force = record.force();
     // The sample before the ramp is its foot.
@@ -122,7 +132,9 @@ fn prolonged_to_zero(points: &[(f64, f64)]) -> Option<(f64, f64)> {
         return None;
     }
     let (mx, my) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / count, y + p.1 / count));
-    let (xx, xy) = points.iter().fold((0.0, 0.0), |(xx, xy), p| (xx + (p.0 - mx).powi(2), xy + (p.0 - mx) * (p.1 - my)));
+    let (xx, xy) = points
+        .iter()
+        .fold((0.0, 0.0), |(xx, xy), p| (xx + (p.0 - mx).powi(2), xy + (p.0 - mx) * (p.1 - my)));
     let slope = xy / xx;
     if !(slope.is_finite() && slope > 0.0) {
         return None;

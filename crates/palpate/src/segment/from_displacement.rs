@@ -21,7 +21,11 @@ const DRIFT: f64 = 0.05;
 /// Shortest hold as a share of the median duration of the ramps.
 const SHORTEST: f64 = 0.05;
 
-pub(super) fn phases(time: &[f64], displacement: &[f64], options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
+pub(super) fn phases(
+    time: &[f64],
+    displacement: &[f64],
+    options: &SegmentOptions,
+) -> Result<Segmentation, SegmentError> {
     let values = without_spikes(displacement);
     let (low, high) = bounds(&values);
     let (range, noise) = (high - low, noise(&values));
@@ -33,7 +37,9 @@ pub(super) fn phases(time: &[f64], displacement: &[f64], options: &SegmentOption
             unit: "m",
         });
     }
-    let tolerance = options.tolerance.unwrap_or_else(|| (5.0 * noise).max(1.5 * encoder_step(&values, range)).max(0.002 * range));
+    let tolerance = options
+        .tolerance
+        .unwrap_or_else(|| (5.0 * noise).max(1.5 * encoder_step(&values, range)).max(0.002 * range));
     let (window, ramp_speed, still) = thresholds(time, &values, noise, range, options);
     let mut runs = Vec::new();
     standstills(time, &values, (0, values.len()), window, still, DRIFT * range, options, &mut runs);
@@ -131,7 +137,8 @@ fn standstills(
                 if travelled <= drift || run == part {
                     runs.push(run);
                 } else {
-                    let (window, _, still) = thresholds(&time[run.0..run.1], &values[run.0..run.1], 0.0, travelled, options);
+                    let (window, _, still) =
+                        thresholds(&time[run.0..run.1], &values[run.0..run.1], 0.0, travelled, options);
                     standstills(time, values, run, window, still, drift, options, runs);
                 }
             }

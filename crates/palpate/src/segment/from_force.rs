@@ -128,7 +128,8 @@ fn merged(
         if let Some(last) = merged.last_mut() {
             let (a, b) = (last.1 - 1, core.0);
             let (rise, run) = (force[b] - force[a], time[b] - time[a]);
-            let straight = (a..b).all(|i| (force[i] - force[a] - rise / run * (time[i] - time[a])).abs() <= stray + noise);
+            let straight =
+                (a..b).all(|i| (force[i] - force[a] - rise / run * (time[i] - time[a])).abs() <= stray + noise);
             if rise.abs() <= speed * run + noise && straight {
                 last.1 = core.1;
                 continue;
@@ -145,7 +146,9 @@ fn merged(
 /// Relaxation is fast first and slow later: most of its change is done half way. The end of a ramp to the lowest force
 /// of the record (a contact that opens) bends the same way, so there the change must be further on.
 fn beginning(time: &[f64], force: &[f64], from: usize, core: usize, turn: f64, (low, high): (f64, f64)) -> usize {
-    let Some(start) = last_turn(force, from, core, turn) else { return core };
+    let Some(start) = last_turn(force, from, core, turn) else {
+        return core;
+    };
     let half = time.partition_point(|t| *t < 0.5 * (time[start] + time[core]));
     let done = (force[half] - force[start]) / (force[core] - force[start]);
     let opens = force[core] - low < 0.08 * (high - low);

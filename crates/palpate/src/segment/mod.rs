@@ -142,7 +142,9 @@ impl SegmentError {
     pub fn hint(&self) -> &'static str {
         match self {
             Self::TooShort { .. } => "check that the whole test was exported",
-            Self::NoMotion { .. } => "check the displacement column and its unit; a record without motion has no relaxation to fit",
+            Self::NoMotion { .. } => {
+                "check the displacement column and its unit; a record without motion has no relaxation to fit"
+            }
             Self::NoHold { .. } => {
                 "a cyclic test has no hold; for a short one lower the least duration with --minimum-hold, for a drifting one raise --tolerance"
             }

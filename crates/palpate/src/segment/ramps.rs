@@ -64,7 +64,10 @@ fn ramps(values: &[f64], from: usize, until: usize, hysteresis: f64, segments: &
 
 /// The direction from which a hold was reached: that of the last ramp of any size since the hold before it.
 fn approach(values: &[f64], segments: &[Segment]) -> Option<After> {
-    let ramps = segments.iter().rev().take_while(|segment| matches!(segment.phase, Phase::Loading | Phase::Unloading));
+    let ramps = segments
+        .iter()
+        .rev()
+        .take_while(|segment| matches!(segment.phase, Phase::Loading | Phase::Unloading));
     let travel = |segment: &Segment| (values[segment.end - 1] - values[segment.start.saturating_sub(1)]).abs();
     let most = ramps.clone().map(travel).fold(0.0, f64::max);
     let last = ramps.into_iter().find(|segment| travel(segment) >= 0.25 * most)?;

@@ -63,7 +63,9 @@ pub enum SimulateError {
         found: f64,
     },
     /// A number of layers that is not whole has a force but no layers to show.
-    #[error("the strain wave needs a whole number of layers, found {found}; the contact force is defined for any real number")]
+    #[error(
+        "the strain wave needs a whole number of layers, found {found}; the contact force is defined for any real number"
+    )]
     FractionalLayers {
         /// m.
         found: f64,

@@ -1,0 +1,200 @@
+//! What may be typed.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use palpate::segment::{ContactChoice, HoldStart};
+use palpate::units::{Dimension, parse};
+use palpate_files::description::{parse_hold_start, parse_touch};
+
+/// Soft contact that remembers: squeeze-and-hold tests turned into laws, and laws into forces.
+#[derive(Debug, Parser)]
+#[command(name = "palpate", version, about, max_term_width = 100, after_help = AFTER_HELP)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+const AFTER_HELP: &str = "\
+Examples:
+  palpate reproduce                              the paper's study, into palpate-reproduction/
+  palpate inspect test.csv                       what is in a file, and which phases it has
+  palpate analyze test.csv --out study           phases, laws, tables, figures, report.html
+  palpate analyze test.csv --test ball.toml      the same with geometry: strains and v in 1/s
+  palpate simulate squeeze.toml --out force.csv  force of a squeeze protocol
+
+Exit codes: 0 done, 1 done but the verdict is negative, 2 could not run.";
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    Reproduce(ReproduceArguments),
+    Simulate(SimulateArguments),
+    Inspect(InspectArguments),
+    Analyze(AnalyzeArguments),
+    Schema(SchemaArguments),
+    Completions(CompletionsArguments),
+}
+
+/// Reproduce the paper's study: its tests simulated, re-identified and checked.
+#[derive(Debug, Args)]
+pub(crate) struct ReproduceArguments {
+    /// Folder for the report, figures, tables and series
+    #[arg(long, value_name = "DIR", default_value = "palpate-reproduction")]
+    pub(crate) out: PathBuf,
+    /// Write figures as PNG too
+    #[arg(long)]
+    pub(crate) png: bool,
+}
+
+/// Simulate the force of a squeeze protocol.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  palpate simulate examples/protocols/paper-a.toml --out a.csv --figure a.svg
+  palpate simulate examples/protocols/grip.toml | head
+  palpate schema protocol                        what a protocol may say")]
+pub(crate) struct SimulateArguments {
+    /// Protocol (TOML): specimen, law, contact and steps
+    #[arg(value_name = "PROTOCOL.toml")]
+    pub(crate) protocol: PathBuf,
+    /// File for the series (CSV); standard output if not given
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) out: Option<PathBuf>,
+    /// File for a figure (.svg or .png)
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) figure: Option<PathBuf>,
+    /// File for the strain of every layer (CSV); needs a whole number of layers
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) wave: Option<PathBuf>,
+}
+
+/// Show what is in a record: columns, units, sampling, phases. Changes nothing.
+#[derive(Debug, Args)]
+pub(crate) struct InspectArguments {
+    /// Record: delimited text with time, force and, if possible, displacement
+    #[arg(value_name = "RECORD")]
+    pub(crate) record: PathBuf,
+    /// Test description (TOML): columns, units, geometry
+    #[arg(long, value_name = "TEST.toml")]
+    pub(crate) test: Option<PathBuf>,
+}
+
+/// Analyse records: phases, strains, laws, tables, figures, report.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  palpate analyze press.csv                                   tables on the terminal
+  palpate analyze press.csv --test ball.toml --out study      report.html, analysis.json, tables, figures
+  palpate analyze tape.csv --fit-until \"600 s\"                how well does each law foretell the rest?
+  palpate analyze *.csv --test strip.toml --out studies       one folder a record
+  palpate analyze press.csv --format json | jq '.holds[].fits[0]'")]
+pub(crate) struct AnalyzeArguments {
+    /// Records: delimited text with time, force and, if possible, displacement
+    #[arg(value_name = "RECORD", required = true)]
+    pub(crate) records: Vec<PathBuf>,
+    /// Test description (TOML): columns, units, geometry, options
+    #[arg(long, value_name = "TEST.toml")]
+    pub(crate) test: Option<PathBuf>,
+    /// Folder for report.html, analysis.json, tables and figures
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// What to print on standard output
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
+    /// Write figures as PNG too
+    #[arg(long, requires = "out")]
+    pub(crate) png: bool,
+    /// Fit only this long from the start of each hold and foretell the rest
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    pub(crate) fit_until: Option<f64>,
+    /// Exponents to try, besides a free one
+    #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = exponent)]
+    pub(crate) exponents: Option<Vec<f64>>,
+    /// From where in a hold to fit: peak, settled, or "peak + 0.5 s"
+    #[arg(long, value_name = "WHERE", value_parser = hold_start)]
+    pub(crate) hold_start: Option<HoldStart>,
+    /// First touch: auto, "as recorded", or a displacement
+    #[arg(long, value_name = "WHERE", value_parser = touch)]
+    pub(crate) touch: Option<ContactChoice>,
+    /// How far the displacement may stray in a hold
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) tolerance: Option<f64>,
+    /// Shortest hold
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    pub(crate) minimum_hold: Option<f64>,
+    /// Record of the same motion without a body; its force is subtracted
+    #[arg(long, value_name = "RECORD")]
+    pub(crate) air_run: Option<PathBuf>,
+}
+
+/// Output of `analyze` on standard output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// Tables for people
+    Text,
+    /// One JSON object a record (see `palpate schema analysis`)
+    Json,
+}
+
+/// Print the JSON Schema of a description or result.
+#[derive(Debug, Args)]
+pub(crate) struct SchemaArguments {
+    /// Which one
+    #[arg(value_enum)]
+    pub(crate) name: SchemaName,
+}
+
+/// What has a schema.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SchemaName {
+    /// Protocol of `palpate simulate`
+    Protocol,
+    /// Test description of `palpate analyze`
+    Test,
+    /// Result of `palpate analyze --format json`
+    Analysis,
+    /// summary.json of `palpate reproduce`
+    Reproduction,
+}
+
+/// Print completions for a shell.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  palpate completions bash > ~/.local/share/bash-completion/completions/palpate")]
+pub(crate) struct CompletionsArguments {
+    /// Which shell
+    #[arg(value_enum)]
+    pub(crate) shell: clap_complete::Shell,
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    positive(text, Dimension::Time)
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    positive(text, Dimension::Length)
+}
+
+fn positive(text: &str, dimension: Dimension) -> Result<f64, String> {
+    match parse(text, dimension) {
+        Ok(value) if value > 0.0 => Ok(value),
+        Ok(_) => Err(format!("expected a {} above 0", dimension.name())),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn exponent(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(n) if n.is_finite() && n > 0.0 => Ok(n),
+        _ => Err("expected exponents above 0, such as 1,3,5".to_owned()),
+    }
+}
+
+fn hold_start(text: &str) -> Result<HoldStart, String> {
+    parse_hold_start(text).map_err(|error| error.to_string())
+}
+
+fn touch(text: &str) -> Result<ContactChoice, String> {
+    parse_touch(text).map_err(|error| error.to_string())
+}

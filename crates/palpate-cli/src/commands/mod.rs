@@ -1,0 +1,9 @@
+//! One file a command.
+
+pub(crate) mod analyze;
+pub(crate) mod completions;
+pub(crate) mod inspect;
+mod record;
+pub(crate) mod reproduce;
+pub(crate) mod schema;
+pub(crate) mod simulate;

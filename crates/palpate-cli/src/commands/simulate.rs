@@ -1,0 +1,113 @@
+//! `palpate simulate`: protocol to series and figure.
+
+use std::path::Path;
+
+use palpate::simulate::{ContactEventKind, StrainWave, simulate, strain_wave};
+use palpate_files::description::{Protocol, read_protocol};
+use palpate_report::figure::Figure;
+use palpate_report::study::{trajectory_figure, trajectory_table};
+use palpate_report::table::{Cell, Table, TableColumn};
+
+use crate::arguments::SimulateArguments;
+use crate::failure::{Failure, Outcome};
+use crate::files::write_file;
+use crate::progress::Working;
+use crate::terminal::{note, print};
+
+/// Resolution of PNG figures.
+const DPI: f64 = 300.0;
+
+pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
+    for path in [&arguments.out, &arguments.wave].into_iter().flatten() {
+        is_csv(path)?;
+    }
+    let protocol = read_protocol(&arguments.protocol).map_err(|error| {
+        let hint = error.hint();
+        Failure::new(error, hint)
+    })?;
+    let refused = |error: palpate::simulate::SimulateError| Failure::of_file(&arguments.protocol, error, None);
+    let working = Working::new("simulating");
+    let trajectory = simulate(&protocol.motion, &protocol.model, &protocol.sampling).map_err(refused)?;
+    let wave = match &arguments.wave {
+        Some(_) => Some(strain_wave(&protocol.motion, &protocol.model, &protocol.sampling).map_err(refused)?),
+        None => None,
+    };
+    // Everything is made before anything is written.
+    let figure = match &arguments.figure {
+        Some(path) => {
+            let name = path.file_stem().map_or("figure".to_owned(), |stem| stem.to_string_lossy().into_owned());
+            Some(picture(path, &trajectory_figure(&trajectory, &name, &caption(&protocol)))?)
+        }
+        None => None,
+    };
+    let table = trajectory_table(&trajectory).to_csv();
+    drop(working);
+    if let (Some(path), Some(picture)) = (&arguments.figure, figure) {
+        write_file(path, &picture)?;
+    }
+    if let (Some(path), Some(wave)) = (&arguments.wave, wave) {
+        write_file(path, wave_table(&wave).to_csv().as_bytes())?;
+    }
+    match &arguments.out {
+        Some(path) => write_file(path, table.as_bytes())?,
+        None => print(&table)?,
+    }
+    for event in &trajectory.events {
+        let what = match event.kind {
+            ContactEventKind::Lost => "lost",
+            ContactEventKind::Regained => "regained",
+        };
+        let depth = 1e3 * event.contact_displacement;
+        note(&format!("contact {what} at {:.4} s, surface at {depth:.4} mm", event.time));
+    }
+    Ok(Outcome::Done)
+}
+
+fn caption(protocol: &Protocol) -> String {
+    let model = &protocol.model;
+    format!(
+        "{}Force, strain of the contact layer and displacement of the jaw; n = {}, v = {:e} 1/s, {} layers.",
+        protocol.title.as_ref().map_or(String::new(), |title| format!("{title}. ")),
+        model.law.exponent(),
+        model.law.rate_coefficient(),
+        model.layers.count()
+    )
+}
+
+fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, Failure> {
+    let failed = |error| Failure::of_file(path, error, None);
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some("svg") => Ok(figure.to_svg().map_err(failed)?.into_bytes()),
+        Some("png") => figure.to_png(DPI).map_err(failed),
+        _ => Err(Failure::of_file(
+            path,
+            "expected a figure ending in .svg or .png",
+            Some("name the figure FILE.svg or FILE.png".to_owned()),
+        )),
+    }
+}
+
+fn is_csv(path: &Path) -> Result<(), Failure> {
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some("csv") => Ok(()),
+        _ => Err(Failure::of_file(
+            path,
+            "expected a series ending in .csv",
+            Some("name the series FILE.csv".to_owned()),
+        )),
+    }
+}
+
+fn wave_table(wave: &StrainWave) -> Table {
+    let mut table = Table::new("wave", "Strain of every layer.").column(TableColumn::new("Time", "time_s", "s"));
+    for layer in 1..=wave.strain.len() {
+        table = table.column(TableColumn::new(format!("Layer {layer}"), format!("strain_layer_{layer}"), ""));
+    }
+    table.rows = (0..wave.time.len())
+        .map(|row| {
+            let strains = wave.strain.iter().map(|strain| Cell::number(strain[row], 6));
+            std::iter::once(Cell::number(wave.time[row], 6)).chain(strains).collect()
+        })
+        .collect();
+    table
+}

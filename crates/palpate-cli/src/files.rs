@@ -1,0 +1,129 @@
+//! Output that appears whole or not at all.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use palpate_report::study::Bundle;
+
+use crate::failure::Failure;
+
+fn failure(path: &Path, error: &io::Error) -> Failure {
+    let hint = match error.kind() {
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            Some("choose a folder that you may write to".to_owned())
+        }
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            Some("free some space; nothing was written".to_owned())
+        }
+        io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => {
+            Some("a file stands where the folder should go; choose another name with --out".to_owned())
+        }
+        _ => None,
+    };
+    Failure::of_file(path, format!("cannot write: {error}"), hint)
+}
+
+/// Writes one file: under a temporary name first, then renamed.
+pub(crate) fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let write = || -> io::Result<()> {
+        fs::create_dir_all(folder)?;
+        let mut file = tempfile::Builder::new().prefix(".palpate-").tempfile_in(folder)?;
+        file.write_all(content)?;
+        file.as_file().sync_all()?;
+        file.persist(path).map_err(|error| error.error)?;
+        open_to_all(path)
+    };
+    write().map_err(|error| failure(path, &error))
+}
+
+/// Writes all files of a bundle below `folder`: all of them beside it first, then moved into place.
+pub(crate) fn write_bundle(folder: &Path, bundle: &Bundle) -> Result<(), Failure> {
+    let stage = |bundle: &Bundle| -> io::Result<tempfile::TempDir> {
+        fs::create_dir_all(folder)?;
+        let staged = tempfile::Builder::new().prefix(".palpate-").tempdir_in(folder)?;
+        for (name, content) in &bundle.files {
+            let path = staged.path().join(name);
+            if let Some(parent) = path.parent() {
+                fs::create_dir_all(parent)?;
+            }
+            let mut file = fs::File::create(&path)?;
+            file.write_all(content)?;
+            file.sync_all()?;
+        }
+        Ok(staged)
+    };
+    let existed = folder.exists();
+    let staged = stage(bundle).map_err(|error| {
+        if !existed {
+            // Only an empty folder goes; one that others have written to since stays.
+            let _ = fs::remove_dir(folder);
+        }
+        failure(folder, &error)
+    })?;
+    for (name, _) in &bundle.files {
+        let target = folder.join(name);
+        let place = || -> io::Result<()> {
+            if let Some(parent) = target.parent() {
+                fs::create_dir_all(parent)?;
+            }
+            fs::rename(staged.path().join(name), &target)
+        };
+        place().map_err(|error| failure(&target, &error))?;
+    }
+    Ok(())
+}
+
+/// Temporary files are private; a result is as readable as any other file of the user's.
+#[cfg(unix)]
+fn open_to_all(path: &Path) -> io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    fs::set_permissions(path, fs::Permissions::from_mode(0o644))
+}
+
+#[cfg(not(unix))]
+fn open_to_all(_: &Path) -> io::Result<()> {
+    Ok(())
+}
+
+/// SHA-256 of a file, hexadecimal.
+pub(crate) fn sha256(path: &Path) -> Result<String, Failure> {
+    use sha2::{Digest, Sha256};
+    let hash = || -> io::Result<String> {
+        let mut file = fs::File::open(path)?;
+        let mut hasher = Sha256::new();
+        let mut buffer = vec![0; 1 << 18];
+        loop {
+            let count = io::Read::read(&mut file, &mut buffer)?;
+            if count == 0 {
+                break;
+            }
+            hasher.update(&buffer[..count]);
+        }
+        Ok(hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+    };
+    hash().map_err(|error| Failure::of_file(path, error, None))
+}
+
+/// Folders for the results of several records: the file names, with a number where two are alike.
+pub(crate) fn folders(out: &Path, records: &[PathBuf]) -> Vec<PathBuf> {
+    if records.len() == 1 {
+        return vec![out.to_owned()];
+    }
+    let mut taken: Vec<PathBuf> = Vec::new();
+    for record in records {
+        let stem = record.file_stem().unwrap_or(record.as_os_str()).to_string_lossy().into_owned();
+        let mut folder = out.join(&stem);
+        let mut number = 2;
+        while taken.contains(&folder) {
+            folder = out.join(format!("{stem}-{number}"));
+            number += 1;
+        }
+        taken.push(folder);
+    }
+    taken
+}

@@ -1,0 +1,64 @@
+//! Progress on anything over a second, on standard error, where it is a terminal.
+
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Work that is shown only once it has lasted a second.
+const QUIET: Duration = Duration::from_secs(1);
+
+/// A bar over the bytes of a file.
+pub(crate) struct Reading {
+    since: Instant,
+    name: String,
+    bar: Option<ProgressBar>,
+}
+
+impl Reading {
+    pub(crate) fn new(name: impl Into<String>) -> Self {
+        Self {
+            since: Instant::now(),
+            name: name.into(),
+            bar: None,
+        }
+    }
+
+    pub(crate) fn update(&mut self, done: u64, total: u64) {
+        if self.bar.is_none() && self.since.elapsed() > QUIET {
+            let bar = ProgressBar::new(total);
+            if let Ok(style) = ProgressStyle::with_template("{msg} {bar:30} {bytes}/{total_bytes} {eta}") {
+                bar.set_style(style);
+            }
+            bar.set_message(self.name.clone());
+            self.bar = Some(bar);
+        }
+        if let Some(bar) = &self.bar {
+            bar.set_position(done);
+        }
+    }
+}
+
+impl Drop for Reading {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// A line that says what is being done; it appears after a second and vanishes at the end.
+pub(crate) struct Working(ProgressBar);
+
+impl Working {
+    pub(crate) fn new(what: impl Into<String>) -> Self {
+        let bar = ProgressBar::new_spinner().with_message(what.into());
+        bar.enable_steady_tick(QUIET);
+        Self(bar)
+    }
+}
+
+impl Drop for Working {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}

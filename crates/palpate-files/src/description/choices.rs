@@ -1,0 +1,127 @@
+//! Choices that are written the same in a description and on a command line.
+
+use palpate::{
+    segment::{ContactChoice, HoldStart},
+    units::{self, Dimension, UnitError},
+};
+
+/// A text that is none of the choices.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("expected {expected}, found \"{found}\"")]
+pub struct ChoiceError {
+    /// What would be accepted.
+    pub expected: &'static str,
+    /// What stood there.
+    pub found: String,
+    /// What is wrong with the quantity in it, if it seems to hold one.
+    pub source: Option<UnitError>,
+}
+
+impl ChoiceError {
+    /// What would help.
+    #[must_use]
+    pub fn hint(&self) -> String {
+        match &self.source {
+            Some(error) => error.to_string(),
+            None => format!("write {}", self.expected),
+        }
+    }
+}
+
+const HOLD_START: &str = "\"peak\", \"settled\" or a time after the peak such as \"peak + 0.5 s\"";
+const TOUCH: &str = "\"auto\", \"as recorded\" or a displacement such as \"2.5 mm\"";
+
+/// From where in a hold laws are fitted: `peak`, `settled`, or `peak + 0.5 s`.
+///
+/// # Errors
+/// [`ChoiceError`] for any other text, also for a time that is negative.
+///
+/// ```
+/// use palpate::segment::HoldStart;
+/// use palpate_files::description::parse_hold_start;
+/// assert_eq!(parse_hold_start("peak + 500 ms")?, HoldStart::AfterPeak(0.5));
+/// # Ok::<(), palpate_files::description::ChoiceError>(())
+/// ```
+pub fn parse_hold_start(text: &str) -> Result<HoldStart, ChoiceError> {
+    let error = |source| ChoiceError {
+        expected: HOLD_START,
+        found: text.to_owned(),
+        source,
+    };
+    let delay = match text.trim() {
+        "peak" => return Ok(HoldStart::Peak),
+        "settled" => return Ok(HoldStart::Settled),
+        other => other.strip_prefix("peak").map(str::trim_start),
+    };
+    let delay = delay.and_then(|rest| rest.strip_prefix('+'));
+    let Some(delay) = delay else {
+        return Err(error(None));
+    };
+    match units::parse(delay, Dimension::Time) {
+        Ok(seconds) if seconds >= 0.0 => Ok(HoldStart::AfterPeak(seconds)),
+        Ok(_) => Err(error(None)),
+        Err(source) => Err(error(Some(source))),
+    }
+}
+
+/// How first touch is found: `auto`, `as recorded`, or at a displacement such as `2.5 mm`.
+///
+/// # Errors
+/// [`ChoiceError`] for any other text.
+///
+/// ```
+/// use palpate::segment::ContactChoice;
+/// use palpate_files::description::parse_touch;
+/// assert_eq!(parse_touch("as recorded")?, ContactChoice::AsRecorded);
+/// assert_eq!(parse_touch("2.5 mm")?, ContactChoice::Displacement(0.0025));
+/// # Ok::<(), palpate_files::description::ChoiceError>(())
+/// ```
+pub fn parse_touch(text: &str) -> Result<ContactChoice, ChoiceError> {
+    match text.trim() {
+        "auto" => Ok(ContactChoice::Auto),
+        "as recorded" | "as-recorded" => Ok(ContactChoice::AsRecorded),
+        other => match units::parse(other, Dimension::Length) {
+            Ok(metres) => Ok(ContactChoice::Displacement(metres)),
+            Err(source) => Err(ChoiceError {
+                expected: TOUCH,
+                found: text.to_owned(),
+                source: Some(source).filter(|source| !matches!(source, UnitError::NotANumber { .. })),
+            }),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn starts_of_holds() {
+        for (text, start) in [
+            ("peak", HoldStart::Peak),
+            (" settled ", HoldStart::Settled),
+            ("peak + 0.5 s", HoldStart::AfterPeak(0.5)),
+            ("peak+2s", HoldStart::AfterPeak(2.0)),
+            ("peak + 0 s", HoldStart::AfterPeak(0.0)),
+        ] {
+            assert_eq!(parse_hold_start(text), Ok(start), "{text}");
+        }
+        for text in ["", "top", "peak 0.5 s", "peak + ", "peak + -1 s", "peak + 1 mm", "0.5 s"] {
+            let error = parse_hold_start(text).unwrap_err();
+            assert!(error.to_string().contains("peak + 0.5 s"), "{error}");
+        }
+        let error = parse_hold_start("peak + 3").unwrap_err();
+        assert!(error.hint().contains("expected a unit"), "{}", error.hint());
+    }
+
+    #[test]
+    fn touches() {
+        assert_eq!(parse_touch("auto"), Ok(ContactChoice::Auto));
+        assert_eq!(parse_touch("-1 mm"), Ok(ContactChoice::Displacement(-0.001)));
+        let error = parse_touch("first").unwrap_err();
+        assert!(error.to_string().contains("\"as recorded\""), "{error}");
+        assert!(error.hint().contains("2.5 mm"), "{}", error.hint());
+        let error = parse_touch("2.5").unwrap_err();
+        assert!(error.hint().contains("expected a unit"), "{}", error.hint());
+    }
+}

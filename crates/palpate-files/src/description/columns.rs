@@ -1,0 +1,213 @@
+//! The tables `[columns.…]` of a test: which column holds what.
+
+use std::fmt;
+
+use palpate::units::{Dimension, UnitError};
+use schemars::JsonSchema;
+use serde::{
+    Deserialize, Deserializer,
+    de::{Error, Visitor},
+};
+
+use super::{error::DescriptionError, source::Source};
+use crate::record_file::Quantity;
+
+/// A column of a record: its number, counted from 1 at the left, or its name.
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema)]
+#[schemars(untagged)]
+pub enum ColumnRef {
+    /// Its number, from 1.
+    Number(#[schemars(range(min = 1))] usize),
+    /// Its name in the header, without the unit.
+    Name(String),
+}
+
+impl fmt::Display for ColumnRef {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Name(name) => write!(f, "\"{name}\""),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for ColumnRef {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(NumberOrName)
+    }
+}
+
+struct NumberOrName;
+
+impl Visitor<'_> for NumberOrName {
+    type Value = ColumnRef;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the number of a column, from 1, or its name in quotes")
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<ColumnRef, E> {
+        match usize::try_from(number) {
+            Ok(number) if number > 0 => Ok(ColumnRef::Number(number)),
+            _ => Err(E::invalid_value(serde::de::Unexpected::Signed(number), &self)),
+        }
+    }
+
+    fn visit_str<E: Error>(self, name: &str) -> Result<ColumnRef, E> {
+        Ok(ColumnRef::Name(name.to_owned()))
+    }
+}
+
+/// What is said about one quantity; what is left out is taken from the header of the file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColumnChoice {
+    /// The column.
+    pub column: Option<ColumnRef>,
+    /// Its unit, one that its quantity takes.
+    pub unit: Option<String>,
+    /// 1, or −1 where the file counts the other way round.
+    pub sign: f64,
+    /// A clock of its own.
+    pub clock: Option<ClockChoice>,
+}
+
+/// The time stamps of one quantity alone.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ClockChoice {
+    /// The column of the clock.
+    pub column: ColumnRef,
+    /// Its unit.
+    pub unit: Option<String>,
+}
+
+/// Which columns of a file hold what; `None`: recognised by the header of the file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ColumnChoices {
+    /// Time.
+    pub time: Option<ColumnChoice>,
+    /// Displacement.
+    pub displacement: Option<ColumnChoice>,
+    /// Force; never together with stress.
+    pub force: Option<ColumnChoice>,
+    /// Stress, to be turned into force by the section of the specimen.
+    pub stress: Option<ColumnChoice>,
+}
+
+/// Which columns hold what. What is left out is recognised by the header of the file.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Columns")]
+pub(super) struct ColumnsTable {
+    /// Time. Not needed where displacement and force have clocks of their own.
+    time: Option<TimeTable>,
+    /// Travel of the jaw. A record without it is cut into phases by its force.
+    displacement: Option<ColumnTable>,
+    /// Force.
+    force: Option<ColumnTable>,
+    /// Stress instead of force; the section of the specimen turns it into force.
+    stress: Option<ColumnTable>,
+}
+
+/// The column of the time.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "TimeColumn")]
+struct TimeTable {
+    /// Number of the column, from 1, or its name.
+    column: Option<ColumnRef>,
+    /// Unit, such as "s"; not needed where the header gives it.
+    unit: Option<String>,
+}
+
+/// The column of a measured quantity.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Column")]
+struct ColumnTable {
+    /// Number of the column, from 1, or its name.
+    column: Option<ColumnRef>,
+    /// Unit, such as "mm" or "N"; not needed where the header gives it.
+    unit: Option<String>,
+    /// -1 where the file counts loading as negative; 1 otherwise.
+    #[schemars(extend("enum" = [1, -1]))]
+    sign: Option<f64>,
+    /// Time stamps of this quantity alone, where it has its own.
+    clock: Option<ClockTable>,
+}
+
+/// The time stamps of one quantity alone.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Clock")]
+struct ClockTable {
+    /// Number of the column, from 1, or its name.
+    column: ColumnRef,
+    /// Unit, such as "s"; not needed where the header gives it.
+    unit: Option<String>,
+}
+
+impl ColumnsTable {
+    pub(super) fn checked(self, source: &Source<'_>) -> Result<ColumnChoices, DescriptionError> {
+        if self.force.is_some() && self.stress.is_some() {
+            return Err(source.both("columns.force", "columns.stress"));
+        }
+        let measured =
+            |table: Option<ColumnTable>, quantity| table.map(|table| table.checked(source, quantity)).transpose();
+        let time = self.time.map(|table| {
+            check_unit(source, "columns.time.unit", table.unit.as_deref(), Dimension::Time)?;
+            Ok(ColumnChoice {
+                column: table.column,
+                unit: table.unit,
+                sign: 1.0,
+                clock: None,
+            })
+        });
+        Ok(ColumnChoices {
+            time: time.transpose()?,
+            displacement: measured(self.displacement, Quantity::Displacement)?,
+            force: measured(self.force, Quantity::Force)?,
+            stress: measured(self.stress, Quantity::Stress)?,
+        })
+    }
+}
+
+impl ColumnTable {
+    fn checked(self, source: &Source<'_>, quantity: Quantity) -> Result<ColumnChoice, DescriptionError> {
+        let key = |rest: &str| format!("columns.{quantity}.{rest}");
+        check_unit(source, &key("unit"), self.unit.as_deref(), quantity.dimension())?;
+        let sign = self.sign.unwrap_or(1.0);
+        let sign = source.number(&key("sign"), sign, "1 or -1", |sign| sign.abs() == 1.0)?;
+        if let Some(clock) = &self.clock {
+            let key = key("clock.unit");
+            check_unit(source, &key, clock.unit.as_deref(), Dimension::Time)?;
+        }
+        Ok(ColumnChoice {
+            column: self.column,
+            unit: self.unit,
+            sign,
+            clock: self.clock.map(|clock| ClockChoice {
+                column: clock.column,
+                unit: clock.unit,
+            }),
+        })
+    }
+}
+
+fn check_unit(
+    source: &Source<'_>,
+    key: &str,
+    unit: Option<&str>,
+    dimension: Dimension,
+) -> Result<(), DescriptionError> {
+    match unit {
+        Some(unit) if crate::record_file::unit_factor(unit, dimension).is_none() => Err(DescriptionError::Quantity {
+            place: source.place(key),
+            found: format!("\"{unit}\""),
+            source: UnitError::UnknownUnit {
+                dimension,
+                unit: unit.to_owned(),
+            },
+        }),
+        _ => Ok(()),
+    }
+}

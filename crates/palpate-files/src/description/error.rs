@@ -1,0 +1,284 @@
+//! What can be wrong with a description.
+
+use std::{fmt, io, path::PathBuf};
+
+use palpate::units::{Dimension, UnitError};
+
+/// Where in a description a key stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct KeyPlace {
+    /// The file.
+    pub path: PathBuf,
+    /// Line, from 1, where it is known. A key that is missing stands on the line of its table.
+    pub line: Option<usize>,
+    /// Path of the key, such as `specimen.radius` or `step[2].rate`; entries of a list count from 1.
+    pub key: String,
+}
+
+impl fmt::Display for KeyPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.path.display())?;
+        if let Some(line) = self.line {
+            write!(f, ", line {line}")?;
+        }
+        if self.key.is_empty() {
+            return Ok(());
+        }
+        write!(f, ": {}", self.key)
+    }
+}
+
+/// Why a description cannot be used. [`DescriptionError::hint`] says what would help.
+#[derive(Debug, thiserror::Error)]
+pub enum DescriptionError {
+    /// There is no such file.
+    #[error("{}: no such file", path.display())]
+    NotFound {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// The path leads to a directory.
+    #[error("{}: expected a file, found a directory", path.display())]
+    Directory {
+        /// The directory.
+        path: PathBuf,
+    },
+    /// The operating system does not hand the file out.
+    #[error("{}: cannot be read", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// The file is far longer than anybody writes.
+    #[error("{}: expected a description of at most {limit} bytes, found {bytes} bytes", path.display())]
+    TooLong {
+        /// The file.
+        path: PathBuf,
+        /// Its size.
+        bytes: u64,
+        /// The most that is read.
+        limit: u64,
+    },
+    /// The file is not text in UTF-8.
+    #[error("{}, line {line}: expected text in UTF-8, found other bytes", path.display())]
+    NotText {
+        /// The file.
+        path: PathBuf,
+        /// Line of the first such bytes, from 1.
+        line: usize,
+    },
+    /// The text is no TOML.
+    #[error("{}, line {line}, column {column}: expected TOML, found `{text}` ({message})", path.display())]
+    Syntax {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// Character in the line, from 1.
+        column: usize,
+        /// What the TOML reader says.
+        message: String,
+        /// The line.
+        text: String,
+    },
+    /// A key that means nothing here.
+    #[error("{place}: unknown key (accepted: {})", accepted.join(", "))]
+    UnknownKey {
+        /// The key.
+        place: KeyPlace,
+        /// The keys that have a meaning here.
+        accepted: Vec<String>,
+    },
+    /// A key that is needed is not there.
+    #[error("{place}: missing, expected {expected}")]
+    Missing {
+        /// The key.
+        place: KeyPlace,
+        /// What it should hold.
+        expected: String,
+    },
+    /// A quantity that cannot be read.
+    #[error("{place} = {found}: {source}")]
+    Quantity {
+        /// The key.
+        place: KeyPlace,
+        /// What it holds, as written.
+        found: String,
+        /// What is wrong with it.
+        source: UnitError,
+    },
+    /// A value of the wrong kind or size.
+    #[error("{place}: expected {expected}, found {found}")]
+    Value {
+        /// The key.
+        place: KeyPlace,
+        /// What would be accepted.
+        expected: String,
+        /// What it holds.
+        found: String,
+    },
+    /// A key that has no effect beside the others.
+    #[error("{place}: not used {reason}")]
+    Unused {
+        /// The key.
+        place: KeyPlace,
+        /// When and why it has none.
+        reason: String,
+        /// What would help.
+        remedy: String,
+    },
+    /// Two keys that exclude each other.
+    #[error("{place}: expected either this or {other}, found both")]
+    Both {
+        /// One of the keys.
+        place: KeyPlace,
+        /// The other.
+        other: String,
+    },
+    /// Something else that the TOML reader says about a value.
+    #[error("{place}: {message}")]
+    Other {
+        /// The key.
+        place: KeyPlace,
+        /// What the reader says.
+        message: String,
+    },
+}
+
+impl DescriptionError {
+    /// The key that is wrong, such as `specimen.radius`; `None` where it is the file.
+    #[must_use]
+    pub fn key(&self) -> Option<&str> {
+        match self {
+            Self::UnknownKey { place, .. }
+            | Self::Missing { place, .. }
+            | Self::Quantity { place, .. }
+            | Self::Value { place, .. }
+            | Self::Unused { place, .. }
+            | Self::Both { place, .. }
+            | Self::Other { place, .. } => Some(&place.key),
+            _ => None,
+        }
+    }
+
+    /// What would help, if that is known.
+    #[must_use]
+    pub fn hint(&self) -> Option<String> {
+        match self {
+            Self::NotFound { .. } => Some("check the spelling of the path".to_owned()),
+            Self::Directory { .. } => Some("name the TOML file inside it".to_owned()),
+            Self::Unreadable { .. } | Self::Other { .. } => None,
+            Self::TooLong { .. } => Some("give a description in TOML here, not the record itself".to_owned()),
+            Self::NotText { .. } => Some("save the description as UTF-8".to_owned()),
+            Self::Syntax { text, message, .. } => Some(syntax(text, message)),
+            Self::UnknownKey { place, accepted } => {
+                nearest(last_key(&place.key), accepted).map(|key| format!("did you mean {key}?"))
+            }
+            Self::Missing { place, expected } => {
+                let (_, example) = expected.split_once("such as ")?;
+                let key = last_key(&place.key);
+                Some(format!("add a line such as {key} = {example}"))
+            }
+            Self::Quantity { place, source, .. } => Some(quantity(last_key(&place.key), source)),
+            Self::Value { expected, found, .. } => {
+                let names: Vec<String> = expected.split('"').skip(1).step_by(2).map(str::to_owned).collect();
+                let name = nearest(found.trim_matches('"'), &names)?;
+                Some(format!("did you mean \"{name}\"?"))
+            }
+            Self::Unused { remedy, .. } => Some(remedy.clone()),
+            Self::Both { place, other } => Some(format!("remove {} or {other}", last_key(&place.key))),
+        }
+    }
+}
+
+fn last_key(key: &str) -> &str {
+    key.rsplit('.').next().unwrap_or(key)
+}
+
+/// The line that most often goes wrong is a quantity without quotes.
+fn syntax(line: &str, message: &str) -> String {
+    if message.starts_with("duplicate key") {
+        return "the key stands here a second time: remove one of the two".to_owned();
+    }
+    let written = line.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
+    match written {
+        Some((key, value)) if value.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first)) => {
+            let value = value.split('#').next().unwrap_or(value).trim_end();
+            format!("a quantity stands in quotes: {key} = \"{value}\"")
+        }
+        _ => "every line is a [table], a key = value, a # comment or blank; texts and quantities stand in quotes"
+            .to_owned(),
+    }
+}
+
+fn quantity(key: &str, error: &UnitError) -> String {
+    let named = |value: &str| {
+        if key.ends_with(']') { format!("\"{value}\"") } else { format!("{key} = \"{value}\"") }
+    };
+    match error {
+        UnitError::MissingUnit { dimension, found } => {
+            let value = format!("{} {}", found.trim(), usual_unit(*dimension));
+            format!("add the unit, such as {}", named(&value))
+        }
+        UnitError::NotANumber { dimension, .. } | UnitError::NotFinite { dimension, .. } => {
+            let unit = usual_unit(*dimension);
+            format!("write a number and a unit, such as {}", named(&format!("10 {unit}")))
+        }
+        UnitError::UnknownUnit { dimension, .. } => {
+            format!("use one of {}", dimension.accepted())
+        }
+    }
+}
+
+fn usual_unit(dimension: Dimension) -> &'static str {
+    match dimension {
+        Dimension::Length => "mm",
+        Dimension::Area => "mm^2",
+        Dimension::Time => "s",
+        Dimension::Force => "N",
+        Dimension::Pressure => "kPa",
+        Dimension::Speed => "mm/min",
+        Dimension::Rate => "/s",
+        Dimension::Frequency => "Hz",
+    }
+}
+
+/// The accepted key that differs least from `key`, if it differs little.
+fn nearest<'a>(key: &str, accepted: &'a [String]) -> Option<&'a String> {
+    let distances = accepted.iter().map(|other| (distance(key, other), other));
+    let (edits, other) = distances.min_by_key(|(edits, _)| *edits)?;
+    (edits <= 1 + key.chars().count() / 4).then_some(other)
+}
+
+/// Letters to insert, drop or replace to turn `a` into `b`.
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, letter) in a.chars().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
+        for (j, other) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(letter != *other);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nearest_keys() {
+        let accepted = ["radius", "modulus", "shape"].map(str::to_owned);
+        assert_eq!(nearest("raduis", &accepted), Some(&accepted[0]));
+        assert_eq!(nearest("Modulus", &accepted), Some(&accepted[1]));
+        assert_eq!(nearest("temperature", &accepted), None);
+        assert_eq!((distance("", "abc"), distance("kitten", "sitting")), (3, 3));
+    }
+}

@@ -1,0 +1,37 @@
+//! Descriptions that people write in TOML: protocols to simulate, and tests to evaluate.
+//!
+//! A quantity is a text with a unit (`"35 mm"`, `"28 kPa"`, `"500 mm/min"`); what comes out is checked and in SI.
+//! Nothing is passed over: an unknown key, a missing unit or a size that no body has is a [`DescriptionError`]
+//! that names the file, the line, the key and what would be accepted.
+//!
+//! | file | what |
+//! |---|---|
+//! | `protocol.rs` | a protocol: body, law and steps of the jaw ([`Protocol`]) |
+//! | `test.rs`, `test_tables.rs`, `settings.rs` | a test: its record, its body, how to evaluate it ([`TestDescription`]) |
+//! | `specimen.rs`, `contact.rs`, `columns.rs` | tables that they are made of |
+//! | `choices.rs` | choices that a command line offers too |
+//! | `quantity.rs` | a quantity as written |
+//! | `source.rs`, `places.rs`, `words.rs`, `error.rs` | what is wrong, where, and in plain words |
+//! | `schema.rs` | JSON Schemas for editors |
+
+mod choices;
+mod columns;
+mod contact;
+mod error;
+mod places;
+mod protocol;
+mod quantity;
+mod schema;
+mod settings;
+mod source;
+mod specimen;
+mod test;
+mod test_tables;
+mod words;
+
+pub use choices::{ChoiceError, parse_hold_start, parse_touch};
+pub use columns::{ClockChoice, ColumnChoice, ColumnChoices, ColumnRef};
+pub use error::{DescriptionError, KeyPlace};
+pub use protocol::{Protocol, parse_protocol, read_protocol};
+pub use schema::{schema_protocol, schema_test};
+pub use test::{About, TestDescription, parse_test, read_test};

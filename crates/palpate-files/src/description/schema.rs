@@ -1,0 +1,17 @@
+//! JSON Schemas of the descriptions, for editors that complete and check TOML.
+
+use serde_json::Value;
+
+use super::{protocol::ProtocolTables, test_tables::TestTables};
+
+/// The JSON Schema of a protocol, see [`read_protocol`](super::read_protocol).
+#[must_use]
+pub fn schema_protocol() -> Value {
+    schemars::schema_for!(ProtocolTables).to_value()
+}
+
+/// The JSON Schema of a test description, see [`read_test`](super::read_test).
+#[must_use]
+pub fn schema_test() -> Value {
+    schemars::schema_for!(TestTables).to_value()
+}

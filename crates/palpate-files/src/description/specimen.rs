@@ -1,0 +1,160 @@
+//! The table `[specimen]`: shape, size and stiffness of the body.
+
+use std::f64::consts::PI;
+
+use palpate::{
+    contact::{Shape, Sides},
+    units::Dimension,
+};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{error::DescriptionError, quantity::QuantityText, source::Source};
+
+/// Shape, size and stiffness of the body. Give the sizes that its shape needs: a ball takes radius; a strip
+/// takes width, thickness and length; a cylinder takes diameter and length; a block takes area and length.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Specimen")]
+pub(super) struct SpecimenTable {
+    /// The shape of the body.
+    shape: ShapeName,
+    /// Radius of a ball.
+    radius: Option<QuantityText>,
+    /// Diameter of a cylinder that is loaded along its axis.
+    diameter: Option<QuantityText>,
+    /// Width of the section of a strip.
+    width: Option<QuantityText>,
+    /// Thickness of the section of a strip.
+    thickness: Option<QuantityText>,
+    /// Area of the section of a block, which carries the force.
+    area: Option<QuantityText>,
+    /// Free length along the force, from grip to grip or plate to plate: of a strip, a cylinder or a block.
+    length: Option<QuantityText>,
+    /// Young's modulus.
+    modulus: Option<QuantityText>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+enum ShapeName {
+    /// A ball between flat plates; the contact grows with the squeeze.
+    Ball,
+    /// A strip of rectangular section, pulled or pressed along its length.
+    Strip,
+    /// A cylinder, pulled or pressed along its axis.
+    Cylinder,
+    /// Any body of constant section.
+    Block,
+    /// Nothing is known: forces stay forces, no strain is computed.
+    None,
+}
+
+impl ShapeName {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Ball => "ball",
+            Self::Strip => "strip",
+            Self::Cylinder => "cylinder",
+            Self::Block => "block",
+            Self::None => "none",
+        }
+    }
+
+    /// The sizes that describe it.
+    fn sizes(self) -> &'static [&'static str] {
+        match self {
+            Self::Ball => &["radius"],
+            Self::Strip => &["width", "thickness", "length"],
+            Self::Cylinder => &["diameter", "length"],
+            Self::Block => &["area", "length"],
+            Self::None => &[],
+        }
+    }
+}
+
+impl SpecimenTable {
+    /// The shape, or `None` where it is said to be unknown.
+    pub(super) fn shape(&self, source: &Source<'_>) -> Result<Option<Shape>, DescriptionError> {
+        self.check_sizes(source)?;
+        let size = |name: &str, size: &Option<QuantityText>, dimension| match size {
+            Some(size) => source.positive(&format!("specimen.{name}"), size, dimension),
+            None => Err(source.missing(format!("specimen.{name}"), "a size")),
+        };
+        let length = |name: &str, given: &Option<QuantityText>| size(name, given, Dimension::Length);
+        Ok(Some(match self.shape {
+            ShapeName::None => return Ok(None),
+            ShapeName::Ball => Shape::Ball {
+                radius: length("radius", &self.radius)?,
+            },
+            ShapeName::Strip => Shape::Prism {
+                area: length("width", &self.width)? * length("thickness", &self.thickness)?,
+                length: length("length", &self.length)?,
+            },
+            ShapeName::Cylinder => Shape::Prism {
+                area: PI / 4.0 * length("diameter", &self.diameter)?.powi(2),
+                length: length("length", &self.length)?,
+            },
+            ShapeName::Block => Shape::Prism {
+                area: size("area", &self.area, Dimension::Area)?,
+                length: length("length", &self.length)?,
+            },
+        }))
+    }
+
+    /// Young's modulus in Pa, if it is given.
+    pub(super) fn modulus(&self, source: &Source<'_>) -> Result<Option<f64>, DescriptionError> {
+        let modulus = self.modulus.as_ref();
+        modulus.map(|modulus| source.positive("specimen.modulus", modulus, Dimension::Pressure)).transpose()
+    }
+
+    /// Refuses a body without a shape, which cannot be simulated.
+    pub(super) fn known_shape(&self, source: &Source<'_>) -> Result<Shape, DescriptionError> {
+        self.shape(source)?.ok_or_else(|| {
+            let expected = "\"ball\", \"strip\", \"cylinder\" or \"block\"";
+            source.value("specimen.shape", expected, "\"none\"")
+        })
+    }
+
+    /// All sizes of the shape must be there, and no other.
+    fn check_sizes(&self, source: &Source<'_>) -> Result<(), DescriptionError> {
+        let shape = self.shape.name();
+        let wanted = self.shape.sizes();
+        let given = [
+            ("radius", &self.radius),
+            ("diameter", &self.diameter),
+            ("width", &self.width),
+            ("thickness", &self.thickness),
+            ("area", &self.area),
+            ("length", &self.length),
+        ];
+        for (name, size) in given {
+            let key = format!("specimen.{name}");
+            match size {
+                Some(size) if !wanted.contains(&name) => {
+                    let sizes = match wanted {
+                        [] => "has no sizes".to_owned(),
+                        _ => format!("takes {}", wanted.join(", ")),
+                    };
+                    let reason = format!("with shape = \"{shape}\", which {sizes} (found {size})");
+                    return Err(source.unused(&key, &reason, &format!("remove {name}")));
+                }
+                None if wanted.contains(&name) => {
+                    let example = if name == "area" { "40 mm^2" } else { "35 mm" };
+                    let expected = format!("the {name} of a {shape}, such as \"{example}\"");
+                    return Err(source.missing(key, &expected));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+/// From how many sides a body of this shape is squeezed where nothing is said.
+pub(super) fn usual_sides(shape: &Shape) -> Sides {
+    match shape {
+        Shape::Ball { .. } => Sides::Two,
+        Shape::Prism { .. } => Sides::One,
+    }
+}

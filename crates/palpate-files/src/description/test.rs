@@ -1,0 +1,218 @@
+//! A test: what its record holds, what body was tested, and how to evaluate it.
+
+use std::path::Path;
+
+use palpate::{
+    analysis::{AnalysisOptions, Geometry, LayersChoice},
+    contact::{Shape, Sides},
+    identify::FitOptions,
+    segment::{ContactChoice, SegmentOptions},
+    simulate::Separation,
+};
+
+use super::{
+    columns::ColumnChoices,
+    contact,
+    error::DescriptionError,
+    settings,
+    source::{self, Source},
+    specimen,
+    test_tables::{ContactTable, TestTables},
+};
+use crate::text::LayoutOptions;
+
+/// What a test is about, in the words of whoever made it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct About {
+    /// Title.
+    pub title: Option<String>,
+    /// Where the record comes from.
+    pub source: Option<String>,
+    /// Anything else.
+    pub note: Option<String>,
+}
+
+/// A checked description of a test, everything in SI.
+///
+/// [`TestDescription::default`] is the test of which nothing is said.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TestDescription {
+    /// What it is about.
+    pub about: About,
+    /// What is fixed about how the file is written.
+    pub layout: LayoutOptions,
+    /// Which columns hold what.
+    pub columns: ColumnChoices,
+    /// The body, if it is known.
+    pub geometry: Option<Geometry>,
+    /// Whether the jaw could pull.
+    pub separation: Separation,
+    /// Into how many layers to cut the body in a simulation of the test, if it is said.
+    pub layers: Option<LayersChoice>,
+    /// How to find first touch.
+    pub touch: ContactChoice,
+    /// How to find the phases.
+    pub segment: SegmentOptions,
+    /// How to fit.
+    pub fit: FitOptions,
+    /// The exponents to compare.
+    pub exponents: Vec<f64>,
+    /// Whether a free exponent is fitted too.
+    pub free_exponent: bool,
+    /// How much of a hold is fitted, s from its start; `None`: all of it.
+    pub until: Option<f64>,
+}
+
+impl Default for TestDescription {
+    fn default() -> Self {
+        Self {
+            about: About::default(),
+            layout: LayoutOptions::default(),
+            columns: ColumnChoices::default(),
+            geometry: None,
+            separation: Separation::default(),
+            layers: None,
+            touch: ContactChoice::AsRecorded,
+            segment: SegmentOptions::default(),
+            fit: FitOptions::default(),
+            exponents: settings::USUAL_EXPONENTS.to_vec(),
+            free_exponent: true,
+            until: None,
+        }
+    }
+}
+
+impl TestDescription {
+    /// What an analysis of the test is asked.
+    #[must_use]
+    pub fn analysis_options(&self) -> AnalysisOptions {
+        AnalysisOptions {
+            geometry: self.geometry,
+            segment: self.segment,
+            touch: self.touch,
+            separation: self.separation,
+            layers: self.layers,
+            exponents: self.exponents.clone(),
+            free_exponent: self.free_exponent,
+            fit: self.fit,
+            fit_until: self.until,
+            ..AnalysisOptions::default()
+        }
+    }
+}
+
+/// Reads and checks the description in the file at `path`.
+///
+/// # Errors
+/// [`DescriptionError`] where the file cannot be read, is no TOML, or holds a key or value that makes no
+/// sense; it names the key.
+pub fn read_test(path: &Path) -> Result<TestDescription, DescriptionError> {
+    parse_test(&source::read(path)?, path)
+}
+
+/// Checks a description that was read already; `path` is used in messages alone.
+///
+/// ```
+/// use std::path::Path;
+/// use palpate_files::description::parse_test;
+/// let text = r#"
+///     specimen = { shape = "ball", radius = "35 mm", modulus = "28 kPa" }
+///     columns.force = { column = 3, unit = "N" }
+///     phases.hold_start = "peak + 0.5 s"
+/// "#;
+/// let test = parse_test(text, Path::new("ball.toml"))?;
+/// assert_eq!(test.geometry.map(|body| body.shape.depth(body.sides)), Some(0.035));
+/// # Ok::<(), palpate_files::description::DescriptionError>(())
+/// ```
+///
+/// # Errors
+/// As for [`read_test`], less those of the file.
+pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, DescriptionError> {
+    let source = Source { path, text };
+    let tables: TestTables = source.tables()?;
+    let geometry = geometry(&source, &tables)?;
+    let columns = tables.columns.checked(&source)?;
+    let ball = matches!(
+        geometry,
+        Some(Geometry {
+            shape: Shape::Ball { .. },
+            ..
+        })
+    );
+    if ball && columns.stress.is_some() {
+        let reason = "for a ball, whose contact area changes with the squeeze";
+        return Err(source.unused("columns.stress", reason, "give columns.force"));
+    }
+    let contact = &tables.contact;
+    let touch = match &contact.touch {
+        Some(text) => settings::touch(&source, text)?,
+        None if ball => ContactChoice::Auto,
+        None => ContactChoice::AsRecorded,
+    };
+    let (fit, exponents) = settings::fit(&source, &tables.fit)?;
+    Ok(TestDescription {
+        about: About {
+            title: tables.about.title,
+            source: tables.about.source,
+            note: tables.about.note,
+        },
+        layout: tables.file,
+        columns,
+        geometry,
+        separation: contact::separation(contact.separation.unwrap_or(ball)),
+        layers: layers(&source, contact, geometry.as_ref())?,
+        touch,
+        segment: settings::segment(&source, &tables.phases)?,
+        fit,
+        exponents,
+        free_exponent: tables.fit.free_exponent.unwrap_or(true),
+        until: settings::until(&source, &tables.fit)?,
+    })
+}
+
+fn geometry(source: &Source<'_>, tables: &TestTables) -> Result<Option<Geometry>, DescriptionError> {
+    let sides = tables.contact.squeezed_from.map(Sides::from);
+    let shape = match &tables.specimen {
+        Some(specimen) => specimen.shape(source)?,
+        None => None,
+    };
+    let modulus = match &tables.specimen {
+        Some(specimen) => specimen.modulus(source)?,
+        None => None,
+    };
+    let Some(shape) = shape else {
+        if sides.is_some() {
+            return Err(needs_body(source, "contact.squeezed_from"));
+        }
+        if modulus.is_some() {
+            return Err(needs_body(source, "specimen.modulus"));
+        }
+        return Ok(None);
+    };
+    Ok(Some(Geometry {
+        shape,
+        sides: sides.unwrap_or_else(|| specimen::usual_sides(&shape)),
+        modulus,
+    }))
+}
+
+fn layers(
+    source: &Source<'_>,
+    contact: &ContactTable,
+    geometry: Option<&Geometry>,
+) -> Result<Option<LayersChoice>, DescriptionError> {
+    let thickness = contact.layer_thickness.as_ref();
+    match geometry {
+        Some(body) => contact::layers(source, contact.layers, thickness, body.shape.depth(body.sides)),
+        None if contact.layers.is_some() => Err(needs_body(source, "contact.layers")),
+        None if thickness.is_some() => Err(needs_body(source, "contact.layer_thickness")),
+        None => Ok(None),
+    }
+}
+
+/// A key that says something about a body that is not described.
+fn needs_body(source: &Source<'_>, key: &str) -> DescriptionError {
+    let reason = "without a [specimen] that has a shape";
+    let remedy = format!("remove {key}, or give the shape and sizes of the body in [specimen]");
+    source.unused(key, reason, &remedy)
+}

@@ -1,0 +1,95 @@
+//! The tables of a test description as they stand in the file.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{columns::ColumnsTable, contact::SidesName, quantity::QuantityText, specimen::SpecimenTable};
+use crate::text::LayoutOptions;
+
+/// A squeeze-and-hold test: what its record holds, what was tested, and how to evaluate it. Every table may be
+/// left out. Quantities are texts with a unit.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "palpate test description", rename = "Test")]
+pub(super) struct TestTables {
+    #[serde(default)]
+    pub(super) about: AboutTable,
+    /// How the file is written, where it should not be found out.
+    #[serde(default)]
+    pub(super) file: LayoutOptions,
+    #[serde(default)]
+    pub(super) columns: ColumnsTable,
+    pub(super) specimen: Option<SpecimenTable>,
+    #[serde(default)]
+    pub(super) contact: ContactTable,
+    #[serde(default)]
+    pub(super) phases: PhasesTable,
+    #[serde(default)]
+    pub(super) fit: FitTable,
+}
+
+/// What the test is about.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "About")]
+pub(super) struct AboutTable {
+    /// Title for reports.
+    pub(super) title: Option<String>,
+    /// Where the record comes from.
+    pub(super) source: Option<String>,
+    /// Anything else.
+    pub(super) note: Option<String>,
+}
+
+/// How the jaw meets the body.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Contact")]
+pub(super) struct ContactTable {
+    /// Two sides for a ball, one side for other shapes, unless said otherwise.
+    pub(super) squeezed_from: Option<SidesName>,
+    /// Whether the jaw can leave the body: true for a ball, false for other shapes, unless said otherwise.
+    pub(super) separation: Option<bool>,
+    /// Number of layers for a simulation of the test, any number of 1 or more.
+    pub(super) layers: Option<f64>,
+    /// Thickness of one layer, instead of their number.
+    pub(super) layer_thickness: Option<QuantityText>,
+    /// First touch: "auto" (found from the force), "as recorded" (displacement and force start at zero), or a
+    /// displacement such as "2.5 mm". "auto" for a ball, "as recorded" for other shapes, unless said otherwise.
+    #[schemars(extend("examples" = ["auto", "as recorded", "2.5 mm"]))]
+    pub(super) touch: Option<String>,
+}
+
+/// How to find loading, hold and unloading. What is left out is derived from the record.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Phases")]
+pub(super) struct PhasesTable {
+    /// How far the displacement may stray from its level in a hold.
+    pub(super) tolerance: Option<QuantityText>,
+    /// Shortest hold.
+    pub(super) minimum_hold: Option<QuantityText>,
+    /// Speed under which the jaw counts as standing still, as a share of the speed of the ramps, between 0 and 1.
+    pub(super) still_below: Option<f64>,
+    /// From where in a hold laws are fitted: "peak" of the force (the default), "settled" jaw, or a time after the
+    /// peak such as "peak + 0.5 s".
+    #[schemars(extend("examples" = ["peak", "settled", "peak + 0.5 s"]))]
+    pub(super) hold_start: Option<String>,
+}
+
+/// How to fit the law.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Fit")]
+pub(super) struct FitTable {
+    /// Exponents to compare; 1, 2, 3, 5 and 7 if left out.
+    pub(super) exponents: Option<Vec<f64>>,
+    /// Whether a free exponent is fitted too; true if left out.
+    pub(super) free_exponent: Option<bool>,
+    /// Range in which the free exponent is sought; 0.2 to 30 if left out.
+    pub(super) exponent_range: Option<[f64; 2]>,
+    /// Coverage of confidence intervals, between 0 and 1; 0.95 if left out.
+    pub(super) confidence: Option<f64>,
+    /// Fit no more than this much of every hold, counted from where its fit starts.
+    pub(super) until: Option<QuantityText>,
+}

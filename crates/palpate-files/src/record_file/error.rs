@@ -1,0 +1,205 @@
+//! What can be wrong between a file and a record.
+
+use std::{fmt, path::PathBuf};
+
+use palpate::record::RecordError;
+
+use super::{Quantity, snippet};
+use crate::{
+    description::ColumnRef,
+    text::{ColumnInfo, FileError},
+};
+
+/// A column as messages name it: `column 3 (Force)`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedColumn {
+    /// Its number, from 1.
+    pub number: usize,
+    /// Its name, if it has one.
+    pub name: Option<String>,
+}
+
+impl fmt::Display for NamedColumn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "column {}", self.number)?;
+        match &self.name {
+            Some(name) => write!(f, " ({name})"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl From<&ColumnInfo> for NamedColumn {
+    fn from(column: &ColumnInfo) -> Self {
+        Self {
+            number: column.number,
+            name: column.name.clone(),
+        }
+    }
+}
+
+/// Why it is not clear which column holds what.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ColumnError {
+    /// No column was found for a quantity that a record needs.
+    #[error("{}: expected a column of {quantity}, found {}", path.display(), snippet::described(columns))]
+    Missing {
+        /// The record.
+        path: PathBuf,
+        /// What is missing.
+        quantity: Quantity,
+        /// All columns of the file.
+        columns: Vec<ColumnInfo>,
+    },
+    /// Several columns could hold a quantity.
+    #[error("{}: expected one column of {quantity}, found {}", path.display(), listed(candidates))]
+    Ambiguous {
+        /// The record.
+        path: PathBuf,
+        /// What they could hold.
+        quantity: Quantity,
+        /// The columns.
+        candidates: Vec<NamedColumn>,
+    },
+    /// The units of some columns are written nowhere.
+    #[error("{}: expected a unit for {}, found none in the header", path.display(), units_of(columns))]
+    NoUnit {
+        /// The record.
+        path: PathBuf,
+        /// Keys of the description that would say the unit, a usual unit, and the columns.
+        columns: Vec<(String, &'static str, NamedColumn)>,
+    },
+    /// A header gives a unit that is not understood.
+    #[error("{}: {column}: \"{unit}\" is not a unit of {quantity} (accepted: {})", path.display(), quantity.dimension().accepted())]
+    UnknownUnit {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// What it holds.
+        quantity: Quantity,
+        /// Key of the description that would say the unit.
+        key: String,
+        /// The unit in the header.
+        unit: String,
+    },
+    /// The description names a column that the file does not have, or has more than once.
+    #[error("{}: {key}: expected {}, found {found} in the description", path.display(), snippet::choices(columns))]
+    NoSuchColumn {
+        /// The record.
+        path: PathBuf,
+        /// Key of the description.
+        key: String,
+        /// What it says.
+        found: ColumnRef,
+        /// All columns of the file.
+        columns: Vec<ColumnInfo>,
+    },
+    /// One column is said to hold two quantities.
+    #[error("{}: {column}: expected one quantity in a column, found {} and {}", path.display(), quantities.0, quantities.1)]
+    Twice {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// What it is said to hold.
+        quantities: (Quantity, Quantity),
+    },
+    /// Stress on a ball, which has no section that would turn it into force.
+    #[error("{}: {column}: expected force for a ball, whose contact area changes, found stress", path.display())]
+    NoSection {
+        /// The record.
+        path: PathBuf,
+        /// The column of stress.
+        column: NamedColumn,
+    },
+}
+
+impl ColumnError {
+    /// What would help; where that is a description, lines to paste into it.
+    #[must_use]
+    pub fn hint(&self) -> String {
+        match self {
+            Self::Missing { columns, .. } => {
+                format!("say which column holds what in a test description:\n{}", snippet::of_columns(columns))
+            }
+            Self::Ambiguous {
+                quantity, candidates, ..
+            } => {
+                let first = candidates.first().map_or(1, |column| column.number);
+                format!("choose one in a test description:\n[columns.{quantity}]\ncolumn = {first}")
+            }
+            Self::NoUnit { columns, .. } => {
+                let lines = columns.iter().map(|(key, unit, column)| snippet::of_unit(key, unit, column));
+                let lines: Vec<String> = lines.collect();
+                format!("say it in a test description:\n{}", lines.join("\n"))
+            }
+            Self::UnknownUnit {
+                key, quantity, column, ..
+            } => format!(
+                "if another unit is meant, say it in a test description:\n{}",
+                snippet::of_unit(key, quantity.usual_unit(), column)
+            ),
+            Self::NoSuchColumn { .. } => {
+                "columns count from 1 at the left; a name is written without its unit".to_owned()
+            }
+            Self::Twice { quantities, .. } => {
+                format!("correct columns.{} or columns.{}", quantities.0, quantities.1)
+            }
+            Self::NoSection { .. } => {
+                "choose a column of force, or describe the body as a strip, cylinder or block".to_owned()
+            }
+        }
+    }
+}
+
+fn listed(columns: &[NamedColumn]) -> String {
+    let columns: Vec<String> = columns.iter().map(ToString::to_string).collect();
+    columns.join(" and ")
+}
+
+fn units_of(columns: &[(String, &'static str, NamedColumn)]) -> String {
+    let columns: Vec<String> = columns.iter().map(|(_, _, column)| column.to_string()).collect();
+    columns.join(", ")
+}
+
+/// Why a file gives no record.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// It is not clear which column holds what.
+    #[error(transparent)]
+    Column(#[from] ColumnError),
+    /// The numbers make no record.
+    #[error("{}{}: {}", path.display(), line.map_or_else(String::new, |line| format!(", line {line}")), without_row(source))]
+    Record {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1, where one line is to blame.
+        line: Option<usize>,
+        /// What is wrong.
+        source: RecordError,
+    },
+}
+
+impl ReadError {
+    /// What would help, if that is known.
+    #[must_use]
+    pub fn hint(&self) -> Option<String> {
+        match self {
+            Self::File(error) => error.hint(),
+            Self::Column(error) => Some(error.hint()),
+            Self::Record { source, .. } => Some(source.hint().to_owned()),
+        }
+    }
+}
+
+/// The message of a record error less its row: the line of the file says more.
+fn without_row(error: &RecordError) -> String {
+    let message = error.to_string();
+    let row = error.row().map(|row| format!(" in row {row}"));
+    let short = row.and_then(|row| message.strip_suffix(&row).map(str::to_owned));
+    short.unwrap_or(message)
+}

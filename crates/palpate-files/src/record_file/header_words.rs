@@ -1,0 +1,115 @@
+//! Words that headers of records use, in English, German, French, Spanish, Chinese and Japanese.
+
+use super::Quantity;
+
+/// Words for a quantity: those that mean it and nothing else, then those that stand in for it.
+#[derive(Debug)]
+pub(super) struct Vocabulary {
+    pub(super) quantity: Quantity,
+    pub(super) plain: &'static [&'static str],
+    pub(super) loose: &'static [&'static str],
+    /// Ends of German compounds, such as "Standardkraft".
+    pub(super) endings: &'static [&'static str],
+    /// Parts of Chinese and Japanese names, which have no gaps between words.
+    pub(super) characters: &'static [&'static str],
+    /// One letter that stands for the quantity, in this case alone.
+    pub(super) letter: Option<&'static str>,
+}
+
+pub(super) const VOCABULARY: [Vocabulary; 4] = [
+    Vocabulary {
+        quantity: Quantity::Time,
+        plain: &["time", "zeit", "temps", "tiempo"],
+        loose: &["elapsed", "timestamp", "epoch", "durée", "duree"],
+        endings: &["zeit"],
+        characters: &["时间", "時間"],
+        letter: Some("t"),
+    },
+    Vocabulary {
+        quantity: Quantity::Displacement,
+        plain: &["displacement", "verschiebung", "weg", "déplacement", "deplacement", "desplazamiento"],
+        loose: &[
+            "extension",
+            "travel",
+            "stroke",
+            "crosshead",
+            "traverse",
+            "position",
+            "pos",
+            "indentation",
+            "deflection",
+            "course",
+            "recorrido",
+            "carrera",
+        ],
+        endings: &["weg"],
+        characters: &["位移", "変位", "變位", "ストローク"],
+        letter: None,
+    },
+    Vocabulary {
+        quantity: Quantity::Force,
+        plain: &["force", "load", "kraft", "fuerza"],
+        loose: &["loadcell", "effort", "charge", "carga"],
+        endings: &["kraft"],
+        characters: &["力", "载荷", "荷重", "负荷", "負荷"],
+        letter: Some("F"),
+    },
+    Vocabulary {
+        quantity: Quantity::Stress,
+        plain: &["stress", "spannung", "contrainte", "esfuerzo"],
+        loose: &[],
+        endings: &["spannung"],
+        characters: &["应力", "応力"],
+        letter: None,
+    },
+];
+
+/// Words of columns that are no measurement of the quantity they name: commands, limits, statistics, and
+/// quantities derived from it.
+pub(super) const OTHER: &[&str] = &[
+    // commands
+    "goal",
+    "target",
+    "set",
+    "setpoint",
+    "command",
+    "commanded",
+    "cmd",
+    "demand",
+    "desired",
+    "reference",
+    "ref",
+    "nominal",
+    "desired",
+    "soll",
+    "sollwert",
+    "consigne",
+    "objetivo", // limits and statistics
+    "limit",
+    "max",
+    "min",
+    "maximum",
+    "minimum",
+    "peak",
+    "std",
+    "sd",
+    "stdev",
+    "error",
+    "count",
+    "offset",
+    // derived
+    "rate",
+    "speed",
+    "velocity",
+    "acceleration",
+    "strain",
+    "size",
+    "dehnung",
+    "stiffness",
+    "modulus",
+    "constant",
+];
+
+/// The same in Chinese and Japanese: target, set, command, strain, rate, greatest, least.
+pub(super) const OTHER_CHARACTERS: &[&str] =
+    &["目标", "目標", "设定", "設定", "指令", "应变", "ひずみ", "速度", "最大", "最小"];

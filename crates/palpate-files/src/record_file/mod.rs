@@ -1,0 +1,62 @@
+//! From a file to a record: which column holds what, in which unit.
+//!
+//! | file | what |
+//! |---|---|
+//! | `read.rs` | reads a record ([`read_record`]) |
+//! | `choose.rs` | chooses the columns, from a description or by the header |
+//! | `recognise.rs`, `header_words.rs` | tells columns by their names |
+//! | `quantity.rs` | what a column can hold, and its units |
+//! | `error.rs`, `snippet.rs` | what is not clear, and the lines of a description that would clear it up |
+
+mod choose;
+mod error;
+mod header_words;
+mod quantity;
+mod read;
+mod recognise;
+mod snippet;
+
+pub use error::{ColumnError, NamedColumn, ReadError};
+pub use quantity::Quantity;
+pub(crate) use quantity::unit_factor;
+pub use read::{RecordFile, read_record};
+
+use serde::Serialize;
+
+/// What a column of a file is used for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// Its values are a quantity.
+    Values(Quantity),
+    /// Its values are the time stamps of one quantity alone.
+    ClockOf(Quantity),
+}
+
+impl Role {
+    /// What the values of the column measure: time, for a clock.
+    #[must_use]
+    pub fn measured(self) -> Quantity {
+        match self {
+            Self::Values(quantity) => quantity,
+            Self::ClockOf(_) => Quantity::Time,
+        }
+    }
+}
+
+/// A column that a record was made of.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ColumnUse {
+    /// What for.
+    pub role: Role,
+    /// Its number, from 1.
+    pub number: usize,
+    /// Its name, if it has one.
+    pub name: Option<String>,
+    /// Its unit, as the description or the header writes it.
+    pub unit: String,
+    /// 1, or −1 where the file counts the other way round.
+    pub sign: f64,
+    /// What turns the unit into SI.
+    pub factor: f64,
+}

@@ -1,0 +1,192 @@
+//! Which column holds a quantity, going by its name and unit.
+
+use palpate::units::Dimension;
+
+use super::{
+    Quantity,
+    header_words::{OTHER, OTHER_CHARACTERS, VOCABULARY, Vocabulary},
+    quantity::unit_factor,
+};
+use crate::text::{ColumnInfo, ColumnKind};
+
+/// The columns that name `quantity` best: one if it is clear, several if it is not, none if none does.
+pub(super) fn candidates(columns: &[ColumnInfo], quantity: Quantity) -> Vec<&ColumnInfo> {
+    let ranked: Vec<(u8, &ColumnInfo)> =
+        columns.iter().filter_map(|column| Some((rank(column, quantity)?, column))).collect();
+    let best = ranked.iter().map(|(rank, _)| *rank).min();
+    let tied = ranked.into_iter().filter(|(rank, _)| Some(*rank) == best);
+    tied.map(|(_, column)| column).collect()
+}
+
+/// How well a column names a quantity; 0 is best.
+fn rank(column: &ColumnInfo, quantity: Quantity) -> Option<u8> {
+    if column.kind != ColumnKind::Number {
+        return None;
+    }
+    let vocabulary = VOCABULARY.iter().find(|words| words.quantity == quantity)?;
+    let by_name = rank_of_name(column.name.as_deref()?, vocabulary)?;
+    match column.unit.as_deref() {
+        None => Some(by_name),
+        Some(unit) if unit_factor(unit, quantity.dimension()).is_some() => Some(by_name),
+        Some(unit) if measures_another(unit, quantity) => None,
+        // Perhaps a unit that is not understood: better one with a good unit, but better this than none.
+        Some(_) => Some(by_name + 10),
+    }
+}
+
+/// Whether a unit is one of another kind of quantity.
+fn measures_another(unit: &str, quantity: Quantity) -> bool {
+    let others = [
+        Dimension::Time,
+        Dimension::Length,
+        Dimension::Force,
+        Dimension::Pressure,
+        Dimension::Speed,
+        Dimension::Frequency,
+        Dimension::Area,
+    ];
+    let ratio = matches!(unit, "-" | "%" | "1" | "mm/mm" | "m/m");
+    let other = |dimension: &Dimension| *dimension != quantity.dimension() && unit_factor(unit, *dimension).is_some();
+    ratio || others.iter().any(other)
+}
+
+fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
+    let words = words(name);
+    let has = |known: &[&str]| words.iter().any(|word| known.contains(&word.as_str()));
+    let is = |known: &[&str]| matches!(words.as_slice(), [only] if known.contains(&only.as_str()));
+    let contains = |parts: &[&str]| parts.iter().any(|part| name.contains(part));
+    if has(OTHER) || contains(OTHER_CHARACTERS) {
+        return None;
+    }
+    // The sign for force is a part of the word for stress.
+    let stress = contains(&["应力", "応力"]);
+    if stress && vocabulary.quantity != Quantity::Stress {
+        return None;
+    }
+    let ends = |word: &String| {
+        let end = vocabulary.endings.iter().find(|end| word.ends_with(*end));
+        end.is_some()
+    };
+    if is(vocabulary.plain) || vocabulary.characters.contains(&name.trim()) {
+        Some(0)
+    } else if has(vocabulary.plain) || words.iter().any(ends) || contains(vocabulary.characters) {
+        Some(1)
+    } else if is(vocabulary.loose) {
+        Some(2)
+    } else if has(vocabulary.loose) {
+        Some(3)
+    } else if vocabulary.letter == Some(name.trim()) {
+        Some(4)
+    } else {
+        None
+    }
+}
+
+/// The words of a name in lower case: `GoalForce`, `goal_force` and `Goal force` have the same two.
+fn words(name: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut before = ' ';
+    for letter in name.chars() {
+        let starts = letter.is_uppercase() && before.is_lowercase();
+        if starts || !letter.is_alphabetic() {
+            words.push(String::new());
+        }
+        if let Some(word) = words.last_mut()
+            && letter.is_alphabetic()
+        {
+            word.extend(letter.to_lowercase());
+        }
+        before = letter;
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn columns(header: &[(&str, Option<&str>)]) -> Vec<ColumnInfo> {
+        let column = |(index, (name, unit)): (usize, &(&str, Option<&str>))| ColumnInfo {
+            number: index + 1,
+            name: Some((*name).to_owned()),
+            unit: unit.map(str::to_owned),
+            kind: ColumnKind::Number,
+            sample: "0".to_owned(),
+        };
+        header.iter().enumerate().map(column).collect()
+    }
+
+    fn found(header: &[(&str, Option<&str>)], quantity: Quantity) -> Vec<usize> {
+        let columns = columns(header);
+        let found = candidates(&columns, quantity);
+        found.into_iter().map(|column| column.number).collect()
+    }
+
+    #[test]
+    fn words_of_names() {
+        assert_eq!(words("GoalForce"), ["goal", "force"]);
+        assert_eq!(words("now_pos 2"), ["now", "pos"]);
+        assert_eq!(words("Tensile strain (Extension)"), ["tensile", "strain", "extension"]);
+        assert_eq!(words("FORCE"), ["force"]);
+    }
+
+    #[test]
+    fn every_language() {
+        for header in [
+            ["Time", "Displacement", "Force"],
+            ["TIME", "Crosshead", "Load"],
+            ["Prüfzeit", "Standardweg", "Standardkraft"],
+            ["Zeit", "Weg", "Kraft"],
+            ["Temps", "Déplacement", "Force"],
+            ["Tiempo", "Desplazamiento", "Fuerza"],
+            ["时间", "位移", "力"],
+            ["试验时间", "位移", "试验力"],
+            ["時間", "変位", "荷重"],
+            ["t", "Stroke", "F"],
+        ] {
+            let named = header.map(|name| (name, None));
+            assert_eq!(found(&named, Quantity::Time), [1], "{header:?}");
+            assert_eq!(found(&named, Quantity::Displacement), [2], "{header:?}");
+            assert_eq!(found(&named, Quantity::Force), [3], "{header:?}");
+            assert!(found(&named, Quantity::Stress).is_empty(), "{header:?}");
+        }
+        for name in ["Tensile stress", "Spannung", "应力", "Contrainte"] {
+            assert_eq!(found(&[(name, None)], Quantity::Stress), [1], "{name}");
+            assert!(found(&[(name, None)], Quantity::Force).is_empty(), "{name}");
+        }
+    }
+
+    #[test]
+    fn commands_and_derived_quantities_are_no_measurements() {
+        let gripper = [("Time", None), ("Force", None), ("GoalForce", None), ("goal_force", None)];
+        assert_eq!(found(&gripper, Quantity::Force), [2]);
+        let foam = [("Size", Some("mm")), ("Displacement", Some("mm")), ("Displacement rate", None)];
+        assert_eq!(found(&foam, Quantity::Displacement), [2]);
+        let bluehill = [
+            ("Extension", Some("mm")),
+            ("Tensile extension", Some("mm")),
+            ("Tensile strain (Extension)", Some("mm/mm")),
+        ];
+        assert_eq!(found(&bluehill, Quantity::Displacement), [1]);
+        let both = [("Extension", Some("mm")), ("Displacement", Some("mm"))];
+        assert_eq!(found(&both, Quantity::Displacement), [2]);
+    }
+
+    #[test]
+    fn units_decide_where_names_do_not() {
+        let clocks = [("Force time", Some("s")), ("Force", Some("N"))];
+        assert_eq!(found(&clocks, Quantity::Force), [2]);
+        assert_eq!(found(&clocks, Quantity::Time), [1]);
+        let pounds = [("Force", Some("lbs")), ("Force (filtered)", Some("N"))];
+        assert_eq!(found(&pounds, Quantity::Force), [2]);
+        assert_eq!(found(&pounds[..1], Quantity::Force), [1]);
+        assert!(found(&[("Weg", Some("%"))], Quantity::Displacement).is_empty());
+    }
+
+    #[test]
+    fn two_of_a_kind_are_both_reported() {
+        let two = [("Force 1", Some("N")), ("Force 2", Some("N"))];
+        assert_eq!(found(&two, Quantity::Force), [1, 2]);
+    }
+}

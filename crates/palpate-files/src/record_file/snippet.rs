@@ -1,0 +1,69 @@
+//! Lines to paste into a test description.
+
+use super::{Quantity, error::NamedColumn, recognise};
+use crate::text::{ColumnInfo, ColumnKind};
+
+/// Most columns that a message shows.
+const MOST: usize = 20;
+
+/// All columns of a file, for a message.
+pub(super) fn described(columns: &[ColumnInfo]) -> String {
+    let named = columns.iter().any(|column| column.name.is_some());
+    let what = if named { "no name for it" } else { "no names of columns" };
+    let mut text = format!("{what} in {} columns", columns.len());
+    for column in columns.iter().take(MOST) {
+        let sample = if column.sample.is_empty() { "empty" } else { &column.sample };
+        text.push_str(&format!("\n  {}: {sample}", NamedColumn::from(column)));
+    }
+    if columns.len() > MOST {
+        text.push_str("\n  …");
+    }
+    text
+}
+
+/// What a column could be called, for a message.
+pub(super) fn choices(columns: &[ColumnInfo]) -> String {
+    let count = columns.len();
+    let names = columns.iter().filter_map(|column| column.name.as_deref());
+    let names: Vec<String> = names.take(MOST).map(|name| format!("\"{name}\"")).collect();
+    if names.is_empty() {
+        return format!("a number from 1 to {count} (the columns have no names)");
+    }
+    format!("a number from 1 to {count} or a name that one column has ({})", names.join(", "))
+}
+
+/// The table `[columns]` for a file; where the header does not tell, columns of numbers in their order.
+pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
+    let wanted = [Quantity::Time, Quantity::Displacement, Quantity::Force];
+    let known = wanted.map(|quantity| match recognise::candidates(columns, quantity)[..] {
+        [only] => Some(only),
+        _ => None,
+    });
+    let free = |column: &&ColumnInfo| {
+        let taken = known.iter().flatten().any(|known| known.number == column.number);
+        column.kind == ColumnKind::Number && !taken
+    };
+    let mut rest = columns.iter().filter(free);
+    let mut lines = vec!["[columns]".to_owned()];
+    for (quantity, known) in wanted.into_iter().zip(known) {
+        let Some(column) = known.or_else(|| rest.next()) else {
+            continue;
+        };
+        let mut line = format!("{quantity} = {{ column = {}, unit = \"{}\" }}", column.number, quantity.usual_unit(),);
+        let optional = if quantity == Quantity::Displacement { "; leave out if there is none" } else { "" };
+        line.push_str(&format!("  # check: starts with {}{optional}", column.sample));
+        lines.push(line);
+    }
+    lines.join("\n")
+}
+
+/// The lines that say the unit under `key`, such as `columns.force.unit`.
+pub(super) fn of_unit(key: &str, unit: &str, column: &NamedColumn) -> String {
+    let (table, key) = key.rsplit_once('.').unwrap_or(("columns", key));
+    let mut lines = format!("[{table}]\n");
+    if table.ends_with(".clock") {
+        lines.push_str(&format!("column = {}\n", column.number));
+    }
+    lines.push_str(&format!("{key} = \"{unit}\""));
+    lines
+}

@@ -1,0 +1,221 @@
+//! Protocols.
+
+use palpate::{
+    contact::{Shape, Sides},
+    simulate::{Sampling, Separation},
+};
+
+use crate::{SQUEEZE, protocol, says, with};
+
+#[test]
+fn a_short_protocol_has_the_usual_rest() {
+    let squeeze = protocol(SQUEEZE).unwrap();
+    assert_eq!(squeeze.title, None);
+    assert_eq!(squeeze.model.specimen.shape(), Shape::Ball { radius: 0.035 });
+    assert_eq!(squeeze.model.specimen.modulus(), 28_000.0);
+    assert_eq!(squeeze.model.specimen.sides(), Sides::Two);
+    assert_eq!(squeeze.model.layers.count(), 8.0);
+    assert_eq!(squeeze.model.separation, Separation::Unilateral);
+    assert_eq!((squeeze.model.law.exponent(), squeeze.model.law.rate_coefficient()), (5.0, 2e4));
+    assert_eq!(squeeze.sampling, Sampling::Rate(100.0));
+    assert_eq!((squeeze.steps[0].to, squeeze.steps[0].rate), (0.005, 0.5 / 60.0));
+    assert_eq!(squeeze.steps[0].hold, 10.0);
+    let no_hold = protocol(&with("hold = \"10 s\"", "")).unwrap();
+    assert_eq!(no_hold.steps[0].hold, 0.0);
+}
+
+#[test]
+fn shapes_and_choices() {
+    let strip = "shape = \"strip\"\nwidth = \"10 mm\"\nthickness = \"4 mm\"\nlength = \"20 mm\"";
+    let strip = with("shape = \"ball\"\nradius = \"35 mm\"", strip);
+    let model = protocol(&strip).unwrap().model;
+    assert_eq!(
+        model.specimen.shape(),
+        Shape::Prism {
+            area: 4e-5,
+            length: 0.02
+        }
+    );
+    assert_eq!(model.specimen.sides(), Sides::One);
+    let cylinder = with("shape = \"ball\"\nradius", "shape = \"cylinder\"\nlength = \"2 cm\"\ndiameter");
+    let Shape::Prism { area, length } = protocol(&cylinder).unwrap().model.specimen.shape() else {
+        panic!("no prism");
+    };
+    assert!((area - std::f64::consts::PI * 0.0175 * 0.0175).abs() < 1e-18 && length == 0.02);
+    let block = with("\"ball\"\nradius", "\"block\"\narea = \"40 mm^2\"\nlength");
+    let shape = protocol(&block).unwrap().model.specimen.shape();
+    assert_eq!(
+        shape,
+        Shape::Prism {
+            area: 4e-5,
+            length: 0.035
+        }
+    );
+    let thick = with(
+        "[contact]",
+        "[contact]\nlayer_thickness = \"4.375 mm\"\nseparation = false\nsqueezed_from = \"one side\"",
+    );
+    let model = protocol(&thick).unwrap().model;
+    assert_eq!((model.layers.count(), model.separation), (8.0, Separation::Bonded));
+    assert_eq!(model.specimen.sides(), Sides::One);
+    let times = with("[output]", "[output]\ntimes = [\"0.6 s\", \"600 ms\", \"10.6 s\"]");
+    let squeeze = protocol(&times).unwrap();
+    assert_eq!(squeeze.sampling, Sampling::Times(vec![0.6, 0.6, squeeze.motion.end()]));
+}
+
+#[test]
+fn quantities_want_units() {
+    let length = "accepted";
+    for (found, shown) in [("\"35\"", "\"35\""), ("35", "= 35:"), ("35.0", "= 35:")] {
+        let text = with("\"35 mm\"", found);
+        says(protocol(&text), "specimen.radius", shown, "radius = \"35 mm\"");
+        says(protocol(&text), "specimen.radius", "squeeze.toml, line 4: specimen.radius", "");
+        says(protocol(&text), "specimen.radius", "expected a unit after the number", "");
+        says(protocol(&text), "specimen.radius", "a length: m, cm, mm", "");
+    }
+    let text = with("\"35 mm\"", "\"35 kPa\"");
+    says(protocol(&text), "specimen.radius", "\"35 kPa\"", "m, cm, mm");
+    says(protocol(&text), "specimen.radius", length, "use one of");
+    let text = with("\"35 mm\"", "\"wide\"");
+    says(
+        protocol(&text),
+        "specimen.radius",
+        "\"wide\"",
+        "write a number and a unit, such as radius = \"10 mm\"",
+    );
+    let text = with("\"35 mm\"", "true");
+    says(
+        protocol(&text),
+        "specimen.radius",
+        "expected a number with its unit in quotes, such as \"35 mm\", found true",
+        "",
+    );
+    let text = with("\"2e4 /s\"", "2e4");
+    says(protocol(&text), "law.rate_coefficient", "expected a unit", "rate_coefficient = \"20000 /s\"");
+    let text = with("[output]", "[output]\ntimes = [\"1 s\", 2]");
+    says(protocol(&text), "output.times[2]", "expected a unit", "\"2 s\"");
+}
+
+#[test]
+fn absurd_values_name_their_keys() {
+    for (old, new, key, message) in [
+        ("\"35 mm\"", "\"0 mm\"", "specimen.radius", "a length above 0 m, found \"0 mm\""),
+        (
+            "\"28 kPa\"",
+            "\"-28 kPa\"",
+            "specimen.modulus",
+            "a pressure or modulus above 0 Pa, found \"-28 kPa\"",
+        ),
+        ("exponent = 5", "exponent = 0", "law.exponent", "a number above 0, found 0"),
+        ("exponent = 5", "exponent = nan", "law.exponent", "a number above 0, found NaN"),
+        ("exponent = 5", "exponent = \"5\"", "law.exponent", "a number, found \"5\""),
+        ("\"2e4 /s\"", "\"0 /s\"", "law.rate_coefficient", "a rate above 0 /s, found \"0 /s\""),
+        ("[contact]", "[contact]\nlayers = 0.5", "contact.layers", "a number of 1 or more, found 0.5"),
+        (
+            "[contact]",
+            "[contact]\nlayer_thickness = \"36 mm\"",
+            "contact.layer_thickness",
+            "at most 35 mm, the depth of the body, found \"36 mm\"",
+        ),
+        (
+            "[contact]",
+            "[contact]\nlayer_thickness = \"0 mm\"",
+            "contact.layer_thickness",
+            "a length above 0 m",
+        ),
+        ("\"5 mm\"", "\"70 mm\"", "step[1].to", "a displacement below 70 mm"),
+        ("\"500 mm/min\"", "\"0 mm/min\"", "step[1].rate", "a speed above 0 m/s, found \"0 mm/min\""),
+        ("\"500 mm/min\"", "\"-5 mm/s\"", "step[1].rate", "a speed above 0 m/s, found \"-5 mm/s\""),
+        ("\"10 s\"", "\"-1 s\"", "step[1].hold", "a time of 0 s or more, found \"-1 s\""),
+        (
+            "\"5 mm\"\nrate = \"500 mm/min\"\nhold = \"10 s\"",
+            "\"0 mm\"\nrate = \"1 mm/s\"",
+            "step[1].to",
+            "another displacement than before, or a hold",
+        ),
+        ("[output]", "[output]\nsample_rate = \"0 Hz\"", "output.sample_rate", "a frequency above 0 Hz"),
+        (
+            "[output]",
+            "[output]\ntimes = [\"11 s\"]",
+            "output.times[1]",
+            "a time from 0 s to 10.6 s, the end of the motion, found \"11 s\"",
+        ),
+        (
+            "[output]",
+            "[output]\ntimes = [\"2 s\", \"1 s\"]",
+            "output.times[2]",
+            "a time after the one before it",
+        ),
+        ("[output]", "[output]\ntimes = []", "output.times", "one time or more, found an empty list"),
+        (
+            "\"ball\"",
+            "\"bal\"",
+            "specimen.shape",
+            "\"ball\", \"strip\", \"cylinder\", \"block\" or \"none\", found \"bal\"",
+        ),
+        ("\"latency\"", "\"maxwell\"", "law.name", "expected \"latency\", found \"maxwell\""),
+        (
+            "[contact]",
+            "[contact]\nsqueezed_from = \"top\"",
+            "contact.squeezed_from",
+            "\"two sides\" or \"one side\", found \"top\"",
+        ),
+        ("[contact]", "[contact]\nseparation = \"yes\"", "contact.separation", "true or false, found \"yes\""),
+        (
+            "shape = \"ball\"\nradius = \"35 mm\"",
+            "shape = \"none\"",
+            "specimen.shape",
+            "\"cylinder\" or \"block\", found \"none\"",
+        ),
+        (
+            "\"35 mm\"",
+            "\"35 mm\"\nlength = \"1 m\"",
+            "specimen.length",
+            "not used with shape = \"ball\", which takes radius (found \"1 m\")",
+        ),
+    ] {
+        says(protocol(&with(old, new)), key, message, "");
+    }
+    let bonded = with("[contact]", "[contact]\nseparation = false").replace("\"5 mm\"", "\"-5 mm\"");
+    says(protocol(&bonded), "step[1].to", "0 mm or more for a bonded ball, found \"-5 mm\"", "");
+    says(protocol(&with("\"ball\"", "\"bal\"")), "specimen.shape", "found \"bal\"", "did you mean \"ball\"?");
+    let second = format!("{SQUEEZE}[[step]]\nto = \"80 mm\"\nrate = \"1 mm/s\"\n");
+    says(protocol(&second), "step[2].to", "squeeze.toml, line 17: step[2].to", "");
+}
+
+#[test]
+fn what_is_missing_or_too_much_is_named() {
+    says(
+        protocol(&with("radius = \"35 mm\"", "")),
+        "specimen.radius",
+        "missing, expected the radius of a ball, such as \"35 mm\"",
+        "add a line such as radius = \"35 mm\"",
+    );
+    says(
+        protocol(&with("modulus = \"28 kPa\"", "")),
+        "specimen.modulus",
+        "such as \"28 kPa\"",
+        "modulus = \"28 kPa\"",
+    );
+    says(protocol(&with("shape = \"ball\"", "")), "specimen.shape", "\"ball\", \"strip\"", "");
+    says(
+        protocol(&with("exponent = 5", "")),
+        "law.exponent",
+        "line 6: law.exponent: missing, expected a number above 0",
+        "add a line such as exponent = 5",
+    );
+    says(protocol(&with("to = \"5 mm\"", "")), "step[1].to", "such as \"5 mm\"", "to = \"5 mm\"");
+    says(protocol(""), "specimen", "a table [specimen]", "");
+    let no_steps = SQUEEZE.split("[[step]]").next().unwrap();
+    says(protocol(no_steps), "step", "one or more [[step]] tables", "");
+    says(protocol(&format!("step = []\n{no_steps}")), "step", "one or more [[step]] tables", "");
+    let both = with("[contact]", "[contact]\nlayers = 8\nlayer_thickness = \"1 mm\"");
+    says(
+        protocol(&both),
+        "contact.layers",
+        "either this or contact.layer_thickness, found both",
+        "remove layers",
+    );
+    let both = with("[output]", "[output]\nsample_rate = \"9 Hz\"\ntimes = [\"1 s\"]");
+    says(protocol(&both), "output.sample_rate", "either this or output.times, found both", "remove");
+}

@@ -1,0 +1,22 @@
+//! JSON Schemas.
+
+use palpate_files::description::{schema_protocol, schema_test};
+
+#[test]
+fn schemas_have_titles_words_and_strict_keys() {
+    let protocol = schema_protocol();
+    assert_eq!(protocol["title"], "palpate protocol");
+    assert_eq!(protocol["additionalProperties"], false);
+    assert_eq!(protocol["required"], serde_json::json!(["specimen", "law", "step"]));
+    let text = protocol.to_string();
+    for word in ["two sides", "layer_thickness", "such as \\\"35 mm\\\"", "Radius of a ball."] {
+        assert!(text.contains(word), "{word}");
+    }
+    let test = schema_test();
+    assert_eq!(test["title"], "palpate test description");
+    assert!(test["properties"]["columns"].is_object() && test["properties"]["fit"].is_object());
+    let column = &test["$defs"]["ColumnRef"]["anyOf"];
+    assert_eq!(column[0]["type"], "integer");
+    assert_eq!(column[1]["type"], "string");
+    assert!(test["$defs"]["Quantity"]["pattern"].is_string());
+}

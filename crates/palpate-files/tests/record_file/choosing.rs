@@ -1,0 +1,77 @@
+//! Columns from a header or a description, and what is made of them.
+
+use palpate_files::record_file::{Quantity, Role};
+
+use crate::read;
+
+const PRESS: &str = "Time (s),Displacement (mm),Force (N)\n0,0,0\n0.5,5,12\n1,5,9\n";
+
+#[test]
+fn a_header_is_enough() {
+    let file = read(PRESS, "").unwrap();
+    assert_eq!(file.record.time(), [0.0, 0.5, 1.0]);
+    assert_eq!(file.record.displacement(), Some([0.0, 0.005, 0.005].as_slice()));
+    assert_eq!(file.record.force(), [0.0, 12.0, 9.0]);
+    assert_eq!((file.rows, file.per_unit_area), (3, false));
+    let roles: Vec<Role> = file.columns.iter().map(|column| column.role).collect();
+    let all = [Quantity::Time, Quantity::Displacement, Quantity::Force];
+    assert_eq!(roles, all.map(Role::Values));
+    assert_eq!((file.columns[1].factor, file.columns[1].unit.as_str()), (1e-3, "mm"));
+    assert_eq!(file.bytes, PRESS.len() as u64);
+}
+
+#[test]
+fn the_description_goes_before_the_header() {
+    let test = "[columns]\nforce = { column = 2, unit = \"kN\", sign = -1 }\ndisplacement = { column = \"Force\", unit = \"cm\" }\ntime = { unit = \"min\" }";
+    let file = read(PRESS, test).unwrap();
+    assert_eq!(file.record.time(), [0.0, 30.0, 60.0]);
+    assert_eq!(file.record.displacement(), Some([0.0, 0.12, 0.09].as_slice()));
+    assert_eq!(file.record.force(), [0.0, -5000.0, -5000.0]);
+    assert!(file.record.force()[0].is_sign_positive());
+    assert_eq!(file.columns[2].sign, -1.0);
+}
+
+#[test]
+fn displacement_may_be_missing() {
+    let file = read("t [ms];Kraft [kN]\n0;0,5\n1;0,25\n", "").unwrap();
+    assert_eq!(file.record.displacement(), None);
+    assert_eq!((file.record.time(), file.record.force()), ([0.0, 0.001].as_slice(), [500.0, 250.0].as_slice()));
+}
+
+#[test]
+fn stress_becomes_force() {
+    let table = "Time (s),Stress (MPa)\n0,0\n1,0.5\n2,0.25\n";
+    let file = read(table, "").unwrap();
+    assert!(file.per_unit_area);
+    assert_eq!(file.record.force(), [0.0, 0.5e6, 0.25e6]);
+    assert_eq!(file.columns[1].role, Role::Values(Quantity::Stress));
+    let strip = "specimen = { shape = \"block\", area = \"40 mm^2\", length = \"2 cm\" }";
+    let file = read(table, strip).unwrap();
+    assert!(!file.per_unit_area);
+    assert_eq!(file.record.force(), [0.0, 20.0, 10.0]);
+    let both = "Time (s),Tensile stress (MPa),Load (N)\n0,0,0\n1,0.5,7\n";
+    assert_eq!(read(both, "").unwrap().record.force(), [0.0, 7.0]);
+    assert_eq!(read(both, "columns.stress = {}").unwrap().record.force(), [0.0, 5e5]);
+}
+
+#[test]
+fn clocks_of_their_own() {
+    let table = "0,0,-0.5,0\n1,-2,0.5,1\n2,-2,1.5,3\n3,-2,2.5,2\n";
+    let test = "[file]\nheader = false\n[columns.displacement]\ncolumn = 2\nunit = \"mm\"\nsign = -1\nclock = { column = 1, unit = \"s\" }\n[columns.force]\ncolumn = 4\nunit = \"N\"\n";
+    let file = read(table, &format!("{test}clock = {{ column = 3, unit = \"s\" }}")).unwrap();
+    assert_eq!(file.record.time(), [0.5, 1.5, 2.5]);
+    assert_eq!(file.record.displacement(), Some([0.001, 0.002, 0.002].as_slice()));
+    assert_eq!(file.record.force(), [1.0, 3.0, 2.0]);
+    assert_eq!((file.rows, file.columns.len()), (4, 4));
+    let same = read(table, &format!("{test}clock = {{ column = 1, unit = \"s\" }}")).unwrap();
+    assert_eq!(same.record.len(), 4);
+    let one = format!("{test}[columns.time]\ncolumn = 3\nunit = \"s\"");
+    assert_eq!(read(table, &one).unwrap().record.time(), [0.5, 1.5, 2.5]);
+}
+
+#[test]
+fn round_numbers_stay_round() {
+    let file = read("Time_S,Displacement_mm,Size_mm,Force_mN\n0,35,1,3\n0.1,4.375,2,7\n", "").unwrap();
+    assert_eq!(file.record.displacement(), Some([0.035, 0.004_375].as_slice()));
+    assert_eq!(file.record.force(), [0.003, 0.007]);
+}

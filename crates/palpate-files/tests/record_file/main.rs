@@ -1,0 +1,25 @@
+//! From a file to a record: choosing columns, units, clocks, and what is asked where they are not clear.
+
+mod choosing;
+mod errors;
+mod records;
+
+use std::path::Path;
+
+use palpate_files::{
+    description::{TestDescription, parse_test},
+    record_file::{ReadError, RecordFile, read_record},
+};
+
+fn described(text: &str) -> TestDescription {
+    parse_test(text, Path::new("test.toml")).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Reads `bytes` as a file `press.csv`, described by `test` (TOML) unless that is empty.
+fn read(bytes: impl AsRef<[u8]>, test: &str) -> Result<RecordFile, ReadError> {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("press.csv");
+    std::fs::write(&path, bytes).expect("a file written");
+    let test = described(test);
+    read_record(&path, Some(&test), &mut |_, _| {})
+}

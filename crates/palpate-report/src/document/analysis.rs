@@ -1,0 +1,303 @@
+//! `palpate.analysis/1`: one analysed record.
+
+use palpate::analysis::{Analysis, Finding, HoldAnalysis, Severity, Signal};
+use palpate::identify::ExponentChoice;
+use palpate::segment::{After, Phase, RelaxationType};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::{FitDocument, SettingsDocument, Software};
+
+/// Where a record came from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Input {
+    /// Path as given.
+    pub path: String,
+    /// SHA-256 of its bytes, hexadecimal.
+    pub sha256: String,
+    /// Rows of data.
+    pub rows: usize,
+    /// Path of the test description, if one was given.
+    pub test: Option<String>,
+    /// What the description says of the record (its title, or the file name).
+    pub title: String,
+}
+
+/// A finding with its words.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct FindingDocument {
+    /// Stable code.
+    pub code: String,
+    /// `info`, `caution` or `warning`.
+    pub severity: String,
+    /// What was seen.
+    pub seen: String,
+    /// What it may mean.
+    pub meaning: String,
+    /// What helps.
+    pub remedy: String,
+}
+
+impl From<&Finding> for FindingDocument {
+    fn from(finding: &Finding) -> Self {
+        Self {
+            code: finding.code().to_owned(),
+            severity: match finding.severity() {
+                Severity::Info => "info",
+                Severity::Caution => "caution",
+                Severity::Warning => "warning",
+            }
+            .to_owned(),
+            seen: finding.seen(),
+            meaning: finding.meaning().to_owned(),
+            remedy: finding.remedy().to_owned(),
+        }
+    }
+}
+
+/// A stretch of the record in one phase.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct SegmentDocument {
+    /// `rest`, `loading`, `hold` or `unloading`.
+    pub phase: String,
+    /// Time of the first sample, s.
+    pub start_s: f64,
+    /// Time of the last sample, s.
+    pub end_s: f64,
+    /// First sample, from 0.
+    pub first_row: usize,
+    /// Last sample, from 0.
+    pub last_row: usize,
+}
+
+/// One hold.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct HoldDocument {
+    /// Number of the hold, from 1.
+    pub index: usize,
+    /// Time of its first sample, s.
+    pub start_s: f64,
+    /// Time of its last sample, s.
+    pub end_s: f64,
+    /// Time from which the laws are fitted, s.
+    pub fit_start_s: f64,
+    /// Displacement of the jaw (median) since first touch, m.
+    pub displacement_m: Option<f64>,
+    /// `loading` or `unloading`.
+    pub after: Option<String>,
+    /// `type_1` (the force falls), `type_2` (it rises) or `none`.
+    pub relaxation: String,
+    /// Change of the force over the hold, N.
+    pub force_change_n: f64,
+    /// Its standard error, N.
+    pub force_change_standard_error_n: f64,
+    /// Probability that noise alone makes such a change.
+    pub p_value: f64,
+    /// Force where the fit starts, N.
+    pub force_start_n: f64,
+    /// Force at the end, N.
+    pub force_end_n: f64,
+    /// What was fitted: `strain` or `force`.
+    pub signal: String,
+    /// Fits, time domain first.
+    pub fits: Vec<FitDocument>,
+    /// Index into `fits` of the preferred one (lowest information criterion).
+    pub preferred: Option<usize>,
+    /// Index into `fits` of the lowest listed exponent that fits as well as the best one.
+    pub lowest_order: Option<usize>,
+    /// What to know about this hold.
+    pub findings: Vec<FindingDocument>,
+}
+
+/// A row of Table I or Table II: the paper's layout.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct TableRow {
+    /// Number of the hold.
+    pub hold: usize,
+    /// Displacement, m.
+    pub displacement_m: Option<f64>,
+    /// ε_e.
+    pub equilibrium_strain: f64,
+    /// Its standard error.
+    pub equilibrium_strain_standard_error: Option<f64>,
+    /// v, 1/s.
+    pub rate_coefficient_per_s: f64,
+    /// Its standard error, 1/s.
+    pub rate_coefficient_standard_error_per_s: Option<f64>,
+}
+
+/// Tables I and II of the paper for this record, at the common exponent.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct TablesDocument {
+    /// The lowest listed exponent that fits all holds best.
+    pub common_exponent: Option<f64>,
+    /// Holds after loading.
+    pub loading: Vec<TableRow>,
+    /// Holds after unloading.
+    pub unloading: Vec<TableRow>,
+    /// d ln v/dε_e over the holds after loading.
+    pub trend_of_log_rate_coefficient: Option<f64>,
+    /// Its confidence interval.
+    pub trend_interval: Option<[f64; 2]>,
+}
+
+/// The record's own displacement simulated with the fitted numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct OverlayDocument {
+    /// n.
+    pub exponent: f64,
+    /// v, 1/s.
+    pub rate_coefficient_per_s: f64,
+    /// m.
+    pub layers: f64,
+    /// Whether m was fitted to the record.
+    pub layers_fitted: bool,
+    /// Root mean square of measured less simulated force, N.
+    pub rmse_n: f64,
+    /// The same as a share of the largest force.
+    pub relative_rmse: f64,
+}
+
+/// One analysed record.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[schemars(title = "palpate.analysis/1")]
+pub struct AnalysisDocument {
+    /// `palpate.analysis/1`.
+    pub schema: String,
+    /// The record.
+    pub input: Input,
+    /// What the analysis ran with.
+    pub settings: SettingsDocument,
+    /// All phases.
+    pub segments: Vec<SegmentDocument>,
+    /// All holds.
+    pub holds: Vec<HoldDocument>,
+    /// The paper's tables; `null` where the signal is not strain.
+    pub tables: Option<TablesDocument>,
+    /// The simulated record.
+    pub overlay: Option<OverlayDocument>,
+    /// What to know about the record as a whole.
+    pub findings: Vec<FindingDocument>,
+    /// What wrote this.
+    pub software: Software,
+}
+
+impl AnalysisDocument {
+    /// The document of an analysis.
+    #[must_use]
+    pub fn new(analysis: &Analysis, input: Input) -> Self {
+        Self {
+            schema: "palpate.analysis/1".to_owned(),
+            input,
+            settings: SettingsDocument::new(analysis),
+            segments: segments(analysis),
+            holds: analysis.holds.iter().map(hold).collect(),
+            tables: tables(analysis),
+            overlay: analysis.overlay.as_ref().map(|overlay| OverlayDocument {
+                exponent: overlay.model.law.exponent(),
+                rate_coefficient_per_s: overlay.model.law.rate_coefficient(),
+                layers: overlay.model.layers.count(),
+                layers_fitted: overlay.layers_fitted,
+                rmse_n: overlay.rmse,
+                relative_rmse: overlay.relative,
+            }),
+            findings: analysis.findings.iter().map(FindingDocument::from).collect(),
+            software: Software::this(),
+        }
+    }
+}
+
+fn segments(analysis: &Analysis) -> Vec<SegmentDocument> {
+    let time = analysis.record.time();
+    let document = |segment: &palpate::segment::Segment| SegmentDocument {
+        phase: phase_word(segment.phase).to_owned(),
+        start_s: time[segment.start],
+        end_s: time[segment.end - 1],
+        first_row: segment.start,
+        last_row: segment.end - 1,
+    };
+    analysis.segmentation.segments.iter().map(document).collect()
+}
+
+/// The word for a phase.
+fn phase_word(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Rest => "rest",
+        Phase::Loading => "loading",
+        Phase::Hold => "hold",
+        Phase::Unloading => "unloading",
+    }
+}
+
+/// The word for what came before a hold.
+pub(crate) fn after_word(after: After) -> &'static str {
+    match after {
+        After::Loading => "loading",
+        After::Unloading => "unloading",
+    }
+}
+
+fn hold(hold: &HoldAnalysis) -> HoldDocument {
+    let delta = |i: usize| hold.order.as_ref().map(|order| order.candidates[i].delta_bic);
+    let time = hold
+        .fits
+        .iter()
+        .enumerate()
+        .map(|(i, fit)| FitDocument::new(fit, hold, delta(i), hold.predictions[i]));
+    let rate = hold.rate_fits.iter().flatten().map(|fit| FitDocument::new(fit, hold, None, None));
+    HoldDocument {
+        index: hold.number,
+        start_s: hold.start,
+        end_s: hold.end,
+        fit_start_s: hold.fit_start,
+        displacement_m: hold.displacement,
+        after: hold.after.map(|after| after_word(after).to_owned()),
+        relaxation: match hold.relaxation.kind {
+            RelaxationType::TypeI => "type_1",
+            RelaxationType::TypeII => "type_2",
+            RelaxationType::None => "none",
+        }
+        .to_owned(),
+        force_change_n: hold.relaxation.change,
+        force_change_standard_error_n: hold.relaxation.standard_error,
+        p_value: hold.relaxation.p_value,
+        force_start_n: hold.force_start,
+        force_end_n: hold.force_end,
+        signal: match hold.signal {
+            Signal::Strain => "strain",
+            Signal::Force => "force",
+        }
+        .to_owned(),
+        fits: time.chain(rate).collect(),
+        preferred: hold.order.as_ref().and_then(|order| order.preferred),
+        lowest_order: hold.order.as_ref().and_then(|order| order.lowest_order),
+        findings: hold.findings.iter().map(FindingDocument::from).collect(),
+    }
+}
+
+fn tables(analysis: &Analysis) -> Option<TablesDocument> {
+    let n = analysis.across.common_exponent?;
+    let rows = |after: After| -> Vec<TableRow> {
+        let holds = analysis.holds.iter().filter(|hold| hold.after == Some(after) && hold.signal == Signal::Strain);
+        let row = |hold: &HoldAnalysis| {
+            let fit = hold.fits.iter().find(|fit| fit.choice == ExponentChoice::Fixed(n))?;
+            Some(TableRow {
+                hold: hold.number,
+                displacement_m: hold.displacement,
+                equilibrium_strain: fit.equilibrium.value,
+                equilibrium_strain_standard_error: fit.equilibrium.standard_error,
+                rate_coefficient_per_s: fit.rate_coefficient.value,
+                rate_coefficient_standard_error_per_s: fit.rate_coefficient.standard_error,
+            })
+        };
+        holds.filter_map(row).collect()
+    };
+    analysis.specimen?;
+    Some(TablesDocument {
+        common_exponent: Some(n),
+        loading: rows(After::Loading),
+        unloading: rows(After::Unloading),
+        trend_of_log_rate_coefficient: analysis.across.trend.map(|trend| trend.slope),
+        trend_interval: analysis.across.trend.and_then(|trend| trend.interval).map(|(low, high)| [low, high]),
+    })
+}

@@ -1,0 +1,43 @@
+//! Results as JSON: what programs read. Every number carries its unit in its name; a field that has no value is `null`.
+//!
+//! | file | document |
+//! |---|---|
+//! | `analysis.rs` | `palpate.analysis/1`, one analysed record |
+//! | `fit.rs` | one fit inside it |
+//! | `settings.rs` | the resolved settings |
+//! | `reproduction.rs` | `palpate.reproduction/1`, the summary of the reproduced study |
+
+mod analysis;
+mod fit;
+mod reproduction;
+mod settings;
+
+pub(crate) use analysis::after_word;
+pub use analysis::{AnalysisDocument, FindingDocument, HoldDocument, Input, TableRow};
+pub use fit::FitDocument;
+pub(crate) use fit::termination;
+pub use reproduction::{CheckDocument, ReproductionDocument};
+pub use settings::SettingsDocument;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// The software that wrote a document.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Software {
+    /// Always `palpate`.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+}
+
+impl Software {
+    /// This build.
+    #[must_use]
+    pub fn this() -> Self {
+        Self {
+            name: "palpate".to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+        }
+    }
+}

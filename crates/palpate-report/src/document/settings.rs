@@ -1,0 +1,132 @@
+//! The settings that an analysis ran with, defaults and derived thresholds included.
+
+use palpate::analysis::{Analysis, ModulusSource};
+use palpate::contact::{Shape, Sides};
+use palpate::segment::{ContactChoice, HoldStart};
+use palpate::simulate::Separation;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// Resolved settings.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct SettingsDocument {
+    /// `ball`, `prism` or `none`.
+    pub shape: String,
+    /// Radius of a ball, m.
+    pub radius_m: Option<f64>,
+    /// Section of a prism, m².
+    pub area_m2: Option<f64>,
+    /// Length of a prism, m.
+    pub length_m: Option<f64>,
+    /// Modulus, Pa.
+    pub modulus_pa: Option<f64>,
+    /// `given` or `estimated`.
+    pub modulus_source: Option<String>,
+    /// 1 or 2 sides from which the body is squeezed.
+    pub sides: Option<u8>,
+    /// Whether phases come from the displacement (else from the force).
+    pub phases_from_displacement: bool,
+    /// Noise of the column that the phases come from, m or N.
+    pub noise: f64,
+    /// How far it may stray in a hold, m or N.
+    pub tolerance: f64,
+    /// Typical speed of the ramps, m/s or N/s.
+    pub ramp_speed: f64,
+    /// Speed under which it stands still, m/s or N/s.
+    pub still_speed: f64,
+    /// Samples on each side of a slope.
+    pub slope_window: usize,
+    /// Shortest hold, s.
+    pub minimum_hold_s: f64,
+    /// Fewest samples of a hold.
+    pub minimum_samples: usize,
+    /// `peak`, `settled` or `peak + … s`.
+    pub hold_start: String,
+    /// `auto`, `as recorded` or a displacement.
+    pub touch: String,
+    /// Force subtracted, N.
+    pub force_zero_n: f64,
+    /// Displacement subtracted, m.
+    pub displacement_zero_m: f64,
+    /// Whether the jaw can leave the body in the overlay.
+    pub separation: bool,
+    /// Exponents tried as given.
+    pub exponents: Vec<f64>,
+    /// Whether n was also left free.
+    pub free_exponent: bool,
+    /// Range of a free n.
+    pub exponent_range: [f64; 2],
+    /// Coverage of the intervals.
+    pub confidence: f64,
+    /// Fitted only this long from the start of the fit, s.
+    pub fit_until_s: Option<f64>,
+    /// Samples on each side of a strain rate, at least.
+    pub rate_window_samples: usize,
+    /// Half width of its window as a share of the time since the hold began.
+    pub rate_window_share: f64,
+}
+
+impl SettingsDocument {
+    pub(super) fn new(analysis: &Analysis) -> Self {
+        let (options, segment) = (&analysis.options, &analysis.segmentation.settings);
+        let shape = options.geometry.map(|geometry| geometry.shape);
+        let sides = options.geometry.map(|geometry| geometry.sides);
+        Self {
+            shape: match shape {
+                Some(Shape::Ball { .. }) => "ball",
+                Some(Shape::Prism { .. }) => "prism",
+                None => "none",
+            }
+            .to_owned(),
+            radius_m: match shape {
+                Some(Shape::Ball { radius }) => Some(radius),
+                _ => None,
+            },
+            area_m2: match shape {
+                Some(Shape::Prism { area, .. }) => Some(area),
+                _ => None,
+            },
+            length_m: match shape {
+                Some(Shape::Prism { length, .. }) => Some(length),
+                _ => None,
+            },
+            modulus_pa: analysis.specimen.map(|specimen| specimen.modulus()),
+            modulus_source: analysis.modulus_source.map(|source| {
+                match source {
+                    ModulusSource::Given => "given",
+                    ModulusSource::Estimated => "estimated",
+                }
+                .to_owned()
+            }),
+            sides: sides.map(|sides| if sides == Sides::Two { 2 } else { 1 }),
+            phases_from_displacement: segment.from_displacement,
+            noise: segment.noise,
+            tolerance: segment.tolerance,
+            ramp_speed: segment.ramp_speed,
+            still_speed: segment.still_speed,
+            slope_window: segment.slope_window,
+            minimum_hold_s: segment.minimum_hold,
+            minimum_samples: segment.minimum_samples,
+            hold_start: match options.segment.hold_start {
+                HoldStart::Peak => "peak".to_owned(),
+                HoldStart::Settled => "settled".to_owned(),
+                HoldStart::AfterPeak(delay) => format!("peak + {delay} s"),
+            },
+            touch: match options.touch {
+                ContactChoice::Auto => "auto".to_owned(),
+                ContactChoice::AsRecorded => "as recorded".to_owned(),
+                ContactChoice::Displacement(at) => format!("{at} m"),
+            },
+            force_zero_n: analysis.contact.tare.force,
+            displacement_zero_m: analysis.contact.tare.displacement,
+            separation: options.separation == Separation::Unilateral,
+            exponents: options.exponents.clone(),
+            free_exponent: options.free_exponent,
+            exponent_range: [options.fit.exponent_range.0, options.fit.exponent_range.1],
+            confidence: options.fit.confidence,
+            fit_until_s: options.fit_until,
+            rate_window_samples: options.rate_window.samples,
+            rate_window_share: options.rate_window.share,
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! The files of a study, in memory until all of them exist.
+
+use palpate::simulate::SimulateError;
+
+use crate::figure::{Figure, FigureError};
+use crate::table::Table;
+
+/// Which pictures to make.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Pictures {
+    /// PNG beside SVG.
+    pub png: bool,
+}
+
+/// Why a study could not be put together.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// A figure.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+    /// A simulation of the paper's study.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+    /// An analysis of the paper's study.
+    #[error(transparent)]
+    Analysis(#[from] palpate::analysis::AnalysisError),
+    /// A record of the paper's study.
+    #[error(transparent)]
+    Record(#[from] palpate::record::RecordError),
+    /// JSON.
+    #[error("a result could not be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+/// Files by relative path.
+#[derive(Debug, Clone, Default)]
+pub struct Bundle {
+    /// Path with forward slashes, and content.
+    pub files: Vec<(String, Vec<u8>)>,
+}
+
+/// Resolution of PNG pictures: print quality at the width of a journal's page.
+const DPI: f64 = 300.0;
+
+impl Bundle {
+    pub(crate) fn text(&mut self, path: impl Into<String>, content: String) {
+        self.files.push((path.into(), content.into_bytes()));
+    }
+
+    pub(crate) fn figure(&mut self, figure: &Figure, pictures: Pictures) -> Result<(), StudyError> {
+        self.text(format!("figures/{}.svg", figure.name), figure.to_svg()?);
+        if pictures.png {
+            self.files.push((format!("figures/{}.png", figure.name), figure.to_png(DPI)?));
+        }
+        Ok(())
+    }
+
+    pub(crate) fn table(&mut self, table: &Table) {
+        self.text(format!("tables/{}.csv", table.name), table.to_csv());
+    }
+
+    pub(crate) fn json(&mut self, path: &str, document: &impl serde::Serialize) -> Result<(), StudyError> {
+        let mut text = serde_json::to_string_pretty(document)?;
+        text.push('\n');
+        self.text(path, text);
+        Ok(())
+    }
+}

@@ -1,0 +1,29 @@
+//! From results to files: which figures, tables and sections a study has.
+//!
+//! | file | what |
+//! |---|---|
+//! | `bundle.rs` | the files of a study, in memory until all of them exist |
+//! | `record_figures.rs` | figures of an analysed record |
+//! | `record_tables.rs` | its tables |
+//! | `record_page.rs` | its page |
+//! | `law_figures.rs` | the law and its closed form (figures 1 and 2 of the paper) |
+//! | `wave_figure.rs` | all layers over time (figure 7) |
+//! | `trajectory.rs` | a simulated series as table and figure |
+//! | `reproduction.rs` | the paper's study: simulation, re-identification, checks |
+//! | `reproduction_page.rs` | its page |
+
+mod bundle;
+mod law_figures;
+mod record_figures;
+mod record_page;
+mod record_tables;
+mod reproduction;
+mod reproduction_page;
+mod trajectory;
+mod wave_figure;
+
+pub use bundle::{Bundle, Pictures, StudyError};
+pub use record_page::analysis_bundle;
+pub use record_tables::analysis_text;
+pub use reproduction::{Reproduction, reproduce, reproduction_bundle};
+pub use trajectory::{trajectory_figure, trajectory_table};

@@ -1,0 +1,231 @@
+//! The page of an analysed record.
+
+use palpate::analysis::{Analysis, Finding as RecordFinding, Severity as RecordSeverity};
+use palpate::segment::{After, Phase};
+
+use super::{Bundle, Pictures, StudyError, record_figures, record_tables};
+use crate::document::{AnalysisDocument, Input};
+use crate::number::significant;
+use crate::page::{Block, Finding, Page, Section, Severity};
+
+/// All files of an analysed record: `report.html`, `analysis.json`, `tables/*.csv`, `figures/*.svg`.
+///
+/// # Errors
+/// [`StudyError`] when a figure or document cannot be made.
+pub fn analysis_bundle(analysis: &Analysis, input: Input, pictures: Pictures) -> Result<Bundle, StudyError> {
+    let mut bundle = Bundle::default();
+    let figures: Vec<_> = [Some(record_figures::record(analysis, "record"))]
+        .into_iter()
+        .chain([
+            record_figures::strain_rates(analysis, "strain_rates"),
+            record_figures::holds(analysis, "holds"),
+            record_figures::residuals(analysis, "residuals"),
+            record_figures::trend(analysis, "trend"),
+        ])
+        .flatten()
+        .collect();
+    for figure in &figures {
+        bundle.figure(figure, pictures)?;
+    }
+    for table in record_tables::all(analysis) {
+        bundle.table(&table);
+    }
+    let page = page(analysis, &input, &figures)?;
+    bundle.text("report.html", page.to_html());
+    bundle.json("analysis.json", &AnalysisDocument::new(analysis, input))?;
+    Ok(bundle)
+}
+
+fn page(analysis: &Analysis, input: &Input, figures: &[crate::figure::Figure]) -> Result<Page, StudyError> {
+    let figure = |name: &str| figures.iter().find(|figure| figure.name == name);
+    let mut record = Section::new("The record").block(Block::paragraph(summary(analysis)));
+    if let Some(picture) = figure("record") {
+        record = record.block(Block::figure(picture)?);
+    }
+    record = record.block(Block::Table(record_tables::holds(analysis)));
+    let mut laws = Section::new("The law, hold by hold");
+    for after in [After::Loading, After::Unloading] {
+        laws = laws.blocks(record_tables::paper_table(analysis, after).map(Block::Table));
+    }
+    laws = laws.block(Block::Table(record_tables::exponents(analysis)));
+    for name in ["holds", "residuals", "strain_rates", "trend"] {
+        if let Some(picture) = figure(name) {
+            laws = laws.block(Block::figure(picture)?);
+        }
+    }
+    laws = laws.blocks(trend_sentence(analysis).map(Block::Paragraph));
+    laws = laws.blocks(record_tables::agreements(analysis).map(Block::Table));
+    laws = laws.blocks(record_tables::predictions(analysis).map(Block::Table));
+    let mut page = Page::new(&input.title, "Squeeze-and-hold test: phases, strains and the latency law")
+        .section(Section::new("Findings").blocks(findings(analysis)))
+        .section(record)
+        .section(laws)
+        .section(Section::new("All fits").block(Block::Table(record_tables::fits(analysis))))
+        .section(Section::new("Method and settings").blocks(method(analysis)));
+    page = page
+        .provenance("Record", &input.path)
+        .provenance("SHA-256", &input.sha256)
+        .provenance("Rows", input.rows.to_string());
+    if let Some(test) = &input.test {
+        page = page.provenance("Test description", test);
+    }
+    Ok(page.provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION"))))
+}
+
+/// What was found, in a few sentences.
+fn summary(analysis: &Analysis) -> String {
+    let time = analysis.record.time();
+    let after = |after| analysis.holds.iter().filter(|hold| hold.after == Some(after)).count();
+    let mut text = format!(
+        "{} samples over {} s: {} after loading and {} after unloading.",
+        analysis.record.len(),
+        significant(time[time.len() - 1] - time[0], 4),
+        holds_word(after(After::Loading)),
+        holds_word(after(After::Unloading)),
+    );
+    if record_figures::has_phase(analysis, Phase::Rest) {
+        text.push_str(" The record begins at rest.");
+    }
+    if let Some(n) = analysis.across.common_exponent {
+        text.push_str(&format!(" The lowest listed exponent that fits all holds best is n = {n}."));
+    }
+    if let Some(overlay) = &analysis.overlay {
+        text.push_str(&format!(
+            " Simulated with n = {}, v = {} s⁻¹ and {} layers{}, the force stays within {} % (rms) of the largest measured force.",
+            overlay.model.law.exponent(),
+            significant(overlay.model.law.rate_coefficient(), 3),
+            significant(overlay.model.layers.count(), 3),
+            if overlay.layers_fitted { " (fitted to the ramps)" } else { "" },
+            significant(100.0 * overlay.relative, 2),
+        ));
+    }
+    text
+}
+
+fn holds_word(count: usize) -> String {
+    match count {
+        0 => "no hold".to_owned(),
+        1 => "one hold".to_owned(),
+        count => format!("{count} holds"),
+    }
+}
+
+fn trend_sentence(analysis: &Analysis) -> Option<String> {
+    let trend = analysis.across.trend?;
+    let (low, high) = trend.interval?;
+    let verdict = if low > 0.0 {
+        "v rises with the equilibrium strain"
+    } else if high < 0.0 {
+        "v falls as the equilibrium strain grows, as the authors of the paper saw"
+    } else {
+        "no trend of v can be told from these holds"
+    };
+    Some(format!(
+        "Trend over {} holds after loading: d ln v/dεₑ = {} (95 % interval {} to {}): {verdict}.",
+        trend.holds,
+        significant(trend.slope, 3),
+        significant(low, 3),
+        significant(high, 3)
+    ))
+}
+
+/// Findings of the record and of its holds; the same finding of several holds is told once.
+fn findings(analysis: &Analysis) -> Vec<Block> {
+    let mut list: Vec<Finding> = analysis.findings.iter().map(|finding| told(finding, None)).collect();
+    let mut codes: Vec<&str> = Vec::new();
+    for hold in &analysis.holds {
+        for finding in &hold.findings {
+            if codes.contains(&finding.code()) {
+                continue;
+            }
+            codes.push(finding.code());
+            let others: Vec<String> = analysis
+                .holds
+                .iter()
+                .filter(|other| {
+                    other.number != hold.number && other.findings.iter().any(|f| f.code() == finding.code())
+                })
+                .map(|other| other.number.to_string())
+                .collect();
+            let place = if others.is_empty() {
+                format!("Hold {}", hold.number)
+            } else {
+                format!("Hold {} (likewise holds {})", hold.number, others.join(", "))
+            };
+            list.push(told(finding, Some(&place)));
+        }
+    }
+    list.sort_by_key(|finding| match finding.severity {
+        Severity::Warning => 0,
+        Severity::Caution => 1,
+        Severity::Info => 2,
+    });
+    if list.is_empty() {
+        vec![Block::paragraph("Nothing to report: the holds are long and clean enough for the numbers below.")]
+    } else {
+        vec![Block::Findings(list)]
+    }
+}
+
+fn told(finding: &RecordFinding, place: Option<&str>) -> Finding {
+    let sentence = |text: &str| {
+        let mut characters = text.chars();
+        let first = characters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
+        format!("{first}{}.", characters.as_str())
+    };
+    Finding {
+        severity: match finding.severity() {
+            RecordSeverity::Info => Severity::Info,
+            RecordSeverity::Caution => Severity::Caution,
+            RecordSeverity::Warning => Severity::Warning,
+        },
+        code: finding.code().to_owned(),
+        seen: match place {
+            Some(place) => format!("{place}: {}.", finding.seen()),
+            None => sentence(&finding.seen()),
+        },
+        meaning: sentence(finding.meaning()),
+        remedy: sentence(finding.remedy()),
+    }
+}
+
+fn method(analysis: &Analysis) -> Vec<Block> {
+    let (segment, options) = (&analysis.segmentation.settings, &analysis.options);
+    let unit = if segment.from_displacement { ("mm", "mm/s", 1e3) } else { ("N", "N/s", 1.0) };
+    let number = |value: f64| significant(value, 3);
+    let mut values = vec![
+        (
+            "Phases from".to_owned(),
+            if segment.from_displacement { "displacement" } else { "force" }.to_owned(),
+        ),
+        ("Noise of that column".to_owned(), format!("{} {}", number(segment.noise * unit.2), unit.0)),
+        ("Tolerance of a hold".to_owned(), format!("{} {}", number(segment.tolerance * unit.2), unit.0)),
+        ("Speed of the ramps".to_owned(), format!("{} {}", number(segment.ramp_speed * unit.2), unit.1)),
+        ("Standing still below".to_owned(), format!("{} {}", number(segment.still_speed * unit.2), unit.1)),
+        (
+            "Shortest hold".to_owned(),
+            format!("{} s, {} samples", number(segment.minimum_hold), segment.minimum_samples),
+        ),
+        ("Force zero".to_owned(), format!("{} N", number(analysis.contact.tare.force))),
+        ("Displacement zero".to_owned(), format!("{} mm", number(1e3 * analysis.contact.tare.displacement))),
+        (
+            "Strain rate".to_owned(),
+            format!(
+                "local parabola over ±{} samples or ±{} % of the elapsed time, whichever is wider",
+                options.rate_window.samples,
+                number(100.0 * options.rate_window.share)
+            ),
+        ),
+        ("Intervals".to_owned(), format!("{} %", number(100.0 * options.fit.confidence))),
+    ];
+    if let Some(specimen) = analysis.specimen {
+        values.push(("Modulus".to_owned(), format!("{} kPa", significant(specimen.modulus() / 1e3, 4))));
+        values.push(("Depth cut into layers".to_owned(), format!("{} mm", number(1e3 * specimen.depth()))));
+    }
+    vec![
+        Block::paragraph(
+            "Phases are cut from the record without labels. Strain is force over contact area and modulus, ε = f/(E A), with the area of the contact's own share of the travel. The latency law ε̇ = −v sgn(ε − εₑ)|ε − εₑ|ⁿ is fitted to the strain of each hold over time by its closed form (preferred), and to strain rate against strain as in the paper. Least squares needs no starting values. Standard errors assume white noise; intervals are widened for correlated residuals. Where no geometry is known the force is fitted as it is.",
+        ),
+        Block::KeyValues(values),
+    ]
+}

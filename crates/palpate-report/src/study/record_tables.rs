@@ -1,0 +1,283 @@
+//! Tables of an analysed record.
+
+use palpate::analysis::{Analysis, HoldAnalysis, Signal};
+use palpate::identify::{Domain, Estimate, ExponentChoice, LatencyFit};
+use palpate::segment::{After, RelaxationType};
+
+use crate::document::{after_word, termination};
+use crate::table::{Cell, Table, TableColumn};
+
+fn column(heading: &str, key: &str, unit: &str) -> TableColumn {
+    TableColumn::new(heading, key, unit)
+}
+
+fn estimate(estimate: Estimate) -> Cell {
+    match estimate.standard_error {
+        Some(error) if error > 1e-12 * estimate.value.abs() => Cell::uncertain(estimate.value, error),
+        _ => Cell::number(estimate.value, 5),
+    }
+}
+
+/// One row a hold: where it lies, what the force does.
+pub(super) fn holds(analysis: &Analysis) -> Table {
+    let mut table = Table::new("holds", "The holds that were found.")
+        .column(column("Hold", "hold", ""))
+        .column(column("After", "after", ""))
+        .column(column("From", "start_s", "s"))
+        .column(column("To", "end_s", "s"))
+        .column(column("Displacement", "displacement_mm", "mm"))
+        .column(column("Force at start", "force_start_n", "N"))
+        .column(column("Force at end", "force_end_n", "N"))
+        .column(column("Relaxation", "relaxation", ""))
+        .column(column("Significance", "p_value", ""));
+    for hold in &analysis.holds {
+        table = table.row(vec![
+            Cell::Integer(hold.number as i64),
+            Cell::text(hold.after.map_or("", after_word)),
+            Cell::number(hold.start, 6),
+            Cell::number(hold.end, 6),
+            Cell::number_or(hold.displacement.map(|d| 1e3 * d), 4, "not recorded"),
+            Cell::number(hold.force_start, 4),
+            Cell::number(hold.force_end, 4),
+            Cell::text(match hold.relaxation.kind {
+                RelaxationType::TypeI => "Type I (falls)",
+                RelaxationType::TypeII => "Type II (rises)",
+                RelaxationType::None => "none",
+            }),
+            if hold.relaxation.p_value < 1e-4 {
+                Cell::text("< 0.0001")
+            } else {
+                Cell::number(hold.relaxation.p_value, 2)
+            },
+        ]);
+    }
+    table.note("Significance: probability that noise alone makes a change of the force of this size.")
+}
+
+/// Every fit of every hold, both domains.
+pub(super) fn fits(analysis: &Analysis) -> Table {
+    let signal = analysis.holds.iter().map(|hold| hold.signal).next();
+    let (equilibrium, unit) = match signal {
+        Some(Signal::Strain) => ("equilibrium_strain", ""),
+        _ => ("equilibrium_force_n", "N"),
+    };
+    let mut table = Table::new("fits", "Every law fitted to every hold.")
+        .column(column("Hold", "hold", ""))
+        .column(column("Domain", "domain", ""))
+        .column(column("n", "exponent", ""))
+        .column(column("Equilibrium", equilibrium, unit))
+        .column(column("λ", "relative_rate_per_s", "s⁻¹"))
+        .column(column("v", "rate_coefficient_per_s", "s⁻¹"))
+        .column(column("RMSE", "rmse", ""))
+        .column(column("ΔBIC", "delta_bic", ""))
+        .column(column("Beyond window", "prediction_error", ""))
+        .column(column("Ended", "termination", ""));
+    for hold in &analysis.holds {
+        let rates = hold.rate_fits.iter().flatten();
+        for (i, fit) in hold.fits.iter().chain(rates).enumerate() {
+            table = table.row(fit_row(hold, fit, i));
+        }
+    }
+    table
+        .note("± is one standard error for white noise; intervals widened for correlated residuals are in analysis.json.")
+        .note("v is in 1/s where the signal is strain. ΔBIC: information criterion less the lowest of the hold. Beyond window: prediction error over the drop of the hold.")
+}
+
+fn fit_row(hold: &HoldAnalysis, fit: &LatencyFit, index: usize) -> Vec<Cell> {
+    let in_time = fit.domain == Domain::Time;
+    let delta = hold.order.as_ref().filter(|_| in_time).map(|order| order.candidates[index].delta_bic);
+    let beyond = hold.predictions.get(index).copied().flatten().filter(|_| in_time);
+    vec![
+        Cell::Integer(hold.number as i64),
+        Cell::text(if in_time { "time" } else { "rate" }),
+        match fit.choice {
+            ExponentChoice::Fixed(n) => Cell::number(n, 4),
+            ExponentChoice::Free => estimate(fit.exponent),
+        },
+        estimate(fit.equilibrium),
+        estimate(fit.relative_rate),
+        if hold.signal == Signal::Strain {
+            estimate(fit.rate_coefficient)
+        } else {
+            Cell::missing("no strain")
+        },
+        Cell::number(fit.rmse, 3),
+        Cell::number_or(delta, 3, "time domain only"),
+        Cell::number_or(
+            beyond.map(|prediction| prediction.relative),
+            3,
+            if in_time { "whole hold fitted" } else { "time domain only" },
+        ),
+        Cell::text(termination(fit.termination)),
+    ]
+}
+
+/// Table I (after loading) or II (after unloading) of the paper for this record.
+pub(super) fn paper_table(analysis: &Analysis, after: After) -> Option<Table> {
+    let n = analysis.across.common_exponent?;
+    let (name, number) = match after {
+        After::Loading => ("table_1_loading", "I"),
+        After::Unloading => ("table_2_unloading", "II"),
+    };
+    let caption = format!(
+        "Holds after {}: the law with n = {n}, in the layout of the paper's Table {number}. Time domain: the closed form fitted to the strain; rate domain: the paper's fit of strain rate against strain.",
+        after_word(after)
+    );
+    let mut table = Table::new(name, caption)
+        .column(column("Hold", "hold", ""))
+        .column(column("Displacement", "displacement_mm", "mm"))
+        .column(column("εₑ (time)", "equilibrium_strain", ""))
+        .column(column("v (time)", "rate_coefficient_per_s", "s⁻¹"))
+        .column(column("εₑ (rate)", "equilibrium_strain_rate_domain", ""))
+        .column(column("v (rate)", "rate_coefficient_rate_domain_per_s", "s⁻¹"))
+        .column(column("n (free)", "exponent_free", ""));
+    let mut rows = 0;
+    for hold in analysis.holds.iter().filter(|hold| hold.after == Some(after) && hold.signal == Signal::Strain) {
+        let Some(fit) = hold.fit_with(n) else { continue };
+        rows += 1;
+        let rate = hold.rate_fit_with(n);
+        let free = hold.fits.iter().find(|fit| fit.choice == ExponentChoice::Free);
+        table = table.row(vec![
+            Cell::Integer(hold.number as i64),
+            Cell::number_or(hold.displacement.map(|d| 1e3 * d), 4, "not recorded"),
+            estimate(fit.equilibrium),
+            estimate(fit.rate_coefficient),
+            rate.map_or(Cell::missing("no fit"), |fit| estimate(fit.equilibrium)),
+            rate.map_or(Cell::missing("no fit"), |fit| estimate(fit.rate_coefficient)),
+            free.map_or(Cell::missing("not asked"), |fit| estimate(fit.exponent)),
+        ]);
+    }
+    (rows > 0).then_some(table)
+}
+
+/// Evidence for the exponent over all holds: the paper's "lowest order which fits the best".
+pub(super) fn exponents(analysis: &Analysis) -> Table {
+    let mut table =
+        Table::new("exponents", "Which exponent fits all holds: sum of the information criteria less the lowest sum.")
+            .column(column("n", "exponent", ""))
+            .column(column("ΔBIC, all holds", "delta_bic", ""))
+            .column(column("Holds where it is as good as the best", "holds_as_good", ""))
+            .column(column("Verdict", "verdict", ""));
+    for (n, delta) in &analysis.across.evidence {
+        let orders = analysis.holds.iter().filter_map(|hold| hold.order.as_ref());
+        let good = orders
+            .flat_map(|order| &order.candidates)
+            .filter(|c| !c.free && c.exponent == *n && c.as_good_as_best);
+        let verdict = if analysis.across.common_exponent == Some(*n) {
+            "lowest order that fits best"
+        } else if *delta <= 2.0 {
+            "as good"
+        } else {
+            ""
+        };
+        table = table.row(vec![
+            Cell::number(*n, 4),
+            Cell::number(*delta, 4),
+            Cell::Integer(good.count() as i64),
+            Cell::text(verdict),
+        ]);
+    }
+    table
+}
+
+/// How well each law, fitted to the first part of the holds, foretells the rest.
+pub(super) fn predictions(analysis: &Analysis) -> Option<Table> {
+    let until = analysis.options.fit_until?;
+    let mut table = Table::new(
+        "predictions",
+        format!("Laws fitted to the first {until} s of each hold: root mean square error over the rest."),
+    )
+    .column(column("Hold", "hold", ""))
+    .column(column("n", "exponent", ""))
+    .column(column("Numbers", "parameters", ""))
+    .column(column("Inside, over the drop", "relative_rmse_inside", "%"))
+    .column(column("Beyond, over the drop", "relative_rmse_beyond", "%"))
+    .column(column("Samples beyond", "samples_beyond", ""));
+    let mut rows = 0;
+    for hold in &analysis.holds {
+        for (fit, prediction) in hold.fits.iter().zip(&hold.predictions) {
+            let Some(prediction) = prediction else { continue };
+            rows += 1;
+            table = table.row(vec![
+                Cell::Integer(hold.number as i64),
+                Cell::text(match fit.choice {
+                    ExponentChoice::Fixed(n) => format!("{n}"),
+                    ExponentChoice::Free => format!("{:.3} (free)", fit.exponent.value),
+                }),
+                Cell::Integer(fit.parameters() as i64),
+                Cell::number(100.0 * fit.rmse * prediction.relative / prediction.rmse, 3),
+                Cell::number(100.0 * prediction.relative, 3),
+                Cell::Integer(prediction.samples as i64),
+            ]);
+        }
+    }
+    (rows > 0).then_some(table)
+}
+
+/// Equilibria after loading and after unloading at one displacement.
+pub(super) fn agreements(analysis: &Analysis) -> Option<Table> {
+    if analysis.across.agreements.is_empty() {
+        return None;
+    }
+    let mut table = Table::new("agreement", "Equilibrium after loading and after unloading at one displacement.")
+        .column(column("Displacement", "displacement_mm", "mm"))
+        .column(column("Hold after loading", "hold_loading", ""))
+        .column(column("Hold after unloading", "hold_unloading", ""))
+        .column(column("After loading", "equilibrium_loading", ""))
+        .column(column("After unloading", "equilibrium_unloading", ""))
+        .column(column("Difference", "difference", ""))
+        .column(column("Difference over its error", "z", ""));
+    for level in &analysis.across.agreements {
+        table = table.row(vec![
+            Cell::number(1e3 * level.displacement, 4),
+            Cell::Integer(level.loading as i64),
+            Cell::Integer(level.unloading as i64),
+            Cell::number(level.loading_equilibrium, 5),
+            Cell::number(level.unloading_equilibrium, 5),
+            Cell::number(level.loading_equilibrium - level.unloading_equilibrium, 2),
+            Cell::number_or(level.z, 3, "no errors"),
+        ]);
+    }
+    Some(table)
+}
+
+/// All tables that a record gives rise to.
+pub(super) fn all(analysis: &Analysis) -> Vec<Table> {
+    let mut tables = vec![holds(analysis)];
+    tables.extend(paper_table(analysis, After::Loading));
+    tables.extend(paper_table(analysis, After::Unloading));
+    tables.push(exponents(analysis));
+    tables.extend(predictions(analysis));
+    tables.extend(agreements(analysis));
+    tables.push(fits(analysis));
+    tables
+}
+
+/// The tables and findings as text for a terminal.
+#[must_use]
+pub fn analysis_text(analysis: &Analysis) -> String {
+    let mut text = String::new();
+    let mut tables = vec![holds(analysis)];
+    tables.extend(paper_table(analysis, After::Loading));
+    tables.extend(paper_table(analysis, After::Unloading));
+    if analysis.specimen.is_none() {
+        tables.push(fits(analysis));
+    }
+    tables.push(exponents(analysis));
+    tables.extend(predictions(analysis));
+    for table in tables {
+        text.push_str(&table.to_plain_text());
+        text.push('\n');
+    }
+    if let Some(overlay) = &analysis.overlay {
+        let (law, layers) = (overlay.model.law, overlay.model.layers.count());
+        text.push_str(&format!(
+            "Simulated with n = {}, v = {:.3e} 1/s, {layers:.2} layers{}: within {:.1} % of the largest force (rms).\n\n",
+            law.exponent(),
+            law.rate_coefficient(),
+            if overlay.layers_fitted { " (fitted)" } else { "" },
+            100.0 * overlay.relative
+        ));
+    }
+    text
+}
