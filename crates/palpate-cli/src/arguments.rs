@@ -52,6 +52,7 @@ pub(crate) struct ReproduceArguments {
 Examples:
   palpate simulate examples/protocols/paper-a.toml --out a.csv --figure a.svg
   palpate simulate examples/protocols/grip.toml | head
+  palpate simulate squeeze.toml --force-noise \"0.05 N\" --out record.csv  a record to try an analysis on
   palpate schema protocol                        what a protocol may say")]
 pub(crate) struct SimulateArguments {
     /// Protocol (TOML): specimen, law, contact and steps
@@ -66,6 +67,15 @@ pub(crate) struct SimulateArguments {
     /// File for the strain of every layer (CSV); needs a whole number of layers
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) wave: Option<PathBuf>,
+    /// Write a record as a machine would, with noise of this standard deviation on the force
+    #[arg(long, value_name = "FORCE", value_parser = force)]
+    pub(crate) force_noise: Option<f64>,
+    /// Likewise on the displacement
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) displacement_noise: Option<f64>,
+    /// Which noise: the same seed gives the same record
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
 }
 
 /// Show what is in a record: columns, units, sampling, phases. Changes nothing.
@@ -170,6 +180,10 @@ pub(crate) struct CompletionsArguments {
 
 fn time(text: &str) -> Result<f64, String> {
     positive(text, Dimension::Time)
+}
+
+fn force(text: &str) -> Result<f64, String> {
+    positive(text, Dimension::Force)
 }
 
 fn length(text: &str) -> Result<f64, String> {

@@ -1,4 +1,48 @@
-//! Soft contact that remembers.
+//! Soft contact that remembers: squeeze-and-hold tests turned into laws, and laws into forces.
+//!
+//! A soft body is pressed, held and released. In the hold its strain drifts to equilibrium at a rate set by how far it
+//! has to go: strain rate = −v (ε − ε_e)ⁿ, the *nonlinear latency law*. This crate finds the law in a measured record,
+//! says how sure it is, and simulates the contact. It computes only: no files, no terminal, no network.
+//!
+//! The modules stand in the order of the data's way.
+//!
+//! | module | what |
+//! |---|---|
+//! | [`units`] | quantities as people write them, turned into SI |
+//! | [`record`] | a measured record, checked |
+//! | [`segment`] | its phases: loading, hold, unloading; first touch; Type I and II |
+//! | [`strain`] | strain and strain rate, equations (6) to (9) |
+//! | [`latency`] | the law and its closed form, equations (1) to (5) and (10) |
+//! | [`identify`] | the law fitted to a hold, with standard errors and a reason to end |
+//! | [`contact`] | the body, its layers and its contact, equations (7) and (11) |
+//! | [`simulate`] | from a motion of the jaw to the force |
+//! | [`analysis`] | all of it for one record, with findings in plain words |
+//! | [`test_problems`] | known problems with known answers |
+//!
+//! ```
+//! use palpate::contact::{Layers, Shape, Sides, Specimen};
+//! use palpate::identify::{ExponentChoice, FitOptions, fit_hold};
+//! use palpate::latency::LatencyLaw;
+//! use palpate::simulate::{ContactModel, ProtocolStep, Sampling, Separation, protocol, simulate};
+//!
+//! // Squeeze the paper's ball by 5 mm at 500 mm/min, hold for 10 s ...
+//! let model = ContactModel {
+//!     specimen: Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two)?,
+//!     law: LatencyLaw::new(5.0, 2e4)?,
+//!     layers: Layers::new(8.0)?,
+//!     separation: Separation::Unilateral,
+//! };
+//! let motion = protocol(&[ProtocolStep { to: 5e-3, rate: 0.5 / 60.0, hold: 10.0 }])?;
+//! let series = simulate(&motion, &model, &Sampling::Rate(100.0))?;
+//!
+//! // ... and find the law again in the strain of the hold.
+//! let hold = series.time.partition_point(|t| *t < 0.6);
+//! let fit = fit_hold(&series.time[hold..], &series.strain[hold..], ExponentChoice::Free, &FitOptions::default())?;
+//! assert!((fit.exponent.value - 5.0).abs() < 1e-6);
+//! assert!((fit.rate_coefficient.value / 2e4 - 1.0).abs() < 1e-5);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
 pub mod analysis;
 pub mod contact;
 pub mod identify;
@@ -11,3 +55,8 @@ mod statistics;
 pub mod strain;
 pub mod test_problems;
 pub mod units;
+
+/// The README's example, compiled and run with the other ones.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

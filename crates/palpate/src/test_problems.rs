@@ -12,7 +12,7 @@ use crate::simulate::{ContactModel, Motion, ProtocolStep, Separation, protocol};
 /// # Panics
 /// Never: the numbers are valid.
 #[must_use]
-#[expect(clippy::missing_panics_doc, clippy::unwrap_used, reason = "constants of the paper")]
+#[expect(clippy::unwrap_used, reason = "constants of the paper")]
 pub fn paper_ball(separation: Separation) -> ContactModel {
     ContactModel {
         specimen: Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two).unwrap(),

@@ -1,6 +1,8 @@
 //! Contact force, strain wave and separation against mpmath and SciPy (`contact_force.json`, `cascade.json`,
 //! `separation.json`).
 
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
 mod common;
 
 use common::reference;

@@ -1,5 +1,7 @@
 //! What must hold for any numbers: the law, the simulation, the search for phases and the fits.
 
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
 use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::identify::{ExponentChoice, FitOptions, LatencyFit, Termination, fit_hold, fit_rates};
 use palpate::latency::{LatencyLaw, decay, decay_with_gradient, decay_with_gradient_many};
@@ -311,7 +313,7 @@ proptest! {
 /// A law with n < 1 comes to rest in finite time, where its rate has no derivative; steps must not shrink to nothing there.
 #[test]
 fn a_strain_wave_that_comes_to_rest_is_no_endless_work() {
-    for (n, layers) in [(0.7, 3.0), (0.6, 2.0)] {
+    for (n, layers) in [(0.7, 3.0), (0.6, 4.0)] {
         let model = ContactModel {
             specimen: Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two).unwrap(),
             law: LatencyLaw::new(n, 0.5).unwrap(),
@@ -325,7 +327,7 @@ fn a_strain_wave_that_comes_to_rest_is_no_endless_work() {
         };
         let motion = protocol(&[step(0.010), step(0.005)]).unwrap();
         let wave = strain_wave(&motion, &model, &Sampling::Rate(1.0)).unwrap();
-        assert!(wave.work.steps < 20_000, "n = {n}, {layers} layers: {} steps for 25 s", wave.work.steps);
+        assert!(wave.work.steps < 50_000, "n = {n}, {layers} layers: {} steps for 25 s", wave.work.steps);
     }
 }
 
@@ -484,6 +486,22 @@ proptest! {
             let errors = [fit.equilibrium, fit.amplitude, fit.relative_rate].map(|estimate| estimate.standard_error);
             if !fit.termination.is_good() {
                 prop_assert_eq!(errors, [None; 3], "errors on numbers that are not determined");
+            }
+        }
+    }
+}
+
+/// Spans and first steps at the ends of the range of doubles.
+#[test]
+fn times_of_any_scale_do_not_panic() {
+    for (first, rest) in [(1e-200, 1e200), (5e-324, 1.0), (1e-305, 1.0), (1.0, 2e307), (1e-300, 5e-300)] {
+        let times: Vec<f64> = (0..9).map(|i| if i < 2 { first * f64::from(i) } else { rest * f64::from(i) }).collect();
+        for unit in [1.0, 1e-300, 1e300, f64::MAX] {
+            let values: Vec<f64> = (0..9).map(|i| unit * (1.0 / (1.0 + f64::from(i)) - 0.5)).collect();
+            for choice in [ExponentChoice::Free, ExponentChoice::Fixed(0.5), ExponentChoice::Fixed(5.0)] {
+                if let Ok(fit) = fit_hold(&times, &values, choice, &FitOptions::default()) {
+                    assert!(is_whole(&fit) || !fit.termination.is_good(), "{times:?} {values:?}: {fit:?}");
+                }
             }
         }
     }

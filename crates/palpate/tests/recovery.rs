@@ -1,5 +1,7 @@
 //! Known truth comes back: from simulated contacts, from noisy holds, in any unit; and no search finds a better fit.
 
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
 use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::identify::{ExponentChoice, FitOptions, LatencyFit, Termination, fit_hold};
 use palpate::latency::{LatencyLaw, decay, decay_many};
@@ -284,14 +286,20 @@ impl<'a> Brute<'a> {
     }
 }
 
+/// Problems beyond the first 200 that a coarser search once answered wrongly: the law that fits best has n < 1, whose
+/// residual has a kink wherever the finite end of relaxation passes a sample.
+const KINKED: [u32; 3] = [598, 1491, 1789];
+
+/// How much worse a fit may be that says itself that it is no answer (a bound, singular, out of steps).
+const NO_ANSWER: f64 = 1e-3;
+
 #[test]
 fn no_search_finds_a_better_fit() {
-    const PROBLEMS: u32 = 300;
+    const PROBLEMS: u32 = 200;
     let options = FitOptions::default();
-    let mut random = Noise::new(2024);
-    let (mut worse, mut best, mut converged) = (Vec::new(), f64::INFINITY, 0);
-    let mut largest = f64::NEG_INFINITY;
-    for index in 0..PROBLEMS {
+    let (mut worse, mut largest, mut converged) = (Vec::new(), [f64::NEG_INFINITY; 2], 0);
+    for index in (0..PROBLEMS).chain(KINKED) {
+        let mut random = Noise::new(u64::from(index));
         let problem = random_problem(&mut random);
         let fixed = (index % 3 == 0).then_some(EXPONENTS[index as usize / 3 % 7]);
         let choice = fixed.map_or(ExponentChoice::Free, ExponentChoice::Fixed);
@@ -303,23 +311,22 @@ fn no_search_finds_a_better_fit() {
         let exponents = fixed.map_or(options.exponent_range, |n| (n, n));
         let (brute, point) = Brute::new(&problem, exponents).search(&mut random);
         let excess = fit.residual_square / brute - 1.0;
-        best = best.min(excess);
-        largest = largest.max(excess);
-        converged += u32::from(fit.termination == Termination::Converged);
-        if excess > 1e-6 {
-            let found = [
-                (fit.relative_rate.value * (problem.times[problem.times.len() - 1] - problem.times[0])).ln(),
-                fit.exponent.value,
-                fit.amplitude.value,
-            ];
+        let good = fit.termination.is_good();
+        largest[usize::from(good)] = largest[usize::from(good)].max(excess);
+        converged += u32::from(good);
+        if excess > if good { 1e-6 } else { NO_ANSWER } {
+            let duration = problem.times[problem.times.len() - 1] - problem.times[0];
             worse.push(format!(
-                "{excess:.2e}: problem {index}, {}, {choice:?}: ended at {found:?} ({:?}), better at {point:?} (ln λT, n)",
-                problem.text, fit.termination
+                "{excess:.2e}: problem {index}, {}, {choice:?}: ended at ln λT {}, n {} ({:?}), better at {point:?}",
+                problem.text,
+                (fit.relative_rate.value * duration).ln(),
+                fit.exponent.value,
+                fit.termination
             ));
         }
     }
-    println!("{converged} of {PROBLEMS} converged; residual against brute force from {best:.1e} to {largest:.1e}");
-    assert!(worse.is_empty(), "{} of {PROBLEMS}\n{}", worse.len(), worse.join("\n"));
+    println!("{converged} converged, worst {:.1e} above brute force; the others {:.1e}", largest[1], largest[0]);
+    assert!(worse.is_empty(), "{} are not the best:\n{}", worse.len(), worse.join("\n"));
 }
 
 #[test]

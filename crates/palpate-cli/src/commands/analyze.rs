@@ -44,9 +44,7 @@ pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Outcome, Failure> {
 
 /// The description's options, overridden by what was typed.
 fn options(arguments: &AnalyzeArguments, test: Option<&TestDescription>) -> AnalysisOptions {
-    let mut options = test
-        .map(TestDescription::analysis_options)
-        .unwrap_or_else(|| TestDescription::default().analysis_options());
+    let mut options = test.map_or_else(AnalysisOptions::default, TestDescription::analysis_options);
     options.fit_until = arguments.fit_until.or(options.fit_until);
     if let Some(exponents) = &arguments.exponents {
         options.exponents.clone_from(exponents);

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use palpate::simulate::{ContactEventKind, StrainWave, simulate, strain_wave};
+use palpate::simulate::{ContactEventKind, StrainWave, Trajectory, simulate, strain_wave};
+use palpate::test_problems::Noise;
 use palpate_files::description::{Protocol, read_protocol};
 use palpate_report::figure::Figure;
 use palpate_report::study::{trajectory_figure, trajectory_table};
@@ -40,7 +41,8 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
         }
         None => None,
     };
-    let table = trajectory_table(&trajectory).to_csv();
+    let noisy = arguments.force_noise.is_some() || arguments.displacement_noise.is_some();
+    let table = if noisy { record(&trajectory, arguments) } else { trajectory_table(&trajectory).to_csv() };
     drop(working);
     if let (Some(path), Some(picture)) = (&arguments.figure, figure) {
         write_file(path, &picture)?;
@@ -61,6 +63,26 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
         note(&format!("contact {what} at {:.4} s, surface at {depth:.4} mm", event.time));
     }
     Ok(Outcome::Done)
+}
+
+/// The series as a machine would have recorded it: three columns, noise, and a preamble that says it is none.
+fn record(trajectory: &Trajectory, arguments: &SimulateArguments) -> String {
+    let (force_noise, displacement_noise) =
+        (arguments.force_noise.unwrap_or(0.0), arguments.displacement_noise.unwrap_or(0.0));
+    let mut noise = Noise::new(arguments.seed);
+    let mut out = format!(
+        "Origin,\"simulated by palpate {}, not measured\"\nForce noise,\"{force_noise}\",N\nDisplacement noise,\"{}\",mm\nSeed,\"{}\"\n",
+        env!("CARGO_PKG_VERSION"),
+        1e3 * displacement_noise,
+        arguments.seed
+    );
+    out.push_str("time_s,displacement_mm,force_n\n");
+    for i in 0..trajectory.len() {
+        let displacement = 1e3 * (trajectory.displacement[i] + displacement_noise * noise.normal());
+        let force = trajectory.force[i] + force_noise * noise.normal();
+        out.push_str(&format!("{:.6},{displacement:.6},{force:.6}\n", trajectory.time[i]));
+    }
+    out
 }
 
 fn caption(protocol: &Protocol) -> String {

@@ -76,6 +76,6 @@ fn text(found: &str, decimal: DecimalMark) -> Option<String> {
         (Cell::Comma, DecimalMark::Point) => Some("fix the decimal mark to comma".to_owned()),
         (Cell::Point, DecimalMark::Comma) => Some("fix the decimal mark to point".to_owned()),
         _ if number::has_thousands(cell) => Some("export without marks between thousands".to_owned()),
-        _ => None,
+        _ => Some("mend or remove the line; where the data begin further down, set skip_lines".to_owned()),
     }
 }

@@ -1,6 +1,7 @@
 //! Descriptions of tests.
 
 use palpate::{
+    analysis::LayersChoice,
     contact::{Shape, Sides},
     segment::{ContactChoice, HoldStart},
     simulate::Separation,

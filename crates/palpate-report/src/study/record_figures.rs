@@ -27,12 +27,12 @@ pub(super) fn record(analysis: &Analysis, name: &str) -> Figure {
         let label = format!("simulated, n = {n}");
         force = force.layer(Layer::line(overlay.time.clone(), overlay.force.clone(), Role::Simulated).label(label));
     }
-    let mut figure = Figure::new(
-        name,
-        "Force and displacement over time. Shaded: the holds that were found, with their numbers. The simulated curve follows the measured displacement with the numbers fitted to the holds.",
-    )
-    .panel(force)
-    .arrangement(Arrangement::Stacked);
+    let mut caption = "Force and displacement over time. Shaded: the holds that were found.".to_owned();
+    if analysis.overlay.is_some() {
+        caption
+            .push_str(" The simulated curve follows the measured displacement with the numbers fitted to the holds.");
+    }
+    let mut figure = Figure::new(name, caption).panel(force).arrangement(Arrangement::Stacked);
     if let Some(displacement) = analysis.record.displacement() {
         let millimetres = displacement.iter().map(|d| d * 1e3).collect();
         let panel = Panel::new(Axis::linear("Time", "s"), Axis::linear("Displacement", "mm"));

@@ -11,6 +11,11 @@ fn column(heading: &str, key: &str, unit: &str) -> TableColumn {
     TableColumn::new(heading, key, unit)
 }
 
+/// An exponent as people write it: 5, not 5.000.
+fn order(n: f64) -> Cell {
+    if n.fract() == 0.0 && n.abs() < 1e6 { Cell::Integer(n as i64) } else { Cell::number(n, 4) }
+}
+
 fn estimate(estimate: Estimate) -> Cell {
     match estimate.standard_error {
         Some(error) if error > 1e-12 * estimate.value.abs() => Cell::uncertain(estimate.value, error),
@@ -40,8 +45,8 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
             Cell::number(hold.force_start, 4),
             Cell::number(hold.force_end, 4),
             Cell::text(match hold.relaxation.kind {
-                RelaxationType::TypeI => "Type I (falls)",
-                RelaxationType::TypeII => "Type II (rises)",
+                RelaxationType::TypeI => "Type I",
+                RelaxationType::TypeII => "Type II",
                 RelaxationType::None => "none",
             }),
             if hold.relaxation.p_value < 1e-4 {
@@ -51,7 +56,9 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
             },
         ]);
     }
-    table.note("Significance: probability that noise alone makes a change of the force of this size.")
+    table
+        .note("Type I: the force falls; Type II: it rises.")
+        .note("Significance: probability that noise alone makes a change of the force of this size.")
 }
 
 /// Every fit of every hold, both domains.
@@ -91,7 +98,7 @@ fn fit_row(hold: &HoldAnalysis, fit: &LatencyFit, index: usize) -> Vec<Cell> {
         Cell::Integer(hold.number as i64),
         Cell::text(if in_time { "time" } else { "rate" }),
         match fit.choice {
-            ExponentChoice::Fixed(n) => Cell::number(n, 4),
+            ExponentChoice::Fixed(n) => order(n),
             ExponentChoice::Free => estimate(fit.exponent),
         },
         estimate(fit.equilibrium),
@@ -171,7 +178,7 @@ pub(super) fn exponents(analysis: &Analysis) -> Table {
             ""
         };
         table = table.row(vec![
-            Cell::number(*n, 4),
+            order(*n),
             Cell::number(*delta, 4),
             Cell::Integer(good.count() as i64),
             Cell::text(verdict),

@@ -23,7 +23,7 @@ pub(crate) fn write(table: &Table) -> String {
 
     let mut out = String::new();
     if !table.caption.is_empty() {
-        out.push_str(&format!("{}\n", table.caption));
+        out.push_str(&wrapped(&table.caption, total));
     }
     let rule = format!("{}\n", "─".repeat(total));
     out.push_str(&rule);
@@ -37,8 +37,28 @@ pub(crate) fn write(table: &Table) -> String {
         out.push_str(&format!("[{}] {reason}\n", mark(i)));
     }
     for note in &table.notes {
-        out.push_str(&format!("{note}\n"));
+        out.push_str(&wrapped(note, total));
     }
+    out
+}
+
+/// Sentences in lines as wide as the table, but never narrower than they are read.
+fn wrapped(text: &str, width: usize) -> String {
+    let width = width.clamp(72, 100);
+    let (mut out, mut used) = (String::new(), 0);
+    for word in text.split_whitespace() {
+        let length = extent(word);
+        if used > 0 && used + 1 + length > width {
+            out.push('\n');
+            used = 0;
+        } else if used > 0 {
+            out.push(' ');
+            used += 1;
+        }
+        out.push_str(word);
+        used += length;
+    }
+    out.push('\n');
     out
 }
 

@@ -64,6 +64,11 @@ pub enum Finding {
         /// Share of the relaxation in the first sample interval.
         share: f64,
     },
+    /// The jaw had left the body when the hold began.
+    ContactOpen {
+        /// Time at which they met again, s.
+        until: f64,
+    },
     /// No contact area at this displacement, hence no strain.
     NoContactArea,
     /// More samples than are fitted.
@@ -115,6 +120,7 @@ impl Finding {
             Self::NoRelaxation { .. } => "no_relaxation",
             Self::TooFewSamples { .. } => "too_few_samples",
             Self::SampledTooSlowly { .. } => "sampled_too_slowly",
+            Self::ContactOpen { .. } => "contact_open",
             Self::NoContactArea => "no_contact_area",
             Self::Thinned { .. } => "thinned",
             Self::DropoutsRepaired { .. } => "dropouts_repaired",
@@ -140,6 +146,7 @@ impl Finding {
             | Self::ExponentUndetermined { .. }
             | Self::ResidualsCorrelated { .. }
             | Self::SampledTooSlowly { .. }
+            | Self::ContactOpen { .. }
             | Self::DropoutsRepaired { .. }
             | Self::ModulusMismatch { .. } => Severity::Caution,
             Self::RateAtBound { .. } | Self::TooFewSamples { .. } | Self::NoContactArea | Self::NoOverlay { .. } => {
@@ -183,6 +190,7 @@ impl Finding {
             Self::SampledTooSlowly { share } => {
                 format!("{:.0} % of the relaxation happens within the first sample interval", 100.0 * share)
             }
+            Self::ContactOpen { until } => format!("there is no force until {until:.2} s"),
             Self::NoContactArea => "the contact has no area at this displacement".to_owned(),
             Self::Thinned { every } => format!("one sample in {every} is fitted"),
             Self::DropoutsRepaired { count: 1 } => "one row of the displacement strays alone".to_owned(),
@@ -190,10 +198,12 @@ impl Finding {
             Self::PhasesFromForce => "the record has no displacement".to_owned(),
             Self::AirTravel { travel } => format!("the jaw travels {:.3} mm before the force rises", 1e3 * travel),
             Self::ModulusEstimated { modulus } => {
-                format!("no modulus was given; the relaxed forces imply {modulus:.4e} Pa")
+                format!("no modulus was given; the relaxed forces imply {:.4} kPa", modulus / 1e3)
             }
             Self::ModulusMismatch { given, implied } => format!(
-                "the given modulus is {given:.3e} Pa, the relaxed forces imply {implied:.3e} Pa (force over area times displacement over depth)"
+                "the given modulus is {:.4} kPa, the relaxed forces imply {:.4} kPa (force over area and relative squeeze)",
+                given / 1e3,
+                implied / 1e3
             ),
             Self::NoOverlay { reason } => format!("the record could not be simulated: {reason}"),
         }
@@ -219,6 +229,9 @@ impl Finding {
             Self::TooFewSamples { .. } => "nothing was fitted to this hold",
             Self::SampledTooSlowly { .. } => {
                 "the rate and the amplitude at the start of the hold rest on a few samples"
+            }
+            Self::ContactOpen { .. } => {
+                "the jaw retreated faster than the body recovered and left it; the hold is fitted from where they met again"
             }
             Self::NoContactArea => {
                 "the jaw is at or before first touch, so that no strain can be told from the force; the hold is not fitted"
@@ -254,6 +267,7 @@ impl Finding {
             Self::NoRelaxation { .. } => "nothing, if the contact was meant to be open or at rest",
             Self::TooFewSamples { .. } => "sample faster or hold longer",
             Self::SampledTooSlowly { .. } => "sample faster at the start of holds",
+            Self::ContactOpen { .. } => "unload more slowly, or in smaller steps",
             Self::NoContactArea => "check first touch (touch = \"...\" in the test description)",
             Self::Thinned { .. } => "nothing",
             Self::DropoutsRepaired { .. } => "check the logger",

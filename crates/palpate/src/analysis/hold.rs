@@ -9,7 +9,8 @@ use crate::identify::{
 };
 use crate::record::Record;
 use crate::segment::{After, Relaxation, RelaxationType, Segment, classify_relaxation};
-use crate::statistics::{mean, median};
+use crate::simulate::Separation;
+use crate::statistics::{mean, median, noise};
 use crate::strain::{StrainRates, contact_strain, strain_rates};
 
 /// What the laws are fitted to.
@@ -108,13 +109,16 @@ pub(super) fn analyze_hold(
     specimen: Option<&Specimen>,
     options: &AnalysisOptions,
 ) -> HoldAnalysis {
+    let mut segment = *segment;
+    let reopened = specimen.and_then(|_| open_until(record, &segment, options));
+    segment.fit_start = reopened.unwrap_or(segment.fit_start);
     let range = segment.fit_start..segment.end;
-    let force = &record.force()[range.clone()];
+    let force = &record.force()[range];
     let displacement = record.displacement().map(|d| median(&mut d[segment.start..segment.end].to_vec()));
     let tail = (force.len() / 100).max(1);
     let mut hold = HoldAnalysis {
         number,
-        segment: *segment,
+        segment,
         start: record.time()[segment.start],
         end: record.time()[segment.end - 1],
         fit_start: record.time()[segment.fit_start],
@@ -135,6 +139,9 @@ pub(super) fn analyze_hold(
         rate_fits: Vec::new(),
         findings: Vec::new(),
     };
+    if reopened.is_some() {
+        hold.findings.push(Finding::ContactOpen { until: hold.fit_start });
+    }
     if hold.relaxation.kind == RelaxationType::None {
         hold.findings.push(Finding::NoRelaxation {
             change: hold.relaxation.change,
@@ -146,6 +153,21 @@ pub(super) fn analyze_hold(
         judge(&mut hold);
     }
     hold
+}
+
+/// The sample at which the body meets the jaw again, in a hold after unloading that begins with the contact open.
+///
+/// Open means: no force beyond five times its noise. Only a jaw that cannot pull leaves the body.
+fn open_until(record: &Record, segment: &Segment, options: &AnalysisOptions) -> Option<usize> {
+    const LEAST: usize = 5;
+    if options.separation != Separation::Unilateral || segment.after != Some(After::Unloading) {
+        return None;
+    }
+    let force = &record.force()[segment.start..segment.end];
+    let largest = record.force().iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+    let threshold = (5.0 * noise(force)).max(1e-3 * largest);
+    let closed = force.windows(3).position(|three| three.iter().all(|f| *f > threshold))?;
+    (closed >= LEAST).then_some(segment.start + closed)
 }
 
 /// Fills times and values, thinned if there are too many; `false` if there is no strain to be told.

@@ -40,15 +40,15 @@ impl Cholesky {
         let n = self.size;
         for i in 0..n {
             let mut sum = right[i] * self.scale[i];
-            for k in 0..i {
-                sum -= self.lower[i * n + k] * right[k];
+            for (entry, known) in self.lower[i * n..].iter().zip(&right[..i]) {
+                sum -= entry * known;
             }
             right[i] = sum / self.lower[i * n + i];
         }
         for i in (0..n).rev() {
             let mut sum = right[i];
-            for k in i + 1..n {
-                sum -= self.lower[k * n + i] * right[k];
+            for (k, known) in right.iter().enumerate().skip(i + 1) {
+                sum -= self.lower[k * n + i] * known;
             }
             right[i] = sum / self.lower[i * n + i];
         }

@@ -150,7 +150,7 @@ impl Scaled {
             choice,
             exponent: match choice {
                 ExponentChoice::Fixed(n) => Estimate::fixed(n),
-                ExponentChoice::Free => estimate(n, &[0.0, 0.0, 1.0], Scale::Linear, 1.0),
+                ExponentChoice::Free => estimate(n, &[0.0, 0.0, 1.0 / n], Scale::Log, 1.0),
             },
             equilibrium: estimate(equilibrium, &[0.0, 1.0, 0.0], Scale::Linear, self.range),
             amplitude: estimate(amplitude, &[0.0, 1.0, 0.0], Scale::Linear, self.range),

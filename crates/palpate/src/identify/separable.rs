@@ -294,7 +294,7 @@ fn finish(here: Point, shapes: &impl Shapes, mut termination: Termination) -> So
             let near = 1e-9 * (high - low);
             *value <= low + near || *value >= high - near
         };
-        match here.theta.iter().enumerate().position(|pair| at_bound(pair)) {
+        match here.theta.iter().enumerate().position(at_bound) {
             Some(index) => termination = shapes.at_bound(index),
             None if inverse_normal.is_none() || here.singular => termination = Termination::Singular,
             None => {}

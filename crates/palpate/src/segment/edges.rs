@@ -33,17 +33,17 @@ pub(super) fn edges(time: &[f64], values: &[f64], run: (usize, usize), tolerance
     while end < values.len() && (values[end] - last).abs() <= tolerance {
         end += 1;
     }
-    if start > 0 {
-        if let Some(meeting) = meeting(time, values, Side::Before(start), first, tolerance) {
-            let edge = time.partition_point(|t| *t < meeting - 1e-6 * (time[start] - time[start - 1]));
-            start = edge.clamp(start, run.1 - 1);
-        }
+    if start > 0
+        && let Some(meeting) = meeting(time, values, Side::Before(start), first, tolerance)
+    {
+        let edge = time.partition_point(|t| *t < meeting - 1e-6 * (time[start] - time[start - 1]));
+        start = edge.clamp(start, run.1 - 1);
     }
-    if end < values.len() {
-        if let Some(meeting) = meeting(time, values, Side::After(end), last, tolerance) {
-            let edge = time.partition_point(|t| *t <= meeting + 1e-6 * (time[end] - time[end - 1]));
-            end = edge.clamp(start + 1, end);
-        }
+    if end < values.len()
+        && let Some(meeting) = meeting(time, values, Side::After(end), last, tolerance)
+    {
+        let edge = time.partition_point(|t| *t <= meeting + 1e-6 * (time[end] - time[end - 1]));
+        end = edge.clamp(start + 1, end);
     }
     Level {
         start,
