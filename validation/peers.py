@@ -204,7 +204,7 @@ def show(seconds):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--palpate", help="the palpate program to time")
-    parser.add_argument("--analyze-args", default="analyze {csv} --json {json}",
+    parser.add_argument("--analyze-args", default="analyze {csv} --format json",
                         help="its arguments; {csv} and {json} are replaced (default: %(default)r)")
     parser.add_argument("--rows", type=int, default=1_000_000)
     parser.add_argument("--write", action="store_true", help="write validation/results/peers.md")
@@ -226,8 +226,8 @@ def main():
              f"NumPy {np.__version__}.", "",
              "| task | SciPy | palpate | ratio |", "|---|---:|---:|---:|"]
     for name, key, what in (
-            ("simulate_protocol_a", "simulate_protocol_a", "force, 66 s at 100 Hz; SciPy: LSODA, 8 layers"),
-            ("contact_layer", "simulate_protocol_a", "the same; SciPy: LSODA, contact layer alone"),
+            ("simulate_protocol_a", "simulate_protocol_a_force", "force, 66 s at 100 Hz; SciPy: LSODA, 8 layers"),
+            ("contact_layer", "simulate_protocol_a_force", "the same; SciPy: LSODA, contact layer alone"),
             ("fit_hold_1000", "fit_hold_1000", "fit: 1000-point hold, n = 5 (curve_fit, analytic Jacobian)")):
         ours = rust.get(key)
         ratio = f"{peer[name] / ours:.0f}" if ours else "-"

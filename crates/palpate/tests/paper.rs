@@ -1,5 +1,7 @@
 //! The simulation of the paper (section IV) against numbers from other software.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
+
 use palpate::simulate::{Sampling, Separation, simulate, strain_wave};
 use palpate::test_problems::{PAPER_TEST_A, PAPER_TEST_B, paper_ball, paper_test_a, paper_test_b};
 

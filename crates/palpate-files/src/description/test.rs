@@ -70,7 +70,7 @@ impl Default for TestDescription {
             layout: LayoutOptions::default(),
             columns: ColumnChoices::default(),
             geometry: None,
-            separation: Separation::default(),
+            separation: Separation::Bonded,
             layers: None,
             touch: ContactChoice::AsRecorded,
             segment: SegmentOptions::default(),

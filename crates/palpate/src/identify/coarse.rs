@@ -62,19 +62,25 @@ impl Condensed {
         most: usize,
         work: &mut Work,
     ) -> Vec<(f64, f64)> {
-        const STEP: f64 = 0.7;
-        let steps = ((log_rates.1 - log_rates.0) / STEP).ceil().max(2.0) as usize;
-        let rate = |i: usize| log_rates.0 + (log_rates.1 - log_rates.0) * i as f64 / steps as f64;
+        // A law with n < 1 ends in finite time, and the residual has a kink wherever that end passes a sample.
+        let step = |exponent: f64| if exponent < 1.0 { 0.1 } else { 0.7 };
         let mut phi = vec![0.0; self.times.len()];
         let mut found: Vec<(f64, f64, f64)> = Vec::new();
         for &exponent in exponents {
+            let steps = ((log_rates.1 - log_rates.0) / step(exponent)).ceil().max(2.0) as usize;
+            let rate = |i: usize| log_rates.0 + (log_rates.1 - log_rates.0) * i as f64 / steps as f64;
             let residuals: Vec<f64> = (0..=steps).map(|i| self.residual(rate(i).exp(), exponent, &mut phi)).collect();
             work.grid_points += residuals.len() as u64;
             for i in 0..=steps {
                 let below = |j: Option<&f64>| j.is_none_or(|other| residuals[i] <= *other);
                 let before = i.checked_sub(1).and_then(|i| residuals.get(i));
                 if below(before) && below(residuals.get(i + 1)) {
-                    found.push((residuals[i], rate(i), exponent));
+                    // The bottom of the parabola through three neighbours is most of the way to the optimum.
+                    let shift = match (before, residuals.get(i + 1)) {
+                        (Some(a), Some(b)) if a + b > 2.0 * residuals[i] => 0.5 * (a - b) / (a - 2.0 * residuals[i] + b),
+                        _ => 0.0,
+                    };
+                    found.push((residuals[i], rate(i) + shift * (rate(1) - rate(0)), exponent));
                 }
             }
         }

@@ -53,6 +53,19 @@ impl Default for FitOptions {
     }
 }
 
+impl FitOptions {
+    fn check(&self) -> Result<(), FitError> {
+        let (low, high) = self.exponent_range;
+        if !(low > 0.0 && low <= high && high.is_finite()) {
+            return Err(FitError::ExponentRange { low, high });
+        }
+        if !(self.confidence > 0.0 && self.confidence < 1.0) {
+            return Err(FitError::Confidence { found: self.confidence });
+        }
+        Ok(())
+    }
+}
+
 /// Why a fit could not be made at all.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FitError {
@@ -97,6 +110,23 @@ pub enum FitError {
     /// An exponent that is not a finite number above zero.
     #[error("exponent n must be a number above 0, found {found}")]
     Exponent {
+        /// What was given.
+        found: f64,
+    },
+    /// Values or times that span more than double precision can hold.
+    #[error("the samples span more than double precision holds")]
+    OutOfRange,
+    /// A range of exponents that is none.
+    #[error("the range of n must run upwards from a number above 0, found {low} to {high}")]
+    ExponentRange {
+        /// Lower end.
+        low: f64,
+        /// Upper end.
+        high: f64,
+    },
+    /// A coverage that is not between 0 and 1.
+    #[error("confidence must lie between 0 and 1, found {found}")]
+    Confidence {
         /// What was given.
         found: f64,
     },

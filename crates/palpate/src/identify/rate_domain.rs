@@ -1,7 +1,7 @@
 //! Strain rate fitted against strain, equation (10): the paper's way.
 
 use super::estimates::{Domain, Estimate, ExponentChoice, LatencyFit, Scale, Uncertainty, variance_of};
-use super::separable::{Shapes, Solution, Termination, Work, refine};
+use super::separable::{Refined, Shapes, Solution, Termination, Work, polished, refine};
 use super::{FitError, FitOptions};
 
 /// Fits ε̇ = −v sgn(x) |x|ⁿ, x = ε − ε_e, to strain rates (1/s) over strains: equations (9) and (10).
@@ -31,6 +31,7 @@ pub fn fit_rates(
     choice: ExponentChoice,
     options: &FitOptions,
 ) -> Result<LatencyFit, FitError> {
+    options.check()?;
     check(strains, rates, choice)?;
     let scaled = Scaled::new(strains, rates)?;
     let shapes = RateShapes {
@@ -39,16 +40,16 @@ pub fn fit_rates(
         exponents: options.exponent_range,
     };
     let mut work = Work::default();
-    let mut best: Option<Solution> = None;
+    let mut best: Option<Refined> = None;
     for start in shapes.starts(&scaled.rates, &mut work) {
-        let solution = refine(&shapes, &scaled.rates, &start, options.most_iterations, &mut work);
-        let better = best.as_ref().is_none_or(|best| solution.residual_square < best.residual_square);
+        let refined = refine(&shapes, &scaled.rates, &start, options.most_iterations, &mut work);
+        let better = best.as_ref().is_none_or(|best| refined.square() < best.square());
         // A negative coefficient would run away from equilibrium.
-        if solution.linear[0] > 0.0 && better {
-            best = Some(solution);
+        if refined.linear()[0] > 0.0 && better {
+            best = Some(refined);
         }
     }
-    let solution = best.ok_or(FitError::NoDecay)?;
+    let solution = polished(&shapes, &scaled.rates, best.ok_or(FitError::NoDecay)?, &mut work);
     Ok(scaled.fit(strains, &solution, choice, options, work))
 }
 
@@ -97,6 +98,10 @@ impl Scaled {
             });
         }
         let (center, range) = (0.5 * (low + high), high - low);
+        // The equilibrium is sought up to ten ranges away.
+        if !((100.0 * range).is_finite() && center.is_finite()) {
+            return Err(FitError::OutOfRange);
+        }
         Ok(Self {
             strains: strains.iter().map(|e| (e - center) / range).collect(),
             rates: rates.iter().map(|rate| rate / fastest).collect(),
@@ -144,6 +149,7 @@ impl Scaled {
             };
             rows[..size].iter().map(|a| rows[..size].iter().map(|b| entry(a, b)).collect()).collect()
         });
+        let covariance = covariance.filter(|rows: &Vec<Vec<f64>>| rows.iter().flatten().all(|entry| entry.is_finite()));
         let residual_square = solution.residual_square * self.fastest * self.fastest;
         LatencyFit {
             domain: Domain::Rate,

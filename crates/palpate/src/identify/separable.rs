@@ -81,6 +81,8 @@ struct Point {
     derivatives: Vec<Vec<f64>>,
     linear: Vec<f64>,
     residuals: Vec<f64>,
+    /// Products of the columns with each other, row-major.
+    gram: Vec<f64>,
     square: f64,
     singular: bool,
 }
@@ -93,6 +95,7 @@ impl Point {
             derivatives: vec![vec![0.0; samples]; numbers],
             linear: vec![0.0; shapes.columns()],
             residuals: vec![0.0; samples],
+            gram: vec![0.0; shapes.columns() * shapes.columns()],
             square: f64::INFINITY,
             singular: false,
         }
@@ -103,40 +106,54 @@ impl Point {
         self.theta.copy_from_slice(theta);
         shapes.fill(theta, &mut self.columns, &mut self.derivatives);
         let size = self.columns.len();
-        let mut normal = vec![0.0; size * size];
         for i in 0..size {
             for j in 0..=i {
                 let product = dot(&self.columns[i], &self.columns[j]);
-                normal[i * size + j] = product;
-                normal[j * size + i] = product;
+                self.gram[i * size + j] = product;
+                self.gram[j * size + i] = product;
             }
         }
         for (right, column) in self.linear.iter_mut().zip(&self.columns) {
             *right = dot(column, values);
         }
-        let factor = Cholesky::new(&normal, size);
+        let factor = Cholesky::new(&self.gram, size);
         self.singular = factor.is_none();
         match factor {
             Some(factor) => {
                 factor.solve(&mut self.linear);
                 self.form_residuals(values);
-                // One round of refinement recovers what squaring the condition number lost.
-                let mut correction: Vec<f64> = self.columns.iter().map(|c| dot(c, &self.residuals)).collect();
-                factor.solve(&mut correction);
-                for (value, change) in self.linear.iter_mut().zip(correction) {
-                    *value += change;
+                self.square = dot(&self.residuals, &self.residuals);
+                // Where next to nothing is left over, a round of refinement recovers what squaring the condition
+                // number lost; noise would drown it.
+                if self.square < 1e-12 * dot(values, values) {
+                    let mut correction: Vec<f64> = self.columns.iter().map(|c| dot(c, &self.residuals)).collect();
+                    factor.solve(&mut correction);
+                    for (value, change) in self.linear.iter_mut().zip(correction) {
+                        *value += change;
+                    }
+                    self.form_residuals(values);
+                    self.square = dot(&self.residuals, &self.residuals);
                 }
             }
-            None => self.linear.fill(0.0),
+            None => {
+                self.linear.fill(0.0);
+                self.square = f64::INFINITY;
+            }
         }
-        self.form_residuals(values);
-        self.square = dot(&self.residuals, &self.residuals);
         if !self.square.is_finite() {
             self.square = f64::INFINITY;
         }
     }
 
     fn form_residuals(&mut self, values: &[f64]) {
+        // Nearly every law has two columns; one pass serves both.
+        if let ([first, second], &[a, b]) = (self.columns.as_slice(), self.linear.as_slice()) {
+            let columns = first.iter().zip(second);
+            for ((residual, value), (x, y)) in self.residuals.iter_mut().zip(values).zip(columns) {
+                *residual = value - a * x - b * y;
+            }
+            return;
+        }
         self.residuals.copy_from_slice(values);
         for (column, amplitude) in self.columns.iter().zip(&self.linear) {
             for (residual, entry) in self.residuals.iter_mut().zip(column) {
@@ -153,7 +170,7 @@ impl Point {
         let mut normal = vec![0.0; size * size];
         for i in 0..size {
             for j in 0..=i {
-                let product = dot(column(i), column(j)) * factor(i) * factor(j);
+                let product = if i < l { self.gram[i * l + j] } else { dot(column(i), column(j)) * factor(i) * factor(j) };
                 normal[i * size + j] = product;
                 normal[j * size + i] = product;
             }
@@ -170,7 +187,25 @@ impl Point {
 }
 
 /// Relative fall of the residual square below which a step counts as none.
-const SMALLEST_GAIN: f64 = 1e-15;
+const SMALLEST_GAIN: f64 = 1e-14;
+
+/// Where a refinement ended.
+pub(super) struct Refined {
+    point: Point,
+    termination: Termination,
+}
+
+impl Refined {
+    /// Sum of squared residuals there.
+    pub(super) fn square(&self) -> f64 {
+        self.point.square
+    }
+
+    /// The linear numbers there.
+    pub(super) fn linear(&self) -> &[f64] {
+        &self.point.linear
+    }
+}
 
 /// Refines θ from `start` to the nearest local optimum inside the bounds.
 pub(super) fn refine(
@@ -179,7 +214,7 @@ pub(super) fn refine(
     start: &[f64],
     most_iterations: usize,
     work: &mut Work,
-) -> Solution {
+) -> Refined {
     let numbers = start.len();
     let mut here = Point::new(shapes, numbers, values.len());
     let mut trial = Point::new(shapes, numbers, values.len());
@@ -197,6 +232,12 @@ pub(super) fn refine(
         };
         loop {
             let theta = stepped(&here.theta, &hessian, &gradient, damping, shapes);
+            // What a Gauss–Newton step promises; less than this is rounding, or far inside the errors.
+            let promised: f64 = theta.iter().zip(&here.theta).zip(&gradient).map(|((a, b), g)| (a - b) * g).sum();
+            if promised <= SMALLEST_GAIN * here.square + floor {
+                termination = Termination::Converged;
+                break 'search;
+            }
             let moved = theta.iter().zip(&here.theta).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             if moved <= 1e-14 || damping > 1e12 {
                 termination = Termination::Converged;
@@ -223,7 +264,50 @@ pub(super) fn refine(
             damping = (damping * 8.0).max(1e-6);
         }
     }
-    finish(here, shapes, termination)
+    Refined {
+        point: here,
+        termination,
+    }
+}
+
+/// Most undamped steps after the residual has stopped falling.
+const POLISHING: usize = 30;
+
+/// The solution of a refinement, with undamped steps taken from it for as long as they make the gradient smaller.
+///
+/// The residual is flat to rounding within some 1e-8 of the optimum; the gradient is not, and shows the way further in.
+pub(super) fn polished(shapes: &impl Shapes, values: &[f64], refined: Refined, work: &mut Work) -> Solution {
+    let mut here = refined.point;
+    if refined.termination != Termination::Converged {
+        return finish(here, shapes, refined.termination);
+    }
+    let mut trial = Point::new(shapes, here.theta.len(), values.len());
+    // The gain that a full step promises, gᵀ H⁻¹ g, measures the gradient.
+    let outlook = |point: &Point| {
+        let (hessian, gradient) = projected(point, shapes)?;
+        let next = stepped(&point.theta, &hessian, &gradient, 0.0, shapes);
+        let gain: f64 = next.iter().zip(&point.theta).zip(&gradient).map(|((a, b), g)| (a - b) * g).sum();
+        Some((next, gain))
+    };
+    let Some((mut next, mut gain)) = outlook(&here) else {
+        return finish(here, shapes, Termination::Converged);
+    };
+    for _ in 0..POLISHING {
+        // Far from flat it is no polishing; at 1e-26 of the residual the step is below rounding.
+        if !(gain > 1e-26 * here.square && gain < 1e-9 * here.square) {
+            break;
+        }
+        trial.evaluate(shapes, &next, values);
+        work.evaluations += 1;
+        match outlook(&trial) {
+            Some((after, less)) if less < 0.5 * gain && trial.square <= here.square * (1.0 + 1e-13) => {
+                std::mem::swap(&mut here, &mut trial);
+                (next, gain) = (after, less);
+            }
+            _ => break,
+        }
+    }
+    finish(here, shapes, Termination::Converged)
 }
 
 /// The Gauss–Newton matrix and gradient in θ with the linear numbers projected out.

@@ -2,7 +2,7 @@
 
 use super::coarse::Condensed;
 use super::estimates::{Domain, Estimate, ExponentChoice, LatencyFit, Scale, Uncertainty, variance_of};
-use super::separable::{Shapes, Solution, Termination, Work, refine};
+use super::separable::{Refined, Shapes, Solution, Termination, Work, polished, refine};
 use super::{FitError, FitOptions};
 use crate::latency::{decay_with_gradient_many, decay_with_log_rate_many};
 
@@ -43,19 +43,20 @@ pub fn fit_hold(
     choice: ExponentChoice,
     options: &FitOptions,
 ) -> Result<LatencyFit, FitError> {
+    options.check()?;
     check(times, values, choice)?;
     let scaled = Scaled::new(times, values)?;
     let shapes = HoldShapes::new(&scaled, choice, options);
     let mut work = Work::default();
     let starts = shapes.starts(&scaled, &mut work);
-    let mut best: Option<Solution> = None;
+    let mut best: Option<Refined> = None;
     for start in starts {
-        let solution = refine(&shapes, &scaled.values, &start, options.most_iterations, &mut work);
-        if best.as_ref().is_none_or(|best| solution.residual_square < best.residual_square) {
-            best = Some(solution);
+        let refined = refine(&shapes, &scaled.values, &start, options.most_iterations, &mut work);
+        if best.as_ref().is_none_or(|best| refined.square() < best.square()) {
+            best = Some(refined);
         }
     }
-    let solution = best.ok_or(FitError::NoDecay)?;
+    let solution = polished(&shapes, &scaled.values, best.ok_or(FitError::NoDecay)?, &mut work);
     Ok(scaled.fit(&solution, choice, options, work))
 }
 
@@ -108,6 +109,10 @@ impl Scaled {
                 samples: values.len(),
             });
         }
+        let first = (times[1] - start) / duration;
+        if !(range.is_finite() && duration.is_finite() && first > f64::MIN_POSITIVE * 1e6) {
+            return Err(FitError::OutOfRange);
+        }
         let center = low + 0.5 * range;
         Ok(Self {
             times: times.iter().map(|t| (t - start) / duration).collect(),
@@ -145,6 +150,7 @@ impl Scaled {
             let entry = |i: usize, j: usize| inverse[i * size + j] * variance * unit[i] * unit[j];
             (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
         });
+        let covariance = covariance.filter(|rows: &Vec<Vec<f64>>| rows.iter().flatten().all(|entry| entry.is_finite()));
         let residual_square = solution.residual_square * self.range * self.range;
         LatencyFit {
             domain: Domain::Time,
@@ -197,8 +203,8 @@ impl<'a> HoldShapes<'a> {
             }
             ExponentChoice::Free => {
                 let (low, high) = self.exponents;
-                let grid: Vec<f64> = EXPONENT_GRID.into_iter().filter(|n| (low..=high).contains(n)).collect();
-                let grid = if grid.is_empty() { vec![0.5 * (low + high)] } else { grid };
+                let inside = EXPONENT_GRID.into_iter().filter(|n| low < *n && *n < high);
+                let grid: Vec<f64> = [low].into_iter().chain(inside).chain([high]).collect();
                 let starts = condensed.starts(self.log_rates, &grid, 4, work);
                 starts.into_iter().map(|(rate, n)| vec![rate, n]).collect()
             }

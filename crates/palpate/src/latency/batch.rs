@@ -74,14 +74,32 @@ pub fn decay_with_gradient_many(
 /// # Panics
 /// If the slices differ in length.
 pub fn decay_with_log_rate_many(times: &[f64], rate: f64, exponent: f64, value: &mut [f64], by_log_rate: &mut [f64]) {
-    decay_many(times, rate, exponent, value);
+    assert_eq!(times.len(), value.len(), "one output a time");
     assert_eq!(times.len(), by_log_rate.len(), "one output a time");
-    let p = exponent - 1.0;
-    for ((&t, &phi), out) in times.iter().zip(value.iter()).zip(by_log_rate.iter_mut()) {
+    match exponent {
+        2.0 => by_root(times, rate, 1.0, value, by_log_rate, |r| r),
+        3.0 => by_root(times, rate, 2.0, value, by_log_rate, f64::sqrt),
+        5.0 => by_root(times, rate, 4.0, value, by_log_rate, |r| r.sqrt().sqrt()),
+        _ => {
+            decay_many(times, rate, exponent, value);
+            let p = exponent - 1.0;
+            for ((&t, &phi), slope) in times.iter().zip(value.iter()).zip(by_log_rate.iter_mut()) {
+                let s = rate * t;
+                // φ = 0 only past the finite end (n < 1) or far below the smallest double.
+                *slope = if phi == 0.0 { 0.0 } else { -s * phi / (1.0 + p * s) };
+            }
+        }
+    }
+}
+
+/// φ = root(r) and ∂φ/∂ln λ = −s φ r, both from the one division r = 1/(1 + p s).
+#[inline(always)]
+fn by_root(times: &[f64], rate: f64, p: f64, value: &mut [f64], by_log_rate: &mut [f64], root: impl Fn(f64) -> f64) {
+    for ((&t, phi), slope) in times.iter().zip(value.iter_mut()).zip(by_log_rate.iter_mut()) {
         let s = rate * t;
-        let base = 1.0 + p * s;
-        // φ = 0 only past the finite end (n < 1) or far below the smallest double.
-        *out = if phi == 0.0 { 0.0 } else { -s * phi / base };
+        let r = 1.0 / (1.0 + p * s);
+        *phi = root(r);
+        *slope = -s * *phi * r;
     }
 }
 

@@ -142,7 +142,7 @@ impl<S: State> Dop853<S> {
             let stages = self.stages(width, first.clone(), &mut rhs);
             let error = self.error(width, &stages);
             let growth = if error == 0.0 { 10.0 } else { 0.9 * error.powf(-0.125) };
-            if error > 1.0 && width > self.narrowest {
+            if (error.is_nan() || error > 1.0) && width > self.narrowest {
                 self.width = (width * growth.max(0.2)).max(self.narrowest);
                 rejected = true;
                 continue;

@@ -51,7 +51,13 @@ pub fn strain_wave(motion: &Motion, model: &ContactModel, sampling: &Sampling) -
     wave.work.steps += walked.steps;
     wave.work.evaluations += walked.evaluations;
     wave.work.events = walked.events;
-    Ok(wave)
+    let finite = |strain: &Vec<f64>| strain.iter().position(|value| !value.is_finite());
+    match wave.strain.iter().find_map(finite) {
+        Some(index) => Err(SimulateError::OutOfRange {
+            time: wave.time[index],
+        }),
+        None => Ok(wave),
+    }
 }
 
 /// The nodes behind the surface, u₂ … u_m.
@@ -59,13 +65,28 @@ struct Cascade<'a> {
     model: &'a ContactModel,
     thickness: f64,
     tolerance: f64,
+    /// Excess strain below which the law is taken as linear; zero for n ≥ 1.
+    rest: f64,
     nodes: Vec<f64>,
 }
+
+/// Most relaxation times of a layer near rest that a motion may last, for n < 1.
+///
+/// There the rate has no derivative at x = 0, where layers come to rest in finite time, and an explicit method would shrink
+/// its steps to nothing. The law made linear below `rest` follows the same path to within `rest`.
+const STIFFEST: f64 = 1e5;
 
 impl<'a> Cascade<'a> {
     fn new(model: &'a ContactModel, layers: usize, motion: &Motion) -> Self {
         let travel = motion.displacements().iter().fold(0.0, |most: f64, d| most.max(d.abs()));
+        let (n, v) = (model.law.exponent(), model.law.rate_coefficient());
+        let rest = if n < 1.0 {
+            (STIFFEST / (v * (motion.end() - motion.start()))).powf(1.0 / (n - 1.0)).clamp(1e-12, 1e-5)
+        } else {
+            0.0
+        };
         Self {
+            rest,
             model,
             thickness: model.layers.thickness(model.specimen.depth()),
             tolerance: TOLERANCE * model.specimen.contact_displacement(travel).max(f64::MIN_POSITIVE),
@@ -106,12 +127,20 @@ impl<'a> Cascade<'a> {
         let mut speeds = Vec::with_capacity(nodes.len());
         for &inner in nodes {
             let strain = if free { 0.0 } else { (outer - inner) / self.thickness };
-            speeds.push(-self.thickness * self.model.law.rate(strain - outer / below));
+            speeds.push(-self.thickness * self.rate(strain - outer / below));
             outer = inner;
             below -= self.thickness;
             free = false;
         }
         speeds
+    }
+
+    /// ẋ by the law, made linear for |x| below `rest`.
+    fn rate(&self, excess: f64) -> f64 {
+        if excess.abs() < self.rest {
+            return self.model.law.rate(self.rest) * (excess / self.rest);
+        }
+        self.model.law.rate(excess)
     }
 
     fn write(&self, surface: f64, nodes: &[f64], wave: &mut StrainWave) {
