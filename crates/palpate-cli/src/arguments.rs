@@ -68,10 +68,10 @@ pub(crate) struct SimulateArguments {
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) wave: Option<PathBuf>,
     /// Write a record as a machine would, with noise of this standard deviation on the force
-    #[arg(long, value_name = "FORCE", value_parser = force)]
+    #[arg(long, value_name = "FORCE", value_parser = force, allow_hyphen_values = true)]
     pub(crate) force_noise: Option<f64>,
     /// Likewise on the displacement
-    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub(crate) displacement_noise: Option<f64>,
     /// Which noise: the same seed gives the same record
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -93,10 +93,10 @@ pub(crate) struct InspectArguments {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  palpate analyze press.csv                                   tables on the terminal
-  palpate analyze press.csv --test ball.toml --out study      report.html, analysis.json, tables, figures
-  palpate analyze tape.csv --fit-until \"600 s\"                how well does each law foretell the rest?
-  palpate analyze *.csv --test strip.toml --out studies       one folder a record
+  palpate analyze press.csv                               tables on the terminal
+  palpate analyze press.csv --test ball.toml --out study  report, JSON, tables, figures
+  palpate analyze tape.csv --fit-until \"600 s\"            does each law foretell the rest?
+  palpate analyze *.csv --test strip.toml --out studies   one folder a record
   palpate analyze press.csv --format json | jq '.holds[].fits[0]'")]
 pub(crate) struct AnalyzeArguments {
     /// Records: delimited text with time, force and, if possible, displacement
@@ -115,7 +115,7 @@ pub(crate) struct AnalyzeArguments {
     #[arg(long, requires = "out")]
     pub(crate) png: bool,
     /// Fit only this long from the start of each hold and foretell the rest
-    #[arg(long, value_name = "TIME", value_parser = time)]
+    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
     pub(crate) fit_until: Option<f64>,
     /// Exponents to try, besides a free one
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = exponent)]
@@ -127,10 +127,10 @@ pub(crate) struct AnalyzeArguments {
     #[arg(long, value_name = "WHERE", value_parser = touch)]
     pub(crate) touch: Option<ContactChoice>,
     /// How far the displacement may stray in a hold
-    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<f64>,
     /// Shortest hold
-    #[arg(long, value_name = "TIME", value_parser = time)]
+    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
     pub(crate) minimum_hold: Option<f64>,
     /// Record of the same motion without a body; its force is subtracted
     #[arg(long, value_name = "RECORD")]

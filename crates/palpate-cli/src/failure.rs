@@ -19,7 +19,6 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
-    #[expect(clippy::needless_pass_by_value, reason = "errors are handed over where they end")]
     pub(crate) fn new(message: impl std::fmt::Display, hint: Option<String>) -> Self {
         Self {
             message: message.to_string(),

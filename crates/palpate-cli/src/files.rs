@@ -21,7 +21,9 @@ fn failure(path: &Path, error: &io::Error) -> Failure {
         }
         _ => None,
     };
-    Failure::of_file(path, format!("cannot write: {error}"), hint)
+    // The name of a temporary file would say nothing to the reader.
+    let what = std::io::Error::from(error.kind());
+    Failure::of_file(path, format!("cannot write: {what}"), hint)
 }
 
 /// Writes one file: under a temporary name first, then renamed.
@@ -65,6 +67,7 @@ pub(crate) fn write_bundle(folder: &Path, bundle: &Bundle) -> Result<(), Failure
         }
         failure(folder, &error)
     })?;
+    let stale = stale_files(folder, bundle);
     for (name, _) in &bundle.files {
         let target = folder.join(name);
         let place = || -> io::Result<()> {
@@ -75,7 +78,25 @@ pub(crate) fn write_bundle(folder: &Path, bundle: &Bundle) -> Result<(), Failure
         };
         place().map_err(|error| failure(&target, &error))?;
     }
-    Ok(())
+    for path in stale {
+        // A file that is gone already is as good as removed.
+        let _ = fs::remove_file(path);
+    }
+    let names: String = bundle.files.iter().map(|(name, _)| format!("{name}\n")).collect();
+    write_file(&folder.join(MANIFEST), names.as_bytes())
+}
+
+/// The names that the last run wrote into a folder, so that the next one can take away what it does not write again.
+const MANIFEST: &str = ".palpate-files";
+
+/// Files of an earlier run that this one does not write: they would speak of another record. Others' files stay.
+fn stale_files(folder: &Path, bundle: &Bundle) -> Vec<PathBuf> {
+    let written = fs::read_to_string(folder.join(MANIFEST)).unwrap_or_default();
+    let is_stale = |name: &&str| {
+        let inside = Path::new(name).components().all(|part| matches!(part, std::path::Component::Normal(_)));
+        inside && !bundle.files.iter().any(|(new, _)| new == name)
+    };
+    written.lines().filter(is_stale).map(|name| folder.join(name)).collect()
 }
 
 /// Temporary files are private; a result is as readable as any other file of the user's.

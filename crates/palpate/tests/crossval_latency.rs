@@ -1,7 +1,5 @@
 //! The closed form of the law and its derivatives against 50-digit numbers (`latency_closed_form.json`).
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
-
 mod common;
 
 use common::reference;

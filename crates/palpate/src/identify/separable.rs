@@ -230,15 +230,17 @@ pub(super) fn refine(
             termination = Termination::Singular;
             break;
         };
+        // What the full Gauss–Newton step promises; less than this is rounding, or far inside the errors.
+        let full = stepped(&here.theta, &hessian, &gradient, 0.0, shapes);
+        if promise(&here.theta, &full, &gradient) <= SMALLEST_GAIN * here.square + floor
+            && distance(&here.theta, &full) < 1e-4
+        {
+            termination = Termination::Converged;
+            break;
+        }
         loop {
             let theta = stepped(&here.theta, &hessian, &gradient, damping, shapes);
-            // What a Gauss–Newton step promises; less than this is rounding, or far inside the errors.
-            let promised: f64 = theta.iter().zip(&here.theta).zip(&gradient).map(|((a, b), g)| (a - b) * g).sum();
-            if promised <= SMALLEST_GAIN * here.square + floor {
-                termination = Termination::Converged;
-                break 'search;
-            }
-            let moved = theta.iter().zip(&here.theta).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let moved = distance(&here.theta, &theta);
             if moved <= 1e-14 || damping > 1e12 {
                 termination = Termination::Converged;
                 break 'search;
@@ -257,7 +259,7 @@ pub(super) fn refine(
                 break;
             }
             // At a flat bottom rounding decides; a step that would gain nothing measurable is the end.
-            if moved < 1e-7 && trial.square <= here.square * (1.0 + 1e-14) + floor {
+            if moved < 1e-7 && damping < 1.0 && trial.square <= here.square * (1.0 + 1e-14) + floor {
                 termination = Termination::Converged;
                 break 'search;
             }
@@ -286,7 +288,7 @@ pub(super) fn polished(shapes: &impl Shapes, values: &[f64], refined: Refined, w
     let outlook = |point: &Point| {
         let (hessian, gradient) = projected(point, shapes)?;
         let next = stepped(&point.theta, &hessian, &gradient, 0.0, shapes);
-        let gain: f64 = next.iter().zip(&point.theta).zip(&gradient).map(|((a, b), g)| (a - b) * g).sum();
+        let gain = promise(&point.theta, &next, &gradient);
         Some((next, gain))
     };
     let Some((mut next, mut gain)) = outlook(&here) else {
@@ -308,6 +310,16 @@ pub(super) fn polished(shapes: &impl Shapes, values: &[f64], refined: Refined, w
         }
     }
     finish(here, shapes, Termination::Converged)
+}
+
+/// Largest change of one nonlinear number.
+fn distance(here: &[f64], next: &[f64]) -> f64 {
+    here.iter().zip(next).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// How much a Gauss–Newton step from `here` to `next` takes off the residual square, to first order.
+fn promise(here: &[f64], next: &[f64], gradient: &[f64]) -> f64 {
+    next.iter().zip(here).zip(gradient).map(|((a, b), g)| (a - b) * g).sum()
 }
 
 /// The Gauss–Newton matrix and gradient in θ with the linear numbers projected out.
