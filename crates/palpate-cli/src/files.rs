@@ -28,19 +28,30 @@ fn failure(path: &Path, error: &io::Error) -> Failure {
 
 /// Writes one file: under a temporary name first, then renamed.
 pub(crate) fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
+    write_file_with(path, |out| out.write_all(content))
+}
+
+/// Likewise, for content that is made as it goes.
+pub(crate) fn write_file_with(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Failure> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let write = || -> io::Result<()> {
+    let place = || -> io::Result<()> {
         fs::create_dir_all(folder)?;
         let mut file = tempfile::Builder::new().prefix(".palpate-").tempfile_in(folder)?;
-        file.write_all(content)?;
+        let mut out = io::BufWriter::new(&mut file);
+        write(&mut out)?;
+        out.flush()?;
+        drop(out);
         file.as_file().sync_all()?;
         file.persist(path).map_err(|error| error.error)?;
         open_to_all(path)
     };
-    write().map_err(|error| failure(path, &error))
+    place().map_err(|error| failure(path, &error))
 }
 
 /// Writes all files of a bundle below `folder`: all of them beside it first, then moved into place.

@@ -52,8 +52,9 @@ pub fn with_error(value: f64, error: f64) -> String {
     let (one_digit, error_exponent) = rounded_parts(error, 1);
     let leading_one = one_digit == "1" || rounded_parts(error, 2).0.starts_with('1');
     let last = error_exponent - i32::from(leading_one);
+    let (value, error) = (rounded_to(value, last), rounded_to(error, last));
     let (_, exponent) = rounded_parts(if value.abs() > error { value } else { error }, MOST_DIGITS);
-    let text = if (-3..5).contains(&exponent) && last <= 0 {
+    let text = if (-3..4).contains(&exponent) || (exponent == 4 && last <= 0) {
         let places = usize::try_from(-last).unwrap_or(0);
         format!("{value:.places$} ± {error:.places$}")
     } else {
@@ -124,6 +125,47 @@ fn fixed(value: f64, digits: usize, exponent: i32) -> String {
     }
 }
 
+/// `value` rounded to the decimal place 10ᵖ, read back from text so that it is a short decimal again.
+fn rounded_to(value: f64, place: i32) -> f64 {
+    if place > 0 {
+        let step = 10f64.powi(place);
+        return (value / step).round() * step;
+    }
+    let places = usize::try_from(-place).unwrap_or(0);
+    format!("{value:.places$}").parse().unwrap_or(value)
+}
+
+/// The numbers in a sentence as people write them: a minus for a hyphen, `1.2×10⁻⁴` for `1.2e-4`.
+pub(crate) fn typeset(text: &str) -> String {
+    let characters: Vec<char> = text.chars().collect();
+    let digit = |place: usize| characters.get(place).is_some_and(char::is_ascii_digit);
+    let (mut out, mut i) = (String::new(), 0);
+    while i < characters.len() {
+        let (character, before) = (characters[i], i.checked_sub(1).map(|place| characters[place]));
+        let signed = usize::from(matches!(characters.get(i + 1), Some('-' | '+')));
+        if character == '-' && digit(i + 1) && !before.is_some_and(char::is_alphanumeric) {
+            out.push('−');
+        } else if character == 'e' && before.is_some_and(|c| c.is_ascii_digit()) && digit(i + 1 + signed) {
+            let mut end = i + 1 + signed;
+            while digit(end) {
+                end += 1;
+            }
+            let power: String = characters[i + 1..end].iter().collect();
+            match power.parse() {
+                Ok(0) => {}
+                Ok(exponent) => out.push_str(&format!("×10{}", superscript(exponent))),
+                Err(_) => out.push_str(&format!("e{power}")),
+            }
+            i = end;
+            continue;
+        } else {
+            out.push(character);
+        }
+        i += 1;
+    }
+    out
+}
+
 /// `-0.00 ± …` without its misleading sign.
 fn without_negative_zero(text: &str) -> String {
     let (head, tail) = text.split_at(text.find(" ± ").unwrap_or(text.len()));
@@ -155,9 +197,19 @@ mod tests {
         assert_eq!(with_error(2.0, 0.096), "2.00 ± 0.10");
         assert_eq!(with_error(-0.001, 0.3), "0.0 ± 0.3");
         assert_eq!(with_error(5.4321e6, 2e4), "(5.43 ± 0.02)×10⁶");
-        assert_eq!(with_error(1234.0, 60.0), "(1.23 ± 0.06)×10³");
+        assert_eq!(with_error(1234.0, 60.0), "1230 ± 60");
+        assert_eq!(with_error(70.0, 41.0), "70 ± 40");
+        assert_eq!(with_error(999.8, 41.0), "1000 ± 40");
+        assert_eq!(with_error(9.998e5, 4.1e3), "(1.000 ± 0.004)×10⁶");
+        assert_eq!(with_error(12_346.0, 20.0), "(1.235 ± 0.002)×10⁴");
         assert_eq!(with_error(1.5, f64::NAN), "1.500");
         assert_eq!(with_error(1.5, 0.0), "1.500");
+    }
+
+    #[test]
+    fn numbers_in_sentences_are_typeset() {
+        assert_eq!(typeset("changes by -1.25e-4 N (-3 to -0.5)"), "changes by −1.25×10⁻⁴ N (−3 to −0.5)");
+        assert_eq!(typeset("well-known 2-3, 1e3, 5.0e0 N, free"), "well-known 2-3, 1×10³, 5.0 N, free");
     }
 
     #[test]

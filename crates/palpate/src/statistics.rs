@@ -25,21 +25,78 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
 ///
 /// From the median absolute second difference, so that ramps, holds and the odd spike do not count:
 /// second differences of white noise have √6 times its deviation, and 0.6745 turns a median into a deviation.
+/// A coarse signal that seldom moves has none of that; its rounding, the quantum over √12, is the least it can have.
 pub(crate) fn noise(values: &[f64]) -> f64 {
     if values.len() < 3 {
         return 0.0;
     }
     let mut second: Vec<f64> = values.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs()).collect();
-    median(&mut second) / (0.674_489_750_196_081_7 * 6f64.sqrt())
+    let scatter = median(&mut second) / (0.674_489_750_196_081_7 * 6f64.sqrt());
+    scatter.max(quantum(values) / 12f64.sqrt())
+}
+
+/// As [`noise`], for samples at these times: what an uneven clock does to a ramp is no noise.
+pub(crate) fn noise_in_time(time: &[f64], values: &[f64]) -> f64 {
+    if values.len() < 3 {
+        return 0.0;
+    }
+    let mut off: Vec<f64> = values
+        .windows(3)
+        .zip(time.windows(3))
+        .map(|(v, t)| {
+            let share = (t[1] - t[0]) / (t[2] - t[0]);
+            let line = v[0] + share * (v[2] - v[0]);
+            (v[1] - line).abs() / (1.0 + share * share + (1.0 - share) * (1.0 - share)).sqrt()
+        })
+        .collect();
+    (median(&mut off) / 0.674_489_750_196_081_7).max(quantum(values) / 12f64.sqrt())
+}
+
+/// Step of a signal that was rounded to multiples of it; 0 where no rounding shows.
+///
+/// The smallest change counts if nearly all others are multiples of it, and if the signal staggers: a jaw at constant
+/// speed changes by equal steps too, but in unbroken rows, so that its second differences vanish.
+pub(crate) fn quantum(values: &[f64]) -> f64 {
+    const FEWEST: usize = 20;
+    let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
+    let rounding = 1e-9 * low.abs().max(high.abs());
+    let moves = |change: &f64| *change > rounding;
+    let changes: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(moves).collect();
+    let step = changes.iter().copied().fold(f64::MAX, f64::min);
+    if changes.len() < FEWEST || step > 0.02 * (high - low) {
+        return 0.0;
+    }
+    let is_multiple = |change: &&f64| (**change / step - (**change / step).round()).abs() < 0.05;
+    let bends = values
+        .windows(3)
+        .map(|w| (w[0] - 2.0 * w[1] + w[2]).abs())
+        .filter(|bend| *bend > 0.1 * step)
+        .count();
+    let multiples = changes.iter().filter(is_multiple).count();
+    if 10 * multiples >= 9 * changes.len() && 5 * bends >= changes.len() { step } else { 0.0 }
+}
+
+/// Σ aᵢ bᵢ with eight running sums, which vector units take side by side.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (a_blocks, a_rest) = a.as_chunks::<8>();
+    let (b_blocks, b_rest) = b.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for (x, y) in a_blocks.iter().zip(b_blocks) {
+        for lane in 0..8 {
+            sums[lane] += x[lane] * y[lane];
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| x * y).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 /// Correlation of neighbouring values about zero; 0 for fewer than three or for none at all.
 pub(crate) fn lag_one_correlation(residuals: &[f64]) -> f64 {
-    let square: f64 = residuals.iter().map(|r| r * r).sum();
+    let square = dot(residuals, residuals);
     if residuals.len() < 3 || square == 0.0 {
         return 0.0;
     }
-    let product: f64 = residuals.windows(2).map(|w| w[0] * w[1]).sum();
+    let product = dot(&residuals[1..], &residuals[..residuals.len() - 1]);
     (product / square).clamp(-1.0, 1.0)
 }
 
@@ -61,6 +118,9 @@ pub(crate) fn two_sided_p(z: f64) -> f64 {
 
 /// The factor that turns a standard error into half a confidence interval of `level` with `freedom` degrees of freedom.
 pub(crate) fn coverage_factor(level: f64, freedom: f64) -> f64 {
+    if !(0.0..1.0).contains(&level) {
+        return f64::INFINITY;
+    }
     match StudentsT::new(0.0, 1.0, freedom.max(1.0)) {
         Ok(t) => t.inverse_cdf(0.5 + 0.5 * level),
         Err(_) => f64::INFINITY,

@@ -1,19 +1,20 @@
 //! `palpate simulate`: protocol to series and figure.
 
+use std::io::Write;
 use std::path::Path;
 
 use palpate::simulate::{ContactEventKind, StrainWave, Trajectory, simulate, strain_wave};
 use palpate::test_problems::Noise;
 use palpate_files::description::{Protocol, read_protocol};
 use palpate_report::figure::Figure;
-use palpate_report::study::{trajectory_figure, trajectory_table};
+use palpate_report::study::{trajectory_figure, write_trajectory};
 use palpate_report::table::{Cell, Table, TableColumn};
 
 use crate::arguments::SimulateArguments;
 use crate::failure::{Failure, Outcome};
-use crate::files::write_file;
+use crate::files::{write_file, write_file_with};
 use crate::progress::Working;
-use crate::terminal::{note, print};
+use crate::terminal::{note, print_with};
 
 /// Resolution of PNG figures.
 const DPI: f64 = 300.0;
@@ -41,8 +42,6 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
         }
         None => None,
     };
-    let noisy = arguments.force_noise.is_some() || arguments.displacement_noise.is_some();
-    let table = if noisy { record(&trajectory, arguments) } else { trajectory_table(&trajectory).to_csv() };
     drop(working);
     if let (Some(path), Some(picture)) = (&arguments.figure, figure) {
         write_file(path, &picture)?;
@@ -50,16 +49,22 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     if let (Some(path), Some(wave)) = (&arguments.wave, wave) {
         write_file(path, wave_table(&wave).to_csv().as_bytes())?;
     }
+    let noisy = arguments.force_noise.is_some() || arguments.displacement_noise.is_some();
+    let series = |out: &mut dyn Write| match noisy {
+        true => out.write_all(record(&trajectory, arguments).as_bytes()),
+        false => write_trajectory(out, &trajectory),
+    };
     match &arguments.out {
-        Some(path) => write_file(path, table.as_bytes())?,
-        None => print(&table)?,
+        Some(path) => write_file_with(path, series)?,
+        None => print_with(series)?,
     }
     for event in &trajectory.events {
         let what = match event.kind {
             ContactEventKind::Lost => "lost",
             ContactEventKind::Regained => "regained",
         };
-        let depth = 1e3 * event.contact_displacement;
+        // Rounded first, so that no minus stands before a zero.
+        let depth = (1e7 * event.contact_displacement).round() / 1e4 + 0.0;
         note(&format!("contact {what} at {:.4} s, surface at {depth:.4} mm", event.time));
     }
     Ok(Outcome::Done)

@@ -96,7 +96,7 @@ pub struct ColumnChoices {
 /// Which columns hold what. What is left out is recognised by the header of the file.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Columns")]
+#[schemars(rename = "Columns", extend("not" = { "required": ["force", "stress"] }))]
 pub(super) struct ColumnsTable {
     /// Time. Not needed where displacement and force have clocks of their own.
     time: Option<TimeTable>,

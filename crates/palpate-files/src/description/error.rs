@@ -4,6 +4,11 @@ use std::{fmt, io, path::PathBuf};
 
 use palpate::units::{Dimension, UnitError};
 
+use crate::text::{allowed, reason};
+
+/// Ends the words for what is accepted where a value is out of all proportion.
+pub(super) const BELIEVABLE: &str = "as bodies have it";
+
 /// Where in a description a key stands.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeyPlace {
@@ -46,7 +51,7 @@ pub enum DescriptionError {
         path: PathBuf,
     },
     /// The operating system does not hand the file out.
-    #[error("{}: cannot be read", path.display())]
+    #[error("{}: cannot be read ({})", path.display(), reason(source))]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -171,7 +176,8 @@ impl DescriptionError {
         match self {
             Self::NotFound { .. } => Some("check the spelling of the path".to_owned()),
             Self::Directory { .. } => Some("name the TOML file inside it".to_owned()),
-            Self::Unreadable { .. } | Self::Other { .. } => None,
+            Self::Unreadable { source, .. } => allowed(source),
+            Self::Other { .. } => None,
             Self::TooLong { .. } => Some("give a description in TOML here, not the record itself".to_owned()),
             Self::NotText { .. } => Some("save the description as UTF-8".to_owned()),
             Self::Syntax { text, message, .. } => Some(syntax(text, message)),
@@ -183,12 +189,8 @@ impl DescriptionError {
                 let key = last_key(&place.key);
                 Some(format!("add a line such as {key} = {example}"))
             }
-            Self::Quantity { place, source, .. } => Some(quantity(last_key(&place.key), source)),
-            Self::Value { expected, found, .. } => {
-                let names: Vec<String> = expected.split('"').skip(1).step_by(2).map(str::to_owned).collect();
-                let name = nearest(found.trim_matches('"'), &names)?;
-                Some(format!("did you mean \"{name}\"?"))
-            }
+            Self::Quantity { place, source, found } => Some(quantity(last_key(&place.key), source, found)),
+            Self::Value { place, expected, found } => value(last_key(&place.key), expected, found),
             Self::Unused { remedy, .. } => Some(remedy.clone()),
             Self::Both { place, other } => Some(format!("remove {} or {other}", last_key(&place.key))),
         }
@@ -215,7 +217,28 @@ fn syntax(line: &str, message: &str) -> String {
     }
 }
 
-fn quantity(key: &str, error: &UnitError) -> String {
+/// What helps against a value that is not accepted.
+fn value(key: &str, expected: &str, found: &str) -> Option<String> {
+    if expected.contains(" above 0 ") {
+        return Some(format!("{key} must be above zero: check its sign and its number"));
+    }
+    if expected.contains(BELIEVABLE) {
+        return Some(format!("check the number and the unit of {key}"));
+    }
+    let names: Vec<String> = expected.split('"').skip(1).step_by(2).map(str::to_owned).collect();
+    if let Some(name) = nearest(found.trim_matches('"'), &names) {
+        return Some(format!("did you mean \"{name}\"?"));
+    }
+    match key {
+        "shape" if names.iter().any(|name| name == "none") => {
+            Some("a body of constant section is a \"block\"; with \"none\" forces stay forces".to_owned())
+        }
+        _ if names.len() > 1 => Some(format!("write {expected}")),
+        _ => None,
+    }
+}
+
+fn quantity(key: &str, error: &UnitError, found: &str) -> String {
     let named = |value: &str| {
         if key.ends_with(']') { format!("\"{value}\"") } else { format!("{key} = \"{value}\"") }
     };
@@ -228,8 +251,16 @@ fn quantity(key: &str, error: &UnitError) -> String {
             let unit = usual_unit(*dimension);
             format!("write a number and a unit, such as {}", named(&format!("10 {unit}")))
         }
-        UnitError::UnknownUnit { dimension, .. } => {
-            format!("use one of {}", dimension.accepted())
+        UnitError::UnknownUnit { dimension, unit } => {
+            let digits = unit.strip_prefix(',').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
+            let same = dimension.units().iter().find(|(symbol, _)| symbol.eq_ignore_ascii_case(unit));
+            match same {
+                _ if digits => {
+                    format!("write a decimal point: {}", named(&found.trim_matches('"').replacen(',', ".", 1)))
+                }
+                Some((symbol, _)) => format!("did you mean {symbol}? Capitals count in units"),
+                None => format!("use one of {}", dimension.accepted()),
+            }
         }
     }
 }

@@ -51,6 +51,7 @@ pub(super) struct ProtocolTables {
     #[serde(default)]
     contact: ContactTable,
     /// Steps of the jaw in order, starting at first touch at time 0.
+    #[schemars(extend("minItems" = 1))]
     step: Vec<StepTable>,
     #[serde(default)]
     output: OutputTable,
@@ -64,6 +65,7 @@ struct LawTable {
     #[expect(dead_code, reason = "there is one law, and the table names it")]
     name: LawName,
     /// Exponent n, any number above 0.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     exponent: f64,
     /// Rate coefficient v, such as "2e4 /s".
     rate_coefficient: QuantityText,
@@ -79,9 +81,10 @@ enum LawName {
 /// How the jaw meets the body.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Contact")]
+#[schemars(rename = "Contact", extend("not" = { "required": ["layers", "layer_thickness"] }))]
 struct ContactTable {
     /// Number of layers, any number of 1 or more; 8 unless layer_thickness is given.
+    #[schemars(extend("minimum" = 1))]
     layers: Option<f64>,
     /// Thickness of one layer, instead of their number.
     layer_thickness: Option<QuantityText>,
@@ -108,11 +111,12 @@ struct StepTable {
 /// When to report: at a rate, or at times.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Output")]
+#[schemars(rename = "Output", extend("not" = { "required": ["sample_rate", "times"] }))]
 struct OutputTable {
     /// Samples per second; "100 Hz" unless times are given. Every kink of the motion is reported as well.
     sample_rate: Option<QuantityText>,
     /// These times and no others, rising, inside the motion.
+    #[schemars(extend("minItems" = 1))]
     times: Option<Vec<QuantityText>>,
 }
 

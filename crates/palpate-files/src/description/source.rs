@@ -6,7 +6,7 @@ use palpate::units::{self, Dimension};
 use serde::de::DeserializeOwned;
 
 use super::{
-    error::{DescriptionError, KeyPlace},
+    error::{BELIEVABLE, DescriptionError, KeyPlace},
     places::Places,
     quantity::QuantityText,
     words,
@@ -123,10 +123,30 @@ impl Source<'_> {
     ) -> Result<f64, DescriptionError> {
         let si = self.si(key, quantity, dimension)?;
         if si > 0.0 {
-            return Ok(si);
+            return self.believable(key, quantity, si, dimension);
         }
         let expected = format!("a {} above 0 {}", dimension.name(), dimension.units()[0].0);
         Err(self.value(key, expected, quantity))
+    }
+
+    /// Refuses sizes and moduli that no body has: a slip of the exponent or of the unit.
+    fn believable(
+        &self,
+        key: &str,
+        quantity: &QuantityText,
+        si: f64,
+        dimension: Dimension,
+    ) -> Result<f64, DescriptionError> {
+        let (limits, words) = match dimension {
+            Dimension::Length => (1e-9..=1e3, "a length from 1 nm to 1000 m"),
+            Dimension::Area => (1e-18..=1e6, "an area from 1e-12 mm^2 to 1e6 m^2"),
+            Dimension::Pressure => (1.0..=1e13, "a modulus from 1 Pa to 1e4 GPa"),
+            _ => return Ok(si),
+        };
+        if !key.starts_with("specimen.") || limits.contains(&si) {
+            return Ok(si);
+        }
+        Err(self.value(key, format!("{words}, {BELIEVABLE}"), quantity))
     }
 
     /// A bare number that `accepts` must accept.

@@ -44,13 +44,14 @@ pub(super) struct AboutTable {
 /// How the jaw meets the body.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Contact")]
+#[schemars(rename = "Contact", extend("not" = { "required": ["layers", "layer_thickness"] }))]
 pub(super) struct ContactTable {
     /// Two sides for a ball, one side for other shapes, unless said otherwise.
     pub(super) squeezed_from: Option<SidesName>,
     /// Whether the jaw can leave the body: true for a ball, false for other shapes, unless said otherwise.
     pub(super) separation: Option<bool>,
     /// Number of layers for a simulation of the test, any number of 1 or more.
+    #[schemars(extend("minimum" = 1))]
     pub(super) layers: Option<f64>,
     /// Thickness of one layer, instead of their number.
     pub(super) layer_thickness: Option<QuantityText>,
@@ -70,6 +71,7 @@ pub(super) struct PhasesTable {
     /// Shortest hold.
     pub(super) minimum_hold: Option<QuantityText>,
     /// Speed under which the jaw counts as standing still, as a share of the speed of the ramps, between 0 and 1.
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub(super) still_below: Option<f64>,
     /// From where in a hold laws are fitted: "peak" of the force (the default), "settled" jaw, or a time after the
     /// peak such as "peak + 0.5 s".
@@ -83,12 +85,15 @@ pub(super) struct PhasesTable {
 #[schemars(rename = "Fit")]
 pub(super) struct FitTable {
     /// Exponents to compare; 1, 2, 3, 5 and 7 if left out.
+    #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0 }))]
     pub(super) exponents: Option<Vec<f64>>,
     /// Whether a free exponent is fitted too; true if left out.
     pub(super) free_exponent: Option<bool>,
     /// Range in which the free exponent is sought; 0.2 to 30 if left out.
+    #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0 }))]
     pub(super) exponent_range: Option<[f64; 2]>,
     /// Coverage of confidence intervals, between 0 and 1; 0.95 if left out.
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub(super) confidence: Option<f64>,
     /// Fit no more than this much of every hold, counted from where its fit starts.
     pub(super) until: Option<QuantityText>,

@@ -166,7 +166,11 @@ impl<'a> Chooser<'a> {
         })
     }
 
+    /// No column holds a quantity; perhaps one is named after it, but its unit is one of another.
     fn missing(&self, quantity: Quantity) -> ColumnError {
+        if let Some((column, unit)) = recognise::misfits(self.columns, quantity).next() {
+            return self.unknown_unit(column, quantity, format!("columns.{quantity}.unit"), unit);
+        }
         ColumnError::Missing {
             path: self.path.to_owned(),
             quantity,
@@ -210,6 +214,16 @@ impl<'a> Chooser<'a> {
         }
     }
 
+    fn unknown_unit(&self, column: &ColumnInfo, quantity: Quantity, key: String, unit: &str) -> ColumnError {
+        ColumnError::UnknownUnit {
+            path: self.path.to_owned(),
+            column: column.into(),
+            quantity,
+            key,
+            unit: unit.to_owned(),
+        }
+    }
+
     /// Units from the description, else from the header.
     fn with_units(&self, found: &[Found<'_>]) -> Result<Vec<ColumnUse>, ColumnError> {
         let mut used = Vec::new();
@@ -227,21 +241,29 @@ impl<'a> Chooser<'a> {
                 name: found.column.name.clone(),
                 unit: unit.to_owned(),
                 sign: found.sign,
-                factor: factor.ok_or_else(|| ColumnError::UnknownUnit {
-                    path: self.path.to_owned(),
-                    column: found.column.into(),
-                    quantity,
-                    key: found.key(),
-                    unit: unit.to_owned(),
-                })?,
+                factor: factor.ok_or_else(|| self.unknown_unit(found.column, quantity, found.key(), unit))?,
             });
         }
         if without.is_empty() {
             return Ok(used);
+        }
+        // What stands in brackets behind the one name without a unit was meant as one.
+        let bare = |found: &&Found<'_>| found.unit.or(found.column.unit.as_deref()).is_none();
+        if let ([_], Some(found)) = (&without[..], found.iter().find(bare))
+            && let Some(unit) = found.column.name.as_deref().and_then(in_brackets)
+        {
+            return Err(self.unknown_unit(found.column, found.role.measured(), found.key(), unit));
         }
         Err(ColumnError::NoUnit {
             path: self.path.to_owned(),
             columns: without,
         })
     }
+}
+
+/// The one word in brackets at the end of a name, as in `Force (furlong)`.
+fn in_brackets(name: &str) -> Option<&str> {
+    let (_, word) = name.trim_end().strip_suffix(')')?.rsplit_once('(')?;
+    let word = word.trim();
+    (!word.is_empty() && !word.contains(char::is_whitespace)).then_some(word)
 }

@@ -62,7 +62,7 @@ pub enum ColumnError {
         candidates: Vec<NamedColumn>,
     },
     /// The units of some columns are written nowhere.
-    #[error("{}: expected a unit for {}, found none in the header", path.display(), units_of(columns))]
+    #[error("{}: expected a unit for {}, found {}", path.display(), units_of(columns), none(columns))]
     NoUnit {
         /// The record.
         path: PathBuf,
@@ -138,7 +138,7 @@ impl ColumnError {
                 key, quantity, column, ..
             } => format!(
                 "if another unit is meant, say it in a test description:\n{}",
-                snippet::of_unit(key, quantity.usual_unit(), column)
+                snippet::of_unit_and_column(key, quantity.usual_unit(), column)
             ),
             Self::NoSuchColumn { .. } => {
                 "columns count from 1 at the left; a name is written without its unit".to_owned()
@@ -156,6 +156,16 @@ impl ColumnError {
 fn listed(columns: &[NamedColumn]) -> String {
     let columns: Vec<String> = columns.iter().map(ToString::to_string).collect();
     columns.join(" and ")
+}
+
+/// What the header says instead of units: nothing, or something in brackets that is none.
+fn none(columns: &[(String, &'static str, NamedColumn)]) -> &'static str {
+    let bracketed = |name: &str| name.trim_end().ends_with(')');
+    if columns.iter().any(|(_, _, column)| column.name.as_deref().is_some_and(bracketed)) {
+        "none that is understood in the header"
+    } else {
+        "none in the header"
+    }
 }
 
 fn units_of(columns: &[(String, &'static str, NamedColumn)]) -> String {

@@ -34,6 +34,16 @@ fn rank(column: &ColumnInfo, quantity: Quantity) -> Option<u8> {
     }
 }
 
+/// Columns that are named after `quantity` but have the unit of another, and that unit.
+pub(super) fn misfits(columns: &[ColumnInfo], quantity: Quantity) -> impl Iterator<Item = (&ColumnInfo, &str)> {
+    let vocabulary = VOCABULARY.iter().find(|words| words.quantity == quantity);
+    columns.iter().filter(|column| column.kind == ColumnKind::Number).filter_map(move |column| {
+        let (name, unit) = (column.name.as_deref()?, column.unit.as_deref()?);
+        let plainly = rank_of_name(name, vocabulary?).is_some_and(|rank| rank < 2);
+        (plainly && measures_another(unit, quantity)).then_some((column, unit))
+    })
+}
+
 /// Whether a unit is one of another kind of quantity.
 fn measures_another(unit: &str, quantity: Quantity) -> bool {
     let others = [

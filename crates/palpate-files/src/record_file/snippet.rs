@@ -4,7 +4,7 @@ use super::{Quantity, error::NamedColumn, recognise};
 use crate::text::{ColumnInfo, ColumnKind};
 
 /// Most columns that a message shows.
-const MOST: usize = 20;
+const MOST: usize = 8;
 
 /// All columns of a file, for a message.
 pub(super) fn described(columns: &[ColumnInfo]) -> String {
@@ -16,7 +16,7 @@ pub(super) fn described(columns: &[ColumnInfo]) -> String {
         text.push_str(&format!("\n  {}: {sample}", NamedColumn::from(column)));
     }
     if columns.len() > MOST {
-        text.push_str("\n  …");
+        text.push_str(&format!("\n  … and {} more", columns.len() - MOST));
     }
     text
 }
@@ -25,7 +25,12 @@ pub(super) fn described(columns: &[ColumnInfo]) -> String {
 pub(super) fn choices(columns: &[ColumnInfo]) -> String {
     let count = columns.len();
     let names = columns.iter().filter_map(|column| column.name.as_deref());
-    let names: Vec<String> = names.take(MOST).map(|name| format!("\"{name}\"")).collect();
+    let mut names: Vec<String> = names.map(|name| format!("\"{name}\"")).collect();
+    if names.len() > MOST {
+        let more = names.len() - MOST;
+        names.truncate(MOST);
+        names.push(format!("… and {more} more"));
+    }
     if names.is_empty() {
         return format!("a number from 1 to {count} (the columns have no names)");
     }
@@ -55,6 +60,12 @@ pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
         lines.push(line);
     }
     lines.join("\n")
+}
+
+/// The lines that say both the column and its unit, where its header says another.
+pub(super) fn of_unit_and_column(key: &str, unit: &str, column: &NamedColumn) -> String {
+    let (table, key) = key.rsplit_once('.').unwrap_or(("columns", key));
+    format!("[{table}]\n{key} = \"{unit}\"\ncolumn = {}", column.number)
 }
 
 /// The lines that say the unit under `key`, such as `columns.force.unit`.

@@ -75,7 +75,7 @@ pub enum FileError {
         path: PathBuf,
     },
     /// The operating system does not hand the file out.
-    #[error("{}: cannot be read", path.display())]
+    #[error("{}: cannot be read ({})", path.display(), reason(source))]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -224,6 +224,20 @@ impl FileError {
             _ => Self::Unreadable { path, source },
         }
     }
+}
+
+/// Why the operating system does not hand a file out, in words.
+pub(crate) fn reason(source: &io::Error) -> String {
+    match source.kind() {
+        io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        _ => source.to_string(),
+    }
+}
+
+/// What helps against that.
+pub(crate) fn allowed(source: &io::Error) -> Option<String> {
+    (source.kind() == io::ErrorKind::PermissionDenied)
+        .then(|| "check who owns the file and that you may read it".to_owned())
 }
 
 /// `text` cut to a length that fits into a message.

@@ -1,7 +1,7 @@
 //! What would help against an error, in words that go with any front end.
 
 use super::{
-    error::{DecimalDoubt, FileError},
+    error::{DecimalDoubt, FileError, allowed},
     foreign::Foreign,
     layout::DecimalMark,
     number::{self, Cell},
@@ -14,7 +14,7 @@ impl FileError {
         match self {
             Self::NotFound { .. } => Some("check the spelling of the path".to_owned()),
             Self::Directory { .. } => Some("name one file inside it".to_owned()),
-            Self::Unreadable { .. } => None,
+            Self::Unreadable { source, .. } => allowed(source),
             Self::Empty { .. } => Some("export the record again".to_owned()),
             Self::Foreign { looks_like, .. } => Some(foreign(*looks_like).to_owned()),
             Self::LineTooLong { .. } => Some("check that the file has line ends and the right encoding".to_owned()),

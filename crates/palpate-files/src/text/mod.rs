@@ -46,7 +46,7 @@ mod unit;
 pub use columns::{Columns, Footer, IgnoredLines, read_columns};
 pub use detect::detect;
 pub use encoding::{Encoding, UnknownEncoding};
-pub(crate) use error::shorten;
 pub use error::{CellPlace, DecimalDoubt, FileError};
+pub(crate) use error::{allowed, reason, shorten};
 pub use foreign::Foreign;
 pub use layout::{ColumnInfo, ColumnKind, DecimalMark, Delimiter, Layout, LayoutOptions, Metadata};

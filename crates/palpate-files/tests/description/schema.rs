@@ -20,3 +20,13 @@ fn schemas_have_titles_words_and_strict_keys() {
     assert_eq!(column[1]["type"], "string");
     assert!(test["$defs"]["Quantity"]["pattern"].is_string());
 }
+
+#[test]
+fn schemas_bound_numbers_and_exclude_pairs() {
+    let (protocol, test) = (schema_protocol(), schema_test());
+    assert_eq!(protocol["$defs"]["Law"]["properties"]["exponent"]["exclusiveMinimum"], 0);
+    assert_eq!(protocol["$defs"]["Contact"]["properties"]["layers"]["minimum"], 1);
+    assert_eq!(protocol["$defs"]["Output"]["not"]["required"], serde_json::json!(["sample_rate", "times"]));
+    assert_eq!(test["$defs"]["Fit"]["properties"]["exponents"]["items"]["exclusiveMinimum"], 0);
+    assert_eq!(test["$defs"]["Columns"]["not"]["required"], serde_json::json!(["force", "stress"]));
+}

@@ -193,3 +193,23 @@ fn wrong_values_name_their_keys() {
         says(test(text), key, message, "");
     }
 }
+
+#[test]
+fn likely_slips_have_a_hint() {
+    let hint = |text: &str| test(text).unwrap_err().hint().unwrap_or_default();
+    let ball = |radius: &str, modulus: &str| {
+        format!("specimen = {{ shape = \"ball\", radius = \"{radius}\", modulus = \"{modulus}\" }}")
+    };
+    for (radius, modulus, help) in [
+        ("0 mm", "28 kPa", "radius must be above zero"),
+        ("35 mm", "-28 kPa", "modulus must be above zero"),
+        ("35,0 mm", "28 kPa", "write a decimal point: radius = \"35.0 mm\""),
+        ("35 mm", "28 kpa", "did you mean kPa?"),
+        ("1e300 m", "28 kPa", "check the number and the unit of radius"),
+        ("35 mm", "28e30 GPa", "check the number and the unit of modulus"),
+    ] {
+        let found = hint(&ball(radius, modulus));
+        assert!(found.contains(help), "{radius}, {modulus}: {found}");
+    }
+    assert!(hint("specimen = { shape = \"potato\" }").contains("\"block\""));
+}

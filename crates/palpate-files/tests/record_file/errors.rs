@@ -167,3 +167,31 @@ fn files_that_cannot_be_read_say_so() {
     assert_eq!(error.to_string(), "none.csv: no such file");
     assert!(error.hint().unwrap().contains("spelling"));
 }
+
+#[test]
+fn a_unit_that_is_none_is_named() {
+    let error = says(
+        "Time (s),Force (furlong)\n0,1\n1,2\n2,1\n",
+        "",
+        &["column 2 (Force (furlong)): \"furlong\" is not a unit of force", "accepted: N, kN"],
+        &["[columns.force]\nunit = \"N\"\ncolumn = 2"],
+    );
+    assert!(read("Time (s),Force (furlong)\n0,1\n1,2\n2,1\n", &pasted(&error)).is_ok());
+    let table = "Time (mm),Force (N)\n0,1\n1,2\n2,1\n";
+    let error = says(
+        table,
+        "",
+        &["column 1 (Time): \"mm\" is not a unit of time"],
+        &["[columns.time]\nunit = \"s\"\ncolumn = 1"],
+    );
+    assert!(read(table, &pasted(&error)).is_ok());
+}
+
+#[test]
+fn many_columns_are_not_all_shown() {
+    let names: Vec<String> = (1..=30).map(|i| format!("c{i}")).collect();
+    let row = vec!["1"; 30].join(",");
+    let table = format!("{}\n{row}\n{row}\n{row}\n", names.join(","));
+    let error = says(&table, "", &["in 30 columns", "column 8 (c8)", "… and 22 more"], &[]);
+    assert!(!error.to_string().contains("c9"));
+}

@@ -22,6 +22,8 @@ pub(crate) struct Entry {
     label: String,
     line: Option<Style>,
     points: Option<Style>,
+    /// Whether the points are so many that they are drawn as dots.
+    crowd: bool,
     band: Option<Style>,
 }
 
@@ -56,6 +58,7 @@ pub(crate) fn entries(panel: &Panel) -> Vec<Entry> {
                 label,
                 line: None,
                 points: None,
+                crowd: false,
                 band: None,
             });
             entries.len() - 1
@@ -63,7 +66,10 @@ pub(crate) fn entries(panel: &Panel) -> Vec<Entry> {
         let style = Some(role.style());
         match layer {
             Layer::Line { .. } => entries[index].line = style,
-            Layer::Points { .. } => entries[index].points = style,
+            Layer::Points { x, .. } => {
+                entries[index].points = style;
+                entries[index].crowd = x.len() > series::CROWD;
+            }
             _ => entries[index].band = style,
         }
     }
@@ -220,7 +226,10 @@ fn draw_entry(svg: &mut Svg, entry: &Entry, x: f64, middle: f64) {
         let d = super::svg::polyline(&[(x, middle), (x + SAMPLE, middle)], false);
         svg.path(&d, &series::line_attributes(style));
     }
-    if let Some(style) = entry.points {
+    if let Some(style) = entry.points.filter(|_| entry.crowd) {
+        let dots = [-4.5, 0.0, 4.5].map(|along| (x + SAMPLE / 2.0 + along, middle));
+        series::draw_dots(svg, &dots, style);
+    } else if let Some(style) = entry.points {
         series::draw_markers(svg, &[(x + SAMPLE / 2.0, middle)], style, 2.0);
     }
     let font = Font {

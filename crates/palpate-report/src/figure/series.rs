@@ -10,7 +10,7 @@ use super::svg::{Svg, polyline, short};
 use super::{Layer, Role};
 
 /// Beyond this many points, simple dots replace the marker shapes.
-const CROWD: usize = 250;
+pub(crate) const CROWD: usize = 250;
 
 pub(crate) fn line_attributes(style: Style) -> String {
     let dash = if style.dash.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{}\"", style.dash) };
@@ -82,16 +82,21 @@ pub(crate) fn draw_points(
     }
     let positions = visible(frame, x, y);
     if positions.len() > CROWD {
-        let mut d = String::new();
-        for (x, y) in &positions {
-            let _ = write!(d, "M{} {}h0", short(*x), short(*y));
-        }
-        let attributes = format!("stroke=\"{}\" stroke-width=\"1.7\" stroke-linecap=\"round\"", style.colour);
-        svg.path(&d, &attributes);
+        draw_dots(svg, &positions, style);
     } else {
         let radius = if positions.len() > 80 { 1.6 } else { 2.0 };
         draw_markers(svg, &positions, style, radius);
     }
+}
+
+/// Draws a crowd of points.
+pub(crate) fn draw_dots(svg: &mut Svg, positions: &[Position], style: Style) {
+    let mut d = String::new();
+    for (x, y) in positions {
+        let _ = write!(d, "M{} {}h0", short(*x), short(*y));
+    }
+    let attributes = format!("stroke=\"{}\" stroke-width=\"1.7\" stroke-linecap=\"round\"", style.colour);
+    svg.path(&d, &attributes);
 }
 
 fn draw_error_bars(svg: &mut Svg, frame: &Frame<'_>, (x, y, error): (&[f64], &[f64], &[f64]), style: Style) {

@@ -54,7 +54,7 @@ pub struct Finding {
     pub severity: Severity,
     /// Short stable name.
     pub code: String,
-    /// What was seen.
+    /// What was seen; each line stands on one of its own.
     pub seen: String,
     /// What it may mean.
     pub meaning: String,

@@ -7,6 +7,8 @@ use crate::escape::escape;
 use crate::script::{Level, runs};
 use crate::table::{Cell, Table, mark};
 
+/// Tables of at most this many rows stay on one page of paper.
+const SHORT: usize = 25;
 const STYLE: &str = include_str!("style.css");
 
 /// The whole document.
@@ -125,8 +127,9 @@ fn write_table(out: &mut String, table: &Table, number: usize) {
     let columns = table.columns.len();
     let class: Vec<&str> = (0..columns).map(|c| if table.is_numeric(c) { " class=\"n\"" } else { "" }).collect();
     out.push_str(&format!(
-        "<div class=\"table\" id=\"table-{number}\">\n<table>\n\
+        "<div class=\"table{}\" id=\"table-{number}\">\n<table>\n\
          <caption><b>Table {number}.</b> {}</caption>\n<thead>\n<tr>",
+        if table.rows.len() <= SHORT { " short" } else { "" },
         rich(&table.caption)
     ));
     for (column, class) in table.columns.iter().zip(&class) {
@@ -176,7 +179,7 @@ fn write_findings(out: &mut String, findings: &[Finding]) {
             "<div class=\"finding {word}\">\n<p class=\"head\"><span class=\"word\">{word}</span> \
              <code>{}</code></p>\n<p>{}</p>\n",
             escape(&finding.code),
-            rich(&finding.seen)
+            finding.seen.lines().map(rich).collect::<Vec<_>>().join("<br>\n")
         ));
         for (name, text) in [("May mean", &finding.meaning), ("What helps", &finding.remedy)] {
             if !text.is_empty() {
@@ -189,7 +192,7 @@ fn write_findings(out: &mut String, findings: &[Finding]) {
 
 fn write_checks(out: &mut String, checks: &[Check]) {
     out.push_str(
-        "<div class=\"table\">\n<table class=\"checks\">\n<thead>\n<tr><th scope=\"col\">Check</th>\
+        "<div class=\"table short\">\n<table class=\"checks\">\n<thead>\n<tr><th scope=\"col\">Check</th>\
          <th scope=\"col\">Criterion</th><th scope=\"col\">Found</th>\
          <th scope=\"col\">Outcome</th></tr>\n</thead>\n<tbody>\n",
     );

@@ -1,7 +1,8 @@
 //! The files of a study, in memory until all of them exist.
 
-use palpate::simulate::SimulateError;
+use palpate::simulate::{SimulateError, Trajectory};
 
+use super::write_trajectory;
 use crate::figure::{Figure, FigureError};
 use crate::table::Table;
 
@@ -27,6 +28,9 @@ pub enum StudyError {
     /// A record of the paper's study.
     #[error(transparent)]
     Record(#[from] palpate::record::RecordError),
+    /// Writing to memory.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
     /// JSON.
     #[error("a result could not be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
@@ -52,6 +56,13 @@ impl Bundle {
         if pictures.png {
             self.files.push((format!("figures/{}.png", figure.name), figure.to_png(DPI)?));
         }
+        Ok(())
+    }
+
+    pub(crate) fn series(&mut self, name: &str, trajectory: &Trajectory) -> Result<(), StudyError> {
+        let mut content = Vec::new();
+        write_trajectory(&mut content, trajectory)?;
+        self.files.push((format!("series/{name}.csv"), content));
         Ok(())
     }
 

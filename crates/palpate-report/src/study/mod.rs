@@ -6,14 +6,18 @@
 //! | `record_figures.rs` | figures of an analysed record |
 //! | `record_tables.rs` | its tables |
 //! | `record_page.rs` | its page |
+//! | `findings.rs` | what was found, gathered over the holds |
+//! | `method.rs` | the settings that a page tells |
 //! | `law_figures.rs` | the law and its closed form (figures 1 and 2 of the paper) |
 //! | `wave_figure.rs` | all layers over time (figure 7) |
-//! | `trajectory.rs` | a simulated series as table and figure |
+//! | `trajectory.rs` | a simulated series as CSV and figure |
 //! | `reproduction.rs` | the paper's study: simulation, re-identification, checks |
 //! | `reproduction_page.rs` | its page |
 
 mod bundle;
+mod findings;
 mod law_figures;
+mod method;
 mod record_figures;
 mod record_page;
 mod record_tables;
@@ -26,4 +30,4 @@ pub use bundle::{Bundle, Pictures, StudyError};
 pub use record_page::analysis_bundle;
 pub use record_tables::analysis_text;
 pub use reproduction::{Reproduction, reproduce, reproduction_bundle};
-pub use trajectory::{trajectory_figure, trajectory_table};
+pub use trajectory::{trajectory_figure, write_trajectory};

@@ -1,7 +1,7 @@
 //! Figures of an analysed record.
 
 use palpate::analysis::{Analysis, HoldAnalysis, Signal};
-use palpate::identify::{ExponentChoice, LatencyFit};
+use palpate::identify::{ExponentChoice, LatencyFit, Termination};
 use palpate::segment::{After, Phase};
 
 use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
@@ -10,6 +10,8 @@ use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
 const CURVE: usize = 200;
 /// Holds that get a panel of their own.
 pub(super) const MOST_PANELS: usize = 12;
+/// Holds that share a panel.
+const MOST_SERIES: usize = 8;
 
 /// Force over displacement over time with the phases, the paper's figure 4; the simulated force laid over where there is one.
 pub(super) fn record(analysis: &Analysis, name: &str) -> Figure {
@@ -18,7 +20,7 @@ pub(super) fn record(analysis: &Analysis, name: &str) -> Figure {
     for (i, hold) in analysis.holds.iter().enumerate() {
         let span = Layer::span(hold.start, hold.end, Role::Series(0));
         // Names are readable while there are few.
-        let named = analysis.holds.len() <= 12;
+        let named = analysis.holds.len() <= MOST_PANELS;
         force = force.layer(if named { span.label(format!("{}", i + 1)) } else { span });
     }
     force = force.layer(Layer::line(time.to_vec(), analysis.record.force().to_vec(), Role::Measured).label("measured"));
@@ -27,7 +29,9 @@ pub(super) fn record(analysis: &Analysis, name: &str) -> Figure {
         let label = format!("simulated, n = {n}");
         force = force.layer(Layer::line(overlay.time.clone(), overlay.force.clone(), Role::Simulated).label(label));
     }
-    let mut caption = "Force and displacement over time. Shaded: the holds that were found.".to_owned();
+    let numbered = if analysis.holds.len() <= MOST_PANELS { ", with their numbers" } else { "" };
+    let quantities = if analysis.record.displacement().is_some() { "Force and displacement" } else { "Force" };
+    let mut caption = format!("{quantities} over time. Shaded: the holds that were found{numbered}.");
     if analysis.overlay.is_some() {
         caption
             .push_str(" The simulated curve follows the measured displacement with the numbers fitted to the holds.");
@@ -44,41 +48,103 @@ pub(super) fn record(analysis: &Analysis, name: &str) -> Figure {
 /// Strain rate against strain with the fitted law, hold by hold: the paper's figure 6. `None` where no strain is known.
 pub(super) fn strain_rates(analysis: &Analysis, name: &str) -> Option<Figure> {
     let n = analysis.across.common_exponent?;
-    let mut figure = Figure::new(
-        name,
-        format!(
-            "Strain rate against strain of every hold (points: smoothed differences of the record; lines: the law with n = {n} fitted to the signal over time)."
-        ),
-    )
-    .arrangement(Arrangement::SideBySide);
-    let mut drawn = false;
+    let (mut panels, mut most) = (Vec::new(), 0);
+    let mut caption = format!(
+        "Strain rate against strain (points: smoothed differences of the record; lines: the law with n = {n} fitted to the signal over time)."
+    );
     for (after, title) in [(After::Loading, "After loading"), (After::Unloading, "After unloading")] {
         let holds: Vec<&HoldAnalysis> = analysis
             .holds
             .iter()
             .filter(|hold| hold.after == Some(after) && hold.signal == Signal::Strain && !hold.rates.rate.is_empty())
-            .take(8)
             .collect();
-        if holds.is_empty() {
+        let shown = spread(&holds, MOST_SERIES);
+        if shown.is_empty() {
             continue;
         }
-        drawn = true;
-        let mut panel =
-            Panel::new(Axis::linear("Strain", ""), Axis::linear("Strain rate", "s⁻¹")).title(title).zero_line();
-        for (series, hold) in holds.into_iter().enumerate() {
-            let role = Role::Series(series as u8);
-            panel = panel.layer(Layer::points(hold.rates.strain.clone(), hold.rates.rate.clone(), role));
-            let label = match hold.displacement {
-                Some(d) => format!("{}: {:.1} mm", hold.number, d * 1e3),
-                None => format!("{}", hold.number),
-            };
-            if let Some((strain, rate)) = hold.fit_with(n).map(|fit| rate_curve(fit, hold)) {
-                panel = panel.layer(Layer::line(strain, rate, role).label(label));
-            }
+        if shown.len() < holds.len() {
+            caption.push_str(&format!(
+                " {title}: {} of {} holds, spread over the displacements.",
+                shown.len(),
+                holds.len()
+            ));
         }
-        figure = figure.panel(panel);
+        let (panel, outside) = rate_panel(&shown, n);
+        if outside > 0 {
+            let points: usize = shown.iter().map(|hold| hold.rates.rate.len()).sum();
+            caption.push_str(&format!(" {title}: {outside} of {points} points lie outside the range shown."));
+        }
+        most = most.max(shown.len());
+        panels.push(panel.title(title));
     }
-    drawn.then_some(figure)
+    if panels.is_empty() {
+        return None;
+    }
+    // Long legends stand above the axes and need room of their own.
+    let height = if most > 5 { 84.0 } else { 66.0 };
+    let figure = Figure::new(name, caption).arrangement(Arrangement::SideBySide).height_mm(height);
+    Some(panels.into_iter().fold(figure, Figure::panel))
+}
+
+/// At most `most` holds, spread over the displacements, in the order of the record.
+fn spread<'a>(holds: &[&'a HoldAnalysis], most: usize) -> Vec<&'a HoldAnalysis> {
+    if holds.len() <= most {
+        return holds.to_vec();
+    }
+    let mut sorted = holds.to_vec();
+    sorted.sort_by(|a, b| a.displacement.unwrap_or(0.0).total_cmp(&b.displacement.unwrap_or(0.0)));
+    let mut chosen: Vec<&HoldAnalysis> = (0..most).map(|i| sorted[i * (sorted.len() - 1) / (most - 1)]).collect();
+    chosen.sort_by_key(|hold| hold.number);
+    chosen
+}
+
+/// The strain rates of some holds with their laws, and how many points lie outside the range shown.
+fn rate_panel(holds: &[&HoldAnalysis], n: f64) -> (Panel, usize) {
+    let curves: Vec<Option<(Vec<f64>, Vec<f64>)>> =
+        holds.iter().map(|hold| hold.fit_with(n).map(|fit| rate_curve(fit, hold))).collect();
+    let rates = || holds.iter().flat_map(|hold| hold.rates.rate.iter().copied());
+    let fitted = curves.iter().flatten().flat_map(|(_, rates)| rates.iter().copied());
+    let mut axis = Axis::linear("Strain rate", "s⁻¹");
+    let mut outside = 0;
+    if let Some((low, high)) = robust_range(rates().collect(), fitted) {
+        outside = rates().filter(|rate| *rate < low || *rate > high).count();
+        axis = axis.range(low, high);
+    }
+    let mut panel = Panel::new(Axis::linear("Strain", ""), axis).zero_line();
+    for (series, (hold, curve)) in holds.iter().zip(curves).enumerate() {
+        let role = Role::Series(series as u8);
+        panel = panel.layer(Layer::points(hold.rates.strain.clone(), hold.rates.rate.clone(), role));
+        let label = match hold.displacement {
+            Some(d) => format!("{}: {} mm", hold.number, fixed(d * 1e3)),
+            None => format!("{}", hold.number),
+        };
+        if let Some((strain, rate)) = curve {
+            panel = panel.layer(Layer::line(strain, rate, role).label(label));
+        }
+    }
+    (panel, outside)
+}
+
+/// One decimal place, without a sign on zero.
+fn fixed(value: f64) -> String {
+    format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0).replace('-', "−")
+}
+
+/// A range without the few strays that would flatten everything else; `None` where there are no such strays.
+///
+/// It holds the bulk of the rates and the fitted laws as far as these are of that size.
+fn robust_range(mut rates: Vec<f64>, fitted: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    rates.retain(|rate| rate.is_finite());
+    rates.sort_by(f64::total_cmp);
+    let (first, last) = (*rates.first()?, *rates.last()?);
+    let at = |share: f64| rates[((rates.len() - 1) as f64 * share).round() as usize];
+    let (mut low, mut high) = (at(0.01).min(0.0), at(0.99).max(0.0));
+    let reach = 2.0 * (high - low);
+    for rate in fitted.filter(|rate| rate.abs() <= reach) {
+        (low, high) = (low.min(rate), high.max(rate));
+    }
+    let room = 0.05 * (high - low);
+    (last - first > 1.3 * (high - low) && room > 0.0).then_some((low - room, high + room))
 }
 
 /// The law's strain rate over the strains that a hold passes through.
@@ -97,8 +163,8 @@ fn rate_curve(fit: &LatencyFit, hold: &HoldAnalysis) -> (Vec<f64>, Vec<f64>) {
 
 /// Each hold over the logarithm of time with its fits, and what they leave over.
 pub(super) fn holds(analysis: &Analysis, name: &str) -> Option<Figure> {
-    let fitted: Vec<&HoldAnalysis> =
-        analysis.holds.iter().filter(|hold| !hold.fits.is_empty()).take(MOST_PANELS).collect();
+    let all: Vec<&HoldAnalysis> = analysis.holds.iter().filter(|hold| !hold.fits.is_empty()).collect();
+    let fitted = &all[..all.len().min(MOST_PANELS)];
     let columns = match fitted.len() {
         0 => return None,
         1 => 1,
@@ -107,15 +173,27 @@ pub(super) fn holds(analysis: &Analysis, name: &str) -> Option<Figure> {
     };
     let mut figure = Figure::new(
         name,
-        "Relaxation over the logarithm of the time since the start of the fit, with the law at the common exponent and with a free exponent.",
+        format!(
+            "Relaxation over the logarithm of the time since the start of the fit, with the law at the common exponent and with a free exponent.{}",
+            first_of(fitted.len(), all.len())
+        ),
     )
     .arrangement(Arrangement::Grid(columns));
-    for hold in &fitted {
+    for hold in fitted {
         figure = figure.panel(hold_panel(analysis, hold));
     }
     let rows = fitted.len().div_ceil(columns);
     let height = if columns == 1 { 95.0 } else { 62.0 * rows as f64 };
     Some(figure.height_mm(height))
+}
+
+/// What a caption says where only the first holds have a panel.
+fn first_of(shown: usize, all: usize) -> String {
+    if shown < all {
+        format!(" Shown: the first {shown} of {all} fitted holds.")
+    } else {
+        String::new()
+    }
 }
 
 fn hold_panel(analysis: &Analysis, hold: &HoldAnalysis) -> Panel {
@@ -128,7 +206,7 @@ fn hold_panel(analysis: &Analysis, hold: &HoldAnalysis) -> Panel {
     let (times, values) = (hold.times[visible..].to_vec(), hold.values[visible..].to_vec());
     let (first, last) = (times.first().copied().unwrap_or(1.0), times.last().copied().unwrap_or(1.0));
     let title = match hold.displacement {
-        Some(d) => format!("Hold {}, {:.1} mm", hold.number, d * 1e3),
+        Some(d) => format!("Hold {}, {} mm", hold.number, fixed(d * 1e3)),
         None => format!("Hold {}", hold.number),
     };
     let mut panel = Panel::new(Axis::log("Time", "s"), y)
@@ -143,10 +221,10 @@ fn hold_panel(analysis: &Analysis, hold: &HoldAnalysis) -> Panel {
         let is_free = fit.choice == ExponentChoice::Free;
         if is_common || is_free {
             let role = if is_free { Role::Alternative(0) } else { Role::Fitted };
-            let label = if is_free {
-                format!("n = {:.2} (free)", fit.exponent.value)
-            } else {
-                format!("n = {}", fit.exponent.value)
+            let label = match fit.termination {
+                Termination::ExponentAtBound => format!("n = {} (free, at its bound)", fit.exponent.value),
+                _ if is_free => format!("n = {:.2} (free)", fit.exponent.value),
+                _ => format!("n = {}", fit.exponent.value),
             };
             let line = curve.iter().map(|t| fit.predict(*t)).collect();
             panel = panel.layer(Layer::line(curve.clone(), line, role).label(label));
@@ -157,19 +235,29 @@ fn hold_panel(analysis: &Analysis, hold: &HoldAnalysis) -> Panel {
 
 /// Residuals of the preferred fits over the logarithm of time.
 pub(super) fn residuals(analysis: &Analysis, name: &str) -> Option<Figure> {
-    let fitted: Vec<&HoldAnalysis> = analysis.holds.iter().filter(|hold| !hold.fits.is_empty()).take(6).collect();
+    let all: Vec<(&HoldAnalysis, &LatencyFit)> =
+        analysis.holds.iter().filter_map(|hold| Some((hold, hold.preferred()?))).collect();
+    // A fit without noise leaves only the rounding of its own arithmetic, which says nothing.
+    let worth: Vec<_> = all.iter().filter(|(_, fit)| fit.rmse > 1e-9 * fit.amplitude.value.abs()).collect();
+    let fitted = &worth[..worth.len().min(MOST_PANELS)];
     if fitted.is_empty() {
         return None;
     }
+    let exact = match all.len() - worth.len() {
+        0 => String::new(),
+        count => format!(" Left out: {count} holds that are fitted to within rounding."),
+    };
     let columns = fitted.len().min(3);
     let mut figure = Figure::new(
         name,
-        "What the preferred fit of each hold leaves over (measured less fitted). Noise scatters about zero; a wave is shape that the law misses.",
+        format!(
+            "What the preferred fit of each hold leaves over (measured less fitted). Noise scatters about zero; a wave is shape that the law misses.{}{exact}",
+            first_of(fitted.len(), worth.len())
+        ),
     )
     .arrangement(Arrangement::Grid(columns))
     .height_mm(50.0 * fitted.len().div_ceil(columns) as f64);
-    for hold in fitted {
-        let Some(fit) = hold.preferred() else { continue };
+    for (hold, fit) in fitted {
         let visible = hold.times.partition_point(|t| *t <= 0.0);
         let left: Vec<f64> = hold.times[visible..]
             .iter()
@@ -221,4 +309,18 @@ pub(super) fn trend(analysis: &Analysis, name: &str) -> Option<Figure> {
 /// Whether a record has phases of a kind; keeps captions true.
 pub(super) fn has_phase(analysis: &Analysis, phase: Phase) -> bool {
     analysis.segmentation.segments.iter().any(|segment| segment.phase == phase)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::robust_range;
+
+    #[test]
+    fn one_stray_rate_does_not_flatten_the_rest() {
+        let mut rates: Vec<f64> = (0..500).map(|i| -1e-3 * f64::from(i) / 500.0).collect();
+        assert_eq!(robust_range(rates.clone(), std::iter::empty()), None);
+        rates.push(-5.0);
+        let (low, high) = robust_range(rates, [-1.2e-3, -7.0].into_iter()).expect("a range");
+        assert!(low < -1.2e-3 && low > -2e-3 && high > 0.0 && high < 1e-3);
+    }
 }

@@ -1,12 +1,12 @@
 //! The page of an analysed record.
 
-use palpate::analysis::{Analysis, Finding as RecordFinding, Severity as RecordSeverity};
+use palpate::analysis::Analysis;
 use palpate::segment::{After, Phase};
 
-use super::{Bundle, Pictures, StudyError, record_figures, record_tables};
+use super::{Bundle, Pictures, StudyError, findings, method, record_figures, record_tables};
 use crate::document::{AnalysisDocument, Input};
 use crate::number::significant;
-use crate::page::{Block, Finding, Page, Section, Severity};
+use crate::page::{Block, Page, Section};
 
 /// All files of an analysed record: `report.html`, `analysis.json`, `tables/*.csv`, `figures/*.svg`.
 ///
@@ -61,7 +61,7 @@ fn page(analysis: &Analysis, input: &Input, figures: &[crate::figure::Figure]) -
         .section(record)
         .section(laws)
         .section(Section::new("All fits").block(Block::Table(record_tables::fits(analysis))))
-        .section(Section::new("Method and settings").blocks(method(analysis)));
+        .section(Section::new("Method and settings").blocks(method::blocks(analysis)));
     page = page
         .provenance("Record", &input.path)
         .provenance("SHA-256", &input.sha256)
@@ -87,7 +87,9 @@ fn summary(analysis: &Analysis) -> String {
         text.push_str(" The record begins at rest.");
     }
     if let Some(n) = analysis.across.common_exponent {
-        text.push_str(&format!(" The lowest listed exponent that fits all holds best is n = {n}."));
+        let fitted = analysis.holds.iter().filter(|hold| !hold.fits.is_empty()).count();
+        let which = if fitted == 1 { "this hold" } else { "all holds" };
+        text.push_str(&format!(" The lowest listed exponent that fits {which} best is n = {n}."));
     }
     if let Some(overlay) = &analysis.overlay {
         text.push_str(&format!(
@@ -131,101 +133,11 @@ fn trend_sentence(analysis: &Analysis) -> Option<String> {
 
 /// Findings of the record and of its holds; the same finding of several holds is told once.
 fn findings(analysis: &Analysis) -> Vec<Block> {
-    let mut list: Vec<Finding> = analysis.findings.iter().map(|finding| told(finding, None)).collect();
-    let mut codes: Vec<&str> = Vec::new();
-    for hold in &analysis.holds {
-        for finding in &hold.findings {
-            if codes.contains(&finding.code()) {
-                continue;
-            }
-            codes.push(finding.code());
-            let others: Vec<String> = analysis
-                .holds
-                .iter()
-                .filter(|other| {
-                    other.number != hold.number && other.findings.iter().any(|f| f.code() == finding.code())
-                })
-                .map(|other| other.number.to_string())
-                .collect();
-            let place = if others.is_empty() {
-                format!("Hold {}", hold.number)
-            } else {
-                format!("Hold {} (likewise holds {})", hold.number, others.join(", "))
-            };
-            list.push(told(finding, Some(&place)));
-        }
-    }
-    list.sort_by_key(|finding| match finding.severity {
-        Severity::Warning => 0,
-        Severity::Caution => 1,
-        Severity::Info => 2,
-    });
+    let list: Vec<_> =
+        findings::gathered(analysis, findings::MOST_LINES).iter().map(findings::Gathered::told).collect();
     if list.is_empty() {
         vec![Block::paragraph("Nothing to report: the holds are long and clean enough for the numbers below.")]
     } else {
         vec![Block::Findings(list)]
     }
-}
-
-fn told(finding: &RecordFinding, place: Option<&str>) -> Finding {
-    let sentence = |text: &str| {
-        let mut characters = text.chars();
-        let first = characters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
-        format!("{first}{}.", characters.as_str())
-    };
-    Finding {
-        severity: match finding.severity() {
-            RecordSeverity::Info => Severity::Info,
-            RecordSeverity::Caution => Severity::Caution,
-            RecordSeverity::Warning => Severity::Warning,
-        },
-        code: finding.code().to_owned(),
-        seen: match place {
-            Some(place) => format!("{place}: {}.", finding.seen()),
-            None => sentence(&finding.seen()),
-        },
-        meaning: sentence(finding.meaning()),
-        remedy: sentence(finding.remedy()),
-    }
-}
-
-fn method(analysis: &Analysis) -> Vec<Block> {
-    let (segment, options) = (&analysis.segmentation.settings, &analysis.options);
-    let unit = if segment.from_displacement { ("mm", "mm/s", 1e3) } else { ("N", "N/s", 1.0) };
-    let number = |value: f64| significant(value, 3);
-    let mut values = vec![
-        (
-            "Phases from".to_owned(),
-            if segment.from_displacement { "displacement" } else { "force" }.to_owned(),
-        ),
-        ("Noise of that column".to_owned(), format!("{} {}", number(segment.noise * unit.2), unit.0)),
-        ("Tolerance of a hold".to_owned(), format!("{} {}", number(segment.tolerance * unit.2), unit.0)),
-        ("Speed of the ramps".to_owned(), format!("{} {}", number(segment.ramp_speed * unit.2), unit.1)),
-        ("Standing still below".to_owned(), format!("{} {}", number(segment.still_speed * unit.2), unit.1)),
-        (
-            "Shortest hold".to_owned(),
-            format!("{} s, {} samples", number(segment.minimum_hold), segment.minimum_samples),
-        ),
-        ("Force zero".to_owned(), format!("{} N", number(analysis.contact.tare.force))),
-        ("Displacement zero".to_owned(), format!("{} mm", number(1e3 * analysis.contact.tare.displacement))),
-        (
-            "Strain rate".to_owned(),
-            format!(
-                "local parabola over ±{} samples or ±{} % of the elapsed time, whichever is wider",
-                options.rate_window.samples,
-                number(100.0 * options.rate_window.share)
-            ),
-        ),
-        ("Intervals".to_owned(), format!("{} %", number(100.0 * options.fit.confidence))),
-    ];
-    if let Some(specimen) = analysis.specimen {
-        values.push(("Modulus".to_owned(), format!("{} kPa", significant(specimen.modulus() / 1e3, 4))));
-        values.push(("Depth cut into layers".to_owned(), format!("{} mm", number(1e3 * specimen.depth()))));
-    }
-    vec![
-        Block::paragraph(
-            "Phases are cut from the record without labels. Strain is force over contact area and modulus, ε = f/(E A), with the area of the contact's own share of the travel. The latency law ε̇ = −v sgn(ε − εₑ)|ε − εₑ|ⁿ is fitted to the strain of each hold over time by its closed form (preferred), and to strain rate against strain as in the paper. Least squares needs no starting values. Standard errors assume white noise; intervals are widened for correlated residuals. Where no geometry is known the force is fitted as it is.",
-        ),
-        Block::KeyValues(values),
-    ]
 }

@@ -1,10 +1,12 @@
 //! Tables of an analysed record.
 
 use palpate::analysis::{Analysis, HoldAnalysis, Signal};
-use palpate::identify::{Domain, Estimate, ExponentChoice, LatencyFit};
+use palpate::identify::{Domain, Estimate, ExponentChoice, LatencyFit, Termination};
 use palpate::segment::{After, RelaxationType};
 
+use super::findings;
 use crate::document::{after_word, termination};
+use crate::number::significant;
 use crate::table::{Cell, Table, TableColumn};
 
 fn column(heading: &str, key: &str, unit: &str) -> TableColumn {
@@ -16,10 +18,45 @@ fn order(n: f64) -> Cell {
     if n.fract() == 0.0 && n.abs() < 1e6 { Cell::Integer(n as i64) } else { Cell::number(n, 4) }
 }
 
+/// Why a cell has no number though there is a fit.
+const AT_EDGE: &str = "ended at the edge of its range";
+const UNDETERMINED: &str = "undetermined: its standard error is far larger than itself";
+
 fn estimate(estimate: Estimate) -> Cell {
+    estimate_within(estimate, 0.0)
+}
+
+/// An estimate, unless its error is far beyond both itself and `size`, the size of what it could be.
+fn estimate_within(estimate: Estimate, size: f64) -> Cell {
     match estimate.standard_error {
+        Some(error) if error > (2.0 * estimate.value.abs()).max(size) => Cell::missing(UNDETERMINED),
         Some(error) if error > 1e-12 * estimate.value.abs() => Cell::uncertain(estimate.value, error),
         _ => Cell::number(estimate.value, 5),
+    }
+}
+
+/// The equilibrium: its error may exceed it where it is near zero, but not what was measured.
+fn equilibrium(hold: &HoldAnalysis, fit: &LatencyFit) -> Cell {
+    let largest = hold.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    match fit.termination {
+        Termination::EquilibriumAtBound => Cell::missing(AT_EDGE),
+        _ => estimate_within(fit.equilibrium, largest),
+    }
+}
+
+/// A rate, absolute or relative.
+fn rate(fit: &LatencyFit, of: Estimate) -> Cell {
+    match fit.termination {
+        Termination::RateAtBound => Cell::missing(AT_EDGE),
+        _ => estimate(of),
+    }
+}
+
+/// The exponent of a free fit.
+fn free_exponent(fit: &LatencyFit) -> Cell {
+    match fit.termination {
+        Termination::ExponentAtBound => Cell::missing(AT_EDGE),
+        _ => estimate(fit.exponent),
     }
 }
 
@@ -30,8 +67,9 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
         .column(column("After", "after", ""))
         .column(column("From", "start_s", "s"))
         .column(column("To", "end_s", "s"))
+        .column(column("Fit from", "fit_start_s", "s"))
         .column(column("Displacement", "displacement_mm", "mm"))
-        .column(column("Force at start", "force_start_n", "N"))
+        .column(column("Force at fit start", "force_start_n", "N"))
         .column(column("Force at end", "force_end_n", "N"))
         .column(column("Relaxation", "relaxation", ""))
         .column(column("Significance", "p_value", ""));
@@ -41,6 +79,7 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
             Cell::text(hold.after.map_or("", after_word)),
             Cell::number(hold.start, 6),
             Cell::number(hold.end, 6),
+            Cell::number(hold.fit_start, 6),
             Cell::number_or(hold.displacement.map(|d| 1e3 * d), 4, "not recorded"),
             Cell::number(hold.force_start, 4),
             Cell::number(hold.force_end, 4),
@@ -57,7 +96,7 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
         ]);
     }
     table
-        .note("Type I: the force falls; Type II: it rises.")
+        .note("Type I: the force falls; Type II: it rises. The laws are fitted from the time “Fit from” on, which may lie after the start of the hold.")
         .note("Significance: probability that noise alone makes a change of the force of this size.")
 }
 
@@ -99,12 +138,12 @@ fn fit_row(hold: &HoldAnalysis, fit: &LatencyFit, index: usize) -> Vec<Cell> {
         Cell::text(if in_time { "time" } else { "rate" }),
         match fit.choice {
             ExponentChoice::Fixed(n) => order(n),
-            ExponentChoice::Free => estimate(fit.exponent),
+            ExponentChoice::Free => free_exponent(fit),
         },
-        estimate(fit.equilibrium),
-        estimate(fit.relative_rate),
+        equilibrium(hold, fit),
+        rate(fit, fit.relative_rate),
         if hold.signal == Signal::Strain {
-            estimate(fit.rate_coefficient)
+            rate(fit, fit.rate_coefficient)
         } else {
             Cell::missing("no strain")
         },
@@ -142,16 +181,16 @@ pub(super) fn paper_table(analysis: &Analysis, after: After) -> Option<Table> {
     for hold in analysis.holds.iter().filter(|hold| hold.after == Some(after) && hold.signal == Signal::Strain) {
         let Some(fit) = hold.fit_with(n) else { continue };
         rows += 1;
-        let rate = hold.rate_fit_with(n);
+        let by_rate = hold.rate_fit_with(n);
         let free = hold.fits.iter().find(|fit| fit.choice == ExponentChoice::Free);
         table = table.row(vec![
             Cell::Integer(hold.number as i64),
             Cell::number_or(hold.displacement.map(|d| 1e3 * d), 4, "not recorded"),
-            estimate(fit.equilibrium),
-            estimate(fit.rate_coefficient),
-            rate.map_or(Cell::missing("no fit"), |fit| estimate(fit.equilibrium)),
-            rate.map_or(Cell::missing("no fit"), |fit| estimate(fit.rate_coefficient)),
-            free.map_or(Cell::missing("not asked"), |fit| estimate(fit.exponent)),
+            equilibrium(hold, fit),
+            rate(fit, fit.rate_coefficient),
+            by_rate.map_or(Cell::missing("no fit"), |fit| equilibrium(hold, fit)),
+            by_rate.map_or(Cell::missing("no fit"), |fit| rate(fit, fit.rate_coefficient)),
+            free.map_or(Cell::missing("not asked"), free_exponent),
         ]);
     }
     (rows > 0).then_some(table)
@@ -279,12 +318,17 @@ pub fn analysis_text(analysis: &Analysis) -> String {
     if let Some(overlay) = &analysis.overlay {
         let (law, layers) = (overlay.model.law, overlay.model.layers.count());
         text.push_str(&format!(
-            "Simulated with n = {}, v = {:.3e} 1/s, {layers:.2} layers{}: within {:.1} % of the largest force (rms).\n\n",
+            "Simulated with n = {}, v = {} 1/s, {} layers{}: within {} % of the largest force (rms).\n\n",
             law.exponent(),
-            law.rate_coefficient(),
+            significant(law.rate_coefficient(), 3),
+            significant(layers, 3),
             if overlay.layers_fitted { " (fitted)" } else { "" },
-            100.0 * overlay.relative
+            significant(100.0 * overlay.relative, 2)
         ));
+    }
+    let findings = findings::plain(analysis);
+    if !findings.is_empty() {
+        text.push_str(&format!("Findings\n{findings}\n"));
     }
     text
 }

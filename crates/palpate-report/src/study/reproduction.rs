@@ -255,8 +255,8 @@ pub fn reproduction_bundle(study: &Reproduction, pictures: Pictures) -> Result<B
         bundle.table(table);
     }
     for (name, test) in [("a", &study.test_a), ("b", &study.test_b)] {
-        bundle.text(format!("series/test_{name}_bonded.csv"), super::trajectory_table(&test.bonded).to_csv());
-        bundle.text(format!("series/test_{name}_unilateral.csv"), super::trajectory_table(&test.unilateral).to_csv());
+        bundle.series(&format!("test_{name}_bonded"), &test.bonded)?;
+        bundle.series(&format!("test_{name}_unilateral"), &test.unilateral)?;
     }
     bundle.text("report.html", reproduction_page::page(study, &figures, &tables)?.to_html());
     bundle.json("summary.json", &summary(study))?;

@@ -9,6 +9,9 @@ use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
 use crate::page::{Block, Check, Outcome, Page, Section};
 use crate::table::{Cell, Table, TableColumn};
 
+/// Title of the paper.
+const PAPER: &str = "Study of the Relationship Between the Strain and Strain Rate for Viscoelastic Contact Interface in Robotic Grasping";
+
 /// All figures, named after the paper's.
 pub(super) fn figures(study: &Reproduction) -> Vec<Figure> {
     let law = study.model.law;
@@ -19,7 +22,8 @@ pub(super) fn figures(study: &Reproduction) -> Vec<Figure> {
         protocol("figure_4b", &study.test_b, "Test (b): 25 mm, then back by 20, 15, 10 and 5 mm, each held for 10 s"),
     ];
     let rates = [(&study.test_a, "figure_6a"), (&study.test_b, "figure_6b")];
-    figures.extend(rates.into_iter().filter_map(|(test, name)| record_figures::strain_rates(&test.analysis, name)));
+    let rates = rates.into_iter().filter_map(|(test, name)| record_figures::strain_rates(&test.analysis, name));
+    figures.extend(rates.map(Figure::without_letters));
     figures.push(wave_figure::wave(
         "figure_7_strain_wave",
         &study.test_a.wave,
@@ -29,14 +33,15 @@ pub(super) fn figures(study: &Reproduction) -> Vec<Figure> {
     figures
 }
 
-/// Force over displacement: the layout of the paper's figure 4.
+/// Force above, displacement below: the layout of the paper's figure 4.
 fn protocol(name: &str, test: &ReproducedTest, what: &str) -> Figure {
     let line = |values: Vec<f64>| Layer::line(test.bonded.time.clone(), values, Role::Series(0));
     let millimetres = test.bonded.displacement.iter().map(|d| 1e3 * d).collect();
-    Figure::new(name, format!("{what}, at 500 mm/min: simulated force of the bonded contact over displacement, in the layout of the paper's figure 4."))
+    Figure::new(name, format!("{what}, at 500 mm/min: simulated force of the bonded contact above, displacement of the jaw below, in the layout of the paper's figure 4."))
         .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Force", "N")).share(1.7).zero_line().layer(line(test.bonded.force.clone())))
         .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Displacement", "mm")).layer(line(millimetres)))
         .arrangement(Arrangement::Stacked)
+        .without_letters()
 }
 
 /// The whole of test (a) and its last unloading, bonded and unilateral: the paper's figure 8.
@@ -61,6 +66,7 @@ fn final_unloading(study: &Reproduction) -> Figure {
     .panel(panel(0.0, 66.0, "Test (a)"))
     .panel(panel(52.5, 57.5, "Last unloading"))
     .arrangement(Arrangement::SideBySide)
+    .without_letters()
 }
 
 /// Tables I and II, with what the authors measured beside them where it can be read.
@@ -125,8 +131,8 @@ pub(super) fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -
     });
     let model = &study.model;
     let page = Page::new(
-        "Strain against strain rate for viscoelastic contact in robotic grasping",
-        "The study of Tsai, Kao and others, simulated and re-identified",
+        PAPER,
+        "Reproduced: the study of Tsai, Kao and others, simulated and re-identified",
     )
     .section(
         Section::new("What is reproduced")
@@ -158,6 +164,6 @@ pub(super) fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -
     )
     .section(Section::new("The strain wave").blocks(picture("figure_7")?));
     Ok(page
-        .provenance("Source", "Study of the Relationship Between the Strain and Strain Rate for Viscoelastic Contact Interface in Robotic Grasping")
+        .provenance("Source", PAPER)
         .provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION"))))
 }

@@ -1,39 +1,60 @@
-//! A simulated series as table and figure.
+//! A simulated series as CSV and figure.
+
+use std::io::{self, Write};
 
 use palpate::simulate::{ContactEventKind, Trajectory};
 
 use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
-use crate::table::{Cell, Table, TableColumn};
+use crate::number::exact;
 
-/// The series with one row a sample: time, displacements, force, strains, rate, all in SI.
-#[must_use]
-pub fn trajectory_table(trajectory: &Trajectory) -> Table {
-    let columns: [(&str, &str, &str, &[f64]); 8] = [
-        ("Time", "time_s", "s", &trajectory.time),
-        ("Displacement", "displacement_m", "m", &trajectory.displacement),
-        ("Contact displacement", "contact_displacement_m", "m", &trajectory.contact_displacement),
-        ("Force", "force_n", "N", &trajectory.force),
-        ("Strain", "strain", "", &trajectory.strain),
-        ("Equilibrium strain", "equilibrium_strain", "", &trajectory.equilibrium_strain),
-        ("Excess strain", "excess_strain", "", &trajectory.excess_strain),
-        ("Strain rate", "strain_rate_per_s", "s⁻¹", &trajectory.strain_rate),
+/// Writes the series as CSV, one row a sample: time, displacements, force, strains, rate, all in SI.
+///
+/// Row by row, so that ten million samples need no more memory than the series itself.
+///
+/// # Errors
+/// Whatever the writer says.
+pub fn write_trajectory(out: &mut dyn Write, trajectory: &Trajectory) -> io::Result<()> {
+    let columns: [(&str, &[f64]); 8] = [
+        ("time_s", &trajectory.time),
+        ("displacement_m", &trajectory.displacement),
+        ("contact_displacement_m", &trajectory.contact_displacement),
+        ("force_n", &trajectory.force),
+        ("strain", &trajectory.strain),
+        ("equilibrium_strain", &trajectory.equilibrium_strain),
+        ("excess_strain", &trajectory.excess_strain),
+        ("strain_rate_per_s", &trajectory.strain_rate),
     ];
-    let mut table = Table::new("trajectory", "Simulated contact.");
-    for (heading, key, unit, _) in columns {
-        table = table.column(TableColumn::new(heading, key, unit));
+    let names = columns.map(|(name, _)| name);
+    write!(out, "{}\r\n", names.join(","))?;
+    for row in 0..trajectory.len() {
+        for (i, (_, values)) in columns.iter().enumerate() {
+            // + 0.0 turns −0 into 0.
+            write!(out, "{}{}", if i > 0 { "," } else { "" }, exact(values[row] + 0.0))?;
+        }
+        out.write_all(b"\r\n")?;
     }
-    table.rows = (0..trajectory.len())
-        .map(|row| columns.iter().map(|(.., values)| Cell::number(values[row], 6)).collect())
-        .collect();
-    table
+    Ok(())
 }
 
-/// Force over displacement over time, with lost and regained contacts marked.
+/// The axis of the force, with room for the names of events above the curve.
+fn force_axis(trajectory: &Trajectory) -> Axis {
+    let axis = Axis::linear("Force", "N");
+    if trajectory.events.is_empty() {
+        return axis;
+    }
+    let (low, high) = trajectory
+        .force
+        .iter()
+        .fold((0.0, 0.0), |(low, high): (f64, f64), force| (low.min(*force), high.max(*force)));
+    axis.range(low - 0.05 * (high - low), high + 0.18 * (high - low))
+}
+
+/// Force, strains and displacement over time, with lost and regained contacts marked.
 #[must_use]
 pub fn trajectory_figure(trajectory: &Trajectory, name: &str, caption: &str) -> Figure {
     let time = || trajectory.time.clone();
     let millimetres = trajectory.displacement.iter().map(|d| d * 1e3).collect();
-    let mut force = Panel::new(Axis::linear("Time", "s"), Axis::linear("Force", "N")).share(1.6);
+    let mut force = Panel::new(Axis::linear("Time", "s"), force_axis(trajectory)).share(1.6);
     force = force.layer(Layer::line(time(), trajectory.force.clone(), Role::Series(0)));
     for event in trajectory.events.iter().take(8) {
         let label = match event.kind {

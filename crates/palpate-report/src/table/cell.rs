@@ -75,7 +75,8 @@ impl Cell {
     #[must_use]
     pub fn stored(&self) -> String {
         match self {
-            Self::Number { value, .. } | Self::Uncertain { value, .. } => exact(*value),
+            // Adding zero turns −0 into 0.
+            Self::Number { value, .. } | Self::Uncertain { value, .. } => exact(*value + 0.0),
             Self::Integer(value) => value.to_string(),
             Self::Text(text) => text.clone(),
             Self::Missing(_) => String::new(),

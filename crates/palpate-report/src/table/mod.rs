@@ -120,7 +120,9 @@ impl Table {
     /// Whether a column holds numbers and is set flush right.
     pub(crate) fn is_numeric(&self, column: usize) -> bool {
         let mut cells = (0..self.rows.len()).map(|row| self.cell(row, column));
-        cells.any(Cell::is_numeric) && !(0..self.rows.len()).any(|row| self.cell(row, column).is_written_text())
+        // A column whose every number is missing is still one of numbers.
+        cells.any(|cell| cell.is_numeric() || matches!(cell, Cell::Missing(_)))
+            && !(0..self.rows.len()).any(|row| self.cell(row, column).is_written_text())
     }
 
     /// Why values are missing, in order of appearance; a reason is listed once.

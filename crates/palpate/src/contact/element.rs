@@ -17,11 +17,12 @@ use super::Work;
 use crate::latency::LatencyLaw;
 use crate::ode::{Dop853, Step};
 
-/// Past y = 40 the distance from the steady state, e⁻⁴⁰, is below rounding.
-const STEADY_FROM: f64 = 40.0;
+/// Distance from the steady state, times n, below which the law expanded to second order is exact to rounding: what the
+/// expansion leaves out is of third order.
+const NEAR: f64 = 3e-4;
 
 /// Tolerance of a step, relative to what the excess passes through.
-const TOLERANCE: f64 = 2e-13;
+const TOLERANCE: f64 = 1e-12;
 
 /// Excess strain x(t) of the contact layer over one straight piece, from t = 0 at its start.
 #[derive(Debug)]
@@ -39,8 +40,27 @@ pub(crate) struct Ramp {
     steady: f64,
     /// Sign of 1 − z; zero if the ramp begins at its steady state.
     side: f64,
-    /// y over time, until the steady state is reached or the piece ends.
+    /// y over time, until the steady state is near or the piece ends.
     steps: Vec<Step<[f64; 1]>>,
+    /// What follows.
+    approach: Approach,
+}
+
+/// The last stretch: x = x* (1 + δ) with δ' = −κ δ (1 + c δ), the law to second order around its steady state.
+#[derive(Debug, Clone, Copy)]
+struct Approach {
+    from: f64,
+    deviation: f64,
+    rate: f64,
+    curvature: f64,
+}
+
+impl Approach {
+    /// δ(t) = δ₀ e^(−κt)/(1 + c δ₀ (1 − e^(−κt))).
+    fn deviation_at(&self, time: f64) -> f64 {
+        let decay = (-self.rate * (time - self.from)).exp();
+        self.deviation * decay / (1.0 + self.curvature * self.deviation * (1.0 - decay))
+    }
 }
 
 impl Element {
@@ -62,8 +82,9 @@ impl Element {
         let reach = z.abs().max(rate * duration).min(1.0);
         let first = duration.min(0.5 / slope(start));
         let mut solver = Dop853::new([start], TOLERANCE, if first > 0.0 { first } else { duration });
-        let mut steps = Vec::with_capacity(16);
-        while side != 0.0 && solver.time() < duration && solver.state()[0] < STEADY_FROM {
+        let far = (law.exponent().max(1.0) / NEAR).ln();
+        let mut steps = Vec::with_capacity(32);
+        while side != 0.0 && solver.time() < duration && solver.state()[0] < far {
             // An error of y matters as far as it moves x = x* (1 ∓ e^(−y)).
             let [y] = *solver.state();
             solver.set_tolerance(TOLERANCE * reach * y.exp().clamp(1.0, 1e9));
@@ -71,7 +92,18 @@ impl Element {
         }
         work.steps += solver.steps;
         work.evaluations += solver.evaluations;
-        Self::Ramp(Ramp { steady, side, steps })
+        let approach = Approach {
+            from: solver.time(),
+            deviation: -side * (-solver.state()[0]).exp(),
+            rate: law.exponent() * rate,
+            curvature: 0.5 * (law.exponent() - 1.0),
+        };
+        Self::Ramp(Ramp {
+            steady,
+            side,
+            steps,
+            approach,
+        })
     }
 
     /// Excess strain a time `elapsed` (s) after the start of the piece.
@@ -108,7 +140,11 @@ impl Element {
 impl Ramp {
     /// x = x* (1 ∓ e^(−y)), without cancellation where x is far below x*.
     fn excess(&self, y: f64) -> f64 {
-        if self.side > 0.0 { -self.steady * (-y).exp_m1() } else { self.steady * (1.0 - self.side * (-y).exp()) }
+        if self.side > 0.0 {
+            -self.steady * (-y).exp_m1()
+        } else {
+            self.steady * (1.0 - self.side * (-y).exp())
+        }
     }
 
     fn excess_at(&self, elapsed: f64) -> f64 {
@@ -118,17 +154,7 @@ impl Ramp {
                 let [y] = step.at(elapsed);
                 self.excess(y)
             }
-            None => self.at_end(),
-        }
-    }
-
-    /// Where the steps end: the steady state, or the end of the piece (a rounding error past the last step).
-    fn at_end(&self) -> f64 {
-        match self.steps.last() {
-            Some(step) if step.at(step.end())[0] < STEADY_FROM => {
-                self.excess(step.at(step.end())[0])
-            }
-            _ => self.steady,
+            None => self.steady * (1.0 + self.approach.deviation_at(elapsed)),
         }
     }
 }

@@ -7,7 +7,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::linear_algebra::{Cholesky, dot};
+use super::linear_algebra::Cholesky;
+use crate::statistics::dot;
 
 /// The columns of a separable model and their derivatives.
 pub(super) trait Shapes {
@@ -123,9 +124,9 @@ impl Point {
                 factor.solve(&mut self.linear);
                 self.form_residuals(values);
                 self.square = dot(&self.residuals, &self.residuals);
-                // Where next to nothing is left over, a round of refinement recovers what squaring the condition
-                // number lost; noise would drown it.
-                if self.square < 1e-12 * dot(values, values) {
+                // A round of refinement recovers what squaring the condition number lost. With many samples noise
+                // would drown it, unless next to nothing is left over.
+                if values.len() <= FEW || self.square < 1e-12 * dot(values, values) {
                     let mut correction: Vec<f64> = self.columns.iter().map(|c| dot(c, &self.residuals)).collect();
                     factor.solve(&mut correction);
                     for (value, change) in self.linear.iter_mut().zip(correction) {
@@ -170,7 +171,8 @@ impl Point {
         let mut normal = vec![0.0; size * size];
         for i in 0..size {
             for j in 0..=i {
-                let product = if i < l { self.gram[i * l + j] } else { dot(column(i), column(j)) * factor(i) * factor(j) };
+                let product =
+                    if i < l { self.gram[i * l + j] } else { dot(column(i), column(j)) * factor(i) * factor(j) };
                 normal[i * size + j] = product;
                 normal[j * size + i] = product;
             }
@@ -186,12 +188,17 @@ impl Point {
     }
 }
 
+/// Up to so many samples the last digit costs nothing.
+const FEW: usize = 256;
+
 /// Relative fall of the residual square below which a step counts as none.
 const SMALLEST_GAIN: f64 = 1e-14;
 
 /// Where a refinement ended.
 pub(super) struct Refined {
     point: Point,
+    /// Room for another point, kept for polishing.
+    spare: Point,
     termination: Termination,
 }
 
@@ -268,6 +275,7 @@ pub(super) fn refine(
     }
     Refined {
         point: here,
+        spare: trial,
         termination,
     }
 }
@@ -283,7 +291,7 @@ pub(super) fn polished(shapes: &impl Shapes, values: &[f64], refined: Refined, w
     if refined.termination != Termination::Converged {
         return finish(here, shapes, refined.termination);
     }
-    let mut trial = Point::new(shapes, here.theta.len(), values.len());
+    let mut trial = refined.spare;
     // The gain that a full step promises, gᵀ H⁻¹ g, measures the gradient.
     let outlook = |point: &Point| {
         let (hessian, gradient) = projected(point, shapes)?;
@@ -294,15 +302,17 @@ pub(super) fn polished(shapes: &impl Shapes, values: &[f64], refined: Refined, w
     let Some((mut next, mut gain)) = outlook(&here) else {
         return finish(here, shapes, Termination::Converged);
     };
+    // Few samples make wide errors and cost nothing to polish.
+    let enough = 1e-32 * (values.len() as f64).powi(3);
     for _ in 0..POLISHING {
-        // Far from flat it is no polishing; at 1e-26 of the residual the step is below rounding.
-        if !(gain > 1e-26 * here.square && gain < 1e-9 * here.square) {
+        // Far from flat it is no polishing; at this share of the residual the step is some 1e-10 of the errors.
+        if !(gain > enough * here.square && gain < 1e-9 * here.square) {
             break;
         }
         trial.evaluate(shapes, &next, values);
         work.evaluations += 1;
         match outlook(&trial) {
-            Some((after, less)) if less < 0.5 * gain && trial.square <= here.square * (1.0 + 1e-13) => {
+            Some((after, less)) if less < 0.5 * gain && trial.square <= here.square * (1.0 + 1e-10) => {
                 std::mem::swap(&mut here, &mut trial);
                 (next, gain) = (after, less);
             }

@@ -110,13 +110,15 @@ impl Scaled {
             });
         }
         let first = (times[1] - start) / duration;
-        if !(range.is_finite() && duration.is_finite() && first > f64::MIN_POSITIVE * 1e6) {
+        let invertible = |span: f64| span.is_finite() && (1.0 / span).is_finite();
+        if !(invertible(range) && invertible(duration) && first > f64::MIN_POSITIVE * 1e6) {
             return Err(FitError::OutOfRange);
         }
         let center = low + 0.5 * range;
+        let (per_duration, per_range) = (1.0 / duration, 1.0 / range);
         Ok(Self {
-            times: times.iter().map(|t| (t - start) / duration).collect(),
-            values: values.iter().map(|y| (y - center) / range).collect(),
+            times: times.iter().map(|t| (t - start) * per_duration).collect(),
+            values: values.iter().map(|y| (y - center) * per_range).collect(),
             duration,
             center,
             range,

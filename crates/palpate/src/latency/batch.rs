@@ -30,9 +30,9 @@ pub(crate) fn decay_in_place(times: &mut [f64], rate: f64, exponent: f64) {
     } else if exponent == 2.0 {
         map(times, |t| 1.0 / (1.0 + rate * t));
     } else if exponent == 3.0 {
-        map(times, |t| 1.0 / (1.0 + 2.0 * rate * t).sqrt());
+        map(times, |t| (1.0 / (1.0 + 2.0 * (rate * t))).sqrt());
     } else if exponent == 5.0 {
-        map(times, |t| 1.0 / (1.0 + 4.0 * rate * t).sqrt().sqrt());
+        map(times, |t| (1.0 / (1.0 + 4.0 * (rate * t))).sqrt().sqrt());
     } else if p > 0.0 {
         let inverse = 1.0 / p;
         map(times, |t| exp(-ln_1p(p * rate * t) * inverse));

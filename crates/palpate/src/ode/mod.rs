@@ -85,6 +85,8 @@ pub(crate) struct Dop853<S> {
     time: f64,
     state: S,
     slope: Option<S>,
+    /// Room for the stages, kept from step to step.
+    room: Vec<S>,
     width: f64,
     narrowest: f64,
     tolerance: f64,
@@ -101,6 +103,7 @@ impl<S: State> Dop853<S> {
             time: 0.0,
             state,
             slope: None,
+            room: Vec::with_capacity(DENSE_STAGES),
             width,
             // At a point where the right-hand side has no derivative (x = 0, n < 1) the step may shrink to
             // this and no further; the error of so narrow a step is far below the tolerance.
@@ -141,9 +144,10 @@ impl<S: State> Dop853<S> {
             let width = if last { remaining } else { self.width };
             let stages = self.stages(width, first.clone(), &mut rhs);
             let error = self.error(width, &stages);
-            let growth = if error == 0.0 { 10.0 } else { 0.9 * error.powf(-0.125) };
+            let growth = if error == 0.0 { 10.0 } else { 0.8 * error.powf(-0.125) };
             if (error.is_nan() || error > 1.0) && width > self.narrowest {
                 self.width = (width * growth.max(0.2)).max(self.narrowest);
+                self.room = stages;
                 rejected = true;
                 continue;
             }
@@ -160,7 +164,8 @@ impl<S: State> Dop853<S> {
 
     /// The thirteen stages of a step; the last is the slope at its end, whose state is `advanced`.
     fn stages(&mut self, width: f64, first: S, rhs: &mut impl FnMut(f64, &S) -> S) -> Vec<S> {
-        let mut stages = Vec::with_capacity(DENSE_STAGES);
+        let mut stages = std::mem::take(&mut self.room);
+        stages.clear();
         stages.push(first);
         for i in 1..STAGES {
             let point = self.advanced(width, A[i], &stages);
@@ -204,6 +209,7 @@ impl<S: State> Dop853<S> {
         ];
         let higher = D.map(|row| S::build(len, |i| width * weighted(row, &stages, i)));
         let slope = stages.swap_remove(STAGES - 1);
+        self.room = stages;
         let [b, c] = spline;
         let [d, e, f, g] = higher;
         let from = std::mem::replace(&mut self.state, next);

@@ -10,15 +10,15 @@ pub(super) struct Level {
     pub(super) value: f64,
 }
 
-/// Grows a standstill to all neighbouring samples that keep to its level, then cuts back what belongs to the ramps.
+/// Share of a sample interval by which an edge may be off: the rounding of a time column, far below a sample.
+const SLACK: f64 = 0.05;
+
+/// Grows a standstill to all neighbouring samples that keep to its level.
 ///
 /// The level is the median of the standstill, measured in its first and last quarter apart, since a "constant" height
-/// may drift. A ramp that runs straight into the hold passes the tolerance before it reaches the level; the sample
-/// at which the straight line through the ramp meets the level is the edge.
-pub(super) fn edges(time: &[f64], values: &[f64], run: (usize, usize), tolerance: f64) -> Level {
-    let quarter = ((run.1 - run.0) / 4).max(1);
-    let level = |from: usize, until: usize| median(&mut values[from..until].to_vec());
-    let (first, last) = (level(run.0, run.0 + quarter), level(run.1 - quarter, run.1));
+/// may drift.
+pub(super) fn grown(values: &[f64], run: (usize, usize), tolerance: f64) -> Level {
+    let (first, last) = ends(values, run);
     let mut start = run.0;
     while start < run.1 - 1 && (values[start] - first).abs() > tolerance {
         start += 1;
@@ -33,55 +33,107 @@ pub(super) fn edges(time: &[f64], values: &[f64], run: (usize, usize), tolerance
     while end < values.len() && (values[end] - last).abs() <= tolerance {
         end += 1;
     }
-    if start > 0
-        && let Some(meeting) = meeting(time, values, Side::Before(start), first, tolerance)
-    {
-        let edge = time.partition_point(|t| *t < meeting - 1e-6 * (time[start] - time[start - 1]));
-        start = edge.clamp(start, run.1 - 1);
-    }
-    if end < values.len()
-        && let Some(meeting) = meeting(time, values, Side::After(end), last, tolerance)
-    {
-        let edge = time.partition_point(|t| *t <= meeting + 1e-6 * (time[end] - time[end - 1]));
-        end = edge.clamp(start + 1, end);
-    }
-    Level {
-        start,
-        end,
-        value: level(start, end),
-    }
+    let value = median(&mut values[start..end].to_vec());
+    Level { start, end, value }
 }
 
-/// On which side of a hold a ramp lies, with the index of its edge.
-#[derive(Clone, Copy)]
-enum Side {
-    Before(usize),
-    After(usize),
+/// Median of the first and of the last quarter of a standstill.
+fn ends(values: &[f64], run: (usize, usize)) -> (f64, f64) {
+    let quarter = ((run.1 - run.0) / 4).max(1);
+    let level = |from: usize, until: usize| median(&mut values[from..until].to_vec());
+    (level(run.0, run.0 + quarter), level(run.1 - quarter, run.1))
 }
 
-/// The time at which the line through the end of a ramp meets `level`; `None` if there is no straight ramp to speak of.
+/// Where a hold ends and the next begins, of which the ramp between them is part.
+pub(super) struct Neighbours {
+    /// Sample after the last of the hold before.
+    pub(super) before: usize,
+    /// First sample of the hold after.
+    pub(super) after: usize,
+}
+
+/// Cuts off a grown level what belongs to the ramps.
 ///
-/// The line goes through the samples outside the tolerance, up to eight of them or five tolerances away. A servo that
-/// overshoots comes back in a curve, not along a line: then the samples inside the tolerance decide alone.
-fn meeting(time: &[f64], values: &[f64], side: Side, level: f64, tolerance: f64) -> Option<f64> {
+/// A ramp that runs straight into the hold passes the tolerance before it reaches the level; the sample at which the
+/// straight line through the ramp meets the level is the edge.
+pub(super) fn trimmed(
+    time: &[f64],
+    values: &[f64],
+    level: Level,
+    run: (usize, usize),
+    between: &Neighbours,
+    limits: Limits,
+) -> Level {
+    let (first, last) = ends(values, run);
+    let Level {
+        mut start,
+        mut end,
+        value,
+    } = level;
+    let (grown_start, grown_end) = (start, end);
+    if grown_start > 0 {
+        let outside = (between.before.min(grown_start)..grown_start).rev();
+        let points = on_ramp(values, outside, grown_start, grown_start - 1, first, limits);
+        if let Some(meeting) = meeting(time, values, &points, first, limits) {
+            let slack = SLACK * (time[grown_start] - time[grown_start - 1]);
+            start = time.partition_point(|t| *t < meeting - slack).clamp(grown_start, grown_end - 1);
+        }
+    }
+    if grown_end < values.len() {
+        let outside = grown_end..between.after.max(grown_end);
+        let points = on_ramp(values, outside, grown_end - 1, grown_end, last, limits);
+        if let Some(meeting) = meeting(time, values, &points, last, limits) {
+            let slack = SLACK * (time[grown_end] - time[grown_end - 1]);
+            end = time.partition_point(|t| *t <= meeting + slack).clamp(start + 1, grown_end);
+        }
+    }
+    Level { start, end, value }
+}
+
+/// What tells a ramp from a standstill.
+#[derive(Clone, Copy)]
+pub(super) struct Limits {
+    pub(super) tolerance: f64,
+    /// Speed under which the jaw stands still.
+    pub(super) still: f64,
+}
+
+/// The samples of a ramp next to a level, nearest first: eight of them, more of a slow ramp.
+///
+/// A ramp of fewer than two samples is known by the edges of the levels on its sides: `own` and, if need be, `other`.
+fn on_ramp(
+    values: &[f64],
+    outside: impl Iterator<Item = usize>,
+    own: usize,
+    other: usize,
+    level: f64,
+    limits: Limits,
+) -> Vec<usize> {
     const MOST: usize = 8;
-    let indices: Vec<usize> = match side {
-        Side::Before(edge) => (0..edge).rev().take(MOST).collect(),
-        Side::After(edge) => (edge..values.len()).take(MOST).collect(),
-    };
-    let direction = (values[*indices.first()?] - level).signum();
-    let ramp: Vec<usize> = indices
-        .into_iter()
+    let direction = (values[other] - level).signum();
+    let away = |index: usize| direction * (values[index] - level) / limits.tolerance;
+    let mut ramp: Vec<usize> = outside
         .enumerate()
         .take_while(|(rank, index)| {
-            let away = direction * (values[*index] - level);
-            *rank < 2 || (away > tolerance && away < 50.0 * tolerance)
+            let away = away(*index);
+            away > 1.0 && (*rank < 2 || (away < 50.0 && (*rank < MOST || away < 6.0)))
         })
         .map(|(_, index)| index)
         .collect();
     if ramp.len() < 2 {
-        return None;
+        ramp.insert(0, own);
     }
+    if ramp.len() < 2 {
+        ramp.push(other);
+    }
+    ramp
+}
+
+/// The time at which the line through the end of a ramp meets `level`; `None` if there is no straight ramp to speak of.
+///
+/// A servo that overshoots comes back in a curve, not along a line: then the tolerance decides alone. So it does where
+/// the line is as flat as a standstill, or meets the level farther off than a ramp of its slope could.
+fn meeting(time: &[f64], values: &[f64], ramp: &[usize], level: f64, limits: Limits) -> Option<f64> {
     let count = ramp.len() as f64;
     let t0 = time[ramp[0]];
     let (mean_t, mean_v) = (
@@ -89,12 +141,19 @@ fn meeting(time: &[f64], values: &[f64], side: Side, level: f64, tolerance: f64)
         ramp.iter().map(|i| values[*i]).sum::<f64>() / count,
     );
     let (mut tt, mut tv) = (0.0, 0.0);
-    for i in &ramp {
+    for i in ramp {
         let t = time[*i] - t0 - mean_t;
         tt += t * t;
         tv += t * (values[*i] - mean_v);
     }
     let slope = tv / tt;
-    let straight = ramp.iter().all(|i| (values[*i] - mean_v - slope * (time[*i] - t0 - mean_t)).abs() <= tolerance);
-    (straight && slope != 0.0).then(|| t0 + mean_t + (level - mean_v) / slope)
+    let straight = ramp
+        .iter()
+        .all(|i| (values[*i] - mean_v - slope * (time[*i] - t0 - mean_t)).abs() <= limits.tolerance);
+    let span = (time[ramp[ramp.len() - 1]] - t0).abs();
+    let interval = span / (count - 1.0);
+    let steep = slope.abs() > limits.still && slope.abs() * span > 1.5 * limits.tolerance;
+    let meeting = mean_t + (level - mean_v) / slope;
+    let near = meeting.abs() <= 2.0 * interval + 1.5 * limits.tolerance / slope.abs();
+    (straight && steep && near).then_some(t0 + meeting)
 }

@@ -5,10 +5,11 @@
 //! goes on in the direction of its ramp has no such point and begins at its core.
 
 use super::edges::Level;
+use super::from_displacement::turns;
 use super::ramps::fill_gaps;
 use super::slope::{slopes, travel_median};
-use super::{Phase, SegmentError, SegmentOptions, SegmentSettings, Segmentation};
-use crate::statistics::{median, noise};
+use super::{Phase, Segment, SegmentError, SegmentOptions, SegmentSettings, Segmentation};
+use crate::statistics::{median, noise_in_time};
 
 /// Speed of the core of a hold as a share of the speed of the ramps.
 const STILL_BELOW: f64 = 0.08;
@@ -19,7 +20,7 @@ const SHORTEST: f64 = 0.25;
 
 pub(super) fn phases(time: &[f64], force: &[f64], options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
     let (low, high) = force.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
-    let (range, noise) = (high - low, noise(force));
+    let (range, noise) = (high - low, noise_in_time(time, force));
     if range == 0.0 || range < 12.0 * noise {
         return Err(SegmentError::NoMotion {
             column: "force",
@@ -57,15 +58,29 @@ pub(super) fn phases(time: &[f64], force: &[f64], options: &SegmentOptions) -> R
         if core_start > 0 && duration > longest {
             (longest, samples) = (duration, end - core_start);
         }
-        if duration >= minimum_hold && end - core_start >= minimum_samples {
-            let start = if core_start == 0 { 0 } else { beginning(time, force, before, core_start, turn, (low, high)) };
-            let value = median(&mut force[core_start..end].to_vec());
+        let value = median(&mut force[core_start..end].to_vec());
+        let core = Level {
+            start: core_start,
+            end,
+            value,
+        };
+        let tip = options.minimum_hold.is_none() && core_start > 0 && turns(time, force, core, turn, 0.2);
+        if duration >= minimum_hold && end - core_start >= minimum_samples && !tip {
+            let start = if core_start == 0 {
+                0
+            } else {
+                beginning(time, force, before, (core_start, window, still), turn, (low, high))
+            };
+            let end = ending(force, (core_start, end), window, 3.0 * noise);
             levels.push(Level { start, end, value });
             before = end;
         }
     }
     let segments = fill_gaps(force, &levels, turn);
-    if !segments.iter().any(|segment| segment.phase == Phase::Hold) {
+    // A contact that is open shows no force and no hold; one at the end of a test counts only beside true holds.
+    let floor = low + 0.02 * (high - low) + 3.0 * noise;
+    let holds = |segment: &Segment| segment.phase == Phase::Hold && force[segment.end - 1] > floor;
+    if !segments.iter().any(holds) {
         return Err(SegmentError::NoHold {
             longest,
             samples,
@@ -144,15 +159,35 @@ fn merged(
 /// it is relaxation and not a ramp.
 ///
 /// Relaxation is fast first and slow later: most of its change is done half way. The end of a ramp to the lowest force
-/// of the record (a contact that opens) bends the same way, so there the change must be further on.
-fn beginning(time: &[f64], force: &[f64], from: usize, core: usize, turn: f64, (low, high): (f64, f64)) -> usize {
+/// of the record (a contact that opens) bends the same way, so there the change must be further on. A slow relaxation
+/// bends less, but runs into the core without a kink, which no ramp does.
+fn beginning(
+    time: &[f64],
+    force: &[f64],
+    from: usize,
+    (core, window, still): (usize, usize, f64),
+    turn: f64,
+    (low, high): (f64, f64),
+) -> usize {
     let Some(start) = last_turn(force, from, core, turn) else {
         return core;
     };
     let half = time.partition_point(|t| *t < 0.5 * (time[start] + time[core]));
     let done = (force[half] - force[start]) / (force[core] - force[start]);
     let opens = force[core] - low < 0.08 * (high - low);
-    if done > if opens { 0.8 } else { 0.6 } { start } else { core }
+    // The window blurs a kink over its own width on either side.
+    let (a, b) = (core.saturating_sub(2 * window + 3).max(start), core.saturating_sub(window + 1).max(start));
+    let smooth = a < b && (force[b] - force[a]).abs() <= 2.0 * still * (time[b] - time[a]);
+    let bends = if opens { done > 0.8 } else { done > 0.6 || (smooth && done > 0.5) };
+    if bends { start } else { core }
+}
+
+/// The end of a hold: samples that the window blurred but that stay at the level of its last quarter belong to it.
+fn ending(force: &[f64], core: (usize, usize), window: usize, stray: f64) -> usize {
+    let level = median(&mut force[core.1 - ((core.1 - core.0) / 4).max(1)..core.1].to_vec());
+    let most = (core.1 + 2 * window + 2).min(force.len());
+    let off = (core.1..most).find(|i| (force[*i] - level).abs() > stray);
+    off.unwrap_or(most)
 }
 
 /// The last sample of from..until at which the force turns by more than `turn`.

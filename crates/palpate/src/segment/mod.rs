@@ -10,17 +10,19 @@
 //! | `ramps.rs` | what lies between the holds: loading and unloading |
 //! | `relaxation.rs` | Type I or Type II, and how sure |
 //! | `contact_point.rs` | first touch and the zero of the force |
+//! | `loading_curve.rs` | the force of a first ramp under the law, and where it begins |
 
 mod contact_point;
 mod edges;
 mod from_displacement;
 mod from_force;
+mod loading_curve;
 mod options;
 mod ramps;
 mod relaxation;
 mod slope;
 
-pub use contact_point::{ContactChoice, ContactPoint, find_contact};
+pub use contact_point::{ContactChoice, ContactPoint, find_contact, find_contact_of};
 pub use options::{HoldStart, SegmentOptions, SegmentSettings};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
 
@@ -63,7 +65,8 @@ pub struct Segment {
     pub end: usize,
     /// For a hold: what came before it.
     pub after: Option<After>,
-    /// For a hold: the sample from which laws are fitted, see [`HoldStart`].
+    /// For a hold: the sample from which laws are fitted, see [`HoldStart`]. It lies before `start` where the force peaked
+    /// while the jaw was still settling.
     pub fit_start: usize,
 }
 
@@ -109,7 +112,11 @@ pub enum SegmentError {
         found: usize,
     },
     /// The displacement (or force) never leaves its noise.
-    #[error("nothing moves: the {column} stays within {range:.3e} {unit}, its noise is {noise:.1e} {unit}")]
+    #[error(
+        "nothing moves: the {column} stays within {}, its noise is {}",
+        told(*range, unit),
+        told(*noise, unit)
+    )]
     NoMotion {
         /// Which column.
         column: &'static str,
@@ -122,7 +129,9 @@ pub enum SegmentError {
     },
     /// It moves all the time.
     #[error(
-        "no hold found: the longest standstill after a ramp lasts {longest:.3} s ({samples} samples), a hold needs {minimum_hold:.3} s and {minimum_samples} samples"
+        "no hold found: the longest standstill after a ramp lasts {} ({samples} samples), a hold needs {} and {minimum_samples} samples",
+        told(*longest, "s"),
+        told(*minimum_hold, "s")
     )]
     NoHold {
         /// Longest standstill, s.
@@ -145,11 +154,34 @@ impl SegmentError {
             Self::NoMotion { .. } => {
                 "check the displacement column and its unit; a record without motion has no relaxation to fit"
             }
+            Self::NoHold {
+                samples,
+                minimum_samples,
+                longest,
+                minimum_hold,
+            } if samples < minimum_samples && longest >= minimum_hold => {
+                "the hold has too few samples: record faster, or set a shortest hold (--minimum-hold), for which 3 samples do"
+            }
+            Self::NoHold { longest: 0.0, .. } => {
+                "a cyclic test has no hold; a tolerance (--tolerance) beyond the range of the test hides every ramp: lower it"
+            }
             Self::NoHold { .. } => {
-                "a cyclic test has no hold; for a short one lower the least duration with --minimum-hold, for a drifting one raise --tolerance"
+                "a cyclic test has no hold; for a short one lower the shortest hold (--minimum-hold), for a drifting one raise the tolerance (--tolerance)"
             }
         }
     }
+}
+
+/// A quantity for people: three digits, lengths in mm.
+fn told(value: f64, unit: &str) -> String {
+    let (value, unit) = if unit == "m" { (1e3 * value, "mm") } else { (value, unit) };
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value} {unit}");
+    }
+    let digits = (2.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize;
+    let text = format!("{value:.digits$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    format!("{text} {unit}")
 }
 
 /// Finds the phases of a record: from its displacement, or from its force where the displacement is missing.
@@ -168,8 +200,8 @@ pub fn find_phases(record: &Record, options: &SegmentOptions) -> Result<Segmenta
         Some(displacement) => from_displacement::phases(record.time(), displacement, options)?,
         None => from_force::phases(record.time(), record.force(), options)?,
     };
-    for segment in &mut segmentation.segments {
-        segment.fit_start = options.hold_start.sample(record, segment);
+    for index in 0..segmentation.segments.len() {
+        segmentation.segments[index].fit_start = options.hold_start.sample(record, &segmentation.segments, index);
     }
     Ok(segmentation)
 }

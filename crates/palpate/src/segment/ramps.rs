@@ -6,13 +6,16 @@ use super::{After, Phase, Segment};
 /// Turns holds and the gaps between them into segments that cover the record.
 ///
 /// A gap is cut at its turning points; a turn smaller than `hysteresis` is none (a servo that overshoots). A first hold
-/// from the very first sample on is rest.
+/// from the very first sample on is rest. A ramp so fast that no sample lies in it shows in the levels on its sides.
 pub(super) fn fill_gaps(values: &[f64], levels: &[Level], hysteresis: f64) -> Vec<Segment> {
     let mut segments = Vec::new();
-    let mut from = 0;
+    let (mut from, mut before): (usize, Option<f64>) = (0, None);
     for level in levels {
         ramps(values, from, level.start, hysteresis, &mut segments);
-        let after = approach(values, &segments);
+        let after = approach(values, &segments).or_else(|| {
+            let rise = level.value - before?;
+            Some(if rise >= 0.0 { After::Loading } else { After::Unloading })
+        });
         segments.push(Segment {
             phase: if after.is_some() { Phase::Hold } else { Phase::Rest },
             start: level.start,
@@ -20,7 +23,7 @@ pub(super) fn fill_gaps(values: &[f64], levels: &[Level], hysteresis: f64) -> Ve
             after,
             fit_start: level.start,
         });
-        from = level.end;
+        (from, before) = (level.end, Some(level.value));
     }
     ramps(values, from, values.len(), hysteresis, &mut segments);
     segments

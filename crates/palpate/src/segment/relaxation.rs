@@ -47,6 +47,14 @@ const SIGNIFICANT: f64 = 1e-3;
 #[must_use]
 pub fn classify_relaxation(signal: &[f64]) -> Relaxation {
     let count = signal.len();
+    if count == 0 {
+        return Relaxation {
+            kind: RelaxationType::None,
+            change: 0.0,
+            standard_error: f64::INFINITY,
+            p_value: 1.0,
+        };
+    }
     let (head, tail) = ((count / 20).clamp(1, count), (count / 5).clamp(1, count));
     let head = head.max(3.min(count));
     let (first, last) = (&signal[..head], &signal[count - tail..]);

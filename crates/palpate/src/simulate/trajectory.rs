@@ -15,7 +15,7 @@ pub enum Sampling {
 }
 
 /// Most samples a trajectory is made of.
-const MOST_SAMPLES: f64 = 1e8;
+const MOST_SAMPLES: f64 = 1e7;
 
 /// A simulated contact over time; all series have the same length, SI units, compression positive.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -168,9 +168,16 @@ pub fn simulate_force(motion: &Motion, model: &ContactModel, times: &[f64]) -> R
         match &stretch.state {
             StretchState::Touching(element) => {
                 element.extend_excess(stretch.start, times, &mut force);
-                for (slot, &time) in force[next..].iter_mut().zip(times) {
-                    let u = stretch.jaw_at(time);
-                    *slot = specimen.force(*slot + specimen.equilibrium_strain(u), u);
+                if stretch.contact_speed == 0.0 {
+                    // In a hold, where nearly all samples lie, only the excess changes.
+                    let u = stretch.contact_from;
+                    let (stiffness, equilibrium) = (specimen.force(1.0, u), specimen.equilibrium_strain(u));
+                    force[next..].iter_mut().for_each(|slot| *slot = stiffness * (*slot + equilibrium));
+                } else {
+                    for (slot, &time) in force[next..].iter_mut().zip(times) {
+                        let u = stretch.jaw_at(time);
+                        *slot = specimen.force(*slot + specimen.equilibrium_strain(u), u);
+                    }
                 }
             }
             StretchState::Free { .. } => force.resize(next + times.len(), 0.0),

@@ -53,9 +53,7 @@ pub fn strain_wave(motion: &Motion, model: &ContactModel, sampling: &Sampling) -
     wave.work.events = walked.events;
     let finite = |strain: &Vec<f64>| strain.iter().position(|value| !value.is_finite());
     match wave.strain.iter().find_map(finite) {
-        Some(index) => Err(SimulateError::OutOfRange {
-            time: wave.time[index],
-        }),
+        Some(index) => Err(SimulateError::OutOfRange { time: wave.time[index] }),
         None => Ok(wave),
     }
 }

@@ -1,0 +1,266 @@
+//! What was found, gathered: one entry for each code, true for every hold that it names.
+
+use palpate::analysis::{Analysis, Finding as RecordFinding, HoldAnalysis, Severity as RecordSeverity};
+
+use crate::number::typeset;
+use crate::page::{Finding, Severity};
+
+/// Different words for one code that are written out; more are counted.
+pub(super) const MOST_LINES: usize = 6;
+/// The same for a terminal.
+const MOST_PLAIN: usize = 2;
+/// Places before the further lines of a finding on a terminal.
+const INDENT: usize = 9;
+/// A force below this share of the largest one of the record is none.
+const NO_FORCE: f64 = 0.01;
+
+/// One finding with all the holds that have it; the most severe first.
+pub(super) struct Gathered {
+    /// How much it matters.
+    pub severity: Severity,
+    /// Its code.
+    pub code: &'static str,
+    /// Where it was seen and what: one line for each different text.
+    pub lines: Vec<(String, String)>,
+    meaning: &'static str,
+    remedy: &'static str,
+}
+
+impl Gathered {
+    /// As a page shows it.
+    pub(super) fn told(&self) -> Finding {
+        let lines: Vec<String> = self.lines.iter().map(|(place, seen)| line(place, seen)).collect();
+        Finding {
+            severity: self.severity,
+            code: self.code.to_owned(),
+            seen: lines.join("\n"),
+            meaning: sentence(self.meaning),
+            remedy: sentence(self.remedy),
+        }
+    }
+}
+
+/// All findings of a record and of its holds.
+pub(super) fn gathered(analysis: &Analysis, most: usize) -> Vec<Gathered> {
+    let mut seen: Vec<Seen<'_>> = analysis.findings.iter().map(|finding| Seen::new(analysis, finding, None)).collect();
+    for hold in &analysis.holds {
+        let without_area = hold.findings.iter().any(|finding| matches!(finding, RecordFinding::NoContactArea));
+        for finding in &hold.findings {
+            // That an open contact does not relax goes without saying.
+            if !(without_area && matches!(finding, RecordFinding::NoRelaxation { .. })) {
+                seen.push(Seen::new(analysis, finding, Some(hold)));
+            }
+        }
+    }
+    let mut list = Vec::new();
+    while let Some(first) = seen.first() {
+        let (severity, code) = (first.severity, first.finding.code());
+        let (alike, rest) =
+            seen.into_iter().partition(|other| other.severity == severity && other.finding.code() == code);
+        list.push(gather((severity, code), alike, most));
+        seen = rest;
+    }
+    list.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
+    list
+}
+
+/// A finding and where it was seen.
+struct Seen<'a> {
+    severity: Severity,
+    finding: &'a RecordFinding,
+    hold: Option<usize>,
+    text: String,
+}
+
+impl<'a> Seen<'a> {
+    fn new(analysis: &Analysis, finding: &'a RecordFinding, hold: Option<&HoldAnalysis>) -> Self {
+        let released = matches!(finding, RecordFinding::NoContactArea) && hold.is_some_and(|hold| open(analysis, hold));
+        let severity = match finding.severity() {
+            _ if released => Severity::Info,
+            RecordSeverity::Info => Severity::Info,
+            RecordSeverity::Caution => Severity::Caution,
+            RecordSeverity::Warning => Severity::Warning,
+        };
+        Self {
+            severity,
+            finding,
+            hold: hold.map(|hold| hold.number),
+            text: typeset(&finding.seen()),
+        }
+    }
+}
+
+/// Whether there is no force to speak of in a hold.
+fn open(analysis: &Analysis, hold: &HoldAnalysis) -> bool {
+    let largest = analysis.record.force().iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+    hold.force_start.abs().max(hold.force_end.abs()) <= NO_FORCE * largest
+}
+
+fn gather((severity, code): (Severity, &'static str), alike: Vec<Seen<'_>>, most: usize) -> Gathered {
+    let released = severity == Severity::Info && code == RecordFinding::NoContactArea.code();
+    let (meaning, remedy) = match alike.first() {
+        Some(_) if released => (
+            "the jaw is back at first touch and the contact is open; such a hold is not fitted",
+            "nothing, if the contact was meant to be open",
+        ),
+        Some(first) => (first.finding.meaning(), first.finding.remedy()),
+        None => ("", ""),
+    };
+    let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
+    for Seen { hold, text, .. } in alike {
+        match groups.iter_mut().find(|(other, _)| *other == text) {
+            Some((_, holds)) => holds.extend(hold),
+            None => groups.push((text, hold.into_iter().collect())),
+        }
+    }
+    // A last line that counts the rest is worth it only if it stands for several.
+    let cut = if groups.len() > most + 1 { most } else { groups.len() };
+    let more: Vec<usize> = groups[cut..].iter().flat_map(|(_, holds)| holds.iter().copied()).collect();
+    let mut lines: Vec<(String, String)> =
+        groups.into_iter().take(cut).map(|(text, holds)| (holds_named(&holds), text)).collect();
+    if !more.is_empty() {
+        lines.push((holds_named(&more), "likewise, with numbers of their own (see analysis.json)".to_owned()));
+    }
+    Gathered {
+        severity,
+        code,
+        lines,
+        meaning,
+        remedy,
+    }
+}
+
+/// `Hold 2`, `Holds 1–3, 7`, or nothing for the whole record.
+fn holds_named(holds: &[usize]) -> String {
+    let mut runs: Vec<(usize, usize)> = Vec::new();
+    let mut sorted = holds.to_vec();
+    sorted.sort_unstable();
+    for hold in sorted {
+        match runs.last_mut() {
+            Some((_, last)) if *last + 1 == hold => *last = hold,
+            _ => runs.push((hold, hold)),
+        }
+    }
+    let named: Vec<String> = runs
+        .iter()
+        .map(|(first, last)| match last - first {
+            0 => format!("{first}"),
+            1 => format!("{first}, {last}"),
+            _ => format!("{first}–{last}"),
+        })
+        .collect();
+    match holds.len() {
+        0 => String::new(),
+        1 => format!("Hold {}", named.join(", ")),
+        _ => format!("Holds {}", named.join(", ")),
+    }
+}
+
+fn line(place: &str, seen: &str) -> String {
+    if place.is_empty() { sentence(seen) } else { format!("{place}: {seen}.") }
+}
+
+fn sentence(text: &str) -> String {
+    let mut characters = text.chars();
+    let first = characters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
+    format!("{first}{}.", characters.as_str())
+}
+
+/// The findings for a terminal: severity and code, then what was seen where.
+pub(super) fn plain(analysis: &Analysis) -> String {
+    const WIDTH: usize = 100;
+    let mut text = String::new();
+    for finding in gathered(analysis, MOST_PLAIN) {
+        let mut head = format!("{:<9}{}  ", finding.severity.word(), finding.code);
+        for (place, seen) in &finding.lines {
+            let place = place.replacen("Hold", "hold", 1);
+            let told = if place.is_empty() { seen.clone() } else { format!("{place}: {seen}") };
+            indented(&mut text, &head, &told, WIDTH);
+            head = " ".repeat(INDENT);
+        }
+    }
+    text
+}
+
+/// A text behind `head`, its further lines set in.
+fn indented(out: &mut String, head: &str, text: &str, width: usize) {
+    let mut used = head.chars().count();
+    out.push_str(head);
+    let mut fresh = true;
+    for word in text.split_whitespace() {
+        let length = word.chars().count();
+        if !fresh && used + 1 + length > width {
+            out.push('\n');
+            out.push_str(&" ".repeat(INDENT));
+            (used, fresh) = (INDENT, true);
+        }
+        if !fresh {
+            out.push(' ');
+            used += 1;
+        }
+        out.push_str(word);
+        used += length;
+        fresh = false;
+    }
+    out.push('\n');
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seen(finding: &RecordFinding, hold: usize) -> Seen<'_> {
+        Seen {
+            severity: Severity::Info,
+            finding,
+            hold: Some(hold),
+            text: finding.seen(),
+        }
+    }
+
+    #[test]
+    fn holds_that_differ_are_told_apart() {
+        let of = |exponents: &[f64]| RecordFinding::ExponentsAlike {
+            exponents: exponents.to_vec(),
+        };
+        let (low, high) = (of(&[2.0, 3.0]), of(&[5.0, 7.0]));
+        let told = gather(
+            (Severity::Info, low.code()),
+            vec![seen(&low, 2), seen(&high, 6), seen(&low, 3), seen(&high, 10)],
+            MOST_LINES,
+        )
+        .told();
+        assert_eq!(
+            told.seen,
+            "Holds 2, 3: the exponents 2, 3 fit equally well.\nHolds 6, 10: the exponents 5, 7 fit equally well."
+        );
+    }
+
+    #[test]
+    fn many_different_texts_are_counted() {
+        let findings: Vec<RecordFinding> = (0..12)
+            .map(|i| RecordFinding::EquilibriumExtrapolated {
+                beyond: 0.2 + 0.05 * f64::from(i),
+            })
+            .collect();
+        let all = findings.iter().enumerate().map(|(i, finding)| seen(finding, i + 1)).collect();
+        let told = gather((Severity::Caution, findings[0].code()), all, MOST_LINES).told();
+        assert_eq!(told.seen.lines().count(), MOST_LINES + 1);
+        assert!(told.seen.lines().last().is_some_and(|last| last.starts_with("Holds 7–12: likewise")));
+    }
+
+    #[test]
+    fn lists_of_holds_are_short() {
+        assert_eq!(holds_named(&[]), "");
+        assert_eq!(holds_named(&[4]), "Hold 4");
+        assert_eq!(holds_named(&[7, 1, 2, 3, 9, 10]), "Holds 1–3, 7, 9, 10");
+    }
+
+    #[test]
+    fn terminal_lines_are_wrapped() {
+        let mut text = String::new();
+        indented(&mut text, "info    code  ", &"word ".repeat(40), 60);
+        assert!(text.lines().count() > 2 && text.lines().all(|line| line.chars().count() <= 60));
+        assert!(text.lines().skip(1).all(|line| line.starts_with("         w")));
+    }
+}

@@ -1,0 +1,88 @@
+//! How an analysis was made: the settings that a page tells.
+
+use palpate::analysis::Analysis;
+use palpate::segment::{ContactChoice, HoldStart};
+
+use crate::number::significant;
+use crate::page::Block;
+
+const METHOD: &str = "Phases are cut from the record without labels. Strain is force over contact area and modulus, ε = f/(E A), with the area of the contact's own share of the travel. The latency law ε̇ = −v sgn(ε − εₑ)|ε − εₑ|ⁿ is fitted to the strain of each hold over time by its closed form (preferred), and to strain rate against strain as in the paper. Least squares needs no starting values. Standard errors assume white noise; intervals are widened for correlated residuals. Where no geometry is known the force is fitted as it is.";
+
+/// The method in words, then the settings it ran with.
+pub(super) fn blocks(analysis: &Analysis) -> Vec<Block> {
+    let mut pairs = phases(analysis);
+    pairs.extend(touch(analysis));
+    pairs.extend(fits(analysis));
+    let pairs = pairs.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+    vec![Block::paragraph(METHOD), Block::KeyValues(pairs)]
+}
+
+type Pairs = Vec<(&'static str, String)>;
+
+fn number(value: f64) -> String {
+    significant(value, 3)
+}
+
+fn phases(analysis: &Analysis) -> Pairs {
+    let segment = &analysis.segmentation.settings;
+    let (unit, speed, scale) = if segment.from_displacement { ("mm", "mm/s", 1e3) } else { ("N", "N/s", 1.0) };
+    let column = if segment.from_displacement { "displacement" } else { "force" };
+    vec![
+        ("Phases from", column.to_owned()),
+        ("Noise of that column", format!("{} {unit}", number(segment.noise * scale))),
+        ("Tolerance of a hold", format!("{} {unit}", number(segment.tolerance * scale))),
+        ("Speed of the ramps", format!("{} {speed}", number(segment.ramp_speed * scale))),
+        ("Standing still below", format!("{} {speed}", number(segment.still_speed * scale))),
+        ("Shortest hold", format!("{} s, {} samples", number(segment.minimum_hold), segment.minimum_samples)),
+    ]
+}
+
+fn touch(analysis: &Analysis) -> Pairs {
+    let chosen = match analysis.options.touch {
+        ContactChoice::Auto => "found from the force".to_owned(),
+        ContactChoice::AsRecorded => "as recorded: force and displacement are counted from there".to_owned(),
+        ContactChoice::Displacement(at) => format!("given, at {} mm", significant(1e3 * at, 4)),
+    };
+    let tare = &analysis.contact.tare;
+    vec![
+        ("First touch", chosen),
+        ("Force zero", format!("{} N", number(tare.force))),
+        ("Displacement zero", format!("{} mm", number(1e3 * tare.displacement))),
+    ]
+}
+
+fn fits(analysis: &Analysis) -> Pairs {
+    let options = &analysis.options;
+    let from = match options.segment.hold_start {
+        HoldStart::Peak => "the extreme of the force near the start of the hold".to_owned(),
+        HoldStart::Settled => "the first sample of the hold".to_owned(),
+        HoldStart::AfterPeak(delay) => format!("{} s after the extreme of the force", number(delay)),
+    };
+    let until = match options.fit_until {
+        Some(until) => format!("{} s later; the rest of the hold is predicted", number(until)),
+        None => "the end of the hold".to_owned(),
+    };
+    let listed: Vec<String> = options.exponents.iter().map(|n| format!("{n}")).collect();
+    let (low, high) = options.fit.exponent_range;
+    let free = if options.free_exponent { format!(", and free from {low} to {high}") } else { String::new() };
+    let window = &options.rate_window;
+    let mut pairs = vec![
+        ("Fit from", from),
+        ("Fit until", until),
+        ("Exponents", format!("{}{free}", listed.join(", "))),
+        (
+            "Strain rate",
+            format!(
+                "local parabola over ±{} samples or ±{} % of the elapsed time, whichever is wider",
+                window.samples,
+                number(100.0 * window.share)
+            ),
+        ),
+        ("Intervals", format!("{} %", number(100.0 * options.fit.confidence))),
+    ];
+    if let Some(specimen) = analysis.specimen {
+        pairs.push(("Modulus", format!("{} kPa", significant(specimen.modulus() / 1e3, 4))));
+        pairs.push(("Depth cut into layers", format!("{} mm", number(1e3 * specimen.depth()))));
+    }
+    pairs
+}

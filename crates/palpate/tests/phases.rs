@@ -1,0 +1,142 @@
+//! Holds found in records whose truth is known: fast ramps, slow ramps, coarse encoders, servos, cyclic tests.
+#![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
+
+use palpate::record::Record;
+use palpate::segment::{After, Phase, SegmentError, SegmentOptions, Segmentation, find_phases};
+use palpate::test_problems::Noise;
+
+/// A step: to mm, at mm/s, hold s.
+type Step = (f64, f64, f64);
+
+/// The displacement in mm at a time, and the holds with their ends and what came before.
+fn path(steps: &[Step]) -> (impl Fn(f64) -> f64, Vec<(f64, f64, After)>) {
+    let (mut time, mut at) = (0.0, 0.0);
+    let (mut knots, mut holds) = (vec![(0.0, 0.0)], Vec::new());
+    for &(to, rate, hold) in steps {
+        time += (to - at).abs() / rate;
+        knots.push((time, to));
+        holds.push((time, time + hold, if to > at { After::Loading } else { After::Unloading }));
+        time += hold;
+        knots.push((time, to));
+        at = to;
+    }
+    let displacement = move |t: f64| {
+        let index = knots.partition_point(|knot| knot.0 < t).clamp(1, knots.len() - 1);
+        let ((t0, d0), (t1, d1)) = (knots[index - 1], knots[index]);
+        d0 + (d1 - d0) * ((t - t0) / (t1 - t0)).clamp(0.0, 1.0)
+    };
+    (displacement, holds)
+}
+
+/// A record of a displacement in mm, with noise and quantum in µm.
+fn record(shape: impl Fn(f64) -> f64, duration: f64, rate: f64, noise: f64, quantum: f64) -> Record {
+    let mut numbers = Noise::new(7);
+    let count = (duration * rate + 1e-6) as usize + 1;
+    let time: Vec<f64> = (0..count).map(|i| i as f64 / rate).collect();
+    let rounded = |d: f64| if quantum > 0.0 { (d / quantum).round() * quantum } else { d };
+    let displacement: Vec<f64> =
+        time.iter().map(|t| 1e-6 * rounded(1e3 * shape(*t) + noise * numbers.normal())).collect();
+    let force = displacement.iter().map(|d| 1e3 * d).collect();
+    Record::new(time, Some(displacement), force).unwrap()
+}
+
+fn phases(record: &Record) -> Result<Segmentation, SegmentError> {
+    find_phases(record, &SegmentOptions::default())
+}
+
+/// Every hold is found, within so many samples, and none besides.
+fn check(steps: &[Step], rate: f64, noise: f64, quantum: f64, samples: f64) {
+    let (shape, truth) = path(steps);
+    let record = record(shape, truth[truth.len() - 1].1, rate, noise, quantum);
+    let found = phases(&record).unwrap();
+    assert_eq!(found.holds().count(), truth.len(), "{steps:?}: {found:?}");
+    for (hold, (start, end, after)) in found.holds().zip(truth) {
+        let off = [record.time()[hold.start] - start, record.time()[hold.end - 1] - end];
+        assert!(off.iter().all(|off| off.abs() <= samples / rate), "{steps:?}: {hold:?} off by {off:?} s");
+        assert_eq!(hold.after, Some(after), "{steps:?}: {hold:?}");
+    }
+}
+
+#[test]
+fn small_steps_faster_than_the_samples() {
+    for step in [0.1, 0.2] {
+        check(&[(20.0, 500.0 / 60.0, 10.0), (20.0 + step, 500.0 / 60.0, 10.0)], 50.0, 1.0, 0.0, 1.0);
+    }
+    // No sample lies in a ramp.
+    check(&[(5.0, 1000.0, 5.0), (10.0, 1000.0, 5.0), (4.0, 1000.0, 5.0)], 50.0, 0.0, 0.0, 1.0);
+}
+
+#[test]
+fn slow_ramps_with_a_coarse_encoder() {
+    let steps = [(5.0, 0.36, 10.0), (10.0, 2.4, 5.0), (12.0, 0.5, 10.0), (8.0, 1.0, 10.0), (3.0, 0.4, 20.0)];
+    check(&steps, 200.0, 0.0, 10.0, 25.0);
+}
+
+#[test]
+fn short_holds_after_long_ramps() {
+    check(&[(25.0, 5.0 / 60.0, 10.0), (0.0, 5.0 / 60.0, 10.0)], 10.0, 0.0, 0.0, 1.0);
+    check(&[(10.0, 0.33, 2.0), (20.0, 0.25, 2.0)], 50.0, 0.0, 0.0, 1.0);
+}
+
+#[test]
+fn a_servo_that_overshoots() {
+    for (share, lag) in [(0.002, 0.1), (0.005, 0.2), (0.01, 0.3)] {
+        let steps = [(10.0, 10.0, 10.0), (20.0, 10.0, 10.0), (5.0, 10.0, 10.0)];
+        let (shape, truth) = path(&steps);
+        let kicks: Vec<(f64, f64)> =
+            [10.0, 10.0, -15.0].iter().zip(&truth).map(|(a, hold)| (hold.0, share * a)).collect();
+        let servo = |t: f64| {
+            let kick = |(at, high): &(f64, f64)| {
+                let z = ((t - at) / lag).max(0.0);
+                high * z * (1.0 - z).exp()
+            };
+            shape(t) + kicks.iter().map(kick).sum::<f64>()
+        };
+        let found = phases(&record(servo, truth[2].1, 100.0, 0.3, 0.0)).unwrap();
+        let after: Vec<_> = found.holds().map(|hold| hold.after).collect();
+        assert_eq!(after, [Some(After::Loading), Some(After::Loading), Some(After::Unloading)], "{found:?}");
+        assert!(found.holds().all(|hold| hold.len() > 850), "{found:?}");
+    }
+}
+
+#[test]
+fn cyclic_tests_have_no_hold() {
+    for period in [2.0, 10.0, 60.0, 600.0] {
+        for noise in [0.0, 5.0, 50.0] {
+            let sine = |t: f64| 5.0 - 5.0 * (std::f64::consts::TAU * t / period).cos();
+            let triangle = |t: f64| 10.0 * (1.0 - (2.0 * (t / period).fract() - 1.0).abs());
+            for (name, record) in [
+                ("sine", record(sine, 3.0 * period, 50.0, noise, 0.0)),
+                ("triangle", record(triangle, 3.0 * period, 50.0, noise, 0.0)),
+            ] {
+                let found = phases(&record);
+                assert!(matches!(found, Err(SegmentError::NoHold { .. })), "{name} {period} s {noise} µm: {found:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_fast_ramp_is_no_rest() {
+    let (shape, truth) = path(&[(5.0, 1e4, 5.0), (10.0, 1e4, 5.0)]);
+    let found = phases(&record(shape, truth[1].1, 20.0, 0.0, 0.0)).unwrap();
+    assert!(found.segments[1..].iter().all(|segment| segment.phase != Phase::Rest), "{found:?}");
+}
+
+#[test]
+fn the_force_may_peak_before_the_jaw_rests() {
+    let (shape, _) = path(&[(10.0, 10.0, 10.0)]);
+    let time: Vec<f64> = (0..=1100).map(|i| 0.01 * f64::from(i)).collect();
+    let displacement: Vec<f64> =
+        time.iter().map(|t| 1e-3 * (shape(*t) - 0.05 * (-(t - 1.0).abs() / 0.2).exp())).collect();
+    let force = time.iter().map(|t| if *t < 1.0 { *t } else { 0.5 + 0.5 * (1.0 - t).exp() }).collect();
+    let found = phases(&Record::new(time, Some(displacement), force).unwrap()).unwrap();
+    assert_eq!(found.holds().next().unwrap().fit_start, 100, "{found:?}");
+}
+
+#[test]
+fn a_few_odd_rows_are_no_motion() {
+    let odd = |t: f64| if [100.0, 400.0, 700.0].contains(&(100.0 * t).round()) { 5.0 } else { 0.0 };
+    let found = phases(&record(odd, 10.0, 100.0, 0.0, 0.0));
+    assert!(matches!(found, Err(SegmentError::NoMotion { .. })), "{found:?}");
+}
