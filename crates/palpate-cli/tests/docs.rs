@@ -210,8 +210,8 @@ const MAY_USE: [(&str, &[&str]); 11] = [
     ("contact", &["latency", "ode", "units"]),
     ("record", &["statistics"]),
     ("strain", &["contact"]),
-    ("segment", &["contact", "record", "statistics"]),
     ("identify", &["latency", "statistics"]),
+    ("segment", &["contact", "identify", "record", "statistics"]),
     ("simulate", &["contact", "latency", "ode"]),
     ("test_problems", &["contact", "latency", "simulate"]),
 ];

@@ -92,6 +92,8 @@ pub enum Finding {
     ModulusEstimated {
         /// What the relaxed forces say, Pa.
         modulus: f64,
+        /// Its standard error, Pa.
+        standard_error: Option<f64>,
     },
     /// The given modulus and the relaxed forces disagree.
     ModulusMismatch {
@@ -99,6 +101,29 @@ pub enum Finding {
         given: f64,
         /// Implied by the relaxed forces, Pa.
         implied: f64,
+    },
+    /// First touch is known less well than the fits.
+    TouchUncertain {
+        /// Standard error of first touch, m of jaw travel.
+        error: f64,
+        /// The hold whose equilibrium strain suffers most.
+        hold: usize,
+        /// By how much that error moves its equilibrium strain, as a share of it.
+        shift: f64,
+        /// Half the interval of that equilibrium strain, as a share of it.
+        interval: f64,
+    },
+    /// A column seems to count the other way round.
+    SignSuspicious {
+        /// `displacement` or `force`.
+        column: String,
+        /// How far it goes below its start in the first ramp, m or N.
+        fall: f64,
+    },
+    /// The simulated record is not the measured one.
+    OverlayPoor {
+        /// Root mean square of the difference as a share of the largest force.
+        relative: f64,
     },
     /// The overlay could not be simulated.
     NoOverlay {
@@ -128,6 +153,9 @@ impl Finding {
             Self::AirTravel { .. } => "air_travel",
             Self::ModulusEstimated { .. } => "modulus_estimated",
             Self::ModulusMismatch { .. } => "modulus_mismatch",
+            Self::TouchUncertain { .. } => "touch_uncertain",
+            Self::SignSuspicious { .. } => "sign_suspicious",
+            Self::OverlayPoor { .. } => "overlay_poor",
             Self::NoOverlay { .. } => "no_overlay",
         }
     }
@@ -148,7 +176,10 @@ impl Finding {
             | Self::SampledTooSlowly { .. }
             | Self::ContactOpen { .. }
             | Self::DropoutsRepaired { .. }
-            | Self::ModulusMismatch { .. } => Severity::Caution,
+            | Self::ModulusMismatch { .. }
+            | Self::TouchUncertain { .. }
+            | Self::SignSuspicious { .. }
+            | Self::OverlayPoor { .. } => Severity::Caution,
             Self::RateAtBound { .. } | Self::TooFewSamples { .. } | Self::NoContactArea | Self::NoOverlay { .. } => {
                 Severity::Warning
             }
@@ -197,13 +228,38 @@ impl Finding {
             Self::DropoutsRepaired { count } => format!("{count} rows of the displacement stray alone"),
             Self::PhasesFromForce => "the record has no displacement".to_owned(),
             Self::AirTravel { travel } => format!("the jaw travels {:.3} mm before the force rises", 1e3 * travel),
-            Self::ModulusEstimated { modulus } => {
-                format!("no modulus was given; the relaxed forces imply {:.4} kPa", modulus / 1e3)
-            }
+            Self::ModulusEstimated {
+                modulus,
+                standard_error,
+            } => format!(
+                "no modulus was given; the relaxed forces imply {} kPa",
+                with_error(modulus / 1e3, standard_error.map(|error| error / 1e3))
+            ),
             Self::ModulusMismatch { given, implied } => format!(
                 "the given modulus is {:.4} kPa, the relaxed forces imply {:.4} kPa (force over area and relative squeeze)",
                 given / 1e3,
                 implied / 1e3
+            ),
+            Self::TouchUncertain {
+                error,
+                hold,
+                shift,
+                interval,
+            } => format!(
+                "first touch is known to {:.3} mm, which moves the equilibrium strain of hold {hold} by {:.2} %; its interval is only ± {:.2} %",
+                1e3 * error,
+                100.0 * shift,
+                100.0 * interval
+            ),
+            Self::SignSuspicious { column, fall } if column == "force" => {
+                format!("the force falls by {fall:.3} N in the first ramp")
+            }
+            Self::SignSuspicious { column, fall } => {
+                format!("the {column} falls by {:.3} mm in the first ramp", 1e3 * fall)
+            }
+            Self::OverlayPoor { relative } => format!(
+                "measured and simulated force differ by {:.0} % of the largest force (root mean square)",
+                100.0 * relative
             ),
             Self::NoOverlay { reason } => format!("the record could not be simulated: {reason}"),
         }
@@ -248,6 +304,15 @@ impl Finding {
             Self::ModulusMismatch { .. } => {
                 "the body is stiffer or softer than described, bonded or friction-locked, or its first touch is elsewhere; strains scale with the modulus"
             }
+            Self::TouchUncertain { .. } => {
+                "intervals of strains take first touch as exact; between records these strains differ by more than they say"
+            }
+            Self::SignSuspicious { .. } => {
+                "palpate counts compression, or stretch of a strip, as positive in displacement and force; loading is taken for unloading otherwise"
+            }
+            Self::OverlayPoor { .. } => {
+                "each hold may be fitted well, but one law with these layers does not join them through the ramps"
+            }
             Self::NoOverlay { .. } => "the report has no simulated curve",
         }
     }
@@ -277,7 +342,27 @@ impl Finding {
             Self::ModulusMismatch { .. } => {
                 "leave the modulus out to have it estimated, or check geometry and first touch"
             }
+            Self::TouchUncertain { .. } => {
+                "sample the first ramp faster, or measure first touch and set touch in the test description"
+            }
+            Self::SignSuspicious { .. } => {
+                "if the file counts the other way round, set sign = -1 for that column in the test description"
+            }
+            Self::OverlayPoor { .. } => {
+                "check modulus, first touch and layers; compare v of the holds before using one for all of them"
+            }
             Self::NoOverlay { .. } => "check geometry, first touch and units",
         }
+    }
+}
+
+/// "28.0 ± 0.3": the value to the place of the second digit of its error, or to four digits where it has none.
+fn with_error(value: f64, error: Option<f64>) -> String {
+    match error.filter(|error| *error > 1e-4 * value.abs()) {
+        Some(error) => {
+            let places = (1.0 - error.log10().floor()).clamp(0.0, 9.0) as usize;
+            format!("{value:.places$} ± {error:.places$}")
+        }
+        None => format!("{value:.4}"),
     }
 }

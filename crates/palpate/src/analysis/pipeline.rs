@@ -5,9 +5,11 @@ use super::hold::{HoldAnalysis, analyze_hold};
 use super::modulus::{ModulusSource, implied_modulus};
 use super::overlay::{Overlay, overlay};
 use super::{AnalysisOptions, Finding};
-use crate::contact::{Specimen, SpecimenError};
+use crate::contact::{Shape, Specimen, SpecimenError};
 use crate::record::Record;
-use crate::segment::{ContactPoint, SegmentError, Segmentation, find_contact, find_phases};
+use crate::segment::{ContactPoint, Phase, Segment, SegmentError, Segmentation, find_contact_of, find_phases};
+use crate::simulate::Separation;
+use crate::statistics::noise;
 
 /// The study of one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,13 +45,31 @@ pub enum AnalysisError {
     /// Numbers that make no specimen.
     #[error(transparent)]
     Specimen(#[from] SpecimenError),
+    /// The jaw goes further than the body is deep.
+    #[error(
+        "sample {sample} (t = {time} s) is {:.4} mm beyond first touch, the {limit_name} allows less than {:.4} mm", 1e3 * found, 1e3 * limit
+    )]
+    BeyondBody {
+        /// Number of the sample, from 1.
+        sample: usize,
+        /// Its time, s.
+        time: f64,
+        /// Travel of the jaw since first touch there, m.
+        found: f64,
+        /// Travel at which the contact would reach the plane that does not move, m.
+        limit: f64,
+        /// What limits it.
+        limit_name: &'static str,
+    },
     /// Holds were found, but none can be fitted.
     #[error("none of the {holds} holds can be fitted: {reason}")]
     NothingToFit {
         /// Holds found.
         holds: usize,
-        /// What the first of them lacks.
+        /// What they lack.
         reason: String,
+        /// What helps against that.
+        hint: &'static str,
     },
 }
 
@@ -60,17 +80,23 @@ impl AnalysisError {
         match self {
             Self::Segment(error) => error.hint().to_owned(),
             Self::Specimen(_) => "check the geometry in the test description and its units".to_owned(),
-            Self::NothingToFit { .. } => {
-                "hold longer or sample faster; `palpate inspect` shows the phases that were found".to_owned()
+            Self::BeyondBody { .. } => {
+                "check the unit of the displacement, the size of the body and squeezed_from; a strip pulled in grips needs separation = false"
+                    .to_owned()
             }
+            Self::NothingToFit { hint, .. } => (*hint).to_owned(),
         }
     }
 }
 
+/// Root mean square error of an overlay, as a share of the largest force, from which on it is called poor.
+const POOR: f64 = 0.05;
+
 /// Analyses a record: phases, first touch, strains, laws per hold and over holds, overlay.
 ///
 /// # Errors
-/// [`AnalysisError`] when the record has no hold, the geometry makes no specimen, or no hold has anything to fit.
+/// [`AnalysisError`] when the record has no hold, the geometry makes no specimen or is smaller than the travel of the jaw,
+/// or no hold has anything to fit.
 pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, AnalysisError> {
     let mut findings = Vec::new();
     let (record, dropouts) = record.repaired();
@@ -81,14 +107,16 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
     if !segmentation.settings.from_displacement {
         findings.push(Finding::PhasesFromForce);
     }
-    let shape = options.geometry.map(|geometry| geometry.shape);
-    let contact = find_contact(&record, &segmentation, shape, options.touch);
+    findings.extend(suspicious_signs(&record, &segmentation));
+    let body = options.geometry.map(|geometry| (geometry.shape, geometry.sides));
+    let contact = find_contact_of(&record, &segmentation, body, options.touch);
     if contact.air_travel > 0.0 {
         findings.push(Finding::AirTravel {
             travel: contact.air_travel,
         });
     }
     let record = record.tared(contact.tare);
+    beyond_body(&record, options)?;
     let (specimen, modulus_source) = specimen(&record, &segmentation, options, &mut findings)?;
     let holds: Vec<HoldAnalysis> = segmentation
         .holds()
@@ -96,11 +124,15 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
         .map(|(index, segment)| analyze_hold(&record, segment, index + 1, specimen.as_ref(), options))
         .collect();
     nothing_to_fit(&holds)?;
+    findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
     let across = across(&holds, &options.exponents, 4.0 * segmentation.settings.tolerance);
     let overlay = specimen.and_then(|specimen| {
         let result = overlay(&record, &segmentation, &specimen, &holds, across.common_exponent, options);
         result.map_err(|reason| findings.push(Finding::NoOverlay { reason })).ok()
     });
+    if let Some(relative) = overlay.as_ref().map(|overlay| overlay.relative).filter(|relative| *relative > POOR) {
+        findings.push(Finding::OverlayPoor { relative });
+    }
     Ok(Analysis {
         record,
         options: options.clone(),
@@ -129,14 +161,20 @@ fn specimen(
     match (geometry.modulus, implied) {
         (Some(given), implied) => {
             let specimen = Specimen::new(geometry.shape, given, geometry.sides)?;
-            if let Some(implied) = implied.filter(|implied| !(0.8..=1.25).contains(&(implied / given))) {
-                findings.push(Finding::ModulusMismatch { given, implied });
+            if let Some(implied) = implied.filter(|implied| !(0.8..=1.25).contains(&(implied.value / given))) {
+                findings.push(Finding::ModulusMismatch {
+                    given,
+                    implied: implied.value,
+                });
             }
             Ok((Some(specimen), Some(ModulusSource::Given)))
         }
-        (None, Some(modulus)) => {
-            findings.push(Finding::ModulusEstimated { modulus });
-            let specimen = Specimen::new(geometry.shape, modulus, geometry.sides)?;
+        (None, Some(implied)) => {
+            findings.push(Finding::ModulusEstimated {
+                modulus: implied.value,
+                standard_error: implied.standard_error,
+            });
+            let specimen = Specimen::new(geometry.shape, implied.value, geometry.sides)?;
             Ok((Some(specimen), Some(ModulusSource::Estimated)))
         }
         // Validates the geometry even where no modulus can be told.
@@ -144,15 +182,127 @@ fn specimen(
     }
 }
 
-/// An error unless some hold was fitted or is honestly at rest.
-fn nothing_to_fit(holds: &[HoldAnalysis]) -> Result<(), AnalysisError> {
-    let fitted = holds.iter().any(|hold| !hold.fits.is_empty());
-    let reason = holds.iter().flat_map(|hold| hold.findings.last()).next();
-    match reason {
-        Some(reason) if !fitted => Err(AnalysisError::NothingToFit {
-            holds: holds.len(),
-            reason: reason.seen(),
-        }),
-        _ => Ok(()),
+/// An error if the jaw goes as far as the body is deep: a unit, a radius or a number of sides is wrong.
+///
+/// A ball and a body between plates have that limit; a strip in grips can be stretched beyond its own length.
+fn beyond_body(record: &Record, options: &AnalysisOptions) -> Result<(), AnalysisError> {
+    let (Some(geometry), Some(displacement)) = (options.geometry, record.displacement()) else {
+        return Ok(());
+    };
+    let is_strip = matches!(geometry.shape, Shape::Prism { .. }) && options.separation == Separation::Bonded;
+    if is_strip {
+        return Ok(());
     }
+    // The limit is one of geometry; any modulus will do.
+    let body = Specimen::new(geometry.shape, 1.0, geometry.sides)?;
+    let share = body.contact_displacement(1.0);
+    for (index, travel) in displacement.iter().enumerate() {
+        if let Err(SpecimenError::TooDeep { limit, limit_name, .. }) =
+            body.check_contact_displacement(travel * share, false)
+        {
+            return Err(AnalysisError::BeyondBody {
+                sample: index + 1,
+                time: record.time()[index],
+                found: *travel,
+                limit: limit / share,
+                limit_name,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Columns that fall in the first ramp of any size.
+fn suspicious_signs(record: &Record, segmentation: &Segmentation) -> Vec<Finding> {
+    let moved = |values: &[f64], segment: &Segment| {
+        let part = &values[segment.start.saturating_sub(1)..segment.end];
+        let away = part.iter().map(|value| value - part[0]);
+        away.fold(0.0, |most: f64, change| if change.abs() > most.abs() { change } else { most })
+    };
+    let guide = record.displacement().unwrap_or_else(|| record.force());
+    let ramps = || segmentation.segments.iter().filter(|s| matches!(s.phase, Phase::Loading | Phase::Unloading));
+    let most = ramps().map(|ramp| moved(guide, ramp).abs()).fold(0.0, f64::max);
+    let Some(first) = ramps().find(|ramp| moved(guide, ramp).abs() >= 0.25 * most) else {
+        return Vec::new();
+    };
+    let force = record.force();
+    let (low, high) = force.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
+    let seen = (0.05 * (high - low)).max(8.0 * noise(force));
+    let columns = [("displacement", record.displacement(), 0.0), ("force", Some(force), seen)];
+    let falls = columns.into_iter().filter_map(|(column, values, least)| {
+        let change = moved(values?, first);
+        (change < -least).then(|| Finding::SignSuspicious {
+            column: column.to_owned(),
+            fall: -change,
+        })
+    });
+    falls.collect()
+}
+
+/// A finding if the error of first touch moves an equilibrium strain by more than its interval says.
+///
+/// ε = F/(E A(u₁)), so an error of u₁ moves it by the share A′/A · δu₁.
+fn uncertain_touch(contact: &ContactPoint, specimen: &Specimen, holds: &[HoldAnalysis]) -> Option<Finding> {
+    let error = contact.displacement_error?;
+    let shares = holds.iter().filter_map(|hold| {
+        let equilibrium = &hold.preferred()?.equilibrium;
+        let (low, high) = equilibrium.interval?;
+        let u = specimen.contact_displacement(hold.displacement?);
+        let moved = specimen.contact_displacement(error);
+        let shift = specimen.contact_area(u + moved) / specimen.contact_area(u) - 1.0;
+        Some((hold.number, shift, 0.5 * (high - low) / equilibrium.value.abs()))
+    });
+    let worst = shares.max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)));
+    // What rounding alone leaves open is no uncertainty.
+    worst.filter(|(_, shift, interval)| *shift > interval.max(1e-5)).map(|(hold, shift, interval)| {
+        Finding::TouchUncertain {
+            error,
+            hold,
+            shift,
+            interval,
+        }
+    })
+}
+
+/// An error unless some hold was fitted, with the reason that most likely can be helped.
+fn nothing_to_fit(holds: &[HoldAnalysis]) -> Result<(), AnalysisError> {
+    if holds.is_empty() || holds.iter().any(|hold| !hold.fits.is_empty()) {
+        return Ok(());
+    }
+    let findings = || holds.iter().flat_map(|hold| hold.findings.iter().map(move |finding| (hold, finding)));
+    let with = |code: &str| findings().find(|(_, finding)| finding.code() == code);
+    // A start after almost all of the hold leaves too little to see whether anything relaxes.
+    let late = holds.iter().find(|hold| {
+        let left = hold.segment.end - hold.segment.fit_start;
+        left < 8 && hold.segment.len() >= left + 8
+    });
+    let (reason, hint) = if let Some(hold) = late {
+        let (left, from) = (hold.segment.end - hold.segment.fit_start, hold.fit_start - hold.start);
+        (
+            format!("the fit starts {from:.3} s into a hold and leaves {left} of its {} samples", hold.segment.len()),
+            "start the fit earlier: hold_start = \"settled\", or a shorter time after the peak",
+        )
+    } else if let Some((hold, few)) = with("too_few_samples") {
+        let needed = if let Finding::TooFewSamples { needed, .. } = few { *needed } else { 0 };
+        let seen = few.seen();
+        if hold.fitted < hold.times.len() && hold.times.len() >= needed {
+            (format!("{seen} (up to the time set with until)"), "raise until (--fit-until)")
+        } else {
+            (seen, "hold longer or sample faster; `palpate inspect` shows the phases that were found")
+        }
+    } else if let Some((_, area)) = with("no_contact_area") {
+        (area.seen(), "check first touch (touch), the radius, and the unit and sign of the displacement")
+    } else if let Some((_, still)) = with("no_relaxation") {
+        let reason = format!("the force does not change in any hold ({} in the first)", still.seen());
+        (reason, "check the force column and its unit; a body that does not relax has no law to fit")
+    } else {
+        let seen = findings().next().map(|(_, finding)| finding.seen());
+        let reason = seen.unwrap_or_else(|| "no fit ended".to_owned());
+        (reason, "`palpate inspect` shows the phases that were found")
+    };
+    Err(AnalysisError::NothingToFit {
+        holds: holds.len(),
+        reason,
+        hint,
+    })
 }

@@ -174,10 +174,12 @@ impl Specimen {
     /// Checks that a contact displacement (m) is one the body can take.
     ///
     /// # Errors
-    /// [`SpecimenError::TooDeep`] at or beyond the depth; [`SpecimenError::PulledOff`] below zero when `bonded` to a ball.
+    /// [`SpecimenError::TooDeep`] at or beyond the depth, except for a prism `bonded` at its ends: a strip in grips may be
+    /// stretched to several times its length. [`SpecimenError::PulledOff`] below zero when `bonded` to a ball.
     pub fn check_contact_displacement(&self, contact_displacement: f64, bonded: bool) -> Result<(), SpecimenError> {
         let limit = self.depth();
-        if contact_displacement >= limit {
+        let is_strip = bonded && matches!(self.shape, Shape::Prism { .. });
+        if contact_displacement >= limit && !is_strip {
             return Err(SpecimenError::TooDeep {
                 limit_name: match (self.shape, self.sides) {
                     (Shape::Ball { .. }, _) => "radius",

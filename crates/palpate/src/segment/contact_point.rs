@@ -2,17 +2,18 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Phase, Segmentation};
-use crate::contact::Shape;
+use super::loading_curve::{LoadingCurve, Touch};
+use super::{Phase, Segment, Segmentation};
+use crate::contact::{Shape, Sides};
 use crate::record::{Record, Tare};
-use crate::statistics::{median, noise};
+use crate::statistics::{mean, median, noise};
 
 /// How to find first touch.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactChoice {
-    /// From the force: where it leaves its baseline during the first ramp, if there is travel through air before that;
-    /// otherwise the start of the first ramp.
+    /// From the force: where the loading curve of the first ramp meets its baseline, if there is travel through air before
+    /// that; otherwise the start of the first ramp.
     #[default]
     Auto,
     /// Displacement and force are zero at first touch already; nothing is subtracted.
@@ -51,12 +52,12 @@ impl ContactPoint {
 
 /// Share of the first ramp's travel below which a late force is no travel through air.
 const AIR: f64 = 0.02;
+/// Standard errors by which first touch must lie behind the foot of the ramp to speak of air.
+const SURE: f64 = 3.0;
+/// Samples that make a baseline.
+const BASELINE: usize = 5;
 
-/// Finds first touch in a segmented record.
-///
-/// Baseline force: the median over the rest before the first ramp and, if the jaw travels through air, over that travel.
-/// First touch: the rise of the force is drawn straight (force over displacement for a constant section, its square root
-/// for a ball, whose force grows as the square of the squeeze) and prolonged to zero.
+/// Finds first touch in a segmented record of a body squeezed from two sides; see [`find_contact_of`].
 #[must_use]
 pub fn find_contact(
     record: &Record,
@@ -64,83 +65,107 @@ pub fn find_contact(
     shape: Option<Shape>,
     choice: ContactChoice,
 ) -> ContactPoint {
+    find_contact_of(record, segmentation, shape.map(|shape| (shape, Sides::Two)), choice)
+}
+
+/// Finds first touch in a segmented record.
+///
+/// The first ramp in which the force rises decides. The curve that a body under the latency law must draw in it, with n, v
+/// and the relaxed force of the hold that follows, is laid over the force by least squares; where it begins is first touch.
+/// Only if that lies clearly behind the foot of the ramp (3 standard errors and 2 % of the travel), and the force is flat
+/// up to there, has the jaw travelled through air. Otherwise first touch is the foot of the ramp, and the zero of the force
+/// is its median at rest before it, or nothing is subtracted from a force without such a rest.
+#[must_use]
+pub fn find_contact_of(
+    record: &Record,
+    segmentation: &Segmentation,
+    body: Option<(Shape, Sides)>,
+    choice: ContactChoice,
+) -> ContactPoint {
     let as_recorded = ContactPoint::at(record, 0.0);
     match (choice, record.displacement()) {
         (ContactChoice::AsRecorded, _) | (_, None) => as_recorded,
         (ContactChoice::Displacement(displacement), _) => ContactPoint::at(record, displacement),
         (ContactChoice::Auto, Some(displacement)) => {
-            automatic(record, displacement, segmentation, shape).unwrap_or(as_recorded)
+            automatic(record, displacement, segmentation, body).unwrap_or(as_recorded)
         }
     }
+}
+
+/// The first loading ramp in which the force rises, and the hold right behind it.
+fn first_rise<'a>(record: &Record, segmentation: &'a Segmentation) -> Option<(&'a Segment, Option<&'a Segment>)> {
+    let force = record.force();
+    let (low, high) = force.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
+    let segments = &segmentation.segments;
+    let rises = |segment: &Segment| {
+        let part = &force[segment.start.saturating_sub(1)..segment.end];
+        let top = part.iter().fold(f64::MIN, |most, f| most.max(*f));
+        top - part[0] > (8.0 * noise(part)).max(0.005 * (high - low))
+    };
+    let index = segments.iter().position(|s| s.phase == Phase::Loading && rises(s))?;
+    let hold = segments.get(index + 1).filter(|next| next.phase == Phase::Hold);
+    Some((&segments[index], hold))
 }
 
 fn automatic(
     record: &Record,
     displacement: &[f64],
     segmentation: &Segmentation,
-    shape: Option<Shape>,
+    body: Option<(Shape, Sides)>,
 ) -> Option<ContactPoint> {
-    let ramp = segmentation.segments.iter().find(|segment| segment.phase == Phase::Loading)?;
+    let (ramp, hold) = first_rise(record, segmentation)?;
     let force = record.force();
     // The sample before the ramp is its foot.
     let foot = ramp.start.saturating_sub(1);
-    let rest = foot + 1;
-    let top = (foot..ramp.end).max_by(|a, b| force[*a].total_cmp(&force[*b]))?;
-    let rise = force[top] - force[foot];
-    let deviation = noise(&force[..ramp.end]);
-    let base_from_rest = (rest >= 5).then(|| median(&mut force[..rest].to_vec()));
-    let base = base_from_rest.unwrap_or(force[foot]);
-    let threshold = (5.0 * deviation).max(0.005 * rise);
-    let lifted = |i: &usize| (*i..(*i + 3).min(ramp.end)).all(|j| force[j] - base > threshold);
-    let leaves = (foot..top).find(lifted)?;
-    let travel = displacement[top] - displacement[foot];
-    let air = displacement[leaves] - displacement[foot];
-    if travel <= 0.0 || air <= AIR * travel {
+    let has_rest = foot + 1 >= BASELINE;
+    // The rest right before the ramp says where the jaw stood better than its last sample alone.
+    let stood = segmentation.segments.iter().find(|s| s.end == ramp.start && s.len() >= BASELINE);
+    let from = stood.map_or(displacement[foot], |s| median(&mut displacement[s.start..s.end].to_vec()));
+    let travel = displacement[ramp.end - 1] - from;
+    if travel <= 0.0 {
+        return None;
+    }
+    let touch = hold
+        .and_then(|hold| LoadingCurve::of(record, displacement, ramp, hold, body))
+        .and_then(|curve| curve.touch(from, travel))
+        .filter(|touch| touch.displacement - from > (SURE * touch.error).max(AIR * travel))
+        .filter(|touch| touch.displacement < displacement[ramp.end - 1])
+        .filter(|touch| is_flat(force, displacement, foot, touch, ramp));
+    let Some(touch) = touch else {
         return Some(ContactPoint {
             sample: Some(foot),
             tare: Tare {
-                force: base_from_rest.unwrap_or(0.0),
-                displacement: displacement[foot],
+                force: if has_rest { median(&mut force[..=foot].to_vec()) } else { 0.0 },
+                displacement: from,
             },
             displacement_error: None,
             air_travel: 0.0,
         });
-    }
-    let base = median(&mut force[..leaves].to_vec());
-    let power = if matches!(shape, Some(Shape::Ball { .. })) { 0.5 } else { 1.0 };
-    let rising: Vec<(f64, f64)> = (leaves..=top)
-        .take_while(|i| *i < leaves + 4 || force[*i] - base < 0.25 * rise)
-        .map(|i| (displacement[i], (force[i] - base).max(0.0).powf(power)))
-        .collect();
-    let (zero, error) = prolonged_to_zero(&rising).unwrap_or((displacement[leaves], 0.0));
-    let touch = zero.clamp(displacement[foot], displacement[leaves]);
+    };
+    let clear = first_beyond(displacement, foot, ramp, 0.5 * (from + touch.displacement));
     Some(ContactPoint {
-        sample: (foot..ramp.end).find(|i| displacement[*i] >= touch),
+        sample: Some(first_beyond(displacement, foot, ramp, touch.displacement)),
         tare: Tare {
-            force: base,
-            displacement: touch,
+            force: if clear >= BASELINE { median(&mut force[..clear].to_vec()) } else { touch.base },
+            displacement: touch.displacement,
         },
-        displacement_error: Some(error),
-        air_travel: touch - displacement[foot],
+        displacement_error: Some(touch.error),
+        air_travel: touch.displacement - from,
     })
 }
 
-/// Where the straight line through the points meets zero, with its standard error.
-fn prolonged_to_zero(points: &[(f64, f64)]) -> Option<(f64, f64)> {
-    let count = points.len() as f64;
-    if points.len() < 3 {
-        return None;
+fn first_beyond(displacement: &[f64], foot: usize, ramp: &Segment, level: f64) -> usize {
+    (foot..ramp.end).find(|i| displacement[*i] >= level).unwrap_or(ramp.end - 1)
+}
+
+/// Whether the force keeps its level over the travel before `touch`: its halves differ by no more than their noise allows.
+fn is_flat(force: &[f64], displacement: &[f64], foot: usize, touch: &Touch, ramp: &Segment) -> bool {
+    let until = first_beyond(displacement, foot, ramp, touch.displacement - touch.error);
+    let air = &force[foot..until];
+    if air.len() < 4 {
+        return air.len() >= 2;
     }
-    let (mx, my) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / count, y + p.1 / count));
-    let (xx, xy) = points
-        .iter()
-        .fold((0.0, 0.0), |(xx, xy), p| (xx + (p.0 - mx).powi(2), xy + (p.0 - mx) * (p.1 - my)));
-    let slope = xy / xx;
-    if !(slope.is_finite() && slope > 0.0) {
-        return None;
-    }
-    let zero = mx - my / slope;
-    let square: f64 = points.iter().map(|p| (p.1 - my - slope * (p.0 - mx)).powi(2)).sum();
-    let error = (square / (count - 2.0) * (1.0 / count + (zero - mx).powi(2) / xx)).sqrt() / slope;
-    Some((zero, error))
+    let (first, second) = air.split_at(air.len() / 2);
+    let allowed = 4.0 * touch.noise * (4.0 / air.len() as f64).sqrt();
+    (mean(second) - mean(first)).abs() <= allowed.max(0.01 * touch.rise)
 }

@@ -150,6 +150,13 @@ fn candidates(time: &[f64], values: &[f64], runs: &[(usize, usize)], settings: &
     // Runs on one level with nothing but noise between are one; what the jaw hardly stays at is part of a ramp.
     let mut wide: Vec<((usize, usize), Level)> = Vec::new();
     for run in runs {
+        // Noise cuts a long standstill into thousands of runs; those inside the level that one of them grew to are it.
+        if let Some((whole, last)) = wide.last_mut()
+            && run.1 <= last.end
+        {
+            whole.1 = run.1;
+            continue;
+        }
         let level = grown(values, *run, limits.tolerance);
         match wide.last_mut() {
             Some((whole, last)) if level.start <= last.end && (level.value - last.value).abs() <= limits.tolerance => {
@@ -158,6 +165,9 @@ fn candidates(time: &[f64], values: &[f64], runs: &[(usize, usize)], settings: &
             }
             _ => wide.push((*run, level)),
         }
+    }
+    for (whole, level) in &mut wide {
+        *level = grown(values, *whole, limits.tolerance);
     }
     wide.retain(|(_, level)| far(time, values, *level) > SHORTEST * limits.tolerance);
     (0..wide.len())
