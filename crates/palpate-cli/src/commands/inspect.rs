@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use palpate::record::Record;
-use palpate::segment::{SegmentOptions, find_contact, find_phases};
+use palpate::segment::{SegmentOptions, find_contact_of, find_phases};
 use palpate_files::record_file::{RecordFile, Role};
 use palpate_files::text::{self, Layout, LayoutOptions};
 use palpate_report::number::significant;
@@ -150,9 +150,9 @@ fn phases(
     if dropouts > 0 {
         let _ = writeln!(out, "\n{dropouts} rows of the displacement stray alone (dropouts)");
     }
-    let shape = test.and_then(|test| test.geometry).map(|geometry| geometry.shape);
+    let body = test.and_then(|test| test.geometry).map(|geometry| (geometry.shape, geometry.sides));
     let choice = test.map(|test| test.touch).unwrap_or_default();
-    let contact = find_contact(&record, &segmentation, shape, choice);
+    let contact = find_contact_of(&record, &segmentation, body, choice);
     if contact.air_travel > 0.0 {
         let _ = writeln!(
             out,
