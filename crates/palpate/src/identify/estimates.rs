@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::separable::{Solution, Termination, Work};
 use crate::latency::decay;
+use crate::laws::ExponentChoice;
 use crate::statistics::{coverage_factor, effective_count, lag_one_correlation};
 
 /// In which plane a law was fitted.
@@ -14,16 +15,6 @@ pub enum Domain {
     Time,
     /// Equation (10) against strain rate over strain, as the paper does; biased by noise in both.
     Rate,
-}
-
-/// Whether the exponent was given or found.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ExponentChoice {
-    /// Held at this value.
-    Fixed(f64),
-    /// Found with the other numbers.
-    Free,
 }
 
 /// A number with its uncertainty.
@@ -143,6 +134,18 @@ impl Uncertainty {
             factor: coverage_factor(confidence, (effective - parameters as f64).max(1.0)) * widening,
             correlation,
         }
+    }
+
+    /// An estimate of `value` with this gradient (of ln value on the logarithmic scale) by numbers of this covariance.
+    pub(super) fn of(&self, value: f64, gradient: &[f64], covariance: &[Vec<f64>], scale: Scale) -> Estimate {
+        let size = gradient.len();
+        let sum: f64 = (0..size)
+            .map(|i| (0..size).map(|j| gradient[i] * covariance[i][j] * gradient[j]).sum::<f64>())
+            .sum();
+        if sum == 0.0 {
+            return Estimate::fixed(value);
+        }
+        self.estimate(value, sum / self.variance, scale)
     }
 
     /// An estimate of `value` whose natural scale has variance `inverse_normal` × s².

@@ -9,27 +9,50 @@
 //! |---|---|---|
 //! | `separable.rs` | the engine: separable least squares with bounds, covariance and a reason to end | |
 //! | `linear_algebra.rs` | Cholesky for its small matrices | |
-//! | `coarse.rs` | the exhaustive coarse search | |
-//! | `time_domain.rs` | the closed form fitted to a signal | (4), (5) |
+//! | `bounded.rs` | linear least squares with bounds | |
+//! | `samples.rs`, `law_options.rs` | what is fitted, and what may be asked | |
+//! | `build.rs`, `model.rs` | law, samples and options made ready in the units of the fit | |
+//! | `condensed.rs` | a hold condensed to a few dozen nodes | |
+//! | `starts.rs` | the exhaustive coarse search | |
+//! | `search.rs` | from a model to the global optimum | |
+//! | `robust.rs` | outliers made to count less | |
+//! | `law_fit.rs`, `derived.rs` | any law fitted, its numbers and those that follow from them | |
+//! | `time_domain.rs` | the latency law fitted to a signal | (4), (5) |
 //! | `rate_domain.rs` | strain rate fitted against strain, as the paper does | (9), (10) |
 //! | `estimates.rs` | estimates, standard errors, intervals | |
 //! | `selection.rs` | the lowest order that fits best, with its evidence | |
 
-mod coarse;
+mod bounded;
+mod build;
+mod condensed;
+mod derived;
 mod estimates;
+mod law_fit;
+mod law_options;
 mod linear_algebra;
+mod model;
 mod rate_domain;
+mod robust;
+mod samples;
+mod search;
 mod selection;
 mod separable;
+mod starts;
 mod time_domain;
 
-pub use estimates::{Domain, Estimate, ExponentChoice, LatencyFit, PARAMETERS};
+pub use crate::laws::ExponentChoice;
+pub use estimates::{Domain, Estimate, LatencyFit, PARAMETERS};
+pub use law_fit::{LawFit, LawNumber, NumberUnit, fit_law};
+pub use law_options::{ConstantChoice, LawOptions, Loss, SampleChoice};
 pub use rate_domain::fit_rates;
+pub use samples::Samples;
 pub use selection::{Candidate, OrderSelection, select_order};
 pub use separable::{Termination, Work};
 pub use time_domain::fit_hold;
 
 use serde::{Deserialize, Serialize};
+
+use crate::laws::{Law, Response};
 
 /// What may be asked of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -86,6 +109,48 @@ pub enum FitError {
         needed: usize,
         /// Samples found.
         found: usize,
+    },
+    /// A standard deviation that is none.
+    #[error("the standard deviation of sample {index} must be above 0, found {found}")]
+    Deviation {
+        /// Which sample.
+        index: usize,
+        /// What was given.
+        found: f64,
+    },
+    /// A law that says nothing about what was measured.
+    #[error("the law {law} has no form for {}", match response { Response::Relaxation => "relaxation", Response::Creep => "creep" })]
+    NoForm {
+        /// The law.
+        law: Law,
+        /// What was measured.
+        response: Response,
+    },
+    /// An option for a number that the law does not have.
+    #[error("the law has no number {name:?}; it has {known}")]
+    UnknownNumber {
+        /// What was given.
+        name: String,
+        /// Its numbers.
+        known: String,
+    },
+    /// A number held at a value it cannot have.
+    #[error("{name} cannot be held at {found}")]
+    FixedNumber {
+        /// Which.
+        name: String,
+        /// What was given.
+        found: f64,
+    },
+    /// Bounds that leave nothing between them.
+    #[error("the bounds of {name} must rise and leave room for what a hold can show, found {low} to {high}")]
+    Bounds {
+        /// Which number.
+        name: String,
+        /// Lower bound.
+        low: f64,
+        /// Upper bound.
+        high: f64,
     },
     /// NaN or infinity.
     #[error("sample {index} is not a finite number")]

@@ -1,8 +1,9 @@
 //! Strain rate fitted against strain, equation (10): the paper's way.
 
-use super::estimates::{Domain, Estimate, ExponentChoice, LatencyFit, Scale, Uncertainty, variance_of};
-use super::separable::{Refined, Shapes, Solution, Termination, Work, polished, refine};
+use super::estimates::{Domain, Estimate, LatencyFit, Scale, Uncertainty, variance_of};
+use super::separable::{Ending, Refined, Shapes, Solution, Target, Termination, Work, polished, refine};
 use super::{FitError, FitOptions};
+use crate::laws::ExponentChoice;
 
 /// Fits ε̇ = −v sgn(x) |x|ⁿ, x = ε − ε_e, to strain rates (1/s) over strains: equations (9) and (10).
 ///
@@ -40,16 +41,20 @@ pub fn fit_rates(
         exponents: options.exponent_range,
     };
     let mut work = Work::default();
+    let target = Target {
+        values: &scaled.rates,
+        roots: None,
+    };
     let mut best: Option<Refined> = None;
     for start in shapes.starts(&scaled.rates, &mut work) {
-        let refined = refine(&shapes, &scaled.rates, &start, options.most_iterations, &mut work);
+        let refined = refine(&shapes, target, &start, Ending::tight(options.most_iterations), &mut work);
         let better = best.as_ref().is_none_or(|best| refined.square() < best.square());
         // A negative coefficient would run away from equilibrium.
         if refined.linear()[0] > 0.0 && better {
             best = Some(refined);
         }
     }
-    let solution = polished(&shapes, &scaled.rates, best.ok_or(FitError::NoDecay)?, &mut work);
+    let solution = polished(&shapes, target, best.ok_or(FitError::NoDecay)?, &mut work);
     Ok(scaled.fit(strains, &solution, choice, options, work))
 }
 

@@ -7,6 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::bounded::{BoundedProblem, BoundedSolver, Held};
 use super::linear_algebra::Cholesky;
 use crate::statistics::dot;
 
@@ -20,6 +21,10 @@ pub(super) trait Shapes {
     fn bounds(&self, index: usize) -> (f64, f64);
     /// What it means when nonlinear number `index` ends at a bound.
     fn at_bound(&self, index: usize) -> Termination;
+    /// Bounds of the linear numbers; none at all if empty.
+    fn linear_bounds(&self) -> &[(f64, f64)] {
+        &[]
+    }
     /// Fills the columns at `theta` and the derivative of column `column_of(p)` by each number p.
     fn fill(&self, theta: &[f64], columns: &mut [Vec<f64>], derivatives: &mut [Vec<f64>]);
 }
@@ -36,6 +41,8 @@ pub enum Termination {
     ExponentAtBound,
     /// The optimum lies at the edge of the range of the equilibrium strain (rate domain).
     EquilibriumAtBound,
+    /// An amplitude or the constant lies at a bound that was asked for; the others are the best beside it.
+    AmplitudeAtBound,
     /// Two numbers cannot be told apart by these data.
     Singular,
     /// The allowed number of steps was used up.
@@ -57,6 +64,8 @@ pub struct Work {
     pub grid_points: u64,
     /// Starts refined.
     pub starts: u64,
+    /// Evaluations of the columns over the condensed samples.
+    pub condensed: u64,
     /// Evaluations of the columns over all samples.
     pub evaluations: u64,
     /// Accepted steps.
@@ -70,9 +79,20 @@ pub(super) struct Solution {
     pub(super) nonlinear: Vec<f64>,
     pub(super) residuals: Vec<f64>,
     pub(super) residual_square: f64,
+    /// Columns and derivatives there, times the roots of the weights.
+    pub(super) columns: Vec<Vec<f64>>,
+    pub(super) derivatives: Vec<Vec<f64>>,
     /// (JᵀJ)⁻¹ over linear, then nonlinear numbers, row-major; `None` if singular.
     pub(super) inverse_normal: Option<Vec<f64>>,
     pub(super) termination: Termination,
+}
+
+/// What is fitted: values, and the square roots of their weights if they differ.
+#[derive(Clone, Copy)]
+pub(super) struct Target<'a> {
+    /// Values, times `roots`.
+    pub(super) values: &'a [f64],
+    pub(super) roots: Option<&'a [f64]>,
 }
 
 /// State of the model at one θ.
@@ -84,6 +104,8 @@ struct Point {
     residuals: Vec<f64>,
     /// Products of the columns with each other, row-major.
     gram: Vec<f64>,
+    /// Linear numbers that lie at a bound.
+    held: Vec<bool>,
     square: f64,
     singular: bool,
 }
@@ -97,15 +119,24 @@ impl Point {
             linear: vec![0.0; shapes.columns()],
             residuals: vec![0.0; samples],
             gram: vec![0.0; shapes.columns() * shapes.columns()],
+            held: vec![false; shapes.columns()],
             square: f64::INFINITY,
             singular: false,
         }
     }
 
     /// Solves for the linear numbers at `theta` and forms the residuals.
-    fn evaluate(&mut self, shapes: &impl Shapes, theta: &[f64], values: &[f64]) {
+    fn evaluate(&mut self, shapes: &impl Shapes, theta: &[f64], target: Target<'_>) {
+        let values = target.values;
         self.theta.copy_from_slice(theta);
         shapes.fill(theta, &mut self.columns, &mut self.derivatives);
+        if let Some(roots) = target.roots {
+            for column in self.columns.iter_mut().chain(&mut self.derivatives) {
+                for (entry, root) in column.iter_mut().zip(roots) {
+                    *entry *= root;
+                }
+            }
+        }
         let size = self.columns.len();
         for i in 0..size {
             for j in 0..=i {
@@ -122,11 +153,13 @@ impl Point {
         match factor {
             Some(factor) => {
                 factor.solve(&mut self.linear);
+                self.keep_bounds(shapes.linear_bounds(), values);
                 self.form_residuals(values);
                 self.square = dot(&self.residuals, &self.residuals);
                 // A round of refinement recovers what squaring the condition number lost. With many samples noise
                 // would drown it, unless next to nothing is left over.
-                if values.len() <= FEW || self.square < 1e-12 * dot(values, values) {
+                let worth = values.len() <= FEW || self.square < 1e-12 * dot(values, values);
+                if worth && !self.held.contains(&true) {
                     let mut correction: Vec<f64> = self.columns.iter().map(|c| dot(c, &self.residuals)).collect();
                     factor.solve(&mut correction);
                     for (value, change) in self.linear.iter_mut().zip(correction) {
@@ -143,6 +176,32 @@ impl Point {
         }
         if !self.square.is_finite() {
             self.square = f64::INFINITY;
+        }
+    }
+
+    /// Where the free solution leaves its bounds, the best one inside them.
+    fn keep_bounds(&mut self, bounds: &[(f64, f64)], values: &[f64]) {
+        self.held.fill(false);
+        let inside = |(value, (low, high)): (&f64, &(f64, f64))| low <= value && value <= high;
+        if self.linear.iter().zip(bounds).all(inside) {
+            return;
+        }
+        let right: Vec<f64> = self.columns.iter().map(|column| dot(column, values)).collect();
+        let (lower, upper): (Vec<f64>, Vec<f64>) = bounds.iter().copied().unzip();
+        let problem = BoundedProblem {
+            gram: &self.gram,
+            right: &right,
+            lower: &lower,
+            upper: &upper,
+        };
+        let mut solver = BoundedSolver::new(right.len());
+        if solver.solve(&problem).is_some() {
+            self.linear.copy_from_slice(solver.solution());
+            for (held, end) in self.held.iter_mut().zip(solver.held()) {
+                *held = *end != Held::Free;
+            }
+        } else {
+            self.singular = true;
         }
     }
 
@@ -191,8 +250,24 @@ impl Point {
 /// Up to so many samples the last digit costs nothing.
 const FEW: usize = 256;
 
-/// Relative fall of the residual square below which a step counts as none.
-const SMALLEST_GAIN: f64 = 1e-14;
+/// How a local search ends.
+#[derive(Clone, Copy)]
+pub(super) struct Ending {
+    /// Relative fall of the residual square below which a step counts as none.
+    pub(super) gain: f64,
+    /// Steps after which it ends short.
+    pub(super) most_iterations: usize,
+}
+
+impl Ending {
+    /// As far as double precision goes.
+    pub(super) fn tight(most_iterations: usize) -> Self {
+        Self {
+            gain: 1e-14,
+            most_iterations,
+        }
+    }
+}
 
 /// Where a refinement ended.
 pub(super) struct Refined {
@@ -208,6 +283,11 @@ impl Refined {
         self.point.square
     }
 
+    /// The nonlinear numbers there.
+    pub(super) fn theta(&self) -> &[f64] {
+        &self.point.theta
+    }
+
     /// The linear numbers there.
     pub(super) fn linear(&self) -> &[f64] {
         &self.point.linear
@@ -217,29 +297,30 @@ impl Refined {
 /// Refines θ from `start` to the nearest local optimum inside the bounds.
 pub(super) fn refine(
     shapes: &impl Shapes,
-    values: &[f64],
+    target: Target<'_>,
     start: &[f64],
-    most_iterations: usize,
+    ending: Ending,
     work: &mut Work,
 ) -> Refined {
     let numbers = start.len();
+    let values = target.values;
     let mut here = Point::new(shapes, numbers, values.len());
     let mut trial = Point::new(shapes, numbers, values.len());
-    here.evaluate(shapes, start, values);
+    here.evaluate(shapes, start, target);
     work.evaluations += 1;
     work.starts += 1;
     let mut damping = 1e-4;
     let mut termination = Termination::IterationLimit;
     // The floor under which a fall of the residual is rounding.
     let floor = dot(values, values) * 1e-31;
-    'search: for _ in 0..most_iterations {
+    'search: for _ in 0..ending.most_iterations {
         let Some((hessian, gradient)) = projected(&here, shapes) else {
             termination = Termination::Singular;
             break;
         };
         // What the full Gauss–Newton step promises; less than this is rounding, or far inside the errors.
         let full = stepped(&here.theta, &hessian, &gradient, 0.0, shapes);
-        if promise(&here.theta, &full, &gradient) <= SMALLEST_GAIN * here.square + floor
+        if promise(&here.theta, &full, &gradient) <= ending.gain * here.square + floor
             && distance(&here.theta, &full) < 1e-4
         {
             termination = Termination::Converged;
@@ -252,14 +333,14 @@ pub(super) fn refine(
                 termination = Termination::Converged;
                 break 'search;
             }
-            trial.evaluate(shapes, &theta, values);
+            trial.evaluate(shapes, &theta, target);
             work.evaluations += 1;
             if trial.square < here.square {
                 let gain = here.square - trial.square;
                 std::mem::swap(&mut here, &mut trial);
                 work.iterations += 1;
                 damping = (damping * 0.1).max(1e-14);
-                if gain <= SMALLEST_GAIN * here.square + floor {
+                if gain <= ending.gain * here.square + floor {
                     termination = Termination::Converged;
                     break 'search;
                 }
@@ -280,13 +361,112 @@ pub(super) fn refine(
     }
 }
 
+/// Half the second derivative of the residual square by the nonlinear numbers, the linear ones at their best: differences
+/// of its gradient. `None` where it is not positive definite, or a number lies at a bound.
+pub(super) fn curvature(shapes: &impl Shapes, target: Target<'_>, theta: &[f64], work: &mut Work) -> Option<Vec<f64>> {
+    /// Of the width of bounds; the error of the difference is some 10⁻⁸ of the curvature.
+    const STEP: f64 = 1e-4;
+    let count = theta.len();
+    let mut point = Point::new(shapes, count, target.values.len());
+    let mut hessian = vec![0.0; count * count];
+    for j in 0..count {
+        let (low, high) = shapes.bounds(j);
+        if theta[j] - STEP < low || theta[j] + STEP > high {
+            return None;
+        }
+        for side in [-1.0, 1.0] {
+            let mut beside = theta.to_vec();
+            beside[j] += side * STEP;
+            point.evaluate(shapes, &beside, target);
+            work.evaluations += 1;
+            if point.singular || point.held.contains(&true) {
+                return None;
+            }
+            for (i, entry) in point.gradient(shapes).into_iter().enumerate() {
+                // The gradient points downhill.
+                hessian[i * count + j] -= side * entry / (2.0 * STEP);
+            }
+        }
+    }
+    for i in 0..count {
+        for j in 0..i {
+            let mean = 0.5 * (hessian[i * count + j] + hessian[j * count + i]);
+            hessian[i * count + j] = mean;
+            hessian[j * count + i] = mean;
+        }
+    }
+    Cholesky::new(&hessian, count).map(|_| hessian)
+}
+
+/// Most steps of [`descend`].
+const STEPS: usize = 12;
+
+/// Newton's method from a point near the optimum, with a curvature from elsewhere: the gradient comes from all samples, the
+/// curvature from few. `None` if it does not lead downhill to where the gradient vanishes.
+pub(super) fn descend(
+    shapes: &impl Shapes,
+    target: Target<'_>,
+    theta: &[f64],
+    hessian: &[f64],
+    work: &mut Work,
+) -> Option<Refined> {
+    let mut here = Point::new(shapes, theta.len(), target.values.len());
+    let mut trial = Point::new(shapes, theta.len(), target.values.len());
+    here.evaluate(shapes, theta, target);
+    work.evaluations += 1;
+    work.starts += 1;
+    let floor = dot(target.values, target.values) * 1e-31;
+    let outlook = |point: &Point| {
+        let gradient = point.gradient(shapes);
+        let next = stepped(&point.theta, hessian, &gradient, 0.0, shapes);
+        let gain = promise(&point.theta, &next, &gradient);
+        (next, gain)
+    };
+    let (mut next, mut gain) = outlook(&here);
+    for _ in 0..STEPS {
+        if here.singular || here.held.contains(&true) {
+            return None;
+        }
+        if gain.abs() <= NOTHING * here.square + floor {
+            return Some(Refined {
+                point: here,
+                spare: trial,
+                termination: Termination::Converged,
+            });
+        }
+        trial.evaluate(shapes, &next, target);
+        work.evaluations += 1;
+        work.iterations += 1;
+        let (after, less) = outlook(&trial);
+        // What is left of the gain is rounding once it stops falling far below the residual.
+        let settled = less.abs() > 0.5 * gain.abs() && gain.abs() < 1e-16 * here.square;
+        if less.abs() <= 0.5 * gain.abs() && trial.square <= here.square * (1.0 + 1e-10) + floor {
+            std::mem::swap(&mut here, &mut trial);
+            (next, gain) = (after, less);
+        } else if settled {
+            return Some(Refined {
+                point: here,
+                spare: trial,
+                termination: Termination::Converged,
+            });
+        } else {
+            return None;
+        }
+    }
+    None
+}
+
+/// Share of the residual square that a step may promise at the end of [`descend`]: some 10⁻¹¹ of the errors.
+const NOTHING: f64 = 1e-22;
+
 /// Most undamped steps after the residual has stopped falling.
 const POLISHING: usize = 30;
 
 /// The solution of a refinement, with undamped steps taken from it for as long as they make the gradient smaller.
 ///
 /// The residual is flat to rounding within some 1e-8 of the optimum; the gradient is not, and shows the way further in.
-pub(super) fn polished(shapes: &impl Shapes, values: &[f64], refined: Refined, work: &mut Work) -> Solution {
+pub(super) fn polished(shapes: &impl Shapes, target: Target<'_>, refined: Refined, work: &mut Work) -> Solution {
+    let values = target.values;
     let mut here = refined.point;
     if refined.termination != Termination::Converged {
         return finish(here, shapes, refined.termination);
@@ -309,7 +489,7 @@ pub(super) fn polished(shapes: &impl Shapes, values: &[f64], refined: Refined, w
         if !(gain > enough * here.square && gain < 1e-9 * here.square) {
             break;
         }
-        trial.evaluate(shapes, &next, values);
+        trial.evaluate(shapes, &next, target);
         work.evaluations += 1;
         match outlook(&trial) {
             Some((after, less)) if less < 0.5 * gain && trial.square <= here.square * (1.0 + 1e-10) => {
@@ -340,16 +520,23 @@ fn projected(here: &Point, shapes: &impl Shapes) -> Option<(Vec<f64>, Vec<f64>)>
     let (l, p) = (here.columns.len(), here.theta.len());
     let size = l + p;
     let normal = here.normal(shapes);
-    let block = |rows: usize, columns: usize, from: (usize, usize)| -> Vec<f64> {
-        (0..rows * columns).map(|i| normal[(from.0 + i / columns) * size + from.1 + i % columns]).collect()
-    };
-    let linear = Cholesky::new(&block(l, l, (0, 0)), l)?;
-    let mut hessian = block(p, p, (l, l));
+    // Linear numbers at a bound do not move with θ.
+    let free: Vec<usize> = (0..l).filter(|&i| !here.held[i]).collect();
+    let block: Vec<f64> = free
+        .iter()
+        .flat_map(|i| free.iter().map(move |j| (i, j)))
+        .map(|(i, j)| normal[i * size + j])
+        .collect();
+    let linear = Cholesky::new(&block, free.len())?;
+    let mut hessian: Vec<f64> = (0..p * p).map(|i| normal[(l + i / p) * size + l + i % p]).collect();
+    let mut cross = vec![0.0; free.len()];
     for j in 0..p {
-        let mut cross: Vec<f64> = (0..l).map(|i| normal[i * size + l + j]).collect();
+        for (entry, &i) in cross.iter_mut().zip(&free) {
+            *entry = normal[i * size + l + j];
+        }
         linear.solve(&mut cross);
         for i in 0..p {
-            let imitated: f64 = (0..l).map(|k| normal[k * size + l + i] * cross[k]).sum();
+            let imitated: f64 = free.iter().zip(&cross).map(|(&k, entry)| normal[k * size + l + i] * entry).sum();
             hessian[i * p + j] -= imitated;
         }
     }
@@ -392,8 +579,26 @@ fn stepped(theta: &[f64], hessian: &[f64], gradient: &[f64], damping: f64, shape
 }
 
 fn finish(here: Point, shapes: &impl Shapes, mut termination: Termination) -> Solution {
-    let size = here.columns.len() + here.theta.len();
-    let inverse_normal = Cholesky::new(&here.normal(shapes), size).map(|factor| factor.inverse());
+    let linear = here.columns.len();
+    let size = linear + here.theta.len();
+    let normal = here.normal(shapes);
+    // A number at a bound has no errors, the others have theirs beside it.
+    let free: Vec<usize> = (0..size).filter(|&i| i >= linear || !here.held[i]).collect();
+    let block: Vec<f64> = free
+        .iter()
+        .flat_map(|i| free.iter().map(move |j| (i, j)))
+        .map(|(i, j)| normal[i * size + j])
+        .collect();
+    let inverse_normal = Cholesky::new(&block, free.len()).map(|factor| {
+        let few = factor.inverse();
+        let mut inverse = vec![0.0; size * size];
+        for (a, &i) in free.iter().enumerate() {
+            for (b, &j) in free.iter().enumerate() {
+                inverse[i * size + j] = few[a * free.len() + b];
+            }
+        }
+        inverse
+    });
     if termination == Termination::Converged {
         let at_bound = |(i, value): (usize, &f64)| {
             let (low, high) = shapes.bounds(i);
@@ -403,6 +608,7 @@ fn finish(here: Point, shapes: &impl Shapes, mut termination: Termination) -> So
         match here.theta.iter().enumerate().position(at_bound) {
             Some(index) => termination = shapes.at_bound(index),
             None if inverse_normal.is_none() || here.singular => termination = Termination::Singular,
+            None if here.held.contains(&true) => termination = Termination::AmplitudeAtBound,
             None => {}
         }
     }
@@ -411,6 +617,8 @@ fn finish(here: Point, shapes: &impl Shapes, mut termination: Termination) -> So
         nonlinear: here.theta,
         residual_square: here.square,
         residuals: here.residuals,
+        columns: here.columns,
+        derivatives: here.derivatives,
         inverse_normal,
         termination,
     }

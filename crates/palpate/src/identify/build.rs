@@ -1,0 +1,129 @@
+//! From a law, samples and options to a model in the units of the fit.
+
+use super::model::{Model, Number};
+use super::samples::{Samples, Scaled};
+use super::{ConstantChoice, FitError, LawOptions};
+use crate::laws::{Form, NumberKind};
+
+/// Bounds that bind nothing.
+const FREE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
+/// Checks samples and options against a form, and brings both to the units of the fit.
+pub(super) fn build(form: Form, samples: &Samples<'_>, options: &LawOptions) -> Result<(Model, Scaled), FitError> {
+    let constant = match options.constant {
+        ConstantChoice::AsLaw if form.constant => None,
+        ConstantChoice::Free => None,
+        ConstantChoice::AsLaw => Some(0.0),
+        ConstantChoice::Fixed(value) => Some(value),
+    };
+    let free = form.numbers().iter().filter(|(_, name, kind)| is_free(name, *kind, options)).count();
+    samples.check(free + form.shapes.len() + usize::from(constant.is_none()))?;
+    let scaled = Scaled::new(samples, constant)?;
+    let numbers = numbers(&form, &scaled, options)?;
+    let linear = linear_bounds(&form, constant.is_none(), samples, &scaled, options);
+    let known: Vec<String> = known_names(&form);
+    for name in options.bounds.iter().map(|(name, _)| name).chain(options.fixed.iter().map(|(name, _)| name)) {
+        if !known.contains(name) {
+            return Err(FitError::UnknownNumber {
+                name: name.clone(),
+                known: known.join(", "),
+            });
+        }
+    }
+    Ok((Model::new(form, constant.is_none(), numbers, linear), scaled))
+}
+
+fn is_free(name: &str, kind: NumberKind, options: &LawOptions) -> bool {
+    kind != NumberKind::Reference && !options.fixed.iter().any(|(fixed, _)| fixed == name)
+}
+
+fn known_names(form: &Form) -> Vec<String> {
+    let constant = [form.constant_name().to_owned()];
+    let numbers = form.numbers().into_iter().filter(|(_, _, kind)| *kind != NumberKind::Reference);
+    constant.into_iter().chain(form.amplitude_names()).chain(numbers.map(|(_, name, _)| name)).collect()
+}
+
+fn numbers(form: &Form, scaled: &Scaled, options: &LawOptions) -> Result<Vec<Number>, FitError> {
+    let log_duration = scaled.duration.ln();
+    // A value as the caller writes it, in the units of the fit.
+    let inner = |kind: NumberKind, value: f64| match kind {
+        NumberKind::Pure { .. } => value,
+        NumberKind::Time => log_duration - value.ln(),
+        NumberKind::Rate | NumberKind::Reference => value.ln() + log_duration,
+    };
+    let mut numbers = Vec::new();
+    for (shape, name, kind) in form.numbers() {
+        let widest = match kind {
+            NumberKind::Pure { low, high, .. } => (low, high),
+            _ => scaled.log_rates(),
+        };
+        let mut bounds = widest;
+        if let Some((_, (low, high))) = options.bounds.iter().find(|(bounded, _)| *bounded == name) {
+            let ends = [inner(kind, low.max(0.0)), inner(kind, high.max(0.0))];
+            let pure = matches!(kind, NumberKind::Pure { .. });
+            bounds = (ends[0].min(ends[1]).max(widest.0), ends[0].max(ends[1]).min(widest.1));
+            // An exponent may be sought wherever the caller wants it.
+            if pure {
+                bounds = (low.max(f64::MIN_POSITIVE), *high);
+            }
+            if !(bounds.0 <= bounds.1 && bounds.1.is_finite()) {
+                return Err(FitError::Bounds {
+                    name,
+                    low: *low,
+                    high: *high,
+                });
+            }
+        }
+        let mut fixed = (kind == NumberKind::Reference).then_some(0.0);
+        if let Some((_, value)) = options.fixed.iter().find(|(held, _)| *held == name) {
+            if !(value.is_finite() && *value > 0.0) {
+                return Err(FitError::FixedNumber { name, found: *value });
+            }
+            fixed = Some(inner(kind, *value));
+        }
+        numbers.push(Number {
+            shape,
+            name,
+            kind,
+            bounds,
+            fixed,
+        });
+    }
+    Ok(numbers)
+}
+
+/// Bounds of constant and amplitudes; empty if nothing binds.
+fn linear_bounds(
+    form: &Form,
+    constant: bool,
+    samples: &Samples<'_>,
+    scaled: &Scaled,
+    options: &LawOptions,
+) -> Vec<(f64, f64)> {
+    let bound = |name: &String, offset: f64| {
+        let asked = options.bounds.iter().find(|(bounded, _)| bounded == name);
+        asked.map_or(FREE, |(_, (low, high))| ((low - offset) / scaled.range, (high - offset) / scaled.range))
+    };
+    let mut bounds = Vec::new();
+    if constant {
+        bounds.push(bound(&form.constant_name().to_owned(), scaled.center));
+    }
+    let falls = change(samples) < 0.0;
+    let positive = falls == (form.response == crate::laws::Response::Relaxation);
+    for name in form.amplitude_names() {
+        let (mut low, mut high) = bound(&name, 0.0);
+        if options.one_sign && positive {
+            low = low.max(0.0);
+        } else if options.one_sign {
+            high = high.min(0.0);
+        }
+        bounds.push((low, high));
+    }
+    if bounds.iter().all(|bound| *bound == FREE) { Vec::new() } else { bounds }
+}
+
+/// Whether the signal falls or rises: its late half against its early half.
+pub(super) fn change(samples: &Samples<'_>) -> f64 {
+    let (early, late) = samples.values.split_at(samples.values.len() / 2);
+    crate::statistics::mean(late) - crate::statistics::mean(early)
+}

@@ -1,0 +1,170 @@
+//! A hold condensed to a few dozen nodes that carry nearly all it says.
+
+use super::separable::Target;
+
+/// Relative width in time of the bins; the shape of a law is close to a cubic inside one.
+const WIDTH: f64 = 0.2;
+
+/// Samples gathered in bins that widen with time, each bin replaced by two weighted nodes.
+///
+/// The nodes are those of Gauss's rule for the sample times of the bin: a sum of cubics over the samples equals that over the
+/// nodes, and the values at the nodes are those of the line through the bin's samples. The squared distance of a smooth
+/// curve from all samples is then, to some 10⁻⁶ of itself, the weighted one from the nodes plus the constant `inside`.
+/// Early samples stay as they are.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Condensed {
+    pub(super) times: Vec<f64>,
+    /// Values times `roots`.
+    pub(super) values: Vec<f64>,
+    /// Square roots of the weights.
+    pub(super) roots: Vec<f64>,
+    /// Weighted square of what the lines in the bins leave over.
+    pub(super) inside: f64,
+}
+
+impl Condensed {
+    /// Condenses samples at rising times ≥ 0; `roots` are square roots of weights, `None` for all 1.
+    pub(super) fn new(times: &[f64], values: &[f64], roots: Option<&[f64]>) -> Self {
+        let mut condensed = Self::default();
+        let mut from = 0;
+        while from < times.len() {
+            let end = times[from] * (1.0 + WIDTH);
+            let mut until = from + 1;
+            while until < times.len() && times[until] < end {
+                until += 1;
+            }
+            let range = from..until;
+            condensed.bin(&times[range.clone()], &values[range.clone()], roots.map(|roots| &roots[range]));
+            from = until;
+        }
+        condensed
+    }
+
+    pub(super) fn target(&self) -> Target<'_> {
+        Target {
+            values: &self.values,
+            roots: Some(&self.roots),
+        }
+    }
+
+    fn bin(&mut self, times: &[f64], values: &[f64], roots: Option<&[f64]>) {
+        if times.len() <= 2 {
+            for (i, (&time, &value)) in times.iter().zip(values).enumerate() {
+                self.node(time, value, roots.map_or(1.0, |roots| roots[i]));
+            }
+            return;
+        }
+        let moments = match roots {
+            None => Moments::of(times, values, |_| 1.0),
+            Some(roots) => Moments::of(times, values, |i| roots[i] * roots[i]),
+        };
+        self.inside += moments.inside;
+        if moments.weight == 0.0 {
+            return;
+        }
+        if moments.width == 0.0 {
+            self.node(moments.time, moments.value, moments.weight.sqrt());
+            return;
+        }
+        // Gauss's rule with two nodes: zeros of x² − skewness · x − 1 in units of the spread.
+        let root = (moments.skewness * moments.skewness + 4.0).sqrt();
+        for x in [0.5 * (moments.skewness - root), 0.5 * (moments.skewness + root)] {
+            let weight = moments.weight / (1.0 + x * x);
+            let along = x * moments.width;
+            self.node(moments.time + along, moments.value + moments.slope * along, weight.sqrt());
+        }
+    }
+
+    fn node(&mut self, time: f64, value: f64, root: f64) {
+        if root > 0.0 {
+            self.times.push(time);
+            self.values.push(value * root);
+            self.roots.push(root);
+        }
+    }
+}
+
+/// Weighted moments of the samples of a bin.
+struct Moments {
+    weight: f64,
+    time: f64,
+    value: f64,
+    /// Standard deviation of the times.
+    width: f64,
+    /// Third central moment of the times over `width`³.
+    skewness: f64,
+    /// Slope of the line through the samples.
+    slope: f64,
+    /// Weighted square of the distances from that line.
+    inside: f64,
+}
+
+impl Moments {
+    #[inline(always)]
+    fn of(times: &[f64], values: &[f64], weight: impl Fn(usize) -> f64) -> Self {
+        let (mut w, mut wt, mut wy) = (0.0, 0.0, 0.0);
+        for (i, (t, y)) in times.iter().zip(values).enumerate() {
+            let weight = weight(i);
+            w += weight;
+            wt += weight * t;
+            wy += weight * y;
+        }
+        let (time, value) = if w > 0.0 { (wt / w, wy / w) } else { (0.0, 0.0) };
+        let (mut tt, mut ttt, mut ty, mut yy) = (0.0, 0.0, 0.0, 0.0);
+        for (i, (t, y)) in times.iter().zip(values).enumerate() {
+            let (weight, dt, dy) = (weight(i), t - time, y - value);
+            let square = weight * dt * dt;
+            tt += square;
+            ttt += square * dt;
+            ty += weight * dt * dy;
+            yy += weight * dy * dy;
+        }
+        // A bin whose weight lies on one sample has no width.
+        let wide = tt > 1e-24 * w * time * time;
+        let width = if wide { (tt / w).sqrt() } else { 0.0 };
+        let slope = if wide { ty / tt } else { 0.0 };
+        Self {
+            weight: w,
+            time,
+            value,
+            width,
+            skewness: if wide { ttt / (w * width * width * width) } else { 0.0 },
+            slope,
+            inside: (yy - slope * ty).max(0.0),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(times: &[f64], values: &[f64], roots: &[f64], curve: impl Fn(f64) -> f64) -> f64 {
+        times.iter().zip(values).zip(roots).map(|((t, y), root)| (root * curve(*t) - y).powi(2)).sum()
+    }
+
+    #[test]
+    fn a_condensed_hold_has_the_residual_of_the_whole_one() {
+        let times: Vec<f64> = (0..3000).map(|i| f64::from(i) / 2999.0).collect();
+        let noise = |i: usize| 1e-2 * (1.7 * (i * i) as f64).sin();
+        let values: Vec<f64> = times.iter().enumerate().map(|(i, t)| 1.0 / (1.0 + 9.0 * t) + noise(i)).collect();
+        let roots: Vec<f64> = (0..3000).map(|i| if i % 7 == 3 { 0.0 } else { 1.0 + f64::from(i) / 3e3 }).collect();
+        let rooted: Vec<f64> = values.iter().zip(&roots).map(|(y, root)| y * root).collect();
+        let condensed = Condensed::new(&times, &values, Some(&roots));
+        assert!(condensed.times.len() < 90, "{}", condensed.times.len());
+        for rate in [0.3, 3.0, 30.0] {
+            let curve = |t: f64| 0.1 + 0.8 * (-rate * t).exp();
+            let whole = square(&times, &rooted, &roots, curve);
+            let few = square(&condensed.times, &condensed.values, &condensed.roots, curve) + condensed.inside;
+            assert!((few / whole - 1.0).abs() < 1e-5, "{rate}: {few} {whole}");
+        }
+    }
+
+    #[test]
+    fn few_samples_stay_as_they_are() {
+        let times = [0.0, 0.1, 0.2, 0.5, 1.0];
+        let condensed = Condensed::new(&times, &[5.0, 4.0, 3.0, 2.0, 1.0], None);
+        assert_eq!(condensed.times, times);
+        assert_eq!(condensed.inside, 0.0);
+    }
+}

@@ -1,0 +1,384 @@
+//! Any law fitted to a hold.
+
+use serde::{Deserialize, Serialize};
+
+use super::build::build;
+use super::derived::derived;
+use super::estimates::{Estimate, Scale, Uncertainty};
+use super::model::Model;
+use super::samples::{Samples, Scaled};
+use super::search::search;
+use super::separable::{Solution, Termination, Work};
+use super::{FitError, LawOptions, Loss, SampleChoice};
+use crate::laws::{Law, LawCurve, NumberKind, Response, Term};
+use crate::statistics::effective_count;
+
+/// Unit of a number of a law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NumberUnit {
+    /// That of the signal.
+    Signal,
+    /// s.
+    Second,
+    /// 1/s.
+    PerSecond,
+    /// Unit of the signal per s.
+    SignalPerSecond,
+    /// A pure number.
+    One,
+    /// (Unit of the signal)^(1 − n)/s, of the rate coefficient v; 1/s if the signal is strain.
+    RateCoefficient,
+    /// Unit of the signal per s^α.
+    SignalPerPower,
+}
+
+/// One number of a law with its name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LawNumber {
+    /// Name without unit, such as `equilibrium`, `time_1`, `exponent`.
+    pub name: String,
+    /// Its unit.
+    pub unit: NumberUnit,
+    /// Value, standard error, interval.
+    pub estimate: Estimate,
+}
+
+/// A law fitted to a hold.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LawFit {
+    /// The law.
+    pub law: Law,
+    /// Relaxation or creep.
+    pub response: Response,
+    /// The law with the numbers found: a function of the time since the first sample, in s.
+    pub curve: LawCurve,
+    /// Its numbers: constant, amplitudes, times or rates, pure numbers; then those that follow from them.
+    pub numbers: Vec<LawNumber>,
+    /// Names of the numbers that were searched, in the order of `values` and `covariance`: constant, amplitudes, ln of rates
+    /// (1/s), pure numbers.
+    pub parameters: Vec<String>,
+    /// Their values.
+    pub values: Vec<f64>,
+    /// Their covariance s² (JᵀJ)⁻¹ with s² = RSS/(N − p), for white noise; `None` where the data leave a number open.
+    pub covariance: Option<Vec<Vec<f64>>>,
+    /// Sum of squared residuals, weighted if samples have deviations.
+    pub residual_square: f64,
+    /// Root mean square residual √(RSS/N).
+    pub rmse: f64,
+    /// Correlation of neighbouring residuals.
+    pub residual_correlation: f64,
+    /// Samples fitted.
+    pub samples: usize,
+    /// Time from the first to the last sample, s.
+    pub duration: f64,
+    /// Why it ended.
+    pub termination: Termination,
+    /// What it cost.
+    pub work: Work,
+}
+
+impl LawFit {
+    /// Value of a number by its name.
+    #[must_use]
+    pub fn value(&self, name: &str) -> Option<f64> {
+        self.estimate(name).map(|estimate| estimate.value)
+    }
+
+    /// A number by its name.
+    #[must_use]
+    pub fn estimate(&self, name: &str) -> Option<&Estimate> {
+        self.numbers.iter().find(|number| number.name == name).map(|number| &number.estimate)
+    }
+
+    /// Numbers found from the data.
+    #[must_use]
+    pub fn free_numbers(&self) -> usize {
+        self.parameters.len()
+    }
+
+    /// The signal a time `elapsed` (s) after the first sample.
+    #[must_use]
+    pub fn predict(&self, elapsed: f64) -> f64 {
+        self.curve.at(elapsed)
+    }
+
+    /// Correlations of the numbers in the order of `parameters`.
+    #[must_use]
+    pub fn correlation(&self) -> Option<Vec<Vec<f64>>> {
+        let covariance = self.covariance.as_ref()?;
+        let deviation = |i: usize| covariance[i][i].sqrt();
+        let entry = |i: usize, j: usize| match deviation(i) * deviation(j) {
+            0.0 => 0.0,
+            product => covariance[i][j] / product,
+        };
+        let size = covariance.len();
+        Some((0..size).map(|i| (0..size).map(|j| if i == j { 1.0 } else { entry(i, j) }).collect()).collect())
+    }
+
+    /// Samples that count as independent, given how neighbouring residuals correlate.
+    #[must_use]
+    pub fn effective_samples(&self) -> f64 {
+        effective_count(self.samples, self.residual_correlation)
+    }
+}
+
+/// Fits a law to a hold: no starting values.
+///
+/// For given nonlinear numbers the law is linear in the others, which are solved for (variable projection, Golub and Pereyra
+/// 1973). The nonlinear ones are searched on a coarse grid and refined by damped Gauss–Newton steps, in units of the
+/// hold's own duration and range, so that no choice of units changes the answer. Rates are sought from 10⁻³ per duration to 10³ per first
+/// sample step.
+///
+/// An optimum that lies at the edge of what was searched, or that several numbers reach together, is returned with its
+/// [`Termination`] and without errors; nothing that did not converge has any.
+///
+/// ```
+/// use palpate::identify::{LawOptions, Samples, fit_law};
+/// use palpate::laws::Law;
+/// // 1 + 2 exp(−t/3) + 4 exp(−t/40)
+/// let times: Vec<f64> = (0..400).map(|i| 0.5 * f64::from(i)).collect();
+/// let values: Vec<f64> = times.iter().map(|t| 1.0 + 2.0 * (-t / 3.0).exp() + 4.0 * (-t / 40.0).exp()).collect();
+/// let fit = fit_law(&Samples::new(&times, &values), Law::Prony { terms: 2 }, &LawOptions::default())?;
+/// assert!((fit.value("time_1").unwrap() - 3.0).abs() < 1e-8);
+/// assert!((fit.value("amplitude_2").unwrap() - 4.0).abs() < 1e-8);
+/// # Ok::<(), palpate::identify::FitError>(())
+/// ```
+///
+/// # Errors
+/// [`FitError`] for samples that no law can be fitted to, for a law without a form for the response, and for options that name a number
+/// the law does not have.
+pub fn fit_law(samples: &Samples<'_>, law: Law, options: &LawOptions) -> Result<LawFit, FitError> {
+    options.check()?;
+    let form = law.form(options.response).ok_or(FitError::NoForm {
+        law,
+        response: options.response,
+    })?;
+    let chosen = chosen(samples, options.samples)?;
+    let samples = &chosen.samples(samples);
+    let (model, scaled) = build(form, samples, options)?;
+    let mut work = Work::default();
+    let solution = search(&model, &scaled, options.most_iterations, &mut work).ok_or(FitError::NoDecay)?;
+    let mut fitted = Fitted {
+        model,
+        scaled,
+        solution,
+    };
+    if options.loss != Loss::Squares {
+        fitted.resist(options, &mut work)?;
+    }
+    fitted.arrange();
+    Ok(fitted.report(law, options, work))
+}
+
+/// A model with its samples and its solution, in the units of the fit.
+pub(super) struct Fitted {
+    pub(super) model: Model,
+    pub(super) scaled: Scaled,
+    pub(super) solution: Solution,
+}
+
+impl Fitted {
+    /// Values of the free numbers in the caller's units: constant, amplitudes, ln of rates in 1/s, pure numbers.
+    pub(super) fn values(&self) -> Vec<f64> {
+        let (model, scaled) = (&self.model, &self.scaled);
+        let linear = self.solution.linear.iter().enumerate().map(|(i, value)| {
+            let constant = model.constant && i == 0;
+            value * scaled.range + if constant { scaled.center } else { 0.0 }
+        });
+        let nonlinear = model.free().zip(&self.solution.nonlinear).map(|(number, value)| match number.kind {
+            NumberKind::Pure { .. } => *value,
+            _ => value - scaled.duration.ln(),
+        });
+        linear.chain(nonlinear).collect()
+    }
+
+    /// The law with the numbers found.
+    pub(super) fn curve(&self) -> LawCurve {
+        let (model, values) = (&self.model, self.values());
+        let numbers = self.natural_numbers();
+        let constants = usize::from(model.constant);
+        let constant = if model.constant { values[0] } else { self.scaled.center };
+        let terms = model.form.shapes.iter().enumerate().map(|(shape, kind)| Term {
+            amplitude: values[constants + shape],
+            shape: *kind,
+            numbers: numbers[model.numbers_of(shape)].to_vec(),
+        });
+        LawCurve {
+            response: model.form.response,
+            constant,
+            terms: terms.collect(),
+        }
+    }
+
+    /// All nonlinear numbers, fixed ones too, in the caller's units.
+    pub(super) fn natural_numbers(&self) -> Vec<f64> {
+        let complete = self.model.complete(&self.solution.nonlinear);
+        let natural = |(number, value): (&super::model::Number, f64)| match number.kind {
+            NumberKind::Pure { .. } => value,
+            _ => value - self.scaled.duration.ln(),
+        };
+        self.model.numbers.iter().zip(complete).map(natural).collect()
+    }
+
+    /// Names of the free numbers.
+    pub(super) fn names(&self) -> Vec<String> {
+        let constant = self.model.constant.then(|| self.model.form.constant_name().to_owned());
+        let nonlinear = self.model.free().map(|number| match number.kind {
+            NumberKind::Pure { .. } => number.name.clone(),
+            NumberKind::Time => format!("log_rate{}", number.name.trim_start_matches(|c: char| c != '_')),
+            _ => format!("log_{}", number.name),
+        });
+        constant.into_iter().chain(self.model.form.amplitude_names()).chain(nonlinear).collect()
+    }
+
+    /// Puts exponentials in the order of their times, fastest first.
+    fn arrange(&mut self) {
+        let model = &self.model;
+        let (moving, _) = model.moving();
+        if moving.len() < 2 || model.free().len() != moving.len() {
+            return;
+        }
+        let solution = &mut self.solution;
+        let mut order: Vec<usize> = (0..moving.len()).collect();
+        order.sort_by(|a, b| solution.nonlinear[*b].total_cmp(&solution.nonlinear[*a]));
+        let constants = usize::from(model.constant);
+        let linear = model.linear();
+        let place = |i: usize| if i < constants { i } else { constants + order[i - constants] };
+        let all: Vec<usize> = (0..linear).map(place).chain(order.iter().map(|i| linear + i)).collect();
+        let size = all.len();
+        let entry = |inverse: &[f64], i: usize| inverse[all[i / size] * size + all[i % size]];
+        solution.inverse_normal = solution
+            .inverse_normal
+            .as_ref()
+            .map(|inverse| (0..size * size).map(|i| entry(inverse, i)).collect());
+        solution.linear = (0..linear).map(|i| solution.linear[place(i)]).collect();
+        solution.nonlinear = order.iter().map(|i| solution.nonlinear[*i]).collect();
+        solution.columns = (0..linear).map(|i| solution.columns[place(i)].clone()).collect();
+        solution.derivatives = order.iter().map(|i| solution.derivatives[*i].clone()).collect();
+    }
+
+    fn report(&self, law: Law, options: &LawOptions, work: Work) -> LawFit {
+        let solution = &self.solution;
+        let uncertainty = Uncertainty::new(solution, options.confidence);
+        let known = matches!(solution.termination, Termination::Converged | Termination::AmplitudeAtBound);
+        let inverse = solution.inverse_normal.as_deref().filter(|_| known);
+        let values = self.values();
+        let size = values.len();
+        let linear = self.model.linear();
+        let unit = |i: usize| if i < linear { self.scaled.range } else { 1.0 };
+        let covariance = inverse.map(|inverse| {
+            let entry = |i: usize, j: usize| inverse[i * size + j] * uncertainty.variance * unit(i) * unit(j);
+            (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
+        });
+        let covariance = covariance.filter(|rows: &Vec<Vec<f64>>| rows.iter().flatten().all(|entry| entry.is_finite()));
+        let estimate = |value: f64, gradient: &[f64], scale: Scale| match &covariance {
+            Some(covariance) => uncertainty.of(value, gradient, covariance, scale),
+            None => Estimate::fixed(value),
+        };
+        let mut numbers = self.direct(&estimate);
+        for number in derived(law, self, &values) {
+            numbers.push(LawNumber {
+                name: number.name,
+                unit: number.unit,
+                estimate: estimate(number.value, &number.gradient, number.scale),
+            });
+        }
+        let scale = self.scaled.range;
+        let residual_square = solution.residual_square * scale * scale;
+        let samples = self.scaled.times.len();
+        LawFit {
+            law,
+            response: self.model.form.response,
+            curve: self.curve(),
+            numbers,
+            parameters: self.names(),
+            values,
+            covariance,
+            residual_square,
+            rmse: (residual_square / samples as f64).sqrt(),
+            residual_correlation: uncertainty.correlation,
+            samples,
+            duration: self.scaled.duration,
+            termination: solution.termination,
+            work,
+        }
+    }
+
+    /// The numbers that were searched, and those held, as they are reported: times for ln of rates.
+    fn direct(&self, estimate: &impl Fn(f64, &[f64], Scale) -> Estimate) -> Vec<LawNumber> {
+        let (model, values) = (&self.model, self.values());
+        let row = |i: usize, entry: f64| -> Vec<f64> {
+            (0..values.len()).map(|j| if i == j { entry } else { 0.0 }).collect()
+        };
+        let mut numbers = Vec::new();
+        let constant = model.form.constant_name().to_owned();
+        let names = model.form.amplitude_names();
+        if model.constant {
+            numbers.push((constant, NumberUnit::Signal, estimate(values[0], &row(0, 1.0), Scale::Linear)));
+        } else {
+            numbers.push((constant, NumberUnit::Signal, Estimate::fixed(self.scaled.center)));
+        }
+        for (i, name) in names.into_iter().enumerate() {
+            let at = i + usize::from(model.constant);
+            numbers.push((name, NumberUnit::Signal, estimate(values[at], &row(at, 1.0), Scale::Linear)));
+        }
+        let mut at = model.linear();
+        for (number, value) in model.numbers.iter().zip(self.natural_numbers()) {
+            let (unit, shown, slope) = match number.kind {
+                NumberKind::Pure { .. } => (NumberUnit::One, value, 1.0 / value),
+                NumberKind::Time => (NumberUnit::Second, (-value).exp(), -1.0),
+                NumberKind::Rate => (NumberUnit::PerSecond, value.exp(), 1.0),
+                NumberKind::Reference => continue,
+            };
+            let shown = match number.fixed {
+                Some(_) => Estimate::fixed(shown),
+                None => {
+                    at += 1;
+                    estimate(shown, &row(at - 1, slope), Scale::Log)
+                }
+            };
+            numbers.push((number.name.clone(), unit, shown));
+        }
+        let named = |(name, unit, estimate)| LawNumber { name, unit, estimate };
+        numbers.into_iter().map(named).collect()
+    }
+}
+
+/// Samples that were picked, if not all.
+struct Chosen(Option<[Vec<f64>; 3]>);
+
+impl Chosen {
+    fn samples<'a>(&'a self, all: &Samples<'a>) -> Samples<'a> {
+        match &self.0 {
+            None => *all,
+            Some([times, values, deviations]) => Samples {
+                times,
+                values,
+                deviations: all.deviations.map(|_| deviations.as_slice()),
+            },
+        }
+    }
+}
+
+fn chosen(samples: &Samples<'_>, choice: SampleChoice) -> Result<Chosen, FitError> {
+    let SampleChoice::LogSpaced(count) = choice else {
+        return Ok(Chosen(None));
+    };
+    samples.check(1)?;
+    let times = samples.times;
+    let mut kept = vec![0];
+    let (first, last) = (times[1] - times[0], times[times.len() - 1] - times[0]);
+    for i in 0..count.max(2) {
+        let at = first * (last / first).powf(i as f64 / (count.max(2) - 1) as f64);
+        let after = times.partition_point(|t| t - times[0] < at).min(times.len() - 1);
+        let before =
+            after - usize::from(after > 1 && at - (times[after - 1] - times[0]) < times[after] - times[0] - at);
+        if kept.last().is_some_and(|last| *last < before) {
+            kept.push(before);
+        }
+    }
+    let pick = |column: &[f64]| kept.iter().map(|i| column[*i]).collect::<Vec<f64>>();
+    let deviations = samples.deviations.map_or_else(Vec::new, pick);
+    Ok(Chosen(Some([pick(times), pick(samples.values), deviations])))
+}

@@ -1,0 +1,172 @@
+//! A law made ready for a fit: which numbers are free, and within which bounds.
+
+use super::separable::{Shapes, Termination};
+use crate::laws::{Column, Form, Kernel, NumberKind, Shape};
+
+/// A nonlinear number of the law.
+#[derive(Debug, Clone)]
+pub(super) struct Number {
+    /// Which shape has it.
+    pub(super) shape: usize,
+    /// Its name in results.
+    pub(super) name: String,
+    pub(super) kind: NumberKind,
+    /// Bounds in the units of the fit.
+    pub(super) bounds: (f64, f64),
+    /// Held at this value, in the units of the fit.
+    pub(super) fixed: Option<f64>,
+}
+
+/// A law with some numbers held, some bounded, in the units of the fit (times over the hold's duration).
+#[derive(Debug, Clone)]
+pub(super) struct Model {
+    pub(super) form: Form,
+    /// Whether the constant is one of the linear numbers.
+    pub(super) constant: bool,
+    /// All nonlinear numbers, shape by shape.
+    pub(super) numbers: Vec<Number>,
+    /// Bounds of every linear number.
+    pub(super) linear_bounds: Vec<(f64, f64)>,
+    /// Which of `numbers` are free.
+    free: Vec<usize>,
+    columns: Vec<Column>,
+}
+
+impl Model {
+    pub(super) fn new(form: Form, constant: bool, numbers: Vec<Number>, linear_bounds: Vec<(f64, f64)>) -> Self {
+        let free = (0..numbers.len()).filter(|&i| numbers[i].fixed.is_none()).collect();
+        let columns = form.shapes.iter().map(|shape| Column::of(shape, form.response)).collect();
+        Self {
+            form,
+            constant,
+            numbers,
+            linear_bounds,
+            free,
+            columns,
+        }
+    }
+
+    /// Linear numbers.
+    pub(super) fn linear(&self) -> usize {
+        usize::from(self.constant) + self.form.shapes.len()
+    }
+
+    /// Free nonlinear numbers.
+    pub(super) fn free(&self) -> impl ExactSizeIterator<Item = &Number> {
+        self.free.iter().map(|&i| &self.numbers[i])
+    }
+
+    /// All nonlinear numbers where the free ones have these values.
+    pub(super) fn complete(&self, theta: &[f64]) -> Vec<f64> {
+        let mut all: Vec<f64> = self.numbers.iter().map(|number| number.fixed.unwrap_or(0.0)).collect();
+        for (&i, value) in self.free.iter().zip(theta) {
+            all[i] = *value;
+        }
+        all
+    }
+
+    /// Range of the numbers of a shape among all.
+    pub(super) fn numbers_of(&self, shape: usize) -> std::ops::Range<usize> {
+        let from = self.numbers.iter().position(|number| number.shape == shape).unwrap_or(self.numbers.len());
+        from..from + self.form.shapes[shape].numbers().len()
+    }
+
+    /// One shape as it stands in the signal, at all its numbers.
+    pub(super) fn shape_value(&self, shape: usize, times: &[f64], numbers: &[f64], value: &mut [f64]) {
+        self.form.shapes[shape].value(times, numbers, value);
+        orient(value, self.columns[shape]);
+    }
+
+    /// Shapes that have a free number, and those that have none.
+    pub(super) fn moving(&self) -> (Vec<usize>, Vec<usize>) {
+        (0..self.form.shapes.len()).partition(|&shape| self.free().any(|number| number.shape == shape))
+    }
+
+    /// The model at these times.
+    pub(super) fn at<'a>(&'a self, times: &'a [f64]) -> Sampled<'a> {
+        Sampled { model: self, times }
+    }
+
+    pub(super) fn shape(&self, index: usize) -> Shape {
+        self.form.shapes[index]
+    }
+}
+
+fn orient(values: &mut [f64], column: Column) {
+    if column != (Column { offset: 0.0, sign: 1.0 }) {
+        for value in values {
+            *value = column.offset + column.sign * *value;
+        }
+    }
+}
+
+/// A model at the times of a fit.
+pub(super) struct Sampled<'a> {
+    model: &'a Model,
+    times: &'a [f64],
+}
+
+impl Shapes for Sampled<'_> {
+    fn columns(&self) -> usize {
+        self.model.linear()
+    }
+
+    fn column_of(&self, index: usize) -> usize {
+        usize::from(self.model.constant) + self.model.numbers[self.model.free[index]].shape
+    }
+
+    fn bounds(&self, index: usize) -> (f64, f64) {
+        self.model.numbers[self.model.free[index]].bounds
+    }
+
+    fn linear_bounds(&self) -> &[(f64, f64)] {
+        &self.model.linear_bounds
+    }
+
+    fn at_bound(&self, index: usize) -> Termination {
+        match self.model.numbers[self.model.free[index]].kind {
+            NumberKind::Rate | NumberKind::Time | NumberKind::Reference => Termination::RateAtBound,
+            NumberKind::Pure { .. } => Termination::ExponentAtBound,
+        }
+    }
+
+    fn fill(&self, theta: &[f64], columns: &mut [Vec<f64>], derivatives: &mut [Vec<f64>]) {
+        let model = self.model;
+        let (constant, shapes) = columns.split_at_mut(usize::from(model.constant));
+        for column in constant {
+            column.fill(1.0);
+        }
+        let mut next = 0;
+        for (index, (shape, column)) in model.form.shapes.iter().zip(shapes).enumerate() {
+            let range = model.numbers_of(index);
+            let mut numbers = [0.0; 2];
+            let numbers = &mut numbers[..range.len()];
+            let mut free = 0;
+            for (number, place) in model.numbers[range.clone()].iter().zip(numbers.iter_mut()) {
+                *place = number.fixed.unwrap_or_else(|| {
+                    free += 1;
+                    theta[next + free - 1]
+                });
+            }
+            if free == 0 {
+                shape.value(self.times, numbers, column);
+            } else if free == range.len() {
+                shape.gradient(self.times, numbers, column, &mut derivatives[next..next + free]);
+            } else {
+                // One of two is held: its derivative goes nowhere.
+                let mut all = vec![vec![0.0; self.times.len()]; range.len()];
+                shape.gradient(self.times, numbers, column, &mut all);
+                let kept = model.numbers[range].iter().position(|number| number.fixed.is_none());
+                std::mem::swap(&mut derivatives[next], &mut all[kept.unwrap_or(0)]);
+            }
+            for derivative in &mut derivatives[next..next + free] {
+                let sign = model.columns[index].sign;
+                if sign != 1.0 {
+                    derivative.iter_mut().for_each(|entry| *entry *= sign);
+                }
+            }
+            orient(column, model.columns[index]);
+            next += free;
+        }
+    }
+}

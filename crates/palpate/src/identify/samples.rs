@@ -1,0 +1,160 @@
+//! The samples of a hold, checked and brought to units in which every hold looks alike.
+
+use super::FitError;
+use super::separable::Target;
+
+/// A hold to be fitted: times in s, values in their unit, and how far each may be off.
+///
+/// Times rise strictly; the first is the zero of the law. Standard deviations weigh samples by their inverse square; only
+/// their ratios matter for the estimates, an infinite one leaves its sample out.
+///
+/// ```
+/// use palpate::identify::{Samples, fit_law, LawOptions};
+/// use palpate::laws::Law;
+/// let times: Vec<f64> = (0..50).map(f64::from).collect();
+/// let values: Vec<f64> = times.iter().map(|t| 2.0 + 3.0 * (-t / 8.0).exp()).collect();
+/// let fit = fit_law(&Samples::new(&times, &values), Law::StandardLinearSolid, &LawOptions::default())?;
+/// assert!((fit.value("time").unwrap() - 8.0).abs() < 1e-9);
+/// # Ok::<(), palpate::identify::FitError>(())
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct Samples<'a> {
+    pub(super) times: &'a [f64],
+    pub(super) values: &'a [f64],
+    pub(super) deviations: Option<&'a [f64]>,
+}
+
+impl<'a> Samples<'a> {
+    /// Samples of equal weight.
+    #[must_use]
+    pub fn new(times: &'a [f64], values: &'a [f64]) -> Self {
+        Self {
+            times,
+            values,
+            deviations: None,
+        }
+    }
+
+    /// The same with a standard deviation for each.
+    #[must_use]
+    pub fn with_deviations(self, deviations: &'a [f64]) -> Self {
+        Self {
+            deviations: Some(deviations),
+            ..self
+        }
+    }
+
+    /// Whether a law with so many numbers can be fitted to these samples at all.
+    pub(super) fn check(&self, parameters: usize) -> Result<(), FitError> {
+        if self.times.len() != self.values.len() {
+            return Err(FitError::Lengths {
+                abscissas: self.times.len(),
+                values: self.values.len(),
+            });
+        }
+        if self.deviations.is_some_and(|deviations| deviations.len() != self.times.len()) {
+            return Err(FitError::Lengths {
+                abscissas: self.times.len(),
+                values: self.deviations.map_or(0, <[f64]>::len),
+            });
+        }
+        let deviations = self.deviations.unwrap_or(&[]);
+        if let Some(index) = deviations.iter().position(|deviation| deviation.is_nan() || *deviation <= 0.0) {
+            return Err(FitError::Deviation {
+                index,
+                found: deviations[index],
+            });
+        }
+        let found = match self.deviations {
+            Some(deviations) => deviations.iter().filter(|deviation| deviation.is_finite()).count(),
+            None => self.times.len(),
+        };
+        if found < parameters + 2 {
+            return Err(FitError::TooFewSamples {
+                parameters,
+                needed: parameters + 2,
+                found,
+            });
+        }
+        if let Some(index) = self.times.iter().zip(self.values).position(|(t, y)| !(t.is_finite() && y.is_finite())) {
+            return Err(FitError::NotFinite { index });
+        }
+        match self.times.windows(2).position(|pair| pair[1] <= pair[0]) {
+            Some(before) => Err(FitError::TimeNotRising { index: before + 1 }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A hold in units of its own duration and range.
+#[derive(Debug, Clone)]
+pub(super) struct Scaled {
+    pub(super) times: Vec<f64>,
+    /// (y − center)/range, times `roots`.
+    pub(super) values: Vec<f64>,
+    /// Square roots of the weights, one at the root mean square; `None` if all are alike.
+    pub(super) roots: Option<Vec<f64>>,
+    pub(super) duration: f64,
+    pub(super) center: f64,
+    pub(super) range: f64,
+}
+
+impl Scaled {
+    /// Scales checked samples; `constant` is the constant of the law if it is given.
+    pub(super) fn new(samples: &Samples<'_>, constant: Option<f64>) -> Result<Self, FitError> {
+        let (times, values) = (samples.times, samples.values);
+        let start = times[0];
+        let duration = times[times.len() - 1] - start;
+        let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), y| (low.min(*y), high.max(*y)));
+        if low == high {
+            return Err(FitError::Constant {
+                value: low,
+                samples: values.len(),
+            });
+        }
+        let center = constant.unwrap_or(low + 0.5 * (high - low));
+        let range = if constant.is_some() { (high - center).abs().max((low - center).abs()) } else { high - low };
+        let first = (times[1] - start) / duration;
+        let invertible = |span: f64| span.is_finite() && (1.0 / span).is_finite();
+        if !(invertible(range) && invertible(duration) && first > f64::MIN_POSITIVE * 1e6) {
+            return Err(FitError::OutOfRange);
+        }
+        let (per_duration, per_range) = (1.0 / duration, 1.0 / range);
+        let roots = samples.deviations.map(roots_of);
+        let mut scaled: Vec<f64> = values.iter().map(|y| (y - center) * per_range).collect();
+        if let Some(roots) = &roots {
+            scaled.iter_mut().zip(roots).for_each(|(y, root)| *y *= root);
+        }
+        Ok(Self {
+            times: times.iter().map(|t| (t - start) * per_duration).collect(),
+            values: scaled,
+            roots,
+            duration,
+            center,
+            range,
+        })
+    }
+
+    pub(super) fn target(&self) -> Target<'_> {
+        Target {
+            values: &self.values,
+            roots: self.roots.as_deref(),
+        }
+    }
+
+    /// ln λ, in the units of the fit, from the slowest to the fastest rate that such a hold can show: 10⁻³ per duration to
+    /// 10³ per first sample step.
+    pub(super) fn log_rates(&self) -> (f64, f64) {
+        (1e-3f64.ln(), (1e3 / self.times[1]).ln())
+    }
+}
+
+/// 1/σ over its root mean square, with care for σ near the limits of double precision.
+fn roots_of(deviations: &[f64]) -> Vec<f64> {
+    let least = deviations.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut roots: Vec<f64> = deviations.iter().map(|deviation| least / deviation).collect();
+    let mean_square = roots.iter().map(|root| root * root).sum::<f64>() / roots.len() as f64;
+    let size = mean_square.sqrt();
+    roots.iter_mut().for_each(|root| *root /= size);
+    roots
+}

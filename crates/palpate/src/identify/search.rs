@@ -1,0 +1,107 @@
+//! From a model and samples to the global optimum.
+
+use super::condensed::Condensed;
+use super::model::Model;
+use super::samples::Scaled;
+use super::separable::{Ending, Refined, Solution, Work, curvature, descend, polished, refine};
+use super::starts::starts;
+
+/// Valleys that are refined on condensed samples.
+const VALLEYS: usize = 6;
+
+/// Valleys that are refined on all samples, at most.
+const FINALISTS: usize = 3;
+
+/// Finds the best numbers of a model: a coarse grid and local searches on condensed samples, then the best of them on all.
+pub(super) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, work: &mut Work) -> Option<Solution> {
+    let nodes = condense(scaled);
+    let finalists = finalists(model, &nodes, most_iterations, work);
+    let shapes = model.at(&scaled.times);
+    let mut best: Option<Refined> = None;
+    for theta in finalists {
+        let refined = settle(model, scaled, &nodes, &theta, most_iterations, work);
+        if best.as_ref().is_none_or(|best| refined.square() < best.square()) {
+            best = Some(refined);
+        }
+    }
+    Some(polished(&shapes, scaled.target(), best?, work))
+}
+
+/// From the bottom of a valley of the condensed samples to that of all samples: Newton's method where the valley is smooth.
+fn settle(
+    model: &Model,
+    scaled: &Scaled,
+    nodes: &Condensed,
+    theta: &[f64],
+    most_iterations: usize,
+    work: &mut Work,
+) -> Refined {
+    let shapes = model.at(&scaled.times);
+    let mut aside = Work::default();
+    let curvature = curvature(&model.at(&nodes.times), nodes.target(), theta, &mut aside);
+    work.condensed += aside.evaluations;
+    curvature
+        .and_then(|hessian| descend(&shapes, scaled.target(), theta, &hessian, work))
+        .unwrap_or_else(|| refine(&shapes, scaled.target(), theta, Ending::tight(most_iterations), work))
+}
+
+/// The nodes that stand for scaled samples.
+pub(super) fn condense(scaled: &Scaled) -> Condensed {
+    match &scaled.roots {
+        None => Condensed::new(&scaled.times, &scaled.values, None),
+        Some(roots) => {
+            let bare: Vec<f64> =
+                scaled.values.iter().zip(roots).map(|(y, root)| if *root > 0.0 { y / root } else { 0.0 }).collect();
+            Condensed::new(&scaled.times, &bare, Some(roots))
+        }
+    }
+}
+
+/// The deepest valleys of the condensed problem, deepest first, with every other that is as deep to the accuracy of condensing.
+pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut Work) -> Vec<Vec<f64>> {
+    let shapes = model.at(&nodes.times);
+    let mut aside = Work::default();
+    let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
+    let rough = Ending {
+        gain: ROUGH,
+        most_iterations,
+    };
+    for start in starts(model, nodes, VALLEYS, work) {
+        let refined = refine(&shapes, nodes.target(), &start, rough, &mut aside);
+        found.push((refined.square() + nodes.inside, refined.theta().to_vec()));
+    }
+    work.starts += aside.starts;
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some(limit) = found.first().map(|(least, _)| least * (1.0 + ALIKE) + f64::MIN_POSITIVE) else {
+        return Vec::new();
+    };
+    let mut kept: Vec<Vec<f64>> = Vec::new();
+    for (square, theta) in found {
+        if kept.len() == FINALISTS || (!kept.is_empty() && square > limit) {
+            break;
+        }
+        let theta = bottom(model, nodes, theta, most_iterations, &mut aside);
+        let same = |other: &Vec<f64>| other.iter().zip(&theta).all(|(a, b)| (a - b).abs() < 1e-3);
+        if !kept.iter().any(same) {
+            kept.push(theta);
+        }
+    }
+    work.condensed += aside.evaluations;
+    kept
+}
+
+/// Relative difference of residual squares below which condensed samples cannot say which valley is deeper.
+const ALIKE: f64 = 1e-3;
+
+/// Relative gain at which a valley has been searched well enough to tell it from others.
+const ROUGH: f64 = 1e-5;
+
+/// The very bottom of a valley of the condensed samples.
+fn bottom(model: &Model, nodes: &Condensed, theta: Vec<f64>, most_iterations: usize, aside: &mut Work) -> Vec<f64> {
+    let shapes = model.at(&nodes.times);
+    curvature(&shapes, nodes.target(), &theta, aside)
+        .and_then(|hessian| descend(&shapes, nodes.target(), &theta, &hessian, aside))
+        .unwrap_or_else(|| refine(&shapes, nodes.target(), &theta, Ending::tight(most_iterations), aside))
+        .theta()
+        .to_vec()
+}

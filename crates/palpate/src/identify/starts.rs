@@ -1,0 +1,263 @@
+//! The exhaustive coarse search that makes starting values unnecessary.
+
+use super::condensed::Condensed;
+use super::linear_algebra::Cholesky;
+use super::model::Model;
+use super::separable::Work;
+use crate::laws::{NumberKind, Shape};
+use crate::statistics::dot;
+
+/// Points from which to refine the free numbers of a model, best first: the valleys that a coarse grid shows.
+///
+/// One shape that moves is scanned over its rate, for a list of values of its other number; several exponentials are tried in
+/// all combinations of a grid of rates.
+pub(super) fn starts(model: &Model, nodes: &Condensed, most: usize, work: &mut Work) -> Vec<Vec<f64>> {
+    let (moving, still) = model.moving();
+    let plane = Plane::new(model, &still, nodes);
+    match *moving.as_slice() {
+        [] => vec![Vec::new()],
+        [shape] => plane.scan(model, shape, nodes, most, work),
+        _ => plane.combine(model, &moving, nodes, most, work),
+    }
+}
+
+/// The nodes with all that needs no search, the constant and shapes without free numbers, projected out.
+struct Plane {
+    /// Orthonormal columns that need no search.
+    basis: Vec<Vec<f64>>,
+    /// The values less their part along those.
+    values: Vec<f64>,
+    square: f64,
+}
+
+impl Plane {
+    fn new(model: &Model, still: &[usize], nodes: &Condensed) -> Self {
+        let mut plane = Self {
+            basis: Vec::new(),
+            values: nodes.values.clone(),
+            square: 0.0,
+        };
+        let mut columns = Vec::new();
+        if model.constant {
+            columns.push(nodes.roots.clone());
+        }
+        let all = model.complete(&vec![0.0; model.free().len()]);
+        for &shape in still {
+            let mut column = vec![0.0; nodes.times.len()];
+            model.shape_value(shape, &nodes.times, &all[model.numbers_of(shape)], &mut column);
+            rooted(&mut column, nodes);
+            columns.push(column);
+        }
+        for mut column in columns {
+            let before = dot(&column, &column);
+            plane.project(&mut column);
+            let after = dot(&column, &column);
+            // A column that others imitate adds nothing.
+            if after > 1e-20 * before {
+                let size = after.sqrt();
+                column.iter_mut().for_each(|entry| *entry /= size);
+                plane.basis.push(column);
+            }
+        }
+        let mut values = std::mem::take(&mut plane.values);
+        plane.project(&mut values);
+        plane.square = dot(&values, &values);
+        plane.values = values;
+        plane
+    }
+
+    /// Takes the part along the basis out of a column.
+    fn project(&self, column: &mut [f64]) {
+        for axis in &self.basis {
+            let part = dot(axis, column);
+            for (entry, along) in column.iter_mut().zip(axis) {
+                *entry -= part * along;
+            }
+        }
+    }
+
+    /// What one more column leaves of the residual square.
+    fn residual(&self, column: &[f64]) -> f64 {
+        let square = dot(column, column);
+        let along: f64 = self.basis.iter().map(|axis| dot(axis, column).powi(2)).sum();
+        let spread = square - along;
+        let shared = dot(column, &self.values);
+        // A shape that is flat over the hold explains nothing.
+        if spread <= 1e-14 * square { self.square } else { self.square - shared * shared / spread }
+    }
+
+    /// One shape over a grid of its rate, for each value of its other number.
+    fn scan(&self, model: &Model, shape: usize, nodes: &Condensed, most: usize, work: &mut Work) -> Vec<Vec<f64>> {
+        let range = model.numbers_of(shape);
+        let numbers = &model.numbers[range.clone()];
+        let mut column = vec![0.0; nodes.times.len()];
+        let mut residual = |rate: f64, other: f64| {
+            let theta = [rate, other];
+            model.shape_value(shape, &nodes.times, &theta[..numbers.len()], &mut column);
+            rooted(&mut column, nodes);
+            self.residual(&column)
+        };
+        let others =
+            numbers.get(1).map_or_else(|| vec![0.0], |number| coarse(number.kind, number.bounds, number.fixed));
+        let mut found: Vec<(f64, f64, f64)> = Vec::new();
+        for other in others {
+            let bends = bends(model.shape(shape), other);
+            let grid = rates(numbers[0].bounds, numbers[0].fixed, if bends { 0.1 } else { 1.0 });
+            let residuals: Vec<f64> = grid.iter().map(|rate| residual(*rate, other)).collect();
+            work.grid_points += residuals.len() as u64;
+            for (i, here) in residuals.iter().enumerate() {
+                let below = |j: Option<usize>| j.and_then(|j| residuals.get(j)).is_none_or(|next| here <= next);
+                if below(i.checked_sub(1)) && below(Some(i + 1)) {
+                    let width = if grid.len() > 1 { grid[1] - grid[0] } else { 0.0 };
+                    let (rate, lowest) = bottom(grid[i], *here, width, |rate| residual(rate, other));
+                    found.push((lowest, rate.clamp(numbers[0].bounds.0, numbers[0].bounds.1), other));
+                }
+            }
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.truncate(most);
+        let free = |(_, rate, other): (f64, f64, f64)| {
+            let both = [rate, other];
+            let kept = numbers.iter().zip(both).filter(|(number, _)| number.fixed.is_none());
+            kept.map(|(_, value)| value).collect()
+        };
+        found.into_iter().map(free).collect()
+    }
+
+    /// Several exponentials in all combinations of a grid of rates.
+    fn combine(
+        &self,
+        model: &Model,
+        moving: &[usize],
+        nodes: &Condensed,
+        most: usize,
+        work: &mut Work,
+    ) -> Vec<Vec<f64>> {
+        let bounds = model.numbers[model.numbers_of(moving[0]).start].bounds;
+        let grid = rates(bounds, None, 1.0);
+        let columns: Vec<Vec<f64>> = grid
+            .iter()
+            .map(|rate| {
+                let mut column = vec![0.0; nodes.times.len()];
+                model.shape_value(moving[0], &nodes.times, &[*rate], &mut column);
+                rooted(&mut column, nodes);
+                self.project(&mut column);
+                column
+            })
+            .collect();
+        // Rates at which the shape is flat over the hold, or over before it begins, are of no use beside others.
+        let useful: Vec<usize> = (0..grid.len())
+            .filter(|&i| dot(&columns[i], &columns[i]) > 1e-12 * nodes.times.len() as f64)
+            .collect();
+        let count = useful.len();
+        let gram: Vec<f64> = useful
+            .iter()
+            .flat_map(|&i| useful.iter().map(|&j| dot(&columns[i], &columns[j])).collect::<Vec<_>>())
+            .collect();
+        let right: Vec<f64> = useful.iter().map(|&i| dot(&columns[i], &self.values)).collect();
+        let terms = moving.len();
+        let mut found: Vec<(f64, Vec<usize>)> = Vec::new();
+        let (mut block, mut solution) = (vec![0.0; terms * terms], vec![0.0; terms]);
+        let mut chosen: Vec<usize> = (0..terms).collect();
+        while chosen.last().is_some_and(|last| *last < count) {
+            for (a, &i) in chosen.iter().enumerate() {
+                solution[a] = right[i];
+                for (b, &j) in chosen.iter().enumerate() {
+                    block[a * terms + b] = gram[i * count + j];
+                }
+            }
+            if let Some(factor) = Cholesky::new(&block, terms) {
+                factor.solve(&mut solution);
+                let gain: f64 = chosen.iter().zip(&solution).map(|(&i, amplitude)| right[i] * amplitude).sum();
+                found.push((self.square - gain, chosen.clone()));
+            }
+            work.grid_points += 1;
+            if !advance(&mut chosen, count) {
+                break;
+            }
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut kept: Vec<Vec<usize>> = Vec::new();
+        for (_, rates) in found {
+            // Neighbours lead to the same valley.
+            let near = |other: &Vec<usize>| other.iter().zip(&rates).all(|(a, b)| a.abs_diff(*b) <= 1);
+            if !kept.iter().any(near) {
+                kept.push(rates);
+            }
+            if kept.len() == most {
+                break;
+            }
+        }
+        kept.into_iter().map(|rates| rates.into_iter().rev().map(|i| grid[useful[i]]).collect()).collect()
+    }
+}
+
+/// The next combination of rising indices below `count`; `false` after the last.
+fn advance(chosen: &mut [usize], count: usize) -> bool {
+    let terms = chosen.len();
+    for place in (0..terms).rev() {
+        if chosen[place] + (terms - place) < count {
+            chosen[place] += 1;
+            for later in place + 1..terms {
+                chosen[later] = chosen[later - 1] + 1;
+            }
+            return true;
+        }
+    }
+    false
+}
+
+fn rooted(column: &mut [f64], nodes: &Condensed) {
+    for (entry, root) in column.iter_mut().zip(&nodes.roots) {
+        *entry *= root;
+    }
+}
+
+/// Rates of a coarse search, equally spaced in ln λ.
+fn rates((low, high): (f64, f64), fixed: Option<f64>, step: f64) -> Vec<f64> {
+    if let Some(rate) = fixed {
+        return vec![rate];
+    }
+    let steps = ((high - low) / step).ceil().max(2.0) as usize;
+    (0..=steps).map(|i| low + (high - low) * i as f64 / steps as f64).collect()
+}
+
+/// Values of a pure number that a coarse search tries.
+fn coarse(kind: NumberKind, (low, high): (f64, f64), fixed: Option<f64>) -> Vec<f64> {
+    match (fixed, kind) {
+        (Some(value), _) => vec![value],
+        (None, NumberKind::Pure { coarse, .. }) => {
+            let inside = coarse.iter().copied().filter(|value| low < *value && *value < high);
+            [low].into_iter().chain(inside).chain((high > low).then_some(high)).collect()
+        }
+        (None, _) => vec![low],
+    }
+}
+
+/// Whether the shape ends in finite time, so that the residual has a kink wherever that end passes a sample.
+fn bends(shape: Shape, other: f64) -> bool {
+    match shape {
+        Shape::Latency => other < 1.0,
+        Shape::LatencyWith(exponent) => exponent < 1.0,
+        _ => false,
+    }
+}
+
+/// ln λ at the bottom of a valley found on the grid: the vertex of a parabola through three points, with points ever closer.
+/// Condensed residuals cost next to nothing, and every step saved later costs all samples.
+fn bottom(mut at: f64, mut here: f64, grid: f64, mut residual: impl FnMut(f64) -> f64) -> (f64, f64) {
+    for width in [grid, 0.15 * grid] {
+        let (before, after) = (residual(at - width), residual(at + width));
+        let curvature = before - 2.0 * here + after;
+        if curvature.is_nan() || curvature <= 0.0 {
+            break;
+        }
+        let next = at + width * (0.5 * (before - after) / curvature).clamp(-1.0, 1.0);
+        let lower = residual(next);
+        if lower > here {
+            break;
+        }
+        (at, here) = (next, lower);
+    }
+    (at, here)
+}

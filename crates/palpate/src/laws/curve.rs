@@ -1,0 +1,72 @@
+//! A law with its numbers put in.
+
+use serde::{Deserialize, Serialize};
+
+use super::form::Column;
+use super::kernel::Kernel;
+use super::law::Response;
+use super::shape::Shape;
+
+/// One term of a [`LawCurve`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Term {
+    /// In the unit of the signal.
+    pub amplitude: f64,
+    /// The shape.
+    pub shape: Shape,
+    /// Its numbers: ln of rates in 1/s, pure numbers as they are.
+    pub numbers: Vec<f64>,
+}
+
+/// A law of relaxation or creep with its numbers put in: a function of time.
+///
+/// y(t) = constant + Σ amplitude · shape(t) in relaxation. In creep a shape that decays counts as 1 − shape; in relaxation one that
+/// grows counts negative.
+///
+/// ```
+/// use palpate::laws::{LawCurve, Response, Shape, Term};
+/// // 2 N + 3 N exp(−t/4 s)
+/// let term = Term { amplitude: 3.0, shape: Shape::Exponential, numbers: vec![0.25f64.ln()] };
+/// let curve = LawCurve { response: Response::Relaxation, constant: 2.0, terms: vec![term] };
+/// assert!((curve.at(4.0) - (2.0 + 3.0 * (-1.0f64).exp())).abs() < 1e-14);
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LawCurve {
+    /// Relaxation or creep.
+    pub response: Response,
+    /// What stands beside the terms, in the unit of the signal.
+    pub constant: f64,
+    /// The terms.
+    pub terms: Vec<Term>,
+}
+
+impl LawCurve {
+    /// The signal a time `elapsed` (s) after the start; before it, the value at the start.
+    #[must_use]
+    pub fn at(&self, elapsed: f64) -> f64 {
+        let mut value = [0.0];
+        self.fill(&[elapsed], &mut value);
+        value[0]
+    }
+
+    /// The signal at many times.
+    #[must_use]
+    pub fn values(&self, elapsed: &[f64]) -> Vec<f64> {
+        let mut values = vec![0.0; elapsed.len()];
+        self.fill(elapsed, &mut values);
+        values
+    }
+
+    fn fill(&self, elapsed: &[f64], out: &mut [f64]) {
+        let times: Vec<f64> = elapsed.iter().map(|t| t.max(0.0)).collect();
+        let mut shape = vec![0.0; times.len()];
+        out.fill(self.constant);
+        for term in &self.terms {
+            let column = Column::of(&term.shape, self.response);
+            term.shape.value(&times, &term.numbers, &mut shape);
+            for (out, value) in out.iter_mut().zip(&shape) {
+                *out += term.amplitude * (column.offset + column.sign * value);
+            }
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! What a law is made of: a constant or none, and shapes.
+
+use super::kernel::{Kernel, NumberKind};
+use super::law::Response;
+use super::shape::Shape;
+
+/// Columns of a law, in the order of its linear numbers: the constant if it has one, then the shapes.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Form {
+    /// Relaxation or creep.
+    pub(crate) response: Response,
+    /// Whether the constant is found from the data (else it is 0 unless given).
+    pub(crate) constant: bool,
+    /// Shapes, each with its amplitude.
+    pub(crate) shapes: Vec<Shape>,
+}
+
+/// How a shape stands in the signal: offset + sign × shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Column {
+    pub(crate) offset: f64,
+    pub(crate) sign: f64,
+}
+
+impl Form {
+    pub(super) fn with_constant(response: Response, shapes: Vec<Shape>) -> Self {
+        Self {
+            response,
+            constant: true,
+            shapes,
+        }
+    }
+
+    pub(super) fn without_constant(response: Response, shapes: Vec<Shape>) -> Self {
+        Self {
+            response,
+            constant: false,
+            shapes,
+        }
+    }
+
+    /// What the constant is called: the end of a relaxation that ends, else the start.
+    pub(crate) fn constant_name(&self) -> &'static str {
+        match self.response {
+            Response::Creep => "instantaneous",
+            Response::Relaxation if self.shapes.iter().all(Kernel::decays) => "equilibrium",
+            Response::Relaxation => "start",
+        }
+    }
+
+    /// Names of the amplitudes, numbered where there are several.
+    pub(crate) fn amplitude_names(&self) -> Vec<String> {
+        let name = |shape: &Shape| if *shape == Shape::Straight { "flow" } else { "amplitude" };
+        self.numbered(|shape| vec![name(shape)]).into_iter().map(|(_, name)| name).collect()
+    }
+
+    /// Name, kind and shape of every nonlinear number.
+    pub(crate) fn numbers(&self) -> Vec<(usize, String, NumberKind)> {
+        let names = self.numbered(|shape| shape.numbers().iter().map(|number| number.name).collect());
+        let kinds = self.shapes.iter().flat_map(|shape| shape.numbers().iter().map(|number| number.kind));
+        names.into_iter().zip(kinds).map(|((shape, name), kind)| (shape, name, kind)).collect()
+    }
+
+    /// Names of each shape, with the number of the shape among its like where there are several.
+    fn numbered(&self, names: impl Fn(&Shape) -> Vec<&'static str>) -> Vec<(usize, String)> {
+        let like = |shape: &Shape| self.shapes.iter().filter(|other| *other == shape).count();
+        let mut all = Vec::new();
+        for (index, shape) in self.shapes.iter().enumerate() {
+            let place = self.shapes[..=index].iter().filter(|other| *other == shape).count();
+            for name in names(shape) {
+                let name = if like(shape) > 1 { format!("{name}_{place}") } else { name.to_owned() };
+                all.push((index, name));
+            }
+        }
+        all
+    }
+}
+
+impl Column {
+    /// How a shape stands in a signal that relaxes or creeps.
+    pub(crate) fn of(shape: &Shape, response: Response) -> Self {
+        let (offset, sign) = match (response, shape.decays()) {
+            (Response::Relaxation, true) => (0.0, 1.0),
+            (Response::Relaxation, false) => (0.0, -1.0),
+            (Response::Creep, true) => (1.0, -1.0),
+            (Response::Creep, false) => (0.0, 1.0),
+        };
+        Self { offset, sign }
+    }
+}

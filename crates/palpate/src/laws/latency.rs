@@ -1,0 +1,101 @@
+//! The nonlinear latency law as a law of relaxation and creep.
+//!
+//! y(t) = y_e + Δ φ(t; λ, n),  φ = [1 + (n−1) λt]^(−1/(n−1)): equations (4) and (5) of Tsai, Kao et al.
+//!
+//! | number | unit | range | meaning |
+//! |---|---|---|---|
+//! | equilibrium y_e | of y | any | what the signal tends to |
+//! | amplitude Δ | of y | any, falls if positive | excess at the start |
+//! | relative rate λ = v \|Δ\|ⁿ⁻¹ | 1/s | above 0 | how fast the excess falls at first, per unit of itself |
+//! | exponent n | 1 | 0.2 to 30 | 1: exponential; large: logarithmic |
+//!
+//! Limits: n → 1 is the standard linear solid; n = 2 the hyperbola 1/(1 + λt) that food science writes as Peleg's
+//! t/(k₁ + k₂t) (Peleg 1980), with Δ = 1/k₂ and λ = k₂/k₁; large n the logarithm; without equilibrium a power law.
+
+use serde::{Deserialize, Serialize};
+
+use super::description::Description;
+use super::form::Form;
+use super::kernel::{Kernel, NumberKind, ShapeNumber};
+use super::law::Response;
+use super::shape::Shape;
+use crate::latency::{decay_many, decay_with_gradient_many, decay_with_log_rate_many};
+
+/// Whether the exponent was given or found.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ExponentChoice {
+    /// Held at this value.
+    Fixed(f64),
+    /// Found with the other numbers.
+    Free,
+}
+
+pub(super) const DESCRIPTION: Description = Description {
+    title: "nonlinear latency",
+    equation: "y_e + Δ [1 + (n−1) λt]^(−1/(n−1))",
+    source: "Tsai, Kao et al., equations (2)–(5); n = 1: equation (1); n = 2: Peleg 1980",
+};
+
+pub(super) fn form(exponent: ExponentChoice, response: Response) -> Form {
+    let shape = match exponent {
+        ExponentChoice::Free => Shape::Latency,
+        ExponentChoice::Fixed(n) => Shape::LatencyWith(n),
+    };
+    Form::with_constant(response, vec![shape])
+}
+
+const RATE: ShapeNumber = ShapeNumber {
+    name: "relative_rate",
+    kind: NumberKind::Rate,
+};
+
+/// Exponents of a coarse search.
+const COARSE: [f64; 15] = [0.2, 0.3, 0.6, 1.0, 1.4, 2.0, 2.7, 3.6, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0, 30.0];
+
+/// φ with n found.
+pub(super) struct FreeLatency;
+
+impl Kernel for FreeLatency {
+    fn numbers(&self) -> &'static [ShapeNumber] {
+        const EXPONENT: ShapeNumber = ShapeNumber {
+            name: "exponent",
+            kind: NumberKind::Pure {
+                low: 0.2,
+                high: 30.0,
+                coarse: &COARSE,
+            },
+        };
+        &[RATE, EXPONENT]
+    }
+
+    fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
+        decay_many(times, theta[0].exp(), theta[1], value);
+    }
+
+    fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
+        let [by_rate, by_exponent] = derivatives else {
+            unreachable!("two numbers")
+        };
+        decay_with_gradient_many(times, theta[0].exp(), theta[1], value, by_rate, by_exponent);
+    }
+}
+
+/// φ with n given.
+pub(super) struct FixedLatency {
+    pub(super) exponent: f64,
+}
+
+impl Kernel for FixedLatency {
+    fn numbers(&self) -> &'static [ShapeNumber] {
+        &[RATE]
+    }
+
+    fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
+        decay_many(times, theta[0].exp(), self.exponent, value);
+    }
+
+    fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
+        decay_with_log_rate_many(times, theta[0].exp(), self.exponent, value, &mut derivatives[0]);
+    }
+}

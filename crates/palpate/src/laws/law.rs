@@ -1,0 +1,238 @@
+//! The list of laws and their names.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use super::description::Description;
+use super::form::Form;
+use super::latency::ExponentChoice;
+use super::{
+    burgers, diffusion, fractional_zener, fung, fung_continuous, kelvin_voigt, latency, logarithmic, maxwell, power,
+    prony, spectrum, standard_linear_solid, stretched,
+};
+
+/// What is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Response {
+    /// Force, stress or strain of a contact held at constant displacement.
+    #[default]
+    Relaxation,
+    /// Displacement or strain at constant force, and recovery after release.
+    Creep,
+}
+
+/// A law of relaxation or creep whose numbers are to be found; see the [table of laws](crate::laws).
+///
+/// In text and JSON a law is its name: `latency` (n found), `latency:5`, `prony:2`, `standard-linear-solid`, …
+///
+/// ```
+/// use palpate::laws::{ExponentChoice, Law};
+/// let law: Law = "latency:5".parse()?;
+/// assert_eq!(law, Law::Latency { exponent: ExponentChoice::Fixed(5.0) });
+/// assert_eq!(Law::Prony { terms: 2 }.to_string(), "prony:2");
+/// # Ok::<(), palpate::laws::UnknownLaw>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub enum Law {
+    /// The paper's law, n given or found.
+    Latency {
+        /// Whether n is given.
+        exponent: ExponentChoice,
+    },
+    /// Spring and dashpot in series.
+    Maxwell,
+    /// Spring and dashpot side by side (creep only).
+    KelvinVoigt,
+    /// One exponential and a constant.
+    StandardLinearSolid,
+    /// Maxwell and Kelvin–Voigt in series.
+    Burgers,
+    /// A few exponentials and a constant.
+    Prony {
+        /// How many, from 1 to [`MOST_TERMS`].
+        terms: usize,
+    },
+    /// Many exponentials on a fixed grid of times, of one sign.
+    Spectrum,
+    /// Prony in Fung's numbers (relaxation only).
+    Fung {
+        /// How many, from 1 to [`MOST_TERMS`].
+        terms: usize,
+    },
+    /// Fung's continuous spectrum (relaxation only).
+    FungContinuous,
+    /// Stretched exponential.
+    Stretched,
+    /// Power of time.
+    Power,
+    /// Logarithm of time.
+    Logarithmic,
+    /// Mittag-Leffler function.
+    FractionalZener,
+    /// One-dimensional diffusion.
+    Diffusion,
+}
+
+/// Most terms of a series with free times; more are never told apart by a hold.
+pub const MOST_TERMS: usize = 5;
+
+/// A text that names no law.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("no law is called {found:?}; laws are {}", Law::NAMES.join(", "))]
+pub struct UnknownLaw {
+    /// What was given.
+    pub found: String,
+}
+
+impl Law {
+    /// Names as they are written; N, K stand for numbers.
+    pub const NAMES: [&'static str; 15] = [
+        "latency",
+        "latency:N",
+        "maxwell",
+        "kelvin-voigt",
+        "standard-linear-solid",
+        "burgers",
+        "prony:K",
+        "spectrum",
+        "fung:K",
+        "fung-continuous",
+        "stretched",
+        "power",
+        "logarithmic",
+        "fractional-zener",
+        "diffusion",
+    ];
+
+    /// What the law is, in words.
+    #[must_use]
+    pub fn description(self) -> Description {
+        match self {
+            Self::Latency { .. } => latency::DESCRIPTION,
+            Self::Maxwell => maxwell::DESCRIPTION,
+            Self::KelvinVoigt => kelvin_voigt::DESCRIPTION,
+            Self::StandardLinearSolid => standard_linear_solid::DESCRIPTION,
+            Self::Burgers => burgers::DESCRIPTION,
+            Self::Prony { .. } => prony::DESCRIPTION,
+            Self::Spectrum => spectrum::DESCRIPTION,
+            Self::Fung { .. } => fung::DESCRIPTION,
+            Self::FungContinuous => fung_continuous::DESCRIPTION,
+            Self::Stretched => stretched::DESCRIPTION,
+            Self::Power => power::DESCRIPTION,
+            Self::Logarithmic => logarithmic::DESCRIPTION,
+            Self::FractionalZener => fractional_zener::DESCRIPTION,
+            Self::Diffusion => diffusion::DESCRIPTION,
+        }
+    }
+
+    /// Whether the law has a form for this response.
+    #[must_use]
+    pub fn describes(self, response: Response) -> bool {
+        self == Self::Spectrum || self.form(response).is_some()
+    }
+
+    /// Columns of the law; `None` where it has no form for the response, and for the spectrum, which is fitted another way.
+    pub(crate) fn form(self, response: Response) -> Option<Form> {
+        match self {
+            Self::Latency { exponent } => Some(latency::form(exponent, response)),
+            Self::Maxwell => Some(maxwell::form(response)),
+            Self::KelvinVoigt => kelvin_voigt::form(response),
+            Self::StandardLinearSolid => Some(standard_linear_solid::form(response)),
+            Self::Burgers => Some(burgers::form(response)),
+            Self::Prony { terms } => Some(prony::form(terms, response)),
+            Self::Spectrum => None,
+            Self::Fung { terms } => fung::form(terms, response),
+            Self::FungContinuous => fung_continuous::form(response),
+            Self::Stretched => Some(stretched::form(response)),
+            Self::Power => Some(power::form(response)),
+            Self::Logarithmic => Some(logarithmic::form(response)),
+            Self::FractionalZener => Some(fractional_zener::form(response)),
+            Self::Diffusion => Some(diffusion::form(response)),
+        }
+    }
+}
+
+impl fmt::Display for Law {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = match self {
+            Self::Latency {
+                exponent: ExponentChoice::Free,
+            } => "latency",
+            Self::Latency {
+                exponent: ExponentChoice::Fixed(n),
+            } => return write!(f, "latency:{n}"),
+            Self::Prony { terms } => return write!(f, "prony:{terms}"),
+            Self::Fung { terms } => return write!(f, "fung:{terms}"),
+            Self::Maxwell => "maxwell",
+            Self::KelvinVoigt => "kelvin-voigt",
+            Self::StandardLinearSolid => "standard-linear-solid",
+            Self::Burgers => "burgers",
+            Self::Spectrum => "spectrum",
+            Self::FungContinuous => "fung-continuous",
+            Self::Stretched => "stretched",
+            Self::Power => "power",
+            Self::Logarithmic => "logarithmic",
+            Self::FractionalZener => "fractional-zener",
+            Self::Diffusion => "diffusion",
+        };
+        f.write_str(name)
+    }
+}
+
+impl FromStr for Law {
+    type Err = UnknownLaw;
+
+    /// Reads a name; `sls` and `kww` are understood too.
+    fn from_str(text: &str) -> Result<Self, UnknownLaw> {
+        let unknown = || UnknownLaw { found: text.to_owned() };
+        let terms = |number: &str| match number.parse() {
+            Ok(terms) if (1..=MOST_TERMS).contains(&terms) => Ok(terms),
+            _ => Err(unknown()),
+        };
+        let exponent = |number: &str| match number.parse::<f64>() {
+            Ok(n) if n.is_finite() && n > 0.0 => Ok(ExponentChoice::Fixed(n)),
+            _ => Err(unknown()),
+        };
+        Ok(match text.split_once(':') {
+            Some(("latency", n)) => Self::Latency { exponent: exponent(n)? },
+            Some(("prony", k)) => Self::Prony { terms: terms(k)? },
+            Some(("fung", k)) => Self::Fung { terms: terms(k)? },
+            Some(_) => return Err(unknown()),
+            None => match text {
+                "latency" => Self::Latency {
+                    exponent: ExponentChoice::Free,
+                },
+                "maxwell" => Self::Maxwell,
+                "kelvin-voigt" => Self::KelvinVoigt,
+                "standard-linear-solid" | "sls" => Self::StandardLinearSolid,
+                "burgers" => Self::Burgers,
+                "spectrum" => Self::Spectrum,
+                "fung-continuous" => Self::FungContinuous,
+                "stretched" | "kww" => Self::Stretched,
+                "power" => Self::Power,
+                "logarithmic" => Self::Logarithmic,
+                "fractional-zener" => Self::FractionalZener,
+                "diffusion" => Self::Diffusion,
+                _ => return Err(unknown()),
+            },
+        })
+    }
+}
+
+impl From<Law> for String {
+    fn from(law: Law) -> Self {
+        law.to_string()
+    }
+}
+
+impl TryFrom<String> for Law {
+    type Error = UnknownLaw;
+
+    fn try_from(text: String) -> Result<Self, UnknownLaw> {
+        text.parse()
+    }
+}

@@ -1,0 +1,56 @@
+//! Logarithmic relaxation and creep.
+//!
+//! y(t) = y₀ − Δ ln(1 + λt), in creep y₀ + Δ ln(1 + λt): the limit of the latency law for large n, where (n−1) λ and Δ/(n−1) stay.
+//!
+//! | number | unit | range | meaning |
+//! |---|---|---|---|
+//! | start y₀, or instantaneous y₀ in creep | of y | any | signal at the start |
+//! | amplitude Δ | of y | any | change per e-fold of time |
+//! | time 1/λ | s | above 0 | where the logarithm begins |
+
+use super::description::Description;
+use super::form::Form;
+use super::kernel::{Kernel, NumberKind, ShapeNumber};
+use super::law::Response;
+use super::shape::Shape;
+
+pub(super) const DESCRIPTION: Description = Description {
+    title: "logarithmic",
+    equation: "y₀ − Δ ln(1 + t/t₀)",
+    source: "Guiu and Pratt 1964; Kubát 1965",
+};
+
+pub(super) fn form(response: Response) -> Form {
+    Form::with_constant(response, vec![Shape::Logarithm])
+}
+
+/// ln(1 + λt).
+pub(super) struct Logarithm;
+
+impl Kernel for Logarithm {
+    fn numbers(&self) -> &'static [ShapeNumber] {
+        &[ShapeNumber {
+            name: "time",
+            kind: NumberKind::Time,
+        }]
+    }
+
+    fn decays(&self) -> bool {
+        false
+    }
+
+    fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
+        let rate = theta[0].exp();
+        for (out, t) in value.iter_mut().zip(times) {
+            *out = (rate * t).ln_1p();
+        }
+    }
+
+    fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
+        self.value(times, theta, value);
+        let rate = theta[0].exp();
+        for (out, t) in derivatives[0].iter_mut().zip(times) {
+            *out = rate * t / (1.0 + rate * t);
+        }
+    }
+}

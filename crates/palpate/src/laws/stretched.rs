@@ -1,0 +1,68 @@
+//! The stretched exponential of Kohlrausch, Williams and Watts.
+//!
+//! y(t) = y_e + Δ exp(−(λt)^β), in creep y₀ + Δ (1 − exp(−(λt)^β)).
+//!
+//! | number | unit | range | meaning |
+//! |---|---|---|---|
+//! | equilibrium y_e, or instantaneous y₀ | of y | any | end, or start in creep |
+//! | amplitude Δ | of y | any | what relaxes |
+//! | time τ = 1/λ | s | above 0 | where e⁻¹ of it is left |
+//! | stretching β | 1 | 0.05 to 2 | 1: exponential; smaller: wider |
+
+use super::description::Description;
+use super::form::Form;
+use super::kernel::{Kernel, NumberKind, ShapeNumber};
+use super::law::Response;
+use super::shape::Shape;
+
+pub(super) const DESCRIPTION: Description = Description {
+    title: "stretched exponential",
+    equation: "y_e + Δ exp(−(t/τ)^β)",
+    source: "Kohlrausch 1854; Williams and Watts 1970",
+};
+
+pub(super) fn form(response: Response) -> Form {
+    Form::with_constant(response, vec![Shape::Stretched])
+}
+
+/// exp(−(λt)^β).
+pub(super) struct Stretched;
+
+impl Kernel for Stretched {
+    fn numbers(&self) -> &'static [ShapeNumber] {
+        const COARSE: [f64; 12] = [0.05, 0.1, 0.15, 0.22, 0.3, 0.4, 0.53, 0.7, 0.9, 1.2, 1.6, 2.0];
+        &[
+            ShapeNumber {
+                name: "time",
+                kind: NumberKind::Time,
+            },
+            ShapeNumber {
+                name: "stretching",
+                kind: NumberKind::Pure {
+                    low: 0.05,
+                    high: 2.0,
+                    coarse: &COARSE,
+                },
+            },
+        ]
+    }
+
+    fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
+        for (out, t) in value.iter_mut().zip(times) {
+            *out = (-(theta[0].exp() * t).powf(theta[1])).exp();
+        }
+    }
+
+    fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
+        let [by_rate, by_stretching] = derivatives else {
+            unreachable!("two numbers")
+        };
+        for (i, t) in times.iter().enumerate() {
+            let s = theta[0].exp() * t;
+            let power = s.powf(theta[1]);
+            value[i] = (-power).exp();
+            by_rate[i] = -theta[1] * power * value[i];
+            by_stretching[i] = if s > 0.0 { -power * s.ln() * value[i] } else { 0.0 };
+        }
+    }
+}
