@@ -57,6 +57,7 @@ mod statistics;
 pub mod strain;
 pub mod test_problems;
 pub mod units;
+mod vector;
 
 /// The README's example, compiled and run with the other ones.
 #[cfg(doctest)]

@@ -1,5 +1,6 @@
 //! Small robust statistics that several steps share.
 
+pub(crate) use crate::vector::products::dot;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 /// Median; reorders `values`. NaN for an empty slice.
@@ -74,20 +75,6 @@ pub(crate) fn quantum(values: &[f64]) -> f64 {
         .count();
     let multiples = changes.iter().filter(is_multiple).count();
     if 10 * multiples >= 9 * changes.len() && 5 * bends >= changes.len() { step } else { 0.0 }
-}
-
-/// Σ aᵢ bᵢ with eight running sums, which vector units take side by side.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (a_blocks, a_rest) = a.as_chunks::<8>();
-    let (b_blocks, b_rest) = b.as_chunks::<8>();
-    let mut sums = [0.0; 8];
-    for (x, y) in a_blocks.iter().zip(b_blocks) {
-        for lane in 0..8 {
-            sums[lane] += x[lane] * y[lane];
-        }
-    }
-    let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| x * y).sum();
-    sums.iter().sum::<f64>() + rest
 }
 
 /// Correlation of neighbouring values about zero; 0 for fewer than three or for none at all.

@@ -4,40 +4,32 @@
 //! the speed of identification hangs on. A call of `powf` a sample is slower than NumPy; instead
 //!
 //! - n = 1, 2, 3, 5 use one exponential, division or root a sample,
-//! - any other n uses branch-free logarithm and exponential that the compiler turns into vector code.
+//! - any other n uses a branch-free logarithm and exponential.
 //!
-//! Both agree with the one-at-a-time functions to a few units in the last place.
+//! All columns come from one pass, as vector code of whatever the machine has. Values agree with the one-at-a-time
+//! functions to a few units in the last place.
 
-use super::decay::{SERIES_BELOW, decay, exponent_series};
+use crate::vector::elementary::{Logarithm, exp};
+use crate::vector::fill;
 
-/// Below this |n − 1| the exponential replaces the power: they differ by less than 1e-13 wherever φ is not zero.
-const EXPONENTIAL_WITHIN: f64 = 1e-16;
+/// (n − 1) λt beyond which the logarithm is taken of this.
+const LARGEST: f64 = 1e308;
 
-/// φ(λ tᵢ; n) for every time; arguments as for [`decay`], `out` as long as `times`.
+/// φ(λ tᵢ; n) for every time; arguments as for [`decay`](super::decay), `out` as long as `times`.
 ///
 /// # Panics
 /// If the slices differ in length.
 pub fn decay_many(times: &[f64], rate: f64, exponent: f64, out: &mut [f64]) {
-    out.copy_from_slice(times);
-    decay_in_place(out, rate, exponent);
+    decay_columns(times, rate, exponent, [out]);
 }
 
 /// Replaces every time by φ(λ t; n).
 pub(crate) fn decay_in_place(times: &mut [f64], rate: f64, exponent: f64) {
-    let p = exponent - 1.0;
-    if p.abs() <= EXPONENTIAL_WITHIN {
-        map(times, |t| exp(-rate * t));
-    } else if exponent == 2.0 {
-        map(times, |t| 1.0 / (1.0 + rate * t));
-    } else if exponent == 3.0 {
-        map(times, |t| (1.0 / (1.0 + 2.0 * (rate * t))).sqrt());
-    } else if exponent == 5.0 {
-        map(times, |t| (1.0 / (1.0 + 4.0 * (rate * t))).sqrt().sqrt());
-    } else if p > 0.0 {
-        let inverse = 1.0 / p;
-        map(times, |t| exp(-ln_1p(p * rate * t) * inverse));
-    } else {
-        map(times, |t| decay(rate * t, exponent));
+    let mut copy = [0.0; 256];
+    for part in times.chunks_mut(copy.len()) {
+        let copy = &mut copy[..part.len()];
+        copy.copy_from_slice(part);
+        decay_many(copy, rate, exponent, part);
     }
 }
 
@@ -53,20 +45,7 @@ pub fn decay_with_gradient_many(
     by_log_rate: &mut [f64],
     by_exponent: &mut [f64],
 ) {
-    decay_with_log_rate_many(times, rate, exponent, value, by_log_rate);
-    assert_eq!(times.len(), by_exponent.len(), "one output a time");
-    let p = exponent - 1.0;
-    for ((&t, &phi), out) in times.iter().zip(value.iter()).zip(by_exponent.iter_mut()) {
-        let s = rate * t;
-        let z = p * s;
-        *out = if phi == 0.0 {
-            0.0
-        } else if z.abs() < SERIES_BELOW {
-            phi * s * s * exponent_series(z)
-        } else {
-            phi * ((ln_1p_any(z) - z / (1.0 + z)) / p) / p
-        };
-    }
+    decay_columns(times, rate, exponent, [value, by_log_rate, by_exponent]);
 }
 
 /// φ and ∂φ/∂ln λ for every time.
@@ -74,159 +53,142 @@ pub fn decay_with_gradient_many(
 /// # Panics
 /// If the slices differ in length.
 pub fn decay_with_log_rate_many(times: &[f64], rate: f64, exponent: f64, value: &mut [f64], by_log_rate: &mut [f64]) {
-    assert_eq!(times.len(), value.len(), "one output a time");
-    assert_eq!(times.len(), by_log_rate.len(), "one output a time");
+    decay_columns(times, rate, exponent, [value, by_log_rate]);
+}
+
+/// The first `N` of φ, ∂φ/∂ln λ and ∂φ/∂n; what is not asked for is not computed.
+fn decay_columns<const N: usize>(times: &[f64], rate: f64, exponent: f64, columns: [&mut [f64]; N]) {
+    let p = exponent - 1.0;
+    let inverse = 1.0 / p;
+    // One loop for every kind of root, so that no loop has a branch.
     match exponent {
-        2.0 => by_root(times, rate, 1.0, value, by_log_rate, |r| r),
-        3.0 => by_root(times, rate, 2.0, value, by_log_rate, f64::sqrt),
-        5.0 => by_root(times, rate, 4.0, value, by_log_rate, |r| r.sqrt().sqrt()),
-        _ => {
-            decay_many(times, rate, exponent, value);
-            let p = exponent - 1.0;
-            for ((&t, &phi), slope) in times.iter().zip(value.iter()).zip(by_log_rate.iter_mut()) {
-                let s = rate * t;
-                // φ = 0 only past the finite end (n < 1) or far below the smallest double.
-                *slope = if phi == 0.0 { 0.0 } else { -s * phi / (1.0 + p * s) };
-            }
-        }
+        1.0 => fill(
+            times,
+            columns,
+            #[inline(always)]
+            |t| first(exponential(rate * t)),
+        ),
+        2.0 => fill_by_root(
+            times,
+            rate,
+            p,
+            columns,
+            #[inline(always)]
+            |_, r| r,
+        ),
+        3.0 => fill_by_root(
+            times,
+            rate,
+            p,
+            columns,
+            #[inline(always)]
+            |_, r| r.sqrt(),
+        ),
+        5.0 => fill_by_root(
+            times,
+            rate,
+            p,
+            columns,
+            #[inline(always)]
+            |_, r| r.sqrt().sqrt(),
+        ),
+        _ => fill_by_root(
+            times,
+            rate,
+            p,
+            columns,
+            #[inline(always)]
+            |log, _| exp(-log.value() * inverse),
+        ),
     }
 }
 
-/// φ = root(r) and ∂φ/∂ln λ = −s φ r, both from the one division r = 1/(1 + p s).
+/// n ≠ 1 with the `root` of [`power`].
 #[inline(always)]
-fn by_root(times: &[f64], rate: f64, p: f64, value: &mut [f64], by_log_rate: &mut [f64], root: impl Fn(f64) -> f64) {
-    for ((&t, phi), slope) in times.iter().zip(value.iter_mut()).zip(by_log_rate.iter_mut()) {
-        let s = rate * t;
-        let r = 1.0 / (1.0 + p * s);
-        *phi = root(r);
-        *slope = -s * *phi * r;
-    }
+fn fill_by_root<const N: usize>(
+    times: &[f64],
+    rate: f64,
+    p: f64,
+    columns: [&mut [f64]; N],
+    root: impl Fn(Logarithm, f64) -> f64,
+) {
+    fill(
+        times,
+        columns,
+        #[inline(always)]
+        |t| first(power(rate * t, p, &root)),
+    );
 }
 
-/// Applies `f` in blocks of eight, which the compiler unrolls into vector registers.
 #[inline(always)]
-fn map(values: &mut [f64], f: impl Fn(f64) -> f64) {
-    let (blocks, rest) = values.as_chunks_mut::<8>();
-    for block in blocks {
-        for slot in block {
-            *slot = f(*slot);
-        }
-    }
-    for slot in rest {
-        *slot = f(*slot);
-    }
+fn first<const N: usize>(all: [f64; 3]) -> [f64; N] {
+    std::array::from_fn(|index| all[index])
 }
 
-/// ln(1 + z) for any z > −1.
-fn ln_1p_any(z: f64) -> f64 {
-    if z >= 0.0 { ln_1p(z) } else { z.ln_1p() }
+/// n = 1: φ = e⁻ˢ, ∂φ/∂ln λ = −s φ, ∂φ/∂n = φ s²/2, grouped so that no product overflows.
+#[inline(always)]
+fn exponential(s: f64) -> [f64; 3] {
+    let phi = exp(-s);
+    [phi, -s * phi, 0.5 * (s * phi) * s]
 }
 
-/// ln(1 + z) for z ≥ 0 without a branch: ln of the rounded sum plus the first-order correction for its rounding.
+/// p = n − 1 ≠ 0, z = p s: φ = `root`(ln(1 + z), 1/(1 + z)), ∂φ/∂ln λ = −s φ/(1 + z), and
+/// ∂φ/∂n = φ [ln(1 + z) − z/(1 + z)]/p²; all 0 past the finite end, z ≤ −1.
+///
+/// Near z = 0 the difference in brackets cancels. With q = z/(2 + z) it is 2 artanh(q) − 2q/(1 + q)
+/// = q² [2/(1 + q) + (2 artanh(q) − 2q)/q²], which does not, wherever the logarithm needs no power of two.
 #[inline(always)]
-fn ln_1p(z: f64) -> f64 {
-    let w = 1.0 + z;
-    let lost = z - (w - 1.0);
-    ln(w) + lost / w
-}
-
-/// Natural logarithm of a finite w ≥ 1, no branch: w = 2ᵏ m with m in [√½, √2), then
-/// ln m = 2 artanh((m − 1)/(m + 1)) as an odd series. Relative error below 4e-16.
-#[inline(always)]
-fn ln(w: f64) -> f64 {
-    const LN_2_HIGH: f64 = 0.693_147_180_369_123_8;
-    const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
-    const SQRT_HALF_BITS: u64 = 0x3fe6_a09e_667f_3bcd;
-    const MAGIC: f64 = 6_755_399_441_055_744.0;
-    let bits = w.to_bits();
-    // Distance of the exponent field from that of √½; a mantissa above √2 moves to the next power.
-    let shifted = bits.wrapping_sub(SQRT_HALF_BITS);
-    let k = (shifted >> 52) & 0x7ff;
-    let m = f64::from_bits(bits.wrapping_sub(k << 52));
-    // A small whole number to double without a conversion instruction (AVX2 has none for 64 bits).
-    let k = f64::from_bits(MAGIC.to_bits() | k) - MAGIC;
-    let f = m - 1.0;
-    let q = f / (2.0 + f);
-    let q2 = q * q;
-    // 2 artanh(q) = 2q + 2q³/3 + 2q⁵/5 + …; |q| ≤ 0.1716, so q²² / 23 is below 1e-18.
-    let mut series = 2.0 / 23.0;
-    series = series * q2 + 2.0 / 21.0;
-    series = series * q2 + 2.0 / 19.0;
-    series = series * q2 + 2.0 / 17.0;
-    series = series * q2 + 2.0 / 15.0;
-    series = series * q2 + 2.0 / 13.0;
-    series = series * q2 + 2.0 / 11.0;
-    series = series * q2 + 2.0 / 9.0;
-    series = series * q2 + 2.0 / 7.0;
-    series = series * q2 + 2.0 / 5.0;
-    series = series * q2 + 2.0 / 3.0;
-    let tail = series * q2 * q;
-    k * LN_2_HIGH + (2.0 * q + (tail + k * LN_2_LOW))
-}
-
-/// eˣ for x ≤ 0 without a branch; results below 1e-304 are returned as 0.
-#[inline(always)]
-fn exp(x: f64) -> f64 {
-    const LOWEST: f64 = -700.0;
-    const MAGIC: f64 = 6_755_399_441_055_744.0;
-    const LN_2_HIGH: f64 = 0.693_147_180_369_123_8;
-    const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
-    let clamped = if x < LOWEST { LOWEST } else { x };
-    let shifted = clamped * std::f64::consts::LOG2_E + MAGIC;
-    let k = shifted - MAGIC;
-    let r = (clamped - k * LN_2_HIGH) - k * LN_2_LOW;
-    // Taylor series on |r| ≤ ln 2 / 2: r¹⁴/14! is below 1e-17.
-    let mut series = 1.0 / 6_227_020_800.0;
-    series = series * r + 1.0 / 479_001_600.0;
-    series = series * r + 1.0 / 39_916_800.0;
-    series = series * r + 1.0 / 3_628_800.0;
-    series = series * r + 1.0 / 362_880.0;
-    series = series * r + 1.0 / 40_320.0;
-    series = series * r + 1.0 / 5_040.0;
-    series = series * r + 1.0 / 720.0;
-    series = series * r + 1.0 / 120.0;
-    series = series * r + 1.0 / 24.0;
-    series = series * r + 1.0 / 6.0;
-    series = series * r + 0.5;
-    let value = 1.0 + (r + r * r * series);
-    let power = (shifted.to_bits() << 52).wrapping_add(1f64.to_bits());
-    let scaled = value * f64::from_bits(power);
-    if x < LOWEST { 0.0 } else { scaled }
+fn power(s: f64, p: f64, root: impl Fn(Logarithm, f64) -> f64) -> [f64; 3] {
+    let z = p * s;
+    let z = if z < LARGEST { z } else { LARGEST };
+    let r = 1.0 / (1.0 + z);
+    let log = Logarithm::of_one_plus(z);
+    let phi = root(log, r);
+    let phi = if z > -1.0 { phi } else { 0.0 };
+    let slope = -(s * r) * phi;
+    let q = log.quotient / p;
+    let near = q * q * ((2.0 + z) * r + log.tail);
+    let far = (log.value() - z * r) / p / p;
+    let bend = phi * if log.power == 0.0 { near } else { far };
+    // φ = 0 only past the finite end or far below the smallest double.
+    if phi == 0.0 { [phi, 0.0, 0.0] } else { [phi, slope, bend] }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::latency::decay_with_gradient;
-
-    #[test]
-    fn own_exponential_and_logarithm_match_the_standard_library() {
-        for i in 0..200_000 {
-            let x = -f64::from(i) * 0.003_471;
-            let expected = if x < -700.0 { 0.0 } else { x.exp() };
-            assert!((exp(x) - expected).abs() <= 4e-16 * expected, "exp({x})");
-        }
-        for i in 0..200_000 {
-            let z = 10f64.powf(f64::from(i) * 1.5e-4 - 15.0);
-            assert!((ln_1p(z) - z.ln_1p()).abs() <= 6e-16 * z.ln_1p(), "ln_1p({z})");
-        }
-        assert_eq!(exp(0.0), 1.0);
-        assert_eq!(ln_1p(0.0), 0.0);
-    }
+    use crate::vector::tests::on_every_level;
 
     #[test]
     fn many_at_once_equal_one_at_a_time() {
         let times: Vec<f64> = (0..101).map(|i| 0.3 * f64::from(i)).collect();
-        let mut out = [vec![0.0; 101], vec![0.0; 101], vec![0.0; 101]];
-        for exponent in [0.4, 0.999_999, 1.0, 1.0 + 1e-13, 1.000_001, 1.5, 2.0, 3.0, 4.4, 5.0, 7.0, 30.0] {
-            let [value, by_rate, by_exponent] = &mut out;
-            decay_with_gradient_many(&times, 0.7, exponent, value, by_rate, by_exponent);
+        for exponent in [0.4, 0.8, 0.999_999, 1.0, 1.0 + 1e-13, 1.000_001, 1.5, 2.0, 3.0, 4.4, 5.0, 7.0, 30.0] {
+            let found = on_every_level(|| {
+                let mut out = [vec![0.0; 101], vec![0.0; 101], vec![0.0; 101]];
+                let [value, by_rate, by_exponent] = &mut out;
+                decay_with_gradient_many(&times, 0.7, exponent, value, by_rate, by_exponent);
+                out.concat()
+            });
             for (i, t) in times.iter().enumerate() {
                 let one = decay_with_gradient(0.7 * t, exponent);
-                assert!((value[i] - one.value).abs() <= 2e-14 * one.value, "n={exponent} t={t}");
-                assert!((by_rate[i] - one.by_log_rate).abs() <= 4e-14 * one.by_log_rate.abs());
-                assert!((by_exponent[i] - one.by_exponent).abs() <= 1e-12 * one.by_exponent.abs());
+                assert!((found[i] - one.value).abs() <= 2e-14 * one.value, "n={exponent} t={t}");
+                assert!((found[101 + i] - one.by_log_rate).abs() <= 4e-14 * one.by_log_rate.abs());
+                assert!((found[202 + i] - one.by_exponent).abs() <= 1e-12 * one.by_exponent.abs());
             }
+        }
+    }
+
+    #[test]
+    fn values_alone_and_in_place_are_the_same_numbers() {
+        let times: Vec<f64> = (0..600).map(|i| 0.02 * f64::from(i)).collect();
+        for exponent in [0.5, 1.0, 2.0, 3.0, 4.33, 5.0] {
+            let [mut alone, mut value, mut slope] = [vec![0.0; 600], vec![0.0; 600], vec![0.0; 600]];
+            let mut in_place = times.clone();
+            decay_many(&times, 0.7, exponent, &mut alone);
+            decay_with_log_rate_many(&times, 0.7, exponent, &mut value, &mut slope);
+            decay_in_place(&mut in_place, 0.7, exponent);
+            assert_eq!((&alone, &alone), (&value, &in_place), "n = {exponent}");
         }
     }
 }
