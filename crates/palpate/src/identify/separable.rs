@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bounded::{BoundedProblem, BoundedSolver, Held};
 use super::linear_algebra::Cholesky;
-use crate::statistics::dot;
+use crate::vector::products::{cross_products, dot, form_residuals, normal_equations};
 
 /// The columns of a separable model and their derivatives.
 pub(super) trait Shapes {
@@ -138,16 +138,7 @@ impl Point {
             }
         }
         let size = self.columns.len();
-        for i in 0..size {
-            for j in 0..=i {
-                let product = dot(&self.columns[i], &self.columns[j]);
-                self.gram[i * size + j] = product;
-                self.gram[j * size + i] = product;
-            }
-        }
-        for (right, column) in self.linear.iter_mut().zip(&self.columns) {
-            *right = dot(column, values);
-        }
+        normal_equations(&self.columns, values, &mut self.gram, &mut self.linear);
         let factor = Cholesky::new(&self.gram, size);
         self.singular = factor.is_none();
         match factor {
@@ -155,7 +146,6 @@ impl Point {
                 factor.solve(&mut self.linear);
                 self.keep_bounds(shapes.linear_bounds(), values);
                 self.form_residuals(values);
-                self.square = dot(&self.residuals, &self.residuals);
                 // A round of refinement recovers what squaring the condition number lost. With many samples noise
                 // would drown it, unless next to nothing is left over.
                 let worth = values.len() <= FEW || self.square < 1e-12 * dot(values, values);
@@ -166,7 +156,6 @@ impl Point {
                         *value += change;
                     }
                     self.form_residuals(values);
-                    self.square = dot(&self.residuals, &self.residuals);
                 }
             }
             None => {
@@ -206,37 +195,33 @@ impl Point {
     }
 
     fn form_residuals(&mut self, values: &[f64]) {
-        // Nearly every law has two columns; one pass serves both.
-        if let ([first, second], &[a, b]) = (self.columns.as_slice(), self.linear.as_slice()) {
-            let columns = first.iter().zip(second);
-            for ((residual, value), (x, y)) in self.residuals.iter_mut().zip(values).zip(columns) {
-                *residual = value - a * x - b * y;
-            }
-            return;
-        }
-        self.residuals.copy_from_slice(values);
-        for (column, amplitude) in self.columns.iter().zip(&self.linear) {
-            for (residual, entry) in self.residuals.iter_mut().zip(column) {
-                *residual -= amplitude * entry;
-            }
-        }
+        self.square = form_residuals(values, &self.columns, &self.linear, &mut self.residuals);
     }
 
-    /// JᵀJ over linear, then nonlinear numbers; row-major.
-    fn normal(&self, shapes: &impl Shapes) -> Vec<f64> {
-        let (l, size) = (self.columns.len(), self.columns.len() + self.theta.len());
-        let column = |i: usize| if i < l { &self.columns[i] } else { &self.derivatives[i - l] };
-        let factor = |i: usize| if i < l { 1.0 } else { self.linear[shapes.column_of(i - l)] };
+    /// JᵀJ over linear, then nonlinear numbers, row-major, and Jᵀr by the nonlinear ones.
+    fn normal(&self, shapes: &impl Shapes) -> (Vec<f64>, Vec<f64>) {
+        let (l, p) = (self.columns.len(), self.theta.len());
+        let size = l + p;
+        let factor = |i: usize| self.linear[shapes.column_of(i)];
+        let (mut among, mut gradient, mut across) = (vec![0.0; p * p], vec![0.0; p], vec![0.0; p * l]);
+        normal_equations(&self.derivatives, &self.residuals, &mut among, &mut gradient);
+        cross_products(&self.derivatives, &self.columns, &mut across);
         let mut normal = vec![0.0; size * size];
-        for i in 0..size {
-            for j in 0..=i {
-                let product =
-                    if i < l { self.gram[i * l + j] } else { dot(column(i), column(j)) * factor(i) * factor(j) };
-                normal[i * size + j] = product;
-                normal[j * size + i] = product;
+        for i in 0..l {
+            normal[i * size..i * size + l].copy_from_slice(&self.gram[i * l..(i + 1) * l]);
+        }
+        for i in 0..p {
+            gradient[i] *= factor(i);
+            for j in 0..l {
+                let product = factor(i) * across[i * l + j];
+                normal[(l + i) * size + j] = product;
+                normal[j * size + l + i] = product;
+            }
+            for j in 0..p {
+                normal[(l + i) * size + l + j] = factor(i) * factor(j) * among[i * p + j];
             }
         }
-        normal
+        (normal, gradient)
     }
 
     /// Jᵀr by the nonlinear numbers.
@@ -519,7 +504,7 @@ fn projected(here: &Point, shapes: &impl Shapes) -> Option<(Vec<f64>, Vec<f64>)>
     }
     let (l, p) = (here.columns.len(), here.theta.len());
     let size = l + p;
-    let normal = here.normal(shapes);
+    let (normal, gradient) = here.normal(shapes);
     // Linear numbers at a bound do not move with θ.
     let free: Vec<usize> = (0..l).filter(|&i| !here.held[i]).collect();
     let block: Vec<f64> = free
@@ -540,7 +525,7 @@ fn projected(here: &Point, shapes: &impl Shapes) -> Option<(Vec<f64>, Vec<f64>)>
             hessian[i * p + j] -= imitated;
         }
     }
-    Some((hessian, here.gradient(shapes)))
+    Some((hessian, gradient))
 }
 
 /// θ after a damped step, clipped to the bounds; a number that sits at a bound and is pushed outwards stays out of the step.
@@ -581,7 +566,7 @@ fn stepped(theta: &[f64], hessian: &[f64], gradient: &[f64], damping: f64, shape
 fn finish(here: Point, shapes: &impl Shapes, mut termination: Termination) -> Solution {
     let linear = here.columns.len();
     let size = linear + here.theta.len();
-    let normal = here.normal(shapes);
+    let (normal, _) = here.normal(shapes);
     // A number at a bound has no errors, the others have theirs beside it.
     let free: Vec<usize> = (0..size).filter(|&i| i >= linear || !here.held[i]).collect();
     let block: Vec<f64> = free

@@ -99,10 +99,10 @@ impl Plane {
         };
         let others =
             numbers.get(1).map_or_else(|| vec![0.0], |number| coarse(number.kind, number.bounds, number.fixed));
-        let mut found: Vec<(f64, f64, f64)> = Vec::new();
-        for other in others {
+        let mut found: Vec<Valley> = Vec::new();
+        for (place, other) in others.into_iter().enumerate() {
             let bends = bends(model.shape(shape), other);
-            let grid = rates(numbers[0].bounds, numbers[0].fixed, if bends { 0.1 } else { 1.0 });
+            let grid = rates(numbers[0].bounds, numbers[0].fixed, if bends { 0.2 } else { 1.0 });
             let residuals: Vec<f64> = grid.iter().map(|rate| residual(*rate, other)).collect();
             work.grid_points += residuals.len() as u64;
             for (i, here) in residuals.iter().enumerate() {
@@ -110,14 +110,21 @@ impl Plane {
                 if below(i.checked_sub(1)) && below(Some(i + 1)) {
                     let width = if grid.len() > 1 { grid[1] - grid[0] } else { 0.0 };
                     let (rate, lowest) = bottom(grid[i], *here, width, |rate| residual(rate, other));
-                    found.push((lowest, rate.clamp(numbers[0].bounds.0, numbers[0].bounds.1), other));
+                    let rate = rate.clamp(numbers[0].bounds.0, numbers[0].bounds.1);
+                    found.push(Valley {
+                        square: lowest,
+                        place,
+                        rate,
+                        other,
+                    });
                 }
             }
         }
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut found = deepest_along(&found);
+        found.sort_by(|a, b| a.square.total_cmp(&b.square));
         found.truncate(most);
-        let free = |(_, rate, other): (f64, f64, f64)| {
-            let both = [rate, other];
+        let free = |valley: Valley| {
+            let both = [valley.rate, valley.other];
             let kept = numbers.iter().zip(both).filter(|(number, _)| number.fixed.is_none());
             kept.map(|(_, value)| value).collect()
         };
@@ -177,12 +184,12 @@ impl Plane {
             }
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Valleys of the lattice: combinations beside none that was seen before, that is, is lower.
+        let near = |a: &[usize], b: &[usize]| a.iter().zip(b).all(|(a, b)| a.abs_diff(*b) <= 1);
         let mut kept: Vec<Vec<usize>> = Vec::new();
-        for (_, rates) in found {
-            // Neighbours lead to the same valley.
-            let near = |other: &Vec<usize>| other.iter().zip(&rates).all(|(a, b)| a.abs_diff(*b) <= 1);
-            if !kept.iter().any(near) {
-                kept.push(rates);
+        for (index, (_, rates)) in found.iter().enumerate().take(LOWEST) {
+            if !found[..index].iter().any(|(_, lower)| near(lower, rates)) {
+                kept.push(rates.clone());
             }
             if kept.len() == most {
                 break;
@@ -190,6 +197,35 @@ impl Plane {
         }
         kept.into_iter().map(|rates| rates.into_iter().rev().map(|i| grid[useful[i]]).collect()).collect()
     }
+}
+
+/// Combinations of rates that are looked through for valleys, lowest first.
+const LOWEST: usize = 400;
+
+/// A valley of the residual along ln λ.
+#[derive(Clone, Copy)]
+struct Valley {
+    square: f64,
+    /// Place of `other` among the values tried.
+    place: usize,
+    rate: f64,
+    other: f64,
+}
+
+/// Valleys that do not go on, deeper, at the next value of the other number.
+fn deepest_along(valleys: &[Valley]) -> Vec<Valley> {
+    /// Change of ln λ from one value of the other number to the next within which a valley is the same.
+    const SAME: f64 = 3.0;
+    let deeper = |valley: &Valley, other: &Valley| {
+        other.place.abs_diff(valley.place) == 1
+            && (other.rate - valley.rate).abs() < SAME
+            && other.square < valley.square
+    };
+    valleys
+        .iter()
+        .filter(|valley| !valleys.iter().any(|other| deeper(valley, other)))
+        .copied()
+        .collect()
 }
 
 /// The next combination of rising indices below `count`; `false` after the last.

@@ -1,7 +1,7 @@
 //! The shape exp(−λt) that Maxwell, Kelvin–Voigt, standard linear solid, Burgers, Prony and Fung share.
 
 use super::kernel::{Kernel, NumberKind, ShapeNumber};
-use crate::latency::{decay_many, decay_with_log_rate_many};
+use crate::vector::{exponential_many, exponential_values};
 
 /// exp(−t/τ).
 pub(super) struct Exponential;
@@ -15,10 +15,10 @@ impl Kernel for Exponential {
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
-        decay_many(times, theta[0].exp(), 1.0, value);
+        exponential_values(times, theta[0].exp(), value);
     }
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
-        decay_with_log_rate_many(times, theta[0].exp(), 1.0, value, &mut derivatives[0]);
+        exponential_many(times, theta[0].exp(), value, &mut derivatives[0]);
     }
 }

@@ -13,6 +13,7 @@ use super::form::Form;
 use super::kernel::{Kernel, NumberKind, ShapeNumber};
 use super::law::Response;
 use super::shape::Shape;
+use crate::vector::{logarithm_many, logarithm_values};
 
 pub(super) const DESCRIPTION: Description = Description {
     title: "logarithmic",
@@ -40,17 +41,10 @@ impl Kernel for Logarithm {
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
-        let rate = theta[0].exp();
-        for (out, t) in value.iter_mut().zip(times) {
-            *out = (rate * t).ln_1p();
-        }
+        logarithm_values(times, theta[0].exp(), value);
     }
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
-        self.value(times, theta, value);
-        let rate = theta[0].exp();
-        for (out, t) in derivatives[0].iter_mut().zip(times) {
-            *out = rate * t / (1.0 + rate * t);
-        }
+        logarithm_many(times, theta[0].exp(), value, &mut derivatives[0]);
     }
 }

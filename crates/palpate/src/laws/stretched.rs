@@ -14,6 +14,7 @@ use super::form::Form;
 use super::kernel::{Kernel, NumberKind, ShapeNumber};
 use super::law::Response;
 use super::shape::Shape;
+use crate::vector::{stretched_many, stretched_values};
 
 pub(super) const DESCRIPTION: Description = Description {
     title: "stretched exponential",
@@ -48,21 +49,13 @@ impl Kernel for Stretched {
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
-        for (out, t) in value.iter_mut().zip(times) {
-            *out = (-(theta[0].exp() * t).powf(theta[1])).exp();
-        }
+        stretched_values(times, theta[0].exp(), theta[1], value);
     }
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
         let [by_rate, by_stretching] = derivatives else {
             unreachable!("two numbers")
         };
-        for (i, t) in times.iter().enumerate() {
-            let s = theta[0].exp() * t;
-            let power = s.powf(theta[1]);
-            value[i] = (-power).exp();
-            by_rate[i] = -theta[1] * power * value[i];
-            by_stretching[i] = if s > 0.0 { -power * s.ln() * value[i] } else { 0.0 };
-        }
+        stretched_many(times, theta[0].exp(), theta[1], value, by_rate, by_stretching);
     }
 }

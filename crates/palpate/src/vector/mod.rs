@@ -13,8 +13,11 @@
 
 pub(crate) mod elementary;
 pub(crate) mod products;
-#[cfg_attr(not(test), expect(dead_code, reason = "for laws that have no fit yet"))]
-pub(crate) mod shapes;
+mod shapes;
+
+pub(crate) use shapes::{
+    exponential_many, exponential_values, logarithm_many, logarithm_values, stretched_many, stretched_values,
+};
 
 use fearless_simd::{Level, dispatch};
 
@@ -101,6 +104,11 @@ pub(crate) mod tests {
         let best = Level::new();
         #[cfg(target_arch = "x86_64")]
         {
+            pub(crate) use shapes::{
+                exponential_many, exponential_values, logarithm_many, logarithm_values, stretched_many,
+                stretched_values,
+            };
+
             use fearless_simd::Simd;
             let tokens = [
                 best.as_sse2().map(Simd::level),

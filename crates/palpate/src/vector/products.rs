@@ -44,7 +44,6 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 ///
 /// # Panics
 /// If lengths do not fit.
-#[cfg_attr(not(test), expect(dead_code, reason = "for the fused steps of the fit"))]
 pub(crate) fn normal_equations(columns: &[impl AsRef<[f64]>], values: &[f64], gram: &mut [f64], right: &mut [f64]) {
     let size = columns.len();
     assert_eq!((gram.len(), right.len()), (size * size, size), "a square and a vector");
@@ -99,7 +98,6 @@ fn add_rows<const R: usize>(
 ///
 /// # Panics
 /// If lengths do not fit.
-#[cfg_attr(not(test), expect(dead_code, reason = "for the fused steps of the fit"))]
 pub(crate) fn cross_products(rows: &[impl AsRef<[f64]>], columns: &[impl AsRef<[f64]>], products: &mut [f64]) {
     let size = columns.len();
     assert_eq!(products.len(), rows.len() * size, "one product a pair");
@@ -128,7 +126,6 @@ pub(crate) fn cross_products(rows: &[impl AsRef<[f64]>], columns: &[impl AsRef<[
 ///
 /// # Panics
 /// If lengths do not fit.
-#[cfg_attr(not(test), expect(dead_code, reason = "for the fused steps of the fit"))]
 pub(crate) fn form_residuals(
     values: &[f64],
     columns: &[impl AsRef<[f64]>],
