@@ -181,8 +181,8 @@ def main():
         {"certified_relative": 1e-10, "values_relative": 1e-9, "standard_errors_relative": 1e-8, "rss_relative": 1e-9,
          "note": "certified values have 11 digits; the refit of NIST's decimals in 60 digits has every one of "
                  "them; values, standard_errors and covariance of `laws` are that refit under `algebra`, "
-                 "s^2 (J^T J)^-1 with s^2 = RSS/(N - p). Lanczos1: in doubles the residuals drown, test parameters to "
-                 "1e-9 and no RSS"},
+                 "s^2 (J^T J)^-1 with s^2 = RSS/(N - p). Lanczos1: in doubles the residuals drown (no RSS to test); "
+                 "values_relative is of max(1, |value|)"},
         cases)
 
 
