@@ -6,7 +6,8 @@
 
 Least squares over all samples, equal weights. SLS and Prony-2 are linear in all but the rates: searched and polished
 as in `law_fits.py`. In the joint latency fit D_h is nonlinear too: 120 random starts of all eight numbers, the best
-polished in mpmath (40 digits). lmfit agrees to 1e-3 standard errors (it differentiates numerically). Covariance is s^2 (J^T J)^-1, s^2 = RSS/(N - p).
+polished in mpmath (40 digits). lmfit agrees to 1e-3 standard errors (it differentiates numerically).
+Covariance is s^2 (J^T J)^-1, s^2 = RSS/(N - p).
 """
 
 import math
