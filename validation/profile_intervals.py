@@ -117,7 +117,7 @@ def case(name, which, linear, q, t, noise, seed):
         ends = [end(Profile(which, t, y, k), best, errors, side, bound) for side in (-1, 1)]
         for mine, theirs in zip(ends, others[label]):
             if mine is None:
-                assert straight < bound, (name, label)
+                assert straight < 0.97 * bound, (name, label)
                 assert isinstance(theirs, str) or not abs(theirs - best[k]) < 20 * errors[k], (name, label, theirs)
             else:
                 assert not isinstance(theirs, str), (name, label, theirs)
@@ -149,7 +149,7 @@ def main():
         case("rising", sls, [1.0, -0.6], [LN(0.8)], logs(1e-2, 4.0, 60), 0.03, 205),
         case("two times", two, [10.0, 2.0, 3.0], [LN(3.0), LN(0.2)], line(20.0, 101), 0.12, 206),
         case("falling", kww, [2.0, 3.0], [LN(0.4), 0.6], logs(1e-2, 30.0, 80), 0.12, 207),
-        case("equilibrium not identified", sls, [8.0, 4.0], [LN(0.06)], line(8.0, 61), 0.25, 212),
+        case("equilibrium not identified", sls, [8.0, 4.0], [LN(0.06)], line(6.0, 61), 0.15, 215),
         case("n = 5, equilibrium not identified", fifth, [0.5, 0.5], [LN(0.05)], line(6.0, 61), 1e-2, 213),
     ]
     write_reference(

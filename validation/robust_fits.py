@@ -105,7 +105,7 @@ def case(name, which, linear, q, t, noise, share, seed):
         print(f"{out['name']:36s} {method}  scale/noise {scale / noise:.4f}  sum w {np.sum(w):8.4f} of {len(t)}"
               f"  zero {int(np.sum(w == 0)):2d} of {len(index)}  from truth "
               f"{np.round((p - out['truth']) / error, 2)} se (least squares "
-              f"{np.round((np.array(start) - out['truth']) / error, 1)})  steps {steps}  scipy {off:.0e} se", flush=True)
+              f"{np.round((np.array(start) - out['truth']) / error, 1)})  scipy {off:.0e} se", flush=True)
         out[method] = {"values": p.tolist(), "scale": scale, "sum_of_weights": float(np.sum(w)),
                        "zero_weights": int(np.sum(w == 0)), "weights_below_half": int(np.sum(w < 0.5))}
     return out
