@@ -62,7 +62,7 @@ PROBLEMS = {
 }
 
 
-def read(path):
+def read(path, number=float):
     lines = path.read_text(encoding="ascii").splitlines()
     rows = [re.findall(r"[-+\d.E]+", line.split("=")[1]) for line in lines if re.match(r"\s+b\d\s*=", line)]
     value = {}
@@ -70,7 +70,7 @@ def read(path):
         value[key] = next(line.split(":")[1].split()[0] for line in lines if line.startswith(key))
     start = max(i for i, line in enumerate(lines) if line.startswith("Data:"))
     data = [line.split() for line in lines[start + 1:] if line.strip()]
-    y, x = [float(d[0]) for d in data], [float(d[1]) for d in data]
+    y, x = [number(d[0]) for d in data], [number(d[1]) for d in data]
     assert int(value["Degrees of Freedom"]) == len(y) - len(rows)
     return rows, value, x, y
 
