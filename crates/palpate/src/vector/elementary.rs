@@ -24,17 +24,16 @@ pub(crate) fn exp(x: f64) -> f64 {
     let k = shifted - MAGIC;
     let r = (clamped - k * LN_2_HIGH) - k * LN_2_LOW;
     // Minimax (eʳ − 1 − r)/r²; eʳ within 1.6e-17.
-    let mut series = 2.510_038_549_551_032e-8;
-    series = series * r + 2.762_008_844_540_974_6e-7;
-    series = series * r + 2.755_726_845_999_706_4e-6;
-    series = series * r + 2.480_152_129_595_437_6e-5;
-    series = series * r + 1.984_126_987_130_536e-4;
-    series = series * r + 1.388_888_891_721_371_7e-3;
-    series = series * r + 8.333_333_333_330_062e-3;
-    series = series * r + 4.166_666_666_662_413e-2;
-    series = series * r + 1.666_666_666_666_666_9e-1;
-    series = series * r + 0.500_000_000_000_000_1;
-    let value = 1.0 + (r + r * r * series);
+    // Pairs of terms side by side, so that additions need not wait for each other.
+    let square = r * r;
+    let fourth = square * square;
+    let first = (0.500_000_000_000_000_1 + 1.666_666_666_666_666_9e-1 * r)
+        + (4.166_666_666_662_413e-2 + 8.333_333_333_330_062e-3 * r) * square;
+    let second = (1.388_888_891_721_371_7e-3 + 1.984_126_987_130_536e-4 * r)
+        + (2.480_152_129_595_437_6e-5 + 2.755_726_845_999_706_4e-6 * r) * square;
+    let third = 2.762_008_844_540_974_6e-7 + 2.510_038_549_551_032e-8 * r;
+    let series = first + (second + third * fourth) * fourth;
+    let value = 1.0 + (r + square * series);
     let power = (shifted.to_bits() << MANTISSA).wrapping_add(1f64.to_bits());
     let scaled = value * f64::from_bits(power);
     if x < LOWEST { 0.0 } else { scaled }
@@ -81,13 +80,11 @@ impl Logarithm {
         let q = f / (2.0 + f);
         let square = q * q;
         // FreeBSD's Lg1 … Lg7, error below 2^-58.45.
-        let mut series = 1.479_819_860_511_658_6e-1;
-        series = series * square + 1.531_383_769_920_937_3e-1;
-        series = series * square + 1.818_357_216_161_805e-1;
-        series = series * square + 2.222_219_843_214_978_4e-1;
-        series = series * square + 2.857_142_874_366_239e-1;
-        series = series * square + 3.999_999_999_940_942e-1;
-        series = series * square + 6.666_666_666_666_735e-1;
+        let fourth = square * square;
+        let first = 6.666_666_666_666_735e-1 + 3.999_999_999_940_942e-1 * square;
+        let second = 2.857_142_874_366_239e-1 + 2.222_219_843_214_978_4e-1 * square;
+        let third = 1.818_357_216_161_805e-1 + 1.531_383_769_920_937_3e-1 * square;
+        let series = first + (second + (third + 1.479_819_860_511_658_6e-1 * fourth) * fourth) * fourth;
         Self {
             power,
             quotient: q,

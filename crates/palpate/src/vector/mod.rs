@@ -35,8 +35,8 @@ fn level() -> Level {
     Level::new()
 }
 
-/// Numbers that run through a kernel together: two vectors of AVX-512, four of AVX2.
-const BLOCK: usize = 16;
+/// Numbers that run through a kernel together: one vector of AVX-512, two of AVX2. More run out of registers.
+const BLOCK: usize = 8;
 
 /// `outputs[k][i] = f(inputs[i])[k]` for every i, as fast as the machine can if `f` has no branch.
 ///

@@ -3,14 +3,16 @@
 //! Sums run in [`LANES`] interleaved parts and are closed every [`CHUNK`] samples, so that columns are read from memory
 //! once however many products they enter, and rounding errors grow slowly.
 
-use super::accelerated;
+use fearless_simd::{Simd, SimdBase, dispatch, f64x8};
+
+use super::{accelerated, level};
 
 /// Interleaved parts of a sum.
 const LANES: usize = 8;
 /// Samples that stay in the nearest cache while every product of them is formed.
 const CHUNK: usize = 1024;
-/// Columns on a side of a tile: 3 × 3 running sums stay in registers.
-const SIDE: usize = 3;
+/// Columns on a side of a tile: 2 × 2 running sums stay in registers, and more were slower.
+const SIDE: usize = 2;
 
 /// Σ aᵢ bᵢ over the shorter of the two lengths.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -52,14 +54,12 @@ pub(crate) fn normal_equations(columns: &[impl AsRef<[f64]>], values: &[f64], gr
     for from in (0..values.len()).step_by(CHUNK) {
         let range = from..values.len().min(from + CHUNK);
         let parts: Vec<&[f64]> = columns.iter().map(|column| &column.as_ref()[range.clone()]).collect();
-        let (triples, rest) = parts.as_chunks::<SIDE>();
-        for (index, triple) in triples.iter().enumerate() {
-            add_rows(*triple, &triples[..index], &values[range.clone()], gram, right);
+        let (pairs, rest) = parts.as_chunks::<SIDE>();
+        for (index, pair) in pairs.iter().enumerate() {
+            add_rows(*pair, &pairs[..index], &values[range.clone()], gram, right);
         }
-        match *rest {
-            [one] => add_rows([one], triples, &values[range], gram, right),
-            [one, two] => add_rows([one, two], triples, &values[range], gram, right),
-            _ => {}
+        if let [one] = *rest {
+            add_rows([one], pairs, &values[range], gram, right);
         }
     }
     for i in 0..size {
@@ -106,17 +106,15 @@ pub(crate) fn cross_products(rows: &[impl AsRef<[f64]>], columns: &[impl AsRef<[
     for from in (0..count).step_by(CHUNK) {
         let range = from..count.min(from + CHUNK);
         let across: Vec<&[f64]> = columns.iter().map(|column| &column.as_ref()[range.clone()]).collect();
-        let (triples, rest) = across.as_chunks::<SIDE>();
+        let (pairs, rest) = across.as_chunks::<SIDE>();
         for (row, out) in rows.iter().zip(products.chunks_exact_mut(size.max(1))) {
             let row = [&row.as_ref()[range.clone()]];
             let mut add = |at: usize, more: &[f64]| out[at..].iter_mut().zip(more).for_each(|(sum, x)| *sum += x);
-            for (index, triple) in triples.iter().enumerate() {
-                add(SIDE * index, &tile(row, *triple)[0]);
+            for (index, pair) in pairs.iter().enumerate() {
+                add(SIDE * index, &tile(row, *pair)[0]);
             }
-            match *rest {
-                [one] => add(SIDE * triples.len(), &tile(row, [one])[0]),
-                [one, two] => add(SIDE * triples.len(), &tile(row, [one, two])[0]),
-                _ => {}
+            if let [one] = *rest {
+                add(SIDE * pairs.len(), &tile(row, [one])[0]);
             }
         }
     }
@@ -197,53 +195,60 @@ fn subtract<const C: usize>(
 }
 
 /// Every row times every column.
-#[inline(always)]
 fn tile<const R: usize, const C: usize>(rows: [&[f64]; R], columns: [&[f64]; C]) -> [[f64; C]; R] {
-    accelerated(
+    dispatch!(level(), simd => tile_with(simd, rows, columns))
+}
+
+// Here the sums are vectors by name: of several sums in a plain loop the compiler makes scalar code.
+#[inline(always)]
+fn tile_with<S: Simd, const R: usize, const C: usize>(
+    simd: S,
+    rows: [&[f64]; R],
+    columns: [&[f64]; C],
+) -> [[f64; C]; R] {
+    let mut sums = [[f64x8::splat(simd, 0.0); C]; R];
+    for_blocks(
+        rows,
+        columns,
         #[inline(always)]
-        || {
-            let mut sums = [[[0.0; LANES]; C]; R];
-            for_blocks(
-                rows,
-                columns,
-                #[inline(always)]
-                |rows, columns| {
-                    for i in 0..R {
-                        for j in 0..C {
-                            add_product(&mut sums[i][j], rows[i], columns[j]);
-                        }
-                    }
-                },
-            );
-            sums.map(|row| row.map(total))
+        |rows, columns| {
+            let rows = rows.map(|block| f64x8::from_slice(simd, block));
+            let columns = columns.map(|block| f64x8::from_slice(simd, block));
+            for i in 0..R {
+                for j in 0..C {
+                    sums[i][j] += rows[i] * columns[j];
+                }
+            }
         },
-    )
+    );
+    sums.map(|row| row.map(|sum| total(sum.into())))
 }
 
 /// The products of rows with each other (the lower half is filled) and with `values`.
-#[inline(always)]
 fn triangle<const R: usize>(rows: [&[f64]; R], values: &[f64]) -> ([[f64; R]; R], [f64; R]) {
-    accelerated(
+    dispatch!(level(), simd => triangle_with(simd, rows, values))
+}
+
+#[inline(always)]
+fn triangle_with<S: Simd, const R: usize>(simd: S, rows: [&[f64]; R], values: &[f64]) -> ([[f64; R]; R], [f64; R]) {
+    let mut among = [[f64x8::splat(simd, 0.0); R]; R];
+    let mut with_values = [f64x8::splat(simd, 0.0); R];
+    for_blocks(
+        rows,
+        [values],
         #[inline(always)]
-        || {
-            let mut among = [[[0.0; LANES]; R]; R];
-            let mut with_values = [[0.0; LANES]; R];
-            for_blocks(
-                rows,
-                [values],
-                #[inline(always)]
-                |rows, [values]| {
-                    for i in 0..R {
-                        add_product(&mut with_values[i], rows[i], values);
-                        for j in 0..=i {
-                            add_product(&mut among[i][j], rows[i], rows[j]);
-                        }
-                    }
-                },
-            );
-            (among.map(|row| row.map(total)), with_values.map(total))
+        |rows, [values]| {
+            let rows = rows.map(|block| f64x8::from_slice(simd, block));
+            let values = f64x8::from_slice(simd, values);
+            for i in 0..R {
+                with_values[i] += rows[i] * values;
+                for j in 0..=i {
+                    among[i][j] += rows[i] * rows[j];
+                }
+            }
         },
-    )
+    );
+    (among.map(|row| row.map(|sum| total(sum.into()))), with_values.map(|sum| total(sum.into())))
 }
 
 /// Hands over all columns a block of [`LANES`] at a time; the last block is filled up with zeros.
@@ -277,13 +282,6 @@ fn padded(column: &[f64]) -> [f64; LANES] {
     let mut block = [0.0; LANES];
     block[..rest.len()].copy_from_slice(rest);
     block
-}
-
-#[inline(always)]
-fn add_product(sums: &mut [f64; LANES], a: &[f64; LANES], b: &[f64; LANES]) {
-    for lane in 0..LANES {
-        sums[lane] += a[lane] * b[lane];
-    }
 }
 
 /// The sum of the lanes, halves first.
