@@ -5,6 +5,9 @@ use super::separable::Target;
 /// Relative width in time of the bins; the shape of a law is close to a cubic inside one.
 const WIDTH: f64 = 0.2;
 
+/// The same for nodes that only show where valleys are.
+const COARSE_WIDTH: f64 = 0.6;
+
 /// Samples gathered in bins that widen with time, each bin replaced by two weighted nodes.
 ///
 /// The nodes are those of Gauss's rule for the sample times of the bin: a sum of cubics over the samples equals that over the
@@ -25,10 +28,20 @@ pub(super) struct Condensed {
 impl Condensed {
     /// Condenses samples at rising times ≥ 0; `roots` are square roots of weights, `None` for all 1.
     pub(super) fn new(times: &[f64], values: &[f64], roots: Option<&[f64]>) -> Self {
+        Self::with_width(times, values, roots, WIDTH)
+    }
+
+    /// Fewer nodes, for a search that needs no accuracy.
+    pub(super) fn coarser(&self) -> Self {
+        let bare: Vec<f64> = self.values.iter().zip(&self.roots).map(|(value, root)| value / root).collect();
+        Self::with_width(&self.times, &bare, Some(&self.roots), COARSE_WIDTH)
+    }
+
+    fn with_width(times: &[f64], values: &[f64], roots: Option<&[f64]>, width: f64) -> Self {
         let mut condensed = Self::default();
         let mut from = 0;
         while from < times.len() {
-            let end = times[from] * (1.0 + WIDTH);
+            let end = times[from] * (1.0 + width);
             let mut until = from + 1;
             while until < times.len() && times[until] < end {
                 until += 1;

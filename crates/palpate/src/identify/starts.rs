@@ -13,6 +13,8 @@ use crate::statistics::dot;
 /// all combinations of a grid of rates.
 pub(super) fn starts(model: &Model, nodes: &Condensed, most: usize, work: &mut Work) -> Vec<Vec<f64>> {
     let (moving, still) = model.moving();
+    let coarser = nodes.coarser();
+    let nodes = &coarser;
     let plane = Plane::new(model, &still, nodes);
     match *moving.as_slice() {
         [] => vec![Vec::new()],
@@ -101,14 +103,21 @@ impl Plane {
             numbers.get(1).map_or_else(|| vec![0.0], |number| coarse(number.kind, number.bounds, number.fixed));
         let mut found: Vec<Valley> = Vec::new();
         for (place, other) in others.into_iter().enumerate() {
-            let bends = bends(model.shape(shape), other);
-            let grid = rates(numbers[0].bounds, numbers[0].fixed, if bends { 0.2 } else { 1.0 });
+            let grid = match finite_end(model.shape(shape), other) {
+                Some(end) if numbers[0].fixed.is_none() => rates_with_end(numbers[0].bounds, end, nodes),
+                _ => rates(numbers[0].bounds, numbers[0].fixed),
+            };
             let residuals: Vec<f64> = grid.iter().map(|rate| residual(*rate, other)).collect();
             work.grid_points += residuals.len() as u64;
             for (i, here) in residuals.iter().enumerate() {
-                let below = |j: Option<usize>| j.and_then(|j| residuals.get(j)).is_none_or(|next| here <= next);
-                if below(i.checked_sub(1)) && below(Some(i + 1)) {
-                    let width = if grid.len() > 1 { grid[1] - grid[0] } else { 0.0 };
+                let beside = |j: Option<usize>| j.and_then(|j| residuals.get(j));
+                let (before, after) = (beside(i.checked_sub(1)), beside(Some(i + 1)));
+                let below = |next: Option<&f64>| next.is_none_or(|next| here <= next);
+                let plain = before.is_none_or(|next| here == next) && after.is_none_or(|next| here == next);
+                // A plateau, where the shape says nothing, is no valley unless there is nothing else.
+                if below(before) && below(after) && !(plain && grid.len() > 1) {
+                    let width =
+                        if i + 1 < grid.len() { grid[i + 1] - grid[i] } else { grid[i] - grid[i.saturating_sub(1)] };
                     let (rate, lowest) = bottom(grid[i], *here, width, |rate| residual(rate, other));
                     let rate = rate.clamp(numbers[0].bounds.0, numbers[0].bounds.1);
                     found.push(Valley {
@@ -121,6 +130,19 @@ impl Plane {
             }
         }
         let mut found = deepest_along(&found);
+        if found.is_empty() {
+            // Nothing but plateaus: any point will do, and the refinement will say so.
+            let rate = numbers[0].fixed.unwrap_or(0.0).clamp(numbers[0].bounds.0, numbers[0].bounds.1);
+            let other = numbers
+                .get(1)
+                .map_or(0.0, |number| number.fixed.unwrap_or(0.5 * (number.bounds.0 + number.bounds.1)));
+            found.push(Valley {
+                square: self.square,
+                place: 0,
+                rate,
+                other,
+            });
+        }
         found.sort_by(|a, b| a.square.total_cmp(&b.square));
         found.truncate(most);
         let free = |valley: Valley| {
@@ -141,7 +163,7 @@ impl Plane {
         work: &mut Work,
     ) -> Vec<Vec<f64>> {
         let bounds = model.numbers[model.numbers_of(moving[0]).start].bounds;
-        let grid = rates(bounds, None, 1.0);
+        let grid = rates(bounds, None);
         let columns: Vec<Vec<f64>> = grid
             .iter()
             .map(|rate| {
@@ -249,13 +271,27 @@ fn rooted(column: &mut [f64], nodes: &Condensed) {
     }
 }
 
+/// Step of a coarse search in ln λ.
+const STEP: f64 = 1.0;
+
 /// Rates of a coarse search, equally spaced in ln λ.
-fn rates((low, high): (f64, f64), fixed: Option<f64>, step: f64) -> Vec<f64> {
+fn rates((low, high): (f64, f64), fixed: Option<f64>) -> Vec<f64> {
     if let Some(rate) = fixed {
         return vec![rate];
     }
-    let steps = ((high - low) / step).ceil().max(2.0) as usize;
+    let steps = ((high - low) / STEP).ceil().max(2.0) as usize;
     (0..=steps).map(|i| low + (high - low) * i as f64 / steps as f64).collect()
+}
+
+/// The same for a shape that ends when λt = `end`: densely where the end lies between samples, since the residual has a kink wherever it
+/// passes one, and not at all where it ends before the second.
+fn rates_with_end((low, high): (f64, f64), end: f64, nodes: &Condensed) -> Vec<f64> {
+    const DENSE: f64 = 0.2;
+    let first = nodes.times.iter().copied().find(|t| *t > 0.0).unwrap_or(1.0);
+    let (from, until) = (end.ln().clamp(low, high), (end / first).ln().clamp(low, high) + STEP);
+    let slow = (0..).map(|i| low + STEP * f64::from(i)).take_while(|rate| *rate < from);
+    let dense = (0..).map(|i| from + DENSE * f64::from(i)).take_while(|rate| *rate < until.min(high));
+    slow.chain(dense).chain([until.min(high)]).collect()
 }
 
 /// Values of a pure number that a coarse search tries.
@@ -270,13 +306,14 @@ fn coarse(kind: NumberKind, (low, high): (f64, f64), fixed: Option<f64>) -> Vec<
     }
 }
 
-/// Whether the shape ends in finite time, so that the residual has a kink wherever that end passes a sample.
-fn bends(shape: Shape, other: f64) -> bool {
-    match shape {
-        Shape::Latency => other < 1.0,
-        Shape::LatencyWith(exponent) => exponent < 1.0,
-        _ => false,
-    }
+/// λt at which the shape ends, if it does.
+fn finite_end(shape: Shape, other: f64) -> Option<f64> {
+    let exponent = match shape {
+        Shape::Latency => other,
+        Shape::LatencyWith(exponent) => exponent,
+        _ => return None,
+    };
+    (exponent < 1.0).then(|| 1.0 / (1.0 - exponent))
 }
 
 /// ln λ at the bottom of a valley found on the grid: the vertex of a parabola through three points, with points ever closer.

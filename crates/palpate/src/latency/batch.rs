@@ -110,13 +110,13 @@ fn fill_by_root<const N: usize>(
     rate: f64,
     p: f64,
     columns: [&mut [f64]; N],
-    root: impl Fn(Logarithm, f64) -> f64,
+    root: impl Fn(Logarithm, f64) -> f64 + Copy,
 ) {
     fill(
         times,
         columns,
         #[inline(always)]
-        |t| first(power(rate * t, p, &root)),
+        |t| first(power(rate * t, p, root)),
     );
 }
 

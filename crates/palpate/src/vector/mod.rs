@@ -43,7 +43,7 @@ const BLOCK: usize = 8;
 /// # Panics
 /// If the slices differ in length.
 #[inline(always)]
-pub(crate) fn fill<const N: usize>(inputs: &[f64], mut outputs: [&mut [f64]; N], f: impl Fn(f64) -> [f64; N]) {
+pub(crate) fn fill<const N: usize>(inputs: &[f64], mut outputs: [&mut [f64]; N], f: impl Fn(f64) -> [f64; N] + Copy) {
     for output in &outputs {
         assert_eq!(inputs.len(), output.len(), "one output an input");
     }
@@ -52,7 +52,7 @@ pub(crate) fn fill<const N: usize>(inputs: &[f64], mut outputs: [&mut [f64]; N],
         || {
             let (blocks, rest) = inputs.as_chunks::<BLOCK>();
             for (index, block) in blocks.iter().enumerate() {
-                let results = results_of(block, &f);
+                let results = results_of(block, f);
                 for (output, result) in outputs.iter_mut().zip(&results) {
                     output[index * BLOCK..][..BLOCK].copy_from_slice(result);
                 }
@@ -60,7 +60,7 @@ pub(crate) fn fill<const N: usize>(inputs: &[f64], mut outputs: [&mut [f64]; N],
             if let Some(&last) = rest.last() {
                 let mut block = [last; BLOCK];
                 block[..rest.len()].copy_from_slice(rest);
-                let results = results_of(&block, &f);
+                let results = results_of(&block, f);
                 for (output, result) in outputs.iter_mut().zip(&results) {
                     output[blocks.len() * BLOCK..].copy_from_slice(&result[..rest.len()]);
                 }
