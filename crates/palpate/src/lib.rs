@@ -51,6 +51,8 @@ mod ode;
 pub mod record;
 pub mod segment;
 pub mod simulate;
+#[cfg_attr(not(test), allow(dead_code, unused_imports, reason = "for the laws that come next"))]
+mod special;
 mod statistics;
 pub mod strain;
 pub mod test_problems;
