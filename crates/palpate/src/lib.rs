@@ -13,7 +13,8 @@
 //! | [`segment`] | its phases: loading, hold, unloading; first touch; Type I and II |
 //! | [`strain`] | strain and strain rate, equations (6) to (9) |
 //! | [`latency`] | the law and its closed form, equations (1) to (5) and (10) |
-//! | [`identify`] | the law fitted to a hold, with standard errors and a reason to end |
+//! | [`laws`] | every law of relaxation and creep |
+//! | [`identify`] | laws fitted to holds, with standard errors and a reason to end |
 //! | [`contact`] | the body, its layers and its contact, equations (7) and (11) |
 //! | [`simulate`] | from a motion of the jaw to the force |
 //! | [`analysis`] | all of it for one record, with findings in plain words |

@@ -14,7 +14,7 @@ use super::form::Form;
 use super::kernel::{Kernel, NumberKind, ShapeNumber};
 use super::law::Response;
 use super::shape::Shape;
-use crate::special::{mittag_leffler_decay_many, mittag_leffler_decay_values};
+use crate::special::{mittag_leffler_decay_many, mittag_leffler_decay_value_many};
 
 pub(super) const DESCRIPTION: Description = Description {
     title: "fractional Zener",
@@ -49,7 +49,7 @@ impl Kernel for MittagLeffler {
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
-        mittag_leffler_decay_values(times, theta[0].exp(), theta[1], value);
+        mittag_leffler_decay_value_many(times, theta[0].exp(), theta[1], value);
     }
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
