@@ -4,6 +4,7 @@
 //! | file | what |
 //! |---|---|
 //! | `elementary.rs` | exponential and logarithm without branches, for vector code |
+//! | `contour.rs` | nodes of an inverse Laplace integral |
 //! | `mittag_leffler.rs` | E_α(−s^α), the fractional Zener body, by a contour integral of twelve nodes |
 //! | `exponential_integral.rs` | E1(x) and Ein(x) |
 //! | `fung.rs` | Fung's continuous spectrum, a box in ln τ |
@@ -11,6 +12,7 @@
 //!
 //! All are checked against 40-digit numbers, `validation/reference/special_functions.json`.
 
+mod contour;
 mod diffusion;
 pub(crate) mod elementary;
 mod exponential_integral;
