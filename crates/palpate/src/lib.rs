@@ -14,6 +14,7 @@
 //! | [`strain`] | strain and strain rate, equations (6) to (9) |
 //! | [`latency`] | the law and its closed form, equations (1) to (5) and (10) |
 //! | [`laws`] | every law of relaxation and creep |
+//! | [`special`] | Mittag-Leffler, exponential integral and their kin |
 //! | [`identify`] | laws fitted to holds, with standard errors and a reason to end |
 //! | [`contact`] | the body, its layers and its contact, equations (7) and (11) |
 //! | [`simulate`] | from a motion of the jaw to the force |
@@ -53,7 +54,7 @@ mod ode;
 pub mod record;
 pub mod segment;
 pub mod simulate;
-mod special;
+pub mod special;
 mod statistics;
 pub mod strain;
 pub mod test_problems;

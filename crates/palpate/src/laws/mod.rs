@@ -47,7 +47,7 @@ mod stretched;
 pub use curve::{LawCurve, Term};
 pub use description::Description;
 pub(crate) use form::{Column, Form};
-pub(crate) use kernel::{Kernel, NumberKind, ShapeNumber};
+pub(crate) use kernel::{Kernel, NumberKind};
 pub use latency::ExponentChoice;
 pub use law::{Law, MOST_TERMS, Response, UnknownLaw};
 pub use shape::Shape;

@@ -13,9 +13,14 @@ const FACES_APART_BELOW: f64 = 1.0 / 15.0;
 ///
 /// φ falls from 1, at first as 1 − 4 √(s/π³). Relative error below 1e-14 in φ and in the derivative; at s = 1
 /// φ = 0.298 203. Both are 0 from s = 700 on.
+///
+/// ```
+/// use palpate::special::diffusion_decay;
+/// assert!((diffusion_decay(1.0).0 - 0.298_203).abs() < 1e-6);
+/// ```
 #[must_use]
 #[inline]
-pub(crate) fn diffusion_decay(s: f64) -> (f64, f64) {
+pub fn diffusion_decay(s: f64) -> (f64, f64) {
     if s < FACES_APART_BELOW {
         let lost = 4.0 * (s / (PI * PI * PI)).sqrt();
         return (1.0 - lost, -0.5 * lost);

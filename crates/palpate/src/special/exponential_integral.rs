@@ -32,9 +32,14 @@ pub(super) const RULE: [(f64, f64); 16] = [
 /// E1(x) = ∫ₓ^∞ e^(−u)/u du for x > 0 (a pure number), with e^(−x), which comes for free.
 ///
 /// Relative error below 1e-14; 0 from x = 700 on. E1(1) = 0.219 383 934 395 520 27. Abramowitz and Stegun 5.1.1.
+///
+/// ```
+/// use palpate::special::exponential_integral;
+/// assert!((exponential_integral(1.0).0 - 0.219_383_934_395_520_27).abs() < 1e-15);
+/// ```
 #[must_use]
 #[inline]
-pub(crate) fn exponential_integral(x: f64) -> (f64, f64) {
+pub fn exponential_integral(x: f64) -> (f64, f64) {
     let exponential = exp(-x);
     if x < 1.0 {
         return (entire_exponential_integral(x) - EULER - x.ln(), exponential);

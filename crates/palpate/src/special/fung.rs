@@ -7,21 +7,26 @@ use crate::vector::elementary::exp;
 
 /// Value and derivatives of the decay.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct FungContinuous {
+pub struct FungContinuous {
     /// φ, from 1 at t = 0 towards 0.
-    pub(crate) value: f64,
+    pub value: f64,
     /// ∂φ/∂ln λ_slow.
-    pub(crate) by_log_slow: f64,
+    pub by_log_slow: f64,
     /// ∂φ/∂ln λ_fast.
-    pub(crate) by_log_fast: f64,
+    pub by_log_fast: f64,
 }
 
 /// φ = [E1(λ_slow t) − E1(λ_fast t)] / ln(λ_fast/λ_slow), the mean of exp(−λt) over ln λ between the two rates.
 ///
 /// `time` t ≥ 0 in s, rates > 0 in 1/s; the order of the rates does not matter and equal rates give exp(−λt).
 /// Relative error below 1e-13. At λ_slow t = 0.5, λ_fast t = 1 φ = 0.491 078 (= 0.340 389/ln 2).
+///
+/// ```
+/// use palpate::special::fung_continuous;
+/// assert!((fung_continuous(1.0, 0.5, 1.0).value - 0.491_078).abs() < 1e-6);
+/// ```
 #[must_use]
-pub(crate) fn fung_continuous(time: f64, rate_slow: f64, rate_fast: f64) -> FungContinuous {
+pub fn fung_continuous(time: f64, rate_slow: f64, rate_fast: f64) -> FungContinuous {
     if rate_slow > rate_fast {
         let FungContinuous {
             value,
