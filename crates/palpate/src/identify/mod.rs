@@ -9,24 +9,29 @@
 //! |---|---|---|
 //! | `separable.rs` | the engine: separable least squares with bounds, covariance and a reason to end | |
 //! | `linear_algebra.rs` | Cholesky for its small matrices | |
+//! | `bounded.rs` | linear least squares with bounds on the numbers | |
 //! | `coarse.rs` | the exhaustive coarse search | |
 //! | `time_domain.rs` | the closed form fitted to a signal | (4), (5) |
 //! | `rate_domain.rs` | strain rate fitted against strain, as the paper does | (9), (10) |
+//! | `spectrum/` | exponentials of all times at once, none of opposite sign | |
 //! | `estimates.rs` | estimates, standard errors, intervals | |
 //! | `selection.rs` | the lowest order that fits best, with its evidence | |
 
+mod bounded;
 mod coarse;
 mod estimates;
 mod linear_algebra;
 mod rate_domain;
 mod selection;
 mod separable;
+mod spectrum;
 mod time_domain;
 
 pub use estimates::{Domain, Estimate, ExponentChoice, LatencyFit, PARAMETERS};
 pub use rate_domain::fit_rates;
 pub use selection::{Candidate, OrderSelection, select_order};
 pub use separable::{Termination, Work};
+pub use spectrum::{Smoothing, SpectrumFit, SpectrumOptions, SpectrumPeak, SpectrumWork, fit_spectrum};
 pub use time_domain::fit_hold;
 
 use serde::{Deserialize, Serialize};
@@ -127,6 +132,20 @@ pub enum FitError {
     /// A coverage that is not between 0 and 1.
     #[error("confidence must lie between 0 and 1, found {found}")]
     Confidence {
+        /// What was given.
+        found: f64,
+    },
+    /// A square root of a weight that is not a finite number of zero or more.
+    #[error("weight {index} is not a finite number of zero or more")]
+    Weight {
+        /// Which sample.
+        index: usize,
+    },
+    /// A setting of the spectrum out of its range.
+    #[error("{setting} is out of range: {found}")]
+    SpectrumSetting {
+        /// Which setting, and its range.
+        setting: &'static str,
         /// What was given.
         found: f64,
     },
