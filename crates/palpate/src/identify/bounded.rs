@@ -34,7 +34,7 @@ pub(super) enum Held {
     AtUpper,
 }
 
-/// Solves bounded problems of one size one after the other, without allocating anew.
+/// Solves bounded problems of one size, one after the other, in the same memory.
 #[derive(Debug, Clone)]
 pub(super) struct BoundedSolver {
     solution: Vec<f64>,
@@ -227,29 +227,31 @@ impl BoundedSolver {
 
     /// The number whose bound costs most: whose gradient, in units of its own column, points inwards the steepest.
     fn entering(&self, problem: &BoundedProblem<'_>, refused: &[bool]) -> Option<usize> {
-        let size = self.held.len();
         let mut steepest: Option<(f64, usize)> = None;
-        for i in 0..size {
-            if self.held[i] == Held::Free || refused[i] || problem.lower[i] >= problem.upper[i] {
+        for (i, refused) in refused.iter().enumerate() {
+            if *refused || self.held[i] == Held::Free || problem.lower[i] >= problem.upper[i] {
                 continue;
             }
-            let mut inward = problem.right[i];
-            let mut terms = inward.abs();
-            for (entry, value) in problem.gram[i * size..(i + 1) * size].iter().zip(&self.solution) {
-                inward -= entry * value;
-                terms += (entry * value).abs();
-            }
-            if self.held[i] == Held::AtUpper {
-                inward = -inward;
-            }
-            let slope = inward / problem.gram[i * size + i].sqrt();
-            // Below this it is rounding of its own terms.
-            let shows = inward > 4.0 * size as f64 * f64::EPSILON * terms;
-            if shows && slope.is_finite() && steepest.is_none_or(|(most, _)| slope > most) {
+            let slope = self.inward_slope(problem, i);
+            if slope.is_finite() && slope > steepest.map_or(0.0, |(most, _)| most) {
                 steepest = Some((slope, i));
             }
         }
         steepest.map(|(_, i)| i)
+    }
+
+    /// How steeply the sum falls as a held number moves off its bound; 0 where that is rounding of its own terms.
+    fn inward_slope(&self, problem: &BoundedProblem<'_>, i: usize) -> f64 {
+        let size = self.held.len();
+        let row = &problem.gram[i * size..(i + 1) * size];
+        let mut upward = problem.right[i];
+        let mut terms = upward.abs();
+        for (entry, value) in row.iter().zip(&self.solution) {
+            upward -= entry * value;
+            terms += (entry * value).abs();
+        }
+        let inward = if self.held[i] == Held::AtUpper { -upward } else { upward };
+        if inward > 4.0 * size as f64 * f64::EPSILON * terms { inward / row[i].sqrt() } else { 0.0 }
     }
 }
 

@@ -30,7 +30,7 @@ const SHORTEST: f64 = 1e-6;
 #[serde(rename_all = "snake_case")]
 pub enum Smoothing {
     /// As strongly as the residual allows: it may exceed the least by one standard deviation of its own noise,
-    /// RSS ≤ RSS_least (1 + √(2/N)).
+    /// RSS ≤ RSS_least (1 + √(2 W)/N) with N samples of weights that add up to W; √(2/N) without weights.
     #[default]
     Automatic,
     /// With this μ in (mean square residual)/range² + μ Σ (h_{j+1} − h_j)²/range², from 10⁻¹² to 10¹².
@@ -83,8 +83,8 @@ impl SpectrumOptions {
 ///
 /// `times` in s rise from the start of the hold (their first value is its zero); `values` are strain, force or stress,
 /// one a time. `roots` are square roots of weights: a weight of k counts a sample k times, as the mean of k samples
-/// deserves, and one of 0 leaves it out. Neither all weights nor the units of time and signal, multiplied by one number,
-/// change anything but units.
+/// deserves, and one of 0 leaves it out. Weights that are no counts should have a mean of 1, for their sum is taken for
+/// the number of samples. The units of time and signal change nothing but units.
 ///
 /// The grid runs from the first sample step (no less than 10⁻⁶ of the hold) to [`SpectrumOptions::slowest`] durations.
 /// Amplitudes are bounded, so they have no standard errors, and neighbours share their weight as the smoothing bids:
@@ -120,7 +120,7 @@ pub fn fit_spectrum(
     if constant.is_some_and(|fixed| !fixed.is_finite()) {
         return Err(FitError::OutOfRange);
     }
-    let chosen = Chosen::new(&normal, constant, scaled.times.len(), options).ok_or(FitError::OutOfRange)?;
+    let chosen = Chosen::new(&normal, constant, scaled.slack(), options).ok_or(FitError::OutOfRange)?;
     Ok(scaled.fit(&grid, &chosen))
 }
 
@@ -136,7 +136,7 @@ struct Chosen {
 
 impl Chosen {
     /// The sign that fits better with next to no smoothing, and the smoothing that the options ask for.
-    fn new(normal: &Normal, constant: Option<f64>, samples: usize, options: &SpectrumOptions) -> Option<Self> {
+    fn new(normal: &Normal, constant: Option<f64>, slack: f64, options: &SpectrumOptions) -> Option<Self> {
         let mut work = SpectrumWork::default();
         let mut tried = Vec::with_capacity(2);
         for sign in [1.0, -1.0] {
@@ -150,7 +150,7 @@ impl Chosen {
         tried.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (least, sign, mut smoother, decades) = tried.swap_remove(0);
         let before = (smoother.strengths, smoother.pivots());
-        let limit = least * (1.0 + (2.0 / samples as f64).sqrt());
+        let limit = least * (1.0 + slack);
         let smoothed = match options.smoothing {
             Smoothing::Automatic => smoother.strongest(&decades, limit)?,
             Smoothing::Given(strength) => smoother.solve(strength)?,
@@ -218,6 +218,14 @@ impl Scaled {
             center,
             range,
         })
+    }
+
+    /// Share of the least residual that smoothing may add: one standard deviation of what noise alone leaves.
+    ///
+    /// A mean of w samples keeps a w-th of their variance, so N weighted squares add up to N σ², and what all W samples
+    /// would have scattered by, σ² √(2 W), is √(2 W)/N of that.
+    fn slack(&self) -> f64 {
+        (2.0 * self.weight).sqrt() / self.times.len() as f64
     }
 
     /// Times of the spectrum in durations of the hold, evenly spaced in ln τ.

@@ -26,7 +26,7 @@ pub struct SpectrumFit {
     pub residual_square: f64,
     /// The same with next to no smoothing (10⁻¹²).
     pub least_residual_square: f64,
-    /// What smoothing was allowed to bring it to: the least × (1 + √(2/N)).
+    /// What smoothing was allowed to bring it to: the least × (1 + √(2 W)/N), W = `weight`, N = `samples`.
     pub residual_limit: f64,
     /// Samples of weight.
     pub samples: usize,
