@@ -94,7 +94,7 @@ def errors(seed):
     """Correlation of the noise, and the error of every rule."""
     t, truth, y, rho = hold(seed)
     known, out = t <= 1 / 3, {}
-    for grid in itertools.product((3, 10, 30), (3, 4), ("ridge", "first", "second")):
+    for grid in itertools.product((3, 10, 30), (4, 8), ("ridge", "first", "second")):
         for rule, predict in spectra(t[known], y[known], *grid).items():
             error = np.sqrt(np.mean((predict(t) - truth)[~known] ** 2))
             out[(*grid, rule)] = error / (truth[0] - truth[-1])

@@ -4,7 +4,9 @@ use crate::latency::decay_many;
 use crate::statistics::dot;
 
 /// Samples taken at a time, so that all columns of a block stay in the nearest cache.
-const BLOCK: usize = 128;
+const BLOCK: usize = 64;
+/// After this many of its times an exponential is less than rounding.
+pub(super) const GONE: f64 = 40.0;
 
 /// Products over all samples, per unit of weight.
 pub(super) struct Normal {
@@ -25,7 +27,9 @@ impl Normal {
         let mut products = vec![0.0; columns * columns];
         for ((times, values), roots) in times.chunks(BLOCK).zip(values.chunks(BLOCK)).zip(roots.chunks(BLOCK)) {
             let rows = times.len();
-            for (column, time) in block.chunks_mut(BLOCK).zip(grid) {
+            // Times rise, so what is gone at the first of a block is gone for good.
+            let gone = grid.partition_point(|time| times[0] > GONE * time);
+            for (column, time) in block.chunks_mut(BLOCK).zip(grid).skip(gone) {
                 decay_many(times, 1.0 / time, 1.0, &mut column[..rows]);
                 scale(&mut column[..rows], roots);
             }
@@ -33,9 +37,9 @@ impl Normal {
             constant[..rows].copy_from_slice(roots);
             signal[..rows].copy_from_slice(values);
             scale(&mut signal[..rows], roots);
-            for i in 0..columns {
+            for i in gone..columns {
                 let column = &block[i * BLOCK..i * BLOCK + rows];
-                for j in 0..=i {
+                for j in gone..=i {
                     products[i * columns + j] += dot(column, &block[j * BLOCK..j * BLOCK + rows]);
                 }
             }
