@@ -19,6 +19,7 @@
 //! | `law_fit.rs`, `derived.rs` | any law fitted, its numbers and those that follow from them | |
 //! | `time_domain.rs` | the latency law fitted to a signal | (4), (5) |
 //! | `rate_domain.rs` | strain rate fitted against strain, as the paper does | (9), (10) |
+//! | `spectrum/` | exponentials of all times at once, none of opposite sign | |
 //! | `estimates.rs` | estimates, standard errors, intervals | |
 //! | `selection.rs` | the lowest order that fits best, with its evidence | |
 
@@ -37,6 +38,7 @@ mod samples;
 mod search;
 mod selection;
 mod separable;
+mod spectrum;
 mod starts;
 mod time_domain;
 
@@ -48,6 +50,7 @@ pub use rate_domain::fit_rates;
 pub use samples::Samples;
 pub use selection::{Candidate, OrderSelection, select_order};
 pub use separable::{Termination, Work};
+pub use spectrum::{Smoothing, SpectrumFit, SpectrumOptions, SpectrumPeak, SpectrumWork, fit_spectrum};
 pub use time_domain::fit_hold;
 
 use serde::{Deserialize, Serialize};
@@ -192,6 +195,20 @@ pub enum FitError {
     /// A coverage that is not between 0 and 1.
     #[error("confidence must lie between 0 and 1, found {found}")]
     Confidence {
+        /// What was given.
+        found: f64,
+    },
+    /// A square root of a weight that is not a finite number of zero or more.
+    #[error("weight {index} is not a finite number of zero or more")]
+    Weight {
+        /// Which sample.
+        index: usize,
+    },
+    /// A setting of the spectrum out of its range.
+    #[error("{setting} is out of range: {found}")]
+    SpectrumSetting {
+        /// Which setting, and its range.
+        setting: &'static str,
         /// What was given.
         found: f64,
     },
