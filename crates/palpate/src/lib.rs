@@ -16,6 +16,7 @@
 //! | [`laws`] | every law of relaxation and creep |
 //! | [`special`] | Mittag-Leffler, exponential integral and their kin |
 //! | [`identify`] | laws fitted to holds, with standard errors and a reason to end |
+//! | [`choose`] | which law to use, by what each foretells |
 //! | [`contact`] | the body, its layers and its contact, equations (7) and (11) |
 //! | [`simulate`] | from a motion of the jaw to the force |
 //! | [`analysis`] | all of it for one record, with findings in plain words |
@@ -46,6 +47,7 @@
 //! ```
 
 pub mod analysis;
+pub mod choose;
 pub mod contact;
 pub mod identify;
 pub mod latency;

@@ -17,6 +17,7 @@
 //! | `search.rs` | from a model to the global optimum | |
 //! | `robust.rs` | outliers made to count less | |
 //! | `law_fit.rs`, `derived.rs` | any law fitted, its numbers and those that follow from them | |
+//! | `foretell.rs` | a law fitted to the first part of a hold, held against the rest | |
 //! | `time_domain.rs` | the latency law fitted to a signal | (4), (5) |
 //! | `rate_domain.rs` | strain rate fitted against strain, as the paper does | (9), (10) |
 //! | `spectrum/` | exponentials of all times at once, none of opposite sign | |
@@ -28,6 +29,7 @@ mod build;
 mod condensed;
 mod derived;
 mod estimates;
+mod foretell;
 mod law_fit;
 mod law_options;
 mod linear_algebra;
@@ -44,6 +46,7 @@ mod time_domain;
 
 pub use crate::laws::ExponentChoice;
 pub use estimates::{Domain, Estimate, LatencyFit, PARAMETERS};
+pub use foretell::{Forecast, foretell};
 pub use law_fit::{LawFit, LawNumber, NumberUnit, fit_law};
 pub use law_options::{ConstantChoice, LawOptions, Loss, SampleChoice};
 pub use rate_domain::fit_rates;

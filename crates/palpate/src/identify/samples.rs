@@ -44,6 +44,18 @@ impl<'a> Samples<'a> {
         }
     }
 
+    /// Times, s.
+    #[must_use]
+    pub fn times(&self) -> &'a [f64] {
+        self.times
+    }
+
+    /// Values.
+    #[must_use]
+    pub fn values(&self) -> &'a [f64] {
+        self.values
+    }
+
     /// Whether a law with so many numbers can be fitted to these samples at all.
     pub(super) fn check(&self, parameters: usize) -> Result<(), FitError> {
         if self.times.len() != self.values.len() {

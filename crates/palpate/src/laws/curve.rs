@@ -41,6 +41,23 @@ pub struct LawCurve {
 }
 
 impl LawCurve {
+    /// A curve given as a relaxation, `equilibrium` + Σ amplitude · shape, told as `response`: y₀ − Σ amplitude (1 − shape) is the
+    /// same in the words of creep.
+    pub(crate) fn relaxing(response: Response, equilibrium: f64, mut terms: Vec<Term>) -> Self {
+        let mut constant = equilibrium;
+        if response == Response::Creep {
+            for term in &mut terms {
+                constant += term.amplitude;
+                term.amplitude = -term.amplitude;
+            }
+        }
+        Self {
+            response,
+            constant,
+            terms,
+        }
+    }
+
     /// The signal a time `elapsed` (s) after the start; before it, the value at the start.
     #[must_use]
     pub fn at(&self, elapsed: f64) -> f64 {

@@ -1,0 +1,18 @@
+//! Which law to use: laws compared by what they foretell, and by what they cost.
+//!
+//! | file | what |
+//! |---|---|
+//! | `criteria.rs` | AICc and BIC |
+//! | `forward.rs` | forward score: fit the first part of the hold, predict the rest |
+//! | `compare.rs` | all laws on one hold, ranked |
+//! | `verdict.rs` | which law to use, how sure that is, what another would cost |
+
+mod compare;
+mod criteria;
+mod forward;
+mod verdict;
+
+pub use compare::{CompareOptions, Comparison, Ranking, Row, compare_laws};
+pub use criteria::{Criteria, criteria};
+pub use forward::ForwardScore;
+pub use verdict::{Certainty, Verdict};

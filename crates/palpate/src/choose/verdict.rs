@@ -1,0 +1,104 @@
+//! Which law to use, how sure that is, and what another would cost.
+
+use serde::{Deserialize, Serialize};
+
+use super::compare::{Comparison, Ranking, Row};
+use crate::laws::Law;
+
+/// How sure a verdict is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Certainty {
+    /// Best, or as good as the best, at every cut point, and every law that is not alike is at least twice as far off.
+    Clear,
+    /// Best in the mean.
+    Likely,
+    /// These data cannot tell most of the laws apart.
+    Open,
+}
+
+/// Which law to use.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// The law with the fewest numbers among those that do best.
+    pub law: Law,
+    /// All laws that do as well, this one included, best first.
+    pub alike: Vec<Law>,
+    /// How sure that is.
+    pub certainty: Certainty,
+    /// Cut points at which it was best or alike.
+    pub cuts_won: usize,
+    /// What every other law costs: its error over that of the chosen one (forward), or its excess of BIC (information).
+    pub costs: Vec<(Law, f64)>,
+}
+
+/// Errors within this factor of the best count as alike.
+const ALIKE: f64 = 1.5;
+
+/// Of the noise: errors that differ by less are alike too, since the noise of the foretold samples is in all of them.
+const SHARE_OF_NOISE: f64 = 0.1;
+
+/// Differences of BIC within which laws are alike ("positive" evidence begins here in the scale of Kass and Raftery).
+const EVIDENCE: f64 = 2.0;
+
+impl Comparison {
+    /// The figure that laws are ranked by: forward error as a share of the change of the signal, or excess of BIC.
+    #[must_use]
+    pub fn figure(&self, row: &Row) -> Option<f64> {
+        match self.ranking {
+            Ranking::Forward => row.forward.score,
+            Ranking::Information => row.delta_bic,
+        }
+    }
+
+    /// Whether a figure is as good as another, smaller one.
+    fn as_good(&self, figure: f64, best: f64) -> bool {
+        match self.ranking {
+            Ranking::Forward => figure <= ALIKE * best || figure - best <= SHARE_OF_NOISE * self.noise / self.change,
+            Ranking::Information => figure - best <= EVIDENCE,
+        }
+    }
+}
+
+/// Judges ranked rows.
+pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
+    let figures = || comparison.rows.iter().filter_map(|row| comparison.figure(row).map(|figure| (row, figure)));
+    let any_good = figures().any(|(row, _)| row.is_good());
+    let usable = || figures().filter(move |(row, _)| row.is_good() || !any_good);
+    let best = usable().next()?.1;
+    let alike: Vec<(&Row, f64)> = usable().filter(|(_, figure)| comparison.as_good(*figure, best)).collect();
+    let (chosen, figure) =
+        *alike.iter().min_by(|a, b| a.0.numbers.total_cmp(&b.0.numbers).then(a.1.total_cmp(&b.1)))?;
+    let others = figures().filter(|(row, _)| row.law != chosen.law);
+    let costs = others.map(|(row, other)| match comparison.ranking {
+        Ranking::Forward => (row.law, other / figure),
+        Ranking::Information => (row.law, other - figure),
+    });
+    let cuts_won = (0..comparison.cuts.len()).filter(|&cut| wins(comparison, chosen, cut)).count();
+    let next = usable().map(|(_, figure)| figure).find(|figure| !comparison.as_good(*figure, best));
+    let apart = next.is_some_and(|next| match comparison.ranking {
+        Ranking::Forward => next >= 2.0 * figure,
+        Ranking::Information => next - figure >= 10.0,
+    });
+    let certainty = if 2 * alike.len() > usable().count() {
+        Certainty::Open
+    } else if apart && cuts_won == comparison.cuts.len() {
+        Certainty::Clear
+    } else {
+        Certainty::Likely
+    };
+    Some(Verdict {
+        law: chosen.law,
+        alike: alike.iter().map(|(row, _)| row.law).collect(),
+        certainty,
+        cuts_won,
+        costs: costs.collect(),
+    })
+}
+
+/// Whether a law is best or alike at one cut point.
+fn wins(comparison: &Comparison, row: &Row, cut: usize) -> bool {
+    let at = |row: &Row| row.forward.relative(cut, comparison.change);
+    let best = comparison.rows.iter().filter(|row| row.is_good()).filter_map(at).fold(f64::INFINITY, f64::min);
+    at(row).is_some_and(|error| comparison.as_good(error, best))
+}
