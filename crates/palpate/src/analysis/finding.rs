@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::laws::Law;
+
 /// How much a finding matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -37,6 +39,40 @@ pub enum Finding {
     RateAtBound {
         /// The exponent of that fit.
         exponent: f64,
+    },
+    /// Laws of the comparison ended at the edge of their range.
+    ParametersAtBound {
+        /// Those laws.
+        laws: Vec<Law>,
+    },
+    /// Exponent and equilibrium go together.
+    ExponentConfounded {
+        /// Correlation of their estimates.
+        correlation: f64,
+    },
+    /// Terms of a series are none.
+    TermsIndistinguishable {
+        /// Those laws.
+        laws: Vec<Law>,
+    },
+    /// Several laws do equally well.
+    LawsIndistinguishable {
+        /// Those laws, the one with the fewest numbers first.
+        laws: Vec<Law>,
+    },
+    /// The force rises again in a hold after loading.
+    DriftInsteadOfRelaxation {
+        /// How far it rises, N.
+        rise: f64,
+        /// How far it fell before, N.
+        fall: f64,
+    },
+    /// The jaw moves in the hold while the force stands still.
+    FeedbackControlled {
+        /// How far it moves, m.
+        travel: f64,
+        /// How much the force changes, N.
+        change: f64,
     },
     /// Residuals of neighbouring samples go together.
     ResidualsCorrelated {
@@ -141,6 +177,12 @@ impl Finding {
             Self::ExponentUndetermined { .. } => "exponent_undetermined",
             Self::ExponentsAlike { .. } => "exponents_alike",
             Self::RateAtBound { .. } => "rate_at_bound",
+            Self::ParametersAtBound { .. } => "parameters_at_bound",
+            Self::ExponentConfounded { .. } => "exponent_confounded",
+            Self::TermsIndistinguishable { .. } => "terms_indistinguishable",
+            Self::LawsIndistinguishable { .. } => "laws_indistinguishable",
+            Self::DriftInsteadOfRelaxation { .. } => "drift_instead_of_relaxation",
+            Self::FeedbackControlled { .. } => "feedback_controlled",
             Self::ResidualsCorrelated { .. } => "residuals_correlated",
             Self::NoRelaxation { .. } => "no_relaxation",
             Self::TooFewSamples { .. } => "too_few_samples",
@@ -165,6 +207,9 @@ impl Finding {
     pub fn severity(&self) -> Severity {
         match self {
             Self::ExponentsAlike { .. }
+            | Self::ParametersAtBound { .. }
+            | Self::TermsIndistinguishable { .. }
+            | Self::LawsIndistinguishable { .. }
             | Self::Thinned { .. }
             | Self::PhasesFromForce
             | Self::AirTravel { .. }
@@ -172,6 +217,9 @@ impl Finding {
             | Self::ModulusEstimated { .. } => Severity::Info,
             Self::EquilibriumExtrapolated { .. }
             | Self::ExponentUndetermined { .. }
+            | Self::ExponentConfounded { .. }
+            | Self::DriftInsteadOfRelaxation { .. }
+            | Self::FeedbackControlled { .. }
             | Self::ResidualsCorrelated { .. }
             | Self::SampledTooSlowly { .. }
             | Self::ContactOpen { .. }
@@ -191,7 +239,11 @@ impl Finding {
     pub fn seen(&self) -> String {
         match self {
             Self::EquilibriumExtrapolated { beyond } => {
-                format!("{:.0} % of the fitted relaxation lies beyond the end of the hold", 100.0 * beyond)
+                format!(
+                    "the hold shows {:.0} % of the fitted relaxation; {:.0} % lies beyond its end",
+                    100.0 * (1.0 - beyond),
+                    100.0 * beyond
+                )
             }
             Self::ExponentUndetermined {
                 interval: Some((low, high)),
@@ -208,6 +260,26 @@ impl Finding {
             Self::RateAtBound { exponent } => {
                 format!("the fit with n = {exponent:.3} ended at the edge of the range of its rate")
             }
+            Self::ParametersAtBound { laws } => {
+                format!("the fits of {} ended at the edge of their range", listed(laws))
+            }
+            Self::ExponentConfounded { correlation } => {
+                format!("the estimates of exponent and equilibrium correlate by {correlation:.3}")
+            }
+            Self::TermsIndistinguishable { laws } => {
+                format!("in {} terms merge or vanish", listed(laws))
+            }
+            Self::LawsIndistinguishable { laws } => format!("{} do equally well", listed(laws)),
+            Self::DriftInsteadOfRelaxation { rise, fall } if *fall > 0.0 => {
+                format!("after falling by {fall:.3} N the force rises by {rise:.3} N at constant displacement")
+            }
+            Self::DriftInsteadOfRelaxation { rise, .. } => {
+                format!("the force rises by {rise:.3} N in a hold after loading")
+            }
+            Self::FeedbackControlled { travel, change } => format!(
+                "the jaw moves by {:.3} mm in the hold while the force changes by {change:.3} N only",
+                1e3 * travel
+            ),
             Self::ResidualsCorrelated {
                 correlation,
                 independent,
@@ -275,6 +347,22 @@ impl Finding {
             Self::ExponentUndetermined { .. } | Self::ExponentsAlike { .. } => {
                 "the hold is too short or too noisy to tell these laws apart"
             }
+            Self::ParametersAtBound { .. } => {
+                "over this hold such a law is a simpler one in disguise (a straight line, a step, a pure power); its numbers mean nothing"
+            }
+            Self::ExponentConfounded { .. } => {
+                "a higher exponent with a lower equilibrium fits nearly as well; each is only as good as the other"
+            }
+            Self::TermsIndistinguishable { .. } => "the data carry fewer terms than the series has",
+            Self::LawsIndistinguishable { .. } => {
+                "these data do not tell which of these laws holds; beyond the hold they will part"
+            }
+            Self::DriftInsteadOfRelaxation { .. } => {
+                "load cell, temperature or frame drift, or the jaw still moves: no law of relaxation does this"
+            }
+            Self::FeedbackControlled { .. } => {
+                "the machine held the force, not the displacement: the body creeps, and a law of relaxation does not apply"
+            }
             Self::RateAtBound { .. } => {
                 "over this hold the law is a straight line, a pure power or a step: its rate and amplitude cannot be told apart"
             }
@@ -326,6 +414,17 @@ impl Finding {
                 "hold longer, sample the first second faster, or fix the exponent from longer holds"
             }
             Self::RateAtBound { .. } => "hold longer or sample faster; do not use the numbers of this fit",
+            Self::ParametersAtBound { .. } | Self::TermsIndistinguishable { .. } => "use a law with fewer numbers",
+            Self::ExponentConfounded { .. } => {
+                "hold longer, or fix the exponent from longer holds of the same material"
+            }
+            Self::LawsIndistinguishable { .. } => "use the one with the fewest numbers, or hold longer",
+            Self::DriftInsteadOfRelaxation { .. } => {
+                "warm up the load cell, check the tare, end the fit before the rise (until)"
+            }
+            Self::FeedbackControlled { .. } => {
+                "fit the displacement as creep (palpate compare --creep), or hold the displacement"
+            }
             Self::ResidualsCorrelated { .. } => {
                 "look at the residuals in the report; try a free exponent or a later start of the hold"
             }
@@ -353,6 +452,16 @@ impl Finding {
             }
             Self::NoOverlay { .. } => "check geometry, first touch and units",
         }
+    }
+}
+
+/// "a, b and c".
+fn listed(laws: &[Law]) -> String {
+    let names: Vec<String> = laws.iter().map(ToString::to_string).collect();
+    match names.as_slice() {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }
 

@@ -2,11 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::behaviour::not_a_hold;
 use super::{AnalysisOptions, Finding};
+use crate::choose::{Comparison, compare_laws};
 use crate::contact::Specimen;
 use crate::identify::{
-    ExponentChoice, FitError, LatencyFit, OrderSelection, Termination, fit_hold, fit_rates, select_order,
+    ExponentChoice, FitError, LatencyFit, OrderSelection, Samples, Termination, fit_hold, fit_rates, select_order,
 };
+use crate::laws::Law;
 use crate::record::Record;
 use crate::segment::{After, Relaxation, RelaxationType, Segment, classify_relaxation};
 use crate::simulate::Separation;
@@ -73,6 +76,8 @@ pub struct HoldAnalysis {
     pub predictions: Vec<Option<Prediction>>,
     /// Which exponent the data ask for.
     pub order: Option<OrderSelection>,
+    /// Laws compared on the hold.
+    pub comparison: Option<Comparison>,
     /// Smoothed strains and strain rates.
     pub rates: StrainRates,
     /// Rate-domain fits in the same order as `fits`; `None` where one could not be made.
@@ -135,6 +140,7 @@ pub(super) fn analyze_hold(
         fits: Vec::new(),
         predictions: Vec::new(),
         order: None,
+        comparison: None,
         rates: StrainRates::default(),
         rate_fits: Vec::new(),
         findings: Vec::new(),
@@ -150,8 +156,11 @@ pub(super) fn analyze_hold(
     }
     if take_signal(&mut hold, record, specimen, options) && hold.relaxation.kind != RelaxationType::None {
         fit_all(&mut hold, options);
+        hold.comparison = compare(&hold, options);
         judge(&mut hold);
+        judge_comparison(&mut hold);
     }
+    hold.findings.extend(not_a_hold(record, &segment));
     hold
 }
 
@@ -250,6 +259,37 @@ fn fit_all(hold: &mut HoldAnalysis, options: &AnalysisOptions) {
     }
 }
 
+/// Compares laws over the whole hold, or over what was asked to be fitted.
+fn compare(hold: &HoldAnalysis, options: &AnalysisOptions) -> Option<Comparison> {
+    let options = options.compare.as_ref()?;
+    let samples = Samples::new(&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
+    compare_laws(&samples, options).ok()
+}
+
+/// Adds what the comparison gives cause to say.
+fn judge_comparison(hold: &mut HoldAnalysis) {
+    let Some(comparison) = &hold.comparison else { return };
+    let ended = |termination: &[Termination]| -> Vec<Law> {
+        let fits = comparison.rows.iter().filter_map(|row| row.fit.as_ref().ok());
+        fits.filter(|fit| termination.contains(&fit.termination)).map(|fit| fit.law).collect()
+    };
+    let at_bound = ended(&[Termination::RateAtBound, Termination::ExponentAtBound]);
+    let merged = ended(&[Termination::Singular]);
+    let alike = comparison.verdict.as_ref().map_or_else(Vec::new, |verdict| {
+        let rest = verdict.alike.iter().filter(|law| **law != verdict.law);
+        [verdict.law].iter().chain(rest).copied().collect()
+    });
+    if !at_bound.is_empty() {
+        hold.findings.push(Finding::ParametersAtBound { laws: at_bound });
+    }
+    if !merged.is_empty() {
+        hold.findings.push(Finding::TermsIndistinguishable { laws: merged });
+    }
+    if alike.len() > 1 {
+        hold.findings.push(Finding::LawsIndistinguishable { laws: alike });
+    }
+}
+
 /// Error of a fit over the samples from index `fitted` on.
 fn foretell(fit: &LatencyFit, times: &[f64], values: &[f64], fitted: usize) -> Option<Prediction> {
     let beyond = times[fitted..].iter().zip(&values[fitted..]);
@@ -287,6 +327,11 @@ fn judge(hold: &mut HoldAnalysis) {
                     interval: Some((low, high)),
                 });
             }
+            Some(_) => {
+                if let Some(correlation) = confounded(free) {
+                    hold.findings.push(Finding::ExponentConfounded { correlation });
+                }
+            }
             None if free.termination != Termination::RateAtBound => {
                 hold.findings.push(Finding::ExponentUndetermined { interval: None });
             }
@@ -315,4 +360,12 @@ fn judge(hold: &mut HoldAnalysis) {
             independent: best.effective_samples(),
         });
     }
+}
+
+/// Correlation of exponent and equilibrium, if it is so close to one that each is only as good as the other.
+fn confounded(fit: &LatencyFit) -> Option<f64> {
+    const CLOSE: f64 = 0.98;
+    let covariance = fit.covariance.as_ref()?;
+    let correlation = covariance[0][3] / (covariance[0][0] * covariance[3][3]).sqrt();
+    (correlation.abs() > CLOSE).then_some(correlation)
 }

@@ -5,12 +5,14 @@
 //! | `options.rs` | everything that may be asked, with defaults |
 //! | `pipeline.rs` | the order of the steps |
 //! | `hold.rs` | one hold: signal, fits in both domains, prediction beyond the window |
+//! | `behaviour.rs` | holds that are none: drift, feedback control |
 //! | `across.rs` | several holds: common exponent, trend of v, agreement of equilibrium strains |
 //! | `modulus.rs` | the modulus that the relaxed forces imply |
 //! | `overlay.rs` | the same displacement simulated with the fitted numbers |
 //! | `finding.rs` | what the user should know, in plain words |
 
 mod across;
+mod behaviour;
 mod finding;
 mod hold;
 mod modulus;

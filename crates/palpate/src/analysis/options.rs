@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::choose::CompareOptions;
 use crate::contact::{Layers, LayersError, Shape, Sides};
 use crate::identify::FitOptions;
 use crate::segment::{ContactChoice, SegmentOptions};
@@ -64,6 +65,8 @@ pub struct AnalysisOptions {
     pub fit: FitOptions,
     /// Fit only this long from the start of the fit, s, and predict the rest of the hold.
     pub fit_until: Option<f64>,
+    /// Which laws are compared on every hold; `None` to leave that out.
+    pub compare: Option<CompareOptions>,
     /// Window of the strain rates.
     pub rate_window: RateWindow,
     /// Samples of a hold that are fitted at most; more are thinned evenly, and that is said.
@@ -82,6 +85,7 @@ impl Default for AnalysisOptions {
             free_exponent: true,
             fit: FitOptions::default(),
             fit_until: None,
+            compare: Some(CompareOptions::default()),
             rate_window: RateWindow::default(),
             most_samples: 1_000_000,
         }
