@@ -9,7 +9,9 @@
    Twice: all eight layers, and the contact layer alone (the force needs no other).
 2. fit: 1000 points of a hold, n = 5, parameters y_e, delta, ln lambda.
    SciPy: curve_fit (Levenberg-Marquardt), analytic Jacobian, started 10 % off. Median of 200.
-3. analyze: wall time, MB/s and peak memory, median of 3.
+3. laws: 1000 points of a hold, free numbers as named; SciPy's curve_fit with an analytic Jacobian and lmfit's Model
+   (its own numerical Jacobian), both started 10 to 20 % off, where palpate is given no start. Median of 50 and 5.
+4. analyze: wall time, MB/s and peak memory, median of 3.
 """
 
 import argparse
@@ -115,6 +117,75 @@ def fit(t, y):
         return out
 
     return curve_fit(law, t, y, p0=(0.33, 0.145, np.log(6.9)), jac=jacobian)
+
+
+def exponentials():
+    """1 + 0.5 exp(-4 t) + 0.5 exp(-0.4 t), the hold of examples/timing.rs."""
+    rng = np.random.default_rng(7)
+    t = np.linspace(0.0, 10.0, 1000)
+    return t, 1 + 0.5 * np.exp(-4 * t) + 0.5 * np.exp(-0.4 * t) + rng.normal(0.0, 1e-3, t.size)
+
+
+def power(t, y_e, delta, log_rate, n):
+    return y_e + delta * (1 + (n - 1) * np.exp(log_rate) * t) ** (-1 / (n - 1))
+
+
+def power_jacobian(t, y_e, delta, log_rate, n):
+    s, p = np.exp(log_rate) * t, n - 1
+    z = p * s
+    phi = (1 + z) ** (-1 / p)
+    by_n = phi * (np.log1p(z) / p - s / (1 + z)) / p
+    return np.column_stack([np.ones_like(t), phi, -delta * s * phi / (1 + z), delta * by_n])
+
+
+def exponential(t, y_e, delta, log_rate):
+    return y_e + delta * np.exp(-np.exp(log_rate) * t)
+
+
+def exponential_jacobian(t, y_e, delta, log_rate):
+    s = np.exp(log_rate) * t
+    phi = np.exp(-s)
+    return np.column_stack([np.ones_like(t), phi, -delta * s * phi])
+
+
+def two(t, y_e, a, b, log_rate, log_other):
+    return y_e + a * np.exp(-np.exp(log_rate) * t) + b * np.exp(-np.exp(log_other) * t)
+
+
+def two_jacobian(t, y_e, a, b, log_rate, log_other):
+    s, u = np.exp(log_rate) * t, np.exp(log_other) * t
+    p, q = np.exp(-s), np.exp(-u)
+    return np.column_stack([np.ones_like(t), p, q, -a * s * p, -b * u * q])
+
+
+def latency_five(t, y_e, delta, log_rate):
+    return y_e + delta * (1 + 4 * np.exp(log_rate) * t) ** -0.25
+
+
+def law_times():
+    """Seconds of SciPy and lmfit per law."""
+    import lmfit
+
+    hold, both = hold_data(), exponentials()
+    t = both[0]
+    one = (t, 1 + np.exp(-0.8 * t) + np.random.default_rng(3).normal(0.0, 1e-3, t.size))
+    laws = {
+        "fit_hold_1000": (latency_five, None, hold, (0.33, 0.145, np.log(6.9))),
+        "fit_hold_1000_free_exponent": (power, power_jacobian, hold, (0.33, 0.145, np.log(6.9), 4.5)),
+        "fit_standard-linear-solid_1000": (exponential, exponential_jacobian, one, (0.9, 1.1, np.log(0.9))),
+        "fit_prony:2_1000": (two, two_jacobian, both, (0.9, 0.55, 0.45, np.log(4.5), np.log(0.36))),
+    }
+    times = {}
+    for name, (law, jacobian, (t, y), start) in laws.items():
+        if jacobian is None:
+            scipy_time = median_time(lambda: fit(t, y), 50)
+        else:
+            scipy_time = median_time(lambda: curve_fit(law, t, y, p0=start, jac=jacobian), 50)
+        model = lmfit.Model(law)
+        names = model.param_names
+        lmfit_time = median_time(lambda: model.fit(y, t=t, **dict(zip(names, start))), 5)
+        times[name] = (scipy_time, lmfit_time)
+    return times
 
 
 def median_time(what, runs):
@@ -232,6 +303,15 @@ def main():
         ours = rust.get(key)
         ratio = f"{peer[name] / ours:.0f}" if ours else "-"
         lines.append(f"| {what} | {show(peer[name])} | {show(ours)} | {ratio} |")
+    lines += ["", "| law, 1000 samples, with covariance | SciPy curve_fit | lmfit | palpate, no start given | ratios |",
+              "|---|---:|---:|---:|---:|"]
+    for key, (scipy_time, lmfit_time) in law_times().items():
+        ours = rust.get(key)
+        ratios = f"{scipy_time / ours:.0f}, {lmfit_time / ours:.0f}" if ours else "-"
+        what = key.removeprefix("fit_").replace("_1000", "").replace("hold", "latency").replace("_", ", ")
+        lines.append(f"| {what} | {show(scipy_time)} | {show(lmfit_time)} | {show(ours)} | {ratios} |")
+    rest = [(name, seconds) for name, seconds in rust.items() if name.startswith(("fit_", "compare_"))]
+    lines += ["", "palpate alone: " + "; ".join(f"{name} {show(seconds)}" for name, seconds in rest) + "."]
     if args.palpate:
         size, wall, peak = analyze(args.palpate, args.analyze_args, args.rows)
         lines += ["", f"`palpate analyze` of a CSV file with {args.rows:.0e} rows ({size:.1f} MB) to JSON: "

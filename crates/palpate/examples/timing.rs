@@ -1,13 +1,15 @@
-//! Times the two kernels that users wait for; prints one JSON object a line (read by `validation/peers.py`).
+//! Times the kernels that users wait for; prints one JSON object a line (read by `validation/peers.py`).
 //!
 //! Run it with `cargo run --release -p palpate --example timing`.
 
 use std::hint::black_box;
 use std::time::Instant;
 
-use palpate::identify::{ExponentChoice, FitOptions, fit_hold};
+use palpate::choose::{CompareOptions, compare_laws};
+use palpate::identify::{ExponentChoice, FitOptions, LawOptions, Samples, fit_hold, fit_law};
+use palpate::laws::Law;
 use palpate::simulate::{Sampling, Separation, simulate, simulate_force};
-use palpate::test_problems::{noisy_hold, paper_ball, paper_test_a};
+use palpate::test_problems::{Noise, noisy_hold, paper_ball, paper_test_a};
 
 fn main() {
     let (motion, model) = (paper_test_a(), paper_ball(Separation::Bonded));
@@ -25,6 +27,46 @@ fn main() {
     });
     report("fit_hold_1000_free_exponent", 100, || {
         black_box(fit_hold(black_box(&times), &values, ExponentChoice::Free, &options)).is_ok()
+    });
+    fit_laws();
+    compare();
+}
+
+/// Every law fitted to 200 and to 1000 samples of a hold that is its own or close to it.
+fn fit_laws() {
+    for samples in [200, 1000] {
+        for (law, exponents) in [
+            (Law::StandardLinearSolid, vec![(1.0, 0.8)]),
+            (Law::Prony { terms: 2 }, vec![(0.5, 4.0), (0.5, 0.4)]),
+            (Law::Stretched, vec![(0.5, 2.0), (0.5, 0.4)]),
+            (Law::FractionalZener, vec![(0.5, 2.0), (0.5, 0.4)]),
+            (Law::FungContinuous, vec![(0.5, 4.0), (0.5, 0.4)]),
+        ] {
+            let (times, values) = exponentials(samples, &exponents);
+            let options = LawOptions::default();
+            report(&format!("fit_{law}_{samples}"), 100, || {
+                black_box(fit_law(&Samples::new(black_box(&times), &values), law, &options)).is_ok()
+            });
+        }
+    }
+}
+
+/// 1 + Σ Δ exp(−λt) over 10 s with noise of 10⁻³; pairs are (Δ, λ).
+fn exponentials(samples: usize, terms: &[(f64, f64)]) -> (Vec<f64>, Vec<f64>) {
+    let mut noise = Noise::new(7);
+    let times: Vec<f64> = (0..samples).map(|i| 10.0 * i as f64 / (samples - 1) as f64).collect();
+    let signal = |t: f64| 1.0 + terms.iter().map(|(amplitude, rate)| amplitude * (-rate * t).exp()).sum::<f64>();
+    let values = times.iter().map(|t| signal(*t) + 1e-3 * noise.normal()).collect();
+    (times, values)
+}
+
+/// Twelve laws compared on a hold of 1800 s at 20 Hz.
+fn compare() {
+    let (mut times, values) = noisy_hold(36_000, 4.3, 1e-3);
+    times.iter_mut().for_each(|t| *t *= 180.0);
+    let options = CompareOptions::default();
+    report("compare_36000", 10, || {
+        black_box(compare_laws(&Samples::new(black_box(&times), &values), &options)).is_ok()
     });
 }
 

@@ -362,9 +362,14 @@ fn judge(hold: &mut HoldAnalysis) {
     }
 }
 
-/// Correlation of exponent and equilibrium, if it is so close to one that each is only as good as the other.
+/// Correlation of exponent and equilibrium, if it is close to one and the exponent is not known well for all that.
 fn confounded(fit: &LatencyFit) -> Option<f64> {
     const CLOSE: f64 = 0.98;
+    const WIDE: f64 = 0.2;
+    let (low, high) = fit.exponent.interval?;
+    if high - low < WIDE * fit.exponent.value {
+        return None;
+    }
     let covariance = fit.covariance.as_ref()?;
     let correlation = covariance[0][3] / (covariance[0][0] * covariance[3][3]).sqrt();
     (correlation.abs() > CLOSE).then_some(correlation)
