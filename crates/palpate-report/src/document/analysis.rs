@@ -101,12 +101,29 @@ pub struct HoldDocument {
     pub signal: String,
     /// Fits, time domain first.
     pub fits: Vec<FitDocument>,
+    /// How far noise takes the rate domain from the truth.
+    pub rate_bias: Option<RateBiasDocument>,
     /// Index into `fits` of the preferred one (lowest information criterion).
     pub preferred: Option<usize>,
     /// Index into `fits` of the lowest listed exponent that fits as well as the best one.
     pub lowest_order: Option<usize>,
     /// What to know about this hold.
     pub findings: Vec<FindingDocument>,
+}
+
+/// What the rate domain makes of simulated holds whose truth is the preferred fit in time, with the noise of the measured one.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct RateBiasDocument {
+    /// The exponent, given in all fits.
+    pub exponent: f64,
+    /// Simulated holds.
+    pub repetitions: usize,
+    /// v of the rate domain over the true one, median.
+    pub rate_coefficient_ratio: f64,
+    /// Lowest and highest of them.
+    pub rate_coefficient_ratio_range: [f64; 2],
+    /// Equilibrium of the rate domain less the true one over the amplitude, median.
+    pub equilibrium_shift_ratio: f64,
 }
 
 /// A row of Table I or Table II: the paper's layout.
@@ -269,6 +286,13 @@ fn hold(hold: &HoldAnalysis) -> HoldDocument {
         }
         .to_owned(),
         fits: time.chain(rate).collect(),
+        rate_bias: hold.rate_bias.map(|bias| RateBiasDocument {
+            exponent: bias.exponent,
+            repetitions: bias.repetitions,
+            rate_coefficient_ratio: bias.coefficient,
+            rate_coefficient_ratio_range: [bias.coefficient_range.0, bias.coefficient_range.1],
+            equilibrium_shift_ratio: bias.equilibrium,
+        }),
         preferred: hold.order.as_ref().and_then(|order| order.preferred),
         lowest_order: hold.order.as_ref().and_then(|order| order.lowest_order),
         findings: hold.findings.iter().map(FindingDocument::from).collect(),

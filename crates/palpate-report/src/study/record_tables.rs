@@ -118,6 +118,9 @@ pub(super) fn fits(analysis: &Analysis) -> Table {
         .column(column("ΔBIC", "delta_bic", ""))
         .column(column("Beyond window", "prediction_error", ""))
         .column(column("Ended", "termination", ""));
+    for note in analysis.holds.iter().filter_map(rate_bias_note) {
+        table = table.note(note);
+    }
     for hold in &analysis.holds {
         let rates = hold.rate_fits.iter().flatten();
         for (i, fit) in hold.fits.iter().chain(rates).enumerate() {
@@ -127,6 +130,21 @@ pub(super) fn fits(analysis: &Analysis) -> Table {
     table
         .note("± is one standard error for white noise; intervals widened for correlated residuals are in analysis.json.")
         .note("v is in 1/s where the signal is strain. ΔBIC: information criterion less the lowest of the hold. Beyond window: prediction error over the drop of the hold.")
+}
+
+/// How far noise takes the rate domain from the truth in one hold.
+fn rate_bias_note(hold: &HoldAnalysis) -> Option<String> {
+    let bias = hold.rate_bias.filter(|_| hold.rate_fits.iter().any(Option::is_some))?;
+    Some(format!(
+        "Rate domain, hold {}: on simulated holds with the numbers of the fit in time (n = {:.3}) and this noise it finds v at {:.2} of the truth ({:.2} to {:.2} in {} of them) and the equilibrium off by {:.1} % of the relaxation.",
+        hold.number,
+        bias.exponent,
+        bias.coefficient,
+        bias.coefficient_range.0,
+        bias.coefficient_range.1,
+        bias.repetitions,
+        100.0 * bias.equilibrium
+    ))
 }
 
 fn fit_row(hold: &HoldAnalysis, fit: &LatencyFit, index: usize) -> Vec<Cell> {

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::behaviour::not_a_hold;
+use super::rate_bias::{RateBias, rate_bias};
 use super::{AnalysisOptions, Finding};
 use crate::choose::{Comparison, compare_laws};
 use crate::contact::Specimen;
@@ -82,6 +83,8 @@ pub struct HoldAnalysis {
     pub rates: StrainRates,
     /// Rate-domain fits in the same order as `fits`; `None` where one could not be made.
     pub rate_fits: Vec<Option<LatencyFit>>,
+    /// How far noise takes the rate domain from the truth, at the preferred exponent.
+    pub rate_bias: Option<RateBias>,
     /// What to know about this hold.
     pub findings: Vec<Finding>,
 }
@@ -143,6 +146,7 @@ pub(super) fn analyze_hold(
         comparison: None,
         rates: StrainRates::default(),
         rate_fits: Vec::new(),
+        rate_bias: None,
         findings: Vec::new(),
     };
     if reopened.is_some() {
@@ -157,6 +161,7 @@ pub(super) fn analyze_hold(
     if take_signal(&mut hold, record, specimen, options) && hold.relaxation.kind != RelaxationType::None {
         fit_all(&mut hold, options);
         hold.comparison = compare(&hold, options);
+        hold.rate_bias = hold.preferred().and_then(|fit| rate_bias(&hold, fit, &options.rate_window, &options.fit));
         judge(&mut hold);
         judge_comparison(&mut hold);
     }

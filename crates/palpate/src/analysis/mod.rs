@@ -6,6 +6,7 @@
 //! | `pipeline.rs` | the order of the steps |
 //! | `hold.rs` | one hold: signal, fits in both domains, prediction beyond the window |
 //! | `behaviour.rs` | holds that are none: drift, feedback control |
+//! | `rate_bias.rs` | how far noise takes the rate domain from the truth |
 //! | `across.rs` | several holds: common exponent, trend of v, agreement of equilibrium strains |
 //! | `modulus.rs` | the modulus that the relaxed forces imply |
 //! | `overlay.rs` | the same displacement simulated with the fitted numbers |
@@ -19,6 +20,7 @@ mod modulus;
 mod options;
 mod overlay;
 mod pipeline;
+mod rate_bias;
 
 pub use across::{Across, LevelAgreement, Trend};
 pub use finding::{Finding, Severity};
@@ -27,3 +29,4 @@ pub use modulus::ModulusSource;
 pub use options::{AnalysisOptions, Geometry, LayersChoice};
 pub use overlay::Overlay;
 pub use pipeline::{Analysis, AnalysisError, analyze};
+pub use rate_bias::RateBias;
