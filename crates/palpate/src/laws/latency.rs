@@ -31,11 +31,26 @@ pub enum ExponentChoice {
     Free,
 }
 
-pub(super) const DESCRIPTION: Description = Description {
-    title: "nonlinear latency",
-    equation: "y_e + Δ [1 + (n−1) λt]^(−1/(n−1))",
-    source: "Tsai, Kao et al., equations (2)–(5); n = 1: equation (1); n = 2: Peleg 1980",
-};
+/// In words; two exponents have names of their own.
+pub(super) fn description(exponent: ExponentChoice) -> Description {
+    match exponent {
+        ExponentChoice::Fixed(1.0) => Description {
+            title: "linear latency",
+            equation: "y_e + Δ exp(−λt)",
+            source: "Tsai, Kao et al., equation (1)",
+        },
+        ExponentChoice::Fixed(2.0) => Description {
+            title: "Peleg's hyperbola",
+            equation: "y_e + Δ/(1 + λt)",
+            source: "Peleg 1980: t/(k₁ + k₂t) with Δ = 1/k₂, λ = k₂/k₁",
+        },
+        _ => Description {
+            title: "nonlinear latency",
+            equation: "y_e + Δ [1 + (n−1) λt]^(−1/(n−1))",
+            source: "Tsai, Kao et al., equations (2)–(5)",
+        },
+    }
+}
 
 pub(super) fn form(exponent: ExponentChoice, response: Response) -> Form {
     let shape = match exponent {

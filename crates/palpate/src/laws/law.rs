@@ -112,7 +112,7 @@ impl Law {
     #[must_use]
     pub fn description(self) -> Description {
         match self {
-            Self::Latency { .. } => latency::DESCRIPTION,
+            Self::Latency { exponent } => latency::description(exponent),
             Self::Maxwell => maxwell::DESCRIPTION,
             Self::KelvinVoigt => kelvin_voigt::DESCRIPTION,
             Self::StandardLinearSolid => standard_linear_solid::DESCRIPTION,
@@ -186,7 +186,7 @@ impl fmt::Display for Law {
 impl FromStr for Law {
     type Err = UnknownLaw;
 
-    /// Reads a name; `sls` and `kww` are understood too.
+    /// Reads a name; `linear-latency` (n = 1), `peleg` (n = 2), `sls` and `kww` are understood too.
     fn from_str(text: &str) -> Result<Self, UnknownLaw> {
         let unknown = || UnknownLaw { found: text.to_owned() };
         let terms = |number: &str| match number.parse() {
@@ -205,6 +205,12 @@ impl FromStr for Law {
             None => match text {
                 "latency" => Self::Latency {
                     exponent: ExponentChoice::Free,
+                },
+                "linear-latency" => Self::Latency {
+                    exponent: ExponentChoice::Fixed(1.0),
+                },
+                "peleg" => Self::Latency {
+                    exponent: ExponentChoice::Fixed(2.0),
                 },
                 "maxwell" => Self::Maxwell,
                 "kelvin-voigt" => Self::KelvinVoigt,

@@ -1,0 +1,152 @@
+//! What may be asked of a fit does what it says: bounds, fixed numbers, constants, signs, samples.
+
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
+use palpate::identify::{ConstantChoice, FitError, LawFit, LawOptions, SampleChoice, Samples, Termination, fit_law};
+use palpate::laws::{Law, Response};
+use palpate::test_problems::Noise;
+
+/// 2 + 3 exp(−t/4) + noise over 40 s.
+fn hold(noise: f64) -> (Vec<f64>, Vec<f64>) {
+    let mut random = Noise::new(3);
+    let times: Vec<f64> = (0..400).map(|i| 0.1 * f64::from(i)).collect();
+    let values = times.iter().map(|t| 2.0 + 3.0 * (-t / 4.0).exp() + noise * random.normal()).collect();
+    (times, values)
+}
+
+fn fit(law: &str, options: &LawOptions, noise: f64) -> Result<LawFit, FitError> {
+    let (times, values) = hold(noise);
+    fit_law(&Samples::new(&times, &values), law.parse().unwrap(), options)
+}
+
+fn bounded(name: &str, low: f64, high: f64) -> LawOptions {
+    LawOptions {
+        bounds: vec![(name.to_owned(), (low, high))],
+        ..LawOptions::default()
+    }
+}
+
+#[test]
+fn a_bound_that_binds_is_kept_and_said() {
+    let free = fit("sls", &LawOptions::default(), 1e-3).unwrap();
+    let within = fit("sls", &bounded("time", 1.0, 10.0), 1e-3).unwrap();
+    assert!((within.value("time").unwrap() / free.value("time").unwrap() - 1.0).abs() < 1e-9);
+    let at = fit("sls", &bounded("time", 5.0, 10.0), 1e-3).unwrap();
+    assert!((at.value("time").unwrap() - 5.0).abs() < 1e-6);
+    assert_eq!(at.termination, Termination::RateAtBound);
+    assert!(at.covariance.is_none());
+    let level = fit("sls", &bounded("equilibrium", 2.5, 9.0), 1e-3).unwrap();
+    assert!((level.value("equilibrium").unwrap() - 2.5).abs() < 1e-9);
+    assert_eq!(level.termination, Termination::AmplitudeAtBound);
+    assert!(level.estimate("equilibrium").unwrap().standard_error.is_none());
+    assert!(level.estimate("time").unwrap().standard_error.is_some());
+    assert!(level.residual_square > free.residual_square);
+}
+
+#[test]
+fn a_number_may_be_held() {
+    let held = LawOptions {
+        fixed: vec![("time".to_owned(), 4.0)],
+        ..LawOptions::default()
+    };
+    let fit_held = fit("sls", &held, 1e-3).unwrap();
+    assert_eq!(fit_held.free_numbers(), 2);
+    assert!((fit_held.value("time").unwrap() - 4.0).abs() < 1e-12);
+    assert!((fit_held.value("amplitude").unwrap() - 3.0).abs() < 1e-3);
+    let stretching = LawOptions {
+        fixed: vec![("stretching".to_owned(), 1.0)],
+        ..LawOptions::default()
+    };
+    let (kww, sls) = (fit("stretched", &stretching, 1e-3).unwrap(), fit("sls", &LawOptions::default(), 1e-3).unwrap());
+    assert!((kww.value("time").unwrap() / sls.value("time").unwrap() - 1.0).abs() < 1e-8);
+    let constant = LawOptions {
+        constant: ConstantChoice::Fixed(2.0),
+        ..LawOptions::default()
+    };
+    let given = fit("sls", &constant, 0.0).unwrap();
+    assert_eq!(given.value("equilibrium"), Some(2.0));
+    assert!((given.value("time").unwrap() - 4.0).abs() < 1e-9);
+    let without = LawOptions {
+        constant: ConstantChoice::Fixed(0.0),
+        ..LawOptions::default()
+    };
+    let (maxwell, sls) = (fit("maxwell", &LawOptions::default(), 1e-3).unwrap(), fit("sls", &without, 1e-3).unwrap());
+    assert!((maxwell.residual_square / sls.residual_square - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn amplitudes_of_one_sign_make_no_ghosts() {
+    let (times, values) = hold(3e-3);
+    for sign in [1.0, -1.0] {
+        let signal: Vec<f64> = values.iter().map(|y| sign * y).collect();
+        let options = LawOptions {
+            one_sign: true,
+            ..LawOptions::default()
+        };
+        let fit = fit_law(&Samples::new(&times, &signal), Law::Prony { terms: 3 }, &options).unwrap();
+        let amplitudes: Vec<f64> = (1..=3).map(|i| fit.value(&format!("amplitude_{i}")).unwrap()).collect();
+        assert!(amplitudes.iter().all(|amplitude| sign * amplitude >= 0.0), "{amplitudes:?}");
+    }
+}
+
+#[test]
+fn log_spaced_samples_are_few_and_give_the_same_law() {
+    let (times, values) = hold(1e-4);
+    let options = LawOptions {
+        samples: SampleChoice::LogSpaced(60),
+        ..LawOptions::default()
+    };
+    let fit = fit_law(&Samples::new(&times, &values), Law::StandardLinearSolid, &options).unwrap();
+    assert!((30..=61).contains(&fit.samples), "{}", fit.samples);
+    assert!((fit.value("time").unwrap() / 4.0 - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn deviations_weigh_by_their_inverse_square() {
+    let (times, mut values) = hold(0.0);
+    // One sample in four is off, and known to be.
+    let deviations: Vec<f64> = (0..values.len()).map(|i| if i % 4 == 0 { 1e3 } else { 1e-3 }).collect();
+    values.iter_mut().step_by(4).for_each(|y| *y += 1.0);
+    let samples = Samples::new(&times, &values).with_deviations(&deviations);
+    let fit = fit_law(&samples, Law::StandardLinearSolid, &LawOptions::default()).unwrap();
+    assert!((fit.value("time").unwrap() - 4.0).abs() < 1e-6);
+    let left_out: Vec<f64> = deviations.iter().map(|d| if *d > 1.0 { f64::INFINITY } else { 1.0 }).collect();
+    let samples = Samples::new(&times, &values).with_deviations(&left_out);
+    let fit = fit_law(&samples, Law::StandardLinearSolid, &LawOptions::default()).unwrap();
+    assert!((fit.value("time").unwrap() - 4.0).abs() < 1e-9);
+}
+
+#[test]
+fn creep_and_relaxation_are_one_fit_in_other_words() {
+    let (times, values) = hold(1e-3);
+    let creep = LawOptions {
+        response: Response::Creep,
+        ..LawOptions::default()
+    };
+    let samples = Samples::new(&times, &values);
+    for law in ["latency", "latency:3", "sls", "prony:2", "stretched", "fractional-zener", "diffusion"] {
+        let law: Law = law.parse().unwrap();
+        let relaxing = fit_law(&samples, law, &LawOptions::default()).unwrap();
+        let creeping = fit_law(&samples, law, &creep).unwrap();
+        let scale = relaxing.residual_square;
+        assert!((creeping.residual_square / scale - 1.0).abs() < 1e-9, "{law}");
+        for t in [0.0, 3.0, 50.0] {
+            assert!((relaxing.predict(t) - creeping.predict(t)).abs() < 1e-6, "{law} at {t} s");
+        }
+    }
+}
+
+#[test]
+fn what_no_fit_can_follow_is_refused() {
+    let unknown = fit("sls", &bounded("tau", 1.0, 2.0), 1e-3).unwrap_err();
+    assert_eq!(unknown.to_string(), "the law has no number \"tau\"; it has equilibrium, amplitude, time");
+    assert!(matches!(fit("sls", &bounded("time", 2.0, 1.0), 1e-3), Err(FitError::Bounds { .. })));
+    let held = LawOptions {
+        fixed: vec![("time".to_owned(), -1.0)],
+        ..LawOptions::default()
+    };
+    assert!(matches!(fit("sls", &held, 1e-3), Err(FitError::FixedNumber { .. })));
+    let form = fit("kelvin-voigt", &LawOptions::default(), 1e-3).unwrap_err();
+    assert_eq!(form.to_string(), "the law kelvin-voigt has no form for relaxation");
+    assert!("prony:9".parse::<Law>().is_err() && "latency:-1".parse::<Law>().is_err());
+}
