@@ -20,7 +20,7 @@ pub enum Certainty {
 /// Which law to use.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The law with the fewest numbers among those that do best.
+    /// The law with the fewest numbers among those that do best; the spectrum only if nothing else does as well.
     pub law: Law,
     /// All laws that do as well, this one included, best first.
     pub alike: Vec<Law>,
