@@ -100,6 +100,8 @@ def two_parameter(alpha, s):
             if k > 2 / alpha and bound > size:
                 break
             total, size = total + term, bound
+            if bound < mp.mpf(10) ** (-mp.mp.dps) * abs(total):
+                break
         return total
     with mp.workdps(int(mp.mp.dps + 0.44 * s + 10)):
         x, total, k, power = s**alpha, mp.mpf(0), 0, mp.mpf(1)
@@ -158,7 +160,10 @@ def case(name, numbers, loading, t):
 
 def main():
     mp.mp.dps = DIGITS
-    cases = [case(name, numbers, loading, t) for name, numbers in SHAPES for loading in LOADINGS for t in TIMES]
+    cases = []
+    for name, numbers in SHAPES:
+        cases += [case(name, numbers, loading, t) for loading in LOADINGS for t in TIMES]
+        print(name, *numbers, flush=True)
     # The second way, at 20 digits, where it is quick.
     mp.mp.dps = 20
     worst = mp.mpf(0)

@@ -18,6 +18,7 @@
 //! | `robust.rs` | outliers made to count less | |
 //! | `law_fit.rs`, `derived.rs` | any law fitted, its numbers and those that follow from them | |
 //! | `time_domain.rs` | the latency law fitted to a signal | (4), (5) |
+//! | `ramp_fit.rs` | the latency law of several holds that were reached in different times | section IV |
 //! | `rate_domain.rs` | strain rate fitted against strain, as the paper does | (9), (10) |
 //! | `estimates.rs` | estimates, standard errors, intervals | |
 //! | `selection.rs` | the lowest order that fits best, with its evidence | |
@@ -31,6 +32,7 @@ mod law_fit;
 mod law_options;
 mod linear_algebra;
 mod model;
+mod ramp_fit;
 mod rate_domain;
 mod robust;
 mod samples;
@@ -44,6 +46,7 @@ pub use crate::laws::ExponentChoice;
 pub use estimates::{Domain, Estimate, LatencyFit, PARAMETERS};
 pub use law_fit::{LawFit, LawNumber, NumberUnit, fit_law};
 pub use law_options::{ConstantChoice, LawOptions, Loss, SampleChoice};
+pub use ramp_fit::{EquilibriumChoice, RampFit, RampHold, RampHoldNumbers, fit_ramps};
 pub use rate_domain::fit_rates;
 pub use samples::Samples;
 pub use selection::{Candidate, OrderSelection, select_order};
