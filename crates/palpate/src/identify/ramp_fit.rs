@@ -18,7 +18,7 @@ use super::samples::Samples;
 use super::separable::{Ending, Shapes, Solution, Target, Termination, Work, polished, refine};
 use super::{FitError, FitOptions};
 use crate::contact::{Element, Work as Effort};
-use crate::latency::{LatencyLaw, decay_with_gradient_many};
+use crate::latency::{LatencyLaw, decay_many, decay_with_gradient_many};
 use crate::laws::{ExponentChoice, Loading};
 
 /// A hold and the way to it.
@@ -83,15 +83,16 @@ impl RampFit {
     /// The excess at the end of a loading, in the unit of the signal.
     #[must_use]
     pub fn amplitude_after(&self, loading: &Loading) -> f64 {
-        self.step_amplitude.value * excess_share(loading, self.step_rate.value.ln(), self.exponent.value)
+        let share = excess_share(&loading.thinned(PIECES), self.step_rate.value.ln(), self.exponent.value);
+        self.step_amplitude.value * share
     }
 
     /// The excess `elapsed` s into the hold that follows a loading: what the signal is above its equilibrium.
     #[must_use]
     pub fn excess_after(&self, loading: &Loading, elapsed: f64) -> f64 {
-        let share = excess_share(loading, self.step_rate.value.ln(), self.exponent.value);
-        match LatencyLaw::new(self.exponent.value, self.step_rate.value) {
-            Ok(law) => self.step_amplitude.value * law.excess_after(share, elapsed),
+        let amplitude = self.amplitude_after(loading);
+        match LatencyLaw::new(self.exponent.value, self.rate_coefficient.value) {
+            Ok(law) => law.excess_after(amplitude, elapsed),
             Err(_) => f64::NAN,
         }
     }
@@ -218,7 +219,7 @@ impl RampProblem {
             return Err(FitError::OutOfRange);
         }
         let parts = holds.iter().enumerate().map(|(i, hold)| Part {
-            loading: hold.loading.in_units_of(duration),
+            loading: hold.loading.thinned(PIECES).in_units_of(duration),
             times: hold.samples.times.iter().map(|t| (t - hold.samples.times[0]) / duration).collect(),
             equilibrium: i.min(equilibria - 1),
         });
@@ -258,8 +259,8 @@ impl RampProblem {
 
     /// The best points of a grid of ln κ and n.
     fn starts(&self, work: &mut Work) -> Vec<Vec<f64>> {
-        const EXPONENTS: [f64; 11] = [0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 11.0, 18.0, 30.0];
-        const PER_DECADE: f64 = 3.0;
+        const EXPONENTS: [f64; 9] = [0.2, 0.5, 1.0, 2.0, 3.0, 5.0, 9.0, 16.0, 30.0];
+        const PER_DECADE: f64 = 2.0;
         let (low, high) = self.bounds[0];
         let count = ((high - low) / std::f64::consts::LN_10 * PER_DECADE).ceil().max(1.0);
         let rates = (0..=count as usize).map(|i| low + (high - low) * i as f64 / count);
@@ -274,7 +275,13 @@ impl RampProblem {
         };
         let mut aside = Work::default();
         let mut found: Vec<(f64, Vec<f64>)> = grid
-            .map(|theta: Vec<f64>| (refine(self, self.target(), &theta, once, &mut aside).square(), theta))
+            .map(|theta: Vec<f64>| {
+                let point = AtNumbers {
+                    problem: self,
+                    theta: &theta,
+                };
+                (refine(&point, self.target(), &[], once, &mut aside).square(), theta)
+            })
             .filter(|(square, _)| square.is_finite())
             .collect();
         work.grid_points += aside.evaluations;
@@ -347,6 +354,9 @@ impl RampProblem {
 /// Valleys that are refined.
 const VALLEYS: usize = 4;
 
+/// Pieces that a loading is thinned to: each is an integration, of some microseconds.
+const PIECES: usize = 200;
+
 /// Square roots of the weights of all samples, 1 at the root mean square; `None` if no hold has deviations.
 fn roots(holds: &[RampHold<'_>], count: usize) -> Option<Vec<f64>> {
     if holds.iter().all(|hold| hold.samples.deviations.is_none()) {
@@ -402,23 +412,84 @@ impl Shapes for RampProblem {
             let range = from..from + part.times.len();
             from = range.end;
             levels[part.equilibrium][range.clone()].fill(1.0);
-            let [share, share_by_rate, share_by_exponent] = shares(&part.loading, log_rate, n);
             let column = &mut decay[0][range.clone()];
-            let (mut by_rate, mut by_exponent) = (vec![0.0; column.len()], vec![0.0; column.len()]);
-            // A loading may end without any excess.
-            let log_share = share.abs().max(f64::MIN_POSITIVE).ln();
-            let rate = (log_rate + (n - 1.0) * log_share).exp();
-            decay_with_gradient_many(&part.times, rate, n, column, &mut by_rate, &mut by_exponent);
-            for (i, phi) in column.iter_mut().enumerate() {
-                // ξ stands before φ and, with power n − 1, in its rate.
-                let by_share = *phi + (n - 1.0) * by_rate[i];
-                derivatives[0][range.start + i] = share * by_rate[i] + by_share * share_by_rate;
-                if let Some(derivative) = derivatives.get_mut(1) {
-                    let at_share = share * (by_exponent[i] + log_share * by_rate[i]);
-                    derivative[range.start + i] = at_share + by_share * share_by_exponent;
+            match derivatives {
+                [] => part.value(log_rate, n, column),
+                [by_rate, others @ ..] => {
+                    let by_exponent = others.first_mut().map(|other| &mut other[range.clone()]);
+                    part.gradient(log_rate, n, column, &mut by_rate[range], by_exponent);
                 }
-                *phi *= share;
             }
         }
+    }
+}
+
+impl Part {
+    /// ξ φ(κ |ξ|ⁿ⁻¹ t; n).
+    fn value(&self, log_rate: f64, n: f64, column: &mut [f64]) {
+        let share = excess_share(&self.loading, log_rate, n);
+        let rate = (log_rate + (n - 1.0) * log_size(share)).exp();
+        decay_many(&self.times, rate, n, column);
+        column.iter_mut().for_each(|phi| *phi *= share);
+    }
+
+    /// The same with its derivatives by ln κ and n.
+    fn gradient(
+        &self,
+        log_rate: f64,
+        n: f64,
+        column: &mut [f64],
+        by_log_rate: &mut [f64],
+        by_exponent: Option<&mut [f64]>,
+    ) {
+        let [share, share_by_rate, share_by_exponent] = shares(&self.loading, log_rate, n);
+        let mut phi_by_exponent = vec![0.0; column.len()];
+        let rate = (log_rate + (n - 1.0) * log_size(share)).exp();
+        decay_with_gradient_many(&self.times, rate, n, column, by_log_rate, &mut phi_by_exponent);
+        // ξ stands before φ and, with power n − 1, in its rate.
+        if let Some(by_exponent) = by_exponent {
+            for (i, entry) in by_exponent.iter_mut().enumerate() {
+                let (phi, phi_by_rate) = (column[i], by_log_rate[i]);
+                let at_share = share * (phi_by_exponent[i] + log_size(share) * phi_by_rate);
+                *entry = at_share + (phi + (n - 1.0) * phi_by_rate) * share_by_exponent;
+            }
+        }
+        for (phi, by_rate) in column.iter_mut().zip(by_log_rate) {
+            *by_rate = share * *by_rate + (*phi + (n - 1.0) * *by_rate) * share_by_rate;
+            *phi *= share;
+        }
+    }
+}
+
+/// ln |ξ|; a loading may end without any excess.
+fn log_size(share: f64) -> f64 {
+    share.abs().max(f64::MIN_POSITIVE).ln()
+}
+
+/// The problem at one point of the grid: only the linear numbers are left.
+struct AtNumbers<'a> {
+    problem: &'a RampProblem,
+    theta: &'a [f64],
+}
+
+impl Shapes for AtNumbers<'_> {
+    fn columns(&self) -> usize {
+        self.problem.columns()
+    }
+
+    fn column_of(&self, index: usize) -> usize {
+        self.problem.column_of(index)
+    }
+
+    fn bounds(&self, index: usize) -> (f64, f64) {
+        self.problem.bounds(index)
+    }
+
+    fn at_bound(&self, index: usize) -> Termination {
+        self.problem.at_bound(index)
+    }
+
+    fn fill(&self, _: &[f64], columns: &mut [Vec<f64>], derivatives: &mut [Vec<f64>]) {
+        self.problem.fill(self.theta, columns, derivatives);
     }
 }
