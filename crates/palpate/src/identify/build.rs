@@ -30,7 +30,12 @@ pub(super) fn build(form: Form, samples: &Samples<'_>, options: &LawOptions) -> 
             });
         }
     }
-    Ok((Model::new(form, constant.is_none(), numbers, linear), scaled))
+    let model = Model::new(form, constant.is_none(), numbers, linear);
+    let model = match &options.loading {
+        None => model,
+        Some(loading) => model.after(&loading.in_units_of(scaled.duration)),
+    };
+    Ok((model, scaled))
 }
 
 fn is_free(name: &str, kind: NumberKind, options: &LawOptions) -> bool {

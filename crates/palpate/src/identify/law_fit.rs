@@ -10,7 +10,7 @@ use super::samples::{Samples, Scaled};
 use super::search::search;
 use super::separable::{Solution, Termination, Work};
 use super::{FitError, LawOptions, Loss, SampleChoice};
-use crate::laws::{Law, LawCurve, NumberKind, Response, Term};
+use crate::laws::{Law, LawCurve, Loading, NumberKind, Response, Term};
 use crate::statistics::effective_count;
 
 /// Unit of a number of a law.
@@ -51,8 +51,12 @@ pub struct LawFit {
     pub law: Law,
     /// Relaxation or creep.
     pub response: Response,
-    /// The law with the numbers found: a function of the time since the first sample, in s.
+    /// The law with the numbers found: a function of the time since the first sample, in s, or since the step that would have stood
+    /// for the loading.
     pub curve: LawCurve,
+    /// The loading that led to the hold; none if it counted as a step, as it must for the latency law.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loading: Option<Loading>,
     /// Its numbers: constant, amplitudes, times or rates, pure numbers; then those that follow from them.
     pub numbers: Vec<LawNumber>,
     /// Names of the numbers that were searched, in the order of `values` and `covariance`: constant, amplitudes, ln of rates
@@ -97,10 +101,19 @@ impl LawFit {
         self.parameters.len()
     }
 
-    /// The signal a time `elapsed` (s) after the first sample.
+    /// The signal a time `elapsed` (s) after the first sample, after the loading if there was one.
     #[must_use]
     pub fn predict(&self, elapsed: f64) -> f64 {
-        self.curve.at(elapsed)
+        self.predict_many(&[elapsed])[0]
+    }
+
+    /// The signal at many times, as [`predict`](Self::predict).
+    #[must_use]
+    pub fn predict_many(&self, elapsed: &[f64]) -> Vec<f64> {
+        match &self.loading {
+            None => self.curve.values(elapsed),
+            Some(loading) => self.curve.after(loading, elapsed),
+        }
     }
 
     /// Correlations of the numbers in the order of `parameters`.
@@ -291,6 +304,7 @@ impl Fitted {
             law,
             response: self.model.form.response,
             curve: self.curve(),
+            loading: if matches!(law, Law::Latency { .. }) { None } else { options.loading.clone() },
             numbers,
             parameters: self.names(),
             values,

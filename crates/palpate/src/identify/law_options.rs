@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::FitError;
-use crate::laws::Response;
+use crate::laws::{Loading, Response};
 
 /// The constant beside the shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -60,6 +60,10 @@ pub struct LawOptions {
     pub loss: Loss,
     /// Which samples are fitted.
     pub samples: SampleChoice,
+    /// What was imposed until the first sample, if that is not to count as a step. The numbers found are then those of a true step.
+    /// Laws are taken as linear in it; the latency law, which is not, is fitted to the hold alone, whose start says all
+    /// that it needs to know.
+    pub loading: Option<Loading>,
     /// Coverage of confidence intervals, between 0 and 1.
     pub confidence: f64,
     /// Steps of a refinement after which it ends short.
@@ -76,6 +80,7 @@ impl Default for LawOptions {
             one_sign: false,
             loss: Loss::default(),
             samples: SampleChoice::default(),
+            loading: None,
             confidence: 0.95,
             most_iterations: 200,
         }

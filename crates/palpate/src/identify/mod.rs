@@ -19,6 +19,7 @@
 //! | `law_fit.rs`, `derived.rs` | any law fitted, its numbers and those that follow from them | |
 //! | `foretell.rs` | a law fitted to the first part of a hold, held against the rest | |
 //! | `time_domain.rs` | the latency law fitted to a signal | (4), (5) |
+//! | `ramp_fit.rs` | the latency law of several holds that were reached in different times | section IV |
 //! | `rate_domain.rs` | strain rate fitted against strain, as the paper does | (9), (10) |
 //! | `spectrum/` | exponentials of all times at once, none of opposite sign | |
 //! | `estimates.rs` | estimates, standard errors, intervals | |
@@ -34,6 +35,7 @@ mod law_fit;
 mod law_options;
 mod linear_algebra;
 mod model;
+mod ramp_fit;
 mod rate_domain;
 mod robust;
 mod samples;
@@ -49,6 +51,7 @@ pub use estimates::{Domain, Estimate, LatencyFit, PARAMETERS};
 pub use foretell::{Forecast, foretell};
 pub use law_fit::{LawFit, LawNumber, NumberUnit, fit_law};
 pub use law_options::{ConstantChoice, LawOptions, Loss, SampleChoice};
+pub use ramp_fit::{EquilibriumChoice, RampFit, RampHold, RampHoldNumbers, fit_ramps};
 pub use rate_domain::fit_rates;
 pub use samples::Samples;
 pub use selection::{Candidate, OrderSelection, select_order};

@@ -1,7 +1,7 @@
 //! A law made ready for a fit: which numbers are free, and within which bounds.
 
 use super::separable::{Shapes, Termination};
-use crate::laws::{Column, Form, Kernel, NumberKind, Shape};
+use crate::laws::{Column, Form, Kernel, Loading, NumberKind, Shape, Superposition};
 
 /// A nonlinear number of the law.
 #[derive(Debug, Clone)]
@@ -30,6 +30,8 @@ pub(super) struct Model {
     /// Which of `numbers` are free.
     free: Vec<usize>,
     columns: Vec<Column>,
+    /// What shapes are averaged over; none for a step.
+    loading: Option<Superposition>,
 }
 
 impl Model {
@@ -43,6 +45,15 @@ impl Model {
             linear_bounds,
             free,
             columns,
+            loading: None,
+        }
+    }
+
+    /// The same after a loading, its times in the units of the fit, rather than a step.
+    pub(super) fn after(self, loading: &Loading) -> Self {
+        Self {
+            loading: Some(Superposition::new(loading)),
+            ..self
         }
     }
 
@@ -73,8 +84,19 @@ impl Model {
 
     /// One shape as it stands in the signal, at all its numbers.
     pub(super) fn shape_value(&self, shape: usize, times: &[f64], numbers: &[f64], value: &mut [f64]) {
-        self.form.shapes[shape].value(times, numbers, value);
+        match &self.loading {
+            None => self.form.shapes[shape].value(times, numbers, value),
+            Some(loading) => loading.value(&self.form.shapes[shape], times, numbers, value),
+        }
         orient(value, self.columns[shape]);
+    }
+
+    /// One shape and its derivatives, as they stand in the signal but for offset and sign.
+    fn gradient(&self, shape: usize, times: &[f64], numbers: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
+        match &self.loading {
+            None => self.form.shapes[shape].gradient(times, numbers, value, derivatives),
+            Some(loading) => loading.gradient(&self.form.shapes[shape], times, numbers, value, derivatives),
+        }
     }
 
     /// Shapes that have a free number, and those that have none.
@@ -137,7 +159,7 @@ impl Shapes for Sampled<'_> {
             column.fill(1.0);
         }
         let mut next = 0;
-        for (index, (shape, column)) in model.form.shapes.iter().zip(shapes).enumerate() {
+        for (index, column) in shapes.iter_mut().enumerate() {
             let range = model.numbers_of(index);
             let mut numbers = [0.0; 2];
             let numbers = &mut numbers[..range.len()];
@@ -149,13 +171,14 @@ impl Shapes for Sampled<'_> {
                 });
             }
             if free == 0 {
-                shape.value(self.times, numbers, column);
+                model.shape_value(index, self.times, numbers, column);
+                continue;
             } else if free == range.len() {
-                shape.gradient(self.times, numbers, column, &mut derivatives[next..next + free]);
+                model.gradient(index, self.times, numbers, column, &mut derivatives[next..next + free]);
             } else {
                 // One of two is held: its derivative goes nowhere.
                 let mut all = vec![vec![0.0; self.times.len()]; range.len()];
-                shape.gradient(self.times, numbers, column, &mut all);
+                model.gradient(index, self.times, numbers, column, &mut all);
                 let kept = model.numbers[range].iter().position(|number| number.fixed.is_none());
                 std::mem::swap(&mut derivatives[next], &mut all[kept.unwrap_or(0)]);
             }

@@ -5,7 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::form::Column;
 use super::kernel::Kernel;
 use super::law::Response;
+use super::loading::Loading;
 use super::shape::Shape;
+use super::superposition::Superposition;
 
 /// One term of a [`LawCurve`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -18,7 +20,7 @@ pub struct Term {
     pub numbers: Vec<f64>,
 }
 
-/// A law of relaxation or creep with its numbers put in: a function of time.
+/// A law of relaxation or creep with its numbers put in: a function of time, the answer to a step.
 ///
 /// y(t) = constant + Σ amplitude · shape(t) in relaxation. In creep a shape that decays counts as 1 − shape; in relaxation one that
 /// grows counts negative.
@@ -62,7 +64,7 @@ impl LawCurve {
     #[must_use]
     pub fn at(&self, elapsed: f64) -> f64 {
         let mut value = [0.0];
-        self.fill(&[elapsed], &mut value);
+        self.fill(None, &[elapsed], &mut value);
         value[0]
     }
 
@@ -70,17 +72,40 @@ impl LawCurve {
     #[must_use]
     pub fn values(&self, elapsed: &[f64]) -> Vec<f64> {
         let mut values = vec![0.0; elapsed.len()];
-        self.fill(elapsed, &mut values);
+        self.fill(None, elapsed, &mut values);
         values
     }
 
-    fn fill(&self, elapsed: &[f64], out: &mut [f64]) {
+    /// The signal in the hold that follows a loading, `elapsed` s after its start: what the law, as a linear one, answers.
+    ///
+    /// A term of the latency law, which is not linear, stays as it is: its amplitude is what is left at the start of the hold.
+    ///
+    /// ```
+    /// use palpate::laws::{LawCurve, Loading, Response, Shape, Term};
+    /// // After a ramp of one relaxation time 1 − 1/e of the amplitude is left.
+    /// let term = Term { amplitude: 3.0, shape: Shape::Exponential, numbers: vec![0.25f64.ln()] };
+    /// let curve = LawCurve { response: Response::Relaxation, constant: 2.0, terms: vec![term] };
+    /// let start = curve.after(&Loading::ramp(4.0)?, &[0.0])[0];
+    /// assert!((start - (2.0 + 3.0 * (1.0 - (-1.0f64).exp()))).abs() < 1e-14);
+    /// # Ok::<(), palpate::laws::LoadingError>(())
+    /// ```
+    #[must_use]
+    pub fn after(&self, loading: &Loading, elapsed: &[f64]) -> Vec<f64> {
+        let mut values = vec![0.0; elapsed.len()];
+        self.fill(Some(&Superposition::new(loading)), elapsed, &mut values);
+        values
+    }
+
+    fn fill(&self, loading: Option<&Superposition>, elapsed: &[f64], out: &mut [f64]) {
         let times: Vec<f64> = elapsed.iter().map(|t| t.max(0.0)).collect();
         let mut shape = vec![0.0; times.len()];
         out.fill(self.constant);
         for term in &self.terms {
             let column = Column::of(&term.shape, self.response);
-            term.shape.value(&times, &term.numbers, &mut shape);
+            match loading {
+                None => term.shape.value(&times, &term.numbers, &mut shape),
+                Some(loading) => loading.value(&term.shape, &times, &term.numbers, &mut shape),
+            }
             for (out, value) in out.iter_mut().zip(&shape) {
                 *out += term.amplitude * (column.offset + column.sign * value);
             }

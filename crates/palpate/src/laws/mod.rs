@@ -20,7 +20,8 @@
 //!
 //! A [`Law`] has its numbers free; a [`LawCurve`] has numbers put in. `law.rs` holds the list and its names, `form.rs` what a law
 //! is made of, `kernel.rs` what a shape must be able to do, `shape.rs` the list of shapes, `curve.rs` a law with numbers,
-//! `exponential.rs` the shape that six of them share.
+//! `exponential.rs` the shape that six of them share. A hold that follows a ramp is no step: `loading.rs` holds what came before it,
+//! `superposition.rs` averages shapes over that.
 
 mod burgers;
 mod curve;
@@ -35,6 +36,7 @@ mod kelvin_voigt;
 mod kernel;
 mod latency;
 mod law;
+mod loading;
 mod logarithmic;
 mod maxwell;
 mod power;
@@ -43,6 +45,7 @@ mod shape;
 mod spectrum;
 mod standard_linear_solid;
 mod stretched;
+mod superposition;
 
 pub use curve::{LawCurve, Term};
 pub use description::Description;
@@ -50,4 +53,6 @@ pub(crate) use form::{Column, Form};
 pub(crate) use kernel::{Kernel, NumberKind};
 pub use latency::ExponentChoice;
 pub use law::{Law, MOST_TERMS, Response, UnknownLaw};
+pub use loading::{Loading, LoadingError};
 pub use shape::Shape;
+pub(crate) use superposition::Superposition;
