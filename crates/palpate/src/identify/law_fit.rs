@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use super::build::build;
 use super::derived::derived;
-use super::estimates::{Estimate, Scale, Uncertainty};
+use super::estimates::Estimate;
 use super::model::Model;
 use super::samples::{Samples, Scaled};
 use super::search::search;
-use super::separable::{Solution, Termination, Work};
-use super::{FitError, LawOptions, Loss, SampleChoice};
+use super::separable::{Shapes, Solution, Termination, Work};
+use super::uncertainty::{Assessed, Scale, Uncertainty};
+use super::{FitError, LawOptions, Loss, NoiseModel, SampleChoice};
 use crate::laws::{Law, LawCurve, NumberKind, Response, Term};
-use crate::statistics::effective_count;
 
 /// Unit of a number of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -68,6 +68,10 @@ pub struct LawFit {
     pub rmse: f64,
     /// Correlation of neighbouring residuals.
     pub residual_correlation: f64,
+    /// How residuals correlate; intervals rest on it.
+    pub noise: NoiseModel,
+    /// What intervals are made of; `None` where the data leave a number open.
+    pub uncertainty: Option<Uncertainty>,
     /// Samples fitted.
     pub samples: usize,
     /// Time from the first to the last sample, s.
@@ -116,10 +120,10 @@ impl LawFit {
         Some((0..size).map(|i| (0..size).map(|j| if i == j { 1.0 } else { entry(i, j) }).collect()).collect())
     }
 
-    /// Samples that count as independent, given how neighbouring residuals correlate.
+    /// Samples that count as independent, given how residuals correlate.
     #[must_use]
     pub fn effective_samples(&self) -> f64 {
-        effective_count(self.samples, self.residual_correlation)
+        self.noise.effective_samples(self.samples)
     }
 }
 
@@ -260,22 +264,14 @@ impl Fitted {
 
     fn report(&self, law: Law, options: &LawOptions, work: Work) -> LawFit {
         let solution = &self.solution;
-        let uncertainty = Uncertainty::new(solution, options.confidence);
         let known = matches!(solution.termination, Termination::Converged | Termination::AmplitudeAtBound);
-        let inverse = solution.inverse_normal.as_deref().filter(|_| known);
-        let values = self.values();
-        let size = values.len();
-        let linear = self.model.linear();
-        let unit = |i: usize| if i < linear { self.scaled.range } else { 1.0 };
-        let covariance = inverse.map(|inverse| {
-            let entry = |i: usize, j: usize| inverse[i * size + j] * uncertainty.variance * unit(i) * unit(j);
-            (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
-        });
-        let covariance = covariance.filter(|rows: &Vec<Vec<f64>>| rows.iter().flatten().all(|entry| entry.is_finite()));
-        let estimate = |value: f64, gradient: &[f64], scale: Scale| match &covariance {
-            Some(covariance) => uncertainty.of(value, gradient, covariance, scale),
-            None => Estimate::fixed(value),
-        };
+        let (values, linear, scale) = (self.values(), self.model.linear(), self.scaled.range);
+        let units: Vec<f64> = (0..values.len()).map(|i| if i < linear { scale } else { 1.0 }).collect();
+        let shapes = self.model.at(&self.scaled.times);
+        let amplitude = |i: usize| solution.linear[shapes.column_of(i)];
+        let amplitudes: Vec<f64> = (0..solution.nonlinear.len()).map(amplitude).collect();
+        let assessed = Assessed::new(solution, &amplitudes, &units, scale, options.confidence, known);
+        let estimate = |value: f64, gradient: &[f64], scale: Scale| assessed.estimate(value, gradient, scale);
         let mut numbers = self.direct(&estimate);
         for number in derived(law, self, &values) {
             numbers.push(LawNumber {
@@ -284,7 +280,6 @@ impl Fitted {
                 estimate: estimate(number.value, &number.gradient, number.scale),
             });
         }
-        let scale = self.scaled.range;
         let residual_square = solution.residual_square * scale * scale;
         let samples = self.scaled.times.len();
         LawFit {
@@ -294,10 +289,12 @@ impl Fitted {
             numbers,
             parameters: self.names(),
             values,
-            covariance,
+            covariance: assessed.white,
             residual_square,
             rmse: (residual_square / samples as f64).sqrt(),
-            residual_correlation: uncertainty.correlation,
+            residual_correlation: assessed.correlation,
+            noise: assessed.noise,
+            uncertainty: assessed.uncertainty,
             samples,
             duration: self.scaled.duration,
             termination: solution.termination,

@@ -19,7 +19,8 @@
 //! | `law_fit.rs`, `derived.rs` | any law fitted, its numbers and those that follow from them | |
 //! | `time_domain.rs` | the latency law fitted to a signal | (4), (5) |
 //! | `rate_domain.rs` | strain rate fitted against strain, as the paper does | (9), (10) |
-//! | `estimates.rs` | estimates, standard errors, intervals | |
+//! | `estimates.rs` | what a fit says | |
+//! | `noise.rs`, `uncertainty.rs` | how residuals correlate, and the errors and intervals that follow | |
 //! | `selection.rs` | the lowest order that fits best, with its evidence | |
 
 mod bounded;
@@ -31,6 +32,7 @@ mod law_fit;
 mod law_options;
 mod linear_algebra;
 mod model;
+mod noise;
 mod rate_domain;
 mod robust;
 mod samples;
@@ -39,16 +41,19 @@ mod selection;
 mod separable;
 mod starts;
 mod time_domain;
+mod uncertainty;
 
 pub use crate::laws::ExponentChoice;
 pub use estimates::{Domain, Estimate, LatencyFit, PARAMETERS};
 pub use law_fit::{LawFit, LawNumber, NumberUnit, fit_law};
 pub use law_options::{ConstantChoice, LawOptions, Loss, SampleChoice};
+pub use noise::NoiseModel;
 pub use rate_domain::fit_rates;
 pub use samples::Samples;
 pub use selection::{Candidate, OrderSelection, select_order};
 pub use separable::{Termination, Work};
 pub use time_domain::fit_hold;
+pub use uncertainty::Uncertainty;
 
 use serde::{Deserialize, Serialize};
 
