@@ -6,6 +6,7 @@ use super::build::build;
 use super::derived::derived;
 use super::estimates::Estimate;
 use super::model::Model;
+use super::prediction::searched_name;
 use super::samples::{Samples, Scaled};
 use super::search::search;
 use super::separable::{Shapes, Solution, Termination, Work};
@@ -153,26 +154,8 @@ impl LawFit {
 /// [`FitError`] for samples that no law can be fitted to, for a law without a form for the response, and for options that name a number
 /// the law does not have.
 pub fn fit_law(samples: &Samples<'_>, law: Law, options: &LawOptions) -> Result<LawFit, FitError> {
-    options.check()?;
-    let form = law.form(options.response).ok_or(FitError::NoForm {
-        law,
-        response: options.response,
-    })?;
-    let chosen = chosen(samples, options.samples)?;
-    let samples = &chosen.samples(samples);
-    let (model, scaled) = build(form, samples, options)?;
     let mut work = Work::default();
-    let solution = search(&model, &scaled, options.most_iterations, &mut work).ok_or(FitError::NoDecay)?;
-    let mut fitted = Fitted {
-        model,
-        scaled,
-        solution,
-    };
-    if options.loss != Loss::Squares {
-        fitted.resist(options, &mut work)?;
-    }
-    fitted.arrange();
-    Ok(fitted.report(law, options, work))
+    Ok(Fitted::new(samples, law, options, &mut work)?.report(law, options, work))
 }
 
 /// A model with its samples and its solution, in the units of the fit.
@@ -183,6 +166,34 @@ pub(super) struct Fitted {
 }
 
 impl Fitted {
+    /// Finds the numbers of a law.
+    pub(super) fn new(
+        samples: &Samples<'_>,
+        law: Law,
+        options: &LawOptions,
+        work: &mut Work,
+    ) -> Result<Self, FitError> {
+        options.check()?;
+        let form = law.form(options.response).ok_or(FitError::NoForm {
+            law,
+            response: options.response,
+        })?;
+        let chosen = chosen(samples, options.samples)?;
+        let samples = &chosen.samples(samples);
+        let (model, scaled) = build(form, samples, options)?;
+        let solution = search(&model, &scaled, options.most_iterations, work).ok_or(FitError::NoDecay)?;
+        let mut fitted = Self {
+            model,
+            scaled,
+            solution,
+        };
+        if options.loss != Loss::Squares {
+            fitted.resist(options, work)?;
+        }
+        fitted.arrange();
+        Ok(fitted)
+    }
+
     /// Values of the free numbers in the caller's units: constant, amplitudes, ln of rates in 1/s, pure numbers.
     pub(super) fn values(&self) -> Vec<f64> {
         let (model, scaled) = (&self.model, &self.scaled);
@@ -228,11 +239,7 @@ impl Fitted {
     /// Names of the free numbers.
     pub(super) fn names(&self) -> Vec<String> {
         let constant = self.model.constant.then(|| self.model.form.constant_name().to_owned());
-        let nonlinear = self.model.free().map(|number| match number.kind {
-            NumberKind::Pure { .. } => number.name.clone(),
-            NumberKind::Time => format!("log_rate{}", number.name.trim_start_matches(|c: char| c != '_')),
-            _ => format!("log_{}", number.name),
-        });
+        let nonlinear = self.model.free().map(|number| searched_name(&number.name, number.kind));
         constant.into_iter().chain(self.model.form.amplitude_names()).chain(nonlinear).collect()
     }
 
@@ -262,15 +269,13 @@ impl Fitted {
         solution.derivatives = order.iter().map(|i| solution.derivatives[*i].clone()).collect();
     }
 
-    fn report(&self, law: Law, options: &LawOptions, work: Work) -> LawFit {
+    pub(super) fn report(&self, law: Law, options: &LawOptions, work: Work) -> LawFit {
         let solution = &self.solution;
         let known = matches!(solution.termination, Termination::Converged | Termination::AmplitudeAtBound);
         let (values, linear, scale) = (self.values(), self.model.linear(), self.scaled.range);
         let units: Vec<f64> = (0..values.len()).map(|i| if i < linear { scale } else { 1.0 }).collect();
-        let shapes = self.model.at(&self.scaled.times);
-        let amplitude = |i: usize| solution.linear[shapes.column_of(i)];
-        let amplitudes: Vec<f64> = (0..solution.nonlinear.len()).map(amplitude).collect();
-        let assessed = Assessed::new(solution, &amplitudes, &units, scale, options.confidence, known);
+        let assessed =
+            Assessed::new(solution, &self.amplitudes(), &units, scale, (options.confidence, options.noise), known);
         let estimate = |value: f64, gradient: &[f64], scale: Scale| assessed.estimate(value, gradient, scale);
         let mut numbers = self.direct(&estimate);
         for number in derived(law, self, &values) {
@@ -302,8 +307,14 @@ impl Fitted {
         }
     }
 
+    /// The amplitude beside each free nonlinear number.
+    fn amplitudes(&self) -> Vec<f64> {
+        let shapes = self.model.at(&self.scaled.times);
+        (0..self.solution.nonlinear.len()).map(|i| self.solution.linear[shapes.column_of(i)]).collect()
+    }
+
     /// The numbers that were searched, and those held, as they are reported: times for ln of rates.
-    fn direct(&self, estimate: &impl Fn(f64, &[f64], Scale) -> Estimate) -> Vec<LawNumber> {
+    pub(super) fn direct(&self, estimate: &impl Fn(f64, &[f64], Scale) -> Estimate) -> Vec<LawNumber> {
         let (model, values) = (&self.model, self.values());
         let row = |i: usize, entry: f64| -> Vec<f64> {
             (0..values.len()).map(|j| if i == j { entry } else { 0.0 }).collect()

@@ -42,6 +42,17 @@ pub enum SampleChoice {
     LogSpaced(usize),
 }
 
+/// What intervals take the noise for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NoiseChoice {
+    /// What the residuals show, see [`NoiseModel`](super::NoiseModel).
+    #[default]
+    FromResiduals,
+    /// White, whatever they show.
+    White,
+}
+
 /// What may be asked of [`fit_law`](super::fit_law).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -62,6 +73,8 @@ pub struct LawOptions {
     pub samples: SampleChoice,
     /// Coverage of confidence intervals, between 0 and 1.
     pub confidence: f64,
+    /// What intervals take the noise for.
+    pub noise: NoiseChoice,
     /// Steps of a refinement after which it ends short.
     pub most_iterations: usize,
 }
@@ -77,6 +90,7 @@ impl Default for LawOptions {
             loss: Loss::default(),
             samples: SampleChoice::default(),
             confidence: 0.95,
+            noise: NoiseChoice::default(),
             most_iterations: 200,
         }
     }

@@ -20,9 +20,13 @@
 //! | `time_domain.rs` | the latency law fitted to a signal | (4), (5) |
 //! | `rate_domain.rs` | strain rate fitted against strain, as the paper does | (9), (10) |
 //! | `estimates.rs` | what a fit says | |
+//! | `bootstrap.rs` | intervals from resampled residuals | |
+//! | `prediction.rs` | the curve at a time, with its interval | |
+//! | `profile.rs` | intervals that may be asymmetric or open | |
 //! | `noise.rs`, `uncertainty.rs` | how residuals correlate, and the errors and intervals that follow | |
 //! | `selection.rs` | the lowest order that fits best, with its evidence | |
 
+mod bootstrap;
 mod bounded;
 mod build;
 mod condensed;
@@ -33,6 +37,8 @@ mod law_options;
 mod linear_algebra;
 mod model;
 mod noise;
+mod prediction;
+mod profile;
 mod rate_domain;
 mod robust;
 mod samples;
@@ -44,10 +50,12 @@ mod time_domain;
 mod uncertainty;
 
 pub use crate::laws::ExponentChoice;
+pub use bootstrap::{Bootstrap, BootstrapOptions, bootstrap};
 pub use estimates::{Domain, Estimate, LatencyFit, PARAMETERS};
 pub use law_fit::{LawFit, LawNumber, NumberUnit, fit_law};
-pub use law_options::{ConstantChoice, LawOptions, Loss, SampleChoice};
+pub use law_options::{ConstantChoice, LawOptions, Loss, NoiseChoice, SampleChoice};
 pub use noise::NoiseModel;
+pub use profile::{Interval, profile_interval};
 pub use rate_domain::fit_rates;
 pub use samples::Samples;
 pub use selection::{Candidate, OrderSelection, select_order};

@@ -39,7 +39,7 @@ pub enum NoiseModel {
 
 impl NoiseModel {
     /// ρ and s.
-    fn numbers(self) -> (f64, f64) {
+    pub(super) fn numbers(self) -> (f64, f64) {
         match self {
             Self::White => (0.0, 0.0),
             Self::Autoregressive { correlation } => (correlation, 1.0),
@@ -106,14 +106,18 @@ pub(super) struct Noise {
 const EVIDENCE: f64 = 4.0;
 
 impl Noise {
+    /// White noise that left these residuals.
+    pub(super) fn white(residuals: &[f64], freedom: f64) -> Self {
+        Self {
+            model: NoiseModel::White,
+            variance: dot(residuals, residuals) / freedom,
+            beside: Vec::new(),
+        }
+    }
+
     /// The noise that left these residuals beside a fit with this Jacobian, whose columns may have any size.
     pub(super) fn of(jacobian: &[&[f64]], residuals: &[f64]) -> Self {
-        let freedom = residuals.len() - jacobian.len();
-        let white = Self {
-            model: NoiseModel::White,
-            variance: dot(residuals, residuals) / freedom as f64,
-            beside: Vec::new(),
-        };
+        let white = Self::white(residuals, (residuals.len() - jacobian.len()) as f64);
         let signs = Signs::of(residuals, jacobian.len());
         if signs.white() {
             return white;

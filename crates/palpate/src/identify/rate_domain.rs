@@ -3,7 +3,7 @@
 use super::estimates::{Domain, Estimate, LatencyFit};
 use super::separable::{Ending, Refined, Shapes, Solution, Target, Termination, Work, polished, refine};
 use super::uncertainty::{Assessed, Scale};
-use super::{FitError, FitOptions};
+use super::{FitError, FitOptions, NoiseChoice};
 use crate::laws::ExponentChoice;
 
 /// Fits ε̇ = −v sgn(x) |x|ⁿ, x = ε − ε_e, to strain rates (1/s) over strains: equations (9) and (10).
@@ -133,8 +133,8 @@ impl Scaled {
         let size = 1 + solution.nonlinear.len();
         let known = solution.termination == Termination::Converged;
         let (ones, amplitudes) = ([1.0; 3], [scaled_v; 2]);
-        let assessed =
-            Assessed::new(solution, &amplitudes[..size - 1], &ones[..size], self.fastest, options.confidence, known);
+        let trust = (options.confidence, NoiseChoice::FromResiduals);
+        let assessed = Assessed::new(solution, &amplitudes[..size - 1], &ones[..size], self.fastest, trust, known);
         let estimate = |value: f64, weights: &[f64], scale: Scale, unit: f64| {
             let gradient: Vec<f64> = weights[..size].iter().map(|weight| weight * unit).collect();
             assessed.estimate(value, &gradient, scale)

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::NoiseModel;
 use super::estimates::Estimate;
 use super::noise::Noise;
 use super::separable::Solution;
+use super::{NoiseChoice, NoiseModel};
 use crate::statistics::{coverage_factor, lag_one_correlation};
 
 /// How a number is brought to its interval.
@@ -42,6 +42,8 @@ pub struct Uncertainty {
     pub freedom: f64,
     /// Standard deviation of the noise in the unit of the signal; of a sample of mean weight if they have weights.
     pub deviation: f64,
+    /// Degrees of freedom of its square.
+    pub deviation_freedom: f64,
     /// Covariance in the order of `parameters`.
     pub covariance: Vec<Vec<f64>>,
     /// The same for noise models one standard error off.
@@ -101,7 +103,7 @@ impl Assessed {
         amplitudes: &[f64],
         units: &[f64],
         unit: f64,
-        confidence: f64,
+        (confidence, choice): (f64, NoiseChoice),
         known: bool,
     ) -> Self {
         let (samples, size) = (solution.residuals.len(), units.len());
@@ -112,7 +114,10 @@ impl Assessed {
             (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
         };
         let columns: Vec<&[f64]> = solution.columns.iter().chain(&solution.derivatives).map(Vec::as_slice).collect();
-        let noise = Noise::of(&columns, &solution.residuals);
+        let noise = match choice {
+            NoiseChoice::White => Noise::white(&solution.residuals, freedom),
+            NoiseChoice::FromResiduals => Noise::of(&columns, &solution.residuals),
+        };
         let finite = |rows: &Vec<Vec<f64>>| rows.iter().flatten().all(|entry| entry.is_finite());
         let inverse = solution.inverse_normal.as_deref().filter(|_| known);
         let white = inverse.map(|inverse| scaled(inverse, solution.residual_square / freedom)).filter(finite);
@@ -120,10 +125,12 @@ impl Assessed {
             NoiseModel::White => scaled(inverse, variance),
             _ => scaled(&sandwiched(inverse, &with_amplitudes(model.quadratic(&columns), amplitudes), size), variance),
         };
+        let off = noise.beside.iter().map(|(_, variance)| (variance / noise.variance).ln().powi(2));
         let uncertainty = inverse.filter(|_| white.is_some()).map(|inverse| Uncertainty {
             confidence,
             freedom,
             deviation: noise.variance.sqrt() * unit,
+            deviation_freedom: 2.0 / (2.0 / freedom + off.sum::<f64>()),
             covariance: sandwich(inverse, noise.model, noise.variance),
             beside: noise.beside.iter().map(|(model, variance)| sandwich(inverse, *model, *variance)).collect(),
         });
