@@ -5,7 +5,7 @@
 #[path = "common/coverage.rs"]
 mod coverage;
 
-use coverage::{cases, tally};
+use coverage::{Method, cases, tally};
 
 /// Holds a case.
 const HOLDS: usize = 150;
@@ -21,7 +21,7 @@ fn intervals_contain_the_truth() {
         let (mut covered, mut naive, mut all) = (0, 0, 0);
         let least = lowest(if correlated { 0.90 } else { 0.93 });
         for case in cases().iter().filter(|case| (case.correlation > 0.0) == correlated) {
-            for ((name, _), tally) in case.truth.iter().zip(tally(case, 0..HOLDS as u64)) {
+            for ((name, _), tally) in case.truth.iter().zip(tally(case, Method::Curvature, 0..HOLDS as u64)) {
                 assert_eq!(tally.open, 0, "{}: {name}", case.name);
                 let share = tally.covered as f64 / HOLDS as f64;
                 assert!(share > least, "{} with noise of {}: {name} {share}", case.name, case.correlation);

@@ -1,6 +1,6 @@
 //! How often intervals contain the truth: simulated holds with noise, fitted many times.
 
-use palpate::identify::{LawFit, LawOptions, Samples, fit_law};
+use palpate::identify::{BootstrapOptions, LawOptions, Samples, bootstrap, fit_law, profile_interval};
 use palpate::laws::{ExponentChoice, Law, LawCurve, Response, Shape, Term};
 use palpate::test_problems::Noise;
 
@@ -88,10 +88,50 @@ impl Case {
         (times, values)
     }
 
-    pub(crate) fn fit(&self, index: u64) -> LawFit {
+    /// Intervals of all numbers of a hold, with value and standard error.
+    fn intervals(&self, index: u64, method: Method) -> Vec<Found> {
         let (times, values) = self.hold(index);
-        fit_law(&Samples::new(&times, &values), self.law, &LawOptions::default()).expect("a fit")
+        let (samples, options) = (Samples::new(&times, &values), LawOptions::default());
+        let fit = fit_law(&samples, self.law, &options).expect("a fit");
+        let drawn = (method == Method::Bootstrap).then(|| {
+            let how = BootstrapOptions {
+                seed: index,
+                ..BootstrapOptions::default()
+            };
+            bootstrap(&samples, self.law, &options, &how).expect("a bootstrap")
+        });
+        let found = |(name, _): &(&str, f64)| {
+            let estimate = *fit.estimate(name).expect("a number");
+            let profile = || profile_interval(&samples, self.law, &options, name).ok();
+            let interval = match (method, &drawn) {
+                (Method::Profile, _) => profile().and_then(|interval| Some((interval.low?, interval.high?))),
+                (_, Some(drawn)) => drawn.estimate(name).and_then(|estimate| estimate.interval),
+                _ => estimate.interval,
+            };
+            Found {
+                value: estimate.value,
+                error: estimate.standard_error.unwrap_or(f64::NAN),
+                interval,
+            }
+        };
+        self.truth.iter().map(found).collect()
     }
+}
+
+/// One number of one hold.
+struct Found {
+    value: f64,
+    error: f64,
+    interval: Option<(f64, f64)>,
+}
+
+/// Where intervals come from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Method {
+    /// Those of the fit itself.
+    Curvature,
+    Profile,
+    Bootstrap,
 }
 
 /// What became of one number in many holds.
@@ -111,21 +151,19 @@ pub(crate) struct Tally {
 }
 
 /// Counts over holds `from..to`, number by number.
-pub(crate) fn tally(case: &Case, holds: std::ops::Range<u64>) -> Vec<Tally> {
+pub(crate) fn tally(case: &Case, method: Method, holds: std::ops::Range<u64>) -> Vec<Tally> {
     let mut tallies = vec![Tally::default(); case.truth.len()];
     for index in holds {
-        let fit = case.fit(index);
-        for ((name, truth), tally) in case.truth.iter().zip(&mut tallies) {
-            let estimate = fit.estimate(name).expect("a number");
-            let (Some((low, high)), Some(error)) = (estimate.interval, estimate.standard_error) else {
+        for (((_, truth), found), tally) in case.truth.iter().zip(case.intervals(index, method)).zip(&mut tallies) {
+            let Some((low, high)) = found.interval else {
                 tally.open += 1;
                 continue;
             };
             tally.covered += usize::from(low <= *truth && *truth <= high);
             tally.below += usize::from(*truth < low);
             tally.above += usize::from(*truth > high);
-            tally.naive += usize::from((estimate.value - truth).abs() <= 1.96 * error);
-            tally.width += (high - low) / estimate.value;
+            tally.naive += usize::from((found.value - truth).abs() <= 1.96 * found.error);
+            tally.width += (high - low) / found.value;
         }
     }
     tallies
