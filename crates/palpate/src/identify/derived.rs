@@ -1,7 +1,7 @@
 //! Numbers that follow from those that were searched, with their gradients.
 
-use super::estimates::Scale;
 use super::law_fit::{Fitted, NumberUnit};
+use super::uncertainty::Scale;
 use crate::laws::{Kernel, Law, Response, Shape};
 
 /// A number that follows from others.

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::separable::{Solution, Termination, Work};
+use super::NoiseModel;
+use super::separable::{Termination, Work};
 use crate::latency::decay;
 use crate::laws::ExponentChoice;
-use crate::statistics::{coverage_factor, effective_count, lag_one_correlation};
 
 /// In which plane a law was fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -25,7 +25,7 @@ pub struct Estimate {
     /// Standard error from the curvature at the optimum, s² (JᵀJ)⁻¹ with s² = RSS/(N − p): white noise is assumed.
     /// `None` for a fixed number, or where the data do not determine it.
     pub standard_error: Option<f64>,
-    /// Confidence interval; widened for correlated residuals, and in ln for numbers that cannot change sign.
+    /// Confidence interval for residuals that correlate as they do ([`NoiseModel`]); in ln for numbers that cannot change sign.
     pub interval: Option<(f64, f64)>,
 }
 
@@ -72,6 +72,8 @@ pub struct LatencyFit {
     pub rmse: f64,
     /// Correlation of neighbouring residuals; near 0 for white noise, near 1 where the law misses the shape.
     pub residual_correlation: f64,
+    /// How residuals correlate; intervals rest on it.
+    pub noise: NoiseModel,
     /// Samples fitted.
     pub samples: usize,
     /// Why it ended.
@@ -97,82 +99,9 @@ impl LatencyFit {
         self.equilibrium.value + self.amplitude.value * phi
     }
 
-    /// Samples that count as independent, given how neighbouring residuals correlate.
+    /// Samples that count as independent, given how residuals correlate.
     #[must_use]
     pub fn effective_samples(&self) -> f64 {
-        effective_count(self.samples, self.residual_correlation)
+        self.noise.effective_samples(self.samples)
     }
-}
-
-/// How a number is brought to its interval.
-#[derive(Clone, Copy)]
-pub(super) enum Scale {
-    /// Symmetric about the value.
-    Linear,
-    /// Symmetric about ln of the value, for rates and exponents.
-    Log,
-}
-
-/// Turns variances into estimates.
-pub(super) struct Uncertainty {
-    pub(super) variance: f64,
-    pub(super) factor: f64,
-    pub(super) correlation: f64,
-}
-
-impl Uncertainty {
-    pub(super) fn new(solution: &Solution, confidence: f64) -> Self {
-        let samples = solution.residuals.len();
-        let parameters = solution.linear.len() + solution.nonlinear.len();
-        let freedom = (samples - parameters) as f64;
-        let correlation = lag_one_correlation(&solution.residuals);
-        // Neighbours that repeat each other carry less: the interval is as wide as the independent samples make it.
-        let effective = effective_count(samples, correlation);
-        let widening = (samples as f64 / effective).sqrt();
-        Self {
-            variance: solution.residual_square / freedom,
-            factor: coverage_factor(confidence, (effective - parameters as f64).max(1.0)) * widening,
-            correlation,
-        }
-    }
-
-    /// An estimate of `value` with this gradient (of ln value on the logarithmic scale) by numbers of this covariance.
-    pub(super) fn of(&self, value: f64, gradient: &[f64], covariance: &[Vec<f64>], scale: Scale) -> Estimate {
-        let size = gradient.len();
-        let sum: f64 = (0..size)
-            .map(|i| (0..size).map(|j| gradient[i] * covariance[i][j] * gradient[j]).sum::<f64>())
-            .sum();
-        if sum == 0.0 {
-            return Estimate::fixed(value);
-        }
-        self.estimate(value, sum / self.variance, scale)
-    }
-
-    /// An estimate of `value` whose natural scale has variance `inverse_normal` × s².
-    pub(super) fn estimate(&self, value: f64, inverse_normal: f64, scale: Scale) -> Estimate {
-        let deviation = (inverse_normal * self.variance).sqrt();
-        let half = deviation * self.factor;
-        let (standard_error, interval) = match scale {
-            Scale::Linear => (deviation, (value - half, value + half)),
-            Scale::Log => (value.abs() * deviation, (value * (-half).exp(), value * half.exp())),
-        };
-        let good = standard_error.is_finite() && interval.0.is_finite() && interval.1.is_finite();
-        Estimate {
-            value,
-            standard_error: good.then_some(standard_error),
-            interval: good.then_some(interval),
-        }
-    }
-}
-
-/// A quadratic form: variance of Σ wᵢ pᵢ.
-pub(super) fn variance_of(weights: &[f64], covariance: &[f64]) -> f64 {
-    let size = weights.len();
-    let mut sum = 0.0;
-    for i in 0..size {
-        for j in 0..size {
-            sum += weights[i] * covariance[i * size + j] * weights[j];
-        }
-    }
-    sum
 }

@@ -4,14 +4,15 @@ use serde::{Deserialize, Serialize};
 
 use super::build::build;
 use super::derived::derived;
-use super::estimates::{Estimate, Scale, Uncertainty};
+use super::estimates::Estimate;
 use super::model::Model;
+use super::prediction::searched_name;
 use super::samples::{Samples, Scaled};
 use super::search::search;
-use super::separable::{Solution, Termination, Work};
-use super::{FitError, LawOptions, Loss, SampleChoice};
+use super::separable::{Shapes, Solution, Termination, Work};
+use super::uncertainty::{Assessed, Scale, Uncertainty};
+use super::{FitError, LawOptions, Loss, NoiseModel, SampleChoice};
 use crate::laws::{Law, LawCurve, Loading, NumberKind, Response, Term};
-use crate::statistics::effective_count;
 
 /// Unit of a number of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -72,6 +73,10 @@ pub struct LawFit {
     pub rmse: f64,
     /// Correlation of neighbouring residuals.
     pub residual_correlation: f64,
+    /// How residuals correlate; intervals rest on it.
+    pub noise: NoiseModel,
+    /// What intervals are made of; `None` where the data leave a number open.
+    pub uncertainty: Option<Uncertainty>,
     /// Samples fitted.
     pub samples: usize,
     /// Time from the first to the last sample, s.
@@ -129,10 +134,10 @@ impl LawFit {
         Some((0..size).map(|i| (0..size).map(|j| if i == j { 1.0 } else { entry(i, j) }).collect()).collect())
     }
 
-    /// Samples that count as independent, given how neighbouring residuals correlate.
+    /// Samples that count as independent, given how residuals correlate.
     #[must_use]
     pub fn effective_samples(&self) -> f64 {
-        effective_count(self.samples, self.residual_correlation)
+        self.noise.effective_samples(self.samples)
     }
 }
 
@@ -162,26 +167,8 @@ impl LawFit {
 /// [`FitError`] for samples that no law can be fitted to, for a law without a form for the response, and for options that name a number
 /// the law does not have.
 pub fn fit_law(samples: &Samples<'_>, law: Law, options: &LawOptions) -> Result<LawFit, FitError> {
-    options.check()?;
-    let form = law.form(options.response).ok_or(FitError::NoForm {
-        law,
-        response: options.response,
-    })?;
-    let chosen = chosen(samples, options.samples)?;
-    let samples = &chosen.samples(samples);
-    let (model, scaled) = build(form, samples, options)?;
     let mut work = Work::default();
-    let solution = search(&model, &scaled, options.most_iterations, &mut work).ok_or(FitError::NoDecay)?;
-    let mut fitted = Fitted {
-        model,
-        scaled,
-        solution,
-    };
-    if options.loss != Loss::Squares {
-        fitted.resist(options, &mut work)?;
-    }
-    fitted.arrange();
-    Ok(fitted.report(law, options, work))
+    Ok(Fitted::new(samples, law, options, &mut work)?.report(law, options, work))
 }
 
 /// A model with its samples and its solution, in the units of the fit.
@@ -192,6 +179,34 @@ pub(super) struct Fitted {
 }
 
 impl Fitted {
+    /// Finds the numbers of a law.
+    pub(super) fn new(
+        samples: &Samples<'_>,
+        law: Law,
+        options: &LawOptions,
+        work: &mut Work,
+    ) -> Result<Self, FitError> {
+        options.check()?;
+        let form = law.form(options.response).ok_or(FitError::NoForm {
+            law,
+            response: options.response,
+        })?;
+        let chosen = chosen(samples, options.samples)?;
+        let samples = &chosen.samples(samples);
+        let (model, scaled) = build(form, samples, options)?;
+        let solution = search(&model, &scaled, options.most_iterations, work).ok_or(FitError::NoDecay)?;
+        let mut fitted = Self {
+            model,
+            scaled,
+            solution,
+        };
+        if options.loss != Loss::Squares {
+            fitted.resist(options, work)?;
+        }
+        fitted.arrange();
+        Ok(fitted)
+    }
+
     /// Values of the free numbers in the caller's units: constant, amplitudes, ln of rates in 1/s, pure numbers.
     pub(super) fn values(&self) -> Vec<f64> {
         let (model, scaled) = (&self.model, &self.scaled);
@@ -237,11 +252,7 @@ impl Fitted {
     /// Names of the free numbers.
     pub(super) fn names(&self) -> Vec<String> {
         let constant = self.model.constant.then(|| self.model.form.constant_name().to_owned());
-        let nonlinear = self.model.free().map(|number| match number.kind {
-            NumberKind::Pure { .. } => number.name.clone(),
-            NumberKind::Time => format!("log_rate{}", number.name.trim_start_matches(|c: char| c != '_')),
-            _ => format!("log_{}", number.name),
-        });
+        let nonlinear = self.model.free().map(|number| searched_name(&number.name, number.kind));
         constant.into_iter().chain(self.model.form.amplitude_names()).chain(nonlinear).collect()
     }
 
@@ -271,24 +282,14 @@ impl Fitted {
         solution.derivatives = order.iter().map(|i| solution.derivatives[*i].clone()).collect();
     }
 
-    fn report(&self, law: Law, options: &LawOptions, work: Work) -> LawFit {
+    pub(super) fn report(&self, law: Law, options: &LawOptions, work: Work) -> LawFit {
         let solution = &self.solution;
-        let uncertainty = Uncertainty::new(solution, options.confidence);
         let known = matches!(solution.termination, Termination::Converged | Termination::AmplitudeAtBound);
-        let inverse = solution.inverse_normal.as_deref().filter(|_| known);
-        let values = self.values();
-        let size = values.len();
-        let linear = self.model.linear();
-        let unit = |i: usize| if i < linear { self.scaled.range } else { 1.0 };
-        let covariance = inverse.map(|inverse| {
-            let entry = |i: usize, j: usize| inverse[i * size + j] * uncertainty.variance * unit(i) * unit(j);
-            (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
-        });
-        let covariance = covariance.filter(|rows: &Vec<Vec<f64>>| rows.iter().flatten().all(|entry| entry.is_finite()));
-        let estimate = |value: f64, gradient: &[f64], scale: Scale| match &covariance {
-            Some(covariance) => uncertainty.of(value, gradient, covariance, scale),
-            None => Estimate::fixed(value),
-        };
+        let (values, linear, scale) = (self.values(), self.model.linear(), self.scaled.range);
+        let units: Vec<f64> = (0..values.len()).map(|i| if i < linear { scale } else { 1.0 }).collect();
+        let assessed =
+            Assessed::new(solution, &self.amplitudes(), &units, scale, (options.confidence, options.noise), known);
+        let estimate = |value: f64, gradient: &[f64], scale: Scale| assessed.estimate(value, gradient, scale);
         let mut numbers = self.direct(&estimate);
         for number in derived(law, self, &values) {
             numbers.push(LawNumber {
@@ -297,7 +298,6 @@ impl Fitted {
                 estimate: estimate(number.value, &number.gradient, number.scale),
             });
         }
-        let scale = self.scaled.range;
         let residual_square = solution.residual_square * scale * scale;
         let samples = self.scaled.times.len();
         LawFit {
@@ -308,10 +308,12 @@ impl Fitted {
             numbers,
             parameters: self.names(),
             values,
-            covariance,
+            covariance: assessed.white,
             residual_square,
             rmse: (residual_square / samples as f64).sqrt(),
-            residual_correlation: uncertainty.correlation,
+            residual_correlation: assessed.correlation,
+            noise: assessed.noise,
+            uncertainty: assessed.uncertainty,
             samples,
             duration: self.scaled.duration,
             termination: solution.termination,
@@ -319,8 +321,14 @@ impl Fitted {
         }
     }
 
+    /// The amplitude beside each free nonlinear number.
+    fn amplitudes(&self) -> Vec<f64> {
+        let shapes = self.model.at(&self.scaled.times);
+        (0..self.solution.nonlinear.len()).map(|i| self.solution.linear[shapes.column_of(i)]).collect()
+    }
+
     /// The numbers that were searched, and those held, as they are reported: times for ln of rates.
-    fn direct(&self, estimate: &impl Fn(f64, &[f64], Scale) -> Estimate) -> Vec<LawNumber> {
+    pub(super) fn direct(&self, estimate: &impl Fn(f64, &[f64], Scale) -> Estimate) -> Vec<LawNumber> {
         let (model, values) = (&self.model, self.values());
         let row = |i: usize, entry: f64| -> Vec<f64> {
             (0..values.len()).map(|j| if i == j { entry } else { 0.0 }).collect()

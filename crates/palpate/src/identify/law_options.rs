@@ -42,6 +42,17 @@ pub enum SampleChoice {
     LogSpaced(usize),
 }
 
+/// What intervals take the noise for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NoiseChoice {
+    /// What the residuals show, see [`NoiseModel`](super::NoiseModel).
+    #[default]
+    FromResiduals,
+    /// White, whatever they show.
+    White,
+}
+
 /// What may be asked of [`fit_law`](super::fit_law).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -66,6 +77,8 @@ pub struct LawOptions {
     pub loading: Option<Loading>,
     /// Coverage of confidence intervals, between 0 and 1.
     pub confidence: f64,
+    /// What intervals take the noise for.
+    pub noise: NoiseChoice,
     /// Steps of a refinement after which it ends short.
     pub most_iterations: usize,
 }
@@ -82,6 +95,7 @@ impl Default for LawOptions {
             samples: SampleChoice::default(),
             loading: None,
             confidence: 0.95,
+            noise: NoiseChoice::default(),
             most_iterations: 200,
         }
     }

@@ -57,6 +57,16 @@ impl Cholesky {
         }
     }
 
+    /// ln of the determinant.
+    pub(super) fn log_determinant(&self) -> f64 {
+        (0..self.size).map(|i| 2.0 * (self.lower[i * self.size + i] / self.scale[i]).ln()).sum()
+    }
+
+    /// Column `j` of the lower factor.
+    pub(super) fn column(&self, j: usize) -> Vec<f64> {
+        (0..self.size).map(|i| self.lower[i * self.size + j] / self.scale[i]).collect()
+    }
+
     /// The inverse, row-major.
     pub(super) fn inverse(&self) -> Vec<f64> {
         let n = self.size;
@@ -88,6 +98,10 @@ mod tests {
             let back = dot(&matrix[3 * i..3 * i + 3], &x);
             assert!((back - [1.0, -2.0, 0.5][i]).abs() < 1e-14);
         }
+        // 4·(15 − 1) − 2·(6 − 0.6) + 0.6·(2 − 3)
+        assert!((factor.log_determinant() - 44.6f64.ln()).abs() < 1e-14);
+        let (first, last) = (factor.column(0), factor.column(2));
+        assert!((first[0] * first[2] - 0.6).abs() < 1e-15 && last[0] == 0.0);
         assert!(Cholesky::new(&[1.0, 1.0, 1.0, 1.0], 2).is_none());
         assert!(Cholesky::new(&[1.0, 0.0, 0.0, 0.0], 2).is_none());
     }

@@ -22,9 +22,14 @@
 //! | `ramp_fit.rs` | the latency law of several holds that were reached in different times | section IV |
 //! | `rate_domain.rs` | strain rate fitted against strain, as the paper does | (9), (10) |
 //! | `spectrum/` | exponentials of all times at once, none of opposite sign | |
-//! | `estimates.rs` | estimates, standard errors, intervals | |
+//! | `estimates.rs` | what a fit says | |
+//! | `bootstrap.rs` | intervals from resampled residuals | |
+//! | `prediction.rs` | the curve at a time, with its interval | |
+//! | `profile.rs` | intervals that may be asymmetric or open | |
+//! | `noise.rs`, `uncertainty.rs` | how residuals correlate, and the errors and intervals that follow | |
 //! | `selection.rs` | the lowest order that fits best, with its evidence | |
 
+mod bootstrap;
 mod bounded;
 mod build;
 mod condensed;
@@ -35,6 +40,9 @@ mod law_fit;
 mod law_options;
 mod linear_algebra;
 mod model;
+mod noise;
+mod prediction;
+mod profile;
 mod ramp_fit;
 mod rate_domain;
 mod robust;
@@ -45,12 +53,16 @@ mod separable;
 mod spectrum;
 mod starts;
 mod time_domain;
+mod uncertainty;
 
 pub use crate::laws::ExponentChoice;
+pub use bootstrap::{Bootstrap, BootstrapOptions, bootstrap};
 pub use estimates::{Domain, Estimate, LatencyFit, PARAMETERS};
 pub use foretell::{Forecast, foretell};
 pub use law_fit::{LawFit, LawNumber, NumberUnit, fit_law};
-pub use law_options::{ConstantChoice, LawOptions, Loss, SampleChoice};
+pub use law_options::{ConstantChoice, LawOptions, Loss, NoiseChoice, SampleChoice};
+pub use noise::NoiseModel;
+pub use profile::{Interval, profile_interval};
 pub use ramp_fit::{EquilibriumChoice, RampFit, RampHold, RampHoldNumbers, fit_ramps};
 pub use rate_domain::fit_rates;
 pub use samples::Samples;
@@ -58,6 +70,7 @@ pub use selection::{Candidate, OrderSelection, select_order};
 pub use separable::{Termination, Work};
 pub use spectrum::{Smoothing, SpectrumFit, SpectrumOptions, SpectrumPeak, SpectrumWork, fit_spectrum};
 pub use time_domain::fit_hold;
+pub use uncertainty::Uncertainty;
 
 use serde::{Deserialize, Serialize};
 

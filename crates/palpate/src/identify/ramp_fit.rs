@@ -13,10 +13,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::estimates::{Estimate, Scale, Uncertainty};
+use super::estimates::Estimate;
 use super::samples::Samples;
 use super::separable::{Ending, Shapes, Solution, Target, Termination, Work, polished, refine};
-use super::{FitError, FitOptions};
+use super::uncertainty::{Assessed, Scale};
+use super::{FitError, FitOptions, NoiseChoice};
 use crate::contact::{Element, Work as Effort};
 use crate::latency::{LatencyLaw, decay_many, decay_with_gradient_many};
 use crate::laws::{ExponentChoice, Loading};
@@ -297,22 +298,16 @@ impl RampProblem {
     }
 
     fn report(&self, solution: &Solution, options: &FitOptions, work: Work) -> RampFit {
-        let uncertainty = Uncertainty::new(solution, options.confidence);
         let (equilibria, size) = (self.equilibria, solution.linear.len() + solution.nonlinear.len());
-        let unit = |i: usize| if i <= equilibria { self.range } else { 1.0 };
-        let known = solution.inverse_normal.as_deref().filter(|_| solution.termination == Termination::Converged);
-        let covariance: Option<Vec<Vec<f64>>> = known.map(|inverse| {
-            let entry = |i: usize, j: usize| inverse[i * size + j] * uncertainty.variance * unit(i) * unit(j);
-            (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
-        });
-        let covariance = covariance.filter(|rows| rows.iter().flatten().all(|entry| entry.is_finite()));
+        let units: Vec<f64> = (0..size).map(|i| if i <= equilibria { self.range } else { 1.0 }).collect();
+        let amplitudes = vec![solution.linear[equilibria]; solution.nonlinear.len()];
+        let trust = (options.confidence, NoiseChoice::FromResiduals);
+        let known = solution.termination == Termination::Converged;
+        let assessed = Assessed::new(solution, &amplitudes, &units, self.range, trust, known);
         let estimate = |value: f64, entries: &[(usize, f64)], scale: Scale| {
             let mut gradient = vec![0.0; size];
             entries.iter().filter(|(i, _)| *i < size).for_each(|(i, entry)| gradient[*i] += entry);
-            match &covariance {
-                Some(covariance) => uncertainty.of(value, &gradient, covariance, scale),
-                None => Estimate::fixed(value),
-            }
+            assessed.estimate(value, &gradient, scale)
         };
         let (log_inner, n) = self.numbers(&solution.nonlinear);
         let log_rate = log_inner - self.duration.ln();
@@ -345,7 +340,7 @@ impl RampProblem {
             rmse: (residual_square / self.values.len() as f64).sqrt(),
             samples: self.values.len(),
             termination: solution.termination,
-            covariance,
+            covariance: assessed.white,
             work,
         }
     }

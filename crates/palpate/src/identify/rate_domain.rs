@@ -1,8 +1,9 @@
 //! Strain rate fitted against strain, equation (10): the paper's way.
 
-use super::estimates::{Domain, Estimate, LatencyFit, Scale, Uncertainty, variance_of};
+use super::estimates::{Domain, Estimate, LatencyFit};
 use super::separable::{Ending, Refined, Shapes, Solution, Target, Termination, Work, polished, refine};
-use super::{FitError, FitOptions};
+use super::uncertainty::{Assessed, Scale};
+use super::{FitError, FitOptions, NoiseChoice};
 use crate::laws::ExponentChoice;
 
 /// Fits ε̇ = −v sgn(x) |x|ⁿ, x = ε − ε_e, to strain rates (1/s) over strains: equations (9) and (10).
@@ -130,12 +131,13 @@ impl Scaled {
             ExponentChoice::Free => solution.nonlinear[1],
         };
         let size = 1 + solution.nonlinear.len();
-        let uncertainty = Uncertainty::new(solution, options.confidence);
         let known = solution.termination == Termination::Converged;
-        let inverse = solution.inverse_normal.as_deref().filter(|_| known);
-        let estimate = |value: f64, weights: &[f64], scale: Scale, unit: f64| match inverse {
-            Some(inverse) => uncertainty.estimate(value, variance_of(&weights[..size], inverse) * unit * unit, scale),
-            None => Estimate::fixed(value),
+        let (ones, amplitudes) = ([1.0; 3], [scaled_v; 2]);
+        let trust = (options.confidence, NoiseChoice::FromResiduals);
+        let assessed = Assessed::new(solution, &amplitudes[..size - 1], &ones[..size], self.fastest, trust, known);
+        let estimate = |value: f64, weights: &[f64], scale: Scale, unit: f64| {
+            let gradient: Vec<f64> = weights[..size].iter().map(|weight| weight * unit).collect();
+            assessed.estimate(value, &gradient, scale)
         };
         let equilibrium = self.center + solution.nonlinear[0] * self.range;
         let amplitude = strains[0] - equilibrium;
@@ -145,12 +147,12 @@ impl Scaled {
         let log_amplitude = amplitude.abs().ln();
         // ln λ = ln v + (n − 1) ln |Δ|, with ∂Δ/∂ε_e = −1.
         let log_rate = [1.0 / scaled_v, -(n - 1.0) * self.range / amplitude, log_amplitude - self.range.ln()];
-        let covariance = inverse.map(|inverse| {
+        let covariance = assessed.white.as_ref().map(|white| {
             // Rows of the map from (v', ε_e', n) to (ε_e, ln v, n).
             let rows = [[0.0, self.range, 0.0], log_v, [0.0, 0.0, 1.0]];
             let entry = |a: &[f64; 3], b: &[f64; 3]| {
                 let pairs = (0..size).flat_map(|i| (0..size).map(move |j| (i, j)));
-                pairs.map(|(i, j)| a[i] * inverse[i * size + j] * b[j]).sum::<f64>() * uncertainty.variance
+                pairs.map(|(i, j)| a[i] * white[i][j] * b[j]).sum::<f64>()
             };
             rows[..size].iter().map(|a| rows[..size].iter().map(|b| entry(a, b)).collect()).collect()
         });
@@ -170,7 +172,8 @@ impl Scaled {
             covariance,
             residual_square,
             rmse: (residual_square / strains.len() as f64).sqrt(),
-            residual_correlation: uncertainty.correlation,
+            residual_correlation: assessed.correlation,
+            noise: assessed.noise,
             samples: strains.len(),
             termination: solution.termination,
             work,

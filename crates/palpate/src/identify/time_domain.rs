@@ -77,6 +77,7 @@ impl LatencyFit {
             residual_square: fit.residual_square,
             rmse: fit.rmse,
             residual_correlation: fit.residual_correlation,
+            noise: fit.noise,
             samples: fit.samples,
             termination: fit.termination,
             work: fit.work,

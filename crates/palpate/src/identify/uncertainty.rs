@@ -1,0 +1,174 @@
+//! From the noise of a fit to the covariance of its numbers, their errors and intervals.
+
+use serde::{Deserialize, Serialize};
+
+use super::estimates::Estimate;
+use super::noise::Noise;
+use super::separable::Solution;
+use super::{NoiseChoice, NoiseModel};
+use crate::statistics::{coverage_factor, lag_one_correlation};
+
+/// How a number is brought to its interval.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Scale {
+    /// Symmetric about the value.
+    Linear,
+    /// Symmetric about ln of the value, for rates and exponents.
+    Log,
+}
+
+/// The variance of Σ gᵢ pᵢ where p has this covariance: gᵀ C g.
+pub(super) fn variance_of(gradient: &[f64], covariance: &[Vec<f64>]) -> f64 {
+    let row = |row: &Vec<f64>| row.iter().zip(gradient).map(|(entry, g)| entry * g).sum::<f64>();
+    covariance.iter().zip(gradient).map(|(entries, g)| g * row(entries)).sum()
+}
+
+/// What intervals are made of: covariances of the searched numbers for noise that correlates.
+///
+/// The fit is by least squares whatever the noise, so with J the Jacobian and V = σ² R the covariance of the noise that of
+/// the numbers is the sandwich (JᵀJ)⁻¹ JᵀVJ (JᵀJ)⁻¹. V is itself an estimate: half the relative variance of a number's
+/// variance gives the degrees of freedom of its t-quantile (Satterthwaite 1946),
+///
+/// ```text
+/// ν = 2/[2/(N − p) + Σ_d (ln v_d − ln v)²]
+/// ```
+///
+/// where v_d is the number's variance for a noise model one standard error off in direction d.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Uncertainty {
+    /// Coverage of the intervals.
+    pub confidence: f64,
+    /// N − p.
+    pub freedom: f64,
+    /// Standard deviation of the noise in the unit of the signal; of a sample of mean weight if they have weights.
+    pub deviation: f64,
+    /// Degrees of freedom of its square.
+    pub deviation_freedom: f64,
+    /// Covariance in the order of `parameters`.
+    pub covariance: Vec<Vec<f64>>,
+    /// The same for noise models one standard error off.
+    pub beside: Vec<Vec<Vec<f64>>>,
+}
+
+impl Uncertainty {
+    /// An estimate of `value` with this gradient (of ln value on the logarithmic scale), and this variance if noise were white.
+    pub(super) fn estimate(&self, value: f64, gradient: &[f64], white: f64, scale: Scale) -> Estimate {
+        if white == 0.0 {
+            return Estimate::fixed(value);
+        }
+        let variance = variance_of(gradient, &self.covariance);
+        self.interval(value, white.sqrt(), variance, self.freedom_of(gradient), scale)
+    }
+
+    /// The same from a variance and its degrees of freedom.
+    pub(super) fn interval(&self, value: f64, error: f64, variance: f64, freedom: f64, scale: Scale) -> Estimate {
+        let half = variance.sqrt() * coverage_factor(self.confidence, freedom);
+        let (standard_error, interval) = match scale {
+            Scale::Linear => (error, (value - half, value + half)),
+            Scale::Log => (value.abs() * error, (value * (-half).exp(), value * half.exp())),
+        };
+        let good = standard_error.is_finite() && interval.0.is_finite() && interval.1.is_finite();
+        Estimate {
+            value,
+            standard_error: good.then_some(standard_error),
+            interval: good.then_some(interval),
+        }
+    }
+
+    /// Degrees of freedom of the variance of a number with this gradient.
+    pub(super) fn freedom_of(&self, gradient: &[f64]) -> f64 {
+        if self.beside.is_empty() {
+            return self.freedom;
+        }
+        let variance = variance_of(gradient, &self.covariance);
+        let changes = self.beside.iter().map(|covariance| (variance_of(gradient, covariance) / variance).ln().powi(2));
+        2.0 / (2.0 / self.freedom + changes.sum::<f64>())
+    }
+}
+
+/// The uncertainty of a fit, with what rests on white noise beside it.
+pub(super) struct Assessed {
+    /// s² (JᵀJ)⁻¹ in the caller's units.
+    pub(super) white: Option<Vec<Vec<f64>>>,
+    pub(super) uncertainty: Option<Uncertainty>,
+    pub(super) noise: NoiseModel,
+    pub(super) correlation: f64,
+}
+
+impl Assessed {
+    /// Assesses a solution. `amplitudes` multiply the derivatives in its Jacobian, `units` bring linear, then nonlinear
+    /// numbers to the caller's, `unit` the signal; without `known` its numbers have no errors.
+    pub(super) fn new(
+        solution: &Solution,
+        amplitudes: &[f64],
+        units: &[f64],
+        unit: f64,
+        (confidence, choice): (f64, NoiseChoice),
+        known: bool,
+    ) -> Self {
+        let (samples, size) = (solution.residuals.len(), units.len());
+        let correlation = lag_one_correlation(&solution.residuals);
+        let freedom = (samples - size) as f64;
+        let scaled = |matrix: &[f64], variance: f64| -> Vec<Vec<f64>> {
+            let entry = |i: usize, j: usize| matrix[i * size + j] * variance * units[i] * units[j];
+            (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
+        };
+        let columns: Vec<&[f64]> = solution.columns.iter().chain(&solution.derivatives).map(Vec::as_slice).collect();
+        let noise = match choice {
+            NoiseChoice::White => Noise::white(&solution.residuals, freedom),
+            NoiseChoice::FromResiduals => Noise::of(&columns, &solution.residuals),
+        };
+        let finite = |rows: &Vec<Vec<f64>>| rows.iter().flatten().all(|entry| entry.is_finite());
+        let inverse = solution.inverse_normal.as_deref().filter(|_| known);
+        let white = inverse.map(|inverse| scaled(inverse, solution.residual_square / freedom)).filter(finite);
+        let sandwich = |inverse: &[f64], model: NoiseModel, variance: f64| match model {
+            NoiseModel::White => scaled(inverse, variance),
+            _ => scaled(&sandwiched(inverse, &with_amplitudes(model.quadratic(&columns), amplitudes), size), variance),
+        };
+        let off = noise.beside.iter().map(|(_, variance)| (variance / noise.variance).ln().powi(2));
+        let uncertainty = inverse.filter(|_| white.is_some()).map(|inverse| Uncertainty {
+            confidence,
+            freedom,
+            deviation: noise.variance.sqrt() * unit,
+            deviation_freedom: 2.0 / (2.0 / freedom + off.sum::<f64>()),
+            covariance: sandwich(inverse, noise.model, noise.variance),
+            beside: noise.beside.iter().map(|(model, variance)| sandwich(inverse, *model, *variance)).collect(),
+        });
+        Self {
+            white,
+            uncertainty: uncertainty.filter(|found| finite(&found.covariance)),
+            noise: noise.model,
+            correlation,
+        }
+    }
+
+    /// An estimate of `value` with this gradient (of ln value on the logarithmic scale).
+    pub(super) fn estimate(&self, value: f64, gradient: &[f64], scale: Scale) -> Estimate {
+        match (&self.uncertainty, &self.white) {
+            (Some(uncertainty), Some(white)) => {
+                uncertainty.estimate(value, gradient, variance_of(gradient, white), scale)
+            }
+            _ => Estimate::fixed(value),
+        }
+    }
+}
+
+/// JᵀRJ from that of columns and bare derivatives: the latter count times their amplitudes.
+fn with_amplitudes(mut product: Vec<f64>, amplitudes: &[f64]) -> Vec<f64> {
+    let size = product.len().isqrt();
+    let linear = size - amplitudes.len();
+    let factor = |i: usize| if i < linear { 1.0 } else { amplitudes[i - linear] };
+    for (at, entry) in product.iter_mut().enumerate() {
+        *entry *= factor(at / size) * factor(at % size);
+    }
+    product
+}
+
+/// G M G for symmetric G.
+fn sandwiched(bread: &[f64], filling: &[f64], size: usize) -> Vec<f64> {
+    let product = |a: &[f64], b: &[f64]| -> Vec<f64> {
+        let entry = |i: usize, j: usize| (0..size).map(|k| a[i * size + k] * b[k * size + j]).sum();
+        (0..size * size).map(|at| entry(at / size, at % size)).collect()
+    };
+    product(&product(bread, filling), bread)
+}
