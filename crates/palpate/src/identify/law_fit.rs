@@ -233,7 +233,7 @@ impl Fitted {
     }
 
     /// Puts exponentials in the order of their times, fastest first.
-    fn arrange(&mut self) {
+    pub(super) fn arrange(&mut self) {
         let model = &self.model;
         let (moving, _) = model.moving();
         if moving.len() < 2 || model.free().len() != moving.len() {
@@ -258,9 +258,13 @@ impl Fitted {
         solution.derivatives = order.iter().map(|i| solution.derivatives[*i].clone()).collect();
     }
 
-    fn report(&self, law: Law, options: &LawOptions, work: Work) -> LawFit {
+    pub(super) fn report(&self, law: Law, options: &LawOptions, work: Work) -> LawFit {
+        self.report_with(law, &Uncertainty::new(&self.solution, options.confidence), work)
+    }
+
+    /// The result, with errors from this uncertainty.
+    pub(super) fn report_with(&self, law: Law, uncertainty: &Uncertainty, work: Work) -> LawFit {
         let solution = &self.solution;
-        let uncertainty = Uncertainty::new(solution, options.confidence);
         let known = matches!(solution.termination, Termination::Converged | Termination::AmplitudeAtBound);
         let inverse = solution.inverse_normal.as_deref().filter(|_| known);
         let values = self.values();

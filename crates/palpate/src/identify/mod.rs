@@ -19,6 +19,7 @@
 //! | `law_fit.rs`, `derived.rs` | any law fitted, its numbers and those that follow from them | |
 //! | `time_domain.rs` | the latency law fitted to a signal | (4), (5) |
 //! | `rate_domain.rs` | strain rate fitted against strain, as the paper does | (9), (10) |
+//! | `joint/` | several holds at once: one law shared by all, or one each | |
 //! | `estimates.rs` | estimates, standard errors, intervals | |
 //! | `selection.rs` | the lowest order that fits best, with its evidence | |
 
@@ -27,6 +28,7 @@ mod build;
 mod condensed;
 mod derived;
 mod estimates;
+mod joint;
 mod law_fit;
 mod law_options;
 mod linear_algebra;
@@ -42,6 +44,7 @@ mod time_domain;
 
 pub use crate::laws::ExponentChoice;
 pub use estimates::{Domain, Estimate, LatencyFit, PARAMETERS};
+pub use joint::{HoldWeights, JointFit, JointOptions, fit_joint};
 pub use law_fit::{LawFit, LawNumber, NumberUnit, fit_law};
 pub use law_options::{ConstantChoice, LawOptions, Loss, SampleChoice};
 pub use rate_domain::fit_rates;
@@ -194,6 +197,32 @@ pub enum FitError {
     Confidence {
         /// What was given.
         found: f64,
+    },
+    /// Something is wrong with one of several holds.
+    #[error("hold {hold}: {source}")]
+    Hold {
+        /// Number of the hold, from 1.
+        hold: usize,
+        /// What.
+        source: Box<FitError>,
+    },
+    /// A joint fit of no hold, or of one.
+    #[error("a joint fit needs two holds or more, found {found}")]
+    TooFewHolds {
+        /// Holds found.
+        found: usize,
+    },
+    /// A joint fit of holds that share no number.
+    #[error("the law {law} has no number that holds could share")]
+    NothingShared {
+        /// The law.
+        law: Law,
+    },
+    /// Samples with deviations beside samples without cannot be weighed against each other.
+    #[error("all holds of a joint fit must have standard deviations, or none; hold {hold} has none")]
+    DeviationsOfSome {
+        /// Number of the first hold without, from 1.
+        hold: usize,
     },
     /// No number of the law brings the rates nearer than zero does: they point away from every equilibrium.
     #[error("the strain rates do not point towards any equilibrium strain")]
