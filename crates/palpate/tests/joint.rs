@@ -6,9 +6,14 @@ mod common;
 
 use common::reference;
 use palpate::identify::{
-    ExponentChoice, FitError, HoldWeights, JointFit, JointOptions, Samples, Termination, fit_joint,
+    ExponentChoice, FitError, HoldWeights, JointComparison, JointFit, JointOptions, Samples, Termination, TrendVerdict,
+    compare_joint, fit_joint,
 };
+use palpate::latency::decay;
 use palpate::laws::{Law, Response};
+use palpate::simulate::{Sampling, Separation, simulate};
+use palpate::strain::contact_strain;
+use palpate::test_problems::{Noise, paper_ball, paper_test_a};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -61,6 +66,10 @@ impl Case {
 
 const LATENCY: Law = Law::Latency {
     exponent: ExponentChoice::Free,
+};
+
+const QUINTIC: Law = Law::Latency {
+    exponent: ExponentChoice::Fixed(5.0),
 };
 
 fn cases() -> (Tolerance, Vec<Case>) {
@@ -203,4 +212,93 @@ fn deviations_and_noisy_holds_count_less() {
     let by_variance = fit_joint(&noisy, case.law(), &options).unwrap();
     let error = |fit: &JointFit| fit.shared[0].estimate.standard_error.unwrap();
     assert!(error(&by_variance) < 0.3 * error(&equal), "{} {}", error(&by_variance), error(&equal));
+}
+
+/// Holds of 10 s at 100 Hz with a drop of 0.13 and noise of 3·10⁻⁴, at five equilibrium strains; ln v = ln 2·10⁴ + slope (ε_e − 0.3).
+fn body(slope: f64, seed: u64) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let times: Vec<f64> = (0..1000).map(|i| 0.01 * f64::from(i)).collect();
+    let mut noise = Noise::new(seed);
+    let mut hold = |strain: f64| {
+        let drop = 0.1 + 0.2 * strain;
+        let rate = 2e4 * (slope * (strain - 0.3)).exp() * drop.powi(4);
+        times.iter().map(|t| strain + drop * decay(rate * t, 5.0) + 3e-4 * noise.normal()).collect()
+    };
+    let values = [0.1, 0.2, 0.3, 0.4, 0.5].map(&mut hold).to_vec();
+    (times, values)
+}
+
+fn judged(law: Law, slope: f64, seed: u64) -> (JointFit, JointComparison) {
+    let (times, values) = body(slope, seed);
+    let holds: Vec<Samples<'_>> = values.iter().map(|values| Samples::new(&times, values)).collect();
+    let joint = fit_joint(&holds, law, &JointOptions::default()).unwrap();
+    let comparison = compare_joint(&holds, &joint, None).unwrap();
+    (joint, comparison)
+}
+
+#[test]
+fn the_verdict_is_that_of_the_body() {
+    for law in [LATENCY, QUINTIC] {
+        let (joint, constant) = judged(law, 0.0, 11);
+        println!("{law}: {:?} {:?}", joint.shared, constant);
+        let v = joint.shared("rate_coefficient").unwrap().estimate;
+        assert!((v.value.ln() - 2e4f64.ln()).abs() < 3.0 * v.standard_error.unwrap() / v.value);
+        assert_eq!(constant.verdict, TrendVerdict::Constant, "{law}");
+        assert!(constant.delta_bic < -10.0 && constant.p.unwrap() > 0.05, "{law}: {constant:?}");
+        let (_, falling) = judged(law, -5.0, 12);
+        let trend = falling.trend.as_ref().unwrap();
+        assert_eq!(falling.verdict, TrendVerdict::FallsWithStrain, "{law}: {trend:?}");
+        assert!((trend.slope + 5.0).abs() < 0.1, "{law}: {trend:?}");
+        assert!(falling.delta_bic > 10.0 && falling.p.unwrap() < 1e-6, "{law}: {falling:?}");
+        assert_eq!(judged(law, 5.0, 13).1.verdict, TrendVerdict::RisesWithStrain, "{law}");
+    }
+}
+
+#[test]
+fn intervals_of_the_trend_cover_and_equal_bodies_are_told_apart_by_chance_only() {
+    let runs = 200;
+    let (mut covered, mut rejected) = (0, 0);
+    for seed in 0..runs {
+        let (_, comparison) = judged(QUINTIC, -2.0, 100 + seed);
+        let interval = comparison.trend.unwrap().interval;
+        covered += usize::from(interval.0 <= -2.0 && -2.0 <= interval.1);
+        rejected += usize::from(judged(QUINTIC, 0.0, 1000 + seed).1.p.unwrap() < 0.05);
+    }
+    println!("covered {covered} of {runs}, rejected {rejected}");
+    // Binomial, 200 runs at 95 %: 181 or more, and at 5 % 19 or fewer, each in all but 1 % of cases.
+    assert!(covered >= 181, "{covered}");
+    assert!(rejected <= 19, "{rejected}");
+}
+
+/// Strains in the five holds of the paper's test (a) after loading, 500 samples each, from simulated force.
+fn paper_holds(noise: f64) -> Vec<(Vec<f64>, Vec<f64>)> {
+    let (model, motion) = (paper_ball(Separation::Bonded), paper_test_a());
+    let mut random = Noise::new(7);
+    let mut hold = |knot: usize| {
+        let (start, end) = (motion.times()[knot], motion.times()[knot + 1]);
+        let times: Vec<f64> = (0..500).map(|i| start + (end - start) * f64::from(i) / 499.0).collect();
+        let result = simulate(&motion, &model, &Sampling::Times(times)).unwrap();
+        let strain = |k: usize| contact_strain(result.force[k], result.displacement[k], &model.specimen).unwrap();
+        let strains = (0..result.len()).map(|k| strain(k) + noise * random.normal()).collect();
+        (result.time.iter().map(|time| time - start).collect(), strains)
+    };
+    [1, 3, 5, 7, 9].map(&mut hold).to_vec()
+}
+
+#[test]
+fn the_simulated_paper_gives_back_its_law() {
+    for (noise, share) in [(0.0, 1e-5), (2e-4, 0.1)] {
+        let recorded = paper_holds(noise);
+        let holds: Vec<Samples<'_>> = recorded.iter().map(|(times, values)| Samples::new(times, values)).collect();
+        let fit = fit_joint(&holds, LATENCY, &JointOptions::default()).unwrap();
+        let (v, n) = (fit.shared[0].estimate, fit.shared[1].estimate);
+        println!("noise {noise}: v = {v:?}, n = {n:?}");
+        assert!((v.value / 2e4 - 1.0).abs() < share && (n.value - 5.0).abs() < share, "{noise}: {v:?} {n:?}");
+        if noise > 0.0 {
+            assert!((v.value - 2e4).abs() < 3.0 * v.standard_error.unwrap(), "{v:?}");
+            assert!((n.value - 5.0).abs() < 3.0 * n.standard_error.unwrap(), "{n:?}");
+            let comparison = compare_joint(&holds, &fit, None).unwrap();
+            assert_eq!(comparison.verdict, TrendVerdict::Constant, "{comparison:?}");
+            assert!(compare_joint(&holds[1..], &fit, None).is_err());
+        }
+    }
 }

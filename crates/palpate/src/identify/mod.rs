@@ -44,7 +44,10 @@ mod time_domain;
 
 pub use crate::laws::ExponentChoice;
 pub use estimates::{Domain, Estimate, LatencyFit, PARAMETERS};
-pub use joint::{HoldWeights, JointFit, JointOptions, fit_joint};
+pub use joint::{
+    HoldWeights, JointComparison, JointFit, JointOptions, SharedTrend, TrendPoint, TrendVerdict, compare_joint,
+    fit_joint,
+};
 pub use law_fit::{LawFit, LawNumber, NumberUnit, fit_law};
 pub use law_options::{ConstantChoice, LawOptions, Loss, SampleChoice};
 pub use rate_domain::fit_rates;

@@ -1,7 +1,7 @@
 //! Several holds at once: one material law, an equilibrium and amplitudes for each hold.
 //!
 //! A hold alone leaves rate and exponent (or two times) correlated. Several holds of one body share them, if the body has one
-//! law; whether it does is what a comparison with every hold fitted alone asks.
+//! law; whether it does is what [`compare_joint`] asks.
 //!
 //! | file | what |
 //! |---|---|
@@ -9,11 +9,18 @@
 //! | `arrow.rs` | the search: a block-arrow system, the holds eliminated |
 //! | `starts.rs` | where it starts |
 //! | `report.rs` | numbers with their errors |
+//! | `comparison.rs` | one law against one each |
+//! | `trend.rs` | whether a number goes with the strain |
 
 mod arrow;
+mod comparison;
 mod hold;
 mod report;
 mod starts;
+mod trend;
+
+pub use comparison::{JointComparison, TrendVerdict, compare_joint};
+pub use trend::{SharedTrend, TrendPoint};
 
 use serde::{Deserialize, Serialize};
 
