@@ -5,6 +5,7 @@
 //! | `options.rs` | everything that may be asked, with defaults |
 //! | `pipeline.rs` | the order of the steps |
 //! | `hold.rs` | one hold: signal, fits in both domains, prediction beyond the window |
+//! | `joint.rs` | one law for several holds against one for each |
 //! | `across.rs` | several holds: common exponent, trend of v, agreement of equilibrium strains |
 //! | `modulus.rs` | the modulus that the relaxed forces imply |
 //! | `overlay.rs` | the same displacement simulated with the fitted numbers |
@@ -13,6 +14,7 @@
 mod across;
 mod finding;
 mod hold;
+mod joint;
 mod modulus;
 mod options;
 mod overlay;
@@ -21,6 +23,7 @@ mod pipeline;
 pub use across::{Across, LevelAgreement, Trend};
 pub use finding::{Finding, Severity};
 pub use hold::{HoldAnalysis, Prediction, Signal};
+pub use joint::{JointAnalysis, JointHolds};
 pub use modulus::ModulusSource;
 pub use options::{AnalysisOptions, Geometry, LayersChoice};
 pub use overlay::Overlay;

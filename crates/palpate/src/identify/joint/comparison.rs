@@ -11,7 +11,7 @@ use crate::identify::{FitError, LawFit, NumberUnit, Samples, fit_law};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TrendVerdict {
-    /// One law fits all holds, and no change by a factor of 2 over their strains is compatible with the data.
+    /// One law fits all holds, and no change by a factor of 2 over their strains is compatible with the data; or none by 2 %.
     Constant,
     /// The interval of the slope lies below zero.
     FallsWithStrain,
@@ -41,6 +41,9 @@ pub struct JointComparison {
     /// What it does.
     pub verdict: TrendVerdict,
 }
+
+/// Change over the range of strains, in ln, below which a number is constant however sure the change is.
+const NEGLIGIBLE: f64 = 0.02;
 
 /// Change over the range of strains, in ln, that a constant number must not be compatible with.
 const NOTABLE: f64 = std::f64::consts::LN_2;
@@ -117,6 +120,7 @@ pub fn compare_joint(
 
 fn verdict(trend: Option<&SharedTrend>, p: Option<f64>, level: f64) -> TrendVerdict {
     match trend {
+        Some(trend) if trend.most_change() < NEGLIGIBLE => TrendVerdict::Constant,
         Some(trend) if trend.interval.1 < 0.0 => TrendVerdict::FallsWithStrain,
         Some(trend) if trend.interval.0 > 0.0 => TrendVerdict::RisesWithStrain,
         Some(trend) if trend.most_change() < NOTABLE && p.is_some_and(|p| p >= level) => TrendVerdict::Constant,
