@@ -86,7 +86,7 @@ fn together(
 pub(super) fn changing_rate(joint: &[JointAnalysis]) -> Option<Finding> {
     let first = joint.first().filter(|first| first.which == JointHolds::Loading)?;
     let trend = first.comparison.trend.as_ref()?;
-    (first.comparison.verdict != TrendVerdict::Constant).then(|| Finding::RateCoefficientTrend {
+    (first.comparison.verdict != TrendVerdict::Constant).then_some(Finding::RateCoefficientTrend {
         verdict: first.comparison.verdict,
         holds: trend.points.len(),
         slope: trend.slope,

@@ -187,7 +187,7 @@ impl Part {
             let mut step = self.gradient[..self.own.len()].to_vec();
             factor.solve(&mut step);
             let promise = dot(&step, &self.gradient[..step.len()]);
-            if !(promise > 1e-24 * self.square + floor) {
+            if promise.is_nan() || promise <= 1e-24 * self.square + floor {
                 return;
             }
             let mut share = 1.0;
