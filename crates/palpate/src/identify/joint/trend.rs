@@ -7,7 +7,7 @@ use crate::statistics::{coverage_factor, normal_factor};
 /// ln of a number against an abscissa over the holds: ln v_h = a + b x_h + u_h + e_h.
 ///
 /// e_h is the error of the hold's own fit, u_h what holds differ by beyond it, of variance τ² (DerSimonian and Laird's moment
-/// estimate). The slope's error follows from the scatter about the line (Hartung and Knapp), its interval from Student's t
+/// estimate). The slope's error follows from the scatter about the line (Hartung and Knapp), but is never below what the fits' own errors make it; its interval from Student's t
 /// with H − 2 degrees of freedom; errors of x are not counted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SharedTrend {
@@ -56,7 +56,7 @@ impl SharedTrend {
         let line = Line::through(&points, between);
         let (scatter, factor) = match freedom {
             0.0 => (1.0, normal_factor(confidence)),
-            _ => (line.scatter / freedom, coverage_factor(confidence, freedom)),
+            _ => ((line.scatter / freedom).max(1.0), coverage_factor(confidence, freedom)),
         };
         let standard_error = (scatter * line.variance + line.by_held.powi(2)).sqrt();
         Some(Self {
@@ -169,8 +169,9 @@ mod tests {
                 covered += usize::from(trend.interval.0 <= -4.0 && -4.0 <= trend.interval.1);
             }
             let share = covered as f64 / f64::from(runs);
-            // Two thousand runs tell 95 % to within 0.5 %; the method is known to keep within a percent or two.
-            assert!((0.93..0.975).contains(&share), "τ = {between}: {share}");
+            // Two thousand runs tell 95 % to within 0.5 %. More is expected: errors never count below their own size.
+            println!("τ = {between}: {share}");
+            assert!(share >= 0.93, "τ = {between}: {share}");
         }
     }
 }
