@@ -114,6 +114,11 @@ pub(crate) fn coverage_factor(level: f64, freedom: f64) -> f64 {
     }
 }
 
+/// The same for a normal number of known variance.
+pub(crate) fn normal_factor(level: f64) -> f64 {
+    Normal::standard().inverse_cdf(0.5 + 0.5 * level)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,7 +1,7 @@
 //! `palpate.analysis/1`: one analysed record.
 
-use palpate::analysis::{Analysis, Finding, HoldAnalysis, Severity, Signal};
-use palpate::identify::ExponentChoice;
+use palpate::analysis::{Analysis, Finding, HoldAnalysis, JointAnalysis, JointHolds, Severity, Signal};
+use palpate::identify::{Estimate, ExponentChoice, TrendVerdict};
 use palpate::segment::{After, Phase, RelaxationType};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -158,6 +158,35 @@ pub struct TablesDocument {
     pub trend_interval: Option<[f64; 2]>,
 }
 
+/// The latency law with one v, and one n, for several holds, against a law for each hold.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct JointDocument {
+    /// Holds after `loading`, or `all`.
+    pub which: String,
+    /// Numbers of the holds.
+    pub holds: Vec<usize>,
+    /// n.
+    pub exponent: f64,
+    /// Its standard error; `null` if it was given.
+    pub exponent_standard_error: Option<f64>,
+    /// v, 1/s.
+    pub rate_coefficient_per_s: f64,
+    /// Its standard error, 1/s.
+    pub rate_coefficient_standard_error_per_s: Option<f64>,
+    /// Its confidence interval, 1/s.
+    pub rate_coefficient_interval_per_s: Option<[f64; 2]>,
+    /// Probability of so large a difference to a law for each hold if they share one.
+    pub p_value: Option<f64>,
+    /// Bayesian information criterion less that of a law for each hold.
+    pub delta_bic: f64,
+    /// d ln v/dε_e, weighted by the errors of the holds.
+    pub trend_of_log_rate_coefficient: Option<f64>,
+    /// Its confidence interval.
+    pub trend_interval: Option<[f64; 2]>,
+    /// `constant`, `falls_with_strain`, `rises_with_strain` or `undecided`.
+    pub verdict: String,
+}
+
 /// The record's own displacement simulated with the fitted numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct OverlayDocument {
@@ -191,6 +220,8 @@ pub struct AnalysisDocument {
     pub holds: Vec<HoldDocument>,
     /// The paper's tables; `null` where the signal is not strain.
     pub tables: Option<TablesDocument>,
+    /// One law for several holds; empty where fewer than two holds gave strains.
+    pub joint: Vec<JointDocument>,
     /// The simulated record.
     pub overlay: Option<OverlayDocument>,
     /// What to know about the record as a whole.
@@ -210,6 +241,7 @@ impl AnalysisDocument {
             segments: segments(analysis),
             holds: analysis.holds.iter().map(hold).collect(),
             tables: tables(analysis),
+            joint: analysis.across.joint.iter().map(joint).collect(),
             overlay: analysis.overlay.as_ref().map(|overlay| OverlayDocument {
                 exponent: overlay.model.law.exponent(),
                 rate_coefficient_per_s: overlay.model.law.rate_coefficient(),
@@ -221,6 +253,41 @@ impl AnalysisDocument {
             findings: analysis.findings.iter().map(FindingDocument::from).collect(),
             software: Software::this(),
         }
+    }
+}
+
+fn joint(joint: &JointAnalysis) -> JointDocument {
+    let fixed = match joint.choice {
+        ExponentChoice::Fixed(n) => n,
+        ExponentChoice::Free => f64::NAN,
+    };
+    let estimate = |name: &str| joint.fit.shared(name).map(|number| number.estimate);
+    let rate = estimate("rate_coefficient").unwrap_or(Estimate::fixed(f64::NAN));
+    let exponent = estimate("exponent").unwrap_or(Estimate::fixed(fixed));
+    let trend = joint.comparison.trend.as_ref();
+    JointDocument {
+        which: match joint.which {
+            JointHolds::Loading => "loading",
+            JointHolds::All => "all",
+        }
+        .to_owned(),
+        holds: joint.holds.clone(),
+        exponent: exponent.value,
+        exponent_standard_error: exponent.standard_error,
+        rate_coefficient_per_s: rate.value,
+        rate_coefficient_standard_error_per_s: rate.standard_error,
+        rate_coefficient_interval_per_s: rate.interval.map(Into::into),
+        p_value: joint.comparison.p,
+        delta_bic: joint.comparison.delta_bic,
+        trend_of_log_rate_coefficient: trend.map(|trend| trend.slope),
+        trend_interval: trend.map(|trend| trend.interval.into()),
+        verdict: match joint.comparison.verdict {
+            TrendVerdict::Constant => "constant",
+            TrendVerdict::FallsWithStrain => "falls_with_strain",
+            TrendVerdict::RisesWithStrain => "rises_with_strain",
+            TrendVerdict::Undecided => "undecided",
+        }
+        .to_owned(),
     }
 }
 

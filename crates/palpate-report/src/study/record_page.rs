@@ -1,6 +1,7 @@
 //! The page of an analysed record.
 
-use palpate::analysis::Analysis;
+use palpate::analysis::{Analysis, JointHolds};
+use palpate::identify::TrendVerdict;
 use palpate::segment::{After, Phase};
 
 use super::{Bundle, Pictures, StudyError, findings, method, record_figures, record_tables};
@@ -53,7 +54,8 @@ fn page(analysis: &Analysis, input: &Input, figures: &[crate::figure::Figure]) -
             laws = laws.block(Block::figure(picture)?);
         }
     }
-    laws = laws.blocks(trend_sentence(analysis).map(Block::Paragraph));
+    laws = laws.blocks(joint_sentence(analysis).or_else(|| trend_sentence(analysis)).map(Block::Paragraph));
+    laws = laws.blocks(record_tables::joint(analysis).map(Block::Table));
     laws = laws.blocks(record_tables::agreements(analysis).map(Block::Table));
     laws = laws.blocks(record_tables::predictions(analysis).map(Block::Table));
     let mut page = Page::new(&input.title, "Squeeze-and-hold test: phases, strains and the latency law")
@@ -110,6 +112,26 @@ fn holds_word(count: usize) -> String {
         1 => "one hold".to_owned(),
         count => format!("{count} holds"),
     }
+}
+
+/// Whether v is one number, from the holds after loading at the common exponent.
+fn joint_sentence(analysis: &Analysis) -> Option<String> {
+    let joint = analysis.across.joint.first().filter(|joint| joint.which == JointHolds::Loading)?;
+    let trend = joint.comparison.trend.as_ref()?;
+    let verdict = match joint.comparison.verdict {
+        TrendVerdict::Constant => "one v describes them all",
+        TrendVerdict::FallsWithStrain => "v falls as the equilibrium strain grows, as the authors of the paper saw",
+        TrendVerdict::RisesWithStrain => "v rises with the equilibrium strain",
+        TrendVerdict::Undecided => "these holds do not tell whether v changes with strain",
+    };
+    Some(format!(
+        "Trend over {} holds after loading, weighted by their errors: d ln v/dεₑ = {} ({} % interval {} to {}): {verdict}.",
+        trend.points.len(),
+        significant(trend.slope, 3),
+        significant(100.0 * joint.fit.options.fit.confidence, 3),
+        significant(trend.interval.0, 3),
+        significant(trend.interval.1, 3)
+    ))
 }
 
 fn trend_sentence(analysis: &Analysis) -> Option<String> {

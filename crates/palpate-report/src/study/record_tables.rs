@@ -1,7 +1,7 @@
 //! Tables of an analysed record.
 
-use palpate::analysis::{Analysis, HoldAnalysis, Signal};
-use palpate::identify::{Domain, Estimate, ExponentChoice, LatencyFit, Termination};
+use palpate::analysis::{Analysis, HoldAnalysis, JointHolds, Signal};
+use palpate::identify::{Domain, Estimate, ExponentChoice, LatencyFit, Termination, TrendVerdict};
 use palpate::segment::{After, RelaxationType};
 
 use super::findings;
@@ -244,6 +244,53 @@ pub(super) fn exponents(analysis: &Analysis) -> Table {
     table
 }
 
+/// One law for several holds against one for each.
+pub(super) fn joint(analysis: &Analysis) -> Option<Table> {
+    let joint = &analysis.across.joint;
+    let mut table = Table::new(
+        "joint",
+        "One law for several holds, each with its own εₑ, against a law for each: p of the F-test, ΔBIC (negative for one law), and the trend of v at one n.",
+    )
+    .column(column("Holds after", "holds", ""))
+    .column(column("Holds", "count", ""))
+    .column(column("n", "exponent", ""))
+    .column(column("v", "rate_coefficient_per_s", "s⁻¹"))
+    .column(column("p", "p_value", ""))
+    .column(column("ΔBIC", "delta_bic", ""))
+    .column(column("d ln v/dεₑ", "trend", ""))
+    .column(column("from", "trend_low", ""))
+    .column(column("to", "trend_high", ""))
+    .column(column("v is", "verdict", ""));
+    for one in joint {
+        let shared = |name: &str| one.fit.shared(name).map(|number| number.estimate.value);
+        let trend = one.comparison.trend.as_ref();
+        table = table.row(vec![
+            Cell::text(match one.which {
+                JointHolds::Loading => "loading",
+                JointHolds::All => "both",
+            }),
+            Cell::Integer(one.holds.len() as i64),
+            match one.choice {
+                ExponentChoice::Fixed(n) => order(n),
+                ExponentChoice::Free => Cell::number_or(shared("exponent"), 4, "not found"),
+            },
+            Cell::number_or(shared("rate_coefficient"), 4, "not found"),
+            Cell::number_or(one.comparison.p, 2, "too few independent samples"),
+            Cell::number(one.comparison.delta_bic, 4),
+            Cell::number_or(trend.map(|trend| trend.slope), 3, "one strain"),
+            Cell::number_or(trend.map(|trend| trend.interval.0), 3, "one strain"),
+            Cell::number_or(trend.map(|trend| trend.interval.1), 3, "one strain"),
+            Cell::text(match one.comparison.verdict {
+                TrendVerdict::Constant => "constant",
+                TrendVerdict::FallsWithStrain => "falls with strain",
+                TrendVerdict::RisesWithStrain => "rises with strain",
+                TrendVerdict::Undecided => "undecided",
+            }),
+        ]);
+    }
+    (!joint.is_empty()).then_some(table)
+}
+
 /// How well each law, fitted to the first part of the holds, foretells the rest.
 pub(super) fn predictions(analysis: &Analysis) -> Option<Table> {
     let until = analysis.options.fit_until?;
@@ -311,6 +358,7 @@ pub(super) fn all(analysis: &Analysis) -> Vec<Table> {
     tables.extend(paper_table(analysis, After::Loading));
     tables.extend(paper_table(analysis, After::Unloading));
     tables.push(exponents(analysis));
+    tables.extend(joint(analysis));
     tables.extend(predictions(analysis));
     tables.extend(agreements(analysis));
     tables.push(fits(analysis));

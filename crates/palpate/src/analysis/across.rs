@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::HoldAnalysis;
+use super::joint::{JointAnalysis, joint};
+use super::{AnalysisOptions, HoldAnalysis};
 use crate::identify::LatencyFit;
 use crate::segment::After;
 use crate::statistics::coverage_factor;
@@ -46,18 +47,21 @@ pub struct Across {
     pub evidence: Vec<(f64, f64)>,
     /// Trend of v.
     pub trend: Option<Trend>,
+    /// One law for several holds against one for each: the holds after loading, then all; n common, then free.
+    pub joint: Vec<JointAnalysis>,
     /// Agreement of equilibria.
     pub agreements: Vec<LevelAgreement>,
 }
 
-pub(super) fn across(holds: &[HoldAnalysis], exponents: &[f64], displacement_tolerance: f64) -> Across {
-    let evidence = summed_evidence(holds, exponents);
+pub(super) fn across(holds: &[HoldAnalysis], options: &AnalysisOptions, displacement_tolerance: f64) -> Across {
+    let evidence = summed_evidence(holds, &options.exponents);
     let common_exponent = evidence.iter().filter(|(_, delta)| *delta <= 2.0).map(|(n, _)| *n).min_by(f64::total_cmp);
     let fit = |hold: &HoldAnalysis| {
         common_exponent.and_then(|n| hold.fit_with(n).cloned()).filter(|fit| fit.termination.is_good())
     };
     Across {
         trend: trend(holds, fit),
+        joint: joint(holds, common_exponent, options),
         agreements: agreements(holds, fit, displacement_tolerance),
         common_exponent,
         evidence,

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::identify::TrendVerdict;
 use crate::laws::Law;
 
 /// How much a finding matters.
@@ -156,6 +157,17 @@ pub enum Finding {
         /// How far it goes below its start in the first ramp, m or N.
         fall: f64,
     },
+    /// v is not known to be one number for all holds after loading.
+    RateCoefficientTrend {
+        /// Whether it falls, rises, or neither can be told.
+        verdict: TrendVerdict,
+        /// Holds.
+        holds: usize,
+        /// d ln v/dε_e.
+        slope: f64,
+        /// Its confidence interval.
+        interval: (f64, f64),
+    },
     /// The simulated record is not the measured one.
     OverlayPoor {
         /// Root mean square of the difference as a share of the largest force.
@@ -197,6 +209,7 @@ impl Finding {
             Self::ModulusMismatch { .. } => "modulus_mismatch",
             Self::TouchUncertain { .. } => "touch_uncertain",
             Self::SignSuspicious { .. } => "sign_suspicious",
+            Self::RateCoefficientTrend { .. } => "rate_coefficient_trend",
             Self::OverlayPoor { .. } => "overlay_poor",
             Self::NoOverlay { .. } => "no_overlay",
         }
@@ -206,7 +219,11 @@ impl Finding {
     #[must_use]
     pub fn severity(&self) -> Severity {
         match self {
-            Self::ExponentsAlike { .. }
+            Self::RateCoefficientTrend {
+                verdict: TrendVerdict::Undecided,
+                ..
+            }
+            | Self::ExponentsAlike { .. }
             | Self::ParametersAtBound { .. }
             | Self::TermsIndistinguishable { .. }
             | Self::LawsIndistinguishable { .. }
@@ -227,6 +244,7 @@ impl Finding {
             | Self::ModulusMismatch { .. }
             | Self::TouchUncertain { .. }
             | Self::SignSuspicious { .. }
+            | Self::RateCoefficientTrend { .. }
             | Self::OverlayPoor { .. } => Severity::Caution,
             Self::RateAtBound { .. } | Self::TooFewSamples { .. } | Self::NoContactArea | Self::NoOverlay { .. } => {
                 Severity::Warning
@@ -329,6 +347,12 @@ impl Finding {
             Self::SignSuspicious { column, fall } => {
                 format!("the {column} falls by {:.3} mm in the first ramp", 1e3 * fall)
             }
+            Self::RateCoefficientTrend {
+                holds,
+                slope,
+                interval: (low, high),
+                ..
+            } => format!("over {holds} holds after loading d ln v/dεₑ = {slope:.2} (interval {low:.2} to {high:.2})"),
             Self::OverlayPoor { relative } => format!(
                 "measured and simulated force differ by {:.0} % of the largest force (root mean square)",
                 100.0 * relative
@@ -398,6 +422,19 @@ impl Finding {
             Self::SignSuspicious { .. } => {
                 "palpate counts compression, or stretch of a strip, as positive in displacement and force; loading is taken for unloading otherwise"
             }
+            Self::RateCoefficientTrend {
+                verdict: TrendVerdict::FallsWithStrain,
+                ..
+            } => {
+                "v falls as the equilibrium strain grows, as the authors of the paper saw: no single v describes this body"
+            }
+            Self::RateCoefficientTrend {
+                verdict: TrendVerdict::RisesWithStrain,
+                ..
+            } => "v rises with the equilibrium strain: no single v describes this body",
+            Self::RateCoefficientTrend { .. } => {
+                "the holds may share one v, or v may change with strain by a factor of 2; these holds do not tell"
+            }
             Self::OverlayPoor { .. } => {
                 "each hold may be fitted well, but one law with these layers does not join them through the ramps"
             }
@@ -447,6 +484,11 @@ impl Finding {
             Self::SignSuspicious { .. } => {
                 "if the file counts the other way round, set sign = -1 for that column in the test description"
             }
+            Self::RateCoefficientTrend {
+                verdict: TrendVerdict::Undecided,
+                ..
+            } => "hold at more strains, or longer",
+            Self::RateCoefficientTrend { .. } => "use v of the hold whose strain is nearest to the one of interest",
             Self::OverlayPoor { .. } => {
                 "check modulus, first touch and layers; compare v of the holds before using one for all of them"
             }

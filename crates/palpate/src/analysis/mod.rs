@@ -7,6 +7,7 @@
 //! | `hold.rs` | one hold: signal, fits in both domains, prediction beyond the window |
 //! | `behaviour.rs` | holds that are none: drift, feedback control |
 //! | `rate_bias.rs` | how far noise takes the rate domain from the truth |
+//! | `joint.rs` | one law for several holds against one for each |
 //! | `across.rs` | several holds: common exponent, trend of v, agreement of equilibrium strains |
 //! | `modulus.rs` | the modulus that the relaxed forces imply |
 //! | `overlay.rs` | the same displacement simulated with the fitted numbers |
@@ -16,6 +17,7 @@ mod across;
 mod behaviour;
 mod finding;
 mod hold;
+mod joint;
 mod modulus;
 mod options;
 mod overlay;
@@ -25,6 +27,7 @@ mod rate_bias;
 pub use across::{Across, LevelAgreement, Trend};
 pub use finding::{Finding, Severity};
 pub use hold::{HoldAnalysis, Prediction, Signal};
+pub use joint::{JointAnalysis, JointHolds};
 pub use modulus::ModulusSource;
 pub use options::{AnalysisOptions, Geometry, LayersChoice};
 pub use overlay::Overlay;

@@ -2,6 +2,7 @@
 
 use super::across::{Across, across};
 use super::hold::{HoldAnalysis, analyze_hold};
+use super::joint::changing_rate;
 use super::modulus::{ModulusSource, implied_modulus};
 use super::overlay::{Overlay, overlay};
 use super::{AnalysisOptions, Finding};
@@ -125,7 +126,8 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
         .collect();
     nothing_to_fit(&holds)?;
     findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
-    let across = across(&holds, &options.exponents, 4.0 * segmentation.settings.tolerance);
+    let across = across(&holds, options, 4.0 * segmentation.settings.tolerance);
+    findings.extend(changing_rate(&across.joint));
     let overlay = specimen.and_then(|specimen| {
         let result = overlay(&record, &segmentation, &specimen, &holds, across.common_exponent, options);
         result.map_err(|reason| findings.push(Finding::NoOverlay { reason })).ok()

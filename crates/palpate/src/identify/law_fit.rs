@@ -257,7 +257,7 @@ impl Fitted {
     }
 
     /// Puts exponentials in the order of their times, fastest first.
-    fn arrange(&mut self) {
+    pub(super) fn arrange(&mut self) {
         let model = &self.model;
         let (moving, _) = model.moving();
         if moving.len() < 2 || model.free().len() != moving.len() {
@@ -289,6 +289,16 @@ impl Fitted {
         let units: Vec<f64> = (0..values.len()).map(|i| if i < linear { scale } else { 1.0 }).collect();
         let assessed =
             Assessed::new(solution, &self.amplitudes(), &units, scale, (options.confidence, options.noise), known);
+        let loading = if matches!(law, Law::Latency { .. }) { None } else { options.loading.clone() };
+        LawFit {
+            loading,
+            ..self.report_with(law, assessed, work)
+        }
+    }
+
+    /// The result with these errors.
+    pub(super) fn report_with(&self, law: Law, assessed: Assessed, work: Work) -> LawFit {
+        let (solution, values, scale) = (&self.solution, self.values(), self.scaled.range);
         let estimate = |value: f64, gradient: &[f64], scale: Scale| assessed.estimate(value, gradient, scale);
         let mut numbers = self.direct(&estimate);
         for number in derived(law, self, &values) {
@@ -304,7 +314,7 @@ impl Fitted {
             law,
             response: self.model.form.response,
             curve: self.curve(),
-            loading: if matches!(law, Law::Latency { .. }) { None } else { options.loading.clone() },
+            loading: None,
             numbers,
             parameters: self.names(),
             values,
@@ -319,6 +329,17 @@ impl Fitted {
             termination: solution.termination,
             work,
         }
+    }
+
+    /// s² (JᵀJ)⁻¹ in the caller's units for noise of this variance in the units of the fit; `None` where it is not known.
+    pub(super) fn white_covariance(&self, variance: f64) -> Option<Vec<Vec<f64>>> {
+        let known = matches!(self.solution.termination, Termination::Converged | Termination::AmplitudeAtBound);
+        let inverse = self.solution.inverse_normal.as_deref().filter(|_| known)?;
+        let size = self.solution.linear.len() + self.solution.nonlinear.len();
+        let unit = |i: usize| if i < self.model.linear() { self.scaled.range } else { 1.0 };
+        let entry = |i: usize, j: usize| inverse[i * size + j] * variance * unit(i) * unit(j);
+        let rows: Vec<Vec<f64>> = (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect();
+        rows.iter().flatten().all(|entry| entry.is_finite()).then_some(rows)
     }
 
     /// The amplitude beside each free nonlinear number.

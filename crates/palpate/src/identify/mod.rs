@@ -21,6 +21,7 @@
 //! | `time_domain.rs` | the latency law fitted to a signal | (4), (5) |
 //! | `ramp_fit.rs` | the latency law of several holds that were reached in different times | section IV |
 //! | `rate_domain.rs` | strain rate fitted against strain, as the paper does | (9), (10) |
+//! | `joint/` | several holds at once: one law shared by all, or one each | |
 //! | `spectrum/` | exponentials of all times at once, none of opposite sign | |
 //! | `estimates.rs` | what a fit says | |
 //! | `bootstrap.rs` | intervals from resampled residuals | |
@@ -36,6 +37,7 @@ mod condensed;
 mod derived;
 mod estimates;
 mod foretell;
+mod joint;
 mod law_fit;
 mod law_options;
 mod linear_algebra;
@@ -59,6 +61,10 @@ pub use crate::laws::ExponentChoice;
 pub use bootstrap::{Bootstrap, BootstrapOptions, bootstrap};
 pub use estimates::{Domain, Estimate, LatencyFit, PARAMETERS};
 pub use foretell::{Forecast, foretell};
+pub use joint::{
+    HoldWeights, JointComparison, JointFit, JointOptions, SharedTrend, TrendPoint, TrendVerdict, compare_joint,
+    fit_joint,
+};
 pub use law_fit::{LawFit, LawNumber, NumberUnit, fit_law};
 pub use law_options::{ConstantChoice, LawOptions, Loss, NoiseChoice, SampleChoice};
 pub use noise::NoiseModel;
@@ -230,6 +236,32 @@ pub enum FitError {
         setting: &'static str,
         /// What was given.
         found: f64,
+    },
+    /// Something is wrong with one of several holds.
+    #[error("hold {hold}: {source}")]
+    Hold {
+        /// Number of the hold, from 1.
+        hold: usize,
+        /// What.
+        source: Box<FitError>,
+    },
+    /// A joint fit of no hold, or of one.
+    #[error("a joint fit needs two holds or more, found {found}")]
+    TooFewHolds {
+        /// Holds found.
+        found: usize,
+    },
+    /// A joint fit of holds that share no number.
+    #[error("the law {law} has no number that holds could share")]
+    NothingShared {
+        /// The law.
+        law: Law,
+    },
+    /// Samples with deviations beside samples without cannot be weighed against each other.
+    #[error("all holds of a joint fit must have standard deviations, or none; hold {hold} has none")]
+    DeviationsOfSome {
+        /// Number of the first hold without, from 1.
+        hold: usize,
     },
     /// No number of the law brings the rates nearer than zero does: they point away from every equilibrium.
     #[error("the strain rates do not point towards any equilibrium strain")]

@@ -251,7 +251,7 @@ fn deepest_along(valleys: &[Valley]) -> Vec<Valley> {
 }
 
 /// The next combination of rising indices below `count`; `false` after the last.
-fn advance(chosen: &mut [usize], count: usize) -> bool {
+pub(super) fn advance(chosen: &mut [usize], count: usize) -> bool {
     let terms = chosen.len();
     for place in (0..terms).rev() {
         if chosen[place] + (terms - place) < count {
@@ -275,7 +275,7 @@ fn rooted(column: &mut [f64], nodes: &Condensed) {
 const STEP: f64 = 1.0;
 
 /// Rates of a coarse search, equally spaced in ln λ.
-fn rates((low, high): (f64, f64), fixed: Option<f64>) -> Vec<f64> {
+pub(super) fn rates((low, high): (f64, f64), fixed: Option<f64>) -> Vec<f64> {
     if let Some(rate) = fixed {
         return vec![rate];
     }
@@ -295,7 +295,7 @@ fn rates_with_end((low, high): (f64, f64), end: f64, nodes: &Condensed) -> Vec<f
 }
 
 /// Values of a pure number that a coarse search tries.
-fn coarse(kind: NumberKind, (low, high): (f64, f64), fixed: Option<f64>) -> Vec<f64> {
+pub(super) fn coarse(kind: NumberKind, (low, high): (f64, f64), fixed: Option<f64>) -> Vec<f64> {
     match (fixed, kind) {
         (Some(value), _) => vec![value],
         (None, NumberKind::Pure { coarse, .. }) => {

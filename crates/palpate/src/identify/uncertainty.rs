@@ -142,6 +142,34 @@ impl Assessed {
         }
     }
 
+    /// From a covariance for white noise of this `deviation`, intervals widened by a factor for samples that count as fewer.
+    pub(super) fn widened(
+        white: Option<Vec<Vec<f64>>>,
+        deviation: f64,
+        (confidence, freedom): (f64, f64),
+        widening: f64,
+        correlation: f64,
+    ) -> Self {
+        let wide = |rows: &Vec<Vec<f64>>| {
+            rows.iter().map(|row| row.iter().map(|entry| entry * widening * widening).collect()).collect()
+        };
+        let uncertainty = white.as_ref().map(|white| Uncertainty {
+            confidence,
+            freedom,
+            deviation,
+            deviation_freedom: freedom,
+            covariance: wide(white),
+            beside: Vec::new(),
+        });
+        let noise = if correlation > 0.0 { NoiseModel::Autoregressive { correlation } } else { NoiseModel::White };
+        Self {
+            white,
+            uncertainty,
+            noise,
+            correlation,
+        }
+    }
+
     /// An estimate of `value` with this gradient (of ln value on the logarithmic scale).
     pub(super) fn estimate(&self, value: f64, gradient: &[f64], scale: Scale) -> Estimate {
         match (&self.uncertainty, &self.white) {

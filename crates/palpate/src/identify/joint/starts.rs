@@ -1,0 +1,188 @@
+//! Where a joint search starts: at the separate fits, at their mean, and at the valleys of a coarse grid over all holds.
+
+use super::super::condensed::Condensed;
+use super::super::model::Model;
+use super::super::search::condense;
+use super::super::separable::{Ending as Local, Work, refine as refine_one};
+use super::super::starts::{advance, coarse, rates, starts as valleys};
+use super::arrow::{Ending, Point, refine};
+use super::hold::{Hold, View};
+
+/// A point to start from.
+#[derive(Clone)]
+pub(super) struct Start {
+    pub(super) shared: Vec<f64>,
+    pub(super) own: Vec<Vec<f64>>,
+}
+
+/// Points of the grid that are refined.
+const KEPT: usize = 6;
+
+/// Combinations of rates that are tried, at most.
+const COMBINATIONS: usize = 2000;
+
+/// Points that are refined on all samples, at most.
+const FINALISTS: usize = 3;
+
+/// The best points on the nodes that stand for the samples, deepest first.
+pub(super) fn finalists(
+    holds: &[Hold],
+    bounds: &[(f64, f64)],
+    separate: Vec<Start>,
+    most_iterations: usize,
+    work: &mut Work,
+) -> Vec<Start> {
+    let nodes: Vec<Condensed> = holds.iter().map(|hold| condense(&hold.scaled)).collect();
+    let views: Vec<View<'_>> = holds.iter().zip(&nodes).map(|(hold, nodes)| view(hold, nodes)).collect();
+    let inside: f64 = holds.iter().zip(&nodes).map(|(hold, nodes)| hold.weight.powi(2) * nodes.inside).sum();
+    let mut aside = Work::default();
+    let mut starts = with_mean(separate);
+    starts.extend(if holds[0].coupling.is_some() {
+        by_exponent(holds, &nodes, work)
+    } else {
+        grid(holds, &nodes, bounds, work)
+    });
+    let ending = Ending {
+        gain: 1e-10,
+        most_iterations,
+    };
+    let mut found: Vec<(f64, Start)> = Vec::new();
+    for start in starts {
+        let inner: Vec<f64> =
+            start.shared.iter().zip(bounds).map(|(value, (low, high))| value.clamp(*low, *high)).collect();
+        let point = Point::new(&views, &inner, &start.own, &mut aside);
+        let (point, _) = refine(&views, bounds, point, ending, &mut aside);
+        if point.square.is_finite() {
+            let start = Start {
+                shared: point.shared.clone(),
+                own: point.own(),
+            };
+            found.push((point.square + inside, start));
+        }
+    }
+    work.starts += aside.starts;
+    work.condensed += aside.evaluations;
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let limit = found.first().map_or(0.0, |(least, _)| least * 1.001 + f64::MIN_POSITIVE);
+    let alike = found.into_iter().take_while(|(square, _)| *square <= limit).map(|(_, start)| start);
+    distinct(alike, 1e-3, FINALISTS)
+}
+
+fn view<'a>(hold: &'a Hold, nodes: &'a Condensed) -> View<'a> {
+    View {
+        hold,
+        times: &nodes.times,
+        target: nodes.target(),
+    }
+}
+
+/// The first few starts that differ from each other by more than `apart` in some shared number.
+fn distinct(starts: impl Iterator<Item = Start>, apart: f64, most: usize) -> Vec<Start> {
+    let mut kept: Vec<Start> = Vec::new();
+    for start in starts {
+        let same = |other: &Start| other.shared.iter().zip(&start.shared).all(|(a, b)| (a - b).abs() < apart);
+        if kept.len() < most && !kept.iter().any(same) {
+            kept.push(start);
+        }
+    }
+    kept
+}
+
+/// The separate fits and their mean; fits that agree count once.
+fn with_mean(separate: Vec<Start>) -> Vec<Start> {
+    let count = separate.len() as f64;
+    let mean = |p: usize| separate.iter().map(|start| start.shared[p]).sum::<f64>() / count;
+    let middle = separate.first().map(|first| Start {
+        shared: (0..first.shared.len()).map(mean).collect(),
+        own: first.own.clone(),
+    });
+    distinct(middle.into_iter().chain(separate), 0.3, usize::MAX)
+}
+
+/// For each exponent of a coarse list: every hold fitted alone at it, and the mean of what they have in common.
+fn by_exponent(holds: &[Hold], nodes: &[Condensed], work: &mut Work) -> Vec<Start> {
+    let number = holds[0].model.numbers.get(1);
+    let exponents = number.map_or_else(Vec::new, |number| coarse(number.kind, number.bounds, number.fixed));
+    let alone = |exponent: f64, work: &mut Work| -> Option<Start> {
+        let mut start = Start {
+            shared: vec![0.0, exponent],
+            own: Vec::new(),
+        };
+        for (hold, nodes) in holds.iter().zip(nodes) {
+            let mut numbers = hold.model.numbers.clone();
+            numbers[1].fixed = Some(exponent);
+            let model = Model::new(hold.model.form.clone(), hold.model.constant, numbers, Vec::new());
+            let valley = valleys(&model, nodes, 1, work).into_iter().next()?;
+            let ending = Local {
+                gain: 1e-5,
+                most_iterations: 50,
+            };
+            let mut aside = Work::default();
+            let fit = refine_one(&model.at(&nodes.times), nodes.target(), &valley, ending, &mut aside);
+            work.condensed += aside.evaluations;
+            let own = fit.linear().to_vec();
+            start.shared[0] += hold.shared(&[fit.theta()[0], exponent], &own)[0] / holds.len() as f64;
+            start.own.push(own);
+        }
+        start.shared[0].is_finite().then_some(start)
+    };
+    exponents.into_iter().filter_map(|exponent| alone(exponent, work)).collect()
+}
+
+/// The best points of a grid over the shared numbers, the residuals of all holds summed.
+fn grid(holds: &[Hold], nodes: &[Condensed], bounds: &[(f64, f64)], work: &mut Work) -> Vec<Start> {
+    let nodes: Vec<Condensed> = nodes.iter().map(Condensed::coarser).collect();
+    let views: Vec<View<'_>> = holds.iter().zip(&nodes).map(|(hold, nodes)| view(hold, nodes)).collect();
+    let own: Vec<Vec<f64>> = holds.iter().map(|hold| vec![0.0; hold.own()]).collect();
+    let mut aside = Work::default();
+    let mut found: Vec<(f64, Start)> = Vec::new();
+    for shared in places(&holds[0].model, bounds) {
+        work.grid_points += 1;
+        let point = Point::new(&views, &shared, &own, &mut aside);
+        if point.square.is_finite() {
+            let own = own.clone();
+            found.push((point.square, Start { shared, own }));
+        }
+    }
+    work.condensed += aside.evaluations;
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    distinct(found.into_iter().map(|(_, start)| start), 1.6, KEPT)
+}
+
+/// The points of the grid: a rate and a pure number, or rates in all combinations, fastest first.
+fn places(model: &Model, bounds: &[(f64, f64)]) -> Vec<Vec<f64>> {
+    let (moving, _) = model.moving();
+    if moving.len() > 1 {
+        let mut grid = rates(bounds[0], None);
+        let most = (moving.len()..).take_while(|m| combinations(*m, moving.len()) <= COMBINATIONS).last();
+        let count = most.unwrap_or(moving.len()).min(grid.len());
+        let (low, high) = bounds[0];
+        if count < grid.len() {
+            grid = (0..count).map(|i| low + (high - low) * i as f64 / (count - 1) as f64).collect();
+        }
+        let mut chosen: Vec<usize> = (0..moving.len()).collect();
+        let mut all = Vec::new();
+        loop {
+            all.push(chosen.iter().rev().map(|&i| grid[i]).collect());
+            if !advance(&mut chosen, grid.len()) {
+                return all;
+            }
+        }
+    }
+    let axis = |(number, bounds): (&super::super::model::Number, &(f64, f64))| match number.kind {
+        crate::laws::NumberKind::Pure { .. } => coarse(number.kind, *bounds, None),
+        _ => rates(*bounds, None),
+    };
+    let axes: Vec<Vec<f64>> = model.free().zip(bounds).map(axis).collect();
+    axes.iter().fold(vec![Vec::new()], |points, axis| {
+        points
+            .iter()
+            .flat_map(|point| axis.iter().map(|value| [point.as_slice(), &[*value]].concat()))
+            .collect()
+    })
+}
+
+/// Ways to choose `terms` of `count`.
+fn combinations(count: usize, terms: usize) -> usize {
+    (0..terms).fold(1, |ways, i| ways * (count - i) / (i + 1))
+}
