@@ -116,7 +116,26 @@ impl Noise {
     }
 
     /// The noise that left these residuals beside a fit with this Jacobian, whose columns may have any size.
+    ///
+    /// Of a long series four stretches, evenly spread, say how it correlates; its size comes from all samples.
     pub(super) fn of(jacobian: &[&[f64]], residuals: &[f64]) -> Self {
+        if residuals.len() <= STRETCHES * STRETCH {
+            return Self::of_all(jacobian, residuals);
+        }
+        let few: Vec<Vec<f64>> = jacobian.iter().copied().chain([residuals]).map(stretches).collect();
+        let columns: Vec<&[f64]> = few[..jacobian.len()].iter().map(Vec::as_slice).collect();
+        let left = &few[jacobian.len()];
+        let mut noise = Self::of_all(&columns, left);
+        let whole = dot(residuals, residuals) / (residuals.len() - jacobian.len()) as f64;
+        let scale = whole / (dot(left, left) / (left.len() - jacobian.len()) as f64);
+        if scale.is_finite() {
+            noise.variance *= scale;
+            noise.beside.iter_mut().for_each(|(_, variance)| *variance *= scale);
+        }
+        noise
+    }
+
+    fn of_all(jacobian: &[&[f64]], residuals: &[f64]) -> Self {
         let white = Self::white(residuals, (residuals.len() - jacobian.len()) as f64);
         let signs = Signs::of(residuals, jacobian.len());
         if signs.white() {
@@ -140,6 +159,16 @@ impl Noise {
         }
         best.1
     }
+}
+
+/// Stretches of a long series, and samples of each.
+const STRETCHES: usize = 4;
+const STRETCH: usize = 1024;
+
+/// Stretches of a series from its start to its end, side by side.
+fn stretches(series: &[f64]) -> Vec<f64> {
+    let apart = (series.len() - STRETCH) / (STRETCHES - 1);
+    (0..STRETCHES).flat_map(|i| &series[i * apart..i * apart + STRETCH]).copied().collect()
 }
 
 /// What a glance at the residuals says, so that white ones cost next to nothing.
