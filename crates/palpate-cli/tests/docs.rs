@@ -213,7 +213,7 @@ const MAY_USE: [(&str, &[&str]); 14] = [
     ("contact", &["latency", "ode", "units"]),
     ("record", &["statistics"]),
     ("strain", &["contact"]),
-    ("identify", &["latency", "laws", "statistics", "vector"]),
+    ("identify", &["contact", "latency", "laws", "statistics", "vector"]),
     ("segment", &["contact", "identify", "record", "statistics"]),
     ("simulate", &["contact", "latency", "ode"]),
     ("test_problems", &["contact", "latency", "simulate"]),

@@ -44,7 +44,7 @@ fn print_law(law: &str, (name, loadings): &Way, records: &[Record]) -> Result<()
         for number in &fit.numbers {
             print!("  {} {:.3}", number.name, number.estimate.value);
         }
-        print!("  off");
+        print!("  0.01 s after a step {:.2}  off", fit.curve.at(0.01));
         for (other, loading) in records.iter().zip(loadings) {
             let predicted = match loading {
                 None => fit.curve.values(&other.hold[0]),

@@ -1,5 +1,7 @@
 //! Holds after a ramp: the law of the step found again, where a fit that takes the ramp for a step finds another.
 
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
 use palpate::identify::{LawFit, LawOptions, Samples, fit_law};
 use palpate::laws::{ExponentChoice, Law, LawCurve, Loading, LoadingError, Response, Shape, Term};
 use palpate::test_problems::Noise;

@@ -1,5 +1,7 @@
 //! The latency law found from holds that were reached in different times.
 
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
 use palpate::identify::{
     EquilibriumChoice, ExponentChoice, FitError, FitOptions, RampFit, RampHold, Samples, Termination, fit_ramps,
 };

@@ -1,6 +1,8 @@
 //! Real holds after ramps of 0.1, 1, 10 and 100 s to one length (skinned cardiac muscle): what taking the loading into
 //! account is worth. Skipped, aloud, where the records are not there.
 
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
 #[path = "common/titin.rs"]
 mod titin;
 
@@ -27,21 +29,21 @@ fn ratio(values: impl Iterator<Item = f64>) -> f64 {
     high / low
 }
 
-/// A power law fitted to each ramp as if it were a step gives amplitudes from 8.0 to 17.3; with the loading known, from
-/// 19.3 to 27.3 after all four, to 20.6 but for the fastest, with exponents that agree.
+/// What a power law fitted to each hold says of the force 0.01 s after a step: 14.1, 11.7, 9.6 and 8.0 where each ramp counts as
+/// a step, 14.6, 13.4, 14.2 and 14.9 where it is known; and the exponents agree.
 #[test]
-fn amplitudes_of_a_power_law_agree_where_the_loading_is_known() {
+fn a_power_law_says_the_same_of_a_step_after_every_known_ramp() {
     let Some(records) = records() else { return };
     let steps = fits(&records, Law::Power, |_| None);
     let known = fits(&records, Law::Power, |record| Some(record.by_elastic_force(&records[3])));
-    let amplitudes = |fits: &[LawFit]| ratio(fits.iter().map(|fit| fit.value("amplitude").unwrap()));
+    let soon = |fits: &[LawFit]| ratio(fits.iter().map(|fit| fit.curve.at(0.01)));
     let exponents = |fits: &[LawFit]| ratio(fits.iter().map(|fit| fit.value("exponent").unwrap()));
-    assert!(amplitudes(&steps) > 2.1, "{}", amplitudes(&steps));
-    assert!(amplitudes(&known) < 1.5 && amplitudes(&known[1..]) < 1.1, "{}", amplitudes(&known));
+    assert!(soon(&steps) > 1.7 && soon(&known) < 1.15, "{} {}", soon(&steps), soon(&known));
     assert!(exponents(&steps) > 1.3 && exponents(&known) < 1.1, "{} {}", exponents(&steps), exponents(&known));
 }
 
-/// A law fitted to one ramp predicts the hold after another more than twice as well on the whole, for every law.
+/// A law fitted to one ramp predicts the holds after the others better: by a factor of 1.2 for one exponential, which misses the
+/// shape, 1.7 for two, and near 3 for laws with wide spectra.
 #[test]
 fn one_ramp_predicts_another_where_the_loading_is_known() {
     let Some(records) = records() else { return };
@@ -49,9 +51,9 @@ fn one_ramp_predicts_another_where_the_loading_is_known() {
     for (name, least) in [
         ("standard-linear-solid", 1.2),
         ("prony:2", 1.6),
-        ("stretched", 1.6),
-        ("fractional-zener", 1.6),
-        ("power", 1.6),
+        ("stretched", 2.5),
+        ("fractional-zener", 2.5),
+        ("power", 2.5),
     ] {
         let law: Law = name.parse().unwrap();
         let (steps, known) =
@@ -74,6 +76,9 @@ fn one_ramp_predicts_another_where_the_loading_is_known() {
 fn one_latency_law_holds_for_all_ramps() {
     let Some(records) = records() else { return };
     let loadings: Vec<Loading> = records.iter().map(Record::by_length).collect();
+    for (record, loading) in records.iter().zip(&loadings) {
+        assert!((loading.duration() - record.ramp).abs() < 1e-9);
+    }
     let holds: Vec<RampHold<'_>> = records
         .iter()
         .zip(&loadings)
