@@ -236,7 +236,8 @@ mod tests {
         let ripple = |t: f64| 2e-4 * (0.9 * t).sin();
         let values: Vec<f64> = times.iter().map(|t| (t / 5000.0).powi(2) + ripple(*t)).collect();
         let loading = Loading::new(&times, &values).unwrap();
-        for (most, tolerance) in [(5000, 1.1e-5), (100, 4.1e-4), (1, 0.5)] {
+        // Chords between two ripples are off by both, 4·10⁻⁴, and the parabola: 64·10⁻⁵ is enough for a hundred.
+        for (most, tolerance) in [(5000, 1.1e-5), (100, 6.5e-4), (1, 0.26)] {
             let thin = loading.thinned(most);
             assert!(thin.pieces().count() <= most);
             let off = loading.times.iter().zip(&loading.values).map(|(t, value)| (thin.at(*t) - value).abs());
