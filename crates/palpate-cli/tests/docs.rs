@@ -214,7 +214,7 @@ const MAY_USE: [(&str, &[&str]); 16] = [
     ("contact", &["latency", "ode", "units"]),
     ("record", &["statistics"]),
     ("strain", &["contact"]),
-    ("identify", &["contact", "latency", "laws", "statistics", "vector"]),
+    ("identify", &["contact", "latency", "laws", "random", "statistics", "vector"]),
     ("choose", &["identify", "laws", "statistics"]),
     ("segment", &["contact", "identify", "record", "statistics"]),
     ("simulate", &["contact", "latency", "ode"]),

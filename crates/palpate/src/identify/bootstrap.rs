@@ -21,7 +21,7 @@ use super::search::condense;
 use super::separable::{Ending, Work, refine};
 use super::{Estimate, FitError, LawOptions, NoiseModel};
 use crate::laws::Law;
-use crate::test_problems::Noise as Random;
+use crate::random::Noise as Random;
 
 /// What may be asked of [`bootstrap`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
