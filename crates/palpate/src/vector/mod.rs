@@ -104,11 +104,6 @@ pub(crate) mod tests {
         let best = Level::new();
         #[cfg(target_arch = "x86_64")]
         {
-            pub(crate) use shapes::{
-                exponential_many, exponential_values, logarithm_many, logarithm_values, stretched_many,
-                stretched_values,
-            };
-
             use fearless_simd::Simd;
             let tokens = [
                 best.as_sse2().map(Simd::level),

@@ -127,6 +127,7 @@ struct Found {
 
 /// Where intervals come from.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[allow(dead_code, reason = "the quick test and the study use different ones")]
 pub(crate) enum Method {
     /// Those of the fit itself.
     Curvature,
