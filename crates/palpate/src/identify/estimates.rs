@@ -124,13 +124,12 @@ impl Uncertainty {
     pub(super) fn new(solution: &Solution, confidence: f64) -> Self {
         let samples = solution.residuals.len();
         let parameters = solution.linear.len() + solution.nonlinear.len();
-        let freedom = (samples - parameters) as f64;
         let correlation = lag_one_correlation(&solution.residuals);
         // Neighbours that repeat each other carry less: the interval is as wide as the independent samples make it.
         let effective = effective_count(samples, correlation);
         let widening = (samples as f64 / effective).sqrt();
         Self {
-            variance: solution.residual_square / freedom,
+            variance: solution.variance,
             factor: coverage_factor(confidence, (effective - parameters as f64).max(1.0)) * widening,
             correlation,
         }

@@ -62,9 +62,9 @@ pub struct LawFit {
     pub values: Vec<f64>,
     /// Their covariance s² (JᵀJ)⁻¹ with s² = RSS/(N − p), for white noise; `None` where the data leave a number open.
     pub covariance: Option<Vec<Vec<f64>>>,
-    /// Sum of squared residuals, weighted if samples have deviations.
+    /// χ² = Σ (r/σ)² over the samples fitted, σ = 1 for samples without deviations; under a robust loss too.
     pub residual_square: f64,
-    /// Root mean square residual √(RSS/N).
+    /// Root mean square residual √(Σ r²/N) in the unit of the signal, all samples alike.
     pub rmse: f64,
     /// Correlation of neighbouring residuals.
     pub residual_correlation: f64,
@@ -285,8 +285,12 @@ impl Fitted {
             });
         }
         let scale = self.scaled.range;
-        let residual_square = solution.residual_square * scale * scale;
+        let residual_square = (solution.residual_square.sqrt() * scale * self.scaled.precision).powi(2);
         let samples = self.scaled.times.len();
+        let mean_square = match &self.scaled.roots {
+            None => solution.residual_square,
+            Some(roots) => solution.residuals.iter().zip(roots).map(|(r, root)| (r / root).powi(2)).sum(),
+        } / samples as f64;
         LawFit {
             law,
             response: self.model.form.response,
@@ -296,7 +300,7 @@ impl Fitted {
             values,
             covariance,
             residual_square,
-            rmse: (residual_square / samples as f64).sqrt(),
+            rmse: mean_square.sqrt() * scale,
             residual_correlation: uncertainty.correlation,
             samples,
             duration: self.scaled.duration,

@@ -79,6 +79,8 @@ pub(super) struct Solution {
     pub(super) nonlinear: Vec<f64>,
     pub(super) residuals: Vec<f64>,
     pub(super) residual_square: f64,
+    /// Variance of the noise of a sample of weight one, s² = RSS/(N − p) in least squares.
+    pub(super) variance: f64,
     /// Columns and derivatives there, times the roots of the weights.
     pub(super) columns: Vec<Vec<f64>>,
     pub(super) derivatives: Vec<Vec<f64>>,
@@ -125,9 +127,8 @@ impl Point {
         }
     }
 
-    /// Solves for the linear numbers at `theta` and forms the residuals.
-    fn evaluate(&mut self, shapes: &impl Shapes, theta: &[f64], target: Target<'_>) {
-        let values = target.values;
+    /// Columns and derivatives at `theta`, times the roots of the weights.
+    fn fill(&mut self, shapes: &impl Shapes, theta: &[f64], target: Target<'_>) {
         self.theta.copy_from_slice(theta);
         shapes.fill(theta, &mut self.columns, &mut self.derivatives);
         if let Some(roots) = target.roots {
@@ -137,6 +138,12 @@ impl Point {
                 }
             }
         }
+    }
+
+    /// Solves for the linear numbers at `theta` and forms the residuals.
+    fn evaluate(&mut self, shapes: &impl Shapes, theta: &[f64], target: Target<'_>) {
+        let values = target.values;
+        self.fill(shapes, theta, target);
         let size = self.columns.len();
         normal_equations(&self.columns, values, &mut self.gram, &mut self.linear);
         let factor = Cholesky::new(&self.gram, size);
@@ -487,6 +494,25 @@ pub(super) fn polished(shapes: &impl Shapes, target: Target<'_>, refined: Refine
     finish(here, shapes, Termination::Converged)
 }
 
+/// A solution found elsewhere, as it stands among these samples: residuals, columns and normal equations anew.
+pub(super) fn standing(
+    shapes: &impl Shapes,
+    target: Target<'_>,
+    theta: &[f64],
+    linear: &[f64],
+    termination: Termination,
+) -> Solution {
+    let mut here = Point::new(shapes, theta.len(), target.values.len());
+    here.fill(shapes, theta, target);
+    normal_equations(&here.columns, target.values, &mut here.gram, &mut here.linear);
+    here.linear.copy_from_slice(linear);
+    for ((held, value), (low, high)) in here.held.iter_mut().zip(linear).zip(shapes.linear_bounds()) {
+        *held = value <= low || value >= high;
+    }
+    here.form_residuals(target.values);
+    finish(here, shapes, termination)
+}
+
 /// Largest change of one nonlinear number.
 fn distance(here: &[f64], next: &[f64]) -> f64 {
     here.iter().zip(next).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
@@ -601,6 +627,7 @@ fn finish(here: Point, shapes: &impl Shapes, mut termination: Termination) -> So
         linear: here.linear,
         nonlinear: here.theta,
         residual_square: here.square,
+        variance: here.square / (here.residuals.len() as f64 - size as f64),
         residuals: here.residuals,
         columns: here.columns,
         derivatives: here.derivatives,
