@@ -110,6 +110,8 @@ pub(crate) fn termination(termination: Termination) -> &'static str {
         Termination::RateAtBound => "rate_at_bound",
         Termination::ExponentAtBound => "exponent_at_bound",
         Termination::EquilibriumAtBound => "equilibrium_at_bound",
+        Termination::AmplitudeAtBound => "amplitude_at_bound",
+        Termination::TermsMerged => "terms_merged",
         Termination::Singular => "singular",
         Termination::IterationLimit => "iteration_limit",
     }

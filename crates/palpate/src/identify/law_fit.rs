@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::build::build;
 use super::derived::derived;
 use super::estimates::{Estimate, Scale, Uncertainty};
+use super::ghosts::{Ghost, ghosts};
 use super::model::Model;
 use super::samples::{Samples, Scaled};
 use super::search::search;
@@ -74,6 +75,8 @@ pub struct LawFit {
     pub duration: f64,
     /// Why it ended.
     pub termination: Termination,
+    /// Terms that are none: merged or vanishing ones.
+    pub ghosts: Vec<Ghost>,
     /// What it cost.
     pub work: Work,
 }
@@ -305,6 +308,7 @@ impl Fitted {
             samples,
             duration: self.scaled.duration,
             termination: solution.termination,
+            ghosts: ghosts(&self.model, solution),
             work,
         }
     }

@@ -15,6 +15,8 @@
 //! | `condensed.rs` | a hold condensed to a few dozen nodes | |
 //! | `starts.rs` | the exhaustive coarse search | |
 //! | `search.rs` | from a model to the global optimum | |
+//! | `thorough.rs`, `orthogonal.rs` | the search for hard cases: bounds, merged terms | |
+//! | `ghosts.rs` | terms that a fit lists and the data do not have | |
 //! | `robust.rs` | outliers made to count less | |
 //! | `law_fit.rs`, `derived.rs` | any law fitted, its numbers and those that follow from them | |
 //! | `time_domain.rs` | the latency law fitted to a signal | (4), (5) |
@@ -27,10 +29,12 @@ mod build;
 mod condensed;
 mod derived;
 mod estimates;
+mod ghosts;
 mod law_fit;
 mod law_options;
 mod linear_algebra;
 mod model;
+mod orthogonal;
 mod rate_domain;
 mod robust;
 mod samples;
@@ -38,10 +42,12 @@ mod search;
 mod selection;
 mod separable;
 mod starts;
+mod thorough;
 mod time_domain;
 
 pub use crate::laws::ExponentChoice;
 pub use estimates::{Domain, Estimate, LatencyFit, PARAMETERS};
+pub use ghosts::Ghost;
 pub use law_fit::{LawFit, LawNumber, NumberUnit, fit_law};
 pub use law_options::{ConstantChoice, LawOptions, Loss, SampleChoice};
 pub use rate_domain::fit_rates;

@@ -43,6 +43,8 @@ pub enum Termination {
     EquilibriumAtBound,
     /// An amplitude or the constant lies at a bound that was asked for; the others are the best beside it.
     AmplitudeAtBound,
+    /// Two terms of a series came together: their times cannot be told apart, so fewer terms say as much.
+    TermsMerged,
     /// Two numbers cannot be told apart by these data.
     Singular,
     /// The allowed number of steps was used up.
@@ -514,7 +516,7 @@ pub(super) fn standing(
 }
 
 /// Largest change of one nonlinear number.
-fn distance(here: &[f64], next: &[f64]) -> f64 {
+pub(super) fn distance(here: &[f64], next: &[f64]) -> f64 {
     here.iter().zip(next).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
@@ -555,7 +557,13 @@ fn projected(here: &Point, shapes: &impl Shapes) -> Option<(Vec<f64>, Vec<f64>)>
 }
 
 /// θ after a damped step, clipped to the bounds; a number that sits at a bound and is pushed outwards stays out of the step.
-fn stepped(theta: &[f64], hessian: &[f64], gradient: &[f64], damping: f64, shapes: &impl Shapes) -> Vec<f64> {
+pub(super) fn stepped(
+    theta: &[f64],
+    hessian: &[f64],
+    gradient: &[f64],
+    damping: f64,
+    shapes: &impl Shapes,
+) -> Vec<f64> {
     let p = theta.len();
     let pinned = |i: usize| {
         let (low, high) = shapes.bounds(i);
