@@ -22,6 +22,7 @@
 //! | `time_domain.rs` | the latency law fitted to a signal | (4), (5) |
 //! | `rate_domain.rs` | strain rate fitted against strain, as the paper does | (9), (10) |
 //! | `estimates.rs` | estimates, standard errors, intervals | |
+//! | `prony_terms.rs` | how many exponentials a hold has | |
 //! | `selection.rs` | the lowest order that fits best, with its evidence | |
 
 mod bounded;
@@ -35,6 +36,7 @@ mod law_options;
 mod linear_algebra;
 mod model;
 mod orthogonal;
+mod prony_terms;
 mod rate_domain;
 mod robust;
 mod samples;
@@ -50,6 +52,7 @@ pub use estimates::{Domain, Estimate, LatencyFit, PARAMETERS};
 pub use ghosts::Ghost;
 pub use law_fit::{LawFit, LawNumber, NumberUnit, fit_law};
 pub use law_options::{ConstantChoice, LawOptions, Loss, SampleChoice};
+pub use prony_terms::fit_prony;
 pub use rate_domain::fit_rates;
 pub use samples::Samples;
 pub use selection::{Candidate, OrderSelection, select_order};

@@ -618,7 +618,13 @@ fn finish(here: Point, shapes: &impl Shapes, mut termination: Termination) -> So
         }
         inverse
     });
+    let variance = here.square / (here.residuals.len() as f64 - size as f64);
     if termination == Termination::Converged {
+        // A number whose error exceeds all the room it has is not felt by the data.
+        let is_felt = inverse_normal.as_ref().is_some_and(|inverse| {
+            let error = |i: usize| (inverse[(linear + i) * (size + 1)] * variance).sqrt();
+            (0..here.theta.len()).all(|i| error(i) <= shapes.bounds(i).1 - shapes.bounds(i).0)
+        });
         let at_bound = |(i, value): (usize, &f64)| {
             let (low, high) = shapes.bounds(i);
             let near = 1e-9 * (high - low);
@@ -626,7 +632,7 @@ fn finish(here: Point, shapes: &impl Shapes, mut termination: Termination) -> So
         };
         match here.theta.iter().enumerate().position(at_bound) {
             Some(index) => termination = shapes.at_bound(index),
-            None if inverse_normal.is_none() || here.singular => termination = Termination::Singular,
+            None if here.singular || !is_felt => termination = Termination::Singular,
             None if here.held.contains(&true) => termination = Termination::AmplitudeAtBound,
             None => {}
         }
@@ -635,7 +641,7 @@ fn finish(here: Point, shapes: &impl Shapes, mut termination: Termination) -> So
         linear: here.linear,
         nonlinear: here.theta,
         residual_square: here.square,
-        variance: here.square / (here.residuals.len() as f64 - size as f64),
+        variance,
         residuals: here.residuals,
         columns: here.columns,
         derivatives: here.derivatives,
