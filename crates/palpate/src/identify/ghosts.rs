@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use super::model::Model;
 use super::separable::Solution;
-use crate::laws::Shape;
 
 /// A term of a series of exponentials that is none of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -28,7 +28,8 @@ pub(super) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
     }
     let mut solution = polished(&shapes, scaled.target(), best?, work);
     mark_merged(model, &mut solution);
-    if solution.termination != Termination::Converged && model.free().len() > 0 {
+    let doubtful = solution.termination != Termination::Converged || !ghosts(model, &solution).is_empty();
+    if doubtful && model.free().len() > 0 {
         solution = thorough(model, scaled, &nodes, solution, most_iterations, work);
         mark_merged(model, &mut solution);
     }
