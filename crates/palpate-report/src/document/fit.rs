@@ -111,6 +111,7 @@ pub(crate) fn termination(termination: Termination) -> &'static str {
         Termination::ExponentAtBound => "exponent_at_bound",
         Termination::EquilibriumAtBound => "equilibrium_at_bound",
         Termination::AmplitudeAtBound => "amplitude_at_bound",
+        Termination::TermsMerged => "terms_merged",
         Termination::Singular => "singular",
         Termination::IterationLimit => "iteration_limit",
     }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::build::build;
 use super::derived::derived;
 use super::estimates::Estimate;
+use super::ghosts::{Ghost, ghosts};
 use super::model::Model;
 use super::prediction::searched_name;
 use super::samples::{Samples, Scaled};
@@ -67,9 +68,9 @@ pub struct LawFit {
     pub values: Vec<f64>,
     /// Their covariance s² (JᵀJ)⁻¹ with s² = RSS/(N − p), for white noise; `None` where the data leave a number open.
     pub covariance: Option<Vec<Vec<f64>>>,
-    /// Sum of squared residuals, weighted if samples have deviations.
+    /// χ² = Σ (r/σ)² over the samples fitted, σ = 1 for samples without deviations; under a robust loss too.
     pub residual_square: f64,
-    /// Root mean square residual √(RSS/N).
+    /// Root mean square residual √(Σ r²/N) in the unit of the signal, all samples alike.
     pub rmse: f64,
     /// Correlation of neighbouring residuals.
     pub residual_correlation: f64,
@@ -83,6 +84,8 @@ pub struct LawFit {
     pub duration: f64,
     /// Why it ended.
     pub termination: Termination,
+    /// Terms that are none: merged or vanishing ones.
+    pub ghosts: Vec<Ghost>,
     /// What it cost.
     pub work: Work,
 }
@@ -308,8 +311,12 @@ impl Fitted {
                 estimate: estimate(number.value, &number.gradient, number.scale),
             });
         }
-        let residual_square = solution.residual_square * scale * scale;
+        let residual_square = (solution.residual_square.sqrt() * scale * self.scaled.precision).powi(2);
         let samples = self.scaled.times.len();
+        let mean_square = match &self.scaled.roots {
+            None => solution.residual_square,
+            Some(roots) => solution.residuals.iter().zip(roots).map(|(r, root)| (r / root).powi(2)).sum(),
+        } / samples as f64;
         LawFit {
             law,
             response: self.model.form.response,
@@ -320,13 +327,14 @@ impl Fitted {
             values,
             covariance: assessed.white,
             residual_square,
-            rmse: (residual_square / samples as f64).sqrt(),
+            rmse: mean_square.sqrt() * scale,
             residual_correlation: assessed.correlation,
             noise: assessed.noise,
             uncertainty: assessed.uncertainty,
             samples,
             duration: self.scaled.duration,
             termination: solution.termination,
+            ghosts: ghosts(&self.model, solution),
             work,
         }
     }

@@ -15,6 +15,8 @@
 //! | `condensed.rs` | a hold condensed to a few dozen nodes | |
 //! | `starts.rs` | the exhaustive coarse search | |
 //! | `search.rs` | from a model to the global optimum | |
+//! | `thorough.rs`, `orthogonal.rs` | the search for hard cases: bounds, merged terms | |
+//! | `ghosts.rs` | terms that a fit lists and the data do not have | |
 //! | `robust.rs` | outliers made to count less | |
 //! | `law_fit.rs`, `derived.rs` | any law fitted, its numbers and those that follow from them | |
 //! | `foretell.rs` | a law fitted to the first part of a hold, held against the rest | |
@@ -28,6 +30,7 @@
 //! | `prediction.rs` | the curve at a time, with its interval | |
 //! | `profile.rs` | intervals that may be asymmetric or open | |
 //! | `noise.rs`, `uncertainty.rs` | how residuals correlate, and the errors and intervals that follow | |
+//! | `prony_terms.rs` | how many exponentials a hold has | |
 //! | `selection.rs` | the lowest order that fits best, with its evidence | |
 
 mod bootstrap;
@@ -37,14 +40,17 @@ mod condensed;
 mod derived;
 mod estimates;
 mod foretell;
+mod ghosts;
 mod joint;
 mod law_fit;
 mod law_options;
 mod linear_algebra;
 mod model;
 mod noise;
+mod orthogonal;
 mod prediction;
 mod profile;
+mod prony_terms;
 mod ramp_fit;
 mod rate_domain;
 mod robust;
@@ -54,6 +60,7 @@ mod selection;
 mod separable;
 mod spectrum;
 mod starts;
+mod thorough;
 mod time_domain;
 mod uncertainty;
 
@@ -61,6 +68,7 @@ pub use crate::laws::ExponentChoice;
 pub use bootstrap::{Bootstrap, BootstrapOptions, bootstrap};
 pub use estimates::{Domain, Estimate, LatencyFit, PARAMETERS};
 pub use foretell::{Forecast, foretell};
+pub use ghosts::Ghost;
 pub use joint::{
     HoldWeights, JointComparison, JointFit, JointOptions, SharedTrend, TrendPoint, TrendVerdict, compare_joint,
     fit_joint,
@@ -69,6 +77,7 @@ pub use law_fit::{LawFit, LawNumber, NumberUnit, fit_law};
 pub use law_options::{ConstantChoice, LawOptions, Loss, NoiseChoice, SampleChoice};
 pub use noise::NoiseModel;
 pub use profile::{Interval, profile_interval};
+pub use prony_terms::fit_prony;
 pub use ramp_fit::{EquilibriumChoice, RampFit, RampHold, RampHoldNumbers, fit_ramps};
 pub use rate_domain::fit_rates;
 pub use samples::Samples;

@@ -109,6 +109,22 @@ impl Model {
         Sampled { model: self, times }
     }
 
+    /// The same with only its first shapes, whose linear numbers nothing bounds.
+    pub(super) fn first_shapes(&self, count: usize) -> Self {
+        let form = Form {
+            shapes: self.form.shapes[..count].to_vec(),
+            ..self.form.clone()
+        };
+        let numbers = self.numbers.iter().filter(|number| number.shape < count).cloned().collect();
+        Self::new(form, self.constant, numbers, Vec::new())
+    }
+
+    /// Whether this is a series of exponentials with all their rates free.
+    pub(super) fn is_series(&self) -> bool {
+        let alike = self.form.shapes.iter().all(|shape| *shape == Shape::Exponential);
+        alike && self.form.shapes.len() > 1 && self.free.len() == self.numbers.len()
+    }
+
     pub(super) fn shape(&self, index: usize) -> Shape {
         self.form.shapes[index]
     }

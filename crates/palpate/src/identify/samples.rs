@@ -106,6 +106,8 @@ pub(super) struct Scaled {
     pub(super) values: Vec<f64>,
     /// Square roots of the weights, one at the root mean square; `None` if all are alike.
     pub(super) roots: Option<Vec<f64>>,
+    /// Root mean square of 1/σ: what the roots were divided by; 1 without deviations.
+    pub(super) precision: f64,
     pub(super) duration: f64,
     pub(super) center: f64,
     pub(super) range: f64,
@@ -113,11 +115,13 @@ pub(super) struct Scaled {
 
 impl Scaled {
     /// Scales checked samples; `constant` is the constant of the law if it is given.
-    pub(super) fn new(samples: &Samples<'_>, constant: Option<f64>) -> Result<Self, FitError> {
+    pub(super) fn new<'a>(samples: &Samples<'a>, constant: Option<f64>) -> Result<Self, FitError> {
         let (times, values) = (samples.times, samples.values);
         let start = times[0];
         let duration = times[times.len() - 1] - start;
-        let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), y| (low.min(*y), high.max(*y)));
+        let counts = |i: usize| samples.deviations.is_none_or(|deviations| deviations[i].is_finite());
+        let kept = |column: &'a [f64]| column.iter().enumerate().filter(move |(i, _)| counts(*i)).map(|(_, x)| *x);
+        let (low, high) = kept(values).fold((f64::MAX, f64::MIN), |(low, high), y| (low.min(y), high.max(y)));
         if low == high {
             return Err(FitError::Constant {
                 value: low,
@@ -126,21 +130,28 @@ impl Scaled {
         }
         let center = constant.unwrap_or(low + 0.5 * (high - low));
         let range = if constant.is_some() { (high - center).abs().max((low - center).abs()) } else { high - low };
-        let first = (times[1] - start) / duration;
+        let first = kept(times).map(|t| (t - start) / duration).find(|t| *t > 0.0).unwrap_or(1.0);
         let invertible = |span: f64| span.is_finite() && (1.0 / span).is_finite();
         if !(invertible(range) && invertible(duration) && first > f64::MIN_POSITIVE * 1e6) {
             return Err(FitError::OutOfRange);
         }
         let (per_duration, per_range) = (1.0 / duration, 1.0 / range);
-        let roots = samples.deviations.map(roots_of);
-        let mut scaled: Vec<f64> = values.iter().map(|y| (y - center) * per_range).collect();
+        // A sample that may be off by anything says nothing; only its time counts, if it is the first.
+        let deviations: Option<Vec<f64>> =
+            samples.deviations.map(|deviations| deviations.iter().copied().filter(|d| d.is_finite()).collect());
+        let (roots, precision) = deviations.map_or((None, 1.0), |deviations| {
+            let (roots, precision) = roots_of(&deviations);
+            (Some(roots), precision)
+        });
+        let mut scaled: Vec<f64> = kept(values).map(|y| (y - center) * per_range).collect();
         if let Some(roots) = &roots {
             scaled.iter_mut().zip(roots).for_each(|(y, root)| *y *= root);
         }
         Ok(Self {
-            times: times.iter().map(|t| (t - start) * per_duration).collect(),
+            times: kept(times).map(|t| (t - start) * per_duration).collect(),
             values: scaled,
             roots,
+            precision,
             duration,
             center,
             range,
@@ -157,16 +168,17 @@ impl Scaled {
     /// ln λ, in the units of the fit, from the slowest to the fastest rate that such a hold can show: 10⁻³ per duration to
     /// 10³ per first sample step.
     pub(super) fn log_rates(&self) -> (f64, f64) {
-        (1e-3f64.ln(), (1e3 / self.times[1]).ln())
+        let first = self.times.iter().copied().find(|t| *t > 0.0).unwrap_or(1.0);
+        (1e-3f64.ln(), (1e3 / first).ln())
     }
 }
 
-/// 1/σ over its root mean square, with care for σ near the limits of double precision.
-fn roots_of(deviations: &[f64]) -> Vec<f64> {
+/// 1/σ over its root mean square, and that, with care for σ near the limits of double precision.
+fn roots_of(deviations: &[f64]) -> (Vec<f64>, f64) {
     let least = deviations.iter().copied().fold(f64::INFINITY, f64::min);
     let mut roots: Vec<f64> = deviations.iter().map(|deviation| least / deviation).collect();
     let mean_square = roots.iter().map(|root| root * root).sum::<f64>() / roots.len() as f64;
     let size = mean_square.sqrt();
     roots.iter_mut().for_each(|root| *root /= size);
-    roots
+    (roots, size / least)
 }

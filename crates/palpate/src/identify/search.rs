@@ -1,10 +1,12 @@
 //! From a model and samples to the global optimum.
 
 use super::condensed::Condensed;
+use super::ghosts::{Ghost, ghosts};
 use super::model::Model;
 use super::samples::Scaled;
-use super::separable::{Ending, Refined, Solution, Work, curvature, descend, polished, refine};
-use super::starts::starts;
+use super::separable::{Ending, Refined, Solution, Termination, Work, curvature, descend, polished, refine};
+use super::starts::{ends, starts};
+use super::thorough::thorough;
 
 /// Valleys that are refined on condensed samples.
 const VALLEYS: usize = 6;
@@ -24,7 +26,22 @@ pub(super) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
             best = Some(refined);
         }
     }
-    Some(polished(&shapes, scaled.target(), best?, work))
+    let mut solution = polished(&shapes, scaled.target(), best?, work);
+    mark_merged(model, &mut solution);
+    let doubtful = solution.termination != Termination::Converged || !ghosts(model, &solution).is_empty();
+    if doubtful && model.free().len() > 0 {
+        solution = thorough(model, scaled, &nodes, solution, most_iterations, work);
+        mark_merged(model, &mut solution);
+    }
+    Some(solution)
+}
+
+/// Says so if what ended well, or could not be told apart, are merged terms.
+fn mark_merged(model: &Model, solution: &mut Solution) {
+    let open = matches!(solution.termination, Termination::Converged | Termination::Singular);
+    if open && ghosts(model, solution).iter().any(|ghost| matches!(ghost, Ghost::Merged { .. })) {
+        solution.termination = Termination::TermsMerged;
+    }
 }
 
 /// From the bottom of a valley of the condensed samples to that of all samples: Newton's method where the valley is smooth.
@@ -66,7 +83,11 @@ pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize
         gain: ROUGH,
         most_iterations,
     };
+    let mut kinked = Vec::new();
     for start in starts(model, nodes, VALLEYS, work) {
+        if ends(model, &start) {
+            kinked.push(start.clone());
+        }
         let refined = refine(&shapes, nodes.target(), &start, rough, &mut aside);
         found.push((refined.square() + nodes.inside, refined.theta().to_vec()));
     }
@@ -86,9 +107,27 @@ pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize
             kept.push(theta);
         }
     }
+    // Where the law ends in finite time nodes only tell roughly: such a start goes to all samples as it is.
+    let kinked = kinked.into_iter().filter(|start| {
+        let here = refine(
+            &shapes,
+            nodes.target(),
+            start,
+            Ending {
+                gain: 0.0,
+                most_iterations: 0,
+            },
+            &mut aside,
+        );
+        here.square() + nodes.inside <= limit * (1.0 + KINKED)
+    });
+    kept.extend(kinked);
     work.condensed += aside.evaluations;
     kept
 }
+
+/// Relative difference of residual squares below which a law that ends in finite time may be the best.
+const KINKED: f64 = 1e-2;
 
 /// Relative difference of residual squares below which condensed samples cannot say which valley is deeper.
 const ALIKE: f64 = 1e-3;

@@ -43,6 +43,8 @@ pub enum Termination {
     EquilibriumAtBound,
     /// An amplitude or the constant lies at a bound that was asked for; the others are the best beside it.
     AmplitudeAtBound,
+    /// Two terms of a series came together: their times cannot be told apart, so fewer terms say as much.
+    TermsMerged,
     /// Two numbers cannot be told apart by these data.
     Singular,
     /// The allowed number of steps was used up.
@@ -79,6 +81,8 @@ pub(super) struct Solution {
     pub(super) nonlinear: Vec<f64>,
     pub(super) residuals: Vec<f64>,
     pub(super) residual_square: f64,
+    /// Variance of the noise of a sample of weight one, s² = RSS/(N − p) in least squares.
+    pub(super) variance: f64,
     /// Columns and derivatives there, times the roots of the weights.
     pub(super) columns: Vec<Vec<f64>>,
     pub(super) derivatives: Vec<Vec<f64>>,
@@ -125,9 +129,8 @@ impl Point {
         }
     }
 
-    /// Solves for the linear numbers at `theta` and forms the residuals.
-    fn evaluate(&mut self, shapes: &impl Shapes, theta: &[f64], target: Target<'_>) {
-        let values = target.values;
+    /// Columns and derivatives at `theta`, times the roots of the weights.
+    fn fill(&mut self, shapes: &impl Shapes, theta: &[f64], target: Target<'_>) {
         self.theta.copy_from_slice(theta);
         shapes.fill(theta, &mut self.columns, &mut self.derivatives);
         if let Some(roots) = target.roots {
@@ -137,6 +140,12 @@ impl Point {
                 }
             }
         }
+    }
+
+    /// Solves for the linear numbers at `theta` and forms the residuals.
+    fn evaluate(&mut self, shapes: &impl Shapes, theta: &[f64], target: Target<'_>) {
+        let values = target.values;
+        self.fill(shapes, theta, target);
         let size = self.columns.len();
         normal_equations(&self.columns, values, &mut self.gram, &mut self.linear);
         let factor = Cholesky::new(&self.gram, size);
@@ -487,8 +496,27 @@ pub(super) fn polished(shapes: &impl Shapes, target: Target<'_>, refined: Refine
     finish(here, shapes, Termination::Converged)
 }
 
+/// A solution found elsewhere, as it stands among these samples: residuals, columns and normal equations anew.
+pub(super) fn standing(
+    shapes: &impl Shapes,
+    target: Target<'_>,
+    theta: &[f64],
+    linear: &[f64],
+    termination: Termination,
+) -> Solution {
+    let mut here = Point::new(shapes, theta.len(), target.values.len());
+    here.fill(shapes, theta, target);
+    normal_equations(&here.columns, target.values, &mut here.gram, &mut here.linear);
+    here.linear.copy_from_slice(linear);
+    for ((held, value), (low, high)) in here.held.iter_mut().zip(linear).zip(shapes.linear_bounds()) {
+        *held = value <= low || value >= high;
+    }
+    here.form_residuals(target.values);
+    finish(here, shapes, termination)
+}
+
 /// Largest change of one nonlinear number.
-fn distance(here: &[f64], next: &[f64]) -> f64 {
+pub(super) fn distance(here: &[f64], next: &[f64]) -> f64 {
     here.iter().zip(next).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
@@ -529,7 +557,13 @@ fn projected(here: &Point, shapes: &impl Shapes) -> Option<(Vec<f64>, Vec<f64>)>
 }
 
 /// θ after a damped step, clipped to the bounds; a number that sits at a bound and is pushed outwards stays out of the step.
-fn stepped(theta: &[f64], hessian: &[f64], gradient: &[f64], damping: f64, shapes: &impl Shapes) -> Vec<f64> {
+pub(super) fn stepped(
+    theta: &[f64],
+    hessian: &[f64],
+    gradient: &[f64],
+    damping: f64,
+    shapes: &impl Shapes,
+) -> Vec<f64> {
     let p = theta.len();
     let pinned = |i: usize| {
         let (low, high) = shapes.bounds(i);
@@ -584,7 +618,13 @@ fn finish(here: Point, shapes: &impl Shapes, mut termination: Termination) -> So
         }
         inverse
     });
+    let variance = here.square / (here.residuals.len() as f64 - size as f64);
     if termination == Termination::Converged {
+        // A number whose error exceeds all the room it has is not felt by the data.
+        let is_felt = inverse_normal.as_ref().is_some_and(|inverse| {
+            let error = |i: usize| (inverse[(linear + i) * (size + 1)] * variance).sqrt();
+            (0..here.theta.len()).all(|i| error(i) <= shapes.bounds(i).1 - shapes.bounds(i).0)
+        });
         let at_bound = |(i, value): (usize, &f64)| {
             let (low, high) = shapes.bounds(i);
             let near = 1e-9 * (high - low);
@@ -592,7 +632,7 @@ fn finish(here: Point, shapes: &impl Shapes, mut termination: Termination) -> So
         };
         match here.theta.iter().enumerate().position(at_bound) {
             Some(index) => termination = shapes.at_bound(index),
-            None if inverse_normal.is_none() || here.singular => termination = Termination::Singular,
+            None if here.singular || !is_felt => termination = Termination::Singular,
             None if here.held.contains(&true) => termination = Termination::AmplitudeAtBound,
             None => {}
         }
@@ -601,6 +641,7 @@ fn finish(here: Point, shapes: &impl Shapes, mut termination: Termination) -> So
         linear: here.linear,
         nonlinear: here.theta,
         residual_square: here.square,
+        variance,
         residuals: here.residuals,
         columns: here.columns,
         derivatives: here.derivatives,

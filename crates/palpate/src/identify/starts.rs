@@ -12,16 +12,32 @@ use crate::statistics::dot;
 /// One shape that moves is scanned over its rate, for a list of values of its other number; several exponentials are tried in
 /// all combinations of a grid of rates.
 pub(super) fn starts(model: &Model, nodes: &Condensed, most: usize, work: &mut Work) -> Vec<Vec<f64>> {
+    fine_starts(model, &nodes.coarser(), Grid::Coarse, most, work)
+}
+
+/// The same on these very nodes, with a grid as fine as asked for.
+pub(super) fn fine_starts(model: &Model, nodes: &Condensed, grid: Grid, most: usize, work: &mut Work) -> Vec<Vec<f64>> {
     let (moving, still) = model.moving();
-    let coarser = nodes.coarser();
-    let nodes = &coarser;
     let plane = Plane::new(model, &still, nodes);
     match *moving.as_slice() {
         [] => vec![Vec::new()],
-        [shape] => plane.scan(model, shape, nodes, most, work),
+        [shape] => plane.scan(model, shape, nodes, grid, most, work),
+        _ if grid == Grid::Fine && moving.len() <= DEEPEST => plane.explore(model, &moving, nodes, most, work),
         _ => plane.combine(model, &moving, nodes, most, work),
     }
 }
+
+/// How fine a grid is.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Grid {
+    /// Enough for smooth valleys.
+    Coarse,
+    /// For hard cases, where valleys are narrow.
+    Fine,
+}
+
+/// Terms up to which a fine grid of all combinations is small.
+const DEEPEST: usize = 3;
 
 /// The nodes with all that needs no search, the constant and shapes without free numbers, projected out.
 struct Plane {
@@ -88,8 +104,29 @@ impl Plane {
         if spread <= 1e-14 * square { self.square } else { self.square - shared * shared / spread }
     }
 
+    /// The same without the loss of digits where the column is nearly imitated; takes the basis out of it.
+    fn exact_residual(&self, column: &mut [f64]) -> f64 {
+        let before = dot(column, column);
+        self.project(column);
+        self.project(column);
+        let size = dot(column, column);
+        if size <= 1e-24 * before {
+            return self.square;
+        }
+        let part = dot(column, &self.values) / size;
+        self.values.iter().zip(column).map(|(value, entry)| (value - part * *entry).powi(2)).sum()
+    }
+
     /// One shape over a grid of its rate, for each value of its other number.
-    fn scan(&self, model: &Model, shape: usize, nodes: &Condensed, most: usize, work: &mut Work) -> Vec<Vec<f64>> {
+    fn scan(
+        &self,
+        model: &Model,
+        shape: usize,
+        nodes: &Condensed,
+        fineness: Grid,
+        most: usize,
+        work: &mut Work,
+    ) -> Vec<Vec<f64>> {
         let range = model.numbers_of(shape);
         let numbers = &model.numbers[range.clone()];
         let mut column = vec![0.0; nodes.times.len()];
@@ -97,15 +134,16 @@ impl Plane {
             let theta = [rate, other];
             model.shape_value(shape, &nodes.times, &theta[..numbers.len()], &mut column);
             rooted(&mut column, nodes);
-            self.residual(&column)
+            if fineness == Grid::Fine { self.exact_residual(&mut column) } else { self.residual(&column) }
         };
         let others =
             numbers.get(1).map_or_else(|| vec![0.0], |number| coarse(number.kind, number.bounds, number.fixed));
         let mut found: Vec<Valley> = Vec::new();
         for (place, other) in others.into_iter().enumerate() {
-            let grid = match finite_end(model.shape(shape), other) {
-                Some(end) if numbers[0].fixed.is_none() => rates_with_end(numbers[0].bounds, end, nodes),
-                _ => rates(numbers[0].bounds, numbers[0].fixed),
+            let end = finite_end(model.shape(shape), other);
+            let grid = match end {
+                Some(end) if numbers[0].fixed.is_none() => rates_with_end(numbers[0].bounds, end, nodes, fineness),
+                _ => rates(numbers[0].bounds, numbers[0].fixed, fineness),
             };
             let residuals: Vec<f64> = grid.iter().map(|rate| residual(*rate, other)).collect();
             work.grid_points += residuals.len() as u64;
@@ -125,11 +163,12 @@ impl Plane {
                         place,
                         rate,
                         other,
+                        ends: end.is_some(),
                     });
                 }
             }
         }
-        let mut found = deepest_along(&found);
+        let mut found = if fineness == Grid::Fine { found } else { deepest_along(&found) };
         if found.is_empty() {
             // Nothing but plateaus: any point will do, and the refinement will say so.
             let rate = numbers[0].fixed.unwrap_or(0.0).clamp(numbers[0].bounds.0, numbers[0].bounds.1);
@@ -141,6 +180,7 @@ impl Plane {
                 place: 0,
                 rate,
                 other,
+                ends: false,
             });
         }
         found.sort_by(|a, b| a.square.total_cmp(&b.square));
@@ -153,6 +193,34 @@ impl Plane {
         found.into_iter().map(free).collect()
     }
 
+    /// The same on a fine grid, by columns made orthogonal one after the other: exact where rates are near each other.
+    fn explore(
+        &self,
+        model: &Model,
+        moving: &[usize],
+        nodes: &Condensed,
+        most: usize,
+        work: &mut Work,
+    ) -> Vec<Vec<f64>> {
+        let grid = rates(model.numbers[model.numbers_of(moving[0]).start].bounds, None, Grid::Fine);
+        let column = |rate: &f64| {
+            let mut column = vec![0.0; nodes.times.len()];
+            model.shape_value(moving[0], &nodes.times, &[*rate], &mut column);
+            rooted(&mut column, nodes);
+            let before = dot(&column, &column);
+            self.project(&mut column);
+            self.project(&mut column);
+            (column, before)
+        };
+        let columns: Vec<(Vec<f64>, f64)> = grid.iter().map(column).collect();
+        let mut found = Vec::new();
+        let mut chosen = Vec::new();
+        branch(&columns, 0, &self.values, moving.len(), &mut chosen, &mut found);
+        work.grid_points += found.len() as u64;
+        let kept = lattice_valleys(found, most);
+        kept.into_iter().map(|rates| rates.into_iter().rev().map(|i| grid[i]).collect()).collect()
+    }
+
     /// Several exponentials in all combinations of a grid of rates.
     fn combine(
         &self,
@@ -163,7 +231,7 @@ impl Plane {
         work: &mut Work,
     ) -> Vec<Vec<f64>> {
         let bounds = model.numbers[model.numbers_of(moving[0]).start].bounds;
-        let grid = rates(bounds, None);
+        let grid = rates(bounds, None, Grid::Coarse);
         let columns: Vec<Vec<f64>> = grid
             .iter()
             .map(|rate| {
@@ -205,20 +273,58 @@ impl Plane {
                 break;
             }
         }
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // Valleys of the lattice: combinations beside none that was seen before, that is, is lower.
-        let near = |a: &[usize], b: &[usize]| a.iter().zip(b).all(|(a, b)| a.abs_diff(*b) <= 1);
-        let mut kept: Vec<Vec<usize>> = Vec::new();
-        for (index, (_, rates)) in found.iter().enumerate().take(LOWEST) {
-            if !found[..index].iter().any(|(_, lower)| near(lower, rates)) {
-                kept.push(rates.clone());
-            }
-            if kept.len() == most {
-                break;
-            }
-        }
+        let kept = lattice_valleys(found, most);
         kept.into_iter().map(|rates| rates.into_iter().rev().map(|i| grid[useful[i]]).collect()).collect()
     }
+}
+
+/// Residual squares of all combinations of `terms` rising columns from `from` on; each column comes with its square before
+/// anything was taken out of it.
+fn branch(
+    columns: &[(Vec<f64>, f64)],
+    from: usize,
+    rest: &[f64],
+    terms: usize,
+    chosen: &mut Vec<usize>,
+    found: &mut Vec<(f64, Vec<usize>)>,
+) {
+    let square = dot(rest, rest);
+    for i in 0..columns.len() {
+        let (column, before) = &columns[i];
+        let size = dot(column, column);
+        if size <= 1e-22 * before {
+            continue;
+        }
+        let part = dot(column, rest) / size;
+        chosen.push(from + i);
+        if terms == 1 {
+            found.push((square - part * part * size, chosen.clone()));
+        } else {
+            let less =
+                |other: &[f64], part: f64| other.iter().zip(column).map(|(a, b)| a - part * b).collect::<Vec<f64>>();
+            let others =
+                columns[i + 1..].iter().map(|(other, before)| (less(other, dot(column, other) / size), *before));
+            let others: Vec<(Vec<f64>, f64)> = others.collect();
+            branch(&others, from + i + 1, &less(rest, part), terms - 1, chosen, found);
+        }
+        chosen.pop();
+    }
+}
+
+/// Valleys of a lattice of combinations: those beside none that was seen before, that is, is lower.
+fn lattice_valleys(mut found: Vec<(f64, Vec<usize>)>, most: usize) -> Vec<Vec<usize>> {
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let near = |a: &[usize], b: &[usize]| a.iter().zip(b).all(|(a, b)| a.abs_diff(*b) <= 1);
+    let mut kept: Vec<Vec<usize>> = Vec::new();
+    for (index, (_, rates)) in found.iter().enumerate().take(LOWEST) {
+        if !found[..index].iter().any(|(_, lower)| near(lower, rates)) {
+            kept.push(rates.clone());
+        }
+        if kept.len() == most {
+            break;
+        }
+    }
+    kept
 }
 
 /// Combinations of rates that are looked through for valleys, lowest first.
@@ -232,14 +338,18 @@ struct Valley {
     place: usize,
     rate: f64,
     other: f64,
+    /// Whether the shape ends in finite time there.
+    ends: bool,
 }
 
-/// Valleys that do not go on, deeper, at the next value of the other number.
+/// Valleys that do not go on, deeper, at the next value of the other number; kinks break such a chain, so none is left out where the
+/// shape ends.
 fn deepest_along(valleys: &[Valley]) -> Vec<Valley> {
     /// Change of ln λ from one value of the other number to the next within which a valley is the same.
     const SAME: f64 = 3.0;
     let deeper = |valley: &Valley, other: &Valley| {
         other.place.abs_diff(valley.place) == 1
+            && !valley.ends
             && (other.rate - valley.rate).abs() < SAME
             && other.square < valley.square
     };
@@ -274,24 +384,41 @@ fn rooted(column: &mut [f64], nodes: &Condensed) {
 /// Step of a coarse search in ln λ.
 const STEP: f64 = 1.0;
 
+impl Grid {
+    /// Step in ln λ.
+    fn step(self) -> f64 {
+        match self {
+            Self::Coarse => STEP,
+            Self::Fine => 0.4 * STEP,
+        }
+    }
+}
+
 /// Rates of a coarse search, equally spaced in ln λ.
-pub(super) fn rates((low, high): (f64, f64), fixed: Option<f64>) -> Vec<f64> {
+pub(super) fn rates((low, high): (f64, f64), fixed: Option<f64>, fineness: Grid) -> Vec<f64> {
     if let Some(rate) = fixed {
         return vec![rate];
     }
-    let steps = ((high - low) / STEP).ceil().max(2.0) as usize;
+    let steps = ((high - low) / fineness.step()).ceil().max(2.0) as usize;
     (0..=steps).map(|i| low + (high - low) * i as f64 / steps as f64).collect()
 }
 
 /// The same for a shape that ends when λt = `end`: densely where the end lies between samples, since the residual has a kink wherever it
 /// passes one, and not at all where it ends before the second.
-fn rates_with_end((low, high): (f64, f64), end: f64, nodes: &Condensed) -> Vec<f64> {
-    const DENSE: f64 = 0.2;
+fn rates_with_end((low, high): (f64, f64), end: f64, nodes: &Condensed, fineness: Grid) -> Vec<f64> {
+    let dense = if fineness == Grid::Fine { 0.05 } else { 0.2 };
     let first = nodes.times.iter().copied().find(|t| *t > 0.0).unwrap_or(1.0);
     let (from, until) = (end.ln().clamp(low, high), (end / first).ln().clamp(low, high) + STEP);
     let slow = (0..).map(|i| low + STEP * f64::from(i)).take_while(|rate| *rate < from);
-    let dense = (0..).map(|i| from + DENSE * f64::from(i)).take_while(|rate| *rate < until.min(high));
-    slow.chain(dense).chain([until.min(high)]).collect()
+    let dense = (0..).map(|i| from + dense * f64::from(i)).take_while(|rate| *rate < until.min(high));
+    let mut all: Vec<f64> = slow.chain(dense).chain([until.min(high)]).collect();
+    if fineness == Grid::Fine {
+        // Where the end has only just passed one of the first samples, the valley is narrower than any grid.
+        let early = nodes.times.iter().filter(|t| **t > 0.0).take(12).map(|t| (end / t).ln());
+        all.extend(early.flat_map(|rate| [3e-2, 1e-2, 1e-3].map(|before| (rate - before).clamp(low, high))));
+        all.sort_by(f64::total_cmp);
+    }
+    all
 }
 
 /// Values of a pure number that a coarse search tries.
@@ -304,6 +431,15 @@ pub(super) fn coarse(kind: NumberKind, (low, high): (f64, f64), fixed: Option<f6
         }
         (None, _) => vec![low],
     }
+}
+
+/// Whether the law ends in finite time at these free numbers, which makes its residual one with kinks.
+pub(super) fn ends(model: &Model, theta: &[f64]) -> bool {
+    let numbers = model.complete(theta);
+    (0..model.form.shapes.len()).any(|shape| {
+        let own = &numbers[model.numbers_of(shape)];
+        finite_end(model.shape(shape), own.last().copied().unwrap_or(1.0)).is_some()
+    })
 }
 
 /// λt at which the shape ends, if it does.

@@ -118,12 +118,18 @@ impl Assessed {
             NoiseChoice::White => Noise::white(&solution.residuals, freedom),
             NoiseChoice::FromResiduals => Noise::of(&columns, &solution.residuals),
         };
+        // A robust loss has its own s²; the noise of its residuals stands in the same ratio to it as that of plain ones.
+        let ratio = solution.variance * freedom / solution.residual_square;
+        let ratio = if ratio.is_finite() { ratio } else { 1.0 };
         let finite = |rows: &Vec<Vec<f64>>| rows.iter().flatten().all(|entry| entry.is_finite());
         let inverse = solution.inverse_normal.as_deref().filter(|_| known);
-        let white = inverse.map(|inverse| scaled(inverse, solution.residual_square / freedom)).filter(finite);
+        let white = inverse.map(|inverse| scaled(inverse, solution.variance)).filter(finite);
         let sandwich = |inverse: &[f64], model: NoiseModel, variance: f64| match model {
-            NoiseModel::White => scaled(inverse, variance),
-            _ => scaled(&sandwiched(inverse, &with_amplitudes(model.quadratic(&columns), amplitudes), size), variance),
+            NoiseModel::White => scaled(inverse, ratio * variance),
+            _ => scaled(
+                &sandwiched(inverse, &with_amplitudes(model.quadratic(&columns), amplitudes), size),
+                ratio * variance,
+            ),
         };
         let off = noise.beside.iter().map(|(_, variance)| (variance / noise.variance).ln().powi(2));
         let uncertainty = inverse.filter(|_| white.is_some()).map(|inverse| Uncertainty {

@@ -48,7 +48,7 @@ impl Joint {
         let freedom = (effective - parameters as f64).max(1.0);
         let variance = point.square / (samples - parameters) as f64;
         let hold = |(index, rho): (usize, &f64)| {
-            let fitted = self.fitted(point, index, inverse.as_deref(), termination);
+            let fitted = self.fitted(point, index, inverse.as_deref(), variance, termination);
             let white = fitted.white_covariance(variance);
             let deviation = variance.sqrt() * fitted.scaled.range;
             let trust = (self.options.fit.confidence, freedom);
@@ -113,7 +113,14 @@ impl Joint {
     }
 
     /// A hold as if it had been fitted alone, with the errors of the joint fit.
-    fn fitted(&self, point: &Point, index: usize, inverse: Option<&[f64]>, termination: Termination) -> Fitted {
+    fn fitted(
+        &self,
+        point: &Point,
+        index: usize,
+        inverse: Option<&[f64]>,
+        variance: f64,
+        termination: Termination,
+    ) -> Fitted {
         let (hold, part) = (&self.holds[index], &point.parts[index]);
         let (size, places) = (self.size(point), self.places(index, point.shared.len()));
         let rows = hold.sensitivity(&point.shared, &part.own);
@@ -130,6 +137,7 @@ impl Joint {
                 nonlinear: hold.theta(&point.shared, &part.own),
                 residuals: part.residuals.clone(),
                 residual_square: part.square,
+                variance,
                 columns: Vec::new(),
                 derivatives: Vec::new(),
                 inverse_normal: inverse

@@ -4,7 +4,7 @@ use super::super::condensed::Condensed;
 use super::super::model::Model;
 use super::super::search::condense;
 use super::super::separable::{Ending as Local, Work, refine as refine_one};
-use super::super::starts::{advance, coarse, rates, starts as valleys};
+use super::super::starts::{Grid, advance, coarse, rates, starts as valleys};
 use super::arrow::{Ending, Point, refine};
 use super::hold::{Hold, View};
 
@@ -153,7 +153,7 @@ fn grid(holds: &[Hold], nodes: &[Condensed], bounds: &[(f64, f64)], work: &mut W
 fn places(model: &Model, bounds: &[(f64, f64)]) -> Vec<Vec<f64>> {
     let (moving, _) = model.moving();
     if moving.len() > 1 {
-        let mut grid = rates(bounds[0], None);
+        let mut grid = rates(bounds[0], None, Grid::Coarse);
         let most = (moving.len()..).take_while(|m| combinations(*m, moving.len()) <= COMBINATIONS).last();
         let count = most.unwrap_or(moving.len()).min(grid.len());
         let (low, high) = bounds[0];
@@ -171,7 +171,7 @@ fn places(model: &Model, bounds: &[(f64, f64)]) -> Vec<Vec<f64>> {
     }
     let axis = |(number, bounds): (&super::super::model::Number, &(f64, f64))| match number.kind {
         crate::laws::NumberKind::Pure { .. } => coarse(number.kind, *bounds, None),
-        _ => rates(*bounds, None),
+        _ => rates(*bounds, None, Grid::Coarse),
     };
     let axes: Vec<Vec<f64>> = model.free().zip(bounds).map(axis).collect();
     axes.iter().fold(vec![Vec::new()], |points, axis| {

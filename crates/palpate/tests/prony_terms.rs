@@ -1,0 +1,65 @@
+//! The number of exponentials found from the data, and the ghosts of series that are too long.
+
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
+use palpate::identify::{Ghost, LawOptions, Samples, Termination, fit_law, fit_prony};
+use palpate::laws::Law;
+use palpate::test_problems::Noise;
+
+fn hold(amplitudes: &[f64], noise: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
+    let mut random = Noise::new(seed);
+    let times: Vec<f64> = (0..500).map(|i| 100.0 * (f64::from(i) / 499.0).powi(2)).collect();
+    let taus = [0.5, 5.0, 50.0];
+    let value = |t: &f64| {
+        let terms: f64 = amplitudes.iter().zip(taus).map(|(amplitude, tau)| amplitude * (-t / tau).exp()).sum();
+        2.0 + terms + noise * random.normal()
+    };
+    let values = times.iter().map(value).collect();
+    (times, values)
+}
+
+#[test]
+fn as_many_terms_are_chosen_as_there_are() {
+    for amplitudes in [&[1.0][..], &[1.0, -0.7], &[1.0, 0.8], &[1.0, 0.8, 0.6]] {
+        let mut right = 0;
+        for seed in 0..20 {
+            let (times, values) = hold(amplitudes, 1e-3, seed);
+            let (chosen, fits) = fit_prony(&Samples::new(&times, &values), 4, &LawOptions::default()).unwrap();
+            assert_eq!(fits.len(), 4);
+            right += usize::from(chosen == Some(amplitudes.len() - 1));
+        }
+        println!("{amplitudes:?}: {right} of 20");
+        assert!(right >= 18, "{amplitudes:?}: {right}");
+    }
+}
+
+#[test]
+fn an_exact_series_is_not_made_longer() {
+    let (times, values) = hold(&[1.0, 0.8], 0.0, 0);
+    let (chosen, _) = fit_prony(&Samples::new(&times, &values), 3, &LawOptions::default()).unwrap();
+    assert_eq!(chosen, Some(1));
+}
+
+#[test]
+fn a_term_too_many_is_a_ghost_or_no_answer() {
+    let mut merged = 0;
+    for seed in 0..40 {
+        let (times, values) = hold(&[1.0], 1e-3, seed);
+        let fit = fit_law(&Samples::new(&times, &values), Law::Prony { terms: 2 }, &LawOptions::default()).unwrap();
+        let amplitudes: Vec<f64> = fit.curve.terms.iter().map(|term| term.amplitude.abs()).collect();
+        // Whatever is called good and free of ghosts has amplitudes of the size of the signal.
+        let sound = fit.termination == Termination::Converged && fit.ghosts.is_empty();
+        assert!(!sound || amplitudes.iter().all(|amplitude| *amplitude < 10.0), "{fit:?}");
+        assert!(fit.termination != Termination::TermsMerged || fit.covariance.is_none());
+        merged += usize::from(fit.ghosts.iter().any(|ghost| matches!(ghost, Ghost::Merged { a: 1, b: 2 })));
+    }
+    println!("{merged} of 40 merged");
+    assert!(merged > 0);
+}
+
+#[test]
+fn few_samples_bear_few_terms() {
+    let (times, values) = hold(&[1.0], 1e-3, 1);
+    let (_, fits) = fit_prony(&Samples::new(&times[..8], &values[..8]), 5, &LawOptions::default()).unwrap();
+    assert_eq!(fits.len(), 2);
+}
