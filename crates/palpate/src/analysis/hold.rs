@@ -158,7 +158,7 @@ pub(super) fn analyze_hold(
         fit_all(&mut hold, options);
         hold.comparison = compare(&hold, options);
         judge(&mut hold);
-        judge_comparison(&mut hold);
+        hold.findings.extend(hold.comparison.iter().flat_map(comparison_findings));
     }
     hold.findings.extend(not_a_hold(record, &segment));
     hold
@@ -266,9 +266,8 @@ fn compare(hold: &HoldAnalysis, options: &AnalysisOptions) -> Option<Comparison>
     compare_laws(&samples, options).ok()
 }
 
-/// Adds what the comparison gives cause to say.
-fn judge_comparison(hold: &mut HoldAnalysis) {
-    let Some(comparison) = &hold.comparison else { return };
+/// What a comparison gives cause to say.
+pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
     let ended = |termination: &[Termination]| -> Vec<Law> {
         let fits = comparison.rows.iter().filter_map(|row| row.fit.as_ref().ok());
         fits.filter(|fit| termination.contains(&fit.termination)).map(|fit| fit.law).collect()
@@ -279,15 +278,17 @@ fn judge_comparison(hold: &mut HoldAnalysis) {
         let rest = verdict.alike.iter().filter(|law| **law != verdict.law);
         [verdict.law].iter().chain(rest).copied().collect()
     });
+    let mut findings = Vec::new();
     if !at_bound.is_empty() {
-        hold.findings.push(Finding::ParametersAtBound { laws: at_bound });
+        findings.push(Finding::ParametersAtBound { laws: at_bound });
     }
     if !merged.is_empty() {
-        hold.findings.push(Finding::TermsIndistinguishable { laws: merged });
+        findings.push(Finding::TermsIndistinguishable { laws: merged });
     }
     if alike.len() > 1 {
-        hold.findings.push(Finding::LawsIndistinguishable { laws: alike });
+        findings.push(Finding::LawsIndistinguishable { laws: alike });
     }
+    findings
 }
 
 /// Error of a fit over the samples from index `fitted` on.

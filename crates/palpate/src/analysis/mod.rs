@@ -5,6 +5,7 @@
 //! | `options.rs` | everything that may be asked, with defaults |
 //! | `pipeline.rs` | the order of the steps |
 //! | `hold.rs` | one hold: signal, fits in both domains, prediction beyond the window |
+//! | `creep.rs` | holds of constant force |
 //! | `behaviour.rs` | holds that are none: drift, feedback control |
 //! | `across.rs` | several holds: common exponent, trend of v, agreement of equilibrium strains |
 //! | `modulus.rs` | the modulus that the relaxed forces imply |
@@ -13,6 +14,7 @@
 
 mod across;
 mod behaviour;
+mod creep;
 mod finding;
 mod hold;
 mod modulus;
@@ -21,7 +23,9 @@ mod overlay;
 mod pipeline;
 
 pub use across::{Across, LevelAgreement, Trend};
+pub use creep::{CreepError, CreepHold, creep_holds};
 pub use finding::{Finding, Severity};
+use hold::comparison_findings;
 pub use hold::{HoldAnalysis, Prediction, Signal};
 pub use modulus::ModulusSource;
 pub use options::{AnalysisOptions, Geometry, LayersChoice};

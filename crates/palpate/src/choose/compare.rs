@@ -107,6 +107,8 @@ pub struct Comparison {
     pub ranking: Ranking,
     /// Cut points, s after the first sample.
     pub cuts: Vec<f64>,
+    /// Time from the first to the last sample, s.
+    pub duration: f64,
     /// Change of the signal over the hold, in its unit: forward errors are shares of it.
     pub change: f64,
     /// Standard deviation of the noise, in the unit of the signal.
@@ -166,6 +168,7 @@ pub fn compare_laws(samples: &Samples<'_>, options: &CompareOptions) -> Result<C
         rows,
         ranking,
         cuts,
+        duration,
         change,
         noise,
         samples: values.len(),

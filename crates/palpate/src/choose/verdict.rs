@@ -67,8 +67,10 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
     let usable = || figures().filter(move |(row, _)| row.is_good() || !any_good);
     let best = usable().next()?.1;
     let alike: Vec<(&Row, f64)> = usable().filter(|(_, figure)| comparison.as_good(*figure, best)).collect();
+    // Part of a number makes a smoothed spectrum no simpler than a law with one more.
+    let numbers = |row: &Row| row.numbers.ceil();
     let (chosen, figure) =
-        *alike.iter().min_by(|a, b| a.0.numbers.total_cmp(&b.0.numbers).then(a.1.total_cmp(&b.1)))?;
+        *alike.iter().min_by(|a, b| numbers(a.0).total_cmp(&numbers(b.0)).then(a.1.total_cmp(&b.1)))?;
     let others = figures().filter(|(row, _)| row.law != chosen.law);
     let costs = others.map(|(row, other)| match comparison.ranking {
         Ranking::Forward => (row.law, other / figure),
