@@ -165,7 +165,9 @@ fn one(
 fn without(path: &Path, failure: Failure) -> LeftOut {
     let (message, hint) = failure.into_parts();
     let path = path.display().to_string();
-    let reason = message.strip_prefix(&path).map_or(message.as_str(), |rest| rest.trim_start_matches([':', ' ']));
+    let reason = message
+        .strip_prefix(&path)
+        .map_or(message.as_str(), |rest| rest.trim_start_matches([':', ',', ' ']));
     LeftOut {
         reason: reason.to_owned(),
         path,

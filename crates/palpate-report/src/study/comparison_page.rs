@@ -40,7 +40,7 @@ pub fn comparison_bundle(
             .provenance("SHA-256", &record.input.sha256);
     }
     if !left_out.is_empty() {
-        let files = left_out.iter().map(|file| format!("{}: {}", file.path, file.reason)).collect();
+        let files = left_out.iter().map(comparison_tables::left_out_line).collect();
         page = page.section(Section::new("Left out").block(Block::List(files)));
     }
     page = page.provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION")));

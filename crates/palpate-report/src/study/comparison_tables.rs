@@ -61,9 +61,10 @@ fn law_columns(table: Table, cuts: &[f64]) -> Table {
         let heading = format!("{} %", significant(100.0 * cut, 2));
         table = table.column(column(heading, format!("forward_error_at_{cut:.3}_percent"), ""));
     }
-    table
-        .column(column("Score", "forward_score_percent", ""))
-        .column(column("Ended", "termination", ""))
+    if !cuts.is_empty() {
+        table = table.column(column("Score", "forward_score_percent", ""));
+    }
+    table.column(column("Ended", "termination", ""))
 }
 
 fn law_row(row: &Row, comparison: &Comparison, cuts: &[f64]) -> Vec<Cell> {
@@ -82,7 +83,9 @@ fn law_row(row: &Row, comparison: &Comparison, cuts: &[f64]) -> Vec<Cell> {
         let error = index.and_then(|index| row.forward.relative(index, comparison.change));
         cells.push(percent(error, 2, NO_FORECAST));
     }
-    cells.push(percent(row.forward.score, 2, NO_FORECAST));
+    if !cuts.is_empty() {
+        cells.push(percent(row.forward.score, 2, NO_FORECAST));
+    }
     cells.push(ending(row));
     cells
 }
@@ -191,7 +194,7 @@ pub fn comparison_text(records: &[ComparedRecord], left_out: &[LeftOut]) -> Stri
     }
     if !left_out.is_empty() {
         text.push_str("\nLeft out\n");
-        left_out.iter().for_each(|file| text.push_str(&format!("{}: {}\n", file.path, file.reason)));
+        left_out.iter().for_each(|file| text.push_str(&findings::wrapped(&left_out_line(file))));
     }
     text
 }
@@ -215,9 +218,14 @@ pub fn comparison_markdown(records: &[ComparedRecord], left_out: &[LeftOut], law
     let mut text = if table.rows.is_empty() { String::new() } else { table.to_markdown() };
     if !left_out.is_empty() {
         text.push_str("\nLeft out:\n\n");
-        left_out.iter().for_each(|file| text.push_str(&format!("- {}: {}\n", file.path, file.reason)));
+        left_out.iter().for_each(|file| text.push_str(&format!("- {}\n", left_out_line(file))));
     }
     text
+}
+
+/// A file that was left out with the first line of the reason.
+pub(super) fn left_out_line(file: &LeftOut) -> String {
+    format!("{}: {}", file.path, file.reason.lines().next().unwrap_or_default())
 }
 
 fn overview_row(record: &ComparedRecord, hold: &ComparedHold, laws: &[Law]) -> Vec<Cell> {

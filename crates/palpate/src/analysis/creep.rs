@@ -44,7 +44,7 @@ pub enum CreepError {
     Still(RecordError),
     /// No hold of constant force.
     #[error("of the force: {0}")]
-    Segment(#[from] SegmentError),
+    Segment(SegmentError),
 }
 
 impl CreepError {
@@ -60,10 +60,26 @@ impl CreepError {
     }
 }
 
+/// Share of the range of the force by which it may stray from its level and count as held.
+const RINGING: f64 = 0.02;
+
+/// The same error in the words of the column that was searched.
+fn of_force(error: SegmentError) -> CreepError {
+    CreepError::Segment(match error {
+        SegmentError::NoMotion { range, noise, .. } => SegmentError::NoMotion {
+            column: "force",
+            range,
+            noise,
+            unit: "N",
+        },
+        other => other,
+    })
+}
+
 /// Finds the holds of constant force in a record and compares laws of creep on the displacement of each.
 ///
-/// Phases are found as for a squeeze, with force and displacement exchanged: the force is what the machine holds. `until` (s)
-/// limits how much of each hold is fitted.
+/// Phases are found as for a squeeze, with force and displacement exchanged: the force is what the machine holds, to a fiftieth
+/// of its range, whatever tolerance `segment` has. `until` (s) limits how much of each hold is fitted.
 ///
 /// ```
 /// use palpate::analysis::creep_holds;
@@ -95,7 +111,13 @@ pub fn creep_holds(
     let moved = record.displacement().ok_or(CreepError::NoDisplacement)?.to_vec();
     let exchanged =
         Record::new(record.time().to_vec(), Some(record.force().to_vec()), moved).map_err(CreepError::Still)?;
-    let segmentation = find_phases(&exchanged, segment)?;
+    // The tolerance of a test is a length; a controller that rings about its set force still holds it.
+    let (low, high) = record.force().iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
+    let segment = SegmentOptions {
+        tolerance: Some(RINGING * (high - low)),
+        ..*segment
+    };
+    let segmentation = find_phases(&exchanged, &segment).map_err(of_force)?;
     let mut compare = compare.clone();
     compare.fit.response = Response::Creep;
     let time = exchanged.time();

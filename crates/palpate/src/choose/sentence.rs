@@ -70,6 +70,11 @@ impl Comparison {
         )
     }
 
+    /// Whether what a law costs says anything: what it foretells always, how closely it fits only at an optimum.
+    fn counts(&self, law: Law) -> bool {
+        self.ranking == Ranking::Forward || self.rows.iter().any(|row| row.law == law && row.is_good())
+    }
+
     /// The next law that is not alike, and the familiar standard linear solid or, failing that, the worst.
     fn cost_of_others(&self, verdict: &Verdict) -> String {
         let least = if self.ranking == Ranking::Forward { 1.0 } else { 0.0 };
@@ -77,7 +82,7 @@ impl Comparison {
             .costs
             .iter()
             .copied()
-            .filter(|(law, cost)| !verdict.alike.contains(law) && *cost > least)
+            .filter(|(law, cost)| !verdict.alike.contains(law) && *cost > least && self.counts(*law))
             .collect();
         let Some(next) = others.first().copied() else {
             return String::new();
