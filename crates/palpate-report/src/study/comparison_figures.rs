@@ -2,6 +2,7 @@
 
 use palpate::choose::{Comparison, Row, name_in_words};
 use palpate::identify::SpectrumFit;
+use palpate::laws::Law;
 
 use super::record_figures::MOST_PANELS;
 use crate::compared::{ComparedHold, ComparedRecord};
@@ -10,6 +11,8 @@ use crate::number::significant;
 
 /// Laws that a panel shows; there are no more markers that can be told apart.
 const MOST_LAWS: usize = 8;
+/// The same where a figure has several panels.
+const FEWER_LAWS: usize = 5;
 /// Laws whose residuals are shown.
 const MOST_RESIDUALS: usize = 3;
 /// Stretches of ln t over which residuals are averaged.
@@ -43,16 +46,18 @@ fn by_hold(name: String, caption: String, panels: Vec<(Panel, f64)>, all: usize)
 /// Forward error of each law after each cut.
 fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let holds: Vec<_> = record.verdicts().filter(|(_, comparison)| !comparison.cuts.is_empty()).collect();
-    let most = holds.iter().map(|(_, comparison)| comparison.rows.len()).max().unwrap_or(0);
+    let (laws, all) = best_laws(&holds);
     let panels = holds.iter().take(MOST_PANELS).map(|(hold, comparison)| {
-        let panel = comparison.rows.iter().take(MOST_LAWS).enumerate().fold(
+        let mut panel =
             Panel::new(Axis::linear("Part of the hold that was fitted", "%"), Axis::log("Error over the rest", "%"))
-                .title(hold.title()),
-            |panel, (series, row)| panel.layers(forward_layers(row, comparison, series)),
-        );
+                .title(hold.title());
+        for (series, law) in laws.iter().enumerate() {
+            let row = comparison.rows.iter().find(|row| row.law == *law);
+            panel = panel.layers(row.into_iter().flat_map(|row| forward_layers(row, comparison, series)));
+        }
         (panel, 78.0)
     });
-    let left = if most > MOST_LAWS { format!(" The {MOST_LAWS} best of {most} laws.") } else { String::new() };
+    let left = if all > laws.len() { format!(" The {} best of {all} laws.", laws.len()) } else { String::new() };
     by_hold(
         format!("forward_errors{suffix}"),
         format!(
@@ -61,6 +66,23 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
         panels.collect(),
         holds.len(),
     )
+}
+
+/// The laws to show, those of the lowest mean rank first, and how many there are; every panel shows the same in the same colours.
+fn best_laws(holds: &[(&ComparedHold, &Comparison)]) -> (Vec<Law>, usize) {
+    let mut ranks: Vec<(Law, usize)> = Vec::new();
+    for (_, comparison) in holds {
+        for (rank, row) in comparison.rows.iter().enumerate() {
+            match ranks.iter_mut().find(|(law, _)| *law == row.law) {
+                Some((_, sum)) => *sum += rank,
+                None => ranks.push((row.law, rank)),
+            }
+        }
+    }
+    let all = ranks.len();
+    ranks.sort_by_key(|(_, sum)| *sum);
+    ranks.truncate(if holds.len() == 1 { MOST_LAWS } else { FEWER_LAWS });
+    (ranks.into_iter().map(|(law, _)| law).collect(), all)
 }
 
 fn forward_layers(row: &Row, comparison: &Comparison, series: usize) -> Vec<Layer> {
@@ -191,7 +213,6 @@ pub(super) fn chosen(record: &ComparedRecord) -> String {
 mod tests {
     use palpate::choose::{CompareOptions, compare_laws};
     use palpate::identify::Samples;
-    use palpate::laws::Law;
     use palpate::test_problems::noisy_hold;
 
     use super::*;

@@ -215,12 +215,34 @@ pub fn comparison_markdown(records: &[ComparedRecord], left_out: &[LeftOut], law
             table = table.row(overview_row(record, hold, laws));
         }
     }
+    table.rows.extend(median_row(records, laws));
     let mut text = if table.rows.is_empty() { String::new() } else { table.to_markdown() };
     if !left_out.is_empty() {
         text.push_str("\nLeft out:\n\n");
         left_out.iter().for_each(|file| text.push_str(&format!("- {}\n", left_out_line(file))));
     }
     text
+}
+
+/// The median forward error of each law over the holds that are ranked by it, where there are several.
+fn median_row(records: &[ComparedRecord], laws: &[Law]) -> Option<Vec<Cell>> {
+    let judged = || records.iter().flat_map(ComparedRecord::verdicts).map(|(_, found)| found);
+    let forward: Vec<&Comparison> = judged().filter(|found| found.ranking == Ranking::Forward).collect();
+    if forward.len() < 3 {
+        return None;
+    }
+    let mut cells = vec![Cell::text(format!("median of {} holds", forward.len())), Cell::text("")];
+    for law in laws {
+        let scores = forward.iter().flat_map(|found| &found.rows).filter(|row| row.law == *law);
+        let mut scores: Vec<f64> = scores.filter_map(|row| row.forward.score).collect();
+        scores.sort_by(f64::total_cmp);
+        let median = match scores.len() {
+            0 => None,
+            count => Some(f64::midpoint(scores[(count - 1) / 2], scores[count / 2])),
+        };
+        cells.push(Cell::text(median.map_or("–".to_owned(), |median| significant(100.0 * median, 2))));
+    }
+    Some(cells)
 }
 
 /// A file that was left out with the first line of the reason.
