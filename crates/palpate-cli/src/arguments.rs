@@ -147,8 +147,9 @@ pub(crate) struct AnalyzeArguments {
 /// Compare laws: which one foretells a hold, how sure that is, and what another would cost.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Laws: latency, latency:N (n given), maxwell, kelvin-voigt, standard-linear-solid, burgers, prony:K (K terms),
-spectrum, fung:K, fung-continuous, stretched, power, logarithmic, fractional-zener, diffusion.
+Laws: latency, latency:N (n given), maxwell, kelvin-voigt, standard-linear-solid, burgers,
+prony:K (K terms), spectrum, fung:K, fung-continuous, stretched, power, logarithmic,
+fractional-zener, diffusion.
 
 Examples:
   palpate compare press.csv                               a table and a sentence for every hold

@@ -7,6 +7,7 @@ use palpate::laws::Response;
 use palpate::segment::After;
 
 use crate::document::Input;
+use crate::number::significant;
 
 /// What the laws were fitted to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -159,13 +160,21 @@ impl From<CreepHold> for ComparedHold {
 impl ComparedHold {
     /// "Hold 2, after loading, 10.00 mm", or "…, 6.00 N" in creep.
     pub(crate) fn title(&self) -> String {
-        use crate::number::significant;
         let after = self.after.map_or(String::new(), |after| format!(", after {}", crate::document::after_word(after)));
-        let level = self.level.map_or(String::new(), |level| match self.quantity {
+        format!("Hold {}{after}{}", self.number, self.held())
+    }
+
+    /// The same for the narrow head of a panel: "Hold 2, 10.00 mm".
+    pub(crate) fn short_title(&self) -> String {
+        format!("Hold {}{}", self.number, self.held())
+    }
+
+    /// What was held, behind a comma.
+    fn held(&self) -> String {
+        self.level.map_or(String::new(), |level| match self.quantity {
             Quantity::Displacement => format!(", {} N", significant(level, 3)),
             _ => format!(", {} mm", significant(1e3 * level, 4)),
-        });
-        format!("Hold {}{after}{level}", self.number)
+        })
     }
 }
 

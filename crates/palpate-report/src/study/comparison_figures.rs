@@ -50,7 +50,7 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let panels = holds.iter().take(MOST_PANELS).map(|(hold, comparison)| {
         let mut panel =
             Panel::new(Axis::linear("Part of the hold that was fitted", "%"), Axis::log("Error over the rest", "%"))
-                .title(hold.title());
+                .title(hold.short_title());
         for (series, law) in laws.iter().enumerate() {
             let row = comparison.rows.iter().find(|row| row.law == *law);
             panel = panel.layers(row.into_iter().flat_map(|row| forward_layers(row, comparison, series)));
@@ -105,7 +105,7 @@ fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     for (hold, comparison) in holds.iter().take(MOST_PANELS) {
         let (unit, factor) = hold.quantity.for_people();
         let mut panel = Panel::new(Axis::log("Time", "s"), Axis::linear("Mean residual", unit))
-            .title(hold.title())
+            .title(hold.short_title())
             .zero_line();
         for (series, row) in comparison.rows.iter().filter(|row| row.is_good()).take(MOST_RESIDUALS).enumerate() {
             let (times, means) = averaged(hold, row, factor);

@@ -162,7 +162,7 @@ pub(super) fn verdict_text(record: &ComparedRecord) -> String {
             let table = laws_of_hold(hold).map(|table| table.to_plain_text()).unwrap_or_default();
             let notes: String = NOTES.iter().map(|note| findings::wrapped(note)).collect();
             let sentence = comparison.sentence().map(|sentence| findings::wrapped(&sentence)).unwrap_or_default();
-            format!("{table}{notes}{sentence}\n")
+            format!("{table}{sentence}{notes}\n")
         }
         _ => verdicts(record).map(|table| format!("{}\n", table.to_plain_text())).unwrap_or_default(),
     }
@@ -193,7 +193,7 @@ pub fn comparison_text(records: &[ComparedRecord], left_out: &[LeftOut]) -> Stri
         NOTES.iter().for_each(|note| text.push_str(&findings::wrapped(note)));
     }
     if !left_out.is_empty() {
-        text.push_str("\nLeft out\n");
+        text.push_str(if text.is_empty() { "Left out\n" } else { "\nLeft out\n" });
         left_out.iter().for_each(|file| text.push_str(&findings::wrapped(&left_out_line(file))));
     }
     text
@@ -218,7 +218,7 @@ pub fn comparison_markdown(records: &[ComparedRecord], left_out: &[LeftOut], law
     table.rows.extend(median_row(records, laws));
     let mut text = if table.rows.is_empty() { String::new() } else { table.to_markdown() };
     if !left_out.is_empty() {
-        text.push_str("\nLeft out:\n\n");
+        text.push_str(if text.is_empty() { "Left out:\n\n" } else { "\nLeft out:\n\n" });
         left_out.iter().for_each(|file| text.push_str(&format!("- {}\n", left_out_line(file))));
     }
     text
