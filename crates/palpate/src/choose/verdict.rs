@@ -20,7 +20,7 @@ pub enum Certainty {
 /// Which law to use.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The law with the fewest numbers among those that do best.
+    /// The law with the fewest numbers among those that do best; the spectrum only if nothing else does as well.
     pub law: Law,
     /// All laws that do as well, this one included, best first.
     pub alike: Vec<Law>,
@@ -67,10 +67,12 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
     let usable = || figures().filter(move |(row, _)| row.is_good() || !any_good);
     let best = usable().next()?.1;
     let alike: Vec<(&Row, f64)> = usable().filter(|(_, figure)| comparison.as_good(*figure, best)).collect();
-    // Part of a number makes a smoothed spectrum no simpler than a law with one more.
-    let numbers = |row: &Row| row.numbers.ceil();
-    let (chosen, figure) =
-        *alike.iter().min_by(|a, b| numbers(a.0).total_cmp(&numbers(b.0)).then(a.1.total_cmp(&b.1)))?;
+    // A spectrum has no numbers to carry to another test, so a law that does as well goes first.
+    let (chosen, figure) = *alike.iter().min_by(|(a, one), (b, other)| {
+        let spectrum = |row: &Row| row.law == Law::Spectrum;
+        let simpler = spectrum(a).cmp(&spectrum(b)).then(a.numbers.total_cmp(&b.numbers));
+        simpler.then(one.total_cmp(other))
+    })?;
     let others = figures().filter(|(row, _)| row.law != chosen.law);
     let costs = others.map(|(row, other)| match comparison.ranking {
         Ranking::Forward => (row.law, other / figure),
