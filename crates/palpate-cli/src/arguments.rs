@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use palpate::identify::SampleChoice;
+use palpate::laws::Law;
 use palpate::segment::{ContactChoice, HoldStart};
 use palpate::units::{Dimension, parse};
 use palpate_files::description::{parse_hold_start, parse_touch};
@@ -21,6 +23,7 @@ Examples:
   palpate inspect test.csv                       what is in a file, and which phases it has
   palpate analyze test.csv --out study           phases, laws, tables, figures, report.html
   palpate analyze test.csv --test ball.toml      the same with geometry: strains and v in 1/s
+  palpate compare test.csv                       which law of relaxation to use, and how sure that is
   palpate simulate squeeze.toml --out force.csv  force of a squeeze protocol
 
 Exit codes: 0 done, 1 done but the verdict is negative, 2 could not run.";
@@ -31,6 +34,7 @@ pub(crate) enum Command {
     Simulate(SimulateArguments),
     Inspect(InspectArguments),
     Analyze(AnalyzeArguments),
+    Compare(CompareArguments),
     Schema(SchemaArguments),
     Completions(CompletionsArguments),
 }
@@ -135,6 +139,77 @@ pub(crate) struct AnalyzeArguments {
     /// Record of the same motion without a body; its force is subtracted
     #[arg(long, value_name = "RECORD")]
     pub(crate) air_run: Option<PathBuf>,
+    /// Leave out the comparison of laws, which takes most of the time
+    #[arg(long)]
+    pub(crate) no_compare: bool,
+}
+
+/// Compare laws: which one foretells a hold, how sure that is, and what another would cost.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Laws: latency, latency:N (n given), maxwell, kelvin-voigt, standard-linear-solid, burgers,
+prony:K (K terms), spectrum, fung:K, fung-continuous, stretched, power, logarithmic,
+fractional-zener, diffusion.
+
+Examples:
+  palpate compare press.csv                               a table and a sentence for every hold
+  palpate compare press.csv --test ball.toml --out laws   report, JSON, tables, figures
+  palpate compare records --format markdown               one table of all records in a folder
+  palpate compare press.csv --laws latency,prony:2,prony:3 --cuts 0.1,0.2
+  palpate compare gripper.csv --creep                     displacement at constant force")]
+pub(crate) struct CompareArguments {
+    /// Records, or folders of records (searched with what lies below; TOML files are passed over)
+    #[arg(value_name = "RECORD", required = true)]
+    pub(crate) records: Vec<PathBuf>,
+    /// Test description (TOML): columns, units, geometry, options; for all records
+    #[arg(long, value_name = "TEST.toml")]
+    pub(crate) test: Option<PathBuf>,
+    /// Laws to compare; all that suit if not given
+    #[arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = law)]
+    pub(crate) laws: Option<Vec<Law>>,
+    /// Parts of a hold that are fitted to foretell the rest, as shares of its duration
+    #[arg(long, value_name = "SHARE,…", value_delimiter = ',', value_parser = share, allow_hyphen_values = true)]
+    pub(crate) cuts: Option<Vec<f64>>,
+    /// Compare laws of creep: displacement in holds of constant force
+    #[arg(long)]
+    pub(crate) creep: bool,
+    /// How residuals count; huber and tukey bear outliers
+    #[arg(long, value_enum, default_value_t = LossName::Squares)]
+    pub(crate) loss: LossName,
+    /// Which samples are fitted: all, or log:400 for about 400 spaced evenly in ln t
+    #[arg(long, value_name = "all|log:N", default_value = "all", value_parser = samples)]
+    pub(crate) samples: SampleChoice,
+    /// Compare only over this long from the start of each hold
+    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
+    pub(crate) fit_until: Option<f64>,
+    /// What to print on standard output
+    #[arg(long, value_enum, default_value_t = TableFormat::Text)]
+    pub(crate) format: TableFormat,
+    /// Folder for report.html, comparison.json, tables and figures
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// How residuals count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LossName {
+    /// Least squares
+    Squares,
+    /// Squares, but large ones by their size
+    Huber,
+    /// Squares, but large ones not at all
+    Tukey,
+}
+
+/// Output of `compare` on standard output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TableFormat {
+    /// Tables and sentences for people
+    Text,
+    /// One JSON object (see `palpate schema comparison`)
+    Json,
+    /// One table of all records and holds
+    Markdown,
 }
 
 /// Output of `analyze` on standard output.
@@ -163,6 +238,8 @@ pub(crate) enum SchemaName {
     Test,
     /// Result of `palpate analyze --format json`
     Analysis,
+    /// Result of `palpate compare --format json`
+    Comparison,
     /// summary.json of `palpate reproduce`
     Reproduction,
 }
@@ -211,4 +288,28 @@ fn hold_start(text: &str) -> Result<HoldStart, String> {
 
 fn touch(text: &str) -> Result<ContactChoice, String> {
     parse_touch(text).map_err(|error| error.to_string())
+}
+
+fn law(text: &str) -> Result<Law, String> {
+    text.trim().parse::<Law>().map_err(|error| error.to_string())
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(share) if share > 0.0 && share < 1.0 => Ok(share),
+        _ => Err("expected shares of the hold between 0 and 1, such as 0.25,0.5".to_owned()),
+    }
+}
+
+fn samples(text: &str) -> Result<SampleChoice, String> {
+    /// Fewer can carry no law.
+    const FEWEST: usize = 10;
+    match text.trim().split_once(':') {
+        None if text.trim() == "all" => Ok(SampleChoice::All),
+        Some(("log", count)) => match count.parse() {
+            Ok(count) if count >= FEWEST => Ok(SampleChoice::LogSpaced(count)),
+            _ => Err(format!("expected at least {FEWEST} samples, such as log:400")),
+        },
+        _ => Err("expected all or log:N, such as log:400".to_owned()),
+    }
 }

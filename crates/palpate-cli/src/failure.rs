@@ -31,6 +31,11 @@ impl Failure {
         Self::new(format!("{}: {message}", path.display()), hint)
     }
 
+    /// What is wrong, and what would help, for a list of what was left out.
+    pub(crate) fn into_parts(self) -> (String, Option<String>) {
+        (self.message, self.hint)
+    }
+
     /// Writes `error:` and `hint:` lines to standard error, in colour where it is a terminal.
     pub(crate) fn tell(&self) {
         tell("error", AnsiColor::Red, &self.message);

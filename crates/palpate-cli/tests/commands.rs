@@ -153,7 +153,13 @@ fn several_records_get_a_folder_each_and_one_bad_one_does_not_stop_the_others() 
 #[test]
 fn schemas_describe_the_documents() {
     let folder = tempdir().unwrap();
-    for (name, key) in [("analysis", "holds"), ("reproduction", "checks"), ("protocol", "step"), ("test", "specimen")] {
+    for (name, key) in [
+        ("analysis", "holds"),
+        ("comparison", "records"),
+        ("reproduction", "checks"),
+        ("protocol", "step"),
+        ("test", "specimen"),
+    ] {
         let schema = json(folder.path(), &["schema", name]);
         assert!(schema["properties"][key].is_object(), "{name} has no {key}");
     }
@@ -175,6 +181,7 @@ fn completions_and_help() {
     assert!(done(folder.path(), &["completions", "bash"]).contains("palpate"));
     insta::assert_snapshot!("help", done(folder.path(), &["--help"]));
     insta::assert_snapshot!("help_analyze", done(folder.path(), &["analyze", "--help"]));
+    insta::assert_snapshot!("help_compare", done(folder.path(), &["compare", "--help"]));
     insta::assert_snapshot!("help_simulate", done(folder.path(), &["simulate", "--help"]));
 }
 

@@ -7,10 +7,10 @@ use palpate_files::description::TestDescription;
 use palpate_report::document::{AnalysisDocument, Input};
 use palpate_report::study::{Pictures, analysis_bundle, analysis_text};
 
-use super::record::{description, record};
+use super::record::{description, input, record};
 use crate::arguments::{AnalyzeArguments, Format};
 use crate::failure::{Failure, Outcome};
-use crate::files::{folders, sha256, write_bundle};
+use crate::files::{folders, write_bundle};
 use crate::progress::Working;
 use crate::terminal::{note, print};
 
@@ -55,6 +55,9 @@ fn options(arguments: &AnalyzeArguments, test: Option<&TestDescription>) -> Anal
     options.segment.tolerance = arguments.tolerance.or(options.segment.tolerance);
     options.segment.minimum_hold = arguments.minimum_hold.or(options.segment.minimum_hold);
     options.touch = arguments.touch.unwrap_or(options.touch);
+    if arguments.no_compare {
+        options.compare = None;
+    }
     options
 }
 
@@ -75,15 +78,7 @@ fn one(
     }
     let working = Working::new(format!("fitting {}", path.display()));
     let analysis = analyze(&measured, options).map_err(|error| Failure::of_file(path, &error, Some(error.hint())))?;
-    let input = Input {
-        path: path.display().to_string(),
-        sha256: sha256(path)?,
-        rows: file.rows,
-        test: arguments.test.as_ref().map(|test| test.display().to_string()),
-        title: test
-            .and_then(|test| test.about.title.clone())
-            .unwrap_or_else(|| path.file_stem().unwrap_or_default().to_string_lossy().into_owned()),
-    };
+    let input = input(path, file.rows, arguments.test.as_deref(), test)?;
     if let Some(folder) = folder {
         let pictures = Pictures { png: arguments.png };
         let bundle = analysis_bundle(&analysis, input.clone(), pictures).map_err(|error| Failure::new(error, None))?;
@@ -105,5 +100,5 @@ fn one(
 }
 
 fn text(analysis: &Analysis, input: &Input) -> String {
-    format!("{}\n\n{}", input.title, analysis_text(analysis))
+    format!("{}\n\n{}", input.title, analysis_text(analysis, input))
 }

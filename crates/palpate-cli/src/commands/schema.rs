@@ -1,7 +1,7 @@
 //! `palpate schema`: JSON Schemas.
 
 use palpate_files::description::{schema_protocol, schema_test};
-use palpate_report::document::{AnalysisDocument, ReproductionDocument};
+use palpate_report::document::{AnalysisDocument, ComparisonDocument, ReproductionDocument};
 use schemars::schema_for;
 
 use crate::arguments::{SchemaArguments, SchemaName};
@@ -13,6 +13,7 @@ pub(crate) fn run(arguments: &SchemaArguments) -> Result<Outcome, Failure> {
         SchemaName::Protocol => schema_protocol(),
         SchemaName::Test => schema_test(),
         SchemaName::Analysis => schema_for!(AnalysisDocument).to_value(),
+        SchemaName::Comparison => schema_for!(ComparisonDocument).to_value(),
         SchemaName::Reproduction => schema_for!(ReproductionDocument).to_value(),
     };
     let text = serde_json::to_string_pretty(&schema).map_err(|error| Failure::new(error, None))?;

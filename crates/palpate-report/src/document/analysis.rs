@@ -6,7 +6,7 @@ use palpate::segment::{After, Phase, RelaxationType};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{FitDocument, SettingsDocument, Software};
+use super::{FitDocument, HoldComparisonDocument, SettingsDocument, Software};
 
 /// Where a record came from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
@@ -107,6 +107,8 @@ pub struct HoldDocument {
     pub preferred: Option<usize>,
     /// Index into `fits` of the lowest listed exponent that fits as well as the best one.
     pub lowest_order: Option<usize>,
+    /// Laws compared on this hold; `null` where that was left out or could not be done.
+    pub comparison: Option<HoldComparisonDocument>,
     /// What to know about this hold.
     pub findings: Vec<FindingDocument>,
 }
@@ -362,6 +364,7 @@ fn hold(hold: &HoldAnalysis) -> HoldDocument {
         }),
         preferred: hold.order.as_ref().and_then(|order| order.preferred),
         lowest_order: hold.order.as_ref().and_then(|order| order.lowest_order),
+        comparison: hold.comparison.as_ref().map(|found| HoldComparisonDocument::new(found, hold.signal.into())),
         findings: hold.findings.iter().map(FindingDocument::from).collect(),
     }
 }

@@ -5,15 +5,22 @@
 //! | `analysis.rs` | `palpate.analysis/1`, one analysed record |
 //! | `fit.rs` | one fit inside it |
 //! | `settings.rs` | the resolved settings |
+//! | `comparison.rs` | `palpate.comparison/1`, laws compared on the holds of records |
 //! | `reproduction.rs` | `palpate.reproduction/1`, the summary of the reproduced study |
 
 mod analysis;
+mod comparison;
 mod fit;
 mod reproduction;
 mod settings;
 
 pub(crate) use analysis::after_word;
 pub use analysis::{AnalysisDocument, FindingDocument, HoldDocument, Input, TableRow};
+pub(crate) use comparison::certainty_word;
+pub use comparison::{
+    ComparedHoldDocument, ComparedRecordDocument, ComparisonDocument, ComparisonSettingsDocument,
+    HoldComparisonDocument, LawDocument, NumberDocument, VerdictDocument,
+};
 pub use fit::FitDocument;
 pub(crate) use fit::termination;
 pub use reproduction::{CheckDocument, ReproductionDocument};

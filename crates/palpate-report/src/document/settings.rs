@@ -107,11 +107,7 @@ impl SettingsDocument {
             slope_window: segment.slope_window,
             minimum_hold_s: segment.minimum_hold,
             minimum_samples: segment.minimum_samples,
-            hold_start: match options.segment.hold_start {
-                HoldStart::Peak => "peak".to_owned(),
-                HoldStart::Settled => "settled".to_owned(),
-                HoldStart::AfterPeak(delay) => format!("peak + {delay} s"),
-            },
+            hold_start: hold_start_word(options.segment.hold_start),
             touch: match options.touch {
                 ContactChoice::Auto => "auto".to_owned(),
                 ContactChoice::AsRecorded => "as recorded".to_owned(),
@@ -128,5 +124,14 @@ impl SettingsDocument {
             rate_window_samples: options.rate_window.samples,
             rate_window_share: options.rate_window.share,
         }
+    }
+}
+
+/// From where in a hold the laws are fitted, as it is written in a description.
+pub(super) fn hold_start_word(start: HoldStart) -> String {
+    match start {
+        HoldStart::Peak => "peak".to_owned(),
+        HoldStart::Settled => "settled".to_owned(),
+        HoldStart::AfterPeak(delay) => format!("peak + {delay} s"),
     }
 }

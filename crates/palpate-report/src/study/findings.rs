@@ -2,6 +2,7 @@
 
 use palpate::analysis::{Analysis, Finding as RecordFinding, HoldAnalysis, Severity as RecordSeverity};
 
+use crate::compared::ComparedRecord;
 use crate::number::typeset;
 use crate::page::{Finding, Severity};
 
@@ -11,6 +12,8 @@ pub(super) const MOST_LINES: usize = 6;
 const MOST_PLAIN: usize = 2;
 /// Places before the further lines of a finding on a terminal.
 const INDENT: usize = 9;
+/// Width of a terminal.
+const WIDTH: usize = 100;
 /// A force below this share of the largest one of the record is none.
 const NO_FORCE: f64 = 0.01;
 
@@ -52,6 +55,11 @@ pub(super) fn gathered(analysis: &Analysis, most: usize) -> Vec<Gathered> {
             }
         }
     }
+    merged(seen, most)
+}
+
+/// One entry for each code, the most severe first.
+fn merged(mut seen: Vec<Seen<'_>>, most: usize) -> Vec<Gathered> {
     let mut list = Vec::new();
     while let Some(first) = seen.first() {
         let (severity, code) = (first.severity, first.finding.code());
@@ -77,16 +85,29 @@ impl<'a> Seen<'a> {
         let released = matches!(finding, RecordFinding::NoContactArea) && hold.is_some_and(|hold| open(analysis, hold));
         let severity = match finding.severity() {
             _ if released => Severity::Info,
-            RecordSeverity::Info => Severity::Info,
-            RecordSeverity::Caution => Severity::Caution,
-            RecordSeverity::Warning => Severity::Warning,
+            severity => shown(severity),
         };
         Self {
             severity,
+            ..Self::of(finding, hold.map(|hold| hold.number))
+        }
+    }
+
+    fn of(finding: &'a RecordFinding, hold: Option<usize>) -> Self {
+        Self {
+            severity: shown(finding.severity()),
             finding,
-            hold: hold.map(|hold| hold.number),
+            hold,
             text: typeset(&finding.seen()),
         }
+    }
+}
+
+fn shown(severity: RecordSeverity) -> Severity {
+    match severity {
+        RecordSeverity::Info => Severity::Info,
+        RecordSeverity::Caution => Severity::Caution,
+        RecordSeverity::Warning => Severity::Warning,
     }
 }
 
@@ -119,7 +140,7 @@ fn gather((severity, code): (Severity, &'static str), alike: Vec<Seen<'_>>, most
     let mut lines: Vec<(String, String)> =
         groups.into_iter().take(cut).map(|(text, holds)| (holds_named(&holds), text)).collect();
     if !more.is_empty() {
-        lines.push((holds_named(&more), "likewise, with numbers of their own (see analysis.json)".to_owned()));
+        lines.push((holds_named(&more), "likewise, with numbers of their own (see the JSON output)".to_owned()));
     }
     Gathered {
         severity,
@@ -168,22 +189,47 @@ fn sentence(text: &str) -> String {
 
 /// The findings for a terminal: severity and code, then what was seen where.
 pub(super) fn plain(analysis: &Analysis) -> String {
-    const WIDTH: usize = 100;
+    lines(&gathered(analysis, MOST_PLAIN))
+}
+
+/// Likewise for a compared record.
+pub(super) fn plain_of(record: &ComparedRecord) -> String {
+    lines(&gathered_of(record, MOST_PLAIN))
+}
+
+/// All findings of a compared record and of its holds.
+pub(super) fn gathered_of(record: &ComparedRecord, most: usize) -> Vec<Gathered> {
+    let whole = record.findings.iter().map(|finding| Seen::of(finding, None));
+    let of_holds = record
+        .holds
+        .iter()
+        .flat_map(|hold| hold.findings.iter().map(|finding| Seen::of(finding, Some(hold.number))));
+    merged(whole.chain(of_holds).collect(), most)
+}
+
+fn lines(findings: &[Gathered]) -> String {
     let mut text = String::new();
-    for finding in gathered(analysis, MOST_PLAIN) {
+    for finding in findings {
         let mut head = format!("{:<9}{}  ", finding.severity.word(), finding.code);
         for (place, seen) in &finding.lines {
             let place = place.replacen("Hold", "hold", 1);
             let told = if place.is_empty() { seen.clone() } else { format!("{place}: {seen}") };
-            indented(&mut text, &head, &told, WIDTH);
+            indented(&mut text, (&head, INDENT), &told, WIDTH);
             head = " ".repeat(INDENT);
         }
     }
     text
 }
 
+/// A sentence in lines of a terminal.
+pub(super) fn wrapped(sentence: &str) -> String {
+    let mut text = String::new();
+    indented(&mut text, ("", 0), sentence, WIDTH);
+    text
+}
+
 /// A text behind `head`, its further lines set in.
-fn indented(out: &mut String, head: &str, text: &str, width: usize) {
+fn indented(out: &mut String, (head, indent): (&str, usize), text: &str, width: usize) {
     let mut used = head.chars().count();
     out.push_str(head);
     let mut fresh = true;
@@ -191,8 +237,8 @@ fn indented(out: &mut String, head: &str, text: &str, width: usize) {
         let length = word.chars().count();
         if !fresh && used + 1 + length > width {
             out.push('\n');
-            out.push_str(&" ".repeat(INDENT));
-            (used, fresh) = (INDENT, true);
+            out.push_str(&" ".repeat(indent));
+            (used, fresh) = (indent, true);
         }
         if !fresh {
             out.push(' ');
@@ -259,7 +305,7 @@ mod tests {
     #[test]
     fn terminal_lines_are_wrapped() {
         let mut text = String::new();
-        indented(&mut text, "info    code  ", &"word ".repeat(40), 60);
+        indented(&mut text, ("info    code  ", INDENT), &"word ".repeat(40), 60);
         assert!(text.lines().count() > 2 && text.lines().all(|line| line.chars().count() <= 60));
         assert!(text.lines().skip(1).all(|line| line.starts_with("         w")));
     }

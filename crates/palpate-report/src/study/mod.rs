@@ -6,6 +6,9 @@
 //! | `record_figures.rs` | figures of an analysed record |
 //! | `record_tables.rs` | its tables |
 //! | `record_page.rs` | its page |
+//! | `comparison_tables.rs` | laws compared: tables, text and Markdown |
+//! | `comparison_figures.rs` | forward errors, residuals and spectra |
+//! | `comparison_page.rs` | their page |
 //! | `findings.rs` | what was found, gathered over the holds |
 //! | `method.rs` | the settings that a page tells |
 //! | `law_figures.rs` | the law and its closed form (figures 1 and 2 of the paper) |
@@ -15,6 +18,9 @@
 //! | `reproduction_page.rs` | its page |
 
 mod bundle;
+mod comparison_figures;
+mod comparison_page;
+mod comparison_tables;
 mod findings;
 mod law_figures;
 mod method;
@@ -27,6 +33,8 @@ mod trajectory;
 mod wave_figure;
 
 pub use bundle::{Bundle, Pictures, StudyError};
+pub use comparison_page::comparison_bundle;
+pub use comparison_tables::{comparison_markdown, comparison_text};
 pub use record_page::analysis_bundle;
 pub use record_tables::analysis_text;
 pub use reproduction::{Reproduction, reproduce, reproduction_bundle};

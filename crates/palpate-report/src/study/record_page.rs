@@ -1,10 +1,16 @@
 //! The page of an analysed record.
 
+use std::slice;
+
 use palpate::analysis::{Analysis, JointHolds};
 use palpate::identify::TrendVerdict;
 use palpate::segment::{After, Phase};
 
-use super::{Bundle, Pictures, StudyError, findings, method, record_figures, record_tables};
+use super::{
+    Bundle, Pictures, StudyError, comparison_figures, comparison_page, comparison_tables, findings, method,
+    record_figures, record_tables,
+};
+use crate::compared::ComparedRecord;
 use crate::document::{AnalysisDocument, Input};
 use crate::number::significant;
 use crate::page::{Block, Page, Section};
@@ -25,19 +31,34 @@ pub fn analysis_bundle(analysis: &Analysis, input: Input, pictures: Pictures) ->
         ])
         .flatten()
         .collect();
-    for figure in &figures {
+    let compared = ComparedRecord::of_analysis(analysis, input.clone());
+    let of_laws = comparison_figures::all(&compared, "");
+    for figure in figures.iter().chain(&of_laws) {
         bundle.figure(figure, pictures)?;
+    }
+    if let Some(compare) = &analysis.options.compare {
+        bundle.table(&comparison_tables::laws(slice::from_ref(&compared), &compare.cuts));
+        comparison_tables::verdicts(&compared).iter().for_each(|table| bundle.table(table));
     }
     for table in record_tables::all(analysis) {
         bundle.table(&table);
     }
-    let page = page(analysis, &input, &figures)?;
+    let comparison = match analysis.options.compare {
+        Some(_) => Some(comparison_page::blocks(&compared, &of_laws)?),
+        None => None,
+    };
+    let page = page(analysis, &input, &figures, comparison)?;
     bundle.text("report.html", page.to_html());
     bundle.json("analysis.json", &AnalysisDocument::new(analysis, input))?;
     Ok(bundle)
 }
 
-fn page(analysis: &Analysis, input: &Input, figures: &[crate::figure::Figure]) -> Result<Page, StudyError> {
+fn page(
+    analysis: &Analysis,
+    input: &Input,
+    figures: &[crate::figure::Figure],
+    comparison: Option<Vec<Block>>,
+) -> Result<Page, StudyError> {
     let figure = |name: &str| figures.iter().find(|figure| figure.name == name);
     let mut record = Section::new("The record").block(Block::paragraph(summary(analysis)));
     if let Some(picture) = figure("record") {
@@ -61,7 +82,11 @@ fn page(analysis: &Analysis, input: &Input, figures: &[crate::figure::Figure]) -
     let mut page = Page::new(&input.title, "Squeeze-and-hold test: phases, strains and the latency law")
         .section(Section::new("Findings").blocks(findings(analysis)))
         .section(record)
-        .section(laws)
+        .section(laws);
+    if let Some(blocks) = comparison {
+        page = page.section(Section::new("Which law to use").blocks(blocks));
+    }
+    page = page
         .section(Section::new("All fits").block(Block::Table(record_tables::fits(analysis))))
         .section(Section::new("Method and settings").blocks(method::blocks(analysis)));
     page = page

@@ -4,8 +4,9 @@ use palpate::analysis::{Analysis, HoldAnalysis, JointHolds, Signal};
 use palpate::identify::{Domain, Estimate, ExponentChoice, LatencyFit, Termination, TrendVerdict};
 use palpate::segment::{After, RelaxationType};
 
-use super::findings;
-use crate::document::{after_word, termination};
+use super::{comparison_tables, findings};
+use crate::compared::ComparedRecord;
+use crate::document::{Input, after_word, termination};
 use crate::number::significant;
 use crate::table::{Cell, Table, TableColumn};
 
@@ -367,7 +368,7 @@ pub(super) fn all(analysis: &Analysis) -> Vec<Table> {
 
 /// The tables and findings as text for a terminal.
 #[must_use]
-pub fn analysis_text(analysis: &Analysis) -> String {
+pub fn analysis_text(analysis: &Analysis, input: &Input) -> String {
     let mut text = String::new();
     let mut tables = vec![holds(analysis)];
     tables.extend(paper_table(analysis, After::Loading));
@@ -391,6 +392,9 @@ pub fn analysis_text(analysis: &Analysis) -> String {
             if overlay.layers_fitted { " (fitted)" } else { "" },
             significant(100.0 * overlay.relative, 2)
         ));
+    }
+    if analysis.options.compare.is_some() {
+        text.push_str(&comparison_tables::verdict_text(&ComparedRecord::of_analysis(analysis, input.clone())));
     }
     let findings = findings::plain(analysis);
     if !findings.is_empty() {

@@ -13,6 +13,7 @@
 
 mod cell;
 mod csv;
+mod markdown;
 mod plain;
 
 pub use cell::Cell;
@@ -109,6 +110,12 @@ impl Table {
     #[must_use]
     pub fn to_plain_text(&self) -> String {
         plain::write(self)
+    }
+
+    /// The table as Markdown, without its caption and remarks; cells may hold Markdown of their own.
+    #[must_use]
+    pub fn to_markdown(&self) -> String {
+        markdown::write(self)
     }
 
     /// The cell at a place; places outside the rows hold empty text.

@@ -8,7 +8,8 @@ use super::{AnalysisOptions, Finding};
 use crate::choose::{Comparison, compare_laws};
 use crate::contact::Specimen;
 use crate::identify::{
-    ExponentChoice, FitError, LatencyFit, OrderSelection, Samples, Termination, fit_hold, fit_rates, select_order,
+    ExponentChoice, FitError, LatencyFit, LawFit, OrderSelection, Samples, Termination, fit_hold, fit_rates,
+    select_order,
 };
 use crate::laws::Law;
 use crate::record::Record;
@@ -163,7 +164,7 @@ pub(super) fn analyze_hold(
         hold.comparison = compare(&hold, options);
         hold.rate_bias = hold.preferred().and_then(|fit| rate_bias(&hold, fit, &options.rate_window, &options.fit));
         judge(&mut hold);
-        judge_comparison(&mut hold);
+        hold.findings.extend(hold.comparison.iter().flat_map(comparison_findings));
     }
     hold.findings.extend(not_a_hold(record, &segment));
     hold
@@ -271,28 +272,33 @@ fn compare(hold: &HoldAnalysis, options: &AnalysisOptions) -> Option<Comparison>
     compare_laws(&samples, options).ok()
 }
 
-/// Adds what the comparison gives cause to say.
-fn judge_comparison(hold: &mut HoldAnalysis) {
-    let Some(comparison) = &hold.comparison else { return };
+/// What a comparison gives cause to say.
+pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
     let ended = |termination: &[Termination]| -> Vec<Law> {
         let fits = comparison.rows.iter().filter_map(|row| row.fit.as_ref().ok());
         fits.filter(|fit| termination.contains(&fit.termination)).map(|fit| fit.law).collect()
     };
     let at_bound = ended(&[Termination::RateAtBound, Termination::ExponentAtBound]);
-    let merged = ended(&[Termination::Singular]);
+    let fits = comparison.rows.iter().filter_map(|row| row.fit.as_ref().ok());
+    let none = |fit: &&LawFit| {
+        matches!(fit.termination, Termination::Singular | Termination::TermsMerged) || !fit.ghosts.is_empty()
+    };
+    let merged: Vec<Law> = fits.filter(none).map(|fit| fit.law).collect();
     let alike = comparison.verdict.as_ref().map_or_else(Vec::new, |verdict| {
         let rest = verdict.alike.iter().filter(|law| **law != verdict.law);
         [verdict.law].iter().chain(rest).copied().collect()
     });
+    let mut findings = Vec::new();
     if !at_bound.is_empty() {
-        hold.findings.push(Finding::ParametersAtBound { laws: at_bound });
+        findings.push(Finding::ParametersAtBound { laws: at_bound });
     }
     if !merged.is_empty() {
-        hold.findings.push(Finding::TermsIndistinguishable { laws: merged });
+        findings.push(Finding::TermsIndistinguishable { laws: merged });
     }
     if alike.len() > 1 {
-        hold.findings.push(Finding::LawsIndistinguishable { laws: alike });
+        findings.push(Finding::LawsIndistinguishable { laws: alike });
     }
+    findings
 }
 
 /// Error of a fit over the samples from index `fitted` on.

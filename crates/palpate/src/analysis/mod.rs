@@ -5,6 +5,7 @@
 //! | `options.rs` | everything that may be asked, with defaults |
 //! | `pipeline.rs` | the order of the steps |
 //! | `hold.rs` | one hold: signal, fits in both domains, prediction beyond the window |
+//! | `creep.rs` | holds of constant force |
 //! | `behaviour.rs` | holds that are none: drift, feedback control |
 //! | `rate_bias.rs` | how far noise takes the rate domain from the truth |
 //! | `joint.rs` | one law for several holds against one for each |
@@ -15,6 +16,7 @@
 
 mod across;
 mod behaviour;
+mod creep;
 mod finding;
 mod hold;
 mod joint;
@@ -25,7 +27,9 @@ mod pipeline;
 mod rate_bias;
 
 pub use across::{Across, LevelAgreement, Trend};
+pub use creep::{CreepError, CreepHold, creep_holds};
 pub use finding::{Finding, Severity};
+use hold::comparison_findings;
 pub use hold::{HoldAnalysis, Prediction, Signal};
 pub use joint::{JointAnalysis, JointHolds};
 pub use modulus::ModulusSource;

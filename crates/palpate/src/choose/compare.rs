@@ -107,6 +107,8 @@ pub struct Comparison {
     pub ranking: Ranking,
     /// Cut points, s after the first sample.
     pub cuts: Vec<f64>,
+    /// Time from the first to the last sample, s.
+    pub duration: f64,
     /// Change of the signal over the hold, in its unit: forward errors are shares of it.
     pub change: f64,
     /// Standard deviation of the noise, in the unit of the signal.
@@ -146,9 +148,19 @@ pub fn compare_laws(samples: &Samples<'_>, options: &CompareOptions) -> Result<C
     let duration = times[times.len() - 1] - times[0];
     let change = change(values);
     let noise = noise_in_time(times, values);
-    let cuts = cuts(samples, options, duration, noise);
-    for row in &mut rows {
-        row.forward = ForwardScore::of(samples, row.law, &options.fit, &cuts, change);
+    let mut cuts = cuts(samples, options, duration, noise);
+    let foretell_from = |rows: &mut [Row], cuts: &[f64]| {
+        for row in rows {
+            row.forward = ForwardScore::of(samples, row.law, &options.fit, cuts, change);
+        }
+    };
+    foretell_from(&mut rows, &cuts);
+    // A first part that no law can be fitted to (a force that has not changed by a digit yet) is no cut.
+    let told: Vec<bool> =
+        (0..cuts.len()).map(|cut| rows.iter().any(|row| row.forward.forecasts[cut].is_some())).collect();
+    if told.contains(&false) {
+        cuts = cuts.into_iter().zip(told).filter(|(_, told)| *told).map(|(cut, _)| cut).collect();
+        foretell_from(&mut rows, &cuts);
     }
     let closest = rows
         .iter()
@@ -166,6 +178,7 @@ pub fn compare_laws(samples: &Samples<'_>, options: &CompareOptions) -> Result<C
         rows,
         ranking,
         cuts,
+        duration,
         change,
         noise,
         samples: values.len(),

@@ -6,13 +6,16 @@
 //! | `forward.rs` | forward score: fit the first part of the hold, predict the rest |
 //! | `compare.rs` | all laws on one hold, ranked |
 //! | `verdict.rs` | which law to use, how sure that is, what another would cost |
+//! | `sentence.rs` | that in one sentence |
 
 mod compare;
 mod criteria;
 mod forward;
+mod sentence;
 mod verdict;
 
 pub use compare::{CompareOptions, Comparison, Ranking, Row, compare_laws};
 pub use criteria::{Criteria, criteria};
 pub use forward::ForwardScore;
+pub use sentence::name_in_words;
 pub use verdict::{Certainty, Verdict};

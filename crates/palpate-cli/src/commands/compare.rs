@@ -1,0 +1,176 @@
+//! `palpate compare`: which law to use.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use palpate::analysis::{AnalysisOptions, analyze, creep_holds};
+use palpate::choose::CompareOptions;
+use palpate::identify::Loss;
+use palpate::laws::Response;
+use palpate_files::description::TestDescription;
+use palpate_report::compared::{ComparedRecord, LeftOut};
+use palpate_report::document::{ComparisonDocument, ComparisonSettingsDocument};
+use palpate_report::study::{Pictures, comparison_bundle, comparison_markdown, comparison_text};
+
+use super::record::{description, input, record};
+use crate::arguments::{CompareArguments, LossName, TableFormat};
+use crate::failure::{Failure, Outcome};
+use crate::files::write_bundle;
+use crate::progress::Working;
+use crate::terminal::{note, print};
+
+pub(crate) fn run(arguments: &CompareArguments) -> Result<Outcome, Failure> {
+    let test = description(arguments.test.as_deref())?;
+    let options = options(arguments, test.as_ref())?;
+    let paths = records_of(&arguments.records)?;
+    let alone = paths.len() == 1 && arguments.records == paths;
+    let (mut compared, mut left_out) = (Vec::new(), Vec::new());
+    for path in paths {
+        match one(&path, arguments, test.as_ref(), &options) {
+            Ok(record) if record.has_verdict() => compared.push(record),
+            Ok(_) => left_out.push(LeftOut {
+                path: path.display().to_string(),
+                reason: "no law could be fitted to any hold".to_owned(),
+                hint: None,
+            }),
+            Err(failure) if alone => return Err(failure),
+            Err(failure) => left_out.push(without(&path, failure)),
+        }
+    }
+    if let Some(folder) = &arguments.out {
+        let bundle = comparison_bundle(&compared, &left_out, settings(&options), Pictures::default())
+            .map_err(|error| Failure::new(error, None))?;
+        write_bundle(folder, &bundle)?;
+    }
+    let text = match arguments.format {
+        TableFormat::Text => comparison_text(&compared, &left_out),
+        TableFormat::Markdown => comparison_markdown(&compared, &left_out, &options.compared.laws()),
+        TableFormat::Json => {
+            let document = ComparisonDocument::new(&compared, &left_out, settings(&options));
+            let text = serde_json::to_string_pretty(&document).map_err(|error| Failure::new(error, None))?;
+            format!("{text}\n")
+        }
+    };
+    print(&text)?;
+    if let Some(folder) = &arguments.out {
+        note(&format!("report written: {}", folder.join("report.html").display()));
+    }
+    Ok(if compared.is_empty() { Outcome::Negative } else { Outcome::Done })
+}
+
+/// What is asked of every record.
+struct Options {
+    analysis: AnalysisOptions,
+    compared: CompareOptions,
+}
+
+/// The description's options, overridden by what was typed.
+fn options(arguments: &CompareArguments, test: Option<&TestDescription>) -> Result<Options, Failure> {
+    let mut analysis = test.map_or_else(AnalysisOptions::default, TestDescription::analysis_options);
+    analysis.fit_until = arguments.fit_until.or(analysis.fit_until);
+    let mut compared = CompareOptions::default();
+    compared.fit.response = if arguments.creep { Response::Creep } else { Response::Relaxation };
+    compared.fit.confidence = analysis.fit.confidence;
+    compared.fit.samples = arguments.samples;
+    compared.fit.loss = match arguments.loss {
+        LossName::Squares => Loss::Squares,
+        LossName::Huber => Loss::Huber,
+        LossName::Tukey => Loss::Tukey,
+    };
+    if let Some(laws) = &arguments.laws {
+        compared.laws.clone_from(laws);
+        compared.laws.dedup();
+    }
+    if let Some(law) = compared.laws.iter().find(|law| !law.describes(compared.fit.response)) {
+        let (has, other) = if arguments.creep { ("creep", "without --creep") } else { ("relaxation", "with --creep") };
+        return Err(Failure::new(
+            format!("--laws: {law} has no form for {has}"),
+            Some(format!("leave it out, or compare {other}")),
+        ));
+    }
+    if let Some(cuts) = &arguments.cuts {
+        compared.cuts.clone_from(cuts);
+        compared.cuts.sort_by(f64::total_cmp);
+        compared.cuts.dedup();
+    }
+    analysis.compare = Some(compared.clone());
+    Ok(Options { analysis, compared })
+}
+
+fn settings(options: &Options) -> ComparisonSettingsDocument {
+    ComparisonSettingsDocument::new(&options.compared, options.analysis.segment.hold_start, options.analysis.fit_until)
+}
+
+/// The files that were named, and those below the folders that were named, in order.
+fn records_of(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let mut paths = Vec::new();
+    for path in named {
+        if !path.is_dir() {
+            paths.push(path.clone());
+            continue;
+        }
+        let before = paths.len();
+        below(path, &mut paths)?;
+        if paths.len() == before {
+            return Err(Failure::of_file(
+                path,
+                "expected a folder with records, found none in it or below",
+                Some("name a file, or a folder that holds some (TOML and hidden files are passed over)".to_owned()),
+            ));
+        }
+    }
+    Ok(paths)
+}
+
+/// All files below a folder but hidden ones and descriptions, sorted by path.
+fn below(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<(), Failure> {
+    let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+    let mut entries: Vec<PathBuf> = entries
+        .map_err(|error| Failure::of_file(folder, error, None))?
+        .into_iter()
+        .filter(|entry| !entry.file_name().to_string_lossy().starts_with('.'))
+        .map(|entry| entry.path())
+        .collect();
+    entries.sort();
+    for path in entries {
+        if path.is_dir() && !path.is_symlink() {
+            below(&path, paths)?;
+        } else if path.is_file() && path.extension().is_none_or(|extension| extension != "toml") {
+            paths.push(path);
+        }
+    }
+    Ok(())
+}
+
+fn one(
+    path: &Path,
+    arguments: &CompareArguments,
+    test: Option<&TestDescription>,
+    options: &Options,
+) -> Result<ComparedRecord, Failure> {
+    let file = record(path, test)?;
+    let input = input(path, file.rows, arguments.test.as_deref(), test)?;
+    let _working = Working::new(format!("comparing laws on {}", path.display()));
+    let asked = &options.analysis;
+    if arguments.creep {
+        let holds = creep_holds(&file.record, &asked.segment, &options.compared, asked.fit_until)
+            .map_err(|error| Failure::of_file(path, &error, Some(error.hint().to_owned())))?;
+        return Ok(ComparedRecord::of_creep(holds, input));
+    }
+    let analysis = analyze(&file.record, asked).map_err(|error| Failure::of_file(path, &error, Some(error.hint())))?;
+    Ok(ComparedRecord::of_analysis(&analysis, input))
+}
+
+/// A file that was left out, with the reason without its own name.
+fn without(path: &Path, failure: Failure) -> LeftOut {
+    let (message, hint) = failure.into_parts();
+    let path = path.display().to_string();
+    let reason = message
+        .strip_prefix(&path)
+        .map_or(message.as_str(), |rest| rest.trim_start_matches([':', ',', ' ']));
+    LeftOut {
+        reason: reason.to_owned(),
+        path,
+        hint,
+    }
+}

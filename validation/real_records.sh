@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# Writes docs/validation.md: every law on every hold of the real records in a folder.
+#
+#   validation/real_records.sh DATA [PALPATE]
+#
+# DATA: the folder of public records (the one that PALPATE_DATA names for the tests). PALPATE: the command; built if it is not
+# given. Records of others are not part of this repository.
+set -euo pipefail
+root="$(cd "$(dirname "$0")/.." && pwd)"
+data="$(cd "${1:?usage: validation/real_records.sh DATA [PALPATE]}" && pwd)"
+if [[ $# -ge 2 ]]; then
+    palpate="$(cd "$(dirname "$2")" && pwd)/$(basename "$2")"
+else
+    cargo build --release -q -p palpate-cli --manifest-path "$root/Cargo.toml"
+    target="$(cargo metadata --no-deps --format-version 1 --manifest-path "$root/Cargo.toml" |
+        sed -n 's/.*"target_directory":"\([^"]*\)".*/\1/p')"
+    palpate="$target/release/palpate"
+fi
+
+page="$(mktemp)"
+trap 'rm -f "$page"' EXIT
+cd "$data"
+
+# part TITLE TEXT ARGUMENTS...: a heading, a sentence, and the table of one call; what is missing is said.
+part() {
+    local title="$1" text="$2"
+    shift 2
+    printf '\n## %s\n\n%s\n\n' "$title" "$text" >>"$page"
+    printf '<!-- palpate compare %s -->\n\n' "${*//$root\//}" >>"$page"
+    # Exit code 1: nothing could be compared, which the list below says.
+    "$palpate" compare "$@" --format markdown >>"$page" || [[ $? == 1 ]]
+}
+
+cat >"$page" <<'TEXT'
+# Real records
+
+Records of others, measured on other machines, with every law on every hold. Written by one command:
+
+```sh
+validation/real_records.sh "$PALPATE_DATA"
+```
+
+Each law is fitted to the first quarter, third and half of a hold and held against the rest. The columns are its root mean
+square error there, averaged over the three, **in % of the change of the signal over the hold**; the smallest is bold. In
+brackets: a fit to the whole hold that ended at the edge of its range, or whose terms merge. Δ: the hold is too short to
+foretell, and the column is the excess of BIC. *Law to use* is the one with the fewest numbers among those that do as well as
+the best, *sure* says how clear that is, *as good* how many others do as well. What the columns and findings mean:
+[Choose a law](guides/choose-a-law.md), [Read the report](guides/reading-the-report.md#findings).
+
+The errors contain the noise of the samples that are foretold: no law can be better than that. The records themselves are not
+part of this repository.
+TEXT
+
+tests="$root/examples/tests"
+part "VHB 4910 tape in tension" "Thirty minutes each, two stretches." vhb4910
+part "Soft foam in compression" "One hold of 60 s, force in steps of 0.1 N with 0.4 N of noise." \
+    foam --test "$tests/foam.toml"
+part "Tendon fascicle" "Rat tail at 5 % strain, 180 s." tendon
+part "Cardiac muscle" "Averages of skinned muscle after one stretch of 0.1 s to 100 s; the units of the authors." \
+    titin-ramps --test "$root/validation/records/titin.toml"
+part "Silicone strip in steps" "Steps of tension up and down. In one record nothing moves; it has no hold, as it should." \
+    silicone-steps --test "$tests/silicone-steps.toml"
+part "Gripper on fruit: creep" "Displacement at a set force. The kiwi was squeezed until it burst." \
+    gripper-fruit --test "$tests/gripper.toml" --creep
+part "Polymer in shear" "Stress after a step of shear, sampled every 10 ms: most of it is gone after the first samples." \
+    creep/HC1_stressrelaxation_20C_5.csv
+part "Formats that are not read yet" "Spreadsheets, atomic force microscopy, compliance without a force, repeated time stamps." \
+    afm-jpk zwick-indentation creep/CM3_Creep.creep creep/CM3_CreepRecovery.creep creep/creep_perihepatic_data.csv
+
+mv "$page" "$root/docs/validation.md"
+chmod 644 "$root/docs/validation.md"
+trap - EXIT
