@@ -179,6 +179,9 @@ pub(crate) struct CompareArguments {
     /// Which samples are fitted: all, or log:400 for about 400 spaced evenly in ln t
     #[arg(long, value_name = "all|log:N", default_value = "all", value_parser = samples)]
     pub(crate) samples: SampleChoice,
+    /// What linear laws take the loading before a hold for
+    #[arg(long, value_enum, default_value_t = RampName::Step)]
+    pub(crate) ramps: RampName,
     /// Compare only over this long from the start of each hold
     #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
     pub(crate) fit_until: Option<f64>,
@@ -188,6 +191,15 @@ pub(crate) struct CompareArguments {
     /// Folder for report.html, comparison.json, tables and figures
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+}
+
+/// What linear laws take the loading before a hold for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RampName {
+    /// A step at the start of the fit
+    Step,
+    /// The displacement that was measured
+    Measured,
 }
 
 /// How residuals count.

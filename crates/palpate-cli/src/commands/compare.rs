@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use palpate::analysis::{AnalysisOptions, analyze, creep_holds};
-use palpate::choose::CompareOptions;
+use palpate::choose::{CompareOptions, RampChoice};
 use palpate::identify::Loss;
 use palpate::laws::Response;
 use palpate_files::description::TestDescription;
@@ -13,7 +13,7 @@ use palpate_report::document::{ComparisonDocument, ComparisonSettingsDocument};
 use palpate_report::study::{Pictures, comparison_bundle, comparison_markdown, comparison_text};
 
 use super::record::{description, input, record};
-use crate::arguments::{CompareArguments, LossName, TableFormat};
+use crate::arguments::{CompareArguments, LossName, RampName, TableFormat};
 use crate::failure::{Failure, Outcome};
 use crate::files::write_bundle;
 use crate::progress::Working;
@@ -76,6 +76,10 @@ fn options(arguments: &CompareArguments, test: Option<&TestDescription>) -> Resu
         LossName::Squares => Loss::Squares,
         LossName::Huber => Loss::Huber,
         LossName::Tukey => Loss::Tukey,
+    };
+    compared.ramps = match arguments.ramps {
+        RampName::Step => RampChoice::Step,
+        RampName::Measured => RampChoice::Measured,
     };
     if let Some(laws) = &arguments.laws {
         compared.laws.clone_from(laws);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use palpate::choose::{Certainty, CompareOptions, Comparison, Ranking, Row, Verdict};
+use palpate::choose::{Certainty, CompareOptions, Comparison, RampChoice, Ranking, Row, Verdict};
 use palpate::identify::{Estimate, Forecast, LawFit, Loss, SampleChoice, SpectrumFit};
 use palpate::laws::Response;
 use palpate::segment::HoldStart;
@@ -188,6 +188,8 @@ pub struct ComparisonSettingsDocument {
     pub laws: Vec<String>,
     /// Cut points as shares of the duration of a hold.
     pub cuts: Vec<f64>,
+    /// What linear laws take the loading before a hold for: `step` or `measured`.
+    pub ramps: String,
     /// `squares`, `huber` or `tukey`.
     pub loss: String,
     /// `all` or `log:N`.
@@ -242,6 +244,11 @@ impl ComparisonSettingsDocument {
             .to_owned(),
             laws: options.laws().iter().map(ToString::to_string).collect(),
             cuts: options.cuts.clone(),
+            ramps: match options.ramps {
+                RampChoice::Step => "step",
+                RampChoice::Measured => "measured",
+            }
+            .to_owned(),
             loss: match options.fit.loss {
                 Loss::Squares => "squares",
                 Loss::Huber => "huber",

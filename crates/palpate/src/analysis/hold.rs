@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 use super::behaviour::not_a_hold;
 use super::rate_bias::{RateBias, rate_bias};
 use super::{AnalysisOptions, Finding};
-use crate::choose::{Comparison, compare_laws};
+use crate::choose::{Comparison, RampChoice, compare_laws};
 use crate::contact::Specimen;
 use crate::identify::{
     ExponentChoice, FitError, LatencyFit, LawFit, OrderSelection, Samples, Termination, fit_hold, fit_rates,
     select_order,
 };
-use crate::laws::Law;
+use crate::laws::{Law, Loading};
 use crate::record::Record;
 use crate::segment::{After, Relaxation, RelaxationType, Segment, classify_relaxation};
 use crate::simulate::Separation;
@@ -110,10 +110,10 @@ impl HoldAnalysis {
     }
 }
 
-/// Analyses one hold of a corrected record.
+/// Analyses one hold of a corrected record; `ramp` is the first sample of the loading or unloading before it.
 pub(super) fn analyze_hold(
     record: &Record,
-    segment: &Segment,
+    (segment, ramp): (&Segment, Option<usize>),
     number: usize,
     specimen: Option<&Specimen>,
     options: &AnalysisOptions,
@@ -161,7 +161,7 @@ pub(super) fn analyze_hold(
     }
     if take_signal(&mut hold, record, specimen, options) && hold.relaxation.kind != RelaxationType::None {
         fit_all(&mut hold, options);
-        hold.comparison = compare(&hold, options);
+        hold.comparison = compare(&hold, loading(record, ramp, &segment), options);
         hold.rate_bias = hold.preferred().and_then(|fit| rate_bias(&hold, fit, &options.rate_window, &options.fit));
         judge(&mut hold);
         hold.findings.extend(hold.comparison.iter().flat_map(comparison_findings));
@@ -266,10 +266,19 @@ fn fit_all(hold: &mut HoldAnalysis, options: &AnalysisOptions) {
 }
 
 /// Compares laws over the whole hold, or over what was asked to be fitted.
-fn compare(hold: &HoldAnalysis, options: &AnalysisOptions) -> Option<Comparison> {
-    let options = options.compare.as_ref()?;
+fn compare(hold: &HoldAnalysis, loading: Option<Loading>, options: &AnalysisOptions) -> Option<Comparison> {
+    let mut options = options.compare.clone()?;
+    if options.ramps == RampChoice::Measured {
+        options.fit.loading = loading;
+    }
     let samples = Samples::new(&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
-    compare_laws(&samples, options).ok()
+    compare_laws(&samples, &options).ok()
+}
+
+/// The displacement from sample `ramp` to where the fit of a hold starts.
+fn loading(record: &Record, ramp: Option<usize>, segment: &Segment) -> Option<Loading> {
+    let range = ramp?..segment.fit_start + 1;
+    Loading::new(&record.time()[range.clone()], &record.displacement()?[range]).ok()
 }
 
 /// What a comparison gives cause to say.
@@ -284,9 +293,10 @@ pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
         matches!(fit.termination, Termination::Singular | Termination::TermsMerged) || !fit.ghosts.is_empty()
     };
     let merged: Vec<Law> = fits.filter(none).map(|fit| fit.law).collect();
+    // A law that contains the chosen one must do as well.
     let alike = comparison.verdict.as_ref().map_or_else(Vec::new, |verdict| {
-        let rest = verdict.alike.iter().filter(|law| **law != verdict.law);
-        [verdict.law].iter().chain(rest).copied().collect()
+        let rivals = verdict.alike.iter().filter(|law| !law.contains(verdict.law));
+        [verdict.law].iter().chain(rivals).copied().collect()
     });
     let mut findings = Vec::new();
     if !at_bound.is_empty() {

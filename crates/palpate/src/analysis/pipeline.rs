@@ -122,7 +122,10 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
     let holds: Vec<HoldAnalysis> = segmentation
         .holds()
         .enumerate()
-        .map(|(index, segment)| analyze_hold(&record, segment, index + 1, specimen.as_ref(), options))
+        .map(|(index, segment)| {
+            let ramp = ramp_before(&segmentation, segment);
+            analyze_hold(&record, (segment, ramp), index + 1, specimen.as_ref(), options)
+        })
         .collect();
     nothing_to_fit(&holds)?;
     findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
@@ -147,6 +150,14 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
         overlay,
         findings,
     })
+}
+
+/// First sample of the loading or unloading that a hold follows.
+fn ramp_before(segmentation: &Segmentation, hold: &Segment) -> Option<usize> {
+    let before = segmentation.segments.iter().take_while(|segment| segment.start < hold.start);
+    let moving = |segment: &&Segment| matches!(segment.phase, Phase::Loading | Phase::Unloading);
+    let ramps: Vec<&Segment> = before.collect::<Vec<_>>().into_iter().rev().take_while(moving).collect();
+    ramps.last().map(|segment| segment.start)
 }
 
 /// The specimen with its given modulus, or with the one that the relaxed forces imply.

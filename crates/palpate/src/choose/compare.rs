@@ -9,6 +9,18 @@ use crate::identify::{FitError, LawFit, LawOptions, Samples, SpectrumFit, Spectr
 use crate::laws::{ExponentChoice, Law, Response};
 use crate::statistics::{mean, noise_in_time};
 
+/// What linear laws take the loading before a hold for. The latency law needs no choice: all that it remembers of a loading is
+/// the excess at its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RampChoice {
+    /// A step at the start of the fit, as is usual: right where the ramp is short beside all times of the law.
+    #[default]
+    Step,
+    /// What was measured, by the hereditary integral; of use to [`analyze`](crate::analysis::analyze), which knows the ramp.
+    Measured,
+}
+
 /// What may be asked of [`compare_laws`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -17,6 +29,8 @@ pub struct CompareOptions {
     pub laws: Vec<Law>,
     /// Options of every fit.
     pub fit: LawOptions,
+    /// What linear laws take the loading before a hold for.
+    pub ramps: RampChoice,
     /// Cut points as shares of the duration of the hold, each between 0 and 1.
     pub cuts: Vec<f64>,
 }
@@ -26,6 +40,7 @@ impl Default for CompareOptions {
         Self {
             laws: Vec::new(),
             fit: LawOptions::default(),
+            ramps: RampChoice::default(),
             cuts: vec![0.25, 1.0 / 3.0, 0.5],
         }
     }

@@ -13,7 +13,7 @@ pub enum Certainty {
     Clear,
     /// Best in the mean.
     Likely,
-    /// These data cannot tell most of the laws apart.
+    /// Most laws that are no generalisation of the chosen one do as well.
     Open,
 }
 
@@ -84,7 +84,11 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
         Ranking::Forward => next >= 2.0 * figure,
         Ranking::Information => next - figure >= 10.0,
     });
-    let certainty = if 2 * alike.len() > usable().count() {
+    // A law that contains the chosen one must do as well; that says nothing against it.
+    let rival = |law: Law| !law.contains(chosen.law);
+    let rivals = usable().filter(|(row, _)| rival(row.law)).count();
+    let alike_rivals = alike.iter().filter(|(row, _)| rival(row.law)).count();
+    let certainty = if 2 * alike_rivals > rivals {
         Certainty::Open
     } else if apart && cuts_won == comparison.cuts.len() {
         Certainty::Clear

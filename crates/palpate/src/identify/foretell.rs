@@ -57,7 +57,12 @@ pub fn foretell(samples: &Samples<'_>, law: Law, options: &LawOptions, cut: f64)
     let times: Vec<f64> = samples.times[fitted..].iter().map(|t| t - start).collect();
     let rest = Condensed::finer(&times, &samples.values[fitted..]);
     let (mut square, mut off, mut weight) = (rest.inside, 0.0, 0.0);
-    for ((value, root), predicted) in rest.values.iter().zip(&rest.roots).zip(curve.values(&rest.times)) {
+    let remembers = !matches!(law, Law::Latency { .. } | Law::Spectrum);
+    let predicted = match &options.loading {
+        Some(loading) if remembers => curve.after(loading, &rest.times),
+        _ => curve.values(&rest.times),
+    };
+    for ((value, root), predicted) in rest.values.iter().zip(&rest.roots).zip(predicted) {
         let error = root * predicted - value;
         square += error * error;
         off += root * error;

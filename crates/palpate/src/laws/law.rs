@@ -129,6 +129,40 @@ impl Law {
         }
     }
 
+    /// Whether the law can take the form of another, so that it must fit as well: a free exponent any exponent, more terms
+    /// fewer, the spectrum everything that relaxes one way, and any shape with a number that makes it exponential the standard
+    /// linear solid.
+    ///
+    /// ```
+    /// use palpate::laws::{ExponentChoice, Law};
+    /// let latency = |exponent| Law::Latency { exponent };
+    /// assert!(latency(ExponentChoice::Free).contains(latency(ExponentChoice::Fixed(5.0))));
+    /// assert!(Law::Prony { terms: 3 }.contains(Law::StandardLinearSolid));
+    /// assert!(!Law::StandardLinearSolid.contains(Law::Stretched));
+    /// ```
+    #[must_use]
+    pub fn contains(self, other: Self) -> bool {
+        let terms = |law: Self| match law {
+            Self::StandardLinearSolid => Some(1),
+            Self::Prony { terms } | Self::Fung { terms } => Some(terms),
+            _ => None,
+        };
+        let linear = Self::Latency {
+            exponent: ExponentChoice::Fixed(1.0),
+        };
+        let exponential = terms(other) == Some(1) || other == linear;
+        self == other
+            || match self {
+                Self::Spectrum => true,
+                Self::Latency {
+                    exponent: ExponentChoice::Free,
+                } => matches!(other, Self::Latency { .. } | Self::Power) || exponential,
+                Self::Stretched | Self::FractionalZener | Self::FungContinuous => exponential,
+                Self::Burgers => other == Self::KelvinVoigt,
+                _ => terms(self).zip(terms(other)).is_some_and(|(own, its)| own >= its),
+            }
+    }
+
     /// Whether the law has a form for this response.
     #[must_use]
     pub fn describes(self, response: Response) -> bool {
