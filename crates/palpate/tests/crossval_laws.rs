@@ -8,6 +8,7 @@ mod common;
 use std::collections::BTreeMap;
 
 use common::reference;
+use palpate::choose::criteria;
 use palpate::identify::{ConstantChoice, LawFit, LawOptions, Loss, Samples, Termination, fit_law};
 use palpate::laws::{ExponentChoice, Law, Response};
 use serde::Deserialize;
@@ -79,6 +80,7 @@ struct LawTolerance {
     values_in_standard_errors: f64,
     standard_errors_relative: f64,
     chi_square_relative: f64,
+    criteria_absolute: f64,
 }
 
 #[derive(Deserialize)]
@@ -95,6 +97,9 @@ struct LawCase {
     standard_errors: Vec<f64>,
     covariance: Vec<Vec<f64>>,
     chi_square: f64,
+    aic: f64,
+    aicc: f64,
+    bic: f64,
     derived: BTreeMap<String, [f64; 2]>,
 }
 
@@ -142,6 +147,11 @@ fn every_law_reaches_the_optima_of_the_reference() {
             far[4] = far[4].max((estimate.standard_error.unwrap() / error - 1.0).abs());
         }
         println!("{}: {}", case.name, shown(&far));
+        // lmfit's, on the same residuals.
+        let own = criteria(fit.residual_square, fit.samples as f64, fit.free_numbers() as f64);
+        for (own, reference) in [(own.aic, case.aic), (own.aicc, case.aicc), (own.bic, case.bic)] {
+            assert!((own - reference).abs() <= tolerance.criteria_absolute, "{}: {own} {reference}", case.name);
+        }
         let limits = [
             tolerance.values_in_standard_errors,
             tolerance.standard_errors_relative,
