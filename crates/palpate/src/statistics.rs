@@ -1,6 +1,8 @@
 //! Small robust statistics that several steps share.
 
 pub(crate) use crate::vector::products::dot;
+use std::cell::Cell;
+
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 /// Median; reorders `values`. NaN for an empty slice.
@@ -104,7 +106,27 @@ pub(crate) fn two_sided_p(z: f64) -> f64 {
 }
 
 /// The factor that turns a standard error into half a confidence interval of `level` with `freedom` degrees of freedom.
+///
+/// All numbers of a fit ask for the same one, and it costs as much as a pass over a thousand samples: the last is kept.
 pub(crate) fn coverage_factor(level: f64, freedom: f64) -> f64 {
+    thread_local! {
+        static LAST: Cell<[f64; 3]> = const { Cell::new([0.0; 3]) };
+    }
+    let [last_level, last_freedom, last] = LAST.get();
+    if level == last_level && freedom == last_freedom {
+        return last;
+    }
+    let factor = student_factor(level, freedom);
+    LAST.set([level, freedom, factor]);
+    factor
+}
+
+/// The same for a normal number of known variance.
+pub(crate) fn normal_factor(level: f64) -> f64 {
+    Normal::standard().inverse_cdf(0.5 + 0.5 * level)
+}
+
+fn student_factor(level: f64, freedom: f64) -> f64 {
     if !(0.0..1.0).contains(&level) {
         return f64::INFINITY;
     }
@@ -112,11 +134,6 @@ pub(crate) fn coverage_factor(level: f64, freedom: f64) -> f64 {
         Ok(t) => t.inverse_cdf(0.5 + 0.5 * level),
         Err(_) => f64::INFINITY,
     }
-}
-
-/// The same for a normal number of known variance.
-pub(crate) fn normal_factor(level: f64) -> f64 {
-    Normal::standard().inverse_cdf(0.5 + 0.5 * level)
 }
 
 #[cfg(test)]
