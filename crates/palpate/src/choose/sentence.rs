@@ -115,7 +115,7 @@ pub fn name_in_words(law: Law) -> String {
     match law {
         Law::Latency {
             exponent: ExponentChoice::Fixed(n),
-        } => format!("the {title} law with n = {n}"),
+        } if n != 1.0 => format!("the nonlinear latency law with n = {n}"),
         Law::Prony { terms } => format!("the {title} of {terms} {}", if terms == 1 { "term" } else { "terms" }),
         Law::Fung { terms } => format!("Fung's series of {terms} {}", if terms == 1 { "term" } else { "terms" }),
         Law::FungContinuous => "Fung's continuous spectrum".to_owned(),
