@@ -26,6 +26,8 @@ pub(super) struct Condensed {
     pub(super) roots: Vec<f64>,
     /// Weighted square of what the lines in the bins leave over.
     pub(super) inside: f64,
+    /// Number of samples condensed.
+    pub(super) samples: usize,
 }
 
 impl Condensed {
@@ -37,7 +39,10 @@ impl Condensed {
     /// Fewer nodes, for a search that needs no accuracy.
     pub(super) fn coarser(&self) -> Self {
         let bare: Vec<f64> = self.values.iter().zip(&self.roots).map(|(value, root)| value / root).collect();
-        Self::with_width(&self.times, &bare, Some(&self.roots), COARSE_WIDTH)
+        Self {
+            samples: self.samples,
+            ..Self::with_width(&self.times, &bare, Some(&self.roots), COARSE_WIDTH)
+        }
     }
 
     /// More nodes, for a residual square that counts: what bends inside a bin goes with the fourth power of its width.
@@ -46,7 +51,10 @@ impl Condensed {
     }
 
     fn with_width(times: &[f64], values: &[f64], roots: Option<&[f64]>, width: f64) -> Self {
-        let mut condensed = Self::default();
+        let mut condensed = Self {
+            samples: times.len(),
+            ..Self::default()
+        };
         let mut from = 0;
         while from < times.len() {
             let end = times[from] * (1.0 + width);
@@ -59,6 +67,11 @@ impl Condensed {
             from = until;
         }
         condensed
+    }
+
+    /// Share of the residual square by which noise alone makes one valley deeper than another: `variances` of the noise of a sample.
+    pub(super) fn noise(&self, variances: f64) -> f64 {
+        variances / self.samples as f64
     }
 
     pub(super) fn target(&self) -> Target<'_> {

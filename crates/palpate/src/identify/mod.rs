@@ -41,6 +41,7 @@ mod derived;
 mod estimates;
 mod foretell;
 mod ghosts;
+mod growth;
 mod joint;
 mod law_fit;
 mod law_options;

@@ -2,11 +2,12 @@
 
 use super::condensed::Condensed;
 use super::ghosts::{Ghost, ghosts};
+use super::growth::{Grown, grown};
 use super::model::Model;
 use super::samples::Scaled;
 use super::separable::{Ending, Refined, Solution, Termination, Work, curvature, descend, polished, refine};
 use super::starts::{ends, starts};
-use super::thorough::thorough;
+use super::thorough::{exact, thorough};
 
 /// Valleys that are refined on condensed samples.
 const VALLEYS: usize = 6;
@@ -32,6 +33,8 @@ pub(super) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
     if doubtful && model.free().len() > 0 {
         solution = thorough(model, scaled, &nodes, solution, most_iterations, work);
         mark_merged(model, &mut solution);
+    } else {
+        solution = exact(model, scaled, solution, work);
     }
     Some(solution)
 }
@@ -84,16 +87,33 @@ pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize
         most_iterations,
     };
     let mut kinked = Vec::new();
+    let explore = |start: &[f64], aside: &mut Work| {
+        let refined = refine(&shapes, nodes.target(), start, rough, aside);
+        (refined.square() + nodes.inside, refined.theta().to_vec())
+    };
     for start in starts(model, nodes, VALLEYS, work) {
+        found.push(explore(&start, &mut aside));
         if ends(model, &start) {
-            kinked.push(start.clone());
+            kinked.push(start);
         }
-        let refined = refine(&shapes, nodes.target(), &start, rough, &mut aside);
-        found.push((refined.square() + nodes.inside, refined.theta().to_vec()));
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    if model.is_series()
+        && let Some((least, _)) = found.first()
+    {
+        let limit = least * (1.0 + nodes.noise(FELT));
+        for start in longer(model, nodes, most_iterations, work) {
+            if start.square + nodes.inside <= limit {
+                found.push(explore(&start.theta, &mut aside));
+            }
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
     }
     work.starts += aside.starts;
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some(limit) = found.first().map(|(least, _)| least * (1.0 + ALIKE) + f64::MIN_POSITIVE) else {
+    let Some(limit) = found
+        .first()
+        .map(|(least, _)| least * (1.0 + f64::max(ALIKE, nodes.noise(TOLD))) + f64::MIN_POSITIVE)
+    else {
         return Vec::new();
     };
     let mut kept: Vec<Vec<f64>> = Vec::new();
@@ -126,11 +146,24 @@ pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize
     kept
 }
 
+/// Starts of a series from the best one of a term less.
+fn longer(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut Work) -> Vec<Grown> {
+    let fewer = model.first_shapes(model.form.shapes.len() - 1);
+    let best = finalists(&fewer, nodes, most_iterations, work).into_iter().next();
+    best.map(|theta| grown(&fewer, nodes, &theta)).unwrap_or_default()
+}
+
+/// Variances of the noise of a sample that a refinement may take off the residual square of a grown series.
+const FELT: f64 = 20.0;
+
 /// Relative difference of residual squares below which a law that ends in finite time may be the best.
 const KINKED: f64 = 1e-2;
 
 /// Relative difference of residual squares below which condensed samples cannot say which valley is deeper.
 const ALIKE: f64 = 1e-3;
+
+/// Variances of the noise of a sample, the same.
+const TOLD: f64 = 0.2;
 
 /// Relative gain at which a valley has been searched well enough to tell it from others.
 const ROUGH: f64 = 1e-5;

@@ -442,6 +442,22 @@ pub(super) fn ends(model: &Model, theta: &[f64]) -> bool {
     })
 }
 
+/// Of a law of one shape that may end in finite time: λt at its end, and its other free number, for those that a coarse search tries.
+pub(super) fn ends_of(model: &Model) -> Vec<(f64, Vec<f64>)> {
+    let [shape] = *model.moving().0.as_slice() else {
+        return Vec::new();
+    };
+    let numbers = &model.numbers[model.numbers_of(shape)];
+    if numbers[0].fixed.is_some() {
+        return Vec::new();
+    }
+    let others = numbers.get(1).map_or_else(|| vec![1.0], |number| coarse(number.kind, number.bounds, number.fixed));
+    let free = numbers.get(1).is_some_and(|number| number.fixed.is_none());
+    let end =
+        |other: f64| finite_end(model.shape(shape), other).map(|end| (end, if free { vec![other] } else { vec![] }));
+    others.into_iter().filter_map(end).collect()
+}
+
 /// λt at which the shape ends, if it does.
 fn finite_end(shape: Shape, other: f64) -> Option<f64> {
     let exponent = match shape {

@@ -5,13 +5,15 @@
 //! better.
 
 use super::condensed::Condensed;
+use super::growth::grown;
 use super::model::{Model, Sampled};
 use super::orthogonal::Orthogonal;
 use super::samples::Scaled;
 use super::separable::{
     Ending, Shapes, Solution, Target, Termination, Work, distance, polished, refine, standing, stepped,
 };
-use super::starts::{Grid, fine_starts};
+use super::starts::{Grid, ends_of, fine_starts};
+use crate::vector::products::dot;
 
 /// Valleys that are searched on condensed samples.
 const VALLEYS: usize = 16;
@@ -36,8 +38,9 @@ pub(super) fn thorough(
             ends.push(valley.theta);
         }
     }
+    ends.extend(kinks(model, scaled));
     let merged: Vec<Vec<f64>> = ends.iter().filter_map(|theta| together(model, theta)).collect();
-    let lowest = ends.iter().chain(&merged).map(|theta| local(&all, scaled.target(), theta, work));
+    let lowest = ends.iter().chain(&merged).map(|theta| local(&all, scaled.target(), theta, ENOUGH, work));
     let Some(best) = lowest.min_by(|a, b| a.square.total_cmp(&b.square)) else {
         return quick;
     };
@@ -61,10 +64,16 @@ fn valleys(model: &Model, nodes: &Condensed, work: &mut Work) -> Vec<Valley> {
     if model.is_series() {
         let fewer = model.first_shapes(model.form.shapes.len() - 1);
         let base = valleys(&fewer, nodes, work);
-        starts.extend(base.iter().take(BASES).flat_map(|valley| grown(&fewer, nodes, &valley.theta)));
+        starts.extend(
+            base.iter()
+                .take(BASES)
+                .flat_map(|valley| grown(&fewer, nodes, &valley.theta))
+                .map(|start| start.theta),
+        );
     }
     let mut aside = Work::default();
-    let mut found: Vec<Valley> = starts.iter().map(|start| local(&shapes, nodes.target(), start, &mut aside)).collect();
+    let mut found: Vec<Valley> =
+        starts.iter().map(|start| local(&shapes, nodes.target(), start, ENOUGH, &mut aside)).collect();
     work.condensed += aside.evaluations;
     found.sort_by(|a, b| a.square.total_cmp(&b.square));
     found
@@ -72,27 +81,6 @@ fn valleys(model: &Model, nodes: &Condensed, work: &mut Work) -> Vec<Valley> {
 
 /// Fits of fewer terms that are grown.
 const BASES: usize = 3;
-
-/// The rates of a series with one more, wherever that takes off more than a little faster or slower one would.
-fn grown(model: &Model, nodes: &Condensed, theta: &[f64]) -> Vec<Vec<f64>> {
-    let shapes = model.at(&nodes.times);
-    let here = Orthogonal::new(&shapes, theta, nodes.target());
-    let (low, high) = shapes.bounds(0);
-    let steps = ((high - low) / 0.25).ceil() as usize;
-    let rate = |i: usize| low + (high - low) * i as f64 / steps as f64;
-    let gain = |i: usize| {
-        let mut column = vec![0.0; nodes.times.len()];
-        model.shape_value(0, &nodes.times, &[rate(i)], &mut column);
-        column.iter_mut().zip(&nodes.roots).for_each(|(entry, root)| *entry *= root);
-        here.gain(column)
-    };
-    let gains: Vec<f64> = (0..=steps).map(gain).collect();
-    let highest = |i: &usize| {
-        let beside = [i.checked_sub(1), Some(i + 1)].map(|j| j.and_then(|j| gains.get(j)).copied().unwrap_or(0.0));
-        gains[*i] > beside[0] && gains[*i] >= beside[1]
-    };
-    (0..=steps).filter(highest).map(|i| [theta, &[rate(i)]].concat()).collect()
-}
 
 /// Relative difference of residual squares that is none.
 const ALIKE: f64 = 1e-9;
@@ -117,6 +105,73 @@ fn together(model: &Model, theta: &[f64]) -> Option<Vec<f64>> {
     Some(merged)
 }
 
+/// Starts where a law that ends in finite time ends among the first samples: between two of them the residual has a valley of its
+/// own, which no nodes show.
+fn kinks(model: &Model, scaled: &Scaled) -> Vec<Vec<f64>> {
+    /// Samples looked at, and parts of the way from one to the next.
+    const FIRST: usize = 60;
+    const PARTS: [f64; 4] = [1e-3, 0.03, 0.3, 0.7];
+    let shapes = model.at(&scaled.times);
+    let mut found: Vec<Valley> = Vec::new();
+    for (end, rest) in ends_of(model) {
+        let (low, high) = shapes.bounds(0);
+        let pairs = scaled.times.windows(2).take(FIRST);
+        let times = pairs.flat_map(|pair| PARTS.map(|part| pair[0] + part * (pair[1] - pair[0]).max(0.0)));
+        let along: Vec<Orthogonal> = times
+            .map(|time| [&[(end / time).ln().clamp(low, high)], rest.as_slice()].concat())
+            .map(|theta| Orthogonal::new(&shapes, &theta, scaled.target()))
+            .collect();
+        let lowest = |i: &usize| {
+            let beside = [i.checked_sub(1), Some(i + 1)].map(|j| j.and_then(|j| along.get(j)));
+            beside.into_iter().flatten().all(|other| along[*i].square <= other.square)
+        };
+        found.extend((0..along.len()).filter(lowest).map(|i| Valley {
+            theta: along[i].theta.clone(),
+            linear: Vec::new(),
+            square: along[i].square,
+        }));
+    }
+    found.sort_by(|a, b| a.square.total_cmp(&b.square));
+    found.into_iter().take(FINALISTS).map(|valley| valley.theta).collect()
+}
+
+/// Relative fall of the residual square that counts as none where valleys are compared.
+const ENOUGH: f64 = 1e-8;
+
+/// The solution carried on to what doubles allow, where normal equations do not reach it: where numbers nearly imitate each other, and
+/// where next to nothing is left over.
+pub(super) fn exact(model: &Model, scaled: &Scaled, solution: Solution, work: &mut Work) -> Solution {
+    let all = model.at(&scaled.times);
+    let signal = dot(scaled.target().values, scaled.target().values);
+    let clean = solution.residual_square < CLEAN * signal && solution.residual_square > ROUNDING * signal;
+    if solution.nonlinear.is_empty() || !all.linear_bounds().is_empty() || !(clean || inflation(&solution) > IMITATED) {
+        return solution;
+    }
+    let valley = local(&all, scaled.target(), &solution.nonlinear, f64::EPSILON, work);
+    if valley.square < solution.residual_square {
+        standing(&all, scaled.target(), &valley.theta, &valley.linear, Termination::Converged)
+    } else {
+        solution
+    }
+}
+
+/// Of the square of the signal: residuals whose square is below have lost digits in normal equations, and those of rounding.
+const CLEAN: f64 = 1e-20;
+const ROUNDING: f64 = 1e-30;
+
+/// Variance inflation from which the gradient of normal equations is no guide to the last step.
+const IMITATED: f64 = 1e7;
+
+/// The largest factor by which the other numbers widen the variance of one.
+fn inflation(solution: &Solution) -> f64 {
+    let Some(inverse) = &solution.inverse_normal else {
+        return f64::INFINITY;
+    };
+    let size = solution.linear.len() + solution.nonlinear.len();
+    let own = |i: usize| dot(&solution.columns[i], &solution.columns[i]) * inverse[i * (size + 1)];
+    (0..solution.linear.len()).map(own).fold(1.0, f64::max)
+}
+
 /// Steps of a local search.
 const STEPS: usize = 60;
 
@@ -127,8 +182,8 @@ struct Valley {
     square: f64,
 }
 
-/// Levenberg's method with the linear numbers projected out by orthogonal columns; by normal equations where these are bounded.
-fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], work: &mut Work) -> Valley {
+/// Levenberg's method, until the residual square falls by no more than `enough` of itself, with the linear numbers projected out by orthogonal columns; by normal equations where these are bounded.
+fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], enough: f64, work: &mut Work) -> Valley {
     if !shapes.linear_bounds().is_empty() {
         let refined = refine(shapes, target, start, Ending::tight(STEPS), work);
         return Valley {
@@ -157,7 +212,7 @@ fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], work: &mut Wor
             }
             damping *= 6.0;
         }
-        idle = if before - here.square <= 1e-8 * before { idle + 1 } else { 0 };
+        idle = if before - here.square <= enough * before { idle + 1 } else { 0 };
         if idle == 2 || before == here.square {
             break;
         }
