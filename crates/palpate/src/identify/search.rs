@@ -1,13 +1,15 @@
 //! From a model and samples to the global optimum.
 
-use super::condensed::Condensed;
+use super::condensed::{Condensed, WIDTH};
+use super::exact::{exact, inflation, local};
 use super::ghosts::{Ghost, ghosts};
 use super::growth::{Grown, grown};
+use super::kinks::near_kinks;
 use super::model::Model;
 use super::samples::Scaled;
-use super::separable::{Ending, Refined, Solution, Termination, Work, curvature, descend, polished, refine};
+use super::separable::{Ending, Refined, Solution, Termination, Work, curvature, descend, polished, refine, standing};
 use super::starts::{ends, starts};
-use super::thorough::{exact, thorough};
+use super::thorough::thorough;
 
 /// Valleys that are refined on condensed samples.
 const VALLEYS: usize = 6;
@@ -29,7 +31,10 @@ pub(super) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
     }
     let mut solution = polished(&shapes, scaled.target(), best?, work);
     mark_merged(model, &mut solution);
-    let doubtful = solution.termination != Termination::Converged || !ghosts(model, &solution).is_empty();
+    solution = settled_between_kinks(model, scaled, solution, work);
+    let doubtful = solution.termination != Termination::Converged
+        || !ghosts(model, &solution).is_empty()
+        || inflation(&solution) > BEYOND;
     if doubtful && model.free().len() > 0 {
         solution = thorough(model, scaled, &nodes, solution, most_iterations, work);
         mark_merged(model, &mut solution);
@@ -38,6 +43,28 @@ pub(super) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
     }
     Some(solution)
 }
+
+/// Variance inflation beyond which doubles do not tell a valley from a plain.
+const BEYOND: f64 = 1e12;
+
+/// Where the law ends in finite time, the best of the valleys between samples that the errors of the end leave open.
+fn settled_between_kinks(model: &Model, scaled: &Scaled, solution: Solution, work: &mut Work) -> Solution {
+    if solution.termination != Termination::Converged || !ends(model, &solution.nonlinear) {
+        return solution;
+    }
+    let shapes = model.at(&scaled.times);
+    let beside = near_kinks(model, scaled, &solution);
+    let others = beside.iter().map(|theta| local(&shapes, scaled.target(), theta, f64::EPSILON, work));
+    match others.min_by(|a, b| a.square.total_cmp(&b.square)) {
+        Some(best) if best.square < solution.residual_square * (1.0 - ALIKE_AT_ALL) => {
+            standing(&shapes, scaled.target(), &best.theta, &best.linear, Termination::Converged)
+        }
+        _ => solution,
+    }
+}
+
+/// Relative difference of residual squares that is rounding.
+const ALIKE_AT_ALL: f64 = 1e-12;
 
 /// Says so if what ended well, or could not be told apart, are merged terms.
 fn mark_merged(model: &Model, solution: &mut Solution) {
@@ -67,12 +94,17 @@ fn settle(
 
 /// The nodes that stand for scaled samples.
 pub(super) fn condense(scaled: &Scaled) -> Condensed {
+    condense_to(scaled, WIDTH)
+}
+
+/// The same with bins of another relative width, 0 for a node each sample.
+pub(super) fn condense_to(scaled: &Scaled, width: f64) -> Condensed {
     match &scaled.roots {
-        None => Condensed::new(&scaled.times, &scaled.values, None),
+        None => Condensed::with_width(&scaled.times, &scaled.values, None, width),
         Some(roots) => {
             let bare: Vec<f64> =
                 scaled.values.iter().zip(roots).map(|(y, root)| if *root > 0.0 { y / root } else { 0.0 }).collect();
-            Condensed::new(&scaled.times, &bare, Some(roots))
+            Condensed::with_width(&scaled.times, &bare, Some(roots), width)
         }
     }
 }
@@ -86,15 +118,20 @@ pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize
         gain: ROUGH,
         most_iterations,
     };
-    let mut kinked = Vec::new();
     let explore = |start: &[f64], aside: &mut Work| {
         let refined = refine(&shapes, nodes.target(), start, rough, aside);
         (refined.square() + nodes.inside, refined.theta().to_vec())
     };
-    for start in starts(model, nodes, VALLEYS, work) {
-        found.push(explore(&start, &mut aside));
-        if ends(model, &start) {
-            kinked.push(start);
+    let (kinked, smooth): (Vec<Vec<f64>>, Vec<Vec<f64>>) =
+        starts(model, nodes, VALLEYS, work).into_iter().partition(|start| ends(model, start));
+    found.extend(smooth.iter().map(|start| explore(start, &mut aside)));
+    let least = found.iter().map(|(square, _)| *square).fold(f64::INFINITY, f64::min);
+    let mut open: Vec<(f64, Vec<f64>)> = Vec::new();
+    for start in kinked {
+        let square = refine(&shapes, nodes.target(), &start, AS_IT_IS, &mut aside).square() + nodes.inside;
+        if square <= HOPELESS * least {
+            found.push(explore(&start, &mut aside));
+            open.push((square, start));
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -104,7 +141,8 @@ pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize
         let limit = least * (1.0 + nodes.noise(FELT));
         for start in longer(model, nodes, most_iterations, work) {
             if start.square + nodes.inside <= limit {
-                found.push(explore(&start.theta, &mut aside));
+                let valley = local(&shapes, nodes.target(), &start.theta, ROUGH, &mut aside);
+                found.push((valley.square + nodes.inside, valley.theta));
             }
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -128,20 +166,8 @@ pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize
         }
     }
     // Where the law ends in finite time nodes only tell roughly: such a start goes to all samples as it is.
-    let kinked = kinked.into_iter().filter(|start| {
-        let here = refine(
-            &shapes,
-            nodes.target(),
-            start,
-            Ending {
-                gain: 0.0,
-                most_iterations: 0,
-            },
-            &mut aside,
-        );
-        here.square() + nodes.inside <= limit * (1.0 + KINKED)
-    });
-    kept.extend(kinked);
+    let limit = limit * (1.0 + KINKED);
+    kept.extend(open.into_iter().filter(|(square, _)| *square <= limit).map(|(_, start)| start));
     work.condensed += aside.evaluations;
     kept
 }
@@ -155,6 +181,16 @@ fn longer(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut W
 
 /// Variances of the noise of a sample that a refinement may take off the residual square of a grown series.
 const FELT: f64 = 20.0;
+
+/// No step at all.
+const AS_IT_IS: Ending = Ending {
+    gain: 0.0,
+    most_iterations: 0,
+};
+
+/// Times the least residual square, above which a law that ends in finite time is not the best with another exponent: those tried are
+/// as near to each other as to the laws without an end.
+const HOPELESS: f64 = 100.0;
 
 /// Relative difference of residual squares below which a law that ends in finite time may be the best.
 const KINKED: f64 = 1e-2;
