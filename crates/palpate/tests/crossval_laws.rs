@@ -194,9 +194,9 @@ fn digits(found: f64, expected: f64) -> f64 {
     -((found - expected).abs() / expected.abs()).log10().min(0.0).max(-16.0)
 }
 
-/// A sum of squares of some 10⁻²⁵ is below what doubles keep of the data, so Lanczos1 has fewer digits in its errors.
+/// Lanczos1 leaves a sum of squares of 1.4308e-25, its data rounded to doubles one of 1.4296e-25: three digits of the errors.
 fn least_digits(name: &str) -> [f64; 2] {
-    if name == "Lanczos1" { [8.0, 1.0] } else { [8.0, 6.0] }
+    if name == "Lanczos1" { [11.0, 3.0] } else { [8.0, 6.0] }
 }
 
 #[test]

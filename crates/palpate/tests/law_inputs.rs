@@ -2,30 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::identify::{FitError, LawFit, LawOptions, Loss, Samples, Termination, fit_law};
+mod any_hold;
+
+use any_hold::{LAWS, fit_any, is_whole};
+use palpate::identify::{FitError, LawOptions, Loss, Samples, Termination, fit_law};
 use palpate::laws::{Law, Response};
 use palpate::test_problems::Noise;
 use proptest::prelude::*;
-
-const LAWS: [&str; 17] = [
-    "latency",
-    "latency:0.5",
-    "latency:1",
-    "latency:5",
-    "maxwell",
-    "kelvin-voigt",
-    "sls",
-    "burgers",
-    "prony:2",
-    "prony:3",
-    "fung:2",
-    "fung-continuous",
-    "stretched",
-    "power",
-    "logarithmic",
-    "fractional-zener",
-    "diffusion",
-];
 
 fn forms() -> impl Iterator<Item = (Law, LawOptions)> {
     let laws = LAWS.into_iter().map(|name| name.parse::<Law>().unwrap());
@@ -37,17 +20,6 @@ fn forms() -> impl Iterator<Item = (Law, LawOptions)> {
         };
         (law, options)
     })
-}
-
-/// Nothing in a fit that is called good may be NaN.
-fn is_whole(fit: &LawFit) -> bool {
-    let errors = fit.covariance.iter().flatten().flatten().copied();
-    let numbers = fit.numbers.iter().flat_map(|number| {
-        let (low, high) = number.estimate.interval.unwrap_or((0.0, 0.0));
-        [number.estimate.value, number.estimate.standard_error.unwrap_or(0.0), low, high]
-    });
-    let totals = [fit.residual_square, fit.rmse, fit.residual_correlation];
-    errors.chain(numbers).chain(totals).chain(fit.values.iter().copied()).all(|number| !number.is_nan())
 }
 
 /// Fits every law; each must refuse as `expected` says.
@@ -197,5 +169,10 @@ proptest! {
         if let Ok(fit) = fit_law(&samples, law, &options) {
             prop_assert!(fit.termination != Termination::Converged || is_whole(&fit), "{fit:?}");
         }
+    }
+
+    #[test]
+    fn no_bytes_make_the_fit_of_a_law_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        fit_any(&bytes);
     }
 }

@@ -3,7 +3,7 @@
 use super::separable::Target;
 
 /// Relative width in time of the bins; the shape of a law is close to a cubic inside one.
-const WIDTH: f64 = 0.2;
+pub(super) const WIDTH: f64 = 0.2;
 
 /// The same for nodes that residuals are formed on, to 10⁻⁴ of them.
 const FINE_WIDTH: f64 = 0.05;
@@ -26,18 +26,18 @@ pub(super) struct Condensed {
     pub(super) roots: Vec<f64>,
     /// Weighted square of what the lines in the bins leave over.
     pub(super) inside: f64,
+    /// Number of samples condensed.
+    pub(super) samples: usize,
 }
 
 impl Condensed {
-    /// Condenses samples at rising times ≥ 0; `roots` are square roots of weights, `None` for all 1.
-    pub(super) fn new(times: &[f64], values: &[f64], roots: Option<&[f64]>) -> Self {
-        Self::with_width(times, values, roots, WIDTH)
-    }
-
     /// Fewer nodes, for a search that needs no accuracy.
     pub(super) fn coarser(&self) -> Self {
         let bare: Vec<f64> = self.values.iter().zip(&self.roots).map(|(value, root)| value / root).collect();
-        Self::with_width(&self.times, &bare, Some(&self.roots), COARSE_WIDTH)
+        Self {
+            samples: self.samples,
+            ..Self::with_width(&self.times, &bare, Some(&self.roots), COARSE_WIDTH)
+        }
     }
 
     /// More nodes, for a residual square that counts: what bends inside a bin goes with the fourth power of its width.
@@ -45,8 +45,12 @@ impl Condensed {
         Self::with_width(times, values, None, FINE_WIDTH)
     }
 
-    fn with_width(times: &[f64], values: &[f64], roots: Option<&[f64]>, width: f64) -> Self {
-        let mut condensed = Self::default();
+    /// Condenses samples at rising times ≥ 0 in bins of a relative width; `roots` are square roots of weights, `None` for all 1.
+    pub(super) fn with_width(times: &[f64], values: &[f64], roots: Option<&[f64]>, width: f64) -> Self {
+        let mut condensed = Self {
+            samples: times.len(),
+            ..Self::default()
+        };
         let mut from = 0;
         while from < times.len() {
             let end = times[from] * (1.0 + width);
@@ -59,6 +63,11 @@ impl Condensed {
             from = until;
         }
         condensed
+    }
+
+    /// Share of the residual square by which noise alone makes one valley deeper than another: `variances` of the noise of a sample.
+    pub(super) fn noise(&self, variances: f64) -> f64 {
+        variances / self.samples as f64
     }
 
     pub(super) fn target(&self) -> Target<'_> {
@@ -171,7 +180,7 @@ mod tests {
         let values: Vec<f64> = times.iter().enumerate().map(|(i, t)| 1.0 / (1.0 + 9.0 * t) + noise(i)).collect();
         let roots: Vec<f64> = (0..3000).map(|i| if i % 7 == 3 { 0.0 } else { 1.0 + f64::from(i) / 3e3 }).collect();
         let rooted: Vec<f64> = values.iter().zip(&roots).map(|(y, root)| y * root).collect();
-        let condensed = Condensed::new(&times, &values, Some(&roots));
+        let condensed = Condensed::with_width(&times, &values, Some(&roots), WIDTH);
         assert!(condensed.times.len() < 90, "{}", condensed.times.len());
         for rate in [0.3, 3.0, 30.0] {
             let curve = |t: f64| 0.1 + 0.8 * (-rate * t).exp();
@@ -184,7 +193,7 @@ mod tests {
     #[test]
     fn few_samples_stay_as_they_are() {
         let times = [0.0, 0.1, 0.2, 0.5, 1.0];
-        let condensed = Condensed::new(&times, &[5.0, 4.0, 3.0, 2.0, 1.0], None);
+        let condensed = Condensed::with_width(&times, &[5.0, 4.0, 3.0, 2.0, 1.0], None, WIDTH);
         assert_eq!(condensed.times, times);
         assert_eq!(condensed.inside, 0.0);
     }

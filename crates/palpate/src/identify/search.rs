@@ -1,10 +1,13 @@
 //! From a model and samples to the global optimum.
 
-use super::condensed::Condensed;
+use super::condensed::{Condensed, WIDTH};
+use super::exact::{exact, inflation, local};
 use super::ghosts::{Ghost, ghosts};
+use super::growth::{Grown, grown};
+use super::kinks::near_kinks;
 use super::model::Model;
 use super::samples::Scaled;
-use super::separable::{Ending, Refined, Solution, Termination, Work, curvature, descend, polished, refine};
+use super::separable::{Ending, Refined, Solution, Termination, Work, curvature, descend, polished, refine, standing};
 use super::starts::{ends, starts};
 use super::thorough::thorough;
 
@@ -28,13 +31,40 @@ pub(super) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
     }
     let mut solution = polished(&shapes, scaled.target(), best?, work);
     mark_merged(model, &mut solution);
-    let doubtful = solution.termination != Termination::Converged || !ghosts(model, &solution).is_empty();
+    solution = settled_between_kinks(model, scaled, solution, work);
+    let doubtful = solution.termination != Termination::Converged
+        || !ghosts(model, &solution).is_empty()
+        || inflation(&solution) > BEYOND;
     if doubtful && model.free().len() > 0 {
         solution = thorough(model, scaled, &nodes, solution, most_iterations, work);
         mark_merged(model, &mut solution);
+    } else {
+        solution = exact(model, scaled, solution, work);
     }
     Some(solution)
 }
+
+/// Variance inflation beyond which doubles do not tell a valley from a plain.
+const BEYOND: f64 = 1e12;
+
+/// Where the law ends in finite time, the best of the valleys between samples that the errors of the end leave open.
+fn settled_between_kinks(model: &Model, scaled: &Scaled, solution: Solution, work: &mut Work) -> Solution {
+    if solution.termination != Termination::Converged || !ends(model, &solution.nonlinear) {
+        return solution;
+    }
+    let shapes = model.at(&scaled.times);
+    let beside = near_kinks(model, scaled, &solution);
+    let others = beside.iter().map(|theta| local(&shapes, scaled.target(), theta, f64::EPSILON, work));
+    match others.min_by(|a, b| a.square.total_cmp(&b.square)) {
+        Some(best) if best.square < solution.residual_square * (1.0 - ALIKE_AT_ALL) => {
+            standing(&shapes, scaled.target(), &best.theta, &best.linear, Termination::Converged)
+        }
+        _ => solution,
+    }
+}
+
+/// Relative difference of residual squares that is rounding.
+const ALIKE_AT_ALL: f64 = 1e-12;
 
 /// Says so if what ended well, or could not be told apart, are merged terms.
 fn mark_merged(model: &Model, solution: &mut Solution) {
@@ -64,12 +94,17 @@ fn settle(
 
 /// The nodes that stand for scaled samples.
 pub(super) fn condense(scaled: &Scaled) -> Condensed {
+    condense_to(scaled, WIDTH)
+}
+
+/// The same with bins of another relative width, 0 for a node each sample.
+pub(super) fn condense_to(scaled: &Scaled, width: f64) -> Condensed {
     match &scaled.roots {
-        None => Condensed::new(&scaled.times, &scaled.values, None),
+        None => Condensed::with_width(&scaled.times, &scaled.values, None, width),
         Some(roots) => {
             let bare: Vec<f64> =
                 scaled.values.iter().zip(roots).map(|(y, root)| if *root > 0.0 { y / root } else { 0.0 }).collect();
-            Condensed::new(&scaled.times, &bare, Some(roots))
+            Condensed::with_width(&scaled.times, &bare, Some(roots), width)
         }
     }
 }
@@ -83,17 +118,40 @@ pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize
         gain: ROUGH,
         most_iterations,
     };
-    let mut kinked = Vec::new();
-    for start in starts(model, nodes, VALLEYS, work) {
-        if ends(model, &start) {
-            kinked.push(start.clone());
+    let explore = |start: &[f64], aside: &mut Work| {
+        let refined = refine(&shapes, nodes.target(), start, rough, aside);
+        (refined.square() + nodes.inside, refined.theta().to_vec())
+    };
+    let (kinked, smooth): (Vec<Vec<f64>>, Vec<Vec<f64>>) =
+        starts(model, nodes, VALLEYS, work).into_iter().partition(|start| ends(model, start));
+    found.extend(smooth.iter().map(|start| explore(start, &mut aside)));
+    let least = found.iter().map(|(square, _)| *square).fold(f64::INFINITY, f64::min);
+    let mut open: Vec<(f64, Vec<f64>)> = Vec::new();
+    for start in kinked {
+        let square = refine(&shapes, nodes.target(), &start, AS_IT_IS, &mut aside).square() + nodes.inside;
+        if square <= HOPELESS * least {
+            found.push(explore(&start, &mut aside));
+            open.push((square, start));
         }
-        let refined = refine(&shapes, nodes.target(), &start, rough, &mut aside);
-        found.push((refined.square() + nodes.inside, refined.theta().to_vec()));
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    if model.is_series()
+        && let Some((least, _)) = found.first()
+    {
+        let limit = least * (1.0 + nodes.noise(FELT));
+        for start in longer(model, nodes, most_iterations, work) {
+            if start.square + nodes.inside <= limit {
+                let valley = local(&shapes, nodes.target(), &start.theta, ROUGH, &mut aside);
+                found.push((valley.square + nodes.inside, valley.theta));
+            }
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
     }
     work.starts += aside.starts;
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some(limit) = found.first().map(|(least, _)| least * (1.0 + ALIKE) + f64::MIN_POSITIVE) else {
+    let Some(limit) = found
+        .first()
+        .map(|(least, _)| least * (1.0 + f64::max(ALIKE, nodes.noise(TOLD))) + f64::MIN_POSITIVE)
+    else {
         return Vec::new();
     };
     let mut kept: Vec<Vec<f64>> = Vec::new();
@@ -108,29 +166,40 @@ pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize
         }
     }
     // Where the law ends in finite time nodes only tell roughly: such a start goes to all samples as it is.
-    let kinked = kinked.into_iter().filter(|start| {
-        let here = refine(
-            &shapes,
-            nodes.target(),
-            start,
-            Ending {
-                gain: 0.0,
-                most_iterations: 0,
-            },
-            &mut aside,
-        );
-        here.square() + nodes.inside <= limit * (1.0 + KINKED)
-    });
-    kept.extend(kinked);
+    let limit = limit * (1.0 + KINKED);
+    kept.extend(open.into_iter().filter(|(square, _)| *square <= limit).map(|(_, start)| start));
     work.condensed += aside.evaluations;
     kept
 }
+
+/// Starts of a series from the best one of a term less.
+fn longer(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut Work) -> Vec<Grown> {
+    let fewer = model.first_shapes(model.form.shapes.len() - 1);
+    let best = finalists(&fewer, nodes, most_iterations, work).into_iter().next();
+    best.map(|theta| grown(&fewer, nodes, &theta)).unwrap_or_default()
+}
+
+/// Variances of the noise of a sample that a refinement may take off the residual square of a grown series.
+const FELT: f64 = 20.0;
+
+/// No step at all.
+const AS_IT_IS: Ending = Ending {
+    gain: 0.0,
+    most_iterations: 0,
+};
+
+/// Times the least residual square, above which a law that ends in finite time is not the best with another exponent: those tried are
+/// as near to each other as to the laws without an end.
+const HOPELESS: f64 = 100.0;
 
 /// Relative difference of residual squares below which a law that ends in finite time may be the best.
 const KINKED: f64 = 1e-2;
 
 /// Relative difference of residual squares below which condensed samples cannot say which valley is deeper.
 const ALIKE: f64 = 1e-3;
+
+/// Variances of the noise of a sample, the same.
+const TOLD: f64 = 0.2;
 
 /// Relative gain at which a valley has been searched well enough to tell it from others.
 const ROUGH: f64 = 1e-5;

@@ -22,7 +22,7 @@ pub(super) fn fine_starts(model: &Model, nodes: &Condensed, grid: Grid, most: us
     match *moving.as_slice() {
         [] => vec![Vec::new()],
         [shape] => plane.scan(model, shape, nodes, grid, most, work),
-        _ if grid == Grid::Fine && moving.len() <= DEEPEST => plane.explore(model, &moving, nodes, most, work),
+        _ if grid != Grid::Coarse && moving.len() <= DEEPEST => plane.explore(model, &moving, nodes, most, work),
         _ => plane.combine(model, &moving, nodes, most, work),
     }
 }
@@ -34,6 +34,8 @@ pub(super) enum Grid {
     Coarse,
     /// For hard cases, where valleys are narrow.
     Fine,
+    /// For one number alone on all samples.
+    Finest,
 }
 
 /// Terms up to which a fine grid of all combinations is small.
@@ -134,7 +136,7 @@ impl Plane {
             let theta = [rate, other];
             model.shape_value(shape, &nodes.times, &theta[..numbers.len()], &mut column);
             rooted(&mut column, nodes);
-            if fineness == Grid::Fine { self.exact_residual(&mut column) } else { self.residual(&column) }
+            if fineness != Grid::Coarse { self.exact_residual(&mut column) } else { self.residual(&column) }
         };
         let others =
             numbers.get(1).map_or_else(|| vec![0.0], |number| coarse(number.kind, number.bounds, number.fixed));
@@ -168,7 +170,7 @@ impl Plane {
                 }
             }
         }
-        let mut found = if fineness == Grid::Fine { found } else { deepest_along(&found) };
+        let mut found = if fineness != Grid::Coarse { found } else { deepest_along(&found) };
         if found.is_empty() {
             // Nothing but plateaus: any point will do, and the refinement will say so.
             let rate = numbers[0].fixed.unwrap_or(0.0).clamp(numbers[0].bounds.0, numbers[0].bounds.1);
@@ -390,6 +392,7 @@ impl Grid {
         match self {
             Self::Coarse => STEP,
             Self::Fine => 0.4 * STEP,
+            Self::Finest => 0.1 * STEP,
         }
     }
 }
@@ -406,13 +409,13 @@ pub(super) fn rates((low, high): (f64, f64), fixed: Option<f64>, fineness: Grid)
 /// The same for a shape that ends when λt = `end`: densely where the end lies between samples, since the residual has a kink wherever it
 /// passes one, and not at all where it ends before the second.
 fn rates_with_end((low, high): (f64, f64), end: f64, nodes: &Condensed, fineness: Grid) -> Vec<f64> {
-    let dense = if fineness == Grid::Fine { 0.05 } else { 0.2 };
+    let dense = if fineness != Grid::Coarse { 0.05 } else { 0.2 };
     let first = nodes.times.iter().copied().find(|t| *t > 0.0).unwrap_or(1.0);
     let (from, until) = (end.ln().clamp(low, high), (end / first).ln().clamp(low, high) + STEP);
     let slow = (0..).map(|i| low + STEP * f64::from(i)).take_while(|rate| *rate < from);
     let dense = (0..).map(|i| from + dense * f64::from(i)).take_while(|rate| *rate < until.min(high));
     let mut all: Vec<f64> = slow.chain(dense).chain([until.min(high)]).collect();
-    if fineness == Grid::Fine {
+    if fineness != Grid::Coarse {
         // Where the end has only just passed one of the first samples, the valley is narrower than any grid.
         let early = nodes.times.iter().filter(|t| **t > 0.0).take(12).map(|t| (end / t).ln());
         all.extend(early.flat_map(|rate| [3e-2, 1e-2, 1e-3].map(|before| (rate - before).clamp(low, high))));
@@ -440,6 +443,22 @@ pub(super) fn ends(model: &Model, theta: &[f64]) -> bool {
         let own = &numbers[model.numbers_of(shape)];
         finite_end(model.shape(shape), own.last().copied().unwrap_or(1.0)).is_some()
     })
+}
+
+/// Of a law of one shape that may end in finite time: λt at its end, and its other free number, for those that a coarse search tries.
+pub(super) fn ends_of(model: &Model) -> Vec<(f64, Vec<f64>)> {
+    let [shape] = *model.moving().0.as_slice() else {
+        return Vec::new();
+    };
+    let numbers = &model.numbers[model.numbers_of(shape)];
+    if numbers[0].fixed.is_some() {
+        return Vec::new();
+    }
+    let others = numbers.get(1).map_or_else(|| vec![1.0], |number| coarse(number.kind, number.bounds, number.fixed));
+    let free = numbers.get(1).is_some_and(|number| number.fixed.is_none());
+    let end =
+        |other: f64| finite_end(model.shape(shape), other).map(|end| (end, if free { vec![other] } else { vec![] }));
+    others.into_iter().filter_map(end).collect()
 }
 
 /// λt at which the shape ends, if it does.

@@ -5,13 +5,15 @@
 //! better.
 
 use super::condensed::Condensed;
-use super::model::{Model, Sampled};
-use super::orthogonal::Orthogonal;
+use super::exact::{Valley, local};
+use super::growth::{Grown, grown};
+use super::kinks::first_kinks;
+use super::model::Model;
 use super::samples::Scaled;
-use super::separable::{
-    Ending, Shapes, Solution, Target, Termination, Work, distance, polished, refine, standing, stepped,
-};
+use super::search::condense_to;
+use super::separable::{Ending, Solution, Termination, Work, distance, polished, refine, standing};
 use super::starts::{Grid, fine_starts};
+use crate::laws::NumberKind;
 
 /// Valleys that are searched on condensed samples.
 const VALLEYS: usize = 16;
@@ -29,15 +31,22 @@ pub(super) fn thorough(
     work: &mut Work,
 ) -> Solution {
     let all = model.at(&scaled.times);
-    let found = valleys(model, nodes, work);
+    // One number is cheap to search on all samples, and nodes miss what the noise of a single one does.
+    let whole = if model.free().len() == 1 || model.is_series() { condense_to(scaled, 0.0) } else { nodes.clone() };
+    let found = valleys(model, if model.is_series() { nodes } else { &whole }, work);
     let mut ends: Vec<Vec<f64>> = vec![quick.nonlinear.clone()];
     for valley in found {
         if ends.len() <= FINALISTS && ends.iter().all(|other| distance(other, &valley.theta) > 1e-3) {
             ends.push(valley.theta);
         }
     }
-    let merged: Vec<Vec<f64>> = ends.iter().filter_map(|theta| together(model, theta)).collect();
-    let lowest = ends.iter().chain(&merged).map(|theta| local(&all, scaled.target(), theta, work));
+    if model.is_series() {
+        ends.extend(longer(model, nodes, &whole, work));
+    }
+    ends.extend(first_kinks(model, scaled));
+    ends.extend(ends.iter().flat_map(|theta| first_felt(model, &scaled.times, theta)).collect::<Vec<_>>());
+    let merged: Vec<Vec<f64>> = ends.iter().flat_map(|theta| together(model, theta)).collect();
+    let lowest = ends.iter().chain(&merged).map(|theta| local(&all, scaled.target(), theta, ENOUGH, work));
     let Some(best) = lowest.min_by(|a, b| a.square.total_cmp(&b.square)) else {
         return quick;
     };
@@ -57,117 +66,93 @@ pub(super) fn thorough(
 /// the best fits of one term less.
 fn valleys(model: &Model, nodes: &Condensed, work: &mut Work) -> Vec<Valley> {
     let shapes = model.at(&nodes.times);
-    let mut starts = fine_starts(model, nodes, Grid::Fine, VALLEYS, work);
+    let grid = if model.free().len() == 1 { Grid::Finest } else { Grid::Fine };
+    let mut starts = fine_starts(model, nodes, grid, VALLEYS, work);
     if model.is_series() {
         let fewer = model.first_shapes(model.form.shapes.len() - 1);
         let base = valleys(&fewer, nodes, work);
-        starts.extend(base.iter().take(BASES).flat_map(|valley| grown(&fewer, nodes, &valley.theta)));
+        starts.extend(
+            base.iter()
+                .take(BASES)
+                .flat_map(|valley| grown(&fewer, nodes, &valley.theta))
+                .map(|start| start.theta),
+        );
     }
     let mut aside = Work::default();
-    let mut found: Vec<Valley> = starts.iter().map(|start| local(&shapes, nodes.target(), start, &mut aside)).collect();
+    let mut found: Vec<Valley> =
+        starts.iter().map(|start| local(&shapes, nodes.target(), start, ENOUGH, &mut aside)).collect();
     work.condensed += aside.evaluations;
     found.sort_by(|a, b| a.square.total_cmp(&b.square));
     found
 }
 
+/// Starts of a series on all samples: the best one of a term less, and one more for the noise of any sample.
+fn longer(model: &Model, nodes: &Condensed, whole: &Condensed, work: &mut Work) -> Vec<Vec<f64>> {
+    let fewer = model.first_shapes(model.form.shapes.len() - 1);
+    let bases = valleys(&fewer, nodes, work).into_iter().take(BASES);
+    let mut all: Vec<Grown> = bases
+        .flat_map(|base| {
+            let here = local(&fewer.at(&whole.times), whole.target(), &base.theta, ENOUGH, work);
+            grown(&fewer, whole, &here.theta)
+        })
+        .collect();
+    all.sort_by(|a, b| a.square.total_cmp(&b.square));
+    all.into_iter().take(FINALISTS).map(|start| start.theta).collect()
+}
+
 /// Fits of fewer terms that are grown.
 const BASES: usize = 3;
-
-/// The rates of a series with one more, wherever that takes off more than a little faster or slower one would.
-fn grown(model: &Model, nodes: &Condensed, theta: &[f64]) -> Vec<Vec<f64>> {
-    let shapes = model.at(&nodes.times);
-    let here = Orthogonal::new(&shapes, theta, nodes.target());
-    let (low, high) = shapes.bounds(0);
-    let steps = ((high - low) / 0.25).ceil() as usize;
-    let rate = |i: usize| low + (high - low) * i as f64 / steps as f64;
-    let gain = |i: usize| {
-        let mut column = vec![0.0; nodes.times.len()];
-        model.shape_value(0, &nodes.times, &[rate(i)], &mut column);
-        column.iter_mut().zip(&nodes.roots).for_each(|(entry, root)| *entry *= root);
-        here.gain(column)
-    };
-    let gains: Vec<f64> = (0..=steps).map(gain).collect();
-    let highest = |i: &usize| {
-        let beside = [i.checked_sub(1), Some(i + 1)].map(|j| j.and_then(|j| gains.get(j)).copied().unwrap_or(0.0));
-        gains[*i] > beside[0] && gains[*i] >= beside[1]
-    };
-    (0..=steps).filter(highest).map(|i| [theta, &[rate(i)]].concat()).collect()
-}
 
 /// Relative difference of residual squares that is none.
 const ALIKE: f64 = 1e-9;
 
-/// The numbers with the two rates that are nearest each other brought together: searches creep towards such an end.
-fn together(model: &Model, theta: &[f64]) -> Option<Vec<f64>> {
-    /// Difference of ln λ that counts as near, and that is as good as none.
+/// Where a term is over before the second sample its rate is of no account; it is where that sample only just feels the term.
+fn first_felt(model: &Model, times: &[f64], theta: &[f64]) -> Vec<Vec<f64>> {
+    /// λt at the second sample beyond which only the first feels the term, and those to try.
+    const OVER: f64 = 10.0;
+    const FELT: [f64; 3] = [2.0, 4.0, 8.0];
+    let Some(second) = times.iter().find(|time| **time > 0.0) else {
+        return Vec::new();
+    };
+    let is_rate: Vec<bool> = model.free().map(|number| !matches!(number.kind, NumberKind::Pure { .. })).collect();
+    let over = (0..theta.len()).filter(|&i| is_rate[i] && theta[i].exp() * second > OVER);
+    let felt = |i: usize| {
+        FELT.map(|felt| {
+            let mut beside = theta.to_vec();
+            beside[i] = (felt / second).ln();
+            beside
+        })
+    };
+    over.flat_map(felt).collect()
+}
+
+/// The numbers with rates that are near each other brought together, each pair of neighbours and all of them: searches creep
+/// towards such an end.
+fn together(model: &Model, theta: &[f64]) -> Vec<Vec<f64>> {
+    /// Difference of ln λ that counts as near.
     const NEAR: f64 = 0.5;
-    const NONE: f64 = 1e-4;
     if !model.is_series() {
-        return None;
+        return Vec::new();
     }
-    let pairs = (0..theta.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
-    let apart = |(a, b): &(usize, usize)| (theta[*a] - theta[*b]).abs();
-    let (a, b) = pairs.min_by(|one, other| apart(one).total_cmp(&apart(other)))?;
-    if apart(&(a, b)) > NEAR {
-        return None;
-    }
-    let middle = 0.5 * (theta[a] + theta[b]);
-    let mut merged = theta.to_vec();
-    (merged[a], merged[b]) = (middle + 0.5 * NONE, middle - 0.5 * NONE);
-    Some(merged)
-}
-
-/// Steps of a local search.
-const STEPS: usize = 60;
-
-/// Where a local search ended.
-struct Valley {
-    theta: Vec<f64>,
-    linear: Vec<f64>,
-    square: f64,
-}
-
-/// Levenberg's method with the linear numbers projected out by orthogonal columns; by normal equations where these are bounded.
-fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], work: &mut Work) -> Valley {
-    if !shapes.linear_bounds().is_empty() {
-        let refined = refine(shapes, target, start, Ending::tight(STEPS), work);
-        return Valley {
-            theta: refined.theta().to_vec(),
-            linear: refined.linear().to_vec(),
-            square: refined.square(),
-        };
-    }
-    let mut here = Orthogonal::new(shapes, start, target);
-    work.evaluations += 1;
-    work.starts += 1;
-    let mut damping = 1e-3;
-    let mut idle = 0;
-    for _ in 0..STEPS {
-        let (hessian, gradient) = here.projected(shapes);
-        let before = here.square;
-        for _ in 0..TRIALS {
-            let theta = stepped(&here.theta, &hessian, &gradient, damping, shapes);
-            let trial = Orthogonal::new(shapes, &theta, target);
-            work.evaluations += 1;
-            if trial.square < here.square {
-                here = trial;
-                damping = (damping * 0.2).max(1e-12);
-                work.iterations += 1;
-                break;
+    let mut rates = theta.to_vec();
+    rates.sort_by(|a, b| b.total_cmp(a));
+    let runs = (2..=rates.len()).flat_map(|length| (0..=rates.len() - length).map(move |from| from..from + length));
+    let merged = |run: std::ops::Range<usize>| {
+        let own = &rates[run.clone()];
+        let count = own.len();
+        (own[0] - own[count - 1] <= NEAR).then(|| {
+            let middle = own.iter().sum::<f64>() / count as f64;
+            // As near as none, and far enough apart for divided differences of so many.
+            let apart = if count == 2 { 1e-4 } else { 1e-3 };
+            let mut merged = rates.clone();
+            for (i, rate) in merged[run].iter_mut().enumerate() {
+                *rate = middle + apart * (0.5 * (count - 1) as f64 - i as f64);
             }
-            damping *= 6.0;
-        }
-        idle = if before - here.square <= 1e-8 * before { idle + 1 } else { 0 };
-        if idle == 2 || before == here.square {
-            break;
-        }
-    }
-    Valley {
-        linear: here.linear(),
-        theta: here.theta,
-        square: here.square,
-    }
+            merged
+        })
+    };
+    runs.filter_map(merged).collect()
 }
 
-/// Dampings tried for a step.
-const TRIALS: usize = 9;
+/// Relative fall of the residual square that counts as none where valleys are compared.
+const ENOUGH: f64 = 1e-8;

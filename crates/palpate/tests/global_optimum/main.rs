@@ -1,6 +1,7 @@
 //! No search finds a better fit: every law against brute force on random problems drawn from the law itself.
 //!
-//! 40 problems a law by default; `PALPATE_PROBLEMS=10000 cargo test --release --test global_optimum` for more.
+//! 40 problems a law by default; `PALPATE_PROBLEMS=10000 cargo test --release --test global_optimum` for more, from number
+//! `PALPATE_FROM` on.
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
@@ -137,13 +138,14 @@ fn honest(fit: &LawFit, problem: &Problem) -> f64 {
 fn challenge(name: &str, response: Response) {
     let law: Law = name.parse().unwrap();
     let (shapes, constant, _) = parts(law, response);
-    let problems = std::env::var("PALPATE_PROBLEMS").map_or(40, |count| count.parse().unwrap());
+    let asked = |name: &str, usual: u64| std::env::var(name).map_or(usual, |count| count.parse().unwrap());
+    let (problems, from) = (asked("PALPATE_PROBLEMS", 40), asked("PALPATE_FROM", 0));
     let options = LawOptions {
         response,
         ..LawOptions::default()
     };
     let (mut beaten, mut worst, mut converged) = (Vec::new(), f64::NEG_INFINITY, 0);
-    for index in 0..problems {
+    for index in from..from + problems {
         let mut random = Noise::new(index * 7919 + name.len() as u64 * 104_729 + response as u64);
         let problem = problem(law, response, &mut random);
         let fit = fit_law(&Samples::new(&problem.times, &problem.values), law, &options).unwrap();

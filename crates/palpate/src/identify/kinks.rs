@@ -1,0 +1,56 @@
+//! Laws that end in finite time: wherever the end passes a sample the residual has a kink, and a valley of its own between two.
+
+use super::model::Model;
+use super::orthogonal::Orthogonal;
+use super::samples::Scaled;
+use super::separable::{Shapes, Solution};
+use super::starts::ends_of;
+
+/// Intervals between samples that are looked at.
+const INTERVALS: usize = 60;
+
+/// Valleys that are kept.
+const KEPT: usize = 6;
+
+/// Places in an interval, in parts of the way from one sample to the next.
+const PARTS: [f64; 4] = [1e-3, 0.03, 0.3, 0.7];
+
+/// Standard errors that the end may lie off.
+const ERRORS: f64 = 6.0;
+
+/// Starts with the end among the first samples.
+pub(super) fn first_kinks(model: &Model, scaled: &Scaled) -> Vec<Vec<f64>> {
+    kinks(model, scaled, &|_| true)
+}
+
+/// Starts with the end between other samples than in `solution`, as near to it as its errors leave open.
+pub(super) fn near_kinks(model: &Model, scaled: &Scaled, solution: &Solution) -> Vec<Vec<f64>> {
+    let (linear, size) = (solution.linear.len(), solution.linear.len() + solution.nonlinear.len());
+    let (Some(inverse), [rate]) = (&solution.inverse_normal, solution.nonlinear.as_slice()) else {
+        return Vec::new();
+    };
+    let error = (inverse[linear * (size + 1)] * solution.variance).sqrt();
+    kinks(model, scaled, &|other| (other - rate).abs() <= ERRORS * error)
+}
+
+/// The deepest valleys over the free numbers with the end at each of some places between samples.
+fn kinks(model: &Model, scaled: &Scaled, open: &dyn Fn(f64) -> bool) -> Vec<Vec<f64>> {
+    let shapes = model.at(&scaled.times);
+    let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
+    for (end, rest) in ends_of(model) {
+        let (low, high) = shapes.bounds(0);
+        let pairs = scaled.times.windows(2).map(|pair| PARTS.map(|part| pair[0] + part * (pair[1] - pair[0])));
+        let rates = pairs.map(|times| times.map(|time| (end / time).ln().clamp(low, high)));
+        let rates = rates.filter(|rates| open(rates[0]) || open(rates[3])).take(INTERVALS).flatten();
+        let along: Vec<Orthogonal> = rates
+            .map(|rate| Orthogonal::new(&shapes, &[&[rate], rest.as_slice()].concat(), scaled.target()))
+            .collect();
+        let lowest = |i: &usize| {
+            let beside = [i.checked_sub(1), Some(i + 1)].map(|j| j.and_then(|j| along.get(j)));
+            beside.into_iter().flatten().all(|other| along[*i].square <= other.square)
+        };
+        found.extend((0..along.len()).filter(lowest).map(|i| (along[i].square, along[i].theta.clone())));
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().take(KEPT).map(|(_, theta)| theta).collect()
+}

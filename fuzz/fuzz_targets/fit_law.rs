@@ -1,0 +1,10 @@
+//! No bytes, read as a law, options and columns, make a fit panic or end well with numbers that are none.
+
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+
+#[path = "../../crates/palpate/tests/any_hold/mod.rs"]
+mod any_hold;
+
+fuzz_target!(|bytes: &[u8]| any_hold::fit_any(bytes));
