@@ -191,7 +191,9 @@ struct NistLaw {
 
 /// Digits in which two numbers agree.
 fn digits(found: f64, expected: f64) -> f64 {
-    -((found - expected).abs() / expected.abs()).log10().min(0.0).max(-16.0)
+    let share = ((found - expected) / expected).abs();
+    // No number has no digit.
+    if share.is_nan() { 0.0 } else { -share.log10().clamp(-16.0, 0.0) }
 }
 
 /// Lanczos1 leaves a sum of squares of 1.4308e-25, its data rounded to doubles one of 1.4296e-25: three digits of the errors.

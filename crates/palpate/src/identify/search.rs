@@ -159,7 +159,7 @@ pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize
         if kept.len() == FINALISTS || (!kept.is_empty() && square > limit) {
             break;
         }
-        let theta = bottom(model, nodes, theta, most_iterations, &mut aside);
+        let theta = bottom(model, nodes, &theta, most_iterations, &mut aside);
         let same = |other: &Vec<f64>| other.iter().zip(&theta).all(|(a, b)| (a - b).abs() < 1e-3);
         if !kept.iter().any(same) {
             kept.push(theta);
@@ -205,11 +205,11 @@ const TOLD: f64 = 0.2;
 const ROUGH: f64 = 1e-5;
 
 /// The very bottom of a valley of the condensed samples.
-fn bottom(model: &Model, nodes: &Condensed, theta: Vec<f64>, most_iterations: usize, aside: &mut Work) -> Vec<f64> {
+fn bottom(model: &Model, nodes: &Condensed, theta: &[f64], most_iterations: usize, aside: &mut Work) -> Vec<f64> {
     let shapes = model.at(&nodes.times);
-    curvature(&shapes, nodes.target(), &theta, aside)
-        .and_then(|hessian| descend(&shapes, nodes.target(), &theta, &hessian, aside))
-        .unwrap_or_else(|| refine(&shapes, nodes.target(), &theta, Ending::tight(most_iterations), aside))
+    curvature(&shapes, nodes.target(), theta, aside)
+        .and_then(|hessian| descend(&shapes, nodes.target(), theta, &hessian, aside))
+        .unwrap_or_else(|| refine(&shapes, nodes.target(), theta, Ending::tight(most_iterations), aside))
         .theta()
         .to_vec()
 }

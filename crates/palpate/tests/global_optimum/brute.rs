@@ -268,8 +268,9 @@ fn eliminate(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
         right.swap(i, pivot);
         for k in i + 1..count {
             let factor = matrix[k][i] / matrix[i][i];
-            for j in i..count {
-                matrix[k][j] -= factor * matrix[i][j];
+            let (above, below) = matrix.split_at_mut(k);
+            for (entry, pivot) in below[0][i..].iter_mut().zip(&above[i][i..]) {
+                *entry -= factor * pivot;
             }
             right[k] -= factor * right[i];
         }
