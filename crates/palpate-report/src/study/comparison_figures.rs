@@ -27,7 +27,7 @@ pub(super) fn all(record: &ComparedRecord, suffix: &str) -> Vec<Figure> {
 }
 
 /// A figure of one panel a hold.
-fn by_hold(name: String, caption: String, panels: Vec<(Panel, f64)>, all: usize) -> Option<Figure> {
+fn by_hold(name: String, caption: &str, panels: Vec<(Panel, f64)>, all: usize) -> Option<Figure> {
     let height = panels.first()?.1;
     let columns = match panels.len() {
         1 => 1,
@@ -60,7 +60,7 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let left = if all > laws.len() { format!(" The {} best of {all} laws.", laws.len()) } else { String::new() };
     by_hold(
         format!("forward_errors{suffix}"),
-        format!(
+        &format!(
             "What each law, fitted to the first part of a hold, foretells of the rest: root mean square error in % of the change of the signal.{left}"
         ),
         panels.collect(),
@@ -115,7 +115,7 @@ fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     }
     by_hold(
         format!("law_residuals{suffix}"),
-        format!(
+        &format!(
             "What the best laws leave over when fitted to the whole hold (measured less fitted, averaged over {STRETCHES} stretches of ln t). Noise scatters about zero; a wave is shape that the law misses."
         ),
         panels,
@@ -153,7 +153,7 @@ fn spectra(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let panels: Vec<_> = holds.iter().take(MOST_PANELS).map(|(hold, fit)| (spectrum_panel(hold, fit), 62.0)).collect();
     by_hold(
         format!("spectra{suffix}"),
-        "The dense spectrum of each hold: amplitude over relaxation time; the line marks the length of the hold. Where the slowest time carries weight the spectrum is open-ended, and its equilibrium is a convention of the grid.".to_owned(),
+        "The dense spectrum of each hold: amplitude over relaxation time; the line marks the length of the hold. Where the slowest time carries weight the spectrum is open-ended, and its equilibrium is a convention of the grid.",
         panels,
         holds.len(),
     )
