@@ -150,3 +150,19 @@ fn what_no_fit_can_follow_is_refused() {
     assert_eq!(form.to_string(), "the law kelvin-voigt has no form for relaxation");
     assert!("prony:9".parse::<Law>().is_err() && "latency:-1".parse::<Law>().is_err());
 }
+
+#[test]
+fn a_series_with_one_time_held_does_not_lose_its_order() {
+    let (times, values) = hold(1e-3);
+    for held in ["time_1", "time_2", "time_3"] {
+        let options = LawOptions {
+            fixed: vec![(held.to_owned(), 4.0)],
+            ..LawOptions::default()
+        };
+        let fit = fit_law(&Samples::new(&times, &values), Law::Prony { terms: 3 }, &options).unwrap();
+        assert_eq!(fit.free_numbers(), 6);
+        assert!((fit.value(held).unwrap() - 4.0).abs() < 1e-12);
+        let square: f64 = times.iter().zip(&values).map(|(t, y)| (y - fit.predict(*t)).powi(2)).sum();
+        assert!((square / fit.residual_square - 1.0).abs() < 1e-9, "{held}: {square} {}", fit.residual_square);
+    }
+}

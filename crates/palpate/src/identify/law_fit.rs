@@ -259,7 +259,7 @@ impl Fitted {
         constant.into_iter().chain(self.model.form.amplitude_names()).chain(nonlinear).collect()
     }
 
-    /// Puts exponentials in the order of their times, fastest first.
+    /// Puts exponentials whose times were searched in the order of their times, fastest first.
     pub(super) fn arrange(&mut self) {
         let model = &self.model;
         let (moving, _) = model.moving();
@@ -271,7 +271,11 @@ impl Fitted {
         order.sort_by(|a, b| solution.nonlinear[*b].total_cmp(&solution.nonlinear[*a]));
         let constants = usize::from(model.constant);
         let linear = model.linear();
-        let place = |i: usize| if i < constants { i } else { constants + order[i - constants] };
+        // Only those whose times were searched change places; one that was held keeps its own.
+        let place = |i: usize| {
+            let slot = moving.iter().position(|shape| constants + shape == i);
+            slot.map_or(i, |slot| constants + moving[order[slot]])
+        };
         let all: Vec<usize> = (0..linear).map(place).chain(order.iter().map(|i| linear + i)).collect();
         let size = all.len();
         let entry = |inverse: &[f64], i: usize| inverse[all[i / size] * size + all[i % size]];
