@@ -21,8 +21,8 @@ pub(super) fn build(form: Form, samples: &Samples<'_>, options: &LawOptions) -> 
     let scaled = Scaled::new(samples, constant)?;
     let numbers = numbers(&form, &scaled, options)?;
     let linear = linear_bounds(&form, constant.is_none(), samples, &scaled, options);
-    let known: Vec<String> = known_names(&form);
     for name in options.bounds.iter().map(|(name, _)| name).chain(options.fixed.iter().map(|(name, _)| name)) {
+        let known = known_names(&form);
         if !known.contains(name) {
             return Err(FitError::UnknownNumber {
                 name: name.clone(),
@@ -109,20 +109,24 @@ fn linear_bounds(
         let asked = options.bounds.iter().find(|(bounded, _)| bounded == name);
         asked.map_or(FREE, |(_, (low, high))| ((low - offset) / scaled.range, (high - offset) / scaled.range))
     };
+    if options.bounds.is_empty() && !options.one_sign {
+        return Vec::new();
+    }
     let mut bounds = Vec::new();
     if constant {
         bounds.push(bound(&form.constant_name().to_owned(), scaled.center));
     }
-    let falls = change(samples) < 0.0;
-    let positive = falls == (form.response == crate::laws::Response::Relaxation);
+    let sign = options.one_sign.then(|| {
+        let falls = change(samples) < 0.0;
+        falls == (form.response == crate::laws::Response::Relaxation)
+    });
     for name in form.amplitude_names() {
-        let (mut low, mut high) = bound(&name, 0.0);
-        if options.one_sign && positive {
-            low = low.max(0.0);
-        } else if options.one_sign {
-            high = high.min(0.0);
-        }
-        bounds.push((low, high));
+        let (low, high) = bound(&name, 0.0);
+        bounds.push(match sign {
+            None => (low, high),
+            Some(true) => (low.max(0.0), high),
+            Some(false) => (low, high.min(0.0)),
+        });
     }
     if bounds.iter().all(|bound| *bound == FREE) { Vec::new() } else { bounds }
 }

@@ -1,6 +1,7 @@
 //! A hold condensed to a few dozen nodes that carry nearly all it says.
 
 use super::separable::Target;
+use crate::vector::accelerated;
 
 /// Relative width in time of the bins; the shape of a law is close to a cubic inside one.
 pub(super) const WIDTH: f64 = 0.2;
@@ -47,17 +48,21 @@ impl Condensed {
 
     /// Condenses samples at rising times ≥ 0 in bins of a relative width; `roots` are square roots of weights, `None` for all 1.
     pub(super) fn with_width(times: &[f64], values: &[f64], roots: Option<&[f64]>, width: f64) -> Self {
+        // Some seven bins an e-fold of time, two nodes a bin.
+        let room = times.len().min(128);
         let mut condensed = Self {
+            times: Vec::with_capacity(room),
+            values: Vec::with_capacity(room),
+            roots: Vec::with_capacity(room),
+            inside: 0.0,
             samples: times.len(),
-            ..Self::default()
         };
         let mut from = 0;
         while from < times.len() {
             let end = times[from] * (1.0 + width);
-            let mut until = from + 1;
-            while until < times.len() && times[until] < end {
-                until += 1;
-            }
+            let later = &times[from + 1..];
+            let alone = later.first().is_none_or(|next| *next >= end);
+            let until = from + 1 + if alone { 0 } else { later.partition_point(|time| *time < end) };
             let range = from..until;
             condensed.bin(&times[range.clone()], &values[range.clone()], roots.map(|roots| &roots[range]));
             from = until;
@@ -71,10 +76,7 @@ impl Condensed {
     }
 
     pub(super) fn target(&self) -> Target<'_> {
-        Target {
-            values: &self.values,
-            roots: Some(&self.roots),
-        }
+        Target::nodes(&self.values, &self.roots)
     }
 
     fn bin(&mut self, times: &[f64], values: &[f64], roots: Option<&[f64]>) {
@@ -85,8 +87,8 @@ impl Condensed {
             return;
         }
         let moments = match roots {
-            None => Moments::of(times, values, |_| 1.0),
-            Some(roots) => Moments::of(times, values, |i| roots[i] * roots[i]),
+            None => Moments::of(times, values, EqualWeights),
+            Some(roots) => Moments::of(times, values, roots),
         };
         self.inside += moments.inside;
         if moments.weight == 0.0 {
@@ -130,25 +132,26 @@ struct Moments {
 }
 
 impl Moments {
-    #[inline(always)]
-    fn of(times: &[f64], values: &[f64], weight: impl Fn(usize) -> f64) -> Self {
-        let (mut w, mut wt, mut wy) = (0.0, 0.0, 0.0);
-        for (i, (t, y)) in times.iter().zip(values).enumerate() {
-            let weight = weight(i);
-            w += weight;
-            wt += weight * t;
-            wy += weight * y;
-        }
+    fn of(times: &[f64], values: &[f64], roots: impl Roots) -> Self {
+        let [w, wt, wy] = sums(
+            times,
+            values,
+            roots,
+            #[inline(always)]
+            |w, t, y| [w, w * t, w * y],
+        );
         let (time, value) = if w > 0.0 { (wt / w, wy / w) } else { (0.0, 0.0) };
-        let (mut tt, mut ttt, mut ty, mut yy) = (0.0, 0.0, 0.0, 0.0);
-        for (i, (t, y)) in times.iter().zip(values).enumerate() {
-            let (weight, dt, dy) = (weight(i), t - time, y - value);
-            let square = weight * dt * dt;
-            tt += square;
-            ttt += square * dt;
-            ty += weight * dt * dy;
-            yy += weight * dy * dy;
-        }
+        let [tt, ttt, ty, yy] = sums(
+            times,
+            values,
+            roots,
+            #[inline(always)]
+            |w, t, y| {
+                let (dt, dy) = (t - time, y - value);
+                let along = w * dt;
+                [along * dt, along * dt * dt, along * dy, w * dy * dy]
+            },
+        );
         // A bin whose weight lies on one sample has no width.
         let wide = tt > 1e-24 * w * time * time;
         let width = if wide { (tt / w).sqrt() } else { 0.0 };
@@ -163,6 +166,76 @@ impl Moments {
             inside: (yy - slope * ty).max(0.0),
         }
     }
+}
+
+/// Square roots of the weights of the samples of a bin.
+trait Roots: Copy {
+    fn at(&self, index: usize) -> f64;
+}
+
+/// All one.
+#[derive(Clone, Copy)]
+struct EqualWeights;
+
+impl Roots for EqualWeights {
+    #[inline(always)]
+    fn at(&self, _: usize) -> f64 {
+        1.0
+    }
+}
+
+impl Roots for &[f64] {
+    #[inline(always)]
+    fn at(&self, index: usize) -> f64 {
+        self[index]
+    }
+}
+
+/// Σ f(weight, time, value) over the samples, in lanes.
+#[inline(always)]
+fn sums<const N: usize>(
+    times: &[f64],
+    values: &[f64],
+    roots: impl Roots,
+    f: impl Fn(f64, f64, f64) -> [f64; N],
+) -> [f64; N] {
+    const LANES: usize = 8;
+    if times.len() < 2 * LANES {
+        let mut sums = [0.0; N];
+        for (index, (t, y)) in times.iter().zip(values).enumerate() {
+            let root = roots.at(index);
+            let terms = f(root * root, *t, *y);
+            for k in 0..N {
+                sums[k] += terms[k];
+            }
+        }
+        return sums;
+    }
+    accelerated(
+        #[inline(always)]
+        || {
+            let mut sums = [[0.0; LANES]; N];
+            let ((times, late_times), (values, late_values)) =
+                (times.as_chunks::<LANES>(), values.as_chunks::<LANES>());
+            for (index, (t, y)) in times.iter().zip(values).enumerate() {
+                for lane in 0..LANES {
+                    let root = roots.at(index * LANES + lane);
+                    let terms = f(root * root, t[lane], y[lane]);
+                    for k in 0..N {
+                        sums[k][lane] += terms[k];
+                    }
+                }
+            }
+            for (lane, (t, y)) in late_times.iter().zip(late_values).enumerate() {
+                let root = roots.at(times.len() * LANES + lane);
+                let terms = f(root * root, *t, *y);
+                for k in 0..N {
+                    sums[k][lane] += terms[k];
+                }
+            }
+            sums.map(|lanes| lanes.iter().sum())
+        },
+    )
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::vector::products::dot;
 /// where next to nothing is left over.
 pub(super) fn exact(model: &Model, scaled: &Scaled, solution: Solution, work: &mut Work) -> Solution {
     let all = model.at(&scaled.times);
-    let signal = dot(scaled.target().values, scaled.target().values);
+    let signal = dot(scaled.target().values(), scaled.target().values());
     let clean = solution.residual_square < CLEAN * signal && solution.residual_square > ROUNDING * signal;
     if solution.nonlinear.is_empty() || !all.linear_bounds().is_empty() || !(clean || inflation(&solution) > IMITATED) {
         return solution;

@@ -1,20 +1,28 @@
 //! Cholesky factorisation for the small matrices of a fit (up to a few dozen rows).
 
+use smallvec::SmallVec;
+
+/// A few numbers; those of every usual law without a trip to the heap.
+pub(super) type Few = SmallVec<[f64; 8]>;
+
+/// A square matrix of as many rows, row-major; up to five without a trip to the heap.
+pub(super) type Square = SmallVec<[f64; 25]>;
+
 /// Lower triangle of a symmetric positive definite matrix, factored.
 pub(super) struct Cholesky {
     size: usize,
-    lower: Vec<f64>,
-    scale: Vec<f64>,
+    lower: Square,
+    scale: Few,
 }
 
 impl Cholesky {
     /// Factors `matrix` (row-major, `size` × `size`) after scaling its diagonal to one; `None` if it is singular to rounding.
     pub(super) fn new(matrix: &[f64], size: usize) -> Option<Self> {
-        let scale: Vec<f64> = (0..size).map(|i| 1.0 / matrix[i * size + i].sqrt()).collect();
+        let scale: Few = (0..size).map(|i| 1.0 / matrix[i * size + i].sqrt()).collect();
         if scale.iter().any(|s| !s.is_finite()) {
             return None;
         }
-        let mut lower = vec![0.0; size * size];
+        let mut lower = Square::from_elem(0.0, size * size);
         for i in 0..size {
             for j in 0..=i {
                 let mut sum = matrix[i * size + j] * scale[i] * scale[j];
@@ -72,7 +80,7 @@ impl Cholesky {
         let n = self.size;
         let mut inverse = vec![0.0; n * n];
         for j in 0..n {
-            let mut column = vec![0.0; n];
+            let mut column = Few::from_elem(0.0, n);
             column[j] = 1.0;
             self.solve(&mut column);
             for i in 0..n {

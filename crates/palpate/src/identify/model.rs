@@ -1,6 +1,6 @@
 //! A law made ready for a fit: which numbers are free, and within which bounds.
 
-use super::separable::{Shapes, Termination};
+use super::separable::{Shapes, Spare, Termination};
 use crate::laws::{Column, Form, Kernel, Loading, NumberKind, Shape, Superposition};
 
 /// A nonlinear number of the law.
@@ -49,10 +49,11 @@ impl Model {
         }
     }
 
-    /// The same after a loading, its times in the units of the fit, rather than a step.
+    /// The same after a loading, its times in the units of the fit, rather than a step; to a law that knows no superposition it is one.
     pub(super) fn after(self, loading: &Loading) -> Self {
+        let superposes = self.form.shapes.iter().any(Shape::superposes);
         Self {
-            loading: Some(Superposition::new(loading)),
+            loading: superposes.then(|| Superposition::new(loading)),
             ..self
         }
     }
@@ -99,6 +100,11 @@ impl Model {
         }
     }
 
+    /// Whether the loading counts as a step, so that shapes depend on the products of rates and times alone.
+    pub(super) fn is_after_step(&self) -> bool {
+        self.loading.is_none()
+    }
+
     /// Shapes that have a free number, and those that have none.
     pub(super) fn moving(&self) -> (Vec<usize>, Vec<usize>) {
         (0..self.form.shapes.len()).partition(|&shape| self.free().any(|number| number.shape == shape))
@@ -106,7 +112,11 @@ impl Model {
 
     /// The model at these times.
     pub(super) fn at<'a>(&'a self, times: &'a [f64]) -> Sampled<'a> {
-        Sampled { model: self, times }
+        Sampled {
+            model: self,
+            times,
+            spare: Spare::default(),
+        }
     }
 
     /// The same with only its first shapes, whose linear numbers nothing bounds.
@@ -142,6 +152,7 @@ fn orient(values: &mut [f64], column: Column) {
 pub(super) struct Sampled<'a> {
     model: &'a Model,
     times: &'a [f64],
+    spare: Spare,
 }
 
 impl Shapes for Sampled<'_> {
@@ -159,6 +170,10 @@ impl Shapes for Sampled<'_> {
 
     fn linear_bounds(&self) -> &[(f64, f64)] {
         &self.model.linear_bounds
+    }
+
+    fn spare(&self) -> Option<&Spare> {
+        Some(&self.spare)
     }
 
     fn at_bound(&self, index: usize) -> Termination {

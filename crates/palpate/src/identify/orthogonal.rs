@@ -19,11 +19,11 @@ pub(super) struct Orthogonal {
 
 impl Orthogonal {
     pub(super) fn new(shapes: &impl Shapes, theta: &[f64], target: Target<'_>) -> Self {
-        let samples = target.values.len();
+        let samples = target.values().len();
         let mut columns = vec![vec![0.0; samples]; shapes.columns()];
         let mut derivatives = vec![vec![0.0; samples]; theta.len()];
         shapes.fill(theta, &mut columns, &mut derivatives);
-        if let Some(roots) = target.roots {
+        if let Some(roots) = target.roots() {
             for column in columns.iter_mut().chain(&mut derivatives) {
                 for (entry, root) in column.iter_mut().zip(roots) {
                     *entry *= root;
@@ -36,7 +36,7 @@ impl Orthogonal {
             axes: Vec::new(),
             parts: Vec::new(),
             along: Vec::new(),
-            rest: target.values.to_vec(),
+            rest: target.values().to_vec(),
             derivatives,
         };
         for mut column in columns {

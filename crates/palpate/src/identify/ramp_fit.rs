@@ -244,10 +244,7 @@ impl RampProblem {
     }
 
     fn target(&self) -> Target<'_> {
-        Target {
-            values: &self.values,
-            roots: self.roots.as_deref(),
-        }
+        Target::new(&self.values, self.roots.as_deref())
     }
 
     /// ln κ and n of the free numbers.

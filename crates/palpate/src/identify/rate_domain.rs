@@ -42,10 +42,7 @@ pub fn fit_rates(
         exponents: options.exponent_range,
     };
     let mut work = Work::default();
-    let target = Target {
-        values: &scaled.rates,
-        roots: None,
-    };
+    let target = Target::new(&scaled.rates, None);
     let mut best: Option<Refined> = None;
     for start in shapes.starts(&scaled.rates, &mut work) {
         let refined = refine(&shapes, target, &start, Ending::tight(options.most_iterations), &mut work);

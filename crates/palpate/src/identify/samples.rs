@@ -2,6 +2,7 @@
 
 use super::FitError;
 use super::separable::Target;
+use crate::vector::columns::{all_finite, extremes, multiply, rises, shifted};
 
 /// A hold to be fitted: times in s, values in their unit, and how far each may be off.
 ///
@@ -88,13 +89,25 @@ impl<'a> Samples<'a> {
                 found,
             });
         }
-        if let Some(index) = self.times.iter().zip(self.values).position(|(t, y)| !(t.is_finite() && y.is_finite())) {
-            return Err(FitError::NotFinite { index });
+        if all_finite(self.times) && all_finite(self.values) && rises(self.times) {
+            return Ok(());
         }
-        match self.times.windows(2).position(|pair| pair[1] <= pair[0]) {
-            Some(before) => Err(FitError::TimeNotRising { index: before + 1 }),
-            None => Ok(()),
+        let finite = |(t, y): (&f64, &f64)| t.is_finite() && y.is_finite();
+        match self.times.iter().zip(self.values).position(|sample| !finite(sample)) {
+            Some(index) => Err(FitError::NotFinite { index }),
+            None => {
+                let rising = self.times.windows(2).take_while(|pair| pair[0] < pair[1]).count();
+                Err(FitError::TimeNotRising { index: rising + 1 })
+            }
         }
+    }
+
+    /// These without the samples that may be off by anything, which say nothing; `None` if there is no such sample.
+    fn certain(&self) -> Option<[Vec<f64>; 3]> {
+        let deviations = self.deviations.filter(|deviations| !all_finite(deviations))?;
+        let counts = |i: &usize| deviations[*i].is_finite();
+        let kept = |column: &[f64]| (0..column.len()).filter(counts).map(|i| column[i]).collect();
+        Some([self.times, self.values, deviations].map(kept))
     }
 }
 
@@ -115,13 +128,16 @@ pub(super) struct Scaled {
 
 impl Scaled {
     /// Scales checked samples; `constant` is the constant of the law if it is given.
-    pub(super) fn new<'a>(samples: &Samples<'a>, constant: Option<f64>) -> Result<Self, FitError> {
+    pub(super) fn new(samples: &Samples<'_>, constant: Option<f64>) -> Result<Self, FitError> {
+        // Of a sample that says nothing only its time counts, if it is the first or the last.
+        let start = samples.times[0];
+        let duration = samples.times[samples.times.len() - 1] - start;
+        let certain = samples.certain();
+        let samples = certain
+            .as_ref()
+            .map_or(*samples, |[times, values, deviations]| Samples::new(times, values).with_deviations(deviations));
         let (times, values) = (samples.times, samples.values);
-        let start = times[0];
-        let duration = times[times.len() - 1] - start;
-        let counts = |i: usize| samples.deviations.is_none_or(|deviations| deviations[i].is_finite());
-        let kept = |column: &'a [f64]| column.iter().enumerate().filter(move |(i, _)| counts(*i)).map(|(_, x)| *x);
-        let (low, high) = kept(values).fold((f64::MAX, f64::MIN), |(low, high), y| (low.min(y), high.max(y)));
+        let (low, high) = extremes(values);
         if low == high {
             return Err(FitError::Constant {
                 value: low,
@@ -130,25 +146,22 @@ impl Scaled {
         }
         let center = constant.unwrap_or(low + 0.5 * (high - low));
         let range = if constant.is_some() { (high - center).abs().max((low - center).abs()) } else { high - low };
-        let first = kept(times).map(|t| (t - start) / duration).find(|t| *t > 0.0).unwrap_or(1.0);
+        let first = times.iter().map(|t| (t - start) / duration).find(|t| *t > 0.0).unwrap_or(1.0);
         let invertible = |span: f64| span.is_finite() && (1.0 / span).is_finite();
         if !(invertible(range) && invertible(duration) && first > f64::MIN_POSITIVE * 1e6) {
             return Err(FitError::OutOfRange);
         }
         let (per_duration, per_range) = (1.0 / duration, 1.0 / range);
-        // A sample that may be off by anything says nothing; only its time counts, if it is the first.
-        let deviations: Option<Vec<f64>> =
-            samples.deviations.map(|deviations| deviations.iter().copied().filter(|d| d.is_finite()).collect());
-        let (roots, precision) = deviations.map_or((None, 1.0), |deviations| {
-            let (roots, precision) = roots_of(&deviations);
+        let (roots, precision) = samples.deviations.map_or((None, 1.0), |deviations| {
+            let (roots, precision) = roots_of(deviations);
             (Some(roots), precision)
         });
-        let mut scaled: Vec<f64> = kept(values).map(|y| (y - center) * per_range).collect();
+        let mut scaled = shifted(values, center, per_range);
         if let Some(roots) = &roots {
-            scaled.iter_mut().zip(roots).for_each(|(y, root)| *y *= root);
+            multiply(&mut scaled, roots);
         }
         Ok(Self {
-            times: kept(times).map(|t| (t - start) * per_duration).collect(),
+            times: shifted(times, start, per_duration),
             values: scaled,
             roots,
             precision,
@@ -159,10 +172,7 @@ impl Scaled {
     }
 
     pub(super) fn target(&self) -> Target<'_> {
-        Target {
-            values: &self.values,
-            roots: self.roots.as_deref(),
-        }
+        Target::new(&self.values, self.roots.as_deref())
     }
 
     /// ln λ, in the units of the fit, from the slowest to the fastest rate that such a hold can show: 10⁻³ per duration to

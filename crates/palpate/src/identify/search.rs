@@ -5,9 +5,13 @@ use super::exact::{exact, inflation, local};
 use super::ghosts::{Ghost, ghosts};
 use super::growth::{Grown, grown};
 use super::kinks::near_kinks;
-use super::model::Model;
+use super::linear_algebra::Square;
+use super::model::{Model, Sampled};
 use super::samples::Scaled;
-use super::separable::{Ending, Refined, Solution, Termination, Work, curvature, descend, polished, refine, standing};
+use super::separable::{
+    Ending, NOTHING, Refined, Solution, Target, Termination, Work, curvature, descend, distance, polished, refine,
+    standing,
+};
 use super::starts::{ends, starts};
 use super::thorough::thorough;
 
@@ -20,16 +24,16 @@ const FINALISTS: usize = 3;
 /// Finds the best numbers of a model: a coarse grid and local searches on condensed samples, then the best of them on all.
 pub(super) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, work: &mut Work) -> Option<Solution> {
     let nodes = condense(scaled);
-    let finalists = finalists(model, &nodes, most_iterations, work);
-    let shapes = model.at(&scaled.times);
+    let valleys = valleys(model, &nodes, most_iterations, work);
+    let (shapes, target) = (model.at(&scaled.times), scaled.target());
     let mut best: Option<Refined> = None;
-    for theta in finalists {
-        let refined = settle(model, scaled, &nodes, &theta, most_iterations, work);
+    for valley in valleys {
+        let refined = settle(&shapes, target, &valley, most_iterations, work);
         if best.as_ref().is_none_or(|best| refined.square() < best.square()) {
             best = Some(refined);
         }
     }
-    let mut solution = polished(&shapes, scaled.target(), best?, work);
+    let mut solution = polished(&shapes, target, best?, work);
     mark_merged(model, &mut solution);
     solution = settled_between_kinks(model, scaled, solution, work);
     let doubtful = solution.termination != Termination::Converged
@@ -74,22 +78,25 @@ fn mark_merged(model: &Model, solution: &mut Solution) {
     }
 }
 
+/// The bottom of a valley of the condensed samples, or a start that only all samples can tell from it.
+struct Valley {
+    theta: Vec<f64>,
+    /// Curvature on the way there, where the valley is smooth.
+    curvature: Option<Square>,
+}
+
 /// From the bottom of a valley of the condensed samples to that of all samples: Newton's method where the valley is smooth.
 fn settle(
-    model: &Model,
-    scaled: &Scaled,
-    nodes: &Condensed,
-    theta: &[f64],
+    shapes: &Sampled<'_>,
+    target: Target<'_>,
+    valley: &Valley,
     most_iterations: usize,
     work: &mut Work,
 ) -> Refined {
-    let shapes = model.at(&scaled.times);
-    let mut aside = Work::default();
-    let curvature = curvature(&model.at(&nodes.times), nodes.target(), theta, &mut aside);
-    work.condensed += aside.evaluations;
-    curvature
-        .and_then(|hessian| descend(&shapes, scaled.target(), theta, &hessian, work))
-        .unwrap_or_else(|| refine(&shapes, scaled.target(), theta, Ending::tight(most_iterations), work))
+    let hessian = valley.curvature.as_ref();
+    hessian
+        .and_then(|hessian| descend(shapes, target, &valley.theta, hessian, NOTHING, work))
+        .unwrap_or_else(|| refine(shapes, target, &valley.theta, Ending::tight(most_iterations), work))
 }
 
 /// The nodes that stand for scaled samples.
@@ -109,9 +116,14 @@ pub(super) fn condense_to(scaled: &Scaled, width: f64) -> Condensed {
     }
 }
 
-/// The deepest valleys of the condensed problem, deepest first, with every other that is as deep to the accuracy of condensing.
+/// The nonlinear numbers at the deepest valleys of the condensed problem, deepest first.
 pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut Work) -> Vec<Vec<f64>> {
-    let shapes = model.at(&nodes.times);
+    valleys(model, nodes, most_iterations, work).into_iter().map(|valley| valley.theta).collect()
+}
+
+/// The deepest valleys of the condensed problem, deepest first, with every other that is as deep to the accuracy of condensing.
+fn valleys(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut Work) -> Vec<Valley> {
+    let (shapes, target) = (model.at(&nodes.times), nodes.target());
     let mut aside = Work::default();
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
     let rough = Ending {
@@ -119,8 +131,8 @@ pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize
         most_iterations,
     };
     let explore = |start: &[f64], aside: &mut Work| {
-        let refined = refine(&shapes, nodes.target(), start, rough, aside);
-        (refined.square() + nodes.inside, refined.theta().to_vec())
+        let refined = refine(&shapes, target, start, rough, aside);
+        (refined.square() + nodes.inside, refined.into_theta(&shapes))
     };
     let (kinked, smooth): (Vec<Vec<f64>>, Vec<Vec<f64>>) =
         starts(model, nodes, VALLEYS, work).into_iter().partition(|start| ends(model, start));
@@ -128,7 +140,7 @@ pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize
     let least = found.iter().map(|(square, _)| *square).fold(f64::INFINITY, f64::min);
     let mut open: Vec<(f64, Vec<f64>)> = Vec::new();
     for start in kinked {
-        let square = refine(&shapes, nodes.target(), &start, AS_IT_IS, &mut aside).square() + nodes.inside;
+        let square = refine(&shapes, target, &start, AS_IT_IS, &mut aside).square() + nodes.inside;
         if square <= HOPELESS * least {
             found.push(explore(&start, &mut aside));
             open.push((square, start));
@@ -141,7 +153,7 @@ pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize
         let limit = least * (1.0 + nodes.noise(FELT));
         for start in longer(model, nodes, most_iterations, work) {
             if start.square + nodes.inside <= limit {
-                let valley = local(&shapes, nodes.target(), &start.theta, ROUGH, &mut aside);
+                let valley = local(&shapes, target, &start.theta, ROUGH, &mut aside);
                 found.push((valley.square + nodes.inside, valley.theta));
             }
         }
@@ -154,20 +166,22 @@ pub(super) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize
     else {
         return Vec::new();
     };
-    let mut kept: Vec<Vec<f64>> = Vec::new();
+    let mut kept: Vec<Valley> = Vec::new();
     for (square, theta) in found {
         if kept.len() == FINALISTS || (!kept.is_empty() && square > limit) {
             break;
         }
-        let theta = bottom(model, nodes, &theta, most_iterations, &mut aside);
-        let same = |other: &Vec<f64>| other.iter().zip(&theta).all(|(a, b)| (a - b).abs() < 1e-3);
-        if !kept.iter().any(same) {
-            kept.push(theta);
+        let valley = bottom(&shapes, target, &theta, most_iterations, &mut aside);
+        if !kept.iter().any(|other| distance(&other.theta, &valley.theta) < 1e-3) {
+            kept.push(valley);
         }
     }
     // Where the law ends in finite time nodes only tell roughly: such a start goes to all samples as it is.
     let limit = limit * (1.0 + KINKED);
-    kept.extend(open.into_iter().filter(|(square, _)| *square <= limit).map(|(_, start)| start));
+    kept.extend(open.into_iter().filter(|(square, _)| *square <= limit).map(|(_, theta)| Valley {
+        curvature: curvature(&shapes, target, &theta, &mut aside),
+        theta,
+    }));
     work.condensed += aside.evaluations;
     kept
 }
@@ -204,12 +218,19 @@ const TOLD: f64 = 0.2;
 /// Relative gain at which a valley has been searched well enough to tell it from others.
 const ROUGH: f64 = 1e-5;
 
-/// The very bottom of a valley of the condensed samples.
-fn bottom(model: &Model, nodes: &Condensed, theta: &[f64], most_iterations: usize, aside: &mut Work) -> Vec<f64> {
-    let shapes = model.at(&nodes.times);
-    curvature(&shapes, nodes.target(), theta, aside)
-        .and_then(|hessian| descend(&shapes, nodes.target(), theta, &hessian, aside))
-        .unwrap_or_else(|| refine(&shapes, nodes.target(), theta, Ending::tight(most_iterations), aside))
-        .theta()
-        .to_vec()
+/// The very bottom of a valley of the condensed samples, as near as they tell.
+fn bottom(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], most_iterations: usize, aside: &mut Work) -> Valley {
+    let curvature = curvature(shapes, target, theta, aside);
+    let refined = curvature
+        .as_ref()
+        .and_then(|hessian| descend(shapes, target, theta, hessian, TELLING, aside))
+        .unwrap_or_else(|| refine(shapes, target, theta, Ending::tight(most_iterations), aside));
+    Valley {
+        theta: refined.into_theta(shapes),
+        curvature,
+    }
 }
+
+/// Share of the residual square that a step may promise at the bottom of a valley of condensed samples: far below what condensing
+/// moves it by.
+const TELLING: f64 = 1e-10;

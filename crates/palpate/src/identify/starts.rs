@@ -6,6 +6,7 @@ use super::model::Model;
 use super::separable::Work;
 use crate::laws::{NumberKind, Shape};
 use crate::statistics::dot;
+use crate::vector::accelerated;
 
 /// Points from which to refine the free numbers of a model, best first: the valleys that a coarse grid shows.
 ///
@@ -138,6 +139,7 @@ impl Plane {
             rooted(&mut column, nodes);
             if fineness != Grid::Coarse { self.exact_residual(&mut column) } else { self.residual(&column) }
         };
+        let table = Table::new(self, nodes);
         let others =
             numbers.get(1).map_or_else(|| vec![0.0], |number| coarse(number.kind, number.bounds, number.fixed));
         let mut found: Vec<Valley> = Vec::new();
@@ -147,52 +149,44 @@ impl Plane {
                 Some(end) if numbers[0].fixed.is_none() => rates_with_end(numbers[0].bounds, end, nodes, fineness),
                 _ => rates(numbers[0].bounds, numbers[0].fixed, fineness),
             };
-            let residuals: Vec<f64> = grid.iter().map(|rate| residual(*rate, other)).collect();
+            let residuals: Vec<f64> = if fineness == Grid::Coarse && model.is_after_step() {
+                table.residuals(model, shape, &grid, other)
+            } else {
+                grid.iter().map(|rate| residual(*rate, other)).collect()
+            };
             work.grid_points += residuals.len() as u64;
-            for (i, here) in residuals.iter().enumerate() {
-                let beside = |j: Option<usize>| j.and_then(|j| residuals.get(j));
-                let (before, after) = (beside(i.checked_sub(1)), beside(Some(i + 1)));
-                let below = |next: Option<&f64>| next.is_none_or(|next| here <= next);
-                let plain = before.is_none_or(|next| here == next) && after.is_none_or(|next| here == next);
-                // A plateau, where the shape says nothing, is no valley unless there is nothing else.
-                if below(before) && below(after) && !(plain && grid.len() > 1) {
-                    let width =
-                        if i + 1 < grid.len() { grid[i + 1] - grid[i] } else { grid[i] - grid[i.saturating_sub(1)] };
-                    let (rate, lowest) = bottom(grid[i], *here, width, |rate| residual(rate, other));
-                    let rate = rate.clamp(numbers[0].bounds.0, numbers[0].bounds.1);
-                    found.push(Valley {
-                        square: lowest,
-                        place,
-                        rate,
-                        other,
-                        ends: end.is_some(),
-                    });
-                }
-            }
+            found.extend(valleys_along(&grid, &residuals).map(|i| Valley {
+                square: vertex(&residuals, i),
+                place,
+                rate: grid[i],
+                here: residuals[i],
+                width: if i + 1 < grid.len() { grid[i + 1] - grid[i] } else { grid[i] - grid[i.saturating_sub(1)] },
+                other,
+                ends: end.is_some(),
+            }));
         }
         let mut found = if fineness != Grid::Coarse { found } else { deepest_along(&found) };
-        if found.is_empty() {
+        for valley in &mut found {
+            let (rate, lowest) = bottom(valley.rate, valley.here, valley.width, |rate| residual(rate, valley.other));
+            valley.rate = rate.clamp(numbers[0].bounds.0, numbers[0].bounds.1);
+            valley.square = lowest;
+        }
+        found.sort_by(|a, b| a.square.total_cmp(&b.square));
+        found.truncate(most);
+        let mut starts: Vec<[f64; 2]> = found.into_iter().map(|valley| [valley.rate, valley.other]).collect();
+        if starts.is_empty() {
             // Nothing but plateaus: any point will do, and the refinement will say so.
             let rate = numbers[0].fixed.unwrap_or(0.0).clamp(numbers[0].bounds.0, numbers[0].bounds.1);
             let other = numbers
                 .get(1)
                 .map_or(0.0, |number| number.fixed.unwrap_or(0.5 * (number.bounds.0 + number.bounds.1)));
-            found.push(Valley {
-                square: self.square,
-                place: 0,
-                rate,
-                other,
-                ends: false,
-            });
+            starts.push([rate, other]);
         }
-        found.sort_by(|a, b| a.square.total_cmp(&b.square));
-        found.truncate(most);
-        let free = |valley: Valley| {
-            let both = [valley.rate, valley.other];
+        let free = |both: [f64; 2]| {
             let kept = numbers.iter().zip(both).filter(|(number, _)| number.fixed.is_none());
             kept.map(|(_, value)| value).collect()
         };
-        found.into_iter().map(free).collect()
+        starts.into_iter().map(free).collect()
     }
 
     /// The same on a fine grid, by columns made orthogonal one after the other: exact where rates are near each other.
@@ -315,11 +309,17 @@ fn branch(
 
 /// Valleys of a lattice of combinations: those beside none that was seen before, that is, is lower.
 fn lattice_valleys(mut found: Vec<(f64, Vec<usize>)>, most: usize) -> Vec<Vec<usize>> {
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let order = |a: &(f64, Vec<usize>), b: &(f64, Vec<usize>)| a.0.total_cmp(&b.0);
+    if found.len() > LOWEST {
+        found.select_nth_unstable_by(LOWEST - 1, order);
+        found.truncate(LOWEST);
+    }
+    found.sort_unstable_by(order);
     let near = |a: &[usize], b: &[usize]| a.iter().zip(b).all(|(a, b)| a.abs_diff(*b) <= 1);
     let mut kept: Vec<Vec<usize>> = Vec::new();
-    for (index, (_, rates)) in found.iter().enumerate().take(LOWEST) {
-        if !found[..index].iter().any(|(_, lower)| near(lower, rates)) {
+    for (index, (_, rates)) in found.iter().enumerate() {
+        // What is beside is a little lower more often than much.
+        if !found[..index].iter().rev().any(|(_, lower)| near(lower, rates)) {
             kept.push(rates.clone());
         }
         if kept.len() == most {
@@ -332,13 +332,109 @@ fn lattice_valleys(mut found: Vec<(f64, Vec<usize>)>, most: usize) -> Vec<Vec<us
 /// Combinations of rates that are looked through for valleys, lowest first.
 const LOWEST: usize = 400;
 
+/// Residual squares of one more column at many rates at once.
+///
+/// A shape depends on λt alone, so that its values at many rates are those at one rate and as many sets of times; side by side, node
+/// after node, every sum over nodes goes over all rates together.
+struct Table<'a> {
+    nodes: &'a Condensed,
+    /// Squared roots of the weights.
+    weights: Vec<f64>,
+    /// The axes of the plane and its values, times the roots.
+    axes: Vec<Vec<f64>>,
+    values: Vec<f64>,
+    square: f64,
+}
+
+impl<'a> Table<'a> {
+    fn new(plane: &Plane, nodes: &'a Condensed) -> Self {
+        let times_roots = |column: &Vec<f64>| -> Vec<f64> {
+            column.iter().zip(&nodes.roots).map(|(entry, root)| entry * root).collect()
+        };
+        Self {
+            nodes,
+            weights: times_roots(&nodes.roots),
+            axes: plane.basis.iter().map(times_roots).collect(),
+            values: times_roots(&plane.values),
+            square: plane.square,
+        }
+    }
+
+    fn residuals(&self, model: &Model, shape: usize, rates: &[f64], other: f64) -> Vec<f64> {
+        let count = rates.len();
+        let scales: Vec<f64> = rates.iter().map(|rate| (rate - rates[0]).exp()).collect();
+        let times: Vec<f64> =
+            self.nodes.times.iter().flat_map(|time| scales.iter().map(move |scale| time * scale)).collect();
+        let mut values = vec![0.0; times.len()];
+        let theta = [rates[0], other];
+        let numbers = model.numbers_of(shape).len();
+        model.shape_value(shape, &times, &theta[..numbers], &mut values);
+        let (mut square, mut shared) = (vec![0.0; count], vec![0.0; count]);
+        let mut along = vec![0.0; count * self.axes.len()];
+        accelerated(
+            #[inline(always)]
+            || {
+                for (node, row) in values.chunks_exact(count).enumerate() {
+                    add(row, self.weights[node], &mut square, |x| x * x);
+                    add(row, self.values[node], &mut shared, |x| x);
+                    for (axis, along) in self.axes.iter().zip(along.chunks_exact_mut(count)) {
+                        add(row, axis[node], along, |x| x);
+                    }
+                }
+            },
+        );
+        let residual = |rate: usize| {
+            let imitated: f64 = along.iter().skip(rate).step_by(count).map(|part| part * part).sum();
+            let spread = square[rate] - imitated;
+            // A shape that is flat over the hold explains nothing.
+            let flat = spread <= 1e-14 * square[rate];
+            if flat { self.square } else { self.square - shared[rate] * shared[rate] / spread }
+        };
+        (0..count).map(residual).collect()
+    }
+}
+
+/// Adds `factor` f(x) to the sums.
+#[inline(always)]
+fn add(row: &[f64], factor: f64, sums: &mut [f64], f: impl Fn(f64) -> f64) {
+    for (sum, x) in sums.iter_mut().zip(row) {
+        *sum += factor * f(*x);
+    }
+}
+
+/// Places on a grid that are no higher than those beside them.
+fn valleys_along(grid: &[f64], residuals: &[f64]) -> impl Iterator<Item = usize> {
+    (0..grid.len()).filter(|&i| {
+        let here = residuals[i];
+        let beside = [i.checked_sub(1), Some(i + 1)].map(|j| j.and_then(|j| residuals.get(j)));
+        let below = beside.iter().all(|next| next.is_none_or(|next| here <= *next));
+        // A plateau, where the shape says nothing, is no valley unless there is nothing else.
+        let plain = beside.iter().all(|next| next.is_none_or(|next| here == *next));
+        below && !(plain && grid.len() > 1)
+    })
+}
+
+/// Height of the vertex of the parabola through a place on a grid and those beside it.
+fn vertex(residuals: &[f64], at: usize) -> f64 {
+    let here = residuals[at];
+    match (at.checked_sub(1).map(|i| residuals[i]), residuals.get(at + 1)) {
+        (Some(before), Some(after)) if before + after > 2.0 * here => {
+            here - (before - after).powi(2) / (8.0 * (before - 2.0 * here + after))
+        }
+        _ => here,
+    }
+}
+
 /// A valley of the residual along ln λ.
 #[derive(Clone, Copy)]
 struct Valley {
     square: f64,
     /// Place of `other` among the values tried.
     place: usize,
+    /// Place on the grid, the residual square there, and the distance to the next place.
     rate: f64,
+    here: f64,
+    width: f64,
     other: f64,
     /// Whether the shape ends in finite time there.
     ends: bool,

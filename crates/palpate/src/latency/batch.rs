@@ -3,7 +3,7 @@
 //! A hold has a thousand samples and a fit asks for all of them at every step, so this is the kernel that
 //! the speed of identification hangs on. A call of `powf` a sample is slower than NumPy; instead
 //!
-//! - n = 1, 2, 3, 5 use one exponential, division or root a sample,
+//! - n = 1, 2, 3, 5 use one exponential, division or root a sample, the fourth root by Newton's method,
 //! - any other n uses a branch-free logarithm and exponential.
 //!
 //! All columns come from one pass, as vector code of whatever the machine has. Values agree with the one-at-a-time
@@ -74,7 +74,10 @@ fn decay_columns<const N: usize>(times: &[f64], rate: f64, exponent: f64, column
             p,
             columns,
             #[inline(always)]
-            |_, r| r,
+            |w, _| {
+                let r = 1.0 / w;
+                (r, r)
+            },
         ),
         3.0 => fill_by_root(
             times,
@@ -82,7 +85,10 @@ fn decay_columns<const N: usize>(times: &[f64], rate: f64, exponent: f64, column
             p,
             columns,
             #[inline(always)]
-            |_, r| r.sqrt(),
+            |w, _| {
+                let r = 1.0 / w;
+                (r.sqrt(), r)
+            },
         ),
         5.0 => fill_by_root(
             times,
@@ -90,7 +96,10 @@ fn decay_columns<const N: usize>(times: &[f64], rate: f64, exponent: f64, column
             p,
             columns,
             #[inline(always)]
-            |_, r| r.sqrt().sqrt(),
+            |w, _| {
+                let y = inverse_fourth_root(w);
+                (y, (y * y) * (y * y))
+            },
         ),
         _ => fill_by_root(
             times,
@@ -98,7 +107,7 @@ fn decay_columns<const N: usize>(times: &[f64], rate: f64, exponent: f64, column
             p,
             columns,
             #[inline(always)]
-            |log, _| exp(-log.value() * inverse),
+            |w, log| (exp(-log.value() * inverse), 1.0 / w),
         ),
     }
 }
@@ -110,7 +119,7 @@ fn fill_by_root<const N: usize>(
     rate: f64,
     p: f64,
     columns: [&mut [f64]; N],
-    root: impl Fn(Logarithm, f64) -> f64 + Copy,
+    root: impl Fn(f64, Logarithm) -> (f64, f64) + Copy,
 ) {
     fill(
         times,
@@ -132,18 +141,17 @@ fn exponential(s: f64) -> [f64; 3] {
     [phi, -s * phi, 0.5 * (s * phi) * s]
 }
 
-/// p = n − 1 ≠ 0, z = p s: φ = `root`(ln(1 + z), 1/(1 + z)), ∂φ/∂ln λ = −s φ/(1 + z), and
+/// p = n − 1 ≠ 0, z = p s: φ and 1/(1 + z) = `root`(1 + z, ln(1 + z)), ∂φ/∂ln λ = −s φ/(1 + z), and
 /// ∂φ/∂n = φ [ln(1 + z) − z/(1 + z)]/p²; all 0 past the finite end, z ≤ −1.
 ///
 /// Near z = 0 the difference in brackets cancels. With q = z/(2 + z) it is 2 artanh(q) − 2q/(1 + q)
 /// = q² [2/(1 + q) + (2 artanh(q) − 2q)/q²], which does not, wherever the logarithm needs no power of two.
 #[inline(always)]
-fn power(s: f64, p: f64, root: impl Fn(Logarithm, f64) -> f64) -> [f64; 3] {
+fn power(s: f64, p: f64, root: impl Fn(f64, Logarithm) -> (f64, f64)) -> [f64; 3] {
     let z = p * s;
     let z = if z < LARGEST { z } else { LARGEST };
-    let r = 1.0 / (1.0 + z);
     let log = Logarithm::of_one_plus(z);
-    let phi = root(log, r);
+    let (phi, r) = root(1.0 + z, log);
     let phi = if z > -1.0 { phi } else { 0.0 };
     let slope = -(s * r) * phi;
     let q = log.quotient / p;
@@ -152,6 +160,27 @@ fn power(s: f64, p: f64, root: impl Fn(Logarithm, f64) -> f64) -> [f64; 3] {
     let bend = phi * if log.power == 0.0 { near } else { far };
     // φ = 0 only past the finite end or far below the smallest double.
     if phi == 0.0 { [phi, 0.0, 0.0] } else { [phi, slope, bend] }
+}
+
+/// w^(−¼) for normal w > 0, to some two units in the last place: half the time of a division and two square roots.
+///
+/// The bits of w, as a number, are nearly its logarithm; what they give is off by up to 3 %. Each round takes more terms of
+/// (1 − e)^(−¼) = 1 + e/4 + 5e²/32 + 15e³/128 + … with e = 1 − w y⁴ than it needs to reach the next.
+#[inline(always)]
+fn inverse_fourth_root(w: f64) -> f64 {
+    /// 5/4 of the bits of one, less what makes the largest errors on both sides alike.
+    const FIRST: u64 = (1f64.to_bits() / 4) * 5 - LESS;
+    const LESS: u64 = 1 << 48;
+    let off = |y: f64| {
+        let square = y * y;
+        1.0 - w * (square * square)
+    };
+    let y = f64::from_bits(FIRST - (w.to_bits() >> 2));
+    let e = off(y);
+    let y = y + y * e * (0.25 + e * (0.156_25 + e * 0.117_187_5));
+    let e = off(y);
+    let y = y + y * e * (0.25 + e * 0.156_25);
+    y + 0.25 * y * off(y)
 }
 
 #[cfg(test)]
@@ -177,6 +206,17 @@ mod tests {
                 assert!((found[202 + i] - one.by_exponent).abs() <= 1e-12 * one.by_exponent.abs());
             }
         }
+    }
+
+    #[test]
+    fn inverse_fourth_roots_match_the_standard_library() {
+        for i in 0..200_000 {
+            let w = 10f64.powf(f64::from(i) * 1.54e-3);
+            let expected = 1.0 / w.sqrt().sqrt();
+            let found = inverse_fourth_root(w);
+            assert!((found - expected).abs() <= 7e-16 * expected, "{w:e}: {found:e} {expected:e}");
+        }
+        assert_eq!((inverse_fourth_root(1.0), inverse_fourth_root(16.0)), (1.0, 0.5));
     }
 
     #[test]

@@ -42,6 +42,11 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// Whether the answers to several steps add up to that to all of them: the latency law is not linear.
+    pub(crate) fn superposes(&self) -> bool {
+        !matches!(self, Self::Latency | Self::LatencyWith(_))
+    }
+
     /// What the shape can do, from its file.
     fn with<R>(&self, act: impl FnOnce(&dyn Kernel) -> R) -> R {
         match *self {

@@ -65,7 +65,7 @@ impl Superposition {
     /// ⟨φ⟩ at every time ≥ 0; a latency shape, which knows no superposition, as it is.
     pub(crate) fn value(&self, shape: &Shape, times: &[f64], theta: &[f64], value: &mut [f64]) {
         match shape {
-            Shape::Latency | Shape::LatencyWith(_) => shape.value(times, theta, value),
+            shape if !shape.superposes() => shape.value(times, theta, value),
             Shape::Exponential => {
                 let (factor, _) = self.exponential_factor(theta[0].exp());
                 shape.value(times, theta, value);
@@ -85,7 +85,7 @@ impl Superposition {
         derivatives: &mut [Vec<f64>],
     ) {
         match shape {
-            Shape::Latency | Shape::LatencyWith(_) => shape.gradient(times, theta, value, derivatives),
+            shape if !shape.superposes() => shape.gradient(times, theta, value, derivatives),
             Shape::Exponential => {
                 let (factor, slope) = self.exponential_factor(theta[0].exp());
                 shape.gradient(times, theta, value, derivatives);

@@ -7,10 +7,12 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `columns.rs` | finite, rising, extremes; one column made of another |
 //! | `elementary.rs` | exp, ln and ln(1 + z) without branches |
 //! | `products.rs` | scalar products, normal equations, residuals |
 //! | `shapes.rs` | exponential, stretched exponential and logarithm of time with their derivatives |
 
+pub(crate) mod columns;
 pub(crate) mod elementary;
 pub(crate) mod products;
 mod shapes;
@@ -31,7 +33,7 @@ pub(crate) fn accelerated<R>(work: impl FnOnce() -> R) -> R {
 
 #[cfg(not(test))]
 #[inline(always)]
-fn level() -> Level {
+pub(crate) fn level() -> Level {
     Level::new()
 }
 
@@ -83,7 +85,7 @@ fn results_of<const N: usize>(block: &[f64; BLOCK], f: impl Fn(f64) -> [f64; N])
 }
 
 #[cfg(test)]
-use tests::level;
+pub(crate) use tests::level;
 
 #[cfg(test)]
 pub(crate) mod tests {
@@ -95,7 +97,7 @@ pub(crate) mod tests {
         static PRETENDED: Cell<Option<Level>> = const { Cell::new(None) };
     }
 
-    pub(super) fn level() -> Level {
+    pub(crate) fn level() -> Level {
         PRETENDED.get().unwrap_or_else(Level::new)
     }
 

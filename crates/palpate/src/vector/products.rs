@@ -4,8 +4,12 @@
 //! once however many products they enter, and rounding errors grow slowly.
 
 use fearless_simd::{Simd, SimdBase, dispatch, f64x8};
+use smallvec::SmallVec;
 
 use super::{accelerated, level};
+
+/// Columns side by side; those of every usual law without a trip to the heap.
+type Columns<'a> = SmallVec<[&'a [f64]; 8]>;
 
 /// Interleaved parts of a sum.
 const LANES: usize = 8;
@@ -53,7 +57,7 @@ pub(crate) fn normal_equations(columns: &[impl AsRef<[f64]>], values: &[f64], gr
     right.fill(0.0);
     for from in (0..values.len()).step_by(CHUNK) {
         let range = from..values.len().min(from + CHUNK);
-        let parts: Vec<&[f64]> = columns.iter().map(|column| &column.as_ref()[range.clone()]).collect();
+        let parts: Columns<'_> = columns.iter().map(|column| &column.as_ref()[range.clone()]).collect();
         let (pairs, rest) = parts.as_chunks::<SIDE>();
         for (index, pair) in pairs.iter().enumerate() {
             add_rows(*pair, &pairs[..index], &values[range.clone()], gram, right);
@@ -105,7 +109,7 @@ pub(crate) fn cross_products(rows: &[impl AsRef<[f64]>], columns: &[impl AsRef<[
     let count = rows.first().map_or(0, |row| row.as_ref().len());
     for from in (0..count).step_by(CHUNK) {
         let range = from..count.min(from + CHUNK);
-        let across: Vec<&[f64]> = columns.iter().map(|column| &column.as_ref()[range.clone()]).collect();
+        let across: Columns<'_> = columns.iter().map(|column| &column.as_ref()[range.clone()]).collect();
         let (pairs, rest) = across.as_chunks::<SIDE>();
         for (row, out) in rows.iter().zip(products.chunks_exact_mut(size.max(1))) {
             let row = [&row.as_ref()[range.clone()]];
@@ -162,11 +166,9 @@ fn subtract<const C: usize>(
     amplitudes: [f64; C],
     residuals: &mut [f64],
 ) -> f64 {
-    if let Some(values) = values {
-        residuals.copy_from_slice(values);
-    }
     let count = residuals.len();
     let columns = columns.map(|column| &column[..count]);
+    let values = values.map(|values| values[..count].as_chunks::<LANES>());
     accelerated(
         #[inline(always)]
         || {
@@ -174,16 +176,22 @@ fn subtract<const C: usize>(
             let (blocks, rest) = residuals.as_chunks_mut::<LANES>();
             let whole = columns.map(|column| column.as_chunks::<LANES>().0);
             for (index, block) in blocks.iter_mut().enumerate() {
+                let mut now = values.map_or(*block, |(values, _)| values[index]);
                 for i in 0..C {
+                    let column = &whole[i][index];
                     for lane in 0..LANES {
-                        block[lane] -= amplitudes[i] * whole[i][index][lane];
+                        now[lane] -= amplitudes[i] * column[lane];
                     }
                 }
                 for lane in 0..LANES {
-                    sums[lane] += block[lane] * block[lane];
+                    sums[lane] += now[lane] * now[lane];
                 }
+                *block = now;
             }
             for (lane, residual) in rest.iter_mut().enumerate() {
+                if let Some((_, late)) = values {
+                    *residual = late[lane];
+                }
                 for i in 0..C {
                     *residual -= amplitudes[i] * columns[i][blocks.len() * LANES + lane];
                 }

@@ -108,7 +108,7 @@ pub(super) fn refine(
     work.starts += 1;
     let values = views
         .iter()
-        .map(|view| view.hold.weight.powi(2) * view.target.values.iter().map(|y| y * y).sum::<f64>());
+        .map(|view| view.hold.weight.powi(2) * view.target.values().iter().map(|y| y * y).sum::<f64>());
     let floor = 1e-31 * values.sum::<f64>();
     let mut trial = Point {
         shared: here.shared.clone(),

@@ -140,12 +140,12 @@ impl Part {
         let shapes = hold.model.at(view.times);
         let (columns, derivatives) = self.jacobian.split_at_mut(l);
         shapes.fill(&theta, columns, derivatives);
-        if let Some(roots) = view.target.roots {
+        if let Some(roots) = view.target.roots() {
             for column in columns.iter_mut().chain(derivatives.iter_mut()) {
                 column.iter_mut().zip(roots).for_each(|(entry, root)| *entry *= root);
             }
         }
-        self.square = form_residuals(view.target.values, columns, own, &mut self.residuals);
+        self.square = form_residuals(view.target.values(), columns, own, &mut self.residuals);
         for (p, derivative) in derivatives.iter_mut().enumerate() {
             let amplitude = own[shapes.column_of(p)];
             derivative.iter_mut().for_each(|entry| *entry *= amplitude);
@@ -177,7 +177,7 @@ impl Part {
     /// The best own numbers at given shared ones, from those at hand: one step where the law is linear in them.
     pub(super) fn settle(&mut self, view: View<'_>, shared: &[f64], own: &[f64], work: &mut Work) {
         self.evaluate(view, shared, own, work);
-        let floor = dot(view.target.values, view.target.values) * 1e-31;
+        let floor = dot(view.target.values(), view.target.values()) * 1e-31;
         let mut trial = self.clone();
         for _ in 0..STEPS {
             let Some(factor) = self.own_block() else {

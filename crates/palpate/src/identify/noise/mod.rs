@@ -10,9 +10,25 @@
 //! ρ and s are those of the largest *restricted* likelihood (Patterson and Thompson 1971): residuals are flatter than
 //! noise by what the fitted numbers took up, and a plain estimate of ρ from them is too small by some p (1 + ρ)/N.
 
+//!
+//! | file | what |
+//! |---|---|
+//! | `likelihood.rs` | the restricted likelihood; AR(1) |
+//! | `mixture.rs` | white noise and AR(1) |
+//! | `rows.rs` | recursions over all columns together |
+//! | `minimum.rs` | where a likelihood is largest, and how sure that is |
+
+mod likelihood;
+mod minimum;
+mod mixture;
+mod rows;
+
 use serde::{Deserialize, Serialize};
 
-use super::linear_algebra::Cholesky;
+use likelihood::Neighbours;
+use mixture::Mixture;
+use rows::Rows;
+
 use crate::statistics::{dot, lag_one_correlation};
 use crate::vector::products::cross_products;
 
@@ -71,18 +87,7 @@ impl NoiseModel {
         if share == 0.0 {
             return product;
         }
-        let before = |column: &&[f64]| {
-            let mut sum = 0.0;
-            let mut step = |entry: &f64| {
-                let now = sum;
-                sum = correlation * (sum + entry);
-                now
-            };
-            column.iter().map(&mut step).collect::<Vec<f64>>()
-        };
-        let sums: Vec<Vec<f64>> = columns.iter().map(before).collect();
-        let mut across = vec![0.0; size * size];
-        cross_products(columns, &sums, &mut across);
+        let across = Rows::new(columns).with_sums_before(correlation);
         for i in 0..size {
             for j in 0..size {
                 product[i * size + j] += share * (across[i * size + j] + across[j * size + i]);
@@ -211,275 +216,11 @@ impl Signs {
     }
 }
 
-/// Value of the restricted likelihood: −2 ln L up to a constant, and the variance that belongs to it.
-#[derive(Clone, Copy)]
-struct Likelihood {
-    deviance: f64,
-    variance: f64,
-}
-
-impl Likelihood {
-    /// From ZᵀR⁻¹Z with Z = (J, r), and ln |R|:
-    /// −2 ln L = (N − p) ln σ² + ln |R| + ln |JᵀR⁻¹J|, σ² = (rᵀR⁻¹r − what J takes up)/(N − p).
-    fn of(product: &[f64], log_determinant: f64, samples: usize) -> Option<Self> {
-        let size = product.len().isqrt();
-        let numbers = size - 1;
-        let block: Vec<f64> = (0..numbers * numbers).map(|i| product[i / numbers * size + i % numbers]).collect();
-        let factor = Cholesky::new(&block, numbers)?;
-        let right = &product[numbers * size..numbers * size + numbers];
-        let mut taken = right.to_vec();
-        factor.solve(&mut taken);
-        let left = product[size * size - 1] - dot(right, &taken);
-        let freedom = (samples - numbers) as f64;
-        let variance = left / freedom;
-        let deviance = freedom * variance.ln() + log_determinant + factor.log_determinant();
-        deviance.is_finite().then_some(Self { deviance, variance })
-    }
-}
-
-/// ρ from ln of how many samples count as one, κ = ln((1 + ρ)/(1 − ρ)): the scale on which ρ is searched.
-fn correlation_of(kappa: f64) -> f64 {
-    (0.5 * kappa).tanh()
-}
-
-/// AR(1): its R⁻¹ has three diagonals, so products of neighbours, formed once, give the likelihood at every ρ.
-struct Neighbours {
-    samples: usize,
-    size: usize,
-    /// ZᵀZ.
-    same: Vec<f64>,
-    /// Σ z_i z_{i+1}ᵀ, made symmetric.
-    next: Vec<f64>,
-    /// Products of the first and of the last row.
-    ends: Vec<f64>,
-}
-
-impl Neighbours {
-    fn new(jacobian: &[&[f64]], residuals: &[f64]) -> Self {
-        let all: Vec<&[f64]> = jacobian.iter().copied().chain([residuals]).collect();
-        let (samples, size) = (residuals.len(), all.len());
-        let early: Vec<&[f64]> = all.iter().map(|column| &column[..samples - 1]).collect();
-        let late: Vec<&[f64]> = all.iter().map(|column| &column[1..]).collect();
-        let mut same = vec![0.0; size * size];
-        let mut shifted = vec![0.0; size * size];
-        cross_products(&all, &all, &mut same);
-        cross_products(&early, &late, &mut shifted);
-        let pairs = || (0..size).flat_map(|i| (0..size).map(move |j| (i, j)));
-        Self {
-            samples,
-            size,
-            same,
-            next: pairs().map(|(i, j)| shifted[i * size + j] + shifted[j * size + i]).collect(),
-            ends: pairs().map(|(i, j)| all[i][0] * all[j][0] + all[i][samples - 1] * all[j][samples - 1]).collect(),
-        }
-    }
-
-    /// R⁻¹ has 1 + ρ² on its diagonal (1 at the ends) and −ρ beside it, over 1 − ρ²; |R| = (1 − ρ²)^(N−1).
-    fn likelihood(&self, kappa: f64) -> Option<Likelihood> {
-        let rho = correlation_of(kappa);
-        let square = rho * rho;
-        let entry =
-            |i: usize| ((1.0 + square) * self.same[i] - square * self.ends[i] - rho * self.next[i]) / (1.0 - square);
-        let product: Vec<f64> = (0..self.size * self.size).map(entry).collect();
-        Likelihood::of(&product, (self.samples - 1) as f64 * (1.0 - square).ln(), self.samples)
-    }
-
-    /// The best ρ, between white noise and noise that is one sample in all.
-    fn noise(&self) -> Option<(f64, Noise)> {
-        let model = |kappa: f64| NoiseModel::Autoregressive {
-            correlation: correlation_of(kappa),
-        };
-        let most = (self.samples as f64).ln();
-        let evaluate = |x: &[f64]| if x[0] < 0.0 || x[0] > most { None } else { self.likelihood(x[0]) };
-        let last = self.same.len() - 1;
-        let start = 2.0 * (0.5 * self.next[last] / self.same[last]).clamp(-0.999, 0.999).atanh();
-        let found = minimise(&evaluate, &[start.clamp(0.1, most - 0.1)])?;
-        Some(found.noise(&evaluate, |x| model(x[0])))
-    }
-}
-
-/// White noise and AR(1): Kalman's filter whitens all columns alike, sample by sample.
-struct Mixture<'a> {
-    columns: Vec<&'a [f64]>,
-    samples: usize,
-}
-
-impl<'a> Mixture<'a> {
-    fn new(jacobian: &[&'a [f64]], residuals: &'a [f64]) -> Self {
-        Self {
-            columns: jacobian.iter().copied().chain([residuals]).collect(),
-            samples: residuals.len(),
-        }
-    }
-
-    /// ρ and s from κ and ln(s/(1 − s)).
-    fn model(x: &[f64]) -> NoiseModel {
-        NoiseModel::WhiteAndAutoregressive {
-            correlation: correlation_of(x[0]),
-            share: 1.0 / (1.0 + (-x[1]).exp()),
-        }
-    }
-
-    /// The likelihood over columns `from` on: all, or the residuals alone as if nothing had been fitted.
-    fn likelihood(&self, x: &[f64], from: usize) -> Option<Likelihood> {
-        if x[0] < 0.05 || x[0] > (self.samples as f64).ln() || x[1].abs() > 8.0 {
-            return None;
-        }
-        let (rho, share) = Self::model(x).numbers();
-        // Gains and variances of the innovations; they settle soon.
-        let (mut gains, mut roots) = (Vec::new(), Vec::new());
-        let (mut ahead, mut log_determinant) = (share, 0.0);
-        for _ in 0..self.samples {
-            let innovation = ahead + 1.0 - share;
-            let gain = ahead / innovation;
-            gains.push(gain);
-            roots.push(1.0 / innovation.sqrt());
-            log_determinant += innovation.ln();
-            let next = rho * rho * ahead * (1.0 - gain) + share * (1.0 - rho * rho);
-            if (next - ahead).abs() <= 1e-14 * ahead {
-                log_determinant += (self.samples - gains.len()) as f64 * innovation.ln();
-                break;
-            }
-            ahead = next;
-        }
-        let filter = Filter { rho, gains, roots };
-        // The filter waits for its own last step: four columns at a time take as long as one.
-        let (fours, rest) = self.columns[from..].as_chunks::<4>();
-        let mut white: Vec<Vec<f64>> = fours.iter().flat_map(|four| filter.whitened(*four)).collect();
-        white.extend(rest.iter().flat_map(|one| filter.whitened([*one])));
-        let mut product = vec![0.0; white.len() * white.len()];
-        cross_products(&white, &white, &mut product);
-        Likelihood::of(&product, log_determinant, self.samples)
-    }
-
-    fn noise(&self) -> Option<(f64, Noise)> {
-        let most = (self.samples as f64).ln();
-        let starts = (1..).map(|i| 1.2 * f64::from(i)).take_while(|kappa| *kappa < most);
-        let starts = starts.flat_map(|kappa| [-2.5, 0.0, 2.5].map(|share| [kappa, share]));
-        let evaluate = |x: &[f64]| self.likelihood(x, 0);
-        // Where to begin, the residuals alone can tell.
-        let depth =
-            |x: &[f64; 2]| self.likelihood(x, self.columns.len() - 1).map_or(f64::INFINITY, |found| found.deviance);
-        let start = starts.map(|x| (depth(&x), x)).min_by(|a, b| a.0.total_cmp(&b.0))?.1;
-        let found = minimise(&evaluate, &start)?;
-        Some(found.noise(&evaluate, Self::model))
-    }
-}
-
-/// Kalman's filter of the mixture: gains and scales of the first samples, the last of them for all that follow.
-struct Filter {
-    rho: f64,
-    gains: Vec<f64>,
-    roots: Vec<f64>,
-}
-
-impl Filter {
-    /// Columns less what was expected from the samples before, over the deviation of that.
-    fn whitened<const COUNT: usize>(&self, columns: [&[f64]; COUNT]) -> [Vec<f64>; COUNT] {
-        let samples = columns[0].len();
-        let columns = columns.map(|column| &column[..samples]);
-        let mut white = columns.map(|column| vec![0.0; column.len()]);
-        let mut expected = [0.0; COUNT];
-        let last = self.gains.len() - 1;
-        for i in 0..samples {
-            let (gain, root) = (self.gains[i.min(last)], self.roots[i.min(last)]);
-            let (kept, taken) = (self.rho * (1.0 - gain), self.rho * gain);
-            for k in 0..COUNT {
-                let entry = columns[k][i];
-                white[k][i] = (entry - expected[k]) * root;
-                expected[k] = kept * expected[k] + taken * entry;
-            }
-        }
-        white
-    }
-}
-
-/// Where a likelihood is largest.
-struct Minimum {
-    at: Vec<f64>,
-    likelihood: Likelihood,
-}
-
-/// Compass search: along each axis to where the deviance stops falling, with steps down to 1/50, an eighth of an error.
-fn minimise(evaluate: &impl Fn(&[f64]) -> Option<Likelihood>, start: &[f64]) -> Option<Minimum> {
-    let mut at = start.to_vec();
-    let mut best = evaluate(&at)?;
-    let mut step = 0.5;
-    while step > 2e-2 {
-        let mut moved = false;
-        for axis in 0..at.len() {
-            for side in [step, -step] {
-                let mut trial = at.clone();
-                trial[axis] += side;
-                if let Some(found) = evaluate(&trial)
-                    && found.deviance < best.deviance
-                {
-                    (at, best, moved) = (trial, found, true);
-                    break;
-                }
-            }
-        }
-        if !moved {
-            step *= 0.5;
-        }
-    }
-    Some(Minimum { at, likelihood: best })
-}
-
-impl Minimum {
-    /// The noise there, and beside it along the columns of the Cholesky factor of its covariance, 2 (∂²deviance)⁻¹.
-    fn noise(
-        self,
-        evaluate: &impl Fn(&[f64]) -> Option<Likelihood>,
-        model: impl Fn(&[f64]) -> NoiseModel,
-    ) -> (f64, Noise) {
-        let mut beside = Vec::new();
-        for spread in self.directions(evaluate) {
-            // At an edge the other side has to do.
-            for side in [1.0, -1.0, 0.5, -0.5] {
-                let at: Vec<f64> = self.at.iter().zip(&spread).map(|(x, d)| x + side * d).collect();
-                if let Some(found) = evaluate(&at) {
-                    beside.push((model(&at), found.variance));
-                    break;
-                }
-            }
-        }
-        let noise = Noise {
-            model: model(&self.at),
-            variance: self.likelihood.variance,
-            beside,
-        };
-        (self.likelihood.deviance, noise)
-    }
-
-    /// Vectors d with Σ d dᵀ = covariance; half a unit an axis where the curvature says nothing.
-    fn directions(&self, evaluate: &impl Fn(&[f64]) -> Option<Likelihood>) -> Vec<Vec<f64>> {
-        const STEP: f64 = 0.1;
-        let size = self.at.len();
-        let at = |moves: &[(usize, f64)]| {
-            let mut x = self.at.clone();
-            moves.iter().for_each(|(axis, by)| x[*axis] += by);
-            evaluate(&x).map(|found| found.deviance)
-        };
-        let entry = |i: usize, j: usize| {
-            let pairs = [(1.0, 1.0, 1.0), (1.0, -1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0)];
-            let step = if i == j { 0.5 * STEP } else { STEP };
-            let terms = pairs.map(|(a, b, sign)| at(&[(i, a * step), (j, b * step)]).map(|value| sign * value));
-            let sum: Option<f64> = terms.into_iter().sum();
-            sum.map(|sum| 0.5 * sum / (4.0 * step * step))
-        };
-        let curvature: Option<Vec<f64>> = (0..size * size).map(|i| entry(i / size, i % size)).collect();
-        let covariance = curvature.and_then(|matrix| Cholesky::new(&matrix, size)).map(|factor| factor.inverse());
-        match covariance.and_then(|covariance| Cholesky::new(&covariance, size)) {
-            Some(factor) => (0..size).map(|j| factor.column(j)).collect(),
-            None => (0..size).map(|i| (0..size).map(|j| if i == j { 0.5 } else { 0.0 }).collect()).collect(),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::likelihood::{Likelihood, correlation_of};
     use super::*;
+    use crate::identify::linear_algebra::Cholesky;
 
     /// Noise of this model from a fixed sequence.
     fn simulated(model: NoiseModel, samples: usize, seed: u64) -> Vec<f64> {
@@ -535,7 +276,7 @@ mod tests {
         };
         let likelihoods = [
             (alone, Neighbours::new(&jacobian, &residuals).likelihood(x[0])),
-            (Mixture::model(&x), Mixture::new(&jacobian, &residuals).likelihood(&x, 0)),
+            (Mixture::model(&x), Mixture::new(&jacobian, &residuals).likelihood(&x)),
         ];
         for (model, likelihood) in likelihoods {
             let matrix = dense(model, COUNT);

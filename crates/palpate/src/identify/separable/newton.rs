@@ -1,0 +1,160 @@
+//! Undamped steps close to the optimum, to where the gradient vanishes.
+
+use super::finish::finish;
+use super::point::Point;
+use super::refine::Refined;
+use super::step::{projected, promise, stepped};
+use super::{Shapes, Solution, Target, Termination, Work};
+use crate::identify::linear_algebra::{Cholesky, Few, Square};
+
+/// Half the second derivative of the residual square by the nonlinear numbers, the linear ones at their best: differences
+/// of its gradient. `None` where it is not positive definite, or a number lies at a bound.
+pub(in crate::identify) fn curvature(
+    shapes: &impl Shapes,
+    target: Target<'_>,
+    theta: &[f64],
+    work: &mut Work,
+) -> Option<Square> {
+    /// Of the width of bounds; the error of the difference is some 10⁻⁸ of the curvature.
+    const STEP: f64 = 1e-4;
+    let count = theta.len();
+    let mut point = Point::new(shapes, count, target.values.len());
+    let mut hessian = Square::from_elem(0.0, count * count);
+    for j in 0..count {
+        let (low, high) = shapes.bounds(j);
+        if theta[j] - STEP < low || theta[j] + STEP > high {
+            return None;
+        }
+        for side in [-1.0, 1.0] {
+            let mut beside = Few::from_slice(theta);
+            beside[j] += side * STEP;
+            point.evaluate(shapes, &beside, target);
+            work.evaluations += 1;
+            if point.singular || point.held.contains(&true) {
+                return None;
+            }
+            for (i, entry) in point.gradient(shapes).into_iter().enumerate() {
+                // The gradient points downhill.
+                hessian[i * count + j] -= side * entry / (2.0 * STEP);
+            }
+        }
+    }
+    for i in 0..count {
+        for j in 0..i {
+            let mean = 0.5 * (hessian[i * count + j] + hessian[j * count + i]);
+            hessian[i * count + j] = mean;
+            hessian[j * count + i] = mean;
+        }
+    }
+    Cholesky::new(&hessian, count).map(|_| hessian)
+}
+
+/// Most steps of [`descend`].
+const STEPS: usize = 12;
+
+/// Newton's method from a point near the optimum, with a curvature from elsewhere: the gradient comes from all samples, the
+/// curvature from few. It ends where a step promises less than `enough` of the residual square. `None` if it does not lead downhill
+/// to where the gradient vanishes.
+pub(in crate::identify) fn descend(
+    shapes: &impl Shapes,
+    target: Target<'_>,
+    theta: &[f64],
+    hessian: &[f64],
+    enough: f64,
+    work: &mut Work,
+) -> Option<Refined> {
+    let mut here = Point::new(shapes, theta.len(), target.values.len());
+    let mut trial = Point::new(shapes, theta.len(), target.values.len());
+    here.evaluate(shapes, theta, target);
+    work.evaluations += 1;
+    work.starts += 1;
+    let outlook = |point: &Point| {
+        let gradient = point.gradient(shapes);
+        let next = stepped(&point.theta, hessian, &gradient, 0.0, shapes);
+        let gain = promise(&point.theta, &next, &gradient);
+        (next, gain)
+    };
+    let (mut next, mut gain) = outlook(&here);
+    for _ in 0..STEPS {
+        if here.singular || here.held.contains(&true) {
+            return None;
+        }
+        let arrived = gain.abs() <= enough * here.square + target.floor();
+        // What is left of the gain is rounding once it stops falling far below the residual.
+        let mut settled = false;
+        if !arrived {
+            trial.evaluate(shapes, &next, target);
+            work.evaluations += 1;
+            work.iterations += 1;
+            let (after, less) = outlook(&trial);
+            if less.abs() <= 0.5 * gain.abs() && trial.square <= here.square * (1.0 + 1e-10) + target.floor() {
+                std::mem::swap(&mut here, &mut trial);
+                (next, gain) = (after, less);
+                continue;
+            }
+            settled = less.abs() > 0.5 * gain.abs() && gain.abs() < 1e-16 * here.square;
+        }
+        if !(arrived || settled) {
+            return None;
+        }
+        trial.release(shapes);
+        return Some(Refined {
+            settled: enough <= NOTHING && gain.abs() <= enough * here.square,
+            point: here,
+            termination: Termination::Converged,
+        });
+    }
+    None
+}
+
+/// Share of the residual square that a step may promise at the optimum: some 10⁻¹¹ of the errors.
+pub(in crate::identify) const NOTHING: f64 = 1e-22;
+
+/// Most undamped steps after the residual has stopped falling.
+const POLISHING: usize = 30;
+
+/// The solution of a refinement, with undamped steps taken from it for as long as they make the gradient smaller.
+///
+/// The residual is flat to rounding within some 1e-8 of the optimum; the gradient is not, and shows the way further in.
+pub(in crate::identify) fn polished(
+    shapes: &impl Shapes,
+    target: Target<'_>,
+    refined: Refined,
+    work: &mut Work,
+) -> Solution {
+    let mut here = refined.point;
+    if refined.settled || refined.termination != Termination::Converged {
+        return finish(here, shapes, refined.termination);
+    }
+    // The gain that a full step promises, gᵀ H⁻¹ g, measures the gradient.
+    let outlook = |point: &Point| {
+        let (hessian, gradient) = projected(point, shapes)?;
+        let next = stepped(&point.theta, &hessian, &gradient, 0.0, shapes);
+        let gain = promise(&point.theta, &next, &gradient);
+        Some((next, gain))
+    };
+    let Some((mut next, mut gain)) = outlook(&here) else {
+        return finish(here, shapes, Termination::Converged);
+    };
+    // Few samples make wide errors and cost nothing to polish.
+    let samples = target.values.len();
+    let enough = 1e-32 * (samples as f64).powi(3);
+    let mut trial = Point::new(shapes, here.theta.len(), samples);
+    for _ in 0..POLISHING {
+        // Far from flat it is no polishing; at this share of the residual the step is some 1e-10 of the errors.
+        if !(gain > enough * here.square && gain < 1e-9 * here.square) {
+            break;
+        }
+        trial.evaluate(shapes, &next, target);
+        work.evaluations += 1;
+        match outlook(&trial) {
+            Some((after, less)) if less < 0.5 * gain && trial.square <= here.square * (1.0 + 1e-10) => {
+                std::mem::swap(&mut here, &mut trial);
+                (next, gain) = (after, less);
+            }
+            _ => break,
+        }
+    }
+    trial.release(shapes);
+    finish(here, shapes, Termination::Converged)
+}
