@@ -1,9 +1,11 @@
 //! Local searches by orthogonal columns: they keep the digits that normal equations lose.
 
+use super::confluent::Confluent;
+use super::linear_algebra::Cholesky;
 use super::model::{Model, Sampled};
 use super::orthogonal::Orthogonal;
 use super::samples::Scaled;
-use super::separable::{Ending, Shapes, Solution, Target, Termination, Work, refine, standing, stepped};
+use super::separable::{Ending, Shapes, Solution, Target, Termination, Work, distance, refine, standing, stepped};
 use crate::vector::products::dot;
 
 /// The solution carried on to what doubles allow, where normal equations do not reach it: where numbers nearly imitate each other, and
@@ -15,12 +17,46 @@ pub(super) fn exact(model: &Model, scaled: &Scaled, solution: Solution, work: &m
     if solution.nonlinear.is_empty() || !all.linear_bounds().is_empty() || !(clean || inflation(&solution) > IMITATED) {
         return solution;
     }
-    let valley = local(&all, scaled.target(), &solution.nonlinear, f64::EPSILON, work);
-    if valley.square < solution.residual_square {
+    // Straight to the last digit, with no regard for valleys elsewhere.
+    let at = |theta: &[f64]| {
+        let here = Orthogonal::new(&all, theta, scaled.target());
+        let square = here.square;
+        Some(Plain {
+            here,
+            square,
+            shapes: &all,
+        })
+    };
+    let theta = descended(&solution.nonlinear, at, &all, f64::EPSILON, work);
+    let valley = valley(flat(Orthogonal::new(&all, &theta, scaled.target()), &all, scaled.target(), work));
+    // To within rounding of the values the gradient decides.
+    if valley.square.sqrt() <= solution.residual_square.sqrt() + f64::EPSILON * signal.sqrt() {
         standing(&all, scaled.target(), &valley.theta, &valley.linear, Termination::Converged)
     } else {
         solution
     }
+}
+
+/// Undamped steps for as long as what the next one promises falls: the residual square is flat to rounding before its gradient is.
+fn flat(mut here: Orthogonal, shapes: &Sampled<'_>, target: Target<'_>, work: &mut Work) -> Orthogonal {
+    let outlook = |here: &Orthogonal| {
+        let (hessian, gradient) = here.projected(shapes);
+        let next = stepped(&here.theta, &hessian, &gradient, 0.0, shapes);
+        let gain: f64 = next.iter().zip(&here.theta).zip(&gradient).map(|((a, b), g)| (a - b) * g).sum();
+        (next, gain)
+    };
+    let slack = f64::EPSILON * dot(target.values(), target.values()).sqrt();
+    let (mut next, mut gain) = outlook(&here);
+    for _ in 0..STEPS {
+        let trial = Orthogonal::new(shapes, &next, target);
+        work.evaluations += 1;
+        let (after, less) = outlook(&trial);
+        if !(less < gain && trial.square.sqrt() <= here.square.sqrt() + slack) {
+            break;
+        }
+        (here, next, gain) = (trial, after, less);
+    }
+    here
 }
 
 /// Of the square of the signal: residuals whose square is below have lost digits in normal equations, and those of rounding.
@@ -61,31 +97,80 @@ pub(super) fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], eno
             square: refined.square(),
         };
     }
-    let mut here = Orthogonal::new(shapes, start, target);
-    work.evaluations += 1;
     work.starts += 1;
-    let mut damping = 1e-3;
-    let mut idle = 0;
-    for _ in 0..STEPS {
-        let (hessian, gradient) = here.projected(shapes);
-        let before = here.square;
-        for _ in 0..TRIALS {
-            let theta = stepped(&here.theta, &hessian, &gradient, damping, shapes);
-            let trial = Orthogonal::new(shapes, &theta, target);
-            work.evaluations += 1;
-            if trial.square < here.square {
-                here = trial;
-                damping = (damping * 0.2).max(1e-12);
-                work.iterations += 1;
-                break;
-            }
-            damping *= 6.0;
+    if Confluent::new(shapes, start, target).is_some() {
+        let at = |theta: &[f64]| Confluent::new(shapes, theta, target);
+        let theta = descended(start, at, shapes, enough, work);
+        let least = Confluent::new(shapes, &theta, target).map_or(0.0, |here| here.square());
+        let there = apart(shapes, target, &theta, work);
+        if there.square <= least * (1.0 + APART) + rounding(target, &there.linear) {
+            return there;
         }
-        idle = if before - here.square <= enough * before { idle + 1 } else { 0 };
-        if idle == 2 || before == here.square {
-            break;
-        }
+        // No amplitudes in doubles reach what merged terms do: the best of those that are apart.
+        let at = |theta: &[f64]| {
+            let here = Orthogonal::new(shapes, theta, target);
+            let square = here.square + rounding(target, &here.linear());
+            Some(Plain { here, square, shapes })
+        };
+        let theta = descended(&there.theta, at, shapes, enough, work);
+        let after = apart(shapes, target, &theta, work);
+        return if after.square < there.square { after } else { there };
     }
+    let at = |theta: &[f64]| {
+        let here = Orthogonal::new(shapes, theta, target);
+        let square = here.square;
+        Some(Plain { here, square, shapes })
+    };
+    let theta = descended(start, at, shapes, enough, work);
+    valley(Orthogonal::new(shapes, &theta, target))
+}
+
+/// Difference of ln λ of terms that are plainly apart, for rates that are plainly felt.
+const PLAINLY: f64 = 0.3;
+
+/// Relative rise of the residual square that taking merged terms apart may cost.
+const APART: f64 = 1e-8;
+
+/// A place of a local search.
+trait Place {
+    fn theta(&self) -> &[f64];
+    fn square(&self) -> f64;
+    fn projected(&self) -> (Vec<f64>, Vec<f64>);
+}
+
+impl Place for Confluent {
+    fn theta(&self) -> &[f64] {
+        self.theta()
+    }
+    fn square(&self) -> f64 {
+        self.square()
+    }
+    fn projected(&self) -> (Vec<f64>, Vec<f64>) {
+        self.projected()
+    }
+}
+
+/// A place with the columns as they are.
+struct Plain<'a> {
+    here: Orthogonal,
+    /// What counts as the residual square.
+    square: f64,
+    shapes: &'a Sampled<'a>,
+}
+
+impl Place for Plain<'_> {
+    fn theta(&self) -> &[f64] {
+        &self.here.theta
+    }
+    fn square(&self) -> f64 {
+        self.square
+    }
+    fn projected(&self) -> (Vec<f64>, Vec<f64>) {
+        self.here.projected(self.shapes)
+    }
+}
+
+fn valley(here: Orthogonal) -> Valley {
     Valley {
         linear: here.linear(),
         theta: here.theta,
@@ -93,5 +178,184 @@ pub(super) fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], eno
     }
 }
 
+/// θ where Levenberg's method ends.
+fn descended<P: Place>(
+    start: &[f64],
+    at: impl Fn(&[f64]) -> Option<P>,
+    shapes: &Sampled<'_>,
+    enough: f64,
+    work: &mut Work,
+) -> Vec<f64> {
+    let Some(mut here) = at(start) else {
+        return start.to_vec();
+    };
+    work.evaluations += 1;
+    let mut damping = FIRST;
+    let mut idle = 0;
+    for _ in 0..STEPS {
+        let (hessian, gradient) = here.projected();
+        let before = here.square();
+        // Along a flat valley damping is what holds a step back: a small fall says nothing until there is next to none.
+        let is_free = damping <= FREE;
+        for _ in 0..TRIALS {
+            let theta = inside(here.theta(), (&hessian, &gradient), UNFELT * before, damping, shapes);
+            let Some(trial) = at(&theta) else {
+                break;
+            };
+            work.evaluations += 1;
+            if trial.square() < before {
+                here = trial;
+                damping = (damping * 0.1).max(LEAST);
+                work.iterations += 1;
+                break;
+            }
+            if distance(here.theta(), &theta) < NOWHERE {
+                break;
+            }
+            damping *= 8.0;
+        }
+        let idles = before - here.square() <= enough * before;
+        idle = if idles && is_free { idle + 1 } else { 0 };
+        if idle == 2 || before == here.square() {
+            break;
+        }
+        if idles && !is_free {
+            damping = (damping * 1e-2).max(LEAST);
+        }
+    }
+    here.theta().to_vec()
+}
+
+/// θ after a damped step inside the bounds: numbers that would leave them stay at the bound, and the others take the best step beside
+/// those. Curvatures below `unfelt` are damped as if they were that: rounding alone makes up the steps of such numbers.
+fn inside(
+    theta: &[f64],
+    (hessian, gradient): (&[f64], &[f64]),
+    unfelt: f64,
+    damping: f64,
+    shapes: &Sampled<'_>,
+) -> Vec<f64> {
+    let count = theta.len();
+    let mut step: Vec<Option<f64>> = vec![None; count];
+    loop {
+        let free: Vec<usize> = (0..count).filter(|i| step[*i].is_none()).collect();
+        let entry = |i: usize, j: usize| {
+            let plain = hessian[i * count + j];
+            if i == j { plain.max(f64::MIN_POSITIVE) + damping * plain.max(unfelt) } else { plain }
+        };
+        let matrix: Vec<f64> = free.iter().flat_map(|&i| free.iter().map(move |&j| entry(i, j))).collect();
+        let held = |i: usize| -> f64 { (0..count).filter_map(|j| Some(hessian[i * count + j] * step[j]?)).sum() };
+        let mut change: Vec<f64> = free.iter().map(|&i| gradient[i] - held(i)).collect();
+        match Cholesky::new(&matrix, free.len()) {
+            Some(factor) => factor.solve(&mut change),
+            None => change.iter_mut().zip(&free).for_each(|(value, &i)| *value /= entry(i, i)),
+        }
+        let mut leaving = false;
+        for (&i, &by) in free.iter().zip(&change) {
+            let (low, high) = shapes.bounds(i);
+            let allowed = by.clamp(-LONGEST, LONGEST).clamp(low - theta[i], high - theta[i]);
+            if allowed != by {
+                step[i] = Some(allowed);
+                leaving = true;
+            }
+        }
+        if !leaving {
+            free.iter().zip(change).for_each(|(&i, by)| step[i] = Some(by));
+            let ended = theta.iter().zip(step).enumerate().map(|(i, (value, by))| {
+                let (low, high) = shapes.bounds(i);
+                (value + by.unwrap_or(0.0)).clamp(low, high)
+            });
+            return ended.collect();
+        }
+    }
+}
+
+/// The series with rates as far apart as its amplitudes need to be numbers: of some distances the one that leaves the least.
+fn apart(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], work: &mut Work) -> Valley {
+    /// Distances of ln λ.
+    const DISTANCES: [f64; 11] = [0.0, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 0.7, 1.3, 2.0];
+    let mut sorted = theta.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let nearest = sorted.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+    if nearest > PLAINLY && sorted.first().is_some_and(|slowest| *slowest > -PLAINLY) {
+        // Amplitudes are small, and what orthogonal columns leave is right to the last digit.
+        return valley(Orthogonal::new(shapes, theta, target));
+    }
+    let mut best: Option<Valley> = None;
+    for least in DISTANCES.into_iter().filter(|least| *least == 0.0 || *least > nearest) {
+        let here = Orthogonal::new(shapes, &spread(&sorted, least, shapes.bounds(0)), target);
+        work.evaluations += 1;
+        let mut valley = valley(here);
+        // As the curve of these numbers leaves it once they are rounded: where amplitudes are large orthogonal columns leave less.
+        valley.square = standing_square(shapes, target, &valley) + rounding(target, &valley.linear);
+        if best.as_ref().is_none_or(|best| valley.square < best.square) {
+            best = Some(valley);
+        }
+    }
+    best.unwrap_or_else(|| valley(Orthogonal::new(shapes, theta, target)))
+}
+
+/// The square that rounding of large amplitudes and of their rates adds to the residuals.
+pub(super) fn rounding(target: Target<'_>, linear: &[f64]) -> f64 {
+    let weights = target.roots().map_or(target.values().len() as f64, |roots| dot(roots, roots));
+    let largest: f64 = linear.iter().map(|factor| factor.abs()).sum();
+    SAFELY * weights * (f64::EPSILON * largest).powi(2)
+}
+
+/// Times the square of rounding, so that it stays far below the residual square wherever that decides.
+const SAFELY: f64 = 16.0;
+
+/// Residual square of a valley's curve.
+fn standing_square(shapes: &Sampled<'_>, target: Target<'_>, valley: &Valley) -> f64 {
+    let samples = target.values().len();
+    let mut columns = vec![vec![0.0; samples]; shapes.columns()];
+    let mut derivatives = vec![vec![0.0; samples]; valley.theta.len()];
+    shapes.fill(&valley.theta, &mut columns, &mut derivatives);
+    let left = |i: usize| {
+        let root = target.roots().map_or(1.0, |roots| roots[i]);
+        let curve: f64 = columns.iter().zip(&valley.linear).map(|(column, factor)| factor * column[i]).sum();
+        (target.values()[i] - root * curve).powi(2)
+    };
+    let square: f64 = (0..samples).map(left).sum();
+    if square.is_finite() { square } else { f64::INFINITY }
+}
+
+/// Rising rates with those nearer than `least` spread to that distance about their mean.
+fn spread(rising: &[f64], least: f64, (low, high): (f64, f64)) -> Vec<f64> {
+    let mut rates = rising.to_vec();
+    let mut from = 0;
+    while from < rates.len() {
+        let mut until = from + 1;
+        while until < rates.len() && rising[until] - rising[until - 1] < least {
+            until += 1;
+        }
+        let run = &mut rates[from..until];
+        let count = run.len();
+        let half = 0.5 * least * (count - 1) as f64;
+        let middle = (run.iter().sum::<f64>() / count as f64).clamp(low + half, (high - half).max(low + half));
+        if count > 1 {
+            run.iter_mut().enumerate().for_each(|(i, rate)| *rate = middle - half + least * i as f64);
+        }
+        from = until;
+    }
+    rates
+}
+
+/// Of the residual square: a curvature that hardly shows.
+const UNFELT: f64 = 1e-4;
+
+/// Largest change of ln λ that is none.
+const NOWHERE: f64 = 1e-15;
+
 /// Dampings tried for a step.
-const TRIALS: usize = 9;
+const TRIALS: usize = 16;
+
+/// Damping of the first step, strong: valleys may be narrow, and a long step leaves them for others.
+const FIRST: f64 = 1.0;
+
+/// Longest step of a number: the model is trusted only so far.
+const LONGEST: f64 = 2.0;
+
+/// Damping below which a step is all but free, and the least.
+const FREE: f64 = 1e-8;
+const LEAST: f64 = 1e-12;

@@ -15,7 +15,9 @@
 //! | `condensed.rs` | a hold condensed to a few dozen nodes | |
 //! | `starts.rs` | the exhaustive coarse search | |
 //! | `search.rs` | from a model to the global optimum | |
-//! | `thorough.rs`, `orthogonal.rs` | the search for hard cases: bounds, merged terms | |
+//! | `thorough.rs`, `exact.rs` | the search for hard cases: bounds, merged terms | |
+//! | `orthogonal.rs`, `confluent.rs` | columns made orthogonal, and what stands for those that imitate each other | |
+//! | `lattice.rs`, `growth.rs`, `exchange.rs` | exponentials sought on a grid, added to a series, and replaced in it | |
 //! | `ghosts.rs` | terms that a fit lists and the data do not have | |
 //! | `robust.rs` | outliers made to count less | |
 //! | `law_fit.rs`, `derived.rs` | any law fitted, its numbers and those that follow from them | |
@@ -37,14 +39,17 @@ mod bootstrap;
 mod bounded;
 mod build;
 mod condensed;
+mod confluent;
 mod derived;
 mod estimates;
 mod exact;
+mod exchange;
 mod foretell;
 mod ghosts;
 mod growth;
 mod joint;
 mod kinks;
+mod lattice;
 mod law_fit;
 mod law_options;
 mod linear_algebra;

@@ -155,6 +155,16 @@ pub(super) struct Sampled<'a> {
     spare: Spare,
 }
 
+impl Sampled<'_> {
+    /// Times, and whether there is a constant, if the columns span plain exponentials with free rates.
+    pub(super) fn exponentials(&self) -> Option<(&[f64], bool)> {
+        let model = self.model;
+        let plain = model.columns.iter().all(|column| column.offset == 0.0);
+        (model.is_series() && model.loading.is_none() && (model.constant || plain))
+            .then_some((self.times, model.constant))
+    }
+}
+
 impl Shapes for Sampled<'_> {
     fn columns(&self) -> usize {
         self.model.linear()

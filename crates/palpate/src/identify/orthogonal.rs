@@ -1,6 +1,7 @@
 //! A separable model at one place, with orthogonal columns: exact where columns nearly imitate each other.
 
 use super::separable::{Shapes, Target};
+use crate::vector::columns::multiply;
 use crate::vector::products::dot;
 
 /// The columns of a model, made orthogonal one after the other (Gram and Schmidt, twice), and what they leave of the values.
@@ -23,11 +24,19 @@ impl Orthogonal {
         let mut columns = vec![vec![0.0; samples]; shapes.columns()];
         let mut derivatives = vec![vec![0.0; samples]; theta.len()];
         shapes.fill(theta, &mut columns, &mut derivatives);
+        Self::of(theta, columns, derivatives, target)
+    }
+
+    /// The same of these columns and derivatives, not yet times the roots of the weights.
+    pub(super) fn of(
+        theta: &[f64],
+        mut columns: Vec<Vec<f64>>,
+        mut derivatives: Vec<Vec<f64>>,
+        target: Target<'_>,
+    ) -> Self {
         if let Some(roots) = target.roots() {
             for column in columns.iter_mut().chain(&mut derivatives) {
-                for (entry, root) in column.iter_mut().zip(roots) {
-                    *entry *= root;
-                }
+                multiply(column, roots);
             }
         }
         let mut here = Self {
@@ -102,13 +111,18 @@ impl Orthogonal {
     /// The Gauss–Newton matrix and gradient in θ with the linear numbers projected out (Kaufman).
     pub(super) fn projected(&self, shapes: &impl Shapes) -> (Vec<f64>, Vec<f64>) {
         let linear = self.linear();
-        let slope = |(index, derivative): (usize, &Vec<f64>)| {
-            let factor = linear[shapes.column_of(index)];
+        let factors: Vec<f64> = (0..self.theta.len()).map(|index| linear[shapes.column_of(index)]).collect();
+        self.projected_with(&factors)
+    }
+
+    /// The same for derivatives that are to be multiplied by `factors`.
+    pub(super) fn projected_with(&self, factors: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let slope = |(derivative, factor): (&Vec<f64>, &f64)| {
             let mut slope: Vec<f64> = derivative.iter().map(|entry| factor * entry).collect();
             self.project(&mut slope);
             slope
         };
-        let slopes: Vec<Vec<f64>> = self.derivatives.iter().enumerate().map(slope).collect();
+        let slopes: Vec<Vec<f64>> = self.derivatives.iter().zip(factors).map(slope).collect();
         let mut hessian: Vec<f64> = slopes.iter().flat_map(|a| slopes.iter().map(|b| dot(a, b))).collect();
         // A number that the data do not feel stays where it is: rounding in its gradient moves it nowhere.
         let count = slopes.len();

@@ -38,7 +38,8 @@ pub(super) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
     solution = settled_between_kinks(model, scaled, solution, work);
     let doubtful = solution.termination != Termination::Converged
         || !ghosts(model, &solution).is_empty()
-        || inflation(&solution) > BEYOND;
+        || inflation(&solution) > BEYOND
+        || model.is_series() && widest(&solution) > WIDE;
     if doubtful && model.free().len() > 0 {
         solution = thorough(model, scaled, &nodes, solution, most_iterations, work);
         mark_merged(model, &mut solution);
@@ -47,6 +48,19 @@ pub(super) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
     }
     Some(solution)
 }
+
+/// The largest standard error of a nonlinear number.
+fn widest(solution: &Solution) -> f64 {
+    let Some(inverse) = &solution.inverse_normal else {
+        return f64::INFINITY;
+    };
+    let (linear, size) = (solution.linear.len(), solution.linear.len() + solution.nonlinear.len());
+    let error = |i: usize| (inverse[i * (size + 1)] * solution.variance).sqrt();
+    (linear..size).map(error).fold(0.0, f64::max)
+}
+
+/// Standard error of ln λ of a term that so few samples feel, or so weakly, that others may need it as much elsewhere.
+const WIDE: f64 = 0.15;
 
 /// Variance inflation beyond which doubles do not tell a valley from a plain.
 const BEYOND: f64 = 1e12;

@@ -1,6 +1,7 @@
 //! The exhaustive coarse search that makes starting values unnecessary.
 
 use super::condensed::Condensed;
+use super::lattice::Lattice;
 use super::linear_algebra::Cholesky;
 use super::model::Model;
 use super::separable::Work;
@@ -23,7 +24,19 @@ pub(super) fn fine_starts(model: &Model, nodes: &Condensed, grid: Grid, most: us
     match *moving.as_slice() {
         [] => vec![Vec::new()],
         [shape] => plane.scan(model, shape, nodes, grid, most, work),
-        _ if grid != Grid::Coarse && moving.len() <= DEEPEST => plane.explore(model, &moving, nodes, most, work),
+        [shape, ..] if grid != Grid::Coarse && moving.len() <= DEEPEST => {
+            let bounds = model.numbers[model.numbers_of(shape).start].bounds;
+            let grid = rates(bounds, None, Grid::Fine);
+            Lattice {
+                model,
+                nodes,
+                shape,
+                plane,
+                grid,
+                terms: moving.len(),
+            }
+            .valleys(most, work)
+        }
         _ => plane.combine(model, &moving, nodes, most, work),
     }
 }
@@ -35,6 +48,8 @@ pub(super) enum Grid {
     Coarse,
     /// For hard cases, where valleys are narrow.
     Fine,
+    /// For two rates beside others.
+    Dense,
     /// For one number alone on all samples.
     Finest,
 }
@@ -43,7 +58,7 @@ pub(super) enum Grid {
 const DEEPEST: usize = 3;
 
 /// The nodes with all that needs no search, the constant and shapes without free numbers, projected out.
-struct Plane {
+pub(super) struct Plane {
     /// Orthonormal columns that need no search.
     basis: Vec<Vec<f64>>,
     /// The values less their part along those.
@@ -52,12 +67,7 @@ struct Plane {
 }
 
 impl Plane {
-    fn new(model: &Model, still: &[usize], nodes: &Condensed) -> Self {
-        let mut plane = Self {
-            basis: Vec::new(),
-            values: nodes.values.clone(),
-            square: 0.0,
-        };
+    pub(super) fn new(model: &Model, still: &[usize], nodes: &Condensed) -> Self {
         let mut columns = Vec::new();
         if model.constant {
             columns.push(nodes.roots.clone());
@@ -69,6 +79,27 @@ impl Plane {
             rooted(&mut column, nodes);
             columns.push(column);
         }
+        Self::spanned(columns, nodes)
+    }
+
+    /// The same for a series with the constant and exponentials of these rates projected out.
+    pub(super) fn with_rates(model: &Model, kept: &[f64], nodes: &Condensed) -> Self {
+        let constant = model.constant.then(|| nodes.roots.clone());
+        let exponential = |rate: &f64| {
+            let mut column = vec![0.0; nodes.times.len()];
+            model.shape_value(0, &nodes.times, &[*rate], &mut column);
+            rooted(&mut column, nodes);
+            column
+        };
+        Self::spanned(constant.into_iter().chain(kept.iter().map(exponential)).collect(), nodes)
+    }
+
+    fn spanned(columns: Vec<Vec<f64>>, nodes: &Condensed) -> Self {
+        let mut plane = Self {
+            basis: Vec::new(),
+            values: nodes.values.clone(),
+            square: 0.0,
+        };
         for mut column in columns {
             let before = dot(&column, &column);
             plane.project(&mut column);
@@ -87,8 +118,13 @@ impl Plane {
         plane
     }
 
+    /// The values less their part along the basis.
+    pub(super) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// Takes the part along the basis out of a column.
-    fn project(&self, column: &mut [f64]) {
+    pub(super) fn project(&self, column: &mut [f64]) {
         for axis in &self.basis {
             let part = dot(axis, column);
             for (entry, along) in column.iter_mut().zip(axis) {
@@ -189,34 +225,6 @@ impl Plane {
         starts.into_iter().map(free).collect()
     }
 
-    /// The same on a fine grid, by columns made orthogonal one after the other: exact where rates are near each other.
-    fn explore(
-        &self,
-        model: &Model,
-        moving: &[usize],
-        nodes: &Condensed,
-        most: usize,
-        work: &mut Work,
-    ) -> Vec<Vec<f64>> {
-        let grid = rates(model.numbers[model.numbers_of(moving[0]).start].bounds, None, Grid::Fine);
-        let column = |rate: &f64| {
-            let mut column = vec![0.0; nodes.times.len()];
-            model.shape_value(moving[0], &nodes.times, &[*rate], &mut column);
-            rooted(&mut column, nodes);
-            let before = dot(&column, &column);
-            self.project(&mut column);
-            self.project(&mut column);
-            (column, before)
-        };
-        let columns: Vec<(Vec<f64>, f64)> = grid.iter().map(column).collect();
-        let mut found = Vec::new();
-        let mut chosen = Vec::new();
-        branch(&columns, 0, &self.values, moving.len(), &mut chosen, &mut found);
-        work.grid_points += found.len() as u64;
-        let kept = lattice_valleys(found, most);
-        kept.into_iter().map(|rates| rates.into_iter().rev().map(|i| grid[i]).collect()).collect()
-    }
-
     /// Several exponentials in all combinations of a grid of rates.
     fn combine(
         &self,
@@ -271,39 +279,6 @@ impl Plane {
         }
         let kept = lattice_valleys(found, most);
         kept.into_iter().map(|rates| rates.into_iter().rev().map(|i| grid[useful[i]]).collect()).collect()
-    }
-}
-
-/// Residual squares of all combinations of `terms` rising columns from `from` on; each column comes with its square before
-/// anything was taken out of it.
-fn branch(
-    columns: &[(Vec<f64>, f64)],
-    from: usize,
-    rest: &[f64],
-    terms: usize,
-    chosen: &mut Vec<usize>,
-    found: &mut Vec<(f64, Vec<usize>)>,
-) {
-    let square = dot(rest, rest);
-    for i in 0..columns.len() {
-        let (column, before) = &columns[i];
-        let size = dot(column, column);
-        if size <= 1e-22 * before {
-            continue;
-        }
-        let part = dot(column, rest) / size;
-        chosen.push(from + i);
-        if terms == 1 {
-            found.push((square - part * part * size, chosen.clone()));
-        } else {
-            let less =
-                |other: &[f64], part: f64| other.iter().zip(column).map(|(a, b)| a - part * b).collect::<Vec<f64>>();
-            let others =
-                columns[i + 1..].iter().map(|(other, before)| (less(other, dot(column, other) / size), *before));
-            let others: Vec<(Vec<f64>, f64)> = others.collect();
-            branch(&others, from + i + 1, &less(rest, part), terms - 1, chosen, found);
-        }
-        chosen.pop();
     }
 }
 
@@ -488,6 +463,7 @@ impl Grid {
         match self {
             Self::Coarse => STEP,
             Self::Fine => 0.4 * STEP,
+            Self::Dense => 0.25 * STEP,
             Self::Finest => 0.1 * STEP,
         }
     }

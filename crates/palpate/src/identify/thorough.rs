@@ -5,8 +5,9 @@
 //! better.
 
 use super::condensed::Condensed;
-use super::exact::{Valley, local};
-use super::growth::{Grown, grown};
+use super::exact::{Valley, local, rounding};
+use super::exchange::{exchanged, rising};
+use super::growth::grown;
 use super::kinks::first_kinks;
 use super::model::Model;
 use super::samples::Scaled;
@@ -31,31 +32,30 @@ pub(super) fn thorough(
     work: &mut Work,
 ) -> Solution {
     let all = model.at(&scaled.times);
-    // One number is cheap to search on all samples, and nodes miss what the noise of a single one does.
-    let whole = if model.free().len() == 1 || model.is_series() { condense_to(scaled, 0.0) } else { nodes.clone() };
-    let found = valleys(model, if model.is_series() { nodes } else { &whole }, work);
-    let mut ends: Vec<Vec<f64>> = vec![quick.nonlinear.clone()];
-    for valley in found {
-        if ends.len() <= FINALISTS && ends.iter().all(|other| distance(other, &valley.theta) > 1e-3) {
-            ends.push(valley.theta);
-        }
-    }
-    if model.is_series() {
-        ends.extend(longer(model, nodes, &whole, work));
-    }
+    let mut ends = vec![quick.nonlinear.clone()];
+    ends.extend(if model.is_series() {
+        series(model, scaled, &quick, work)
+    } else {
+        // One number is cheap to search on all samples, and nodes miss what the noise of a single one does.
+        let whole = if model.free().len() == 1 { condense_to(scaled, 0.0) } else { nodes.clone() };
+        distinct(valleys(model, &whole, work), FINALISTS)
+    });
     ends.extend(first_kinks(model, scaled));
-    ends.extend(ends.iter().flat_map(|theta| first_felt(model, &scaled.times, theta)).collect::<Vec<_>>());
-    let merged: Vec<Vec<f64>> = ends.iter().flat_map(|theta| together(model, theta)).collect();
-    let lowest = ends.iter().chain(&merged).map(|theta| local(&all, scaled.target(), theta, ENOUGH, work));
+    if !model.is_series() {
+        ends.extend(ends.iter().flat_map(|theta| first_felt(model, &scaled.times, theta)).collect::<Vec<_>>());
+    }
+    let lowest = ends.iter().map(|theta| local(&all, scaled.target(), theta, ENOUGH, work));
     let Some(best) = lowest.min_by(|a, b| a.square.total_cmp(&b.square)) else {
         return quick;
     };
     let refined = refine(&all, scaled.target(), &best.theta, Ending::tight(most_iterations), work);
     let plain = polished(&all, scaled.target(), refined, work);
-    let lowest = quick.residual_square.min(best.square).min(plain.residual_square) * (1.0 + ALIKE);
-    if plain.residual_square <= lowest {
+    // With rounding, which the best has in its square.
+    let whole = |solution: &Solution| solution.residual_square + rounding(scaled.target(), &solution.linear);
+    let lowest = whole(&quick).min(best.square).min(whole(&plain)) * (1.0 + ALIKE);
+    if whole(&plain) <= lowest {
         plain
-    } else if quick.residual_square <= lowest {
+    } else if whole(&quick) <= lowest {
         quick
     } else {
         standing(&all, scaled.target(), &best.theta, &best.linear, Termination::Converged)
@@ -86,19 +86,47 @@ fn valleys(model: &Model, nodes: &Condensed, work: &mut Work) -> Vec<Valley> {
     found
 }
 
-/// Starts of a series on all samples: the best one of a term less, and one more for the noise of any sample.
-fn longer(model: &Model, nodes: &Condensed, whole: &Condensed, work: &mut Work) -> Vec<Vec<f64>> {
-    let fewer = model.first_shapes(model.form.shapes.len() - 1);
-    let bases = valleys(&fewer, nodes, work).into_iter().take(BASES);
-    let mut all: Vec<Grown> = bases
-        .flat_map(|base| {
-            let here = local(&fewer.at(&whole.times), whole.target(), &base.theta, ENOUGH, work);
-            grown(&fewer, whole, &here.theta)
-        })
-        .collect();
-    all.sort_by(|a, b| a.square.total_cmp(&b.square));
-    all.into_iter().take(FINALISTS).map(|start| start.theta).collect()
+/// The deepest valleys of a series on nodes that tell them apart: with terms exchanged, brought together, and made as slow as can be felt.
+fn series(model: &Model, scaled: &Scaled, quick: &Solution, work: &mut Work) -> Vec<Vec<f64>> {
+    let nodes = condense_to(scaled, FINER);
+    let shapes = model.at(&nodes.times);
+    let mut aside = Work::default();
+    let mut found = valleys(model, &nodes, work);
+    found.push(local(&shapes, nodes.target(), &quick.nonlinear, ENOUGH, &mut aside));
+    let mut found = exchanged(model, &nodes, found, work);
+    let bases = distinct_of(&found, FINALISTS);
+    let beside = bases
+        .iter()
+        .flat_map(|theta| [first_felt(model, &scaled.times, theta), together(model, theta)].concat());
+    found.extend(beside.map(|theta| local(&shapes, nodes.target(), &theta, ENOUGH, &mut aside)).collect::<Vec<_>>());
+    work.condensed += aside.evaluations;
+    distinct(found, FINALISTS)
 }
+
+/// The numbers of the deepest valleys that are not the same, deepest first.
+fn distinct(mut valleys: Vec<Valley>, most: usize) -> Vec<Vec<f64>> {
+    valleys.sort_by(|a, b| a.square.total_cmp(&b.square));
+    distinct_of(&valleys, most)
+}
+
+/// The same of valleys in their order.
+fn distinct_of(valleys: &[Valley], most: usize) -> Vec<Vec<f64>> {
+    let mut kept: Vec<&Valley> = Vec::new();
+    for valley in valleys {
+        // Numbers that are not felt differ, and the residual square does not.
+        let same = |other: &&Valley| {
+            (other.square - valley.square).abs() <= ALIKE * valley.square
+                || distance(&rising(&other.theta), &rising(&valley.theta)) <= 1e-3
+        };
+        if kept.len() < most && !kept.iter().any(same) {
+            kept.push(valley);
+        }
+    }
+    kept.iter().map(|valley| valley.theta.clone()).collect()
+}
+
+/// Relative width of the bins of nodes on which a series is sought: to 10⁻⁴ of what they leave over.
+const FINER: f64 = 0.05;
 
 /// Fits of fewer terms that are grown.
 const BASES: usize = 3;
@@ -142,12 +170,8 @@ fn together(model: &Model, theta: &[f64]) -> Vec<Vec<f64>> {
         let count = own.len();
         (own[0] - own[count - 1] <= NEAR).then(|| {
             let middle = own.iter().sum::<f64>() / count as f64;
-            // As near as none, and far enough apart for divided differences of so many.
-            let apart = if count == 2 { 1e-4 } else { 1e-3 };
             let mut merged = rates.clone();
-            for (i, rate) in merged[run].iter_mut().enumerate() {
-                *rate = middle + apart * (0.5 * (count - 1) as f64 - i as f64);
-            }
+            merged[run].fill(middle);
             merged
         })
     };

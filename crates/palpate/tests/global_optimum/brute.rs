@@ -1,6 +1,7 @@
 //! A search by brute force, written apart from the library's: a dense grid of the nonlinear numbers with the linear ones solved,
 //! Levenberg's method from its ten best points and from the truth, and Nelder and Mead's from the best of those.
 
+use super::double_double::exact_square;
 use palpate::laws::{LawCurve, Response, Shape, Term};
 
 /// A law as the search sees it.
@@ -125,8 +126,8 @@ impl Subject {
         points
     }
 
-    /// The least residual square found, and where.
-    pub(crate) fn search(&self, times: &[f64], values: &[f64], truth: &[f64]) -> (f64, Vec<f64>) {
+    /// The residual squares at which searches ended, and where, lowest first.
+    pub(crate) fn search(&self, times: &[f64], values: &[f64], truth: &[f64]) -> Vec<(f64, Vec<f64>)> {
         let stride = times.len().div_ceil(MOST);
         let thin = |column: &[f64]| -> Vec<f64> { column.iter().copied().step_by(stride).collect() };
         let (few_times, few_values) = (thin(times), thin(values));
@@ -146,9 +147,22 @@ impl Subject {
         let mut ends: Vec<(f64, Vec<f64>)> =
             starts.into_iter().map(|start| self.levenberg(times, values, start)).collect();
         ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-        ends.truncate(2);
-        let polished = ends.into_iter().map(|(_, theta)| self.simplex(times, values, theta));
-        polished.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
+        let polished: Vec<(f64, Vec<f64>)> =
+            ends.iter().take(2).map(|(_, theta)| self.simplex(times, values, theta.clone())).collect();
+        ends.extend(polished);
+        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+        ends
+    }
+
+    /// The lowest of the ends of a search with squares to 30 digits, where the law is a series of exponentials: in doubles merged rates
+    /// seem to fit better than they do.
+    pub(crate) fn checked(&self, times: &[f64], values: &[f64], ends: Vec<(f64, Vec<f64>)>) -> (f64, Vec<f64>) {
+        let is_series = self.shapes.len() > 1 && self.shapes.iter().all(|shape| *shape == Shape::Exponential);
+        let exact = |(square, theta): (f64, Vec<f64>)| {
+            let square = if is_series { exact_square(times, values, self.constant, &theta) } else { square };
+            (square, theta)
+        };
+        ends.into_iter().map(exact).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
     }
 
     /// Levenberg's method with differences for derivatives.
