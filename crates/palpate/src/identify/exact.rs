@@ -103,13 +103,13 @@ pub(super) fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], eno
         let theta = descended(start, at, shapes, enough, work);
         let least = Confluent::new(shapes, &theta, target).map_or(0.0, |here| here.square());
         let there = apart(shapes, target, &theta, work);
-        if there.square <= least * (1.0 + APART) + rounding(target, &there.linear) {
+        if there.square <= least * (1.0 + APART) {
             return there;
         }
         // No amplitudes in doubles reach what merged terms do: the best of those that are apart.
         let at = |theta: &[f64]| {
             let here = Orthogonal::new(shapes, theta, target);
-            let square = here.square + rounding(target, &here.linear());
+            let square = here.square + rounding(target, here.square, &here.linear());
             Some(Plain { here, square, shapes })
         };
         let theta = descended(&there.theta, at, shapes, enough, work);
@@ -287,7 +287,8 @@ fn apart(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], work: &mut Wor
         work.evaluations += 1;
         let mut valley = valley(here);
         // As the curve of these numbers leaves it once they are rounded: where amplitudes are large orthogonal columns leave less.
-        valley.square = standing_square(shapes, target, &valley) + rounding(target, &valley.linear);
+        let square = standing_square(shapes, target, &valley);
+        valley.square = square + rounding(target, square, &valley.linear);
         if best.as_ref().is_none_or(|best| valley.square < best.square) {
             best = Some(valley);
         }
@@ -295,15 +296,14 @@ fn apart(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], work: &mut Wor
     best.unwrap_or_else(|| valley(Orthogonal::new(shapes, theta, target)))
 }
 
-/// The square that rounding of large amplitudes and of their rates adds to the residuals.
-pub(super) fn rounding(target: Target<'_>, linear: &[f64]) -> f64 {
+/// What rounding of large amplitudes and of their rates adds to a residual square: residuals are off by up to d = ε Σ|a| each, and
+/// Σ (r + d)² − Σ r² = 2 d Σ r + N d².
+pub(super) fn rounding(target: Target<'_>, square: f64, linear: &[f64]) -> f64 {
     let weights = target.roots().map_or(target.values().len() as f64, |roots| dot(roots, roots));
-    let largest: f64 = linear.iter().map(|factor| factor.abs()).sum();
-    SAFELY * weights * (f64::EPSILON * largest).powi(2)
+    let off = f64::EPSILON * linear.iter().map(|factor| factor.abs()).sum::<f64>();
+    // At worst is seldom: errors have either sign, and residuals too.
+    0.2 * off * (weights * square).sqrt() + weights * off * off
 }
-
-/// Times the square of rounding, so that it stays far below the residual square wherever that decides.
-const SAFELY: f64 = 16.0;
 
 /// Residual square of a valley's curve.
 fn standing_square(shapes: &Sampled<'_>, target: Target<'_>, valley: &Valley) -> f64 {

@@ -14,6 +14,7 @@ use super::separable::{
 };
 use super::starts::{ends, starts};
 use super::thorough::thorough;
+use crate::laws::NumberKind;
 
 /// Valleys that are refined on condensed samples.
 const VALLEYS: usize = 6;
@@ -39,7 +40,8 @@ pub(super) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
     let doubtful = solution.termination != Termination::Converged
         || !ghosts(model, &solution).is_empty()
         || inflation(&solution) > BEYOND
-        || model.is_series() && widest(&solution) > WIDE;
+        || model.is_series() && widest(&solution) > WIDE
+        || is_hasty(model, scaled, &solution);
     if doubtful && model.free().len() > 0 {
         solution = thorough(model, scaled, &nodes, solution, most_iterations, work);
         mark_merged(model, &mut solution);
@@ -58,6 +60,20 @@ fn widest(solution: &Solution) -> f64 {
     let error = |i: usize| (inverse[i * (size + 1)] * solution.variance).sqrt();
     (linear..size).map(error).fold(0.0, f64::max)
 }
+
+/// Whether the relaxation is nearly over within so few samples that the noise of any of them opens valleys of its own.
+fn is_hasty(model: &Model, scaled: &Scaled, solution: &Solution) -> bool {
+    let rates = model
+        .free()
+        .zip(&solution.nonlinear)
+        .filter(|(number, _)| !matches!(number.kind, NumberKind::Pure { .. }));
+    let fastest = rates.map(|(_, rate)| *rate).fold(f64::NEG_INFINITY, f64::max);
+    let early = scaled.times[HASTY.min(scaled.times.len() - 1)];
+    !model.is_series() && model.free().len() > 1 && fastest.exp() * early > 1.0
+}
+
+/// Samples within 1/λ that show a relaxation well.
+const HASTY: usize = 6;
 
 /// Standard error of ln λ of a term that so few samples feel, or so weakly, that others may need it as much elsewhere.
 const WIDE: f64 = 0.15;

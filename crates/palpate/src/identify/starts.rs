@@ -169,13 +169,18 @@ impl Plane {
         let range = model.numbers_of(shape);
         let numbers = &model.numbers[range.clone()];
         let mut column = vec![0.0; nodes.times.len()];
-        let mut residual = |rate: f64, other: f64| {
-            let theta = [rate, other];
-            model.shape_value(shape, &nodes.times, &theta[..numbers.len()], &mut column);
-            rooted(&mut column, nodes);
-            if fineness != Grid::Coarse { self.exact_residual(&mut column) } else { self.residual(&column) }
-        };
         let table = Table::new(self, nodes);
+        let mut along = |rates: &[f64], other: f64| -> Vec<f64> {
+            if fineness == Grid::Coarse && model.is_after_step() {
+                return table.residuals(model, shape, rates, other);
+            }
+            let mut residual = |rate: &f64| {
+                model.shape_value(shape, &nodes.times, &[*rate, other][..numbers.len()], &mut column);
+                rooted(&mut column, nodes);
+                if fineness != Grid::Coarse { self.exact_residual(&mut column) } else { self.residual(&column) }
+            };
+            rates.iter().map(&mut residual).collect()
+        };
         let others =
             numbers.get(1).map_or_else(|| vec![0.0], |number| coarse(number.kind, number.bounds, number.fixed));
         let mut found: Vec<Valley> = Vec::new();
@@ -185,28 +190,22 @@ impl Plane {
                 Some(end) if numbers[0].fixed.is_none() => rates_with_end(numbers[0].bounds, end, nodes, fineness),
                 _ => rates(numbers[0].bounds, numbers[0].fixed, fineness),
             };
-            let residuals: Vec<f64> = if fineness == Grid::Coarse && model.is_after_step() {
-                table.residuals(model, shape, &grid, other)
-            } else {
-                grid.iter().map(|rate| residual(*rate, other)).collect()
-            };
+            let residuals = along(&grid, other);
             work.grid_points += residuals.len() as u64;
-            found.extend(valleys_along(&grid, &residuals).map(|i| Valley {
-                square: vertex(&residuals, i),
-                place,
-                rate: grid[i],
-                here: residuals[i],
-                width: if i + 1 < grid.len() { grid[i + 1] - grid[i] } else { grid[i] - grid[i.saturating_sub(1)] },
-                other,
-                ends: end.is_some(),
-            }));
+            for i in valleys_along(&grid, &residuals) {
+                let width =
+                    if i + 1 < grid.len() { grid[i + 1] - grid[i] } else { grid[i] - grid[i.saturating_sub(1)] };
+                let (rate, square) = bottom(grid[i], residuals[i], width, |rates| along(rates, other));
+                found.push(Valley {
+                    square,
+                    place,
+                    rate: rate.clamp(numbers[0].bounds.0, numbers[0].bounds.1),
+                    other,
+                    ends: end.is_some(),
+                });
+            }
         }
         let mut found = if fineness != Grid::Coarse { found } else { deepest_along(&found) };
-        for valley in &mut found {
-            let (rate, lowest) = bottom(valley.rate, valley.here, valley.width, |rate| residual(rate, valley.other));
-            valley.rate = rate.clamp(numbers[0].bounds.0, numbers[0].bounds.1);
-            valley.square = lowest;
-        }
         found.sort_by(|a, b| a.square.total_cmp(&b.square));
         found.truncate(most);
         let mut starts: Vec<[f64; 2]> = found.into_iter().map(|valley| [valley.rate, valley.other]).collect();
@@ -389,27 +388,13 @@ fn valleys_along(grid: &[f64], residuals: &[f64]) -> impl Iterator<Item = usize>
     })
 }
 
-/// Height of the vertex of the parabola through a place on a grid and those beside it.
-fn vertex(residuals: &[f64], at: usize) -> f64 {
-    let here = residuals[at];
-    match (at.checked_sub(1).map(|i| residuals[i]), residuals.get(at + 1)) {
-        (Some(before), Some(after)) if before + after > 2.0 * here => {
-            here - (before - after).powi(2) / (8.0 * (before - 2.0 * here + after))
-        }
-        _ => here,
-    }
-}
-
 /// A valley of the residual along ln λ.
 #[derive(Clone, Copy)]
 struct Valley {
     square: f64,
     /// Place of `other` among the values tried.
     place: usize,
-    /// Place on the grid, the residual square there, and the distance to the next place.
     rate: f64,
-    here: f64,
-    width: f64,
     other: f64,
     /// Whether the shape ends in finite time there.
     ends: bool,
@@ -517,7 +502,8 @@ pub(super) fn ends(model: &Model, theta: &[f64]) -> bool {
     })
 }
 
-/// Of a law of one shape that may end in finite time: λt at its end, and its other free number, for those that a coarse search tries.
+/// Of a law of one shape that may end in finite time: λt at its end, and its other free number, for those that a coarse search tries
+/// and those halfway between.
 pub(super) fn ends_of(model: &Model) -> Vec<(f64, Vec<f64>)> {
     let [shape] = *model.moving().0.as_slice() else {
         return Vec::new();
@@ -527,6 +513,9 @@ pub(super) fn ends_of(model: &Model) -> Vec<(f64, Vec<f64>)> {
         return Vec::new();
     }
     let others = numbers.get(1).map_or_else(|| vec![1.0], |number| coarse(number.kind, number.bounds, number.fixed));
+    // Valleys between samples are narrow in the other number too.
+    let between = others.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+    let others: Vec<f64> = others.iter().copied().chain(between).collect();
     let free = numbers.get(1).is_some_and(|number| number.fixed.is_none());
     let end =
         |other: f64| finite_end(model.shape(shape), other).map(|end| (end, if free { vec![other] } else { vec![] }));
@@ -543,21 +532,24 @@ fn finite_end(shape: Shape, other: f64) -> Option<f64> {
     (exponent < 1.0).then(|| 1.0 / (1.0 - exponent))
 }
 
-/// ln λ at the bottom of a valley found on the grid: the vertex of a parabola through three points, with points ever closer.
-/// Condensed residuals cost next to nothing, and every step saved later costs all samples.
-fn bottom(mut at: f64, mut here: f64, grid: f64, mut residual: impl FnMut(f64) -> f64) -> (f64, f64) {
-    for width in [grid, 0.15 * grid] {
-        let (before, after) = (residual(at - width), residual(at + width));
-        let curvature = before - 2.0 * here + after;
-        if curvature.is_nan() || curvature <= 0.0 {
-            break;
+/// ln λ at the bottom of a valley found on the grid, and the residual square there: the vertex of a parabola through three points, with
+/// points ever closer. Condensed residuals cost next to nothing, and every step saved later costs all samples.
+fn bottom(at: f64, here: f64, grid: f64, mut residuals: impl FnMut(&[f64]) -> Vec<f64>) -> (f64, f64) {
+    let (mut best, mut middle) = ((at, here), at);
+    for (step, reach) in [(0.25 * grid, 2), (0.04 * grid, 1), (0.0, 0)] {
+        let rates: Vec<f64> = (-reach..=reach).map(|k| middle + step * f64::from(k)).collect();
+        let squares = residuals(&rates);
+        let lowest = (0..squares.len()).min_by(|&a, &b| squares[a].total_cmp(&squares[b])).unwrap_or(0);
+        if squares[lowest] <= best.1 {
+            best = (rates[lowest], squares[lowest]);
         }
-        let next = at + width * (0.5 * (before - after) / curvature).clamp(-1.0, 1.0);
-        let lower = residual(next);
-        if lower > here {
-            break;
+        middle = best.0;
+        if let (Some(before), Some(after)) = (lowest.checked_sub(1).map(|i| squares[i]), squares.get(lowest + 1)) {
+            let curvature = before - 2.0 * squares[lowest] + after;
+            if curvature > 0.0 {
+                middle = rates[lowest] + step * (0.5 * (before - after) / curvature).clamp(-1.0, 1.0);
+            }
         }
-        (at, here) = (next, lower);
     }
-    (at, here)
+    best
 }

@@ -51,7 +51,9 @@ pub(super) fn thorough(
     let refined = refine(&all, scaled.target(), &best.theta, Ending::tight(most_iterations), work);
     let plain = polished(&all, scaled.target(), refined, work);
     // With rounding, which the best has in its square.
-    let whole = |solution: &Solution| solution.residual_square + rounding(scaled.target(), &solution.linear);
+    let whole = |solution: &Solution| {
+        solution.residual_square + rounding(scaled.target(), solution.residual_square, &solution.linear)
+    };
     let lowest = whole(&quick).min(best.square).min(whole(&plain)) * (1.0 + ALIKE);
     if whole(&plain) <= lowest {
         plain
