@@ -14,7 +14,6 @@ use super::separable::{
 };
 use super::starts::{ends, starts};
 use super::thorough::thorough;
-use crate::laws::NumberKind;
 
 /// Valleys that are refined on condensed samples.
 const VALLEYS: usize = 6;
@@ -63,17 +62,23 @@ fn widest(solution: &Solution) -> f64 {
 
 /// Whether the relaxation is nearly over within so few samples that the noise of any of them opens valleys of its own.
 fn is_hasty(model: &Model, scaled: &Scaled, solution: &Solution) -> bool {
-    let rates = model
-        .free()
-        .zip(&solution.nonlinear)
-        .filter(|(number, _)| !matches!(number.kind, NumberKind::Pure { .. }));
-    let fastest = rates.map(|(_, rate)| *rate).fold(f64::NEG_INFINITY, f64::max);
-    let early = scaled.times[HASTY.min(scaled.times.len() - 1)];
-    !model.is_series() && model.free().len() > 1 && fastest.exp() * early > 1.0
+    let &[shape] = model.moving().0.as_slice() else {
+        return false;
+    };
+    let last = scaled.times.len() - 1;
+    let times = [scaled.times[0], scaled.times[HASTY.min(last)], scaled.times[last]];
+    let mut values = [0.0; 3];
+    let numbers = &model.complete(&solution.nonlinear)[model.numbers_of(shape)];
+    model.shape_value(shape, &times, numbers, &mut values);
+    let [start, early, end] = values;
+    model.free().len() > 1 && (early - end).abs() < OVER * (start - end).abs()
 }
 
-/// Samples within 1/λ that show a relaxation well.
-const HASTY: usize = 6;
+/// Samples that show the course of a relaxation whatever their noise.
+const HASTY: usize = 10;
+
+/// Share of a relaxation that is left when it is nearly over.
+const OVER: f64 = 0.1;
 
 /// Standard error of ln λ of a term that so few samples feel, or so weakly, that others may need it as much elsewhere.
 const WIDE: f64 = 0.15;

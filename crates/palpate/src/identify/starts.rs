@@ -2,7 +2,7 @@
 
 use super::condensed::Condensed;
 use super::lattice::Lattice;
-use super::linear_algebra::Cholesky;
+use super::linear_algebra::{Cholesky, Few};
 use super::model::Model;
 use super::separable::Work;
 use crate::laws::{NumberKind, Shape};
@@ -169,8 +169,8 @@ impl Plane {
         let range = model.numbers_of(shape);
         let numbers = &model.numbers[range.clone()];
         let mut column = vec![0.0; nodes.times.len()];
-        let table = Table::new(self, nodes);
-        let mut along = |rates: &[f64], other: f64| -> Vec<f64> {
+        let mut table = Table::new(self, nodes);
+        let mut along = |rates: &[f64], other: f64| -> Few {
             if fineness == Grid::Coarse && model.is_after_step() {
                 return table.residuals(model, shape, rates, other);
             }
@@ -318,6 +318,10 @@ struct Table<'a> {
     axes: Vec<Vec<f64>>,
     values: Vec<f64>,
     square: f64,
+    /// Room for times, shapes and sums.
+    times: Vec<f64>,
+    shapes: Vec<f64>,
+    sums: Vec<f64>,
 }
 
 impl<'a> Table<'a> {
@@ -331,27 +335,33 @@ impl<'a> Table<'a> {
             axes: plane.basis.iter().map(times_roots).collect(),
             values: times_roots(&plane.values),
             square: plane.square,
+            times: Vec::new(),
+            shapes: Vec::new(),
+            sums: Vec::new(),
         }
     }
 
-    fn residuals(&self, model: &Model, shape: usize, rates: &[f64], other: f64) -> Vec<f64> {
+    fn residuals(&mut self, model: &Model, shape: usize, rates: &[f64], other: f64) -> Few {
         let count = rates.len();
-        let scales: Vec<f64> = rates.iter().map(|rate| (rate - rates[0]).exp()).collect();
-        let times: Vec<f64> =
-            self.nodes.times.iter().flat_map(|time| scales.iter().map(move |scale| time * scale)).collect();
-        let mut values = vec![0.0; times.len()];
-        let theta = [rates[0], other];
+        let scales: Few = rates.iter().map(|rate| (rate - rates[0]).exp()).collect();
+        self.times.clear();
+        self.times
+            .extend(self.nodes.times.iter().flat_map(|time| scales.iter().map(move |scale| time * scale)));
+        self.shapes.resize(self.times.len(), 0.0);
         let numbers = model.numbers_of(shape).len();
-        model.shape_value(shape, &times, &theta[..numbers], &mut values);
-        let (mut square, mut shared) = (vec![0.0; count], vec![0.0; count]);
-        let mut along = vec![0.0; count * self.axes.len()];
+        model.shape_value(shape, &self.times, &[rates[0], other][..numbers], &mut self.shapes);
+        self.sums.clear();
+        self.sums.resize((2 + self.axes.len()) * count, 0.0);
+        let (square, others) = self.sums.split_at_mut(count);
+        let (shared, along) = others.split_at_mut(count);
+        let (shapes, weights, values, axes) = (&self.shapes, &self.weights, &self.values, &self.axes);
         accelerated(
             #[inline(always)]
             || {
-                for (node, row) in values.chunks_exact(count).enumerate() {
-                    add(row, self.weights[node], &mut square, |x| x * x);
-                    add(row, self.values[node], &mut shared, |x| x);
-                    for (axis, along) in self.axes.iter().zip(along.chunks_exact_mut(count)) {
+                for (node, row) in shapes.chunks_exact(count).enumerate() {
+                    add(row, weights[node], square, |x| x * x);
+                    add(row, values[node], shared, |x| x);
+                    for (axis, along) in axes.iter().zip(along.chunks_exact_mut(count)) {
                         add(row, axis[node], along, |x| x);
                     }
                 }
@@ -534,22 +544,22 @@ fn finite_end(shape: Shape, other: f64) -> Option<f64> {
 
 /// ln λ at the bottom of a valley found on the grid, and the residual square there: the vertex of a parabola through three points, with
 /// points ever closer. Condensed residuals cost next to nothing, and every step saved later costs all samples.
-fn bottom(at: f64, here: f64, grid: f64, mut residuals: impl FnMut(&[f64]) -> Vec<f64>) -> (f64, f64) {
-    let (mut best, mut middle) = ((at, here), at);
-    for (step, reach) in [(0.25 * grid, 2), (0.04 * grid, 1), (0.0, 0)] {
-        let rates: Vec<f64> = (-reach..=reach).map(|k| middle + step * f64::from(k)).collect();
+fn bottom(at: f64, here: f64, grid: f64, mut residuals: impl FnMut(&[f64]) -> Few) -> (f64, f64) {
+    let (mut lowest, mut middle) = (here, at);
+    for (step, reach) in [(0.25 * grid, 2), (0.04 * grid, 1)] {
+        let rates: Few = (-reach..=reach).map(|k| middle + step * f64::from(k)).collect();
         let squares = residuals(&rates);
-        let lowest = (0..squares.len()).min_by(|&a, &b| squares[a].total_cmp(&squares[b])).unwrap_or(0);
-        if squares[lowest] <= best.1 {
-            best = (rates[lowest], squares[lowest]);
+        let best = (0..squares.len()).min_by(|&a, &b| squares[a].total_cmp(&squares[b])).unwrap_or(0);
+        if squares[best] > lowest {
+            break;
         }
-        middle = best.0;
-        if let (Some(before), Some(after)) = (lowest.checked_sub(1).map(|i| squares[i]), squares.get(lowest + 1)) {
-            let curvature = before - 2.0 * squares[lowest] + after;
+        (middle, lowest) = (rates[best], squares[best]);
+        if let (Some(before), Some(after)) = (best.checked_sub(1).map(|i| squares[i]), squares.get(best + 1)) {
+            let curvature = before - 2.0 * lowest + after;
             if curvature > 0.0 {
-                middle = rates[lowest] + step * (0.5 * (before - after) / curvature).clamp(-1.0, 1.0);
+                middle += step * (0.5 * (before - after) / curvature).clamp(-0.5, 0.5);
             }
         }
     }
-    best
+    (middle, lowest)
 }
