@@ -344,9 +344,16 @@ impl<'a> Table<'a> {
     fn residuals(&mut self, model: &Model, shape: usize, rates: &[f64], other: f64) -> Few {
         let count = rates.len();
         let scales: Few = rates.iter().map(|rate| (rate - rates[0]).exp()).collect();
-        self.times.clear();
-        self.times
-            .extend(self.nodes.times.iter().flat_map(|time| scales.iter().map(move |scale| time * scale)));
+        self.times.resize(self.nodes.times.len() * count, 0.0);
+        let rows = self.times.chunks_exact_mut(count).zip(&self.nodes.times);
+        accelerated(
+            #[inline(always)]
+            || {
+                for (row, time) in rows {
+                    row.iter_mut().zip(&scales).for_each(|(product, scale)| *product = time * scale);
+                }
+            },
+        );
         self.shapes.resize(self.times.len(), 0.0);
         let numbers = model.numbers_of(shape).len();
         model.shape_value(shape, &self.times, &[rates[0], other][..numbers], &mut self.shapes);

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::estimates::Estimate;
-use super::noise::Noise;
+use super::noise::{Columns, Noise};
 use super::separable::Solution;
 use super::{NoiseChoice, NoiseModel};
 use crate::statistics::{coverage_factor, lag_one_correlation};
@@ -124,10 +124,11 @@ impl Assessed {
         let finite = |rows: &Vec<Vec<f64>>| rows.iter().flatten().all(|entry| entry.is_finite());
         let inverse = solution.inverse_normal.as_deref().filter(|_| known);
         let white = inverse.map(|inverse| scaled(inverse, solution.variance)).filter(finite);
-        let sandwich = |inverse: &[f64], model: NoiseModel, variance: f64| match model {
-            NoiseModel::White => scaled(inverse, ratio * variance),
-            _ => scaled(
-                &sandwiched(inverse, &with_amplitudes(model.quadratic(&columns), amplitudes), size),
+        let correlated = (noise.model != NoiseModel::White).then(|| Columns::new(&columns));
+        let sandwich = |inverse: &[f64], model: NoiseModel, variance: f64| match &correlated {
+            None => scaled(inverse, ratio * variance),
+            Some(columns) => scaled(
+                &sandwiched(inverse, &with_amplitudes(columns.quadratic(model), amplitudes), size),
                 ratio * variance,
             ),
         };

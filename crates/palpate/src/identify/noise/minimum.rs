@@ -10,6 +10,9 @@ const STEP: f64 = 0.1;
 /// Steps shorter than this, an eighth of an error, change nothing.
 const ENOUGH: f64 = 2e-2;
 
+/// Longest step of Newton's method: a deviance is no parabola.
+const LONGEST: f64 = 2.0;
+
 /// Most steps of Newton's method.
 const STEPS: usize = 8;
 
@@ -48,7 +51,7 @@ pub(super) fn minimise(evaluate: &impl Fn(&[f64]) -> Option<Likelihood>, start: 
     Some(compass(evaluate, here))
 }
 
-/// A step, no longer than one along any axis, and the curvature it rests on. `None` at an edge, and where there is no bottom.
+/// A step, no longer than some along any axis, and the curvature it rests on. `None` at an edge, and where there is no bottom.
 fn newton(evaluate: &impl Fn(&[f64]) -> Option<Likelihood>, here: &Minimum) -> Option<(Few, Square)> {
     let size = here.at.len();
     let middle = here.likelihood.deviance;
@@ -73,8 +76,8 @@ fn newton(evaluate: &impl Fn(&[f64]) -> Option<Likelihood>, here: &Minimum) -> O
     }
     let mut step: Few = gradient.iter().map(|slope| -slope).collect();
     Cholesky::new(&curvature, size)?.solve(&mut step);
-    let longest = step.iter().fold(1.0, |most: f64, by| most.max(by.abs()));
-    step.iter_mut().for_each(|by| *by /= longest);
+    let longest = step.iter().fold(LONGEST, |most: f64, by| most.max(by.abs()));
+    step.iter_mut().for_each(|by| *by *= LONGEST / longest);
     Some((step, curvature))
 }
 

@@ -75,22 +75,38 @@ impl NoiseModel {
         let (correlation, share) = self.numbers();
         (samples as f64 / (1.0 + 2.0 * share * correlation / (1.0 - correlation))).max(2.0)
     }
+}
+
+/// The columns of a Jacobian J, ready for products with correlations between them.
+pub(super) struct Columns {
+    size: usize,
+    /// JᵀJ.
+    product: Vec<f64>,
+    rows: Rows,
+}
+
+impl Columns {
+    pub(super) fn new(columns: &[&[f64]]) -> Self {
+        let size = columns.len();
+        let mut product = vec![0.0; size * size];
+        cross_products(columns, columns, &mut product);
+        Self {
+            size,
+            product,
+            rows: Rows::new(columns),
+        }
+    }
 
     /// JᵀRJ, row-major, with R the correlations of this noise, in one pass over the columns.
     ///
     /// F_i = ρ (F_{i−1} + J_{i−1}) sums all that came before, so that JᵀRJ = JᵀJ + s (JᵀF + FᵀJ).
-    pub(super) fn quadratic(self, columns: &[&[f64]]) -> Vec<f64> {
-        let size = columns.len();
-        let mut product = vec![0.0; size * size];
-        cross_products(columns, columns, &mut product);
-        let (correlation, share) = self.numbers();
-        if share == 0.0 {
-            return product;
-        }
-        let across = Rows::new(columns).with_sums_before(correlation);
-        for i in 0..size {
-            for j in 0..size {
-                product[i * size + j] += share * (across[i * size + j] + across[j * size + i]);
+    pub(super) fn quadratic(&self, model: NoiseModel) -> Vec<f64> {
+        let (correlation, share) = model.numbers();
+        let mut product = self.product.clone();
+        let across = self.rows.with_sums_before(correlation);
+        for i in 0..self.size {
+            for j in 0..self.size {
+                product[i * self.size + j] += share * (across[i * self.size + j] + across[j * self.size + i]);
             }
         }
         product
@@ -291,7 +307,7 @@ mod tests {
             let quick = likelihood.unwrap();
             assert!((quick.deviance - whole.deviance).abs() < 1e-9, "{model:?}: {} {}", quick.deviance, whole.deviance);
             assert!((quick.variance / whole.variance - 1.0).abs() < 1e-12);
-            let filling = model.quadratic(&jacobian);
+            let filling = Columns::new(&jacobian).quadratic(model);
             for i in 0..2 {
                 for j in 0..2 {
                     let row = |a: usize| dot(&matrix[a * COUNT..(a + 1) * COUNT], jacobian[j]);
