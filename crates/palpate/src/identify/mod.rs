@@ -7,7 +7,7 @@
 //!
 //! | file | what | equations |
 //! |---|---|---|
-//! | `separable.rs` | the engine: separable least squares with bounds, covariance and a reason to end | |
+//! | `separable/` | the engine: separable least squares with bounds, covariance and a reason to end | |
 //! | `linear_algebra.rs` | Cholesky for its small matrices | |
 //! | `bounded.rs` | linear least squares with bounds | |
 //! | `samples.rs`, `law_options.rs` | what is fitted, and what may be asked | |
@@ -31,7 +31,7 @@
 //! | `bootstrap.rs` | intervals from resampled residuals | |
 //! | `prediction.rs` | the curve at a time, with its interval | |
 //! | `profile.rs` | intervals that may be asymmetric or open | |
-//! | `noise.rs`, `uncertainty.rs` | how residuals correlate, and the errors and intervals that follow | |
+//! | `noise/`, `uncertainty.rs` | how residuals correlate, and the errors and intervals that follow | |
 //! | `prony_terms.rs` | how many exponentials a hold has | |
 //! | `selection.rs` | the lowest order that fits best, with its evidence | |
 

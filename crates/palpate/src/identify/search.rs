@@ -71,7 +71,7 @@ fn is_hasty(model: &Model, scaled: &Scaled, solution: &Solution) -> bool {
     let numbers = &model.complete(&solution.nonlinear)[model.numbers_of(shape)];
     model.shape_value(shape, &times, numbers, &mut values);
     let [start, early, end] = values;
-    model.free().len() > 1 && (early - end).abs() < OVER * (start - end).abs()
+    (early - end).abs() < OVER * (start - end).abs()
 }
 
 /// Samples that show the course of a relaxation whatever their noise.

@@ -101,6 +101,9 @@ fn series(model: &Model, scaled: &Scaled, quick: &Solution, work: &mut Work) -> 
         .iter()
         .flat_map(|theta| [first_felt(model, &scaled.times, theta), together(model, theta)].concat());
     found.extend(beside.map(|theta| local(&shapes, nodes.target(), &theta, ENOUGH, &mut aside)).collect::<Vec<_>>());
+    found.sort_by(|a, b| a.square.total_cmp(&b.square));
+    let hasty = distinct_of(&found, HASTY).into_iter().flat_map(|theta| among_the_first(&scaled.times, &theta));
+    found.extend(hasty.map(|theta| local(&shapes, nodes.target(), &theta, ENOUGH, &mut aside)).collect::<Vec<_>>());
     work.condensed += aside.evaluations;
     distinct(found, FINALISTS)
 }
@@ -154,6 +157,39 @@ fn first_felt(model: &Model, times: &[f64], theta: &[f64]) -> Vec<Vec<f64>> {
         })
     };
     over.flat_map(felt).collect()
+}
+
+/// Valleys whose fast terms are sought anew.
+const HASTY: usize = 2;
+
+/// A series with its terms of the first few samples at all combinations of rates there, equal ones among them: what such terms are is up
+/// to the noise of a sample or two, and valleys are many.
+fn among_the_first(times: &[f64], theta: &[f64]) -> Vec<Vec<f64>> {
+    /// Samples that count as the first few.
+    const FEW: usize = 6;
+    /// λt at the last of them from which a term is theirs, and at the second sample up to which it is felt.
+    const FAST: f64 = 0.2;
+    const OVER: f64 = 10.0;
+    const TRIED: usize = 9;
+    let first: Vec<f64> = times.iter().copied().filter(|time| *time > 0.0).take(FEW - 1).collect();
+    let &[second, .., last] = first.as_slice() else {
+        return Vec::new();
+    };
+    let (slowest, fastest) = ((FAST / last).ln(), (OVER / second).ln());
+    let (fast, slow): (Vec<f64>, Vec<f64>) = theta.iter().partition(|rate| **rate > slowest);
+    let tried: Vec<f64> = (0..TRIED).map(|i| slowest + (fastest - slowest) * i as f64 / (TRIED - 1) as f64).collect();
+    let mut all = if fast.is_empty() { Vec::new() } else { vec![Vec::new()] };
+    for _ in &fast {
+        let longer = all.iter().flat_map(|rates: &Vec<f64>| {
+            let from = rates.last().copied().unwrap_or(f64::NEG_INFINITY);
+            tried
+                .iter()
+                .filter(move |rate| **rate >= from)
+                .map(move |rate| [rates.as_slice(), &[*rate]].concat())
+        });
+        all = longer.collect();
+    }
+    all.into_iter().map(|rates| [rates.as_slice(), &slow].concat()).collect()
 }
 
 /// The numbers with rates that are near each other brought together, each pair of neighbours and all of them: searches creep
