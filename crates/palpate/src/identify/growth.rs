@@ -6,6 +6,7 @@ use super::condensed::Condensed;
 use super::model::Model;
 use super::orthogonal::Orthogonal;
 use super::separable::Shapes;
+use crate::vector::columns::multiply;
 
 /// A series grown by a term.
 pub(super) struct Grown {
@@ -31,7 +32,7 @@ pub(super) fn grown(fewer: &Model, nodes: &Condensed, theta: &[f64]) -> Vec<Grow
     let gain = |rate: &f64| {
         let mut column = vec![0.0; nodes.times.len()];
         fewer.shape_value(0, &nodes.times, &[*rate], &mut column);
-        column.iter_mut().zip(&nodes.roots).for_each(|(entry, root)| *entry *= root);
+        multiply(&mut column, &nodes.roots);
         here.gain(column)
     };
     let gains: Vec<f64> = rates.iter().map(gain).collect();

@@ -7,6 +7,7 @@ use super::condensed::Condensed;
 use super::model::Model;
 use super::separable::Work;
 use super::starts::Plane;
+use crate::vector::columns::multiply;
 use crate::vector::products::dot;
 
 /// Distance in ln λ of terms that count as one taken twice.
@@ -62,7 +63,7 @@ impl Lattice<'_> {
         let column = |place: usize, copy: usize| {
             let mut entries = vec![0.0; self.nodes.times.len()];
             self.model.shape_value(self.shape, &self.nodes.times, &[self.rate(place, copy)], &mut entries);
-            entries.iter_mut().zip(&self.nodes.roots).for_each(|(entry, root)| *entry *= root);
+            multiply(&mut entries, &self.nodes.roots);
             let before = dot(&entries, &entries);
             self.plane.project(&mut entries);
             self.plane.project(&mut entries);

@@ -16,6 +16,7 @@
 //! | `starts.rs` | the exhaustive coarse search | |
 //! | `search.rs` | from a model to the global optimum | |
 //! | `thorough.rs`, `exact.rs` | the search for hard cases: bounds, merged terms | |
+//! | `apart.rs` | merged rates taken apart as far as doubles need | |
 //! | `orthogonal.rs`, `confluent.rs` | columns made orthogonal, and what stands for those that imitate each other | |
 //! | `lattice.rs`, `growth.rs`, `exchange.rs` | exponentials sought on a grid, added to a series, and replaced in it | |
 //! | `ghosts.rs` | terms that a fit lists and the data do not have | |
@@ -35,6 +36,7 @@
 //! | `prony_terms.rs` | how many exponentials a hold has | |
 //! | `selection.rs` | the lowest order that fits best, with its evidence | |
 
+mod apart;
 mod bootstrap;
 mod bounded;
 mod build;

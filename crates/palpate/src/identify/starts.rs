@@ -8,6 +8,7 @@ use super::separable::Work;
 use crate::laws::{NumberKind, Shape};
 use crate::statistics::dot;
 use crate::vector::accelerated;
+use crate::vector::columns::multiply;
 
 /// Points from which to refine the free numbers of a model, best first: the valleys that a coarse grid shows.
 ///
@@ -76,7 +77,7 @@ impl Plane {
         for &shape in still {
             let mut column = vec![0.0; nodes.times.len()];
             model.shape_value(shape, &nodes.times, &all[model.numbers_of(shape)], &mut column);
-            rooted(&mut column, nodes);
+            multiply(&mut column, &nodes.roots);
             columns.push(column);
         }
         Self::spanned(columns, nodes)
@@ -88,7 +89,7 @@ impl Plane {
         let exponential = |rate: &f64| {
             let mut column = vec![0.0; nodes.times.len()];
             model.shape_value(0, &nodes.times, &[*rate], &mut column);
-            rooted(&mut column, nodes);
+            multiply(&mut column, &nodes.roots);
             column
         };
         Self::spanned(constant.into_iter().chain(kept.iter().map(exponential)).collect(), nodes)
@@ -176,7 +177,7 @@ impl Plane {
             }
             let mut residual = |rate: &f64| {
                 model.shape_value(shape, &nodes.times, &[*rate, other][..numbers.len()], &mut column);
-                rooted(&mut column, nodes);
+                multiply(&mut column, &nodes.roots);
                 if fineness != Grid::Coarse { self.exact_residual(&mut column) } else { self.residual(&column) }
             };
             rates.iter().map(&mut residual).collect()
@@ -240,7 +241,7 @@ impl Plane {
             .map(|rate| {
                 let mut column = vec![0.0; nodes.times.len()];
                 model.shape_value(moving[0], &nodes.times, &[*rate], &mut column);
-                rooted(&mut column, nodes);
+                multiply(&mut column, &nodes.roots);
                 self.project(&mut column);
                 column
             })
@@ -448,12 +449,6 @@ pub(super) fn advance(chosen: &mut [usize], count: usize) -> bool {
         }
     }
     false
-}
-
-fn rooted(column: &mut [f64], nodes: &Condensed) {
-    for (entry, root) in column.iter_mut().zip(&nodes.roots) {
-        *entry *= root;
-    }
 }
 
 /// Step of a coarse search in ln λ.

@@ -4,8 +4,9 @@
 //! half the digits just where shapes imitate each other. The result may still be one that no data determine; but no other is
 //! better.
 
+use super::apart::rounding;
 use super::condensed::Condensed;
-use super::exact::{Valley, local, rounding};
+use super::exact::{Valley, local};
 use super::exchange::{exchanged, rising};
 use super::growth::grown;
 use super::kinks::first_kinks;
