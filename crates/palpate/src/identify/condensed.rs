@@ -1,7 +1,9 @@
 //! A hold condensed to a few dozen nodes that carry nearly all it says.
 
+use std::ops::Range;
+
 use super::separable::Target;
-use crate::vector::accelerated;
+use crate::vector::moments::moments;
 
 /// Relative width in time of the bins; the shape of a law is close to a cubic inside one.
 pub(super) const WIDTH: f64 = 0.2;
@@ -60,11 +62,8 @@ impl Condensed {
         let mut from = 0;
         while from < times.len() {
             let end = times[from] * (1.0 + width);
-            let later = &times[from + 1..];
-            let alone = later.first().is_none_or(|next| *next >= end);
-            let until = from + 1 + if alone { 0 } else { later.partition_point(|time| *time < end) };
-            let range = from..until;
-            condensed.bin(&times[range.clone()], &values[range.clone()], roots.map(|roots| &roots[range]));
+            let until = from + 1 + count_below(&times[from + 1..], end);
+            condensed.bin(times, values, roots, from..until);
             from = until;
         }
         condensed
@@ -79,17 +78,14 @@ impl Condensed {
         Target::nodes(&self.values, &self.roots)
     }
 
-    fn bin(&mut self, times: &[f64], values: &[f64], roots: Option<&[f64]>) {
-        if times.len() <= 2 {
-            for (i, (&time, &value)) in times.iter().zip(values).enumerate() {
-                self.node(time, value, roots.map_or(1.0, |roots| roots[i]));
+    fn bin(&mut self, times: &[f64], values: &[f64], roots: Option<&[f64]>, range: Range<usize>) {
+        if range.len() <= 2 {
+            for i in range {
+                self.node(times[i], values[i], roots.map_or(1.0, |roots| roots[i]));
             }
             return;
         }
-        let moments = match roots {
-            None => Moments::of(times, values, EqualWeights),
-            Some(roots) => Moments::of(times, values, roots),
-        };
+        let moments = Moments::of(times, values, roots, range);
         self.inside += moments.inside;
         if moments.weight == 0.0 {
             return;
@@ -98,12 +94,13 @@ impl Condensed {
             self.node(moments.time, moments.value, moments.weight.sqrt());
             return;
         }
-        // Gauss's rule with two nodes: zeros of x² − skewness · x − 1 in units of the spread.
+        // Gauss's rule with two nodes: zeros of x² − skewness · x − 1 in units of the spread, with shares of the weight 1/(1 + x²).
         let root = (moments.skewness * moments.skewness + 4.0).sqrt();
-        for x in [0.5 * (moments.skewness - root), 0.5 * (moments.skewness + root)] {
-            let weight = moments.weight / (1.0 + x * x);
+        let (early, late) = (0.5 * (moments.skewness - root), 0.5 * (moments.skewness + root));
+        let share = 1.0 / (1.0 + early * early);
+        for (x, share) in [(early, share), (late, 1.0 - share)] {
             let along = x * moments.width;
-            self.node(moments.time + along, moments.value + moments.slope * along, weight.sqrt());
+            self.node(moments.time + along, moments.value + moments.slope * along, (moments.weight * share).sqrt());
         }
     }
 
@@ -132,110 +129,38 @@ struct Moments {
 }
 
 impl Moments {
-    fn of(times: &[f64], values: &[f64], roots: impl Roots) -> Self {
-        let [w, wt, wy] = sums(
-            times,
-            values,
-            roots,
-            #[inline(always)]
-            |w, t, y| [w, w * t, w * y],
-        );
-        let (time, value) = if w > 0.0 { (wt / w, wy / w) } else { (0.0, 0.0) };
-        let [tt, ttt, ty, yy] = sums(
-            times,
-            values,
-            roots,
-            #[inline(always)]
-            |w, t, y| {
-                let (dt, dy) = (t - time, y - value);
-                let along = w * dt;
-                [along * dt, along * dt * dt, along * dy, w * dy * dy]
-            },
-        );
+    /// In one pass, about a place inside the bin, from which those about the mean are near.
+    fn of(times: &[f64], values: &[f64], roots: Option<&[f64]>, range: Range<usize>) -> Self {
+        let (first, last) = (times[range.start], times[range.end - 1]);
+        let (place, level) = (0.5 * (first + last), values[range.start]);
+        let [w, t, tt, ttt, y, ty, yy] = moments(times, values, roots, range, (place, level));
+        let each = if w > 0.0 { 1.0 / w } else { 0.0 };
+        let (t, y) = (t * each, y * each);
+        let ttt = ttt - 3.0 * t * tt + 2.0 * w * t * t * t;
+        let (tt, ty, yy) = (tt - w * t * t, ty - w * t * y, yy - w * y * y);
         // A bin whose weight lies on one sample has no width.
-        let wide = tt > 1e-24 * w * time * time;
-        let width = if wide { (tt / w).sqrt() } else { 0.0 };
-        let slope = if wide { ty / tt } else { 0.0 };
+        let wide = tt > 1e-14 * w * (last - place).powi(2);
+        let per_square = if wide { 1.0 / tt } else { 0.0 };
+        let width = if wide { (tt * each).sqrt() } else { 0.0 };
+        let slope = ty * per_square;
         Self {
             weight: w,
-            time,
-            value,
+            time: place + t,
+            value: level + y,
             width,
-            skewness: if wide { ttt / (w * width * width * width) } else { 0.0 },
+            skewness: ttt * per_square * (w * per_square) * width,
             slope,
             inside: (yy - slope * ty).max(0.0),
         }
     }
 }
 
-/// Square roots of the weights of the samples of a bin.
-trait Roots: Copy {
-    fn at(&self, index: usize) -> f64;
-}
-
-/// All one.
-#[derive(Clone, Copy)]
-struct EqualWeights;
-
-impl Roots for EqualWeights {
-    #[inline(always)]
-    fn at(&self, _: usize) -> f64 {
-        1.0
-    }
-}
-
-impl Roots for &[f64] {
-    #[inline(always)]
-    fn at(&self, index: usize) -> f64 {
-        self[index]
-    }
-}
-
-/// Σ f(weight, time, value) over the samples, in lanes.
-#[inline(always)]
-fn sums<const N: usize>(
-    times: &[f64],
-    values: &[f64],
-    roots: impl Roots,
-    f: impl Fn(f64, f64, f64) -> [f64; N],
-) -> [f64; N] {
-    const LANES: usize = 8;
-    if times.len() < 2 * LANES {
-        let mut sums = [0.0; N];
-        for (index, (t, y)) in times.iter().zip(values).enumerate() {
-            let root = roots.at(index);
-            let terms = f(root * root, *t, *y);
-            for k in 0..N {
-                sums[k] += terms[k];
-            }
-        }
-        return sums;
-    }
-    accelerated(
-        #[inline(always)]
-        || {
-            let mut sums = [[0.0; LANES]; N];
-            let ((times, late_times), (values, late_values)) =
-                (times.as_chunks::<LANES>(), values.as_chunks::<LANES>());
-            for (index, (t, y)) in times.iter().zip(values).enumerate() {
-                for lane in 0..LANES {
-                    let root = roots.at(index * LANES + lane);
-                    let terms = f(root * root, t[lane], y[lane]);
-                    for k in 0..N {
-                        sums[k][lane] += terms[k];
-                    }
-                }
-            }
-            for (lane, (t, y)) in late_times.iter().zip(late_values).enumerate() {
-                let root = roots.at(times.len() * LANES + lane);
-                let terms = f(root * root, *t, *y);
-                for k in 0..N {
-                    sums[k][lane] += terms[k];
-                }
-            }
-            sums.map(|lanes| lanes.iter().sum())
-        },
-    )
+/// How many of rising numbers lie below `end`: one look at eight of them.
+fn count_below(rising: &[f64], end: f64) -> usize {
+    let (blocks, rest) = rising.as_chunks::<8>();
+    let whole = blocks.iter().take_while(|block| block[7] < end).count();
+    let last = blocks.get(whole).map_or(rest, |block| block);
+    8 * whole + last.iter().filter(|number| **number < end).count()
 }
 
 #[cfg(test)]

@@ -10,12 +10,12 @@ use super::separable::{Ending, Shapes, Solution, Target, Termination, Work, dist
 use crate::vector::products::dot;
 
 /// The solution carried on to what doubles allow, where normal equations do not reach it: where numbers nearly imitate each other, and
-/// where next to nothing is left over.
-pub(super) fn exact(model: &Model, scaled: &Scaled, solution: Solution, work: &mut Work) -> Solution {
+/// where next to nothing is left over. `inflation` as of the function of that name.
+pub(super) fn exact(model: &Model, scaled: &Scaled, solution: Solution, inflation: f64, work: &mut Work) -> Solution {
     let all = model.at(&scaled.times);
-    let signal = dot(scaled.target().values(), scaled.target().values());
+    let signal = scaled.target().square();
     let clean = solution.residual_square < CLEAN * signal && solution.residual_square > ROUNDING * signal;
-    if solution.nonlinear.is_empty() || !all.linear_bounds().is_empty() || !(clean || inflation(&solution) > IMITATED) {
+    if solution.nonlinear.is_empty() || !all.linear_bounds().is_empty() || !(clean || inflation > IMITATED) {
         return solution;
     }
     // Straight to the last digit, with no regard for valleys elsewhere.

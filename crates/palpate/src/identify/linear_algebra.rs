@@ -18,7 +18,10 @@ pub(super) struct Cholesky {
 impl Cholesky {
     /// Factors `matrix` (row-major, `size` × `size`) after scaling its diagonal to one; `None` if it is singular to rounding.
     pub(super) fn new(matrix: &[f64], size: usize) -> Option<Self> {
-        let scale: Few = (0..size).map(|i| 1.0 / matrix[i * size + i].sqrt()).collect();
+        let mut scale = Few::from_elem(1.0, size);
+        for (i, scale) in scale.iter_mut().enumerate() {
+            *scale /= matrix[i * (size + 1)].sqrt();
+        }
         if scale.iter().any(|s| !s.is_finite()) {
             return None;
         }

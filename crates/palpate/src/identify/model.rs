@@ -1,5 +1,6 @@
 //! A law made ready for a fit: which numbers are free, and within which bounds.
 
+use super::linear_algebra::Few;
 use super::separable::{Shapes, Spare, Termination};
 use crate::laws::{Column, Form, Kernel, Loading, NumberKind, Shape, Superposition};
 
@@ -69,8 +70,8 @@ impl Model {
     }
 
     /// All nonlinear numbers where the free ones have these values.
-    pub(super) fn complete(&self, theta: &[f64]) -> Vec<f64> {
-        let mut all: Vec<f64> = self.numbers.iter().map(|number| number.fixed.unwrap_or(0.0)).collect();
+    pub(super) fn complete(&self, theta: &[f64]) -> Few {
+        let mut all: Few = self.numbers.iter().map(|number| number.fixed.unwrap_or(0.0)).collect();
         for (&i, value) in self.free.iter().zip(theta) {
             all[i] = *value;
         }

@@ -9,8 +9,8 @@ use super::linear_algebra::Square;
 use super::model::{Model, Sampled};
 use super::samples::Scaled;
 use super::separable::{
-    Ending, NOTHING, Refined, Solution, Target, Termination, Work, curvature, descend, distance, polished, refine,
-    standing,
+    Ending, Refined, STRAIGHT, Solution, Target, Termination, Work, curvature, descend, distance, polished, refine,
+    standing, stepped,
 };
 use super::starts::{ends, starts};
 use super::thorough::thorough;
@@ -36,16 +36,17 @@ pub(super) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
     let mut solution = polished(&shapes, target, best?, work);
     mark_merged(model, &mut solution);
     solution = settled_between_kinks(model, scaled, solution, work);
+    let inflation = inflation(&solution);
     let doubtful = solution.termination != Termination::Converged
         || !ghosts(model, &solution).is_empty()
-        || inflation(&solution) > BEYOND
+        || inflation > BEYOND
         || model.is_series() && widest(&solution) > WIDE
         || is_hasty(model, scaled, &solution);
     if doubtful && model.free().len() > 0 {
         solution = thorough(model, scaled, &nodes, solution, most_iterations, work);
         mark_merged(model, &mut solution);
     } else {
-        solution = exact(model, scaled, solution, work);
+        solution = exact(model, scaled, solution, inflation, work);
     }
     Some(solution)
 }
@@ -130,7 +131,7 @@ fn settle(
 ) -> Refined {
     let hessian = valley.curvature.as_ref();
     hessian
-        .and_then(|hessian| descend(shapes, target, &valley.theta, hessian, NOTHING, work))
+        .and_then(|hessian| descend(shapes, target, &valley.theta, hessian, STRAIGHT, work))
         .unwrap_or_else(|| refine(shapes, target, &valley.theta, Ending::tight(most_iterations), work))
 }
 
@@ -214,7 +215,7 @@ fn valleys(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut 
     // Where the law ends in finite time nodes only tell roughly: such a start goes to all samples as it is.
     let limit = limit * (1.0 + KINKED);
     kept.extend(open.into_iter().filter(|(square, _)| *square <= limit).map(|(_, theta)| Valley {
-        curvature: curvature(&shapes, target, &theta, &mut aside),
+        curvature: curvature(&shapes, target, &theta, &mut aside).map(|(hessian, _)| hessian),
         theta,
     }));
     work.condensed += aside.evaluations;
@@ -255,7 +256,15 @@ const ROUGH: f64 = 1e-5;
 
 /// The very bottom of a valley of the condensed samples, as near as they tell.
 fn bottom(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], most_iterations: usize, aside: &mut Work) -> Valley {
-    let curvature = curvature(shapes, target, theta, aside);
+    let slope = curvature(shapes, target, theta, aside);
+    let last = slope.as_ref().map(|(hessian, gradient)| stepped(theta, hessian, gradient, 0.0, shapes));
+    if let Some(next) = last.filter(|next| distance(theta, next) <= TELLING) {
+        return Valley {
+            theta: next.to_vec(),
+            curvature: slope.map(|(hessian, _)| hessian),
+        };
+    }
+    let curvature = slope.map(|(hessian, _)| hessian);
     let refined = curvature
         .as_ref()
         .and_then(|hessian| descend(shapes, target, theta, hessian, TELLING, aside))
@@ -266,6 +275,6 @@ fn bottom(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], most_iteratio
     }
 }
 
-/// Share of the residual square that a step may promise at the bottom of a valley of condensed samples: far below what condensing
-/// moves it by.
-const TELLING: f64 = 1e-10;
+/// Length of the last step to the bottom of a valley of condensed samples: what its tangent misses is far below what condensing
+/// moves the bottom by.
+const TELLING: f64 = 3e-4;

@@ -7,8 +7,8 @@ use super::model::Model;
 use super::separable::Work;
 use crate::laws::{NumberKind, Shape};
 use crate::statistics::dot;
-use crate::vector::accelerated;
 use crate::vector::columns::multiply;
+use crate::vector::products::{LANES, lane_sums};
 
 /// Points from which to refine the free numbers of a model, best first: the valleys that a coarse grid shows.
 ///
@@ -196,11 +196,13 @@ impl Plane {
             for i in valleys_along(&grid, &residuals) {
                 let width =
                     if i + 1 < grid.len() { grid[i + 1] - grid[i] } else { grid[i] - grid[i.saturating_sub(1)] };
-                let (rate, square) = bottom(grid[i], residuals[i], width, |rates| along(rates, other));
+                let step = 0.2 * width;
+                let (rate, square) = bottom(grid[i], residuals[i], step, |rates| along(rates, other));
                 found.push(Valley {
                     square,
                     place,
-                    rate: rate.clamp(numbers[0].bounds.0, numbers[0].bounds.1),
+                    rate,
+                    step,
                     other,
                     ends: end.is_some(),
                 });
@@ -209,7 +211,15 @@ impl Plane {
         let mut found = if fineness != Grid::Coarse { found } else { deepest_along(&found) };
         found.sort_by(|a, b| a.square.total_cmp(&b.square));
         found.truncate(most);
-        let mut starts: Vec<[f64; 2]> = found.into_iter().map(|valley| [valley.rate, valley.other]).collect();
+        if found.len() > 1 {
+            // Nodes cost next to nothing, a long way down from each of several valleys does.
+            for valley in &mut found {
+                let along = |rates: &[f64]| along(rates, valley.other);
+                (valley.rate, valley.square) = bottom(valley.rate, valley.square, 0.2 * valley.step, along);
+            }
+        }
+        let inside = |rate: f64| rate.clamp(numbers[0].bounds.0, numbers[0].bounds.1);
+        let mut starts: Vec<[f64; 2]> = found.iter().map(|valley| [inside(valley.rate), valley.other]).collect();
         if starts.is_empty() {
             // Nothing but plateaus: any point will do, and the refinement will say so.
             let rate = numbers[0].fixed.unwrap_or(0.0).clamp(numbers[0].bounds.0, numbers[0].bounds.1);
@@ -310,19 +320,18 @@ const LOWEST: usize = 400;
 /// Residual squares of one more column at many rates at once.
 ///
 /// A shape depends on λt alone, so that its values at many rates are those at one rate and as many sets of times; side by side, node
-/// after node, every sum over nodes goes over all rates together.
+/// after node, every sum over nodes goes over several rates together.
 struct Table<'a> {
     nodes: &'a Condensed,
     /// Squared roots of the weights.
     weights: Vec<f64>,
-    /// The axes of the plane and its values, times the roots.
-    axes: Vec<Vec<f64>>,
-    values: Vec<f64>,
+    /// The values of the plane, then its axes, times the roots.
+    factors: Vec<Vec<f64>>,
     square: f64,
     /// Room for times, shapes and sums.
     times: Vec<f64>,
     shapes: Vec<f64>,
-    sums: Vec<f64>,
+    sums: Vec<[f64; LANES]>,
 }
 
 impl<'a> Table<'a> {
@@ -333,64 +342,44 @@ impl<'a> Table<'a> {
         Self {
             nodes,
             weights: times_roots(&nodes.roots),
-            axes: plane.basis.iter().map(times_roots).collect(),
-            values: times_roots(&plane.values),
+            factors: [&plane.values].into_iter().chain(&plane.basis).map(times_roots).collect(),
             square: plane.square,
             times: Vec::new(),
             shapes: Vec::new(),
-            sums: Vec::new(),
+            sums: vec![[0.0; LANES]; 2 + plane.basis.len()],
         }
     }
 
     fn residuals(&mut self, model: &Model, shape: usize, rates: &[f64], other: f64) -> Few {
-        let count = rates.len();
-        let scales: Few = rates.iter().map(|rate| (rate - rates[0]).exp()).collect();
-        self.times.resize(self.nodes.times.len() * count, 0.0);
-        let rows = self.times.chunks_exact_mut(count).zip(&self.nodes.times);
-        accelerated(
-            #[inline(always)]
-            || {
-                for (row, time) in rows {
-                    row.iter_mut().zip(&scales).for_each(|(product, scale)| *product = time * scale);
-                }
-            },
-        );
+        let nodes = self.nodes.times.len();
+        self.times.clear();
+        for rates_together in rates.chunks(LANES) {
+            // The last rate stands in for those that are not there.
+            let last = rates_together.len() - 1;
+            let scales: [f64; LANES] = std::array::from_fn(|lane| (rates_together[lane.min(last)] - rates[0]).exp());
+            self.times.extend(self.nodes.times.iter().flat_map(|time| scales.map(|scale| time * scale)));
+        }
         self.shapes.resize(self.times.len(), 0.0);
         let numbers = model.numbers_of(shape).len();
         model.shape_value(shape, &self.times, &[rates[0], other][..numbers], &mut self.shapes);
-        self.sums.clear();
-        self.sums.resize((2 + self.axes.len()) * count, 0.0);
-        let (square, others) = self.sums.split_at_mut(count);
-        let (shared, along) = others.split_at_mut(count);
-        let (shapes, weights, values, axes) = (&self.shapes, &self.weights, &self.values, &self.axes);
-        accelerated(
-            #[inline(always)]
-            || {
-                for (node, row) in shapes.chunks_exact(count).enumerate() {
-                    add(row, weights[node], square, |x| x * x);
-                    add(row, values[node], shared, |x| x);
-                    for (axis, along) in axes.iter().zip(along.chunks_exact_mut(count)) {
-                        add(row, axis[node], along, |x| x);
-                    }
-                }
-            },
-        );
-        let residual = |rate: usize| {
-            let imitated: f64 = along.iter().skip(rate).step_by(count).map(|part| part * part).sum();
-            let spread = square[rate] - imitated;
-            // A shape that is flat over the hold explains nothing.
-            let flat = spread <= 1e-14 * square[rate];
-            if flat { self.square } else { self.square - shared[rate] * shared[rate] / spread }
-        };
-        (0..count).map(residual).collect()
+        let mut residuals = Few::new();
+        for (rates, rows) in rates.chunks(LANES).zip(self.shapes.as_chunks::<LANES>().0.chunks(nodes)) {
+            lane_sums(rows, &self.weights, &self.factors, &mut self.sums);
+            residuals.extend((0..rates.len()).map(|lane| self.residual(lane)));
+        }
+        residuals
     }
-}
 
-/// Adds `factor` f(x) to the sums.
-#[inline(always)]
-fn add(row: &[f64], factor: f64, sums: &mut [f64], f: impl Fn(f64) -> f64) {
-    for (sum, x) in sums.iter_mut().zip(row) {
-        *sum += factor * f(*x);
+    /// What the column of one lane leaves of the residual square.
+    fn residual(&self, lane: usize) -> f64 {
+        let [square, shared, axes @ ..] = self.sums.as_slice() else {
+            return self.square;
+        };
+        let imitated: f64 = axes.iter().map(|along| along[lane] * along[lane]).sum();
+        let spread = square[lane] - imitated;
+        // A shape that is flat over the hold explains nothing.
+        let flat = spread <= 1e-14 * square[lane];
+        if flat { self.square } else { self.square - shared[lane] * shared[lane] / spread }
     }
 }
 
@@ -413,6 +402,8 @@ struct Valley {
     /// Place of `other` among the values tried.
     place: usize,
     rate: f64,
+    /// Distance of the rates that were tried around it.
+    step: f64,
     other: f64,
     /// Whether the shape ends in finite time there.
     ends: bool,
@@ -544,24 +535,19 @@ fn finite_end(shape: Shape, other: f64) -> Option<f64> {
     (exponent < 1.0).then(|| 1.0 / (1.0 - exponent))
 }
 
-/// ln λ at the bottom of a valley found on the grid, and the residual square there: the vertex of a parabola through three points, with
-/// points ever closer. Condensed residuals cost next to nothing, and every step saved later costs all samples.
-fn bottom(at: f64, here: f64, grid: f64, mut residuals: impl FnMut(&[f64]) -> Few) -> (f64, f64) {
-    let (mut lowest, mut middle) = (here, at);
-    for (step, reach) in [(0.25 * grid, 2), (0.04 * grid, 1)] {
-        let rates: Few = (-reach..=reach).map(|k| middle + step * f64::from(k)).collect();
-        let squares = residuals(&rates);
-        let best = (0..squares.len()).min_by(|&a, &b| squares[a].total_cmp(&squares[b])).unwrap_or(0);
-        if squares[best] > lowest {
-            break;
-        }
-        (middle, lowest) = (rates[best], squares[best]);
-        if let (Some(before), Some(after)) = (best.checked_sub(1).map(|i| squares[i]), squares.get(best + 1)) {
-            let curvature = before - 2.0 * lowest + after;
-            if curvature > 0.0 {
-                middle += step * (0.5 * (before - after) / curvature).clamp(-0.5, 0.5);
-            }
-        }
+/// ln λ near the bottom of a valley that was seen, and the residual square there: the vertex of a parabola through the lowest of a few
+/// points `step` apart, as many as a table takes together, and those beside it.
+fn bottom(at: f64, here: f64, step: f64, mut residuals: impl FnMut(&[f64]) -> Few) -> (f64, f64) {
+    let rates: Few = (-3..=3).map(|k| at + step * f64::from(k)).collect();
+    let squares = residuals(&rates);
+    let best = (0..squares.len()).min_by(|&a, &b| squares[a].total_cmp(&squares[b])).unwrap_or(0);
+    if squares[best] > here {
+        return (at, here);
     }
-    (middle, lowest)
+    let beside = best.checked_sub(1).zip(squares.get(best + 1)).map(|(before, after)| (squares[before], *after));
+    let vertex = beside.map_or(0.0, |(before, after)| match before - 2.0 * squares[best] + after {
+        curvature if curvature > 0.0 => (0.5 * (before - after) / curvature).clamp(-0.5, 0.5),
+        _ => 0.0,
+    });
+    (rates[best] + step * vertex, squares[best])
 }

@@ -61,6 +61,14 @@ pub(crate) fn multiply(column: &mut [f64], factors: &[f64]) {
     );
 }
 
+/// column + `factor` · other, number by number.
+pub(crate) fn add_multiple(column: &mut [f64], factor: f64, other: &[f64]) {
+    accelerated(
+        #[inline(always)]
+        || column.iter_mut().zip(other).for_each(|(x, more)| *x += factor * more),
+    );
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

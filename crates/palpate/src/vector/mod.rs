@@ -9,11 +9,13 @@
 //! |---|---|
 //! | `columns.rs` | finite, rising, extremes; one column made of another |
 //! | `elementary.rs` | exp, ln and ln(1 + z) without branches |
+//! | `moments.rs` | sums over a run of samples |
 //! | `products.rs` | scalar products, normal equations, residuals |
 //! | `shapes.rs` | exponential, stretched exponential and logarithm of time with their derivatives |
 
 pub(crate) mod columns;
 pub(crate) mod elementary;
+pub(crate) mod moments;
 pub(crate) mod products;
 mod shapes;
 

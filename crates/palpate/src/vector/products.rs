@@ -12,7 +12,7 @@ use super::{accelerated, level};
 type Columns<'a> = SmallVec<[&'a [f64]; 8]>;
 
 /// Interleaved parts of a sum.
-const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
 /// Samples that stay in the nearest cache while every product of them is formed.
 const CHUNK: usize = 1024;
 /// Columns on a side of a tile: 2 × 2 running sums stay in registers, and more were slower.
@@ -202,6 +202,38 @@ fn subtract<const C: usize>(
     )
 }
 
+/// Of [`LANES`] columns side by side, `rows`: `sums[0]` = Σ wᵢ xᵢ² and `sums[k + 1]` = Σ fᵢ xᵢ for every column f of `factors`.
+///
+/// # Panics
+/// If lengths do not fit.
+pub(crate) fn lane_sums(rows: &[[f64; LANES]], weights: &[f64], factors: &[Vec<f64>], sums: &mut [[f64; LANES]]) {
+    assert_eq!(sums.len(), factors.len() + 1, "one sum a column of factors, and that of squares");
+    dispatch!(level(), simd => lane_sums_with(simd, rows, weights, factors, sums));
+}
+
+#[inline(always)]
+fn lane_sums_with<S: Simd>(
+    simd: S,
+    rows: &[[f64; LANES]],
+    weights: &[f64],
+    factors: &[Vec<f64>],
+    sums: &mut [[f64; LANES]],
+) {
+    let mut square = f64x8::splat(simd, 0.0);
+    for (row, weight) in rows.iter().zip(weights) {
+        let x = f64x8::from_slice(simd, row);
+        square += x * x * *weight;
+    }
+    sums[0] = square.into();
+    for (sum, factors) in sums[1..].iter_mut().zip(factors) {
+        let mut product = f64x8::splat(simd, 0.0);
+        for (row, factor) in rows.iter().zip(factors) {
+            product += f64x8::from_slice(simd, row) * *factor;
+        }
+        *sum = product.into();
+    }
+}
+
 /// Every row times every column.
 fn tile<const R: usize, const C: usize>(rows: [&[f64]; R], columns: [&[f64]; C]) -> [[f64; C]; R] {
     dispatch!(level(), simd => tile_with(simd, rows, columns))
@@ -294,7 +326,7 @@ fn padded(column: &[f64]) -> [f64; LANES] {
 
 /// The sum of the lanes, halves first.
 #[inline(always)]
-fn total(lanes: [f64; LANES]) -> f64 {
+pub(super) fn total(lanes: [f64; LANES]) -> f64 {
     let [a, b, c, d, e, f, g, h] = lanes;
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
@@ -359,6 +391,30 @@ mod tests {
                 });
                 let pairs = rows.iter().flat_map(|a| columns.iter().map(|b| exact(a, b)));
                 assert_eq!(found, pairs.collect::<Vec<_>>(), "{count} samples, {down} × {across}");
+            }
+        }
+    }
+
+    #[test]
+    fn sums_of_columns_side_by_side() {
+        for count in COUNTS {
+            let all = column(LANES * count, 1);
+            let (rows, weights) = (all.as_chunks::<LANES>().0, column(count, 2));
+            for size in 0..4 {
+                let factors: Vec<Vec<f64>> = (0..size).map(|seed| column(count, 5 + seed)).collect();
+                let found = on_every_level(|| {
+                    let mut sums = vec![[f64::NAN; LANES]; size + 1];
+                    lane_sums(rows, &weights, &factors, &mut sums);
+                    sums.concat()
+                });
+                for lane in 0..LANES {
+                    let x: Vec<f64> = rows.iter().map(|row| row[lane]).collect();
+                    let squares: Vec<f64> = x.iter().map(|x| x * x).collect();
+                    assert_eq!(found[lane], exact(&squares, &weights), "{count} rows");
+                    for (k, factors) in factors.iter().enumerate() {
+                        assert_eq!(found[(k + 1) * LANES + lane], exact(&x, factors), "{count} rows, column {k}");
+                    }
+                }
             }
         }
     }

@@ -22,7 +22,7 @@ mod step;
 use serde::{Deserialize, Serialize};
 
 pub(super) use finish::standing;
-pub(super) use newton::{NOTHING, curvature, descend, polished};
+pub(super) use newton::{STRAIGHT, curvature, descend, polished};
 pub(super) use point::Spare;
 pub(super) use refine::{Refined, refine};
 pub(super) use step::{distance, stepped};
@@ -148,6 +148,11 @@ impl<'a> Target<'a> {
     /// Values, times the roots of their weights.
     pub(super) fn values(&self) -> &'a [f64] {
         self.values
+    }
+
+    /// Sum of their squares.
+    pub(super) fn square(&self) -> f64 {
+        self.square
     }
 
     /// Square roots of the weights; `None` if all are one.

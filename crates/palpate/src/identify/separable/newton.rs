@@ -3,23 +3,23 @@
 use super::finish::finish;
 use super::point::Point;
 use super::refine::Refined;
-use super::step::{projected, promise, stepped};
+use super::step::{Slope, distance, projected, promise, stepped};
 use super::{Shapes, Solution, Target, Termination, Work};
 use crate::identify::linear_algebra::{Cholesky, Few, Square};
 
-/// Half the second derivative of the residual square by the nonlinear numbers, the linear ones at their best: differences
-/// of its gradient. `None` where it is not positive definite, or a number lies at a bound.
+/// The slope of half the residual square by the nonlinear numbers, the linear ones at their best, from differences of its gradient.
+/// `None` where its curvature is not positive definite, or a number lies at a bound.
 pub(in crate::identify) fn curvature(
     shapes: &impl Shapes,
     target: Target<'_>,
     theta: &[f64],
     work: &mut Work,
-) -> Option<Square> {
+) -> Option<Slope> {
     /// Of the width of bounds; the error of the difference is some 10⁻⁸ of the curvature.
     const STEP: f64 = 1e-4;
     let count = theta.len();
     let mut point = Point::new(shapes, count, target.values.len());
-    let mut hessian = Square::from_elem(0.0, count * count);
+    let (mut hessian, mut mean) = (Square::from_elem(0.0, count * count), Few::from_elem(0.0, count));
     for j in 0..count {
         let (low, high) = shapes.bounds(j);
         if theta[j] - STEP < low || theta[j] + STEP > high {
@@ -36,9 +36,11 @@ pub(in crate::identify) fn curvature(
             for (i, entry) in point.gradient(shapes).into_iter().enumerate() {
                 // The gradient points downhill.
                 hessian[i * count + j] -= side * entry / (2.0 * STEP);
+                mean[i] += entry / (2.0 * count as f64);
             }
         }
     }
+    point.release(shapes);
     for i in 0..count {
         for j in 0..i {
             let mean = 0.5 * (hessian[i * count + j] + hessian[j * count + i]);
@@ -46,25 +48,24 @@ pub(in crate::identify) fn curvature(
             hessian[j * count + i] = mean;
         }
     }
-    Cholesky::new(&hessian, count).map(|_| hessian)
+    Cholesky::new(&hessian, count).map(|_| (hessian, mean))
 }
 
 /// Most steps of [`descend`].
 const STEPS: usize = 12;
 
 /// Newton's method from a point near the optimum, with a curvature from elsewhere: the gradient comes from all samples, the
-/// curvature from few. It ends where a step promises less than `enough` of the residual square. `None` if it does not lead downhill
+/// curvature from few. A step of at most `near` is the last, and is taken along the tangent. `None` if it does not lead downhill
 /// to where the gradient vanishes.
 pub(in crate::identify) fn descend(
     shapes: &impl Shapes,
     target: Target<'_>,
     theta: &[f64],
     hessian: &[f64],
-    enough: f64,
+    near: f64,
     work: &mut Work,
 ) -> Option<Refined> {
     let mut here = Point::new(shapes, theta.len(), target.values.len());
-    let mut trial = Point::new(shapes, theta.len(), target.values.len());
     here.evaluate(shapes, theta, target);
     work.evaluations += 1;
     work.starts += 1;
@@ -79,36 +80,42 @@ pub(in crate::identify) fn descend(
         if here.singular || here.held.contains(&true) {
             return None;
         }
-        let arrived = gain.abs() <= enough * here.square + target.floor();
-        // What is left of the gain is rounding once it stops falling far below the residual.
-        let mut settled = false;
-        if !arrived {
-            trial.evaluate(shapes, &next, target);
-            work.evaluations += 1;
+        let short = distance(&here.theta, &next) <= near;
+        let arrived = gain.abs() <= NOTHING * here.square + target.floor();
+        if short && !arrived {
+            here.slide(shapes, &next, target);
             work.iterations += 1;
-            let (after, less) = outlook(&trial);
-            if less.abs() <= 0.5 * gain.abs() && trial.square <= here.square * (1.0 + 1e-10) + target.floor() {
-                std::mem::swap(&mut here, &mut trial);
-                (next, gain) = (after, less);
-                continue;
-            }
-            settled = less.abs() > 0.5 * gain.abs() && gain.abs() < 1e-16 * here.square;
         }
-        if !(arrived || settled) {
-            return None;
+        if short || arrived {
+            return Some(Refined {
+                settled: short && near <= STRAIGHT,
+                point: here,
+                termination: Termination::Converged,
+            });
         }
-        trial.release(shapes);
-        return Some(Refined {
-            settled: enough <= NOTHING && gain.abs() <= enough * here.square,
-            point: here,
-            termination: Termination::Converged,
-        });
+        let (square, promised) = (here.square, gain);
+        here.evaluate(shapes, &next, target);
+        work.evaluations += 1;
+        work.iterations += 1;
+        (next, gain) = outlook(&here);
+        if gain.abs() > 0.5 * promised.abs() || here.square > square * (1.0 + 1e-10) + target.floor() {
+            // What is left of the gain is rounding once it stops falling far below the residual.
+            return (promised.abs() < 1e-16 * square).then_some(Refined {
+                settled: false,
+                point: here,
+                termination: Termination::Converged,
+            });
+        }
     }
     None
 }
 
-/// Share of the residual square that a step may promise at the optimum: some 10⁻¹¹ of the errors.
-pub(in crate::identify) const NOTHING: f64 = 1e-22;
+/// Share of the residual square that a step may promise at the optimum: of a thousand samples, some 10⁻⁸ of the errors.
+const NOTHING: f64 = 1e-19;
+
+/// Change of a nonlinear number, a logarithm or a few units at most, over which its tangent is the shape itself to rounding, and
+/// errors stay as they are to eight digits.
+pub(in crate::identify) const STRAIGHT: f64 = 3e-9;
 
 /// Most undamped steps after the residual has stopped falling.
 const POLISHING: usize = 30;

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use super::{Shapes, Target};
 use crate::identify::bounded::{BoundedProblem, BoundedSolver, Held};
 use crate::identify::linear_algebra::{Cholesky, Few, Square};
-use crate::vector::columns::multiply;
+use crate::vector::columns::{add_multiple, multiply};
 use crate::vector::products::{cross_products, dot, form_residuals, normal_equations};
 
 /// Points kept for the next search over the same samples: only the first allocates.
@@ -64,8 +64,23 @@ impl Point {
 
     /// Solves for the linear numbers at `theta` and forms the residuals.
     pub(super) fn evaluate(&mut self, shapes: &impl Shapes, theta: &[f64], target: Target<'_>) {
-        let values = target.values;
         self.fill(shapes, theta, target);
+        self.solve(shapes, target);
+    }
+
+    /// The same a step away, so short that the columns follow their tangents and the derivatives stay as they are.
+    pub(super) fn slide(&mut self, shapes: &impl Shapes, theta: &[f64], target: Target<'_>) {
+        for (index, derivative) in self.derivatives.iter().enumerate() {
+            let step = theta[index] - self.theta[index];
+            add_multiple(&mut self.columns[shapes.column_of(index)], step, derivative);
+        }
+        self.theta.copy_from_slice(theta);
+        self.solve(shapes, target);
+    }
+
+    /// Solves for the linear numbers and forms the residuals.
+    fn solve(&mut self, shapes: &impl Shapes, target: Target<'_>) {
+        let values = target.values;
         let size = self.columns.len();
         normal_equations(&self.columns, values, &mut self.gram, &mut self.linear);
         let factor = Cholesky::new(&self.gram, size);
@@ -154,9 +169,11 @@ impl Point {
 
     /// Jᵀr by the nonlinear numbers.
     pub(super) fn gradient(&self, shapes: &impl Shapes) -> Few {
-        let part =
-            |(p, derivative): (usize, &Vec<f64>)| self.linear[shapes.column_of(p)] * dot(derivative, &self.residuals);
-        self.derivatives.iter().enumerate().map(part).collect()
+        let mut gradient = Few::from_elem(0.0, self.theta.len());
+        for (p, (entry, derivative)) in gradient.iter_mut().zip(&self.derivatives).enumerate() {
+            *entry = self.linear[shapes.column_of(p)] * dot(derivative, &self.residuals);
+        }
+        gradient
     }
 }
 

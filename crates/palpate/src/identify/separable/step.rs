@@ -7,7 +7,7 @@ use super::point::Point;
 use crate::identify::linear_algebra::{Cholesky, Few, Square};
 
 /// A matrix of second derivatives and a gradient that points downhill, both of half the residual square.
-pub(super) type Slope = (Square, Few);
+pub(in crate::identify) type Slope = (Square, Few);
 
 /// The Gauss–Newton matrix and gradient in θ with the linear numbers projected out.
 pub(super) fn projected(here: &Point, shapes: &impl Shapes) -> Option<Slope> {
@@ -20,7 +20,10 @@ pub(super) fn projected(here: &Point, shapes: &impl Shapes) -> Option<Slope> {
     // Linear numbers at a bound do not move with θ.
     let free: SmallVec<[usize; 8]> = (0..l).filter(|&i| !here.held[i]).collect();
     let linear = Cholesky::new(&block(&normal, size, &free), free.len())?;
-    let mut hessian: Square = (0..p * p).map(|i| normal[(l + i / p) * size + l + i % p]).collect();
+    let mut hessian = Square::from_elem(0.0, p * p);
+    for (i, row) in hessian.chunks_exact_mut(p.max(1)).enumerate() {
+        row.copy_from_slice(&normal[(l + i) * size + l..][..p]);
+    }
     let mut cross = Few::from_elem(0.0, free.len());
     for j in 0..p {
         for (entry, &i) in cross.iter_mut().zip(&free) {
@@ -37,7 +40,13 @@ pub(super) fn projected(here: &Point, shapes: &impl Shapes) -> Option<Slope> {
 
 /// The rows and columns `kept` of a square matrix.
 pub(super) fn block(matrix: &[f64], size: usize, kept: &[usize]) -> Square {
-    kept.iter().flat_map(|i| kept.iter().map(move |j| matrix[i * size + j])).collect()
+    let mut block = Square::from_elem(0.0, kept.len() * kept.len());
+    for (row, i) in block.chunks_exact_mut(kept.len().max(1)).zip(kept) {
+        for (entry, j) in row.iter_mut().zip(kept) {
+            *entry = matrix[i * size + j];
+        }
+    }
+    block
 }
 
 /// θ after a damped step, clipped to the bounds; a number that sits at a bound and is pushed outwards stays out of the step.
