@@ -15,6 +15,9 @@ const KEPT: usize = 6;
 /// Places in an interval, in parts of the way from one sample to the next.
 const PARTS: [f64; 4] = [1e-3, 0.03, 0.3, 0.7];
 
+/// The same after the second sample: it alone feels where the law ends there, the less the nearer, and how near is up to its noise.
+const NEAREST: [f64; 9] = [1e-6, 4e-6, 1.6e-5, 6e-5, 2.5e-4, 1e-3, 0.03, 0.3, 0.7];
+
 /// Standard errors that the end may lie off.
 const ERRORS: f64 = 6.0;
 
@@ -39,15 +42,20 @@ fn kinks(model: &Model, scaled: &Scaled, open: &dyn Fn(f64) -> bool) -> Vec<Vec<
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
     for (end, rest) in ends_of(model) {
         let (low, high) = shapes.bounds(0);
-        let pairs = scaled.times.windows(2).map(|pair| PARTS.map(|part| pair[0] + part * (pair[1] - pair[0])));
-        let rates = pairs.map(|times| times.map(|time| (end / time).ln().clamp(low, high)));
-        let rates = rates.filter(|rates| open(rates[0]) || open(rates[3])).take(INTERVALS).flatten();
+        let places = |(index, pair): (usize, &[f64])| {
+            let (from, width) = (pair[0], pair[1] - pair[0]);
+            let parts = if index == 1 { NEAREST.as_slice() } else { &PARTS };
+            parts.iter().map(|part| (end / (from + part * width)).ln().clamp(low, high)).collect::<Vec<_>>()
+        };
+        let is_open = |rates: &Vec<f64>| [rates.first(), rates.last()].into_iter().flatten().any(|rate| open(*rate));
+        let rates = scaled.times.windows(2).enumerate().map(places).filter(is_open).take(INTERVALS).flatten();
         let along: Vec<Orthogonal> = rates
             .map(|rate| Orthogonal::new(&shapes, &[&[rate], rest.as_slice()].concat(), scaled.target()))
             .collect();
+        // One place of a plateau, where the law ends before the second sample, is enough.
         let lowest = |i: &usize| {
-            let beside = [i.checked_sub(1), Some(i + 1)].map(|j| j.and_then(|j| along.get(j)));
-            beside.into_iter().flatten().all(|other| along[*i].square <= other.square)
+            let square = |j: Option<usize>| j.and_then(|j| along.get(j)).map_or(f64::INFINITY, |other| other.square);
+            square(i.checked_sub(1)) >= along[*i].square && along[*i].square < square(Some(i + 1))
         };
         found.extend((0..along.len()).filter(lowest).map(|i| (along[i].square, along[i].theta.clone())));
     }
