@@ -12,7 +12,7 @@
 use super::model::Sampled;
 use super::orthogonal::Orthogonal;
 use super::separable::Target;
-use crate::vector::exponential_values;
+use crate::vector::{accelerated, exponential_values};
 
 /// A series at one place.
 pub(super) struct Confluent {
@@ -137,9 +137,19 @@ fn divided_difference(times: &[f64], decay: &[f64], apart: &[f64]) -> Vec<f64> {
         }
         *product /= factorial;
     }
-    let entry = |(time, decay): (&f64, &f64)| {
-        let series = products[..terms].iter().rev().fold(0.0, |sum, product| product - time * sum);
-        decay * (-time).powi(order as i32) * series
-    };
-    times.iter().zip(decay).map(entry).collect()
+    let mut entries = vec![0.0; times.len()];
+    // Horner's scheme over all times at once.
+    accelerated(
+        #[inline(always)]
+        || {
+            for product in products[..terms].iter().rev() {
+                entries.iter_mut().zip(times).for_each(|(sum, time)| *sum = product - time * *sum);
+            }
+            for _ in 0..order {
+                entries.iter_mut().zip(times).for_each(|(entry, time)| *entry *= -time);
+            }
+            entries.iter_mut().zip(decay).for_each(|(entry, decay)| *entry *= decay);
+        },
+    );
+    entries
 }
