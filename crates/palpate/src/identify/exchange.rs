@@ -68,26 +68,29 @@ pub(super) fn rising(theta: &[f64]) -> Vec<f64> {
 /// Valleys near `theta` with every two terms replaced.
 fn replaced(model: &Model, nodes: &Condensed, theta: &[f64], work: &mut Work) -> Vec<Valley> {
     let shapes = model.at(&nodes.times);
-    let bounds = model.numbers[0].bounds;
     let mut aside = Work::default();
     let mut found = Vec::new();
     for first in 0..theta.len() {
         for second in first + 1..theta.len() {
             let kept: Vec<f64> = (0..theta.len()).filter(|i| *i != first && *i != second).map(|i| theta[i]).collect();
-            let lattice = Lattice {
-                model,
-                nodes,
-                shape: 0,
-                plane: Plane::with_rates(model, &kept, nodes),
-                grid: rates(bounds, None, Grid::Dense),
-                terms: REPLACED,
-            };
-            for others in lattice.valleys(FOLLOWED, work) {
-                let start = [kept.as_slice(), &others].concat();
+            for start in paired(model, nodes, &kept, work) {
                 found.push(local(&shapes, nodes.target(), &start, ENOUGH, &mut aside));
             }
         }
     }
     work.condensed += aside.evaluations;
     found
+}
+
+/// The rates `kept` with two more, wherever a dense grid of these two shows a valley.
+pub(super) fn paired(model: &Model, nodes: &Condensed, kept: &[f64], work: &mut Work) -> Vec<Vec<f64>> {
+    let lattice = Lattice {
+        model,
+        nodes,
+        shape: 0,
+        plane: Plane::with_rates(model, kept, nodes),
+        grid: rates(model.numbers[0].bounds, None, Grid::Dense),
+        terms: REPLACED,
+    };
+    lattice.valleys(FOLLOWED, work).into_iter().map(|others| [kept, &others].concat()).collect()
 }

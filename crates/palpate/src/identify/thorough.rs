@@ -7,7 +7,7 @@
 use super::apart::rounding;
 use super::condensed::Condensed;
 use super::exact::{Valley, local};
-use super::exchange::{exchanged, rising};
+use super::exchange::{exchanged, paired, rising};
 use super::growth::grown;
 use super::kinks::first_kinks;
 use super::model::Model;
@@ -66,27 +66,32 @@ pub(super) fn thorough(
 }
 
 /// Valleys of the condensed samples, deepest first: those of a fine grid and, for a series, those that one more term opens beside
-/// the best fits of one term less.
+/// the best fits of one term less, or two more beside the best of two less.
 fn valleys(model: &Model, nodes: &Condensed, work: &mut Work) -> Vec<Valley> {
-    let shapes = model.at(&nodes.times);
-    let grid = if model.free().len() == 1 { Grid::Finest } else { Grid::Fine };
-    let mut starts = fine_starts(model, nodes, grid, VALLEYS, work);
-    if model.is_series() {
-        let fewer = model.first_shapes(model.form.shapes.len() - 1);
-        let base = valleys(&fewer, nodes, work);
-        starts.extend(
-            base.iter()
-                .take(BASES)
-                .flat_map(|valley| grown(&fewer, nodes, &valley.theta))
-                .map(|start| start.theta),
-        );
+    let fewest = if model.is_series() { 1 } else { model.form.shapes.len() };
+    let shorter: Vec<Model> = (fewest..model.form.shapes.len()).map(|count| model.first_shapes(count)).collect();
+    let mut bases: Vec<(&Model, Vec<Valley>)> = Vec::new();
+    for own in shorter.iter().chain([model]) {
+        let grid = if own.free().len() == 1 { Grid::Finest } else { Grid::Fine };
+        let mut starts = fine_starts(own, nodes, grid, VALLEYS, work);
+        if let [.., (fewer, base)] = bases.as_slice() {
+            let longer = distinct_of(base, BASES).into_iter().flat_map(|theta| grown(fewer, nodes, &theta));
+            starts.extend(longer.map(|start| start.theta));
+        }
+        if let [.., (_, base), _] = bases.as_slice()
+            && let Some(best) = base.first()
+        {
+            // Of two terms that come together none may help alone.
+            starts.extend(paired(own, nodes, &best.theta, work));
+        }
+        let (shapes, mut aside) = (own.at(&nodes.times), Work::default());
+        let mut found: Vec<Valley> =
+            starts.iter().map(|start| local(&shapes, nodes.target(), start, ENOUGH, &mut aside)).collect();
+        work.condensed += aside.evaluations;
+        found.sort_by(|a, b| a.square.total_cmp(&b.square));
+        bases.push((own, found));
     }
-    let mut aside = Work::default();
-    let mut found: Vec<Valley> =
-        starts.iter().map(|start| local(&shapes, nodes.target(), start, ENOUGH, &mut aside)).collect();
-    work.condensed += aside.evaluations;
-    found.sort_by(|a, b| a.square.total_cmp(&b.square));
-    found
+    bases.pop().map(|(_, found)| found).unwrap_or_default()
 }
 
 /// The deepest valleys of a series on nodes that tell them apart: with terms exchanged, brought together, and made as slow as can be felt.
