@@ -64,6 +64,10 @@ impl Confluent {
         &self.here.theta
     }
 
+    pub(super) fn is_beside_cliff(&self) -> bool {
+        self.here.is_beside_cliff()
+    }
+
     /// The Gauss–Newton matrix and gradient in ln λ with the linear numbers projected out (Kaufman).
     pub(super) fn projected(&self) -> (Vec<f64>, Vec<f64>) {
         let linear = self.here.linear();

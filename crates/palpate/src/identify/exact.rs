@@ -107,13 +107,14 @@ pub(super) fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], eno
         if there.square <= least * (1.0 + APART) {
             return there;
         }
-        // No amplitudes in doubles reach what merged terms do: the best of those that are apart.
+        // No amplitudes in doubles reach what merged terms do: the best of those that are apart, not above the start.
         let at = |theta: &[f64]| {
             let here = Orthogonal::new(shapes, theta, target);
             let square = here.square + rounding(target, here.square, &here.linear());
             Some(Plain { here, square, shapes })
         };
-        let theta = descended(&there.theta, at, shapes, enough, work);
+        let from = if at(start).is_some_and(|here| here.square() < there.square) { start } else { &there.theta };
+        let theta = descended(from, at, shapes, enough, work);
         let after = apart(shapes, target, &theta, work);
         return if after.square < there.square { after } else { there };
     }
@@ -134,6 +135,8 @@ trait Place {
     fn theta(&self) -> &[f64];
     fn square(&self) -> f64;
     fn projected(&self) -> (Vec<f64>, Vec<f64>);
+    /// Whether a column is all but imitated, and a little further counts for nothing.
+    fn is_beside_cliff(&self) -> bool;
 }
 
 impl Place for Confluent {
@@ -145,6 +148,9 @@ impl Place for Confluent {
     }
     fn projected(&self) -> (Vec<f64>, Vec<f64>) {
         self.projected()
+    }
+    fn is_beside_cliff(&self) -> bool {
+        self.is_beside_cliff()
     }
 }
 
@@ -165,6 +171,9 @@ impl Place for Plain<'_> {
     }
     fn projected(&self) -> (Vec<f64>, Vec<f64>) {
         self.here.projected(self.shapes)
+    }
+    fn is_beside_cliff(&self) -> bool {
+        self.here.is_beside_cliff()
     }
 }
 
@@ -189,6 +198,25 @@ fn descended<P: Place>(
         return start.to_vec();
     };
     work.evaluations += 1;
+    here = lowered(here, &at, None, shapes, enough, work);
+    // Steps that would cross a cliff are refused, however much the other numbers would gain: one after the other is held.
+    for number in 0..start.len() {
+        if here.is_beside_cliff() {
+            here = lowered(here, &at, Some(number), shapes, enough, work);
+        }
+    }
+    here.theta().to_vec()
+}
+
+/// The place where Levenberg's method ends, with one number held where it is if asked for.
+fn lowered<P: Place>(
+    mut here: P,
+    at: &impl Fn(&[f64]) -> Option<P>,
+    held: Option<usize>,
+    shapes: &Sampled<'_>,
+    enough: f64,
+    work: &mut Work,
+) -> P {
     let mut damping = FIRST;
     let mut idle = 0;
     for _ in 0..STEPS {
@@ -197,7 +225,7 @@ fn descended<P: Place>(
         // Along a flat valley damping is what holds a step back: a small fall says nothing until there is next to none.
         let is_free = damping <= FREE;
         for _ in 0..TRIALS {
-            let theta = inside(here.theta(), (&hessian, &gradient), UNFELT * before, damping, shapes);
+            let theta = inside(here.theta(), (&hessian, &gradient), held, UNFELT * before, damping, shapes);
             let Some(trial) = at(&theta) else {
                 break;
             };
@@ -222,20 +250,22 @@ fn descended<P: Place>(
             damping = (damping * 1e-2).max(LEAST);
         }
     }
-    here.theta().to_vec()
+    here
 }
 
 /// θ after a damped step inside the bounds: numbers that would leave them stay at the bound, and the others take the best step beside
-/// those. Curvatures below `unfelt` are damped as if they were that: rounding alone makes up the steps of such numbers.
+/// those, as beside one that is `held`. Curvatures below `unfelt` are damped as if they were that: rounding alone makes up the steps of
+/// such numbers.
 fn inside(
     theta: &[f64],
     (hessian, gradient): (&[f64], &[f64]),
+    held: Option<usize>,
     unfelt: f64,
     damping: f64,
     shapes: &Sampled<'_>,
 ) -> Vec<f64> {
     let count = theta.len();
-    let mut step: Vec<Option<f64>> = vec![None; count];
+    let mut step: Vec<Option<f64>> = (0..count).map(|i| (Some(i) == held).then_some(0.0)).collect();
     loop {
         let free: Vec<usize> = (0..count).filter(|i| step[*i].is_none()).collect();
         let entry = |i: usize, j: usize| {
@@ -243,8 +273,8 @@ fn inside(
             if i == j { plain.max(f64::MIN_POSITIVE) + damping * plain.max(unfelt) } else { plain }
         };
         let matrix: Vec<f64> = free.iter().flat_map(|&i| free.iter().map(move |&j| entry(i, j))).collect();
-        let held = |i: usize| -> f64 { (0..count).filter_map(|j| Some(hessian[i * count + j] * step[j]?)).sum() };
-        let mut change: Vec<f64> = free.iter().map(|&i| gradient[i] - held(i)).collect();
+        let known = |i: usize| -> f64 { (0..count).filter_map(|j| Some(hessian[i * count + j] * step[j]?)).sum() };
+        let mut change: Vec<f64> = free.iter().map(|&i| gradient[i] - known(i)).collect();
         match Cholesky::new(&matrix, free.len()) {
             Some(factor) => factor.solve(&mut change),
             None => change.iter_mut().zip(&free).for_each(|(value, &i)| *value /= entry(i, i)),

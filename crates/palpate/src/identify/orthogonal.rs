@@ -12,6 +12,8 @@ pub(super) struct Orthogonal {
     axes: Vec<Option<Vec<f64>>>,
     /// Parts of each column along the axes before it, and its length along its own.
     parts: Vec<Vec<f64>>,
+    /// Whether a column is all but imitated.
+    beside_cliff: bool,
     /// Parts of the values along the axes.
     along: Vec<f64>,
     rest: Vec<f64>,
@@ -44,6 +46,7 @@ impl Orthogonal {
             square: 0.0,
             axes: Vec::new(),
             parts: Vec::new(),
+            beside_cliff: false,
             along: Vec::new(),
             rest: target.values().to_vec(),
             derivatives,
@@ -53,6 +56,7 @@ impl Orthogonal {
             let mut parts = here.project(&mut column);
             let after = dot(&column, &column);
             let own = after > IMITATED * before && after > 0.0;
+            here.beside_cliff |= own && after <= CLIFF * IMITATED * before;
             parts.push(after.sqrt());
             here.parts.push(parts);
             here.axes.push(own.then(|| {
@@ -100,6 +104,11 @@ impl Orthogonal {
         linear
     }
 
+    /// Whether there is a column that those before it all but imitate: beside here it counts for nothing, and the square leaps.
+    pub(super) fn is_beside_cliff(&self) -> bool {
+        self.beside_cliff
+    }
+
     /// What one more column would take off the square.
     pub(super) fn gain(&self, mut column: Vec<f64>) -> f64 {
         let before = dot(&column, &column);
@@ -138,3 +147,6 @@ const UNFELT: f64 = 1e-14;
 /// Share of a column's square below which it lies in the plane of the others.
 /// Below it rounding of the shapes makes up its direction.
 const IMITATED: f64 = 1e-17;
+
+/// Times that share: a column that is all but imitated.
+const CLIFF: f64 = 2.0;
