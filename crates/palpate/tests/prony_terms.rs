@@ -22,14 +22,13 @@ fn hold(amplitudes: &[f64], noise: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
 fn as_many_terms_are_chosen_as_there_are() {
     for amplitudes in [&[1.0][..], &[1.0, -0.7], &[1.0, 0.8], &[1.0, 0.8, 0.6]] {
         let mut right = 0;
-        for seed in 0..20 {
+        for seed in 0..8 {
             let (times, values) = hold(amplitudes, 1e-3, seed);
             let (chosen, fits) = fit_prony(&Samples::new(&times, &values), 4, &LawOptions::default()).unwrap();
             assert_eq!(fits.len(), 4);
             right += usize::from(chosen == Some(amplitudes.len() - 1));
         }
-        println!("{amplitudes:?}: {right} of 20");
-        assert!(right >= 18, "{amplitudes:?}: {right}");
+        assert_eq!(right, 8, "{amplitudes:?}");
     }
 }
 

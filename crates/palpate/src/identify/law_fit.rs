@@ -297,10 +297,25 @@ impl Fitted {
         let assessed =
             Assessed::new(solution, &self.amplitudes(), &units, scale, (options.confidence, options.noise), known);
         let loading = if matches!(law, Law::Latency { .. }) { None } else { options.loading.clone() };
-        LawFit {
+        let mut fit = LawFit {
             loading,
             ..self.report_with(law, assessed, work)
+        };
+        if !fit.termination.is_good() && options.loss == Loss::Squares {
+            fit.residual_square = self.left_by(&fit);
         }
+        fit
+    }
+
+    /// χ² of a curve as it is returned: where large amplitudes cancel, rounding of its own numbers adds to it.
+    fn left_by(&self, fit: &LawFit) -> f64 {
+        let scaled = &self.scaled;
+        let elapsed: Vec<f64> = scaled.times.iter().map(|t| t * scaled.duration).collect();
+        let curve = fit.predict_many(&elapsed);
+        let root = |i: usize| scaled.roots.as_ref().map_or(1.0, |roots| roots[i]);
+        let left = |i: usize| scaled.values[i] - root(i) * (curve[i] - scaled.center) / scaled.range;
+        let square: f64 = (0..curve.len()).map(|i| left(i).powi(2)).sum();
+        (square.sqrt() * scaled.range * scaled.precision).powi(2)
     }
 
     /// The result with these errors.

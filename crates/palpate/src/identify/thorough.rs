@@ -108,7 +108,9 @@ fn series(model: &Model, scaled: &Scaled, quick: &Solution, work: &mut Work) -> 
         .flat_map(|theta| [first_felt(model, &scaled.times, theta), together(model, theta)].concat());
     found.extend(beside.map(|theta| local(&shapes, nodes.target(), &theta, ENOUGH, &mut aside)).collect::<Vec<_>>());
     found.sort_by(|a, b| a.square.total_cmp(&b.square));
-    let hasty = distinct_of(&found, HASTY).into_iter().flat_map(|theta| among_the_first(&scaled.times, &theta));
+    let hasty = distinct_of(&found, SOUGHT_ANEW)
+        .into_iter()
+        .flat_map(|theta| among_the_first(&scaled.times, &theta));
     found.extend(hasty.map(|theta| local(&shapes, nodes.target(), &theta, ENOUGH, &mut aside)).collect::<Vec<_>>());
     work.condensed += aside.evaluations;
     distinct(found, FINALISTS)
@@ -166,7 +168,7 @@ fn first_felt(model: &Model, times: &[f64], theta: &[f64]) -> Vec<Vec<f64>> {
 }
 
 /// Valleys whose fast terms are sought anew.
-const HASTY: usize = 2;
+const SOUGHT_ANEW: usize = 2;
 
 /// A series with its terms of the first few samples at all combinations of rates there, equal ones among them: what such terms are is up
 /// to the noise of a sample or two, and valleys are many.
