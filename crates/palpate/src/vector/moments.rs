@@ -82,7 +82,7 @@ fn add<S: Simd>(
 
 #[inline(always)]
 fn block(column: &[f64], from: usize) -> &[f64; LANES] {
-    column[from..from + LANES].as_array().unwrap_or(&[0.0; LANES])
+    column[from..].first_chunk().unwrap_or(&[0.0; LANES])
 }
 
 #[cfg(test)]
