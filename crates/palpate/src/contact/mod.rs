@@ -5,17 +5,22 @@
 //! | `specimen.rs` | shape, modulus, contact area, equilibrium strain | (6), (7), (8), (11) |
 //! | `layers.rs` | how the body is cut into layers and how travel of the jaw becomes drive | section IV, steps 1–2 |
 //! | `element.rs` | the contact layer through one straight piece of motion: hold or ramp | section IV, step 3 |
+//! | `balance.rs` | where a body carries a given force | (11) |
+//! | `forced.rs` | the contact layer through one straight piece of a force history: creep or ramp | |
 //! | `free_surface.rs` | the surface once the jaw has left it | |
 //!
 //! Layer i never feels layer i + 1, so the contact force needs the contact layer alone, whatever the number of
 //! layers; the interior is solved only to show the strain wave (`simulate::wave`).
 
+mod balance;
 mod element;
+mod forced;
 mod free_surface;
 mod layers;
 mod specimen;
 
 pub(crate) use element::Element;
+pub(crate) use forced::{Body, Forced};
 pub(crate) use free_surface::FreeSurface;
 pub use layers::{Layers, LayersError};
 pub use specimen::{Shape, Sides, Specimen, SpecimenError};

@@ -171,6 +171,20 @@ impl Specimen {
         self.modulus * strain * self.contact_area(contact_displacement)
     }
 
+    /// S = E A(u₁), the force per strain of the contact layer (N), and its slope dS/du₁ (N/m).
+    pub(crate) fn stiffness(&self, contact_displacement: f64) -> (f64, f64) {
+        let growth = match self.shape {
+            Shape::Ball { radius } if contact_displacement >= 0.0 => 2.0 * PI * (radius - contact_displacement),
+            Shape::Ball { .. } | Shape::Prism { .. } => 0.0,
+        };
+        (self.modulus * self.contact_area(contact_displacement), self.modulus * growth)
+    }
+
+    /// Whether the area is the same at any displacement.
+    pub(crate) fn has_constant_section(&self) -> bool {
+        matches!(self.shape, Shape::Prism { .. })
+    }
+
     /// Checks that a contact displacement (m) is one the body can take.
     ///
     /// # Errors

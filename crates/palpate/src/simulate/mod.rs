@@ -3,11 +3,15 @@
 //! | file | what |
 //! |---|---|
 //! | `motion.rs` | the displacement of the jaw: a protocol's steps, or a measured series; straight between its knots |
+//! | `history.rs` | the force on the contact, straight between its knots |
+//! | `course.rs` | what drives a contact: a motion or a force history |
 //! | `model.rs` | the contact model: specimen, law, layers, and whether the jaw can pull |
 //! | `walk.rs` | goes through a motion piece by piece: in contact, jaw off, in contact again |
 //! | `trajectory.rs` | the series at the asked times |
 //! | `wave.rs` | all layers over time (the strain wave) |
 
+mod course;
+mod history;
 mod model;
 mod motion;
 mod trajectory;
@@ -15,11 +19,14 @@ mod walk;
 mod wave;
 
 pub use crate::contact::Work;
+pub use history::ForceHistory;
 pub use model::{ContactModel, Separation};
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};
-pub use trajectory::{Sampling, Trajectory, simulate, simulate_force};
+pub use trajectory::{Sampling, Trajectory, simulate, simulate_force, simulate_under_force};
 pub use walk::{ContactEvent, ContactEventKind};
-pub use wave::{StrainWave, strain_wave};
+pub use wave::{StrainWave, strain_wave, strain_wave_under_force};
+
+use course::Course;
 
 use crate::contact::SpecimenError;
 
@@ -35,6 +42,27 @@ pub enum SimulateError {
         displacement: f64,
         /// What the specimen says.
         source: SpecimenError,
+    },
+    /// A force that no displacement of the body carries.
+    #[error("at t = {time} s no displacement that the body can take carries {force} N")]
+    Force {
+        /// Time, s.
+        time: f64,
+        /// Force there, N.
+        force: f64,
+    },
+    /// A force that pulls where nothing can be pulled.
+    #[error(
+        "at t = {time} s the force is {force} N: {}",
+        if *bonded { "a ball bonded to the jaw loses its contact area before it carries tension" } else { "a jaw cannot pull" }
+    )]
+    Tension {
+        /// Time of the knot, s.
+        time: f64,
+        /// Force there, N.
+        force: f64,
+        /// Whether body and jaw are bonded.
+        bonded: bool,
     },
     /// A sample time outside the motion, or before the one before it.
     #[error("sample times must rise from {from} s to {until} s at most, found {found} s at index {index}")]

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::walk::{Stretch, StretchState, walk};
-use super::{ContactEvent, ContactModel, Motion, SimulateError, Work};
+use super::{ContactEvent, ContactModel, Course, ForceHistory, Motion, SimulateError, Work};
 
 /// When to report.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,7 +77,9 @@ impl Trajectory {
         let times = &self.time[from..until];
         let per_side = 1.0 / specimen.contact_displacement(1.0);
         let jaw = times.iter().map(|&time| stretch.jaw_at(time));
-        self.displacement.extend(jaw.clone().map(|u| u * per_side));
+        if !matches!(stretch.state, StretchState::Forced(_)) {
+            self.displacement.extend(jaw.clone().map(|u| u * per_side));
+        }
         match &stretch.state {
             StretchState::Touching(element) => {
                 self.contact_displacement.extend(jaw);
@@ -91,6 +93,20 @@ impl Trajectory {
                 self.strain.extend(parts.map(|(equilibrium, excess)| equilibrium + excess));
                 let state = self.strain[from..].iter().zip(contact);
                 self.force.extend(state.map(|(strain, u)| specimen.force(*strain, *u)));
+            }
+            StretchState::Forced(forced) => {
+                for time in times {
+                    let elapsed = time - stretch.start;
+                    let state = forced.at(elapsed);
+                    let equilibrium = specimen.equilibrium_strain(state.displacement);
+                    self.displacement.push(state.displacement * per_side);
+                    self.contact_displacement.push(state.displacement);
+                    self.force.push(forced.force_at(elapsed));
+                    self.equilibrium_strain.push(equilibrium);
+                    self.excess_strain.push(state.excess);
+                    self.strain.push(equilibrium + state.excess);
+                    self.strain_rate.push(state.excess_rate + state.speed / depth);
+                }
             }
             StretchState::Free { surface, since } => {
                 let surface = times.iter().map(|time| surface.displacement_at(time - since));
@@ -132,9 +148,50 @@ impl Trajectory {
 /// # Errors
 /// [`SimulateError`] if the motion goes where the specimen cannot, or the sampling does not fit the motion.
 pub fn simulate(motion: &Motion, model: &ContactModel, sampling: &Sampling) -> Result<Trajectory, SimulateError> {
-    let mut result = Trajectory::with_times(sample_times(motion, sampling)?);
-    let (last, mut next) = (motion.end(), 0);
-    let (events, work) = walk(motion, model, |stretch| {
+    follow(Course::Motion(motion), model, sampling)
+}
+
+/// Simulates the contact of `model` under a force: creep while it is held, recovery once it is gone.
+///
+/// The force lands on the contact layer at once and the layers behind follow by the law (section IV of the paper, the other way round):
+/// E ε A(u₁) = F with ε = (u₁ − u₂)/ℓ gives u₁, and u̇₂ = ℓ v sgn(x)|x|ⁿ. A held force has the closed form of the law in a time of
+/// its own; a changing one is integrated. The jaw is never lost: at no force it follows the surface.
+///
+/// ```
+/// use palpate::contact::{Layers, Shape, Sides, Specimen};
+/// use palpate::latency::LatencyLaw;
+/// use palpate::simulate::{ContactModel, ForceHistory, Sampling, Separation, simulate_under_force};
+///
+/// let model = ContactModel {
+///     specimen: Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two)?,
+///     law: LatencyLaw::new(5.0, 2e4)?,
+///     layers: Layers::new(8.0)?,
+///     separation: Separation::Unilateral,
+/// };
+/// let squeeze = ForceHistory::new(vec![0.0, 1.0, 61.0], vec![0.0, 10.0, 10.0])?;
+/// let result = simulate_under_force(&squeeze, &model, &Sampling::Times(vec![1.0, 61.0]))?;
+/// assert!((result.contact_displacement[0] - 5.882_987_117_3e-3).abs() < 1e-12); // m, when 10 N are reached
+/// assert!((result.contact_displacement[1] - 7.453_005_345_3e-3).abs() < 1e-12); // m, after a minute of creep
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// Right at first touch of a ball its displacement begins like √t: `strain_rate` is infinite at that one sample.
+///
+/// # Errors
+/// [`SimulateError::Force`] for a force that no displacement of the body carries, [`SimulateError::Tension`] for one that would need
+/// glue; otherwise as for [`simulate`].
+pub fn simulate_under_force(
+    history: &ForceHistory,
+    model: &ContactModel,
+    sampling: &Sampling,
+) -> Result<Trajectory, SimulateError> {
+    follow(Course::Force(history), model, sampling)
+}
+
+fn follow(course: Course<'_>, model: &ContactModel, sampling: &Sampling) -> Result<Trajectory, SimulateError> {
+    let mut result = Trajectory::with_times(sample_times(course, sampling)?);
+    let (last, mut next) = (course.end(), 0);
+    let (events, work) = walk(course, model, |stretch| {
         let inside = |time: &f64| *time < stretch.end || stretch.end == last;
         let until = next + result.time[next..].partition_point(inside);
         result.append(stretch, model, until);
@@ -143,7 +200,8 @@ pub fn simulate(motion: &Motion, model: &ContactModel, sampling: &Sampling) -> R
     })?;
     result.events = events;
     result.work = work;
-    match result.force.iter().position(|force| !force.is_finite()) {
+    let sound = |index: usize| result.force[index].is_finite() && result.contact_displacement[index].is_finite();
+    match (0..result.len()).find(|index| !sound(*index)) {
         Some(index) => Err(SimulateError::OutOfRange {
             time: result.time[index],
         }),
@@ -158,10 +216,10 @@ pub fn simulate(motion: &Motion, model: &ContactModel, sampling: &Sampling) -> R
 /// # Errors
 /// As for [`simulate`].
 pub fn simulate_force(motion: &Motion, model: &ContactModel, times: &[f64]) -> Result<Vec<f64>, SimulateError> {
-    check_times(motion, times)?;
+    check_times(Course::Motion(motion), times)?;
     let (last, specimen) = (motion.end(), &model.specimen);
     let mut force: Vec<f64> = Vec::with_capacity(times.len());
-    walk(motion, model, |stretch| {
+    walk(Course::Motion(motion), model, |stretch| {
         let next = force.len();
         let inside = |time: &f64| *time < stretch.end || stretch.end == last;
         let times = &times[next..next + times[next..].partition_point(inside)];
@@ -180,6 +238,9 @@ pub fn simulate_force(motion: &Motion, model: &ContactModel, times: &[f64]) -> R
                     }
                 }
             }
+            StretchState::Forced(forced) => {
+                force.extend(times.iter().map(|time| forced.force_at(time - stretch.start)));
+            }
             StretchState::Free { .. } => force.resize(next + times.len(), 0.0),
         }
         Ok(())
@@ -190,8 +251,8 @@ pub fn simulate_force(motion: &Motion, model: &ContactModel, times: &[f64]) -> R
     }
 }
 
-/// The sample times of a motion: the grid of a rate together with the knots, or the given times once checked.
-pub(super) fn sample_times(motion: &Motion, sampling: &Sampling) -> Result<Vec<f64>, SimulateError> {
+/// The sample times of a course: the grid of a rate together with the knots, or the given times once checked.
+pub(super) fn sample_times(motion: Course<'_>, sampling: &Sampling) -> Result<Vec<f64>, SimulateError> {
     match sampling {
         Sampling::Rate(rate) => {
             if !(rate.is_finite() && *rate > 0.0) {
@@ -213,8 +274,8 @@ pub(super) fn sample_times(motion: &Motion, sampling: &Sampling) -> Result<Vec<f
     }
 }
 
-/// Checks that times rise and lie inside the motion.
-fn check_times(motion: &Motion, times: &[f64]) -> Result<(), SimulateError> {
+/// Checks that times rise and lie inside the course.
+fn check_times(motion: Course<'_>, times: &[f64]) -> Result<(), SimulateError> {
     let (from, until) = (motion.start(), motion.end());
     let misplaced = |(index, &time): (usize, &f64)| {
         let rising = index == 0 || times[index - 1] <= time;
@@ -232,14 +293,17 @@ fn check_times(motion: &Motion, times: &[f64]) -> Result<(), SimulateError> {
 }
 
 /// The times i/rate from the start, with every knot in between; a grid time a rounding error away from a knot is that knot.
-fn grid_with_knots(motion: &Motion, rate: f64, count: usize) -> Vec<f64> {
+fn grid_with_knots(motion: Course<'_>, rate: f64, count: usize) -> Vec<f64> {
     let (knots, from, close) = (motion.times(), motion.start(), 1e-9 / rate);
     let mut times = Vec::with_capacity(count + knots.len() + 1);
     let mut next = 0;
     for &knot in knots {
         let until = (((knot - close - from) * rate).ceil().max(0.0) as usize).max(next);
         times.extend((next..until).map(|i| from + i as f64 / rate));
-        times.push(knot);
+        // A step of a force has two knots at one time.
+        if times.last() != Some(&knot) {
+            times.push(knot);
+        }
         next = (((knot + close - from) * rate).floor() as usize + 1).max(until);
     }
     times

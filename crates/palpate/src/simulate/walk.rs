@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ContactModel, Motion, Separation, SimulateError, Work};
-use crate::contact::{Element, FreeSurface};
+use super::{ContactModel, Course, ForceHistory, Motion, Separation, SimulateError, Work};
+use crate::contact::{Body, Element, Forced, FreeSurface};
 
 /// A contact that was lost or regained.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -26,25 +26,30 @@ pub enum ContactEventKind {
     Regained,
 }
 
-/// A stretch of time over which the jaw moves at constant speed and the contact does not change its state.
+/// A stretch of time over which the jaw moves at constant speed, or its force changes at a constant rate, and the contact does not change
+/// its state.
 pub(super) struct Stretch {
     pub(super) start: f64,
     pub(super) end: f64,
     /// Share of one contact at `start`, m.
     pub(super) contact_from: f64,
-    /// Speed of one contact's share, m/s.
+    /// Speed of one contact's share, m/s; of a force, at the start.
     pub(super) contact_speed: f64,
     pub(super) state: StretchState,
 }
 
 pub(super) enum StretchState {
     Touching(Element),
+    Forced(Forced),
     Free { surface: FreeSurface, since: f64 },
 }
 
 impl Stretch {
     /// One contact's share of the jaw's travel at `time`, m.
     pub(super) fn jaw_at(&self, time: f64) -> f64 {
+        if let StretchState::Forced(forced) = &self.state {
+            return forced.at(time - self.start).displacement;
+        }
         if self.contact_speed == 0.0 {
             return self.contact_from;
         }
@@ -58,8 +63,20 @@ enum Contact {
     Free { surface: FreeSurface, since: f64 },
 }
 
-/// Walks through `motion`, handing every stretch to `visit` in order, and returns the events and the work.
+/// Walks through a motion or a force history, handing every stretch to `visit` in order, and returns the events and the work.
 pub(super) fn walk(
+    course: Course<'_>,
+    model: &ContactModel,
+    visit: impl FnMut(&Stretch) -> Result<(), SimulateError>,
+) -> Result<(Vec<ContactEvent>, Work), SimulateError> {
+    match course {
+        Course::Motion(motion) => travel(motion, model, visit),
+        Course::Force(history) => Ok((Vec::new(), press(history, model, visit)?)),
+    }
+}
+
+/// Walks through `motion`, handing every stretch to `visit` in order, and returns the events and the work.
+fn travel(
     motion: &Motion,
     model: &ContactModel,
     mut visit: impl FnMut(&Stretch) -> Result<(), SimulateError>,
@@ -103,6 +120,56 @@ pub(super) fn walk(
     }
     work.events = events.len() as u64;
     Ok((events, work))
+}
+
+/// Walks through a force history. The jaw keeps in touch: at no force it follows the surface.
+fn press(
+    history: &ForceHistory,
+    model: &ContactModel,
+    mut visit: impl FnMut(&Stretch) -> Result<(), SimulateError>,
+) -> Result<Work, SimulateError> {
+    let bonded = model.separation == Separation::Bonded;
+    let pulls = bonded && model.specimen.has_constant_section();
+    if let Some(index) = history.forces().iter().position(|force| *force < 0.0 && !pulls) {
+        return Err(SimulateError::Tension {
+            time: history.times()[index],
+            force: history.forces()[index],
+            bonded,
+        });
+    }
+    let body = Body {
+        specimen: model.specimen,
+        law: model.law,
+        layers: model.layers,
+        bonded,
+    };
+    let (mut work, mut behind) = (Work::default(), 0.0);
+    for (times, forces) in history.times().windows(2).zip(history.forces().windows(2)) {
+        let (start, duration) = (times[0], times[1] - times[0]);
+        if duration == 0.0 {
+            continue;
+        }
+        let forced = Forced::solve(body, (forces[0], forces[1]), behind, duration, &mut work).map_err(|too_much| {
+            let share = too_much.elapsed / duration;
+            SimulateError::Force {
+                time: start + too_much.elapsed,
+                force: forces[0] + (forces[1] - forces[0]) * share,
+            }
+        })?;
+        let from = forced.at(0.0);
+        behind = forced.behind_at(duration);
+        if !behind.is_finite() {
+            return Err(SimulateError::OutOfRange { time: times[1] });
+        }
+        visit(&Stretch {
+            start,
+            end: times[1],
+            contact_from: from.displacement,
+            contact_speed: from.speed,
+            state: StretchState::Forced(forced),
+        })?;
+    }
+    Ok(work)
 }
 
 fn check_displacements(motion: &Motion, model: &ContactModel) -> Result<(), SimulateError> {
@@ -149,6 +216,9 @@ fn after(
             surface: *surface,
             since: *since,
         },
+        (StretchState::Forced(forced), _) => Contact::Touching {
+            excess: forced.at(stretch.end - stretch.start).excess,
+        },
         // The surface is stress-free when the jaw arrives: ε₁ = 0.
         (StretchState::Free { .. }, Some(event)) => Contact::Touching {
             excess: -event.contact_displacement / depth,
@@ -164,6 +234,7 @@ fn next_event(stretch: &Stretch, model: &ContactModel) -> Option<ContactEvent> {
     match &stretch.state {
         StretchState::Touching(element) => loss(stretch, element, model),
         StretchState::Free { surface, since } => regain(stretch, surface, *since, model),
+        StretchState::Forced(_) => None,
     }
 }
 

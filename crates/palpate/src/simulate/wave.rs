@@ -2,7 +2,7 @@
 
 use super::trajectory::sample_times;
 use super::walk::{Stretch, StretchState, walk};
-use super::{ContactModel, Motion, Sampling, SimulateError, Work};
+use super::{ContactModel, Course, ForceHistory, Motion, Sampling, SimulateError, Work};
 use crate::ode::Dop853;
 
 /// Tolerance of the node displacements, relative to the largest contact displacement of the motion.
@@ -30,19 +30,35 @@ pub struct StrainWave {
 /// # Errors
 /// [`SimulateError::FractionalLayers`] unless the number of layers is whole; otherwise as for `simulate`.
 pub fn strain_wave(motion: &Motion, model: &ContactModel, sampling: &Sampling) -> Result<StrainWave, SimulateError> {
+    wave_of(Course::Motion(motion), model, sampling)
+}
+
+/// The same under a force: the first layer is the one that [`simulate_under_force`](super::simulate_under_force) reports.
+///
+/// # Errors
+/// [`SimulateError::FractionalLayers`] unless the number of layers is whole; otherwise as for `simulate_under_force`.
+pub fn strain_wave_under_force(
+    history: &ForceHistory,
+    model: &ContactModel,
+    sampling: &Sampling,
+) -> Result<StrainWave, SimulateError> {
+    wave_of(Course::Force(history), model, sampling)
+}
+
+fn wave_of(course: Course<'_>, model: &ContactModel, sampling: &Sampling) -> Result<StrainWave, SimulateError> {
     let layers = model.layers.whole().ok_or(SimulateError::FractionalLayers {
         found: model.layers.count(),
     })?;
-    let time = sample_times(motion, sampling)?;
-    let mut cascade = Cascade::new(model, layers, motion);
+    let time = sample_times(course, sampling)?;
+    let mut cascade = Cascade::new(model, layers, course);
     let mut wave = StrainWave {
         strain: vec![Vec::with_capacity(time.len()); layers],
         displacement: vec![Vec::with_capacity(time.len()); layers],
         time,
         work: Work::default(),
     };
-    let last = motion.end();
-    let (_, walked) = walk(motion, model, |stretch| {
+    let last = course.end();
+    let (_, walked) = walk(course, model, |stretch| {
         cascade.pass(stretch, stretch.end == last, &mut wave);
         Ok(())
     })?;
@@ -75,11 +91,17 @@ struct Cascade<'a> {
 const STIFFEST: f64 = 1e5;
 
 impl<'a> Cascade<'a> {
-    fn new(model: &'a ContactModel, layers: usize, motion: &Motion) -> Self {
-        let travel = motion.displacements().iter().fold(0.0, |most: f64, d| most.max(d.abs()));
+    fn new(model: &'a ContactModel, layers: usize, course: Course<'_>) -> Self {
+        let reach = match course {
+            Course::Motion(motion) => {
+                let travel = motion.displacements().iter().fold(0.0, |most: f64, d| most.max(d.abs()));
+                model.specimen.contact_displacement(travel)
+            }
+            Course::Force(_) => model.specimen.depth(),
+        };
         let (n, v) = (model.law.exponent(), model.law.rate_coefficient());
         let rest = if n < 1.0 {
-            (STIFFEST / (v * (motion.end() - motion.start()))).powf(1.0 / (n - 1.0)).clamp(1e-12, 1e-5)
+            (STIFFEST / (v * (course.end() - course.start()))).powf(1.0 / (n - 1.0)).clamp(1e-12, 1e-5)
         } else {
             0.0
         };
@@ -87,7 +109,7 @@ impl<'a> Cascade<'a> {
             rest,
             model,
             thickness: model.layers.thickness(model.specimen.depth()),
-            tolerance: TOLERANCE * model.specimen.contact_displacement(travel).max(f64::MIN_POSITIVE),
+            tolerance: TOLERANCE * reach.max(f64::MIN_POSITIVE),
             nodes: vec![0.0; layers - 1],
         }
     }
@@ -100,7 +122,7 @@ impl<'a> Cascade<'a> {
         while solver.time() < duration {
             let step = solver.step(duration, |elapsed, nodes| {
                 let surface = surface(stretch, elapsed, nodes);
-                self.speeds(matches!(stretch.state, StretchState::Touching(_)), surface, nodes)
+                self.speeds(!matches!(stretch.state, StretchState::Free { .. }), surface, nodes)
             });
             while let Some(&time) = wave.time.get(wave.strain[0].len()) {
                 let elapsed = time - stretch.start;
@@ -155,7 +177,7 @@ impl<'a> Cascade<'a> {
 /// Displacement of the surface: the jaw's share while it touches, the first inner node once it is free of stress.
 fn surface(stretch: &Stretch, elapsed: f64, nodes: &[f64]) -> f64 {
     match stretch.state {
-        StretchState::Touching(_) => stretch.jaw_at(stretch.start + elapsed),
+        StretchState::Touching(_) | StretchState::Forced(_) => stretch.jaw_at(stretch.start + elapsed),
         StretchState::Free { .. } => nodes.first().copied().unwrap_or(0.0),
     }
 }

@@ -1,0 +1,253 @@
+//! The contact layer through one straight piece of a force history.
+//!
+//! The force fixes the contact displacement u by E ε A(u) = F with ε = (u − u₂)/ℓ, and the node behind the layer follows by
+//! u̇₂ = ℓ v sgn(x)|x|ⁿ, x = ε − u/depth. With S = E A the excess strain obeys
+//!
+//! ẋ = K [Ḟ (m − 1)/(depth Q) − v sgn(x)|x|ⁿ],  Q = S′ε + S/depth,  K = (S′ε depth + S)/(S′ε depth + m S).
+//!
+//! **While the force is held** (creep, recovery) this is the latency law in a time s of its own, ṡ = K with K between 1/m and 1: x(s) is
+//! the closed form (4), (5) however stiff the law, and s is nearly straight, so that a few dozen steps do for any time. Of no force K is
+//! 1/m exactly, the recovery of a free surface.
+//!
+//! **While it changes** u₂ is integrated as it stands: it stays smooth at first touch, where the displacement of a ball begins like √t.
+
+use super::balance::{Layer, carried_at};
+use super::{Layers, Specimen, Work};
+use crate::latency::LatencyLaw;
+use crate::ode::{Dop853, Step};
+
+/// Tolerance of s, relative to the time it stands for, and of u₂, relative to the depth.
+const TOLERANCE: f64 = 1e-13;
+
+/// The body and its law, as a force meets them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Body {
+    pub(crate) specimen: Specimen,
+    pub(crate) law: LatencyLaw,
+    pub(crate) layers: Layers,
+    pub(crate) bonded: bool,
+}
+
+/// State of the contact under a force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Carried {
+    /// Contact displacement u, m.
+    pub(crate) displacement: f64,
+    /// Excess strain x.
+    pub(crate) excess: f64,
+    /// ẋ, 1/s.
+    pub(crate) excess_rate: f64,
+    /// u̇, m/s.
+    pub(crate) speed: f64,
+}
+
+/// One straight piece of a force history, from t = 0 at its start.
+#[derive(Debug)]
+pub(crate) struct Forced {
+    body: Body,
+    /// Force at the start (N) and its slope (N/s).
+    from: f64,
+    slope: f64,
+    path: Path,
+}
+
+#[derive(Debug)]
+enum Path {
+    /// Excess strain at the start, and s over time.
+    Held { initial: f64, steps: Vec<Step<[f64; 1]>> },
+    /// u₂ over time.
+    Changing(Vec<Step<[f64; 1]>>),
+}
+
+/// A force that no displacement carries: how long after the start of the piece, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TooMuch {
+    pub(crate) elapsed: f64,
+}
+
+impl Body {
+    fn thickness(&self) -> f64 {
+        self.layers.thickness(self.specimen.depth())
+    }
+
+    /// The state under `force` (N) with the node behind the layer at `behind` (m).
+    fn carry(&self, force: f64, behind: f64) -> Option<(f64, f64)> {
+        let thickness = self.thickness();
+        let u = carried_at(&self.specimen, Layer::Behind { behind, thickness }, force, self.bonded)?;
+        Some((u, (u - behind) / thickness - u / self.specimen.depth()))
+    }
+
+    /// The share K of the law's rate that the excess strain keeps under a force, and Q (N/m).
+    fn share(&self, u: f64, excess: f64) -> (f64, f64) {
+        let depth = self.specimen.depth();
+        let (stiffness, growth) = self.specimen.stiffness(u);
+        let bend = growth * (excess + u / depth) * depth;
+        let whole = bend + self.layers.count() * stiffness;
+        // At first touch of a ball there is no area yet: the limit along the way there, with all of u on the contact layer.
+        let share = if whole > 0.0 { (bend + stiffness) / whole } else { 1.0 / self.layers.count() };
+        (share, (bend + stiffness) / depth)
+    }
+}
+
+impl Forced {
+    /// Solves one piece of `duration` (s) under a force that goes straight from `from` to `to` (N), the node behind the contact
+    /// layer at `behind` (m).
+    pub(crate) fn solve(
+        body: Body,
+        (from, to): (f64, f64),
+        behind: f64,
+        duration: f64,
+        work: &mut Work,
+    ) -> Result<Self, TooMuch> {
+        let (_, initial) = body.carry(from, behind).ok_or(TooMuch { elapsed: 0.0 })?;
+        let slope = if duration > 0.0 { (to - from) / duration } else { 0.0 };
+        let path = if slope == 0.0 {
+            Self::held(body, from, initial, duration, work)?
+        } else {
+            Self::changing(body, (from, slope), behind, duration, work)?
+        };
+        Ok(Self {
+            body,
+            from,
+            slope,
+            path,
+        })
+    }
+
+    fn held(body: Body, force: f64, initial: f64, duration: f64, work: &mut Work) -> Result<Path, TooMuch> {
+        let mut steps: Vec<Step<[f64; 1]>> = Vec::new();
+        work.closed_forms += 1;
+        if initial != 0.0 && duration > 0.0 {
+            let carried = |s: f64| {
+                let excess = body.law.excess_after(initial, s.max(0.0));
+                let u = carried_at(&body.specimen, Layer::Excess(excess), force, body.bonded);
+                (u, excess)
+            };
+            let relative_rate = body.law.relative_rate(initial);
+            // The first step sees the excess fall by a part of itself.
+            let first = duration.min(0.1 / relative_rate);
+            let mut solver = Dop853::new([0.0], TOLERANCE * first, first);
+            while solver.time() < duration {
+                // s matters as far as it moves x: relative to itself once it is long.
+                let reached = solver.state()[0].max(1.0 / relative_rate).min(duration);
+                solver.set_tolerance(TOLERANCE * reached);
+                let step = solver.step(duration, |_, &[s]| {
+                    let (u, excess) = carried(s);
+                    // Beyond what the body carries the step is thrown away below.
+                    [body.share(u.unwrap_or(body.specimen.depth()), excess).0]
+                });
+                if carried(solver.state()[0]).0.is_none() {
+                    let start = steps.last().map_or(0.0, Step::end);
+                    let good = |elapsed: f64| carried(step.at(elapsed)[0]).0.is_some();
+                    return Err(TooMuch {
+                        elapsed: last_good(start, solver.time(), good),
+                    });
+                }
+                steps.push(step);
+            }
+            work.steps += solver.steps;
+            work.evaluations += solver.evaluations;
+        }
+        Ok(Path::Held { initial, steps })
+    }
+
+    fn changing(
+        body: Body,
+        (from, slope): (f64, f64),
+        behind: f64,
+        duration: f64,
+        work: &mut Work,
+    ) -> Result<Path, TooMuch> {
+        work.ramps += 1;
+        let (depth, thickness) = (body.specimen.depth(), body.thickness());
+        let mut solver = Dop853::new([behind], TOLERANCE * depth, duration / 64.0);
+        let mut steps: Vec<Step<[f64; 1]>> = Vec::new();
+        let carried = |elapsed: f64, behind: f64| body.carry(from + slope * elapsed, behind);
+        while solver.time() < duration {
+            let step = solver.step(duration, |elapsed, &[behind]| {
+                // Beyond what the body carries the step is thrown away below.
+                let excess = carried(elapsed, behind).map_or(0.0, |(_, excess)| excess);
+                [-thickness * body.law.rate(excess)]
+            });
+            if carried(solver.time(), solver.state()[0]).is_none() {
+                let good = |elapsed: f64| carried(elapsed, step.at(elapsed)[0]).is_some();
+                let start = steps.last().map_or(0.0, Step::end);
+                return Err(TooMuch {
+                    elapsed: last_good(start, solver.time(), good),
+                });
+            }
+            steps.push(step);
+        }
+        work.steps += solver.steps;
+        work.evaluations += solver.evaluations;
+        Ok(Path::Changing(steps))
+    }
+
+    /// Force a time `elapsed` (s) after the start of the piece, N.
+    pub(crate) fn force_at(&self, elapsed: f64) -> f64 {
+        self.from + self.slope * elapsed
+    }
+
+    /// The contact a time `elapsed` (s) after the start of the piece; NaN where nothing carries the force.
+    pub(crate) fn at(&self, elapsed: f64) -> Carried {
+        let (body, force) = (&self.body, self.force_at(elapsed));
+        let (displacement, excess) = match &self.path {
+            Path::Held { initial, steps } => {
+                let s = dense(steps, elapsed).unwrap_or(0.0).max(0.0);
+                let excess = body.law.excess_after(*initial, s);
+                let u = carried_at(&body.specimen, Layer::Excess(excess), force, body.bonded);
+                (u.unwrap_or(f64::NAN), excess)
+            }
+            Path::Changing(steps) => {
+                let behind = dense(steps, elapsed).unwrap_or(f64::NAN);
+                body.carry(force, behind).unwrap_or((f64::NAN, f64::NAN))
+            }
+        };
+        let (share, carrying) = body.share(displacement, excess);
+        let depth = body.specimen.depth();
+        let by_law = body.law.rate(excess);
+        let by_force = if self.slope == 0.0 { 0.0 } else { self.slope / carrying };
+        let excess_rate = share * (by_force * (body.layers.count() - 1.0) / depth + by_law);
+        let (stiffness, _) = body.specimen.stiffness(displacement);
+        let yielding = if stiffness == 0.0 { -depth } else { -stiffness / carrying };
+        Carried {
+            displacement,
+            excess,
+            excess_rate,
+            speed: by_force + yielding * excess_rate,
+        }
+    }
+
+    /// Displacement of the node behind the contact layer a time `elapsed` (s) after the start of the piece, m.
+    pub(crate) fn behind_at(&self, elapsed: f64) -> f64 {
+        match &self.path {
+            Path::Changing(steps) => dense(steps, elapsed).unwrap_or(f64::NAN),
+            Path::Held { .. } => {
+                let state = self.at(elapsed);
+                let strain = state.excess + state.displacement / self.body.specimen.depth();
+                state.displacement - self.body.thickness() * strain
+            }
+        }
+    }
+}
+
+/// The dense output at `elapsed`; `None` of no steps.
+fn dense(steps: &[Step<[f64; 1]>], elapsed: f64) -> Option<f64> {
+    let index = steps.partition_point(|step| step.end() < elapsed).min(steps.len().checked_sub(1)?);
+    Some(steps[index].at(elapsed)[0])
+}
+
+/// The last moment at which `good` holds, by bisection to the last bit.
+fn last_good(mut good_at: f64, mut bad_at: f64, good: impl Fn(f64) -> bool) -> f64 {
+    loop {
+        let middle = 0.5 * (good_at + bad_at);
+        if middle <= good_at || middle >= bad_at {
+            return good_at;
+        }
+        if good(middle) {
+            good_at = middle;
+        } else {
+            bad_at = middle;
+        }
+    }
+}

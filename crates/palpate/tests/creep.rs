@@ -1,0 +1,155 @@
+//! The contact under a force: golden numbers, recovery, limits.
+
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
+use palpate::contact::{Layers, Shape, Sides, Specimen};
+use palpate::latency::LatencyLaw;
+use palpate::simulate::{
+    ContactModel, ForceHistory, Motion, Sampling, Separation, SimulateError, Trajectory, simulate,
+    simulate_under_force, strain_wave_under_force,
+};
+
+fn ball(exponent: f64, rate_coefficient: f64, layers: f64) -> ContactModel {
+    ContactModel {
+        specimen: Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two).unwrap(),
+        law: LatencyLaw::new(exponent, rate_coefficient).unwrap(),
+        layers: Layers::new(layers).unwrap(),
+        separation: Separation::Unilateral,
+    }
+}
+
+fn history(knots: &[(f64, f64)]) -> ForceHistory {
+    let (times, forces) = knots.iter().copied().unzip();
+    ForceHistory::new(times, forces).unwrap()
+}
+
+fn under(knots: &[(f64, f64)], model: &ContactModel, times: &[f64]) -> Trajectory {
+    simulate_under_force(&history(knots), model, &Sampling::Times(times.to_vec())).unwrap()
+}
+
+#[test]
+fn creep_of_the_papers_ball() {
+    let squeeze = [(0.0, 0.0), (1.0, 10.0), (1e9, 10.0)];
+    let result = under(&squeeze, &ball(5.0, 2e4, 8.0), &[1.0, 5.0, 11.0, 61.0, 1e9]);
+    let golden = [5.882_987_117_3e-3, 6.975_093_541_1e-3, 7.165_640_154_1e-3, 7.453_005_345_3e-3];
+    for (found, expected) in result.contact_displacement.iter().zip(golden) {
+        assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+    }
+    // E (u/r) A(u) = 10 N
+    let excess = result.excess_strain[4];
+    assert!((result.contact_displacement[4] - 8.011_710_421_1e-3).abs() < 0.035 * excess, "{excess}");
+    assert!(excess > 0.0 && excess < 2e-3);
+}
+
+#[test]
+fn of_no_force_a_dent_recovers_as_a_free_surface_does() {
+    let model = ball(5.0, 2e4, 8.0);
+    let result =
+        under(&[(0.0, 0.0), (1.0, 10.0), (61.0, 10.0), (61.0, 0.0), (1061.0, 0.0)], &model, &[61.0, 161.0, 1061.0]);
+    let dent = result.contact_displacement[0];
+    assert!(dent > 5e-3 && result.force[0] == 0.0 && result.strain[0].abs() < 1e-15);
+    let recovery = LatencyLaw::new(5.0, 2e4 / 8.0).unwrap();
+    for (elapsed, found) in [(100.0, result.contact_displacement[1]), (1000.0, result.contact_displacement[2])] {
+        let expected = 0.035 * recovery.excess_after(dent / 0.035, elapsed);
+        assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+    }
+}
+
+/// The force that a motion brings forth, imposed, brings back the motion.
+#[test]
+fn force_and_displacement_are_two_ways_to_say_the_same() {
+    let prism = Shape::Prism {
+        area: 1e-3,
+        length: 0.07,
+    };
+    for shape in [Shape::Ball { radius: 0.035 }, prism] {
+        for (exponent, rate) in [(1.0, 2.0), (2.0, 50.0), (5.0, 2e4)] {
+            let model = ContactModel {
+                specimen: Specimen::new(shape, 28e3, Sides::Two).unwrap(),
+                ..ball(exponent, rate, 8.5)
+            };
+            // Fine enough that straight pieces of force stand for the bent one.
+            let motion = Motion::new(vec![0.0, 2.0, 6.0], vec![0.0, 0.02, 0.02]).unwrap();
+            let times: Vec<f64> = (0..=12_000).map(|i| 5e-4 * f64::from(i)).collect();
+            let moved = simulate(&motion, &model, &Sampling::Times(times.clone())).unwrap();
+            let force = ForceHistory::new(times.clone(), moved.force.clone()).unwrap();
+            let pressed = simulate_under_force(&force, &model, &Sampling::Times(times)).unwrap();
+            let far = (1..12_001).map(|i| (pressed.displacement[i] - moved.displacement[i]).abs()).fold(0.0, f64::max);
+            assert!(far < 2e-7, "{shape:?} n = {exponent}: {far:e} m");
+        }
+    }
+}
+
+#[test]
+fn rates_are_the_slopes_of_what_they_belong_to() {
+    let model = ball(3.0, 500.0, 8.0);
+    let knots = [(0.0, 0.0), (1.0, 8.0), (4.0, 8.0), (6.0, 2.0), (9.0, 2.0)];
+    let h = 1e-5;
+    for t in [0.3, 0.9, 1.5, 3.0, 4.5, 5.9, 7.0] {
+        let result = under(&knots, &model, &[t - h, t, t + h]);
+        let slope = (result.strain[2] - result.strain[0]) / (2.0 * h);
+        assert!((result.strain_rate[1] / slope - 1.0).abs() < 1e-5, "t = {t}: {} {slope}", result.strain_rate[1]);
+    }
+}
+
+#[test]
+fn one_layer_is_elastic_under_a_force() {
+    let result = under(&[(0.0, 5.0), (10.0, 5.0)], &ball(5.0, 2e4, 1.0), &[0.0, 10.0]);
+    assert_eq!(result.contact_displacement[0], result.contact_displacement[1]);
+    let u = result.contact_displacement[0];
+    assert!((ball(5.0, 2e4, 1.0).specimen.force(u / 0.035, u) - 5.0).abs() < 1e-12);
+}
+
+#[test]
+fn stiff_and_lazy_laws_creep_to_the_same_place() {
+    // E (u/r) A(u) = 10 N whatever the law, once it is over.
+    for (exponent, rate) in [(0.5, 5.0), (1.0, 1e-2), (1.0, 1e9), (1.5, 1e3), (3.0, 1e12)] {
+        let result = under(&[(0.0, 10.0), (1e6, 10.0)], &ball(exponent, rate, 8.0), &[0.0, 1e6]);
+        assert!((result.contact_displacement[1] - 8.011_710_421_1e-3).abs() < 1e-8, "n = {exponent}");
+        assert!(result.work.steps < 400, "n = {exponent}, v = {rate}: {:?}", result.work);
+    }
+}
+
+#[test]
+fn the_contact_layer_of_the_wave_carries_the_force() {
+    let model = ball(5.0, 2e4, 8.0);
+    let squeeze = history(&[(0.0, 0.0), (1.0, 10.0), (11.0, 10.0), (11.0, 4.0), (20.0, 4.0)]);
+    let times = Sampling::Times((1..=40).map(|i| 0.5 * f64::from(i)).collect());
+    let wave = strain_wave_under_force(&squeeze, &model, &times).unwrap();
+    let result = simulate_under_force(&squeeze, &model, &times).unwrap();
+    for i in 0..40 {
+        assert!((wave.strain[0][i] - result.strain[i]).abs() < 1e-9, "{i}");
+        assert!((wave.displacement[0][i] - result.contact_displacement[i]).abs() < 1e-12, "{i}");
+    }
+}
+
+#[test]
+fn forces_that_no_indentation_carries_are_refused() {
+    let model = ball(5.0, 2e4, 8.0);
+    let all = Sampling::Rate(10.0);
+    let run = |knots: &[(f64, f64)], model: &ContactModel| simulate_under_force(&history(knots), model, &all);
+    // All of it pressed flat carries E π r² = 107.8 N in the long run, eight times that at once.
+    let Err(SimulateError::Force { time, force }) = run(&[(0.0, 0.0), (100.0, 200.0)], &model) else {
+        panic!("200 N carried");
+    };
+    assert!(time > 50.0 && time < 100.0 && (force - 2.0 * time).abs() < 1e-9, "{time} {force}");
+    assert!(matches!(run(&[(0.0, 1e3), (1.0, 1e3)], &model), Err(SimulateError::Force { time: 0.0, .. })));
+    let pulled = run(&[(0.0, 0.0), (1.0, -1.0)], &model);
+    assert!(matches!(pulled, Err(SimulateError::Tension { bonded: false, .. })));
+    let bonded = ContactModel {
+        separation: Separation::Bonded,
+        ..model
+    };
+    assert!(matches!(run(&[(0.0, 0.0), (1.0, -1.0)], &bonded), Err(SimulateError::Tension { bonded: true, .. })));
+}
+
+#[test]
+fn a_force_held_beyond_what_the_body_carries_for_long_breaks_off_when_it_gives_way() {
+    // 150 N are carried at once, but not by what is left when the layers behind have followed.
+    let result =
+        simulate_under_force(&history(&[(0.0, 150.0), (1e6, 150.0)]), &ball(5.0, 2e4, 8.0), &Sampling::Rate(1e-4));
+    let Err(SimulateError::Force { time, force }) = result else {
+        panic!("{result:?}");
+    };
+    assert!(time > 0.0 && time < 1e6 && force == 150.0, "{time}");
+}
