@@ -5,8 +5,9 @@
 use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactModel, ForceHistory, Motion, Sampling, Separation, SimulateError, Trajectory, simulate,
-    simulate_under_force, strain_wave_under_force,
+    ContactEventKind, ContactModel, ForceHistory, Motion, ProgramStep, ProtocolStep as ProtocolMotion, Sampling,
+    Separation, SimulateError, Trajectory, protocol, simulate, simulate_program, simulate_under_force,
+    strain_wave_of_program, strain_wave_under_force,
 };
 
 fn ball(exponent: f64, rate_coefficient: f64, layers: f64) -> ContactModel {
@@ -152,4 +153,72 @@ fn a_force_held_beyond_what_the_body_carries_for_long_breaks_off_when_it_gives_w
         panic!("{result:?}");
     };
     assert!(time > 0.0 && time < 1e6 && force == 150.0, "{time}");
+}
+
+/// "Squeeze to 10 N at 50 mm/min, hold position 30 s, hold force 30 s, release."
+#[test]
+fn a_mixed_program_switches_when_targets_are_met() {
+    let model = ball(5.0, 2e4, 8.0);
+    let rate = 0.05 / 60.0;
+    let program = [
+        ProgramStep::MoveToForce { force: 10.0, rate },
+        ProgramStep::HoldPosition { duration: 30.0 },
+        ProgramStep::HoldForce { duration: 30.0 },
+        ProgramStep::Press { to: 2.0, rate: 1.0 },
+        ProgramStep::MoveToForce { force: 6.0, rate },
+        ProgramStep::MoveToForce { force: 1.0, rate },
+        ProgramStep::Move { to: 0.0, rate },
+    ];
+    let (result, ends) = simulate_program(&program, &model, &Sampling::Rate(1.0)).unwrap();
+    for (end, expected) in ends.iter().zip([10.0, f64::NAN, f64::NAN, 2.0, 6.0, 1.0, 0.0]) {
+        assert!(expected.is_nan() || (end.force - expected).abs() < 1e-11, "{end:?} {expected}");
+    }
+    assert_eq!(ends[1].displacement, ends[0].displacement);
+    assert!((ends[2].force - ends[1].force).abs() < 1e-12 && ends[2].displacement > ends[1].displacement);
+    assert!(result.events.len() == 1 && result.events[0].kind == ContactEventKind::Lost);
+
+    // Position steps alone are a motion: the first two, done so.
+    let to = ends[0].displacement;
+    let motion = protocol(&[ProtocolMotion { to, rate, hold: 30.0 }]).unwrap();
+    let moved = simulate(&motion, &model, &Sampling::Times(vec![ends[0].time, ends[0].time + 30.0])).unwrap();
+    assert!((moved.force[0] - 10.0).abs() < 1e-10 && (moved.force[1] - ends[1].force).abs() < 1e-10);
+
+    // Samples at the rate, and at the ends of steps; the last of them is the end of the program.
+    assert_eq!(*result.time.last().unwrap(), ends[6].time);
+    for end in &ends {
+        let at = result.time.iter().position(|time| *time == end.time).unwrap();
+        assert!((result.displacement[at] - end.displacement).abs() < 1e-15);
+    }
+    let wave = strain_wave_of_program(&program, &model, &Sampling::Times(result.time.clone())).unwrap();
+    for i in 0..result.len() {
+        assert!(
+            (wave.strain[0][i] - result.strain[i]).abs() < 1e-8,
+            "{i}: {} {}",
+            wave.strain[0][i],
+            result.strain[i]
+        );
+    }
+}
+
+#[test]
+fn programs_that_cannot_be_run_say_which_step() {
+    let model = ball(5.0, 2e4, 8.0);
+    let run = |program: &[ProgramStep]| simulate_program(program, &model, &Sampling::Rate(1.0)).map(|_| ());
+    assert_eq!(run(&[]), Err(SimulateError::EmptyProgram));
+    let squeeze = |force| ProgramStep::MoveToForce { force, rate: 0.01 };
+    let Err(SimulateError::Unreachable { step: 1, most, .. }) = run(&[squeeze(1e4)]) else {
+        panic!("10 kN reached");
+    };
+    assert!(most > 100.0 && most < 1e3, "{most}");
+    let zero = ProgramStep::Press { to: 1.0, rate: 0.0 };
+    assert!(matches!(run(&[squeeze(1.0), zero]), Err(SimulateError::StepNumber { step: 2, .. })));
+    let never = ProgramStep::HoldForce { duration: f64::NAN };
+    assert!(matches!(run(&[never]), Err(SimulateError::StepNumber { step: 1, .. })));
+    let off = [squeeze(5.0), ProgramStep::Move { to: -0.01, rate: 0.1 }, ProgramStep::Press { to: 1.0, rate: 1.0 }];
+    assert!(matches!(run(&off), Err(SimulateError::NoContact { step: 3, .. })));
+    // Moving to a force meets the surface again.
+    assert!(run(&[off[0], off[1], squeeze(1.0)]).is_ok());
+    assert!(matches!(run(&[squeeze(-1.0)]), Err(SimulateError::Tension { .. })));
+    let deep = ProgramStep::Move { to: 0.08, rate: 0.1 };
+    assert!(matches!(run(&[deep]), Err(SimulateError::Displacement { .. })));
 }

@@ -4,7 +4,8 @@
 //! |---|---|
 //! | `motion.rs` | the displacement of the jaw: a protocol's steps, or a measured series; straight between its knots |
 //! | `history.rs` | the force on the contact, straight between its knots |
-//! | `course.rs` | what drives a contact: a motion or a force history |
+//! | `program.rs` | steps in displacement and in force, one after the other |
+//! | `course.rs` | what drives a contact: a motion, a force history or a program |
 //! | `model.rs` | the contact model: specimen, law, layers, and whether the jaw can pull |
 //! | `walk.rs` | goes through a motion piece by piece: in contact, jaw off, in contact again |
 //! | `trajectory.rs` | the series at the asked times |
@@ -14,6 +15,7 @@ mod course;
 mod history;
 mod model;
 mod motion;
+mod program;
 mod trajectory;
 mod walk;
 mod wave;
@@ -22,11 +24,10 @@ pub use crate::contact::Work;
 pub use history::ForceHistory;
 pub use model::{ContactModel, Separation};
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};
-pub use trajectory::{Sampling, Trajectory, simulate, simulate_force, simulate_under_force};
+pub use program::{ProgramStep, StepEnd};
+pub use trajectory::{Sampling, Trajectory, simulate, simulate_force, simulate_program, simulate_under_force};
 pub use walk::{ContactEvent, ContactEventKind};
-pub use wave::{StrainWave, strain_wave, strain_wave_under_force};
-
-use course::Course;
+pub use wave::{StrainWave, strain_wave, strain_wave_of_program, strain_wave_under_force};
 
 use crate::contact::SpecimenError;
 
@@ -63,6 +64,39 @@ pub enum SimulateError {
         force: f64,
         /// Whether body and jaw are bonded.
         bonded: bool,
+    },
+    /// A program without a step.
+    #[error("a program needs one step or more, found none")]
+    EmptyProgram,
+    /// A number that makes no step.
+    #[error("step {step}: {name} must be finite and, but for a target, above 0 {unit}, found {found} {unit}")]
+    StepNumber {
+        /// Number of the step, from 1.
+        step: usize,
+        /// Which number.
+        name: &'static str,
+        /// Its unit.
+        unit: &'static str,
+        /// What was given.
+        found: f64,
+    },
+    /// A force that a moving jaw never meets.
+    #[error("step {step}: the jaw never meets a force of {target} N: it ends at {most} N")]
+    Unreachable {
+        /// Number of the step, from 1.
+        step: usize,
+        /// The force asked for, N.
+        target: f64,
+        /// The force where the body ends, N.
+        most: f64,
+    },
+    /// A force asked for while the jaw is off the body.
+    #[error("step {step}: at t = {time} s the jaw is off the body and can keep no force: move it to a force first")]
+    NoContact {
+        /// Number of the step, from 1.
+        step: usize,
+        /// Time, s.
+        time: f64,
     },
     /// A sample time outside the motion, or before the one before it.
     #[error("sample times must rise from {from} s to {until} s at most, found {found} s at index {index}")]

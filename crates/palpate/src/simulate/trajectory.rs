@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::course::Course;
+use super::program::step_ends;
 use super::walk::{Stretch, StretchState, walk};
-use super::{ContactEvent, ContactModel, Course, ForceHistory, Motion, SimulateError, Work};
+use super::{ContactEvent, ContactModel, ForceHistory, Motion, ProgramStep, SimulateError, StepEnd, Work};
 
 /// When to report.
 #[derive(Debug, Clone, PartialEq)]
@@ -186,6 +188,49 @@ pub fn simulate_under_force(
     sampling: &Sampling,
 ) -> Result<Trajectory, SimulateError> {
     follow(Course::Force(history), model, sampling)
+}
+
+/// Simulates a program of steps in displacement and in force that begins at time 0 with the jaw at first touch of a relaxed body; returns
+/// where each step ended, too.
+///
+/// ```
+/// use palpate::contact::{Layers, Shape, Sides, Specimen};
+/// use palpate::latency::LatencyLaw;
+/// use palpate::simulate::{ContactModel, ProgramStep, Sampling, Separation, simulate_program};
+///
+/// let model = ContactModel {
+///     specimen: Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two)?,
+///     law: LatencyLaw::new(5.0, 2e4)?,
+///     layers: Layers::new(8.0)?,
+///     separation: Separation::Unilateral,
+/// };
+/// // Squeeze to 10 N at 50 mm/min, keep the place for 30 s, keep the force for 30 s, let go.
+/// let program = [
+///     ProgramStep::MoveToForce { force: 10.0, rate: 0.05 / 60.0 },
+///     ProgramStep::HoldPosition { duration: 30.0 },
+///     ProgramStep::HoldForce { duration: 30.0 },
+///     ProgramStep::Move { to: 0.0, rate: 0.05 / 60.0 },
+/// ];
+/// let (result, ends) = simulate_program(&program, &model, &Sampling::Rate(10.0))?;
+/// assert!((ends[0].force - 10.0).abs() < 1e-12);
+/// assert!(ends[1].force < ends[0].force && ends[1].displacement == ends[0].displacement);
+/// assert!(ends[2].force == ends[1].force && ends[2].displacement > ends[1].displacement);
+/// assert_eq!(*result.force.last().unwrap(), 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`SimulateError`] for a step with wrong numbers, a force that the jaw never meets or that the body does not carry, force control while the
+/// jaw is off the body; otherwise as for [`simulate`].
+pub fn simulate_program(
+    program: &[ProgramStep],
+    model: &ContactModel,
+    sampling: &Sampling,
+) -> Result<(Trajectory, Vec<StepEnd>), SimulateError> {
+    // Once to learn when steps end, since samples are asked for by time: it costs next to nothing.
+    let ends = step_ends(program, model)?;
+    let times: Vec<f64> = [0.0].into_iter().chain(ends.iter().map(|end| end.time)).collect();
+    Ok((follow(Course::Program(program, &times), model, sampling)?, ends))
 }
 
 fn follow(course: Course<'_>, model: &ContactModel, sampling: &Sampling) -> Result<Trajectory, SimulateError> {

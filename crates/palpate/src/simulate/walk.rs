@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ContactModel, Course, ForceHistory, Motion, Separation, SimulateError, Work};
+use super::course::Course;
+use super::{ContactModel, ForceHistory, Motion, Separation, SimulateError, Work};
 use crate::contact::{Body, Element, Forced, FreeSurface};
 
 /// A contact that was lost or regained.
@@ -63,113 +64,169 @@ enum Contact {
     Free { surface: FreeSurface, since: f64 },
 }
 
-/// Walks through a motion or a force history, handing every stretch to `visit` in order, and returns the events and the work.
+/// Walks through what drives the contact, handing every stretch to `visit` in order, and returns the events and the work.
 pub(super) fn walk(
     course: Course<'_>,
     model: &ContactModel,
     visit: impl FnMut(&Stretch) -> Result<(), SimulateError>,
 ) -> Result<(Vec<ContactEvent>, Work), SimulateError> {
+    let mut walker = Walker::new(model, visit);
     match course {
-        Course::Motion(motion) => travel(motion, model, visit),
-        Course::Force(history) => Ok((Vec::new(), press(history, model, visit)?)),
+        Course::Motion(motion) => walker.travel(motion)?,
+        Course::Force(history) => walker.press(history)?,
+        Course::Program(program, _) => {
+            walker.run(program)?;
+        }
     }
+    walker.work.events = walker.events.len() as u64;
+    Ok((walker.events, walker.work))
 }
 
-/// Walks through `motion`, handing every stretch to `visit` in order, and returns the events and the work.
-fn travel(
-    motion: &Motion,
-    model: &ContactModel,
-    mut visit: impl FnMut(&Stretch) -> Result<(), SimulateError>,
-) -> Result<(Vec<ContactEvent>, Work), SimulateError> {
-    check_displacements(motion, model)?;
-    let (mut work, mut events) = (Work::default(), Vec::new());
-    let mut contact = Contact::Touching { excess: 0.0 };
-    let knots = motion.times().windows(2).zip(motion.displacements().windows(2));
-    for (times, displacements) in knots {
-        let (mut start, end) = (times[0], times[1]);
-        let (from, to) = (
-            model.specimen.contact_displacement(displacements[0]),
-            model.specimen.contact_displacement(displacements[1]),
-        );
-        let speed = (to - from) / (end - start);
+/// Goes from one stretch to the next.
+pub(super) struct Walker<'a, V> {
+    pub(super) model: &'a ContactModel,
+    visit: V,
+    contact: Contact,
+    events: Vec<ContactEvent>,
+    work: Work,
+}
+
+impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
+    pub(super) fn new(model: &'a ContactModel, visit: V) -> Self {
+        Self {
+            model,
+            visit,
+            contact: Contact::Touching { excess: 0.0 },
+            events: Vec::new(),
+            work: Work::default(),
+        }
+    }
+
+    fn travel(&mut self, motion: &Motion) -> Result<(), SimulateError> {
+        check_displacements(motion, self.model)?;
+        let share = |displacement: f64| self.model.specimen.contact_displacement(displacement);
+        let knots = motion.times().windows(2).zip(motion.displacements().windows(2));
+        for (times, displacements) in knots {
+            let ends = (share(displacements[0]), share(displacements[1]));
+            self.line((times[0], times[1]), ends, None)?;
+        }
+        Ok(())
+    }
+
+    /// Walks along a straight piece of motion of one contact's share of the jaw, or until the force reaches `target` (N) from the
+    /// side on which it is; returns when that was, if it was.
+    pub(super) fn line(
+        &mut self,
+        (begin, end): (f64, f64),
+        (from, to): (f64, f64),
+        target: Option<f64>,
+    ) -> Result<Option<f64>, SimulateError> {
+        let speed = (to - from) / (end - begin);
+        let mut start = begin;
         while start < end {
             let mut stretch = Stretch {
                 start,
                 end,
-                contact_from: if start == times[0] { from } else { from + speed * (start - times[0]) },
+                contact_from: if start == begin { from } else { from + speed * (start - begin) },
                 contact_speed: speed,
-                state: match contact {
+                state: match self.contact {
                     Contact::Touching { excess } => {
-                        let drive = model.layers.drive(speed, model.specimen.depth());
-                        StretchState::Touching(Element::solve(model.law, excess, drive, end - start, &mut work))
+                        let drive = self.model.layers.drive(speed, self.model.specimen.depth());
+                        let element = Element::solve(self.model.law, excess, drive, end - start, &mut self.work);
+                        StretchState::Touching(element)
                     }
                     Contact::Free { surface, since } => StretchState::Free { surface, since },
                 },
             };
-            let event = next_event(&stretch, model);
+            let mut event = next_event(&stretch, self.model);
             if let Some(event) = event {
                 stretch.end = event.time;
             }
-            if stretch.end > stretch.start {
-                visit(&stretch)?;
+            let reached = target.and_then(|target| reaching(&stretch, target, self.model));
+            if let Some(time) = reached {
+                (stretch.end, event) = (time, None);
             }
-            contact = after(&stretch, event, model, &mut work)?;
+            if stretch.end > stretch.start {
+                (self.visit)(&stretch)?;
+            }
+            self.contact = after(&stretch, event, self.model, &mut self.work)?;
             start = stretch.end;
-            events.extend(event);
+            self.events.extend(event);
+            if reached.is_some() {
+                return Ok(reached);
+            }
         }
+        Ok(None)
     }
-    work.events = events.len() as u64;
-    Ok((events, work))
-}
 
-/// Walks through a force history. The jaw keeps in touch: at no force it follows the surface.
-fn press(
-    history: &ForceHistory,
-    model: &ContactModel,
-    mut visit: impl FnMut(&Stretch) -> Result<(), SimulateError>,
-) -> Result<Work, SimulateError> {
-    let bonded = model.separation == Separation::Bonded;
-    let pulls = bonded && model.specimen.has_constant_section();
-    if let Some(index) = history.forces().iter().position(|force| *force < 0.0 && !pulls) {
-        return Err(SimulateError::Tension {
-            time: history.times()[index],
-            force: history.forces()[index],
-            bonded,
-        });
-    }
-    let body = Body {
-        specimen: model.specimen,
-        law: model.law,
-        layers: model.layers,
-        bonded,
-    };
-    let (mut work, mut behind) = (Work::default(), 0.0);
-    for (times, forces) in history.times().windows(2).zip(history.forces().windows(2)) {
-        let (start, duration) = (times[0], times[1] - times[0]);
-        if duration == 0.0 {
-            continue;
+    /// Walks through a force history. The jaw keeps in touch: at no force it follows the surface.
+    fn press(&mut self, history: &ForceHistory) -> Result<(), SimulateError> {
+        let mut behind = 0.0;
+        for (&time, &force) in history.times().iter().zip(history.forces()) {
+            check_force(time, force, self.model)?;
         }
-        let forced = Forced::solve(body, (forces[0], forces[1]), behind, duration, &mut work).map_err(|too_much| {
-            let share = too_much.elapsed / duration;
+        for (times, forces) in history.times().windows(2).zip(history.forces().windows(2)) {
+            if times[1] > times[0] {
+                (_, behind) = self.force((times[0], times[1]), (forces[0], forces[1]), behind)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Walks along a straight piece of force, the node behind the contact layer at `behind` (m); returns the contact displacement and
+    /// that node's at the end.
+    pub(super) fn force(
+        &mut self,
+        (start, end): (f64, f64),
+        (from, to): (f64, f64),
+        behind: f64,
+    ) -> Result<(f64, f64), SimulateError> {
+        let (model, duration) = (self.model, end - start);
+        let body = Body {
+            specimen: model.specimen,
+            law: model.law,
+            layers: model.layers,
+            bonded: model.separation == Separation::Bonded,
+        };
+        let forced = Forced::solve(body, (from, to), behind, duration, &mut self.work).map_err(|too_much| {
+            let force = from + (to - from) * (too_much.elapsed / duration);
             SimulateError::Force {
                 time: start + too_much.elapsed,
-                force: forces[0] + (forces[1] - forces[0]) * share,
+                force,
             }
         })?;
-        let from = forced.at(0.0);
-        behind = forced.behind_at(duration);
-        if !behind.is_finite() {
-            return Err(SimulateError::OutOfRange { time: times[1] });
+        let (first, last) = (forced.at(0.0), forced.at(duration));
+        let behind = forced.behind_at(duration);
+        if !(behind.is_finite() && last.displacement.is_finite()) {
+            return Err(SimulateError::OutOfRange { time: end });
         }
-        visit(&Stretch {
+        self.contact = Contact::Touching { excess: last.excess };
+        (self.visit)(&Stretch {
             start,
-            end: times[1],
-            contact_from: from.displacement,
-            contact_speed: from.speed,
+            end,
+            contact_from: first.displacement,
+            contact_speed: first.speed,
             state: StretchState::Forced(forced),
         })?;
+        Ok((last.displacement, behind))
     }
-    Ok(work)
+
+    /// Excess strain of the contact layer; `None` while the jaw is off.
+    pub(super) fn excess(&self) -> Option<f64> {
+        match self.contact {
+            Contact::Touching { excess } => Some(excess),
+            Contact::Free { .. } => None,
+        }
+    }
+}
+
+/// Checks that a force can be asked for at all.
+pub(super) fn check_force(time: f64, force: f64, model: &ContactModel) -> Result<(), SimulateError> {
+    let bonded = model.separation == Separation::Bonded;
+    if force < 0.0 && !(bonded && model.specimen.has_constant_section()) {
+        return Err(SimulateError::Tension { time, force, bonded });
+    }
+    Ok(())
 }
 
 fn check_displacements(motion: &Motion, model: &ContactModel) -> Result<(), SimulateError> {
@@ -186,6 +243,46 @@ fn check_displacements(motion: &Motion, model: &ContactModel) -> Result<(), Simu
     }
     Ok(())
 }
+
+/// When the force reaches a target in a stretch, from below if the jaw approaches, from above if it retreats.
+fn reaching(stretch: &Stretch, target: f64, model: &ContactModel) -> Option<f64> {
+    let (specimen, approaches) = (&model.specimen, stretch.contact_speed > 0.0);
+    // Positive before the target is reached.
+    let missing = |elapsed: f64| {
+        let force = match &stretch.state {
+            StretchState::Touching(element) => {
+                let u = stretch.jaw_at(stretch.start + elapsed);
+                specimen.force(element.excess_at(elapsed) + specimen.equilibrium_strain(u), u)
+            }
+            StretchState::Forced(forced) => forced.force_at(elapsed),
+            StretchState::Free { .. } => 0.0,
+        };
+        if approaches { target - force } else { force - target }
+    };
+    if missing(0.0) <= 0.0 {
+        return Some(stretch.start);
+    }
+    let StretchState::Touching(element) = &stretch.state else {
+        return None;
+    };
+    let duration = stretch.end - stretch.start;
+    let mut before = 0.0;
+    // Between two ends of steps the force bends a little; a step of a long ramp is cut once more.
+    for end in element.step_ends().filter(|end| *end < duration).chain([duration]) {
+        for part in 1..=PARTS {
+            let elapsed = before + (end - before) * f64::from(part) / f64::from(PARTS);
+            if missing(elapsed) <= 0.0 {
+                let from = before + (end - before) * f64::from(part - 1) / f64::from(PARTS);
+                return Some(stretch.start + crossing(from, elapsed, missing));
+            }
+        }
+        before = end;
+    }
+    None
+}
+
+/// Parts in which a step is looked through for a target.
+const PARTS: i32 = 4;
 
 /// The contact at the end of a stretch, changed by the event that ended it.
 fn after(

@@ -1,8 +1,10 @@
 //! All layers over time: the strain wave that travels from the contact to the plane of symmetry (figure 7 of the paper).
 
+use super::course::Course;
+use super::program::step_ends;
 use super::trajectory::sample_times;
 use super::walk::{Stretch, StretchState, walk};
-use super::{ContactModel, Course, ForceHistory, Motion, Sampling, SimulateError, Work};
+use super::{ContactModel, ForceHistory, Motion, ProgramStep, Sampling, SimulateError, Work};
 use crate::ode::Dop853;
 
 /// Tolerance of the node displacements, relative to the largest contact displacement of the motion.
@@ -43,6 +45,20 @@ pub fn strain_wave_under_force(
     sampling: &Sampling,
 ) -> Result<StrainWave, SimulateError> {
     wave_of(Course::Force(history), model, sampling)
+}
+
+/// The same of a program: the first layer is the one that [`simulate_program`](super::simulate_program) reports.
+///
+/// # Errors
+/// [`SimulateError::FractionalLayers`] unless the number of layers is whole; otherwise as for `simulate_program`.
+pub fn strain_wave_of_program(
+    program: &[ProgramStep],
+    model: &ContactModel,
+    sampling: &Sampling,
+) -> Result<StrainWave, SimulateError> {
+    let ends = step_ends(program, model)?;
+    let times: Vec<f64> = [0.0].into_iter().chain(ends.iter().map(|end| end.time)).collect();
+    wave_of(Course::Program(program, &times), model, sampling)
 }
 
 fn wave_of(course: Course<'_>, model: &ContactModel, sampling: &Sampling) -> Result<StrainWave, SimulateError> {
@@ -97,7 +113,7 @@ impl<'a> Cascade<'a> {
                 let travel = motion.displacements().iter().fold(0.0, |most: f64, d| most.max(d.abs()));
                 model.specimen.contact_displacement(travel)
             }
-            Course::Force(_) => model.specimen.depth(),
+            Course::Force(_) | Course::Program(..) => model.specimen.depth(),
         };
         let (n, v) = (model.law.exponent(), model.law.rate_coefficient());
         let rest = if n < 1.0 {

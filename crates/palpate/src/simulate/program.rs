@@ -1,0 +1,218 @@
+//! A program of the jaw: steps in displacement and in force, one after the other.
+
+use serde::{Deserialize, Serialize};
+
+use super::walk::{Stretch, Walker, check_force};
+use super::{ContactModel, SimulateError};
+
+/// One step of a program.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ProgramStep {
+    /// Move the jaw to a displacement `to` (m) at `rate` (m/s, above 0).
+    Move {
+        /// Displacement of the jaw at the end, m.
+        to: f64,
+        /// Speed of the jaw, m/s.
+        rate: f64,
+    },
+    /// Move the jaw at `rate` (m/s, above 0), on or back, until the contact force is `force` (N); the moment is found to the last bit.
+    MoveToForce {
+        /// Force at the end, N.
+        force: f64,
+        /// Speed of the jaw, m/s.
+        rate: f64,
+    },
+    /// Let the jaw stand where it is for `duration` (s): the force relaxes.
+    HoldPosition {
+        /// How long, s.
+        duration: f64,
+    },
+    /// Bring the force to `to` (N) at `rate` (N/s, above 0).
+    Press {
+        /// Force at the end, N.
+        to: f64,
+        /// Rate of the force, N/s.
+        rate: f64,
+    },
+    /// Keep the force as it is for `duration` (s): the body creeps, or recovers if the force is zero.
+    HoldForce {
+        /// How long, s.
+        duration: f64,
+    },
+}
+
+/// Where a step of a program ended.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StepEnd {
+    /// Time, s.
+    pub time: f64,
+    /// Displacement of the jaw, m.
+    pub displacement: f64,
+    /// Contact force, N.
+    pub force: f64,
+}
+
+impl ProgramStep {
+    /// What is wrong with its numbers, whatever the body.
+    fn check(self) -> Result<(), (&'static str, f64, &'static str)> {
+        let positive = |name, found: f64, unit| {
+            if found.is_finite() && found > 0.0 { Ok(()) } else { Err((name, found, unit)) }
+        };
+        let finite = |name, found: f64, unit| if found.is_finite() { Ok(()) } else { Err((name, found, unit)) };
+        match self {
+            Self::Move { to, rate } => finite("displacement", to, "m").and(positive("rate", rate, "m/s")),
+            Self::MoveToForce { force, rate } => finite("force", force, "N").and(positive("rate", rate, "m/s")),
+            Self::Press { to, rate } => finite("force", to, "N").and(positive("rate", rate, "N/s")),
+            Self::HoldPosition { duration } | Self::HoldForce { duration } => positive("duration", duration, "s"),
+        }
+    }
+}
+
+/// Where each step of a program ends.
+pub(super) fn step_ends(program: &[ProgramStep], model: &ContactModel) -> Result<Vec<StepEnd>, SimulateError> {
+    Walker::new(model, |_: &Stretch| Ok(())).run(program)
+}
+
+impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'_, V> {
+    /// Walks through a program that begins at time 0 with the jaw at first touch; returns where each step ended.
+    pub(super) fn run(&mut self, program: &[ProgramStep]) -> Result<Vec<StepEnd>, SimulateError> {
+        if program.is_empty() {
+            return Err(SimulateError::EmptyProgram);
+        }
+        let mut runner = Runner {
+            model: self.model,
+            walker: self,
+            time: 0.0,
+            jaw: 0.0,
+        };
+        let mut ends = Vec::with_capacity(program.len());
+        for (index, step) in program.iter().enumerate() {
+            let number = index + 1;
+            step.check().map_err(|(name, found, unit)| SimulateError::StepNumber {
+                step: number,
+                name,
+                unit,
+                found,
+            })?;
+            ends.push(runner.take(number, *step)?);
+        }
+        Ok(ends)
+    }
+}
+
+/// Where the program stands; `jaw` is one contact's share.
+struct Runner<'w, 'a, V> {
+    walker: &'w mut Walker<'a, V>,
+    model: &'a ContactModel,
+    time: f64,
+    jaw: f64,
+}
+
+impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Runner<'_, '_, V> {
+    fn take(&mut self, number: usize, step: ProgramStep) -> Result<StepEnd, SimulateError> {
+        match step {
+            ProgramStep::Move { to, rate } => self.move_to(to, rate)?,
+            ProgramStep::MoveToForce { force, rate } => self.move_to_force(number, force, rate)?,
+            ProgramStep::HoldPosition { duration } => self.line(duration, self.jaw, None).map(|_| ())?,
+            ProgramStep::Press { to, rate } => {
+                let force = self.force();
+                check_force(self.time, to, self.model)?;
+                self.press(number, (to - force).abs() / rate, to)?;
+            }
+            ProgramStep::HoldForce { duration } => self.press(number, duration, self.force())?,
+        }
+        Ok(StepEnd {
+            time: self.time,
+            displacement: self.jaw / self.model.specimen.contact_displacement(1.0),
+            force: self.force(),
+        })
+    }
+
+    /// Contact force as it is, N.
+    fn force(&self) -> f64 {
+        let specimen = &self.model.specimen;
+        let strain = |excess: f64| excess + specimen.equilibrium_strain(self.jaw);
+        self.walker.excess().map_or(0.0, |excess| specimen.force(strain(excess), self.jaw))
+    }
+
+    fn move_to(&mut self, to: f64, rate: f64) -> Result<(), SimulateError> {
+        let share = self.model.specimen.contact_displacement(1.0);
+        let bonded = self.model.separation == super::Separation::Bonded;
+        self.model.specimen.check_contact_displacement(to * share, bonded).map_err(|source| {
+            SimulateError::Displacement {
+                time: self.time,
+                displacement: to,
+                source,
+            }
+        })?;
+        let duration = (to * share - self.jaw).abs() / (rate * share);
+        self.line(duration, to * share, None).map(|_| ())
+    }
+
+    fn move_to_force(&mut self, number: usize, force: f64, rate: f64) -> Result<(), SimulateError> {
+        check_force(self.time, force, self.model)?;
+        let now = self.force();
+        if now == force {
+            return Ok(());
+        }
+        let specimen = &self.model.specimen;
+        let depth = specimen.depth();
+        // A jaw that approaches may go as deep as the body is; a strip in grips may be stretched as far as it likes.
+        let strip = specimen.has_constant_section() && self.model.separation == super::Separation::Bonded;
+        let farthest = match (force > now, strip) {
+            (true, false) => depth * (1.0 - 1e-12),
+            (false, false) => 0.0,
+            (true, true) => self.jaw.max(0.0) + 100.0 * depth,
+            (false, true) => self.jaw.min(0.0) - 100.0 * depth,
+        };
+        let speed = rate * specimen.contact_displacement(1.0);
+        let duration = (farthest - self.jaw).abs() / speed;
+        match self.line(duration, farthest, Some(force))? {
+            true => Ok(()),
+            false => Err(SimulateError::Unreachable {
+                step: number,
+                target: force,
+                most: self.force(),
+            }),
+        }
+    }
+
+    /// Moves straight for `duration` (s); whether the target was reached, if there is one.
+    fn line(&mut self, duration: f64, to: f64, target: Option<f64>) -> Result<bool, SimulateError> {
+        if duration <= 0.0 {
+            return Ok(false);
+        }
+        let (start, from, end) = (self.time, self.jaw, self.time + duration);
+        if end <= start {
+            return Err(SimulateError::OutOfRange { time: start });
+        }
+        let reached = self.walker.line((start, end), (from, to), target)?;
+        self.time = reached.unwrap_or(end);
+        self.jaw = reached.map_or(to, |time| from + (to - from) * ((time - start) / (end - start)));
+        Ok(reached.is_some())
+    }
+
+    /// Brings the force straight to `to` (N) within `duration` (s).
+    fn press(&mut self, number: usize, duration: f64, to: f64) -> Result<(), SimulateError> {
+        let Some(excess) = self.walker.excess() else {
+            return Err(SimulateError::NoContact {
+                step: number,
+                time: self.time,
+            });
+        };
+        if duration <= 0.0 {
+            return Ok(());
+        }
+        let depth = self.model.specimen.depth();
+        let strain = excess + self.model.specimen.equilibrium_strain(self.jaw);
+        let behind = self.jaw - self.model.layers.thickness(depth) * strain;
+        let end = self.time + duration;
+        if end <= self.time {
+            return Err(SimulateError::OutOfRange { time: self.time });
+        }
+        (self.jaw, _) = self.walker.force((self.time, end), (self.force(), to), behind)?;
+        self.time = end;
+        Ok(())
+    }
+}
