@@ -33,6 +33,8 @@ pub enum Dimension {
     Rate,
     /// Frequency in Hz.
     Frequency,
+    /// Rate of a force in N/s.
+    ForceRate,
 }
 
 impl Dimension {
@@ -48,6 +50,7 @@ impl Dimension {
             Self::Speed => "speed",
             Self::Rate => "rate",
             Self::Frequency => "frequency",
+            Self::ForceRate => "rate of force",
         }
     }
 
@@ -63,6 +66,7 @@ impl Dimension {
             Self::Speed => SPEED,
             Self::Rate => RATE,
             Self::Frequency => FREQUENCY,
+            Self::ForceRate => FORCE_RATE,
         }
     }
 
@@ -132,6 +136,16 @@ const SPEED: &[(&str, f64)] = &[
 ];
 const RATE: &[(&str, f64)] =
     &[("/s", 1.0), ("1/s", 1.0), ("s^-1", 1.0), ("s⁻¹", 1.0), ("/min", 1.0 / 60.0), ("1/min", 1.0 / 60.0)];
+const FORCE_RATE: &[(&str, f64)] = &[
+    ("N/s", 1.0),
+    ("N/min", 1.0 / 60.0),
+    ("kN/s", 1e3),
+    ("mN/s", 1e-3),
+    ("µN/s", 1e-6),
+    ("uN/s", 1e-6),
+    ("nN/s", 1e-9),
+    ("lbf/s", POUND_FORCE),
+];
 const FREQUENCY: &[(&str, f64)] = &[("Hz", 1.0), ("kHz", 1e3), ("/s", 1.0), ("1/s", 1.0)];
 
 /// Why a quantity could not be read.
@@ -181,6 +195,7 @@ fn example(dimension: Dimension) -> &'static str {
         Dimension::Speed => "500 mm/min",
         Dimension::Rate => "2e4 /s",
         Dimension::Frequency => "100 Hz",
+        Dimension::ForceRate => "10 N/s",
     }
 }
 

@@ -1,5 +1,5 @@
-//! Contact force, strain wave and separation against mpmath and SciPy (`contact_force.json`, `cascade.json`,
-//! `separation.json`).
+//! Contact force, strain wave, separation and creep against mpmath and SciPy (`contact_force.json`, `cascade.json`,
+//! `separation.json`, `creep.json`).
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
@@ -9,7 +9,8 @@ use common::reference;
 use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactEventKind, ContactModel, Motion, Sampling, Separation, simulate, simulate_force, strain_wave,
+    ContactEventKind, ContactModel, ForceHistory, Motion, Sampling, Separation, simulate, simulate_force,
+    simulate_under_force, strain_wave,
 };
 use serde::Deserialize;
 
@@ -238,4 +239,59 @@ fn force_alone_equals_the_whole_trajectory() {
         println!("{}: {apart:.1e}", contact.name);
         assert!(apart <= 4e-16, "{}: {apart:e}", contact.name);
     }
+}
+
+#[derive(Deserialize)]
+struct CreepTolerance {
+    displacement_over_depth: f64,
+    excess_strain: f64,
+}
+
+#[derive(Deserialize)]
+struct CreepCase {
+    name: String,
+    shape: String,
+    /// Radius of a ball; section and length of a block.
+    size: Vec<f64>,
+    modulus: f64,
+    exponent: f64,
+    rate_coefficient: f64,
+    layers: f64,
+    knots: Vec<(f64, f64)>,
+    times: Vec<f64>,
+    contact_displacement: Vec<f64>,
+    excess_strain: Vec<f64>,
+}
+
+#[test]
+fn under_a_force() {
+    let (tolerance, cases) = reference::<CreepTolerance, CreepCase>("creep");
+    let mut verdict = Verdict::new();
+    for case in &cases {
+        let shape = match case.shape.as_str() {
+            "ball" => Shape::Ball { radius: case.size[0] },
+            _ => Shape::Prism {
+                area: case.size[0],
+                length: case.size[1],
+            },
+        };
+        let model = ContactModel {
+            specimen: Specimen::new(shape, case.modulus, Sides::Two).unwrap(),
+            law: LatencyLaw::new(case.exponent, case.rate_coefficient).unwrap(),
+            layers: Layers::new(case.layers).unwrap(),
+            separation: Separation::Bonded,
+        };
+        let (times, forces) = case.knots.iter().copied().unzip();
+        let history = ForceHistory::new(times, forces).unwrap();
+        let result = simulate_under_force(&history, &model, &Sampling::Times(case.times.clone())).unwrap();
+        let off = distance(&result.contact_displacement, &case.contact_displacement) / model.specimen.depth();
+        verdict.add(&case.name, "displacement", off, tolerance.displacement_over_depth);
+        verdict.add(
+            &case.name,
+            "excess strain",
+            distance(&result.excess_strain, &case.excess_strain),
+            tolerance.excess_strain,
+        );
+    }
+    verdict.finish();
 }

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use palpate::simulate::{ContactEventKind, StrainWave, Trajectory, simulate, strain_wave};
+use palpate::simulate::{ContactEventKind, StrainWave, Trajectory};
 use palpate::test_problems::Noise;
 use palpate_files::description::{Protocol, read_protocol};
 use palpate_report::figure::Figure;
@@ -29,9 +29,9 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     })?;
     let refused = |error: palpate::simulate::SimulateError| Failure::of_file(&arguments.protocol, error, None);
     let working = Working::new("simulating");
-    let trajectory = simulate(&protocol.motion, &protocol.model, &protocol.sampling).map_err(refused)?;
+    let trajectory = protocol.simulate().map_err(refused)?;
     let wave = match &arguments.wave {
-        Some(_) => Some(strain_wave(&protocol.motion, &protocol.model, &protocol.sampling).map_err(refused)?),
+        Some(_) => Some(protocol.strain_wave().map_err(refused)?),
         None => None,
     };
     // Everything is made before anything is written.

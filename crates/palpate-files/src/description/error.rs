@@ -275,6 +275,7 @@ fn usual_unit(dimension: Dimension) -> &'static str {
         Dimension::Speed => "mm/min",
         Dimension::Rate => "/s",
         Dimension::Frequency => "Hz",
+        Dimension::ForceRate => "N/s",
     }
 }
 

@@ -5,7 +5,10 @@ use std::path::Path;
 use palpate::{
     contact::{Layers, Specimen},
     latency::LatencyLaw,
-    simulate::{self, ContactModel, Motion, ProtocolStep, Sampling},
+    simulate::{
+        self, ContactModel, Motion, ProgramStep, ProtocolStep, Sampling, SimulateError, StrainWave, Trajectory,
+        simulate, simulate_program, step_ends, strain_wave, strain_wave_of_program,
+    },
     units::Dimension,
 };
 use schemars::JsonSchema;
@@ -29,14 +32,38 @@ const USUAL_SAMPLE_RATE: f64 = 100.0;
 pub struct Protocol {
     /// Title, if it has one.
     pub title: Option<String>,
-    /// The motion of the jaw.
-    pub motion: Motion,
+    /// What the jaw does, step by step; holds are steps of their own.
+    pub steps: Vec<ProgramStep>,
+    /// The motion of the jaw, if displacements alone are asked for.
+    pub motion: Option<Motion>,
     /// The body and its contact.
     pub model: ContactModel,
     /// When to report.
     pub sampling: Sampling,
-    /// The steps that the motion is made of.
-    pub steps: Vec<ProtocolStep>,
+}
+
+impl Protocol {
+    /// The contact over time.
+    ///
+    /// # Errors
+    /// [`SimulateError`] as for [`simulate_program`].
+    pub fn simulate(&self) -> Result<Trajectory, SimulateError> {
+        match &self.motion {
+            Some(motion) => simulate(motion, &self.model, &self.sampling),
+            None => simulate_program(&self.steps, &self.model, &self.sampling).map(|(trajectory, _)| trajectory),
+        }
+    }
+
+    /// All layers over time.
+    ///
+    /// # Errors
+    /// [`SimulateError`] as for [`strain_wave_of_program`].
+    pub fn strain_wave(&self) -> Result<StrainWave, SimulateError> {
+        match &self.motion {
+            Some(motion) => strain_wave(motion, &self.model, &self.sampling),
+            None => strain_wave_of_program(&self.steps, &self.model, &self.sampling),
+        }
+    }
 }
 
 /// A squeeze-and-hold protocol: the body, its law, and the steps of the jaw. Quantities are texts with a unit.
@@ -95,17 +122,27 @@ struct ContactTable {
     separation: Option<bool>,
 }
 
-/// Go to a displacement at constant speed, then stay.
+/// Go to a displacement or to a force, then stay there or keep the force; either part may be left out.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Step")]
+#[schemars(rename = "Step", extend("not" = { "anyOf": [
+    { "required": ["to", "to_force"] },
+    { "required": ["rate", "force_rate"] },
+    { "required": ["hold", "hold_force"] }
+] }))]
 struct StepTable {
-    /// Travel of the jaw since first touch at the end of the ramp; loading is positive.
-    to: QuantityText,
+    /// Travel of the jaw since first touch at the end of the ramp; loading is positive. Needs rate.
+    to: Option<QuantityText>,
+    /// Force to go to, by moving the jaw at rate until it is met or by raising the force at force_rate.
+    to_force: Option<QuantityText>,
     /// Speed of the jaw in the ramp, always above 0.
-    rate: QuantityText,
-    /// Time at the new displacement; none if left out.
+    rate: Option<QuantityText>,
+    /// Rate at which the force goes to to_force, always above 0.
+    force_rate: Option<QuantityText>,
+    /// Time for which the jaw then stays where it is; none if left out.
     hold: Option<QuantityText>,
+    /// Time for which the force is then kept as it is.
+    hold_force: Option<QuantityText>,
 }
 
 /// When to report: at a rate, or at times.
@@ -140,7 +177,7 @@ pub fn read_protocol(path: &Path) -> Result<Protocol, DescriptionError> {
 ///     step = [{ to = "5 mm", rate = "500 mm/min", hold = "10 s" }]
 /// "#;
 /// let protocol = parse_protocol(text, Path::new("squeeze.toml"))?;
-/// assert_eq!(protocol.motion.displacement_at(5.0), 0.005);
+/// assert_eq!(protocol.motion.unwrap().displacement_at(5.0), 0.005);
 ///
 /// let without_unit = text.replace("35 mm", "35");
 /// let error = parse_protocol(&without_unit, Path::new("squeeze.toml")).unwrap_err();
@@ -154,18 +191,22 @@ pub fn parse_protocol(text: &str, path: &Path) -> Result<Protocol, DescriptionEr
     let source = Source { path, text };
     let tables: ProtocolTables = source.tables()?;
     let model = model(&source, &tables)?;
-    let steps = steps(&source, &tables.step, &model)?;
-    let motion = simulate::protocol(&steps).map_err(|error| {
-        let found = error.to_string();
-        source.value("step", "steps that make a motion", &found)
-    })?;
-    let sampling = sampling(&source, &tables.output, &motion)?;
+    let Steps { program, motion } = steps(&source, &tables.step, &model)?;
+    let refused = |found: String| source.value("step", "steps that can be simulated", &found);
+    let end = match &motion {
+        Some(motion) => motion.end(),
+        None => {
+            let ends = step_ends(&program, &model).map_err(|error| refused(error.to_string()))?;
+            ends.last().map_or(0.0, |end| end.time)
+        }
+    };
+    let sampling = sampling(&source, &tables.output, end)?;
     Ok(Protocol {
         title: tables.title,
+        steps: program,
         motion,
         model,
         sampling,
-        steps,
     })
 }
 
@@ -198,39 +239,127 @@ fn model(source: &Source<'_>, tables: &ProtocolTables) -> Result<ContactModel, D
     })
 }
 
-fn steps(
-    source: &Source<'_>,
-    tables: &[StepTable],
-    model: &ContactModel,
-) -> Result<Vec<ProtocolStep>, DescriptionError> {
+/// Steps one by one, and as a motion if they are one.
+struct Steps {
+    program: Vec<ProgramStep>,
+    motion: Option<Motion>,
+}
+
+fn steps(source: &Source<'_>, tables: &[StepTable], model: &ContactModel) -> Result<Steps, DescriptionError> {
     if tables.is_empty() {
         return Err(source.missing("step", "one or more [[step]] tables with to and rate"));
     }
-    let mut at = 0.0;
-    let mut steps = Vec::with_capacity(tables.len());
+    let (mut program, mut moves) = (Vec::new(), Vec::new());
+    let mut at = Some(0.0);
     for (index, table) in tables.iter().enumerate() {
         let key = |name: &str| format!("step[{}].{name}", index + 1);
-        let to = source.si(&key("to"), &table.to, Dimension::Length)?;
-        check_displacement(source, &key("to"), &table.to, to, model)?;
-        let rate = source.positive(&key("rate"), &table.rate, Dimension::Speed)?;
-        let hold = match &table.hold {
-            None => 0.0,
-            Some(written) => {
-                let hold = source.si(&key("hold"), written, Dimension::Time)?;
-                if hold < 0.0 {
-                    return Err(source.value(key("hold"), "a time of 0 s or more", written));
-                }
-                hold
-            }
-        };
-        if to == at && hold == 0.0 {
-            let expected = "another displacement than before, or a hold";
-            return Err(source.value(key("to"), expected, &table.to));
+        let ramp = ramp(source, &key, table, model)?;
+        let hold = hold(source, &key, table)?;
+        if ramp.is_none() && hold.is_none() {
+            return Err(source.missing(format!("step[{}]", index + 1), "to or to_force, or a hold"));
         }
-        at = to;
-        steps.push(ProtocolStep { to, rate, hold });
+        if let (Some(ProgramStep::Move { to, .. }), None) = (ramp, hold)
+            && at == Some(to)
+            && let Some(written) = &table.to
+        {
+            return Err(source.value(key("to"), "another displacement than before, or a hold", written));
+        }
+        let to = match ramp {
+            Some(ProgramStep::Move { to, .. }) => Some(to),
+            None => at,
+            Some(_) => None,
+        };
+        match (ramp, hold, to) {
+            (Some(ProgramStep::Move { rate, .. }), None | Some(ProgramStep::HoldPosition { .. }), Some(to)) => {
+                let hold = if let Some(ProgramStep::HoldPosition { duration }) = hold { duration } else { 0.0 };
+                moves.push(ProtocolStep { to, rate, hold });
+            }
+            (None, Some(ProgramStep::HoldPosition { duration }), Some(to)) => {
+                let rate = 1.0;
+                moves.push(ProtocolStep {
+                    to,
+                    rate,
+                    hold: duration,
+                });
+            }
+            _ => {}
+        }
+        // Where the jaw stands after force control only the simulation knows.
+        at = if matches!(hold, Some(ProgramStep::HoldForce { .. })) { None } else { to };
+        program.extend(ramp);
+        program.extend(hold);
     }
-    Ok(steps)
+    let in_displacement =
+        |step: &ProgramStep| matches!(step, ProgramStep::Move { .. } | ProgramStep::HoldPosition { .. });
+    let motion = if program.iter().all(in_displacement) {
+        let motion = simulate::protocol(&moves).map_err(|error| {
+            let found = error.to_string();
+            source.value("step", "steps that make a motion", &found)
+        })?;
+        Some(motion)
+    } else {
+        None
+    };
+    Ok(Steps { program, motion })
+}
+
+/// The first part of a step, if it has one.
+fn ramp(
+    source: &Source<'_>,
+    key: &impl Fn(&str) -> String,
+    table: &StepTable,
+    model: &ContactModel,
+) -> Result<Option<ProgramStep>, DescriptionError> {
+    let both = |a: &str, b: &str| source.both(&key(a), &key(b));
+    match (&table.to, &table.to_force, &table.rate, &table.force_rate) {
+        (Some(_), Some(_), ..) => Err(both("to", "to_force")),
+        (_, _, Some(_), Some(_)) => Err(both("rate", "force_rate")),
+        (Some(to), None, Some(rate), None) => {
+            let written = to;
+            let to = source.si(&key("to"), to, Dimension::Length)?;
+            check_displacement(source, &key("to"), written, to, model)?;
+            let rate = source.positive(&key("rate"), rate, Dimension::Speed)?;
+            Ok(Some(ProgramStep::Move { to, rate }))
+        }
+        (None, Some(force), Some(rate), None) => Ok(Some(ProgramStep::MoveToForce {
+            force: source.si(&key("to_force"), force, Dimension::Force)?,
+            rate: source.positive(&key("rate"), rate, Dimension::Speed)?,
+        })),
+        (None, Some(force), None, Some(rate)) => Ok(Some(ProgramStep::Press {
+            to: source.si(&key("to_force"), force, Dimension::Force)?,
+            rate: source.positive(&key("force_rate"), rate, Dimension::ForceRate)?,
+        })),
+        (Some(_), None, None, _) => Err(source.missing(key("rate"), "the speed of the jaw, such as \"50 mm/min\"")),
+        (None, Some(_), None, None) => {
+            Err(source.missing(key("rate"), "the speed of the jaw, or force_rate, such as \"10 N/s\""))
+        }
+        (None, None, Some(_), _) => {
+            Err(source.missing(key("to"), "a displacement to go to, such as \"5 mm\" (or to_force, such as \"10 N\")"))
+        }
+        (None, None, None, Some(_)) => Err(source.missing(key("to_force"), "a force to go to")),
+        (None, None, None, None) => Ok(None),
+    }
+}
+
+/// The second part of a step, if it has one.
+fn hold(
+    source: &Source<'_>,
+    key: &impl Fn(&str) -> String,
+    table: &StepTable,
+) -> Result<Option<ProgramStep>, DescriptionError> {
+    let duration = |name: &str, written: &QuantityText| {
+        let duration = source.si(&key(name), written, Dimension::Time)?;
+        if duration < 0.0 {
+            return Err(source.value(key(name), "a time of 0 s or more", written));
+        }
+        Ok((duration > 0.0).then_some(duration))
+    };
+    match (&table.hold, &table.hold_force) {
+        (Some(_), Some(_)) => Err(source.both(&key("hold"), &key("hold_force"))),
+        (Some(hold), None) => Ok(duration("hold", hold)?.map(|duration| ProgramStep::HoldPosition { duration })),
+        (None, Some(hold)) => Ok(duration("hold_force", hold)?.map(|duration| ProgramStep::HoldForce { duration })),
+        (None, None) => Ok(None),
+    }
 }
 
 /// The body must be able to take the displacement.
@@ -256,7 +385,7 @@ fn check_displacement(
     Err(source.value(key, expected, written))
 }
 
-fn sampling(source: &Source<'_>, output: &OutputTable, motion: &Motion) -> Result<Sampling, DescriptionError> {
+fn sampling(source: &Source<'_>, output: &OutputTable, end: f64) -> Result<Sampling, DescriptionError> {
     match (&output.sample_rate, &output.times) {
         (Some(_), Some(_)) => Err(source.both("output.sample_rate", "output.times")),
         (None, None) => Ok(Sampling::Rate(USUAL_SAMPLE_RATE)),
@@ -264,11 +393,11 @@ fn sampling(source: &Source<'_>, output: &OutputTable, motion: &Motion) -> Resul
             let rate = source.positive("output.sample_rate", rate, Dimension::Frequency)?;
             Ok(Sampling::Rate(rate))
         }
-        (None, Some(written)) => Ok(Sampling::Times(times(source, written, motion)?)),
+        (None, Some(written)) => Ok(Sampling::Times(times(source, written, end)?)),
     }
 }
 
-fn times(source: &Source<'_>, written: &[QuantityText], motion: &Motion) -> Result<Vec<f64>, DescriptionError> {
+fn times(source: &Source<'_>, written: &[QuantityText], end: f64) -> Result<Vec<f64>, DescriptionError> {
     if written.is_empty() {
         return Err(source.value("output.times", "one time or more", "an empty list"));
     }
@@ -277,11 +406,11 @@ fn times(source: &Source<'_>, written: &[QuantityText], motion: &Motion) -> Resu
         let key = format!("output.times[{}]", index + 1);
         let mut time = source.si(&key, written, Dimension::Time)?;
         // The end of a motion is a sum of quotients: "66 s" must hit one of 65.999999999999986 s.
-        if (time - motion.end()).abs() <= 1e-9 * motion.end() {
-            time = motion.end();
+        if (time - end).abs() <= 1e-9 * end {
+            time = end;
         }
-        if !(motion.start()..=motion.end()).contains(&time) {
-            let expected = format!("a time from 0 s to {} s, the end of the motion", motion.end());
+        if !(0.0..=end).contains(&time) {
+            let expected = format!("a time from 0 s to {end} s, the end of the motion");
             return Err(source.value(key, expected, written));
         }
         if times.last().is_some_and(|before| time < *before) {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use palpate::{
     contact::{Shape, Sides},
     segment::{ContactChoice, HoldStart},
-    simulate::{Separation, simulate},
+    simulate::Separation,
     test_problems::{paper_ball, paper_test_a, paper_test_b},
 };
 use palpate_files::description::{read_protocol, read_test};
@@ -31,7 +31,7 @@ fn every_example_is_accepted() {
     for path in protocols {
         let protocol = read_protocol(&path).unwrap_or_else(|error| panic!("{error}"));
         assert!(protocol.title.is_some(), "{}", path.display());
-        simulate(&protocol.motion, &protocol.model, &protocol.sampling).expect("a simulation");
+        protocol.simulate().expect("a simulation");
     }
 }
 
@@ -39,7 +39,7 @@ fn every_example_is_accepted() {
 fn the_papers_tests_are_the_papers() {
     for (name, motion) in [("paper-a.toml", paper_test_a()), ("paper-b.toml", paper_test_b())] {
         let protocol = read_protocol(&folder("protocols").join(name)).expect(name);
-        assert_eq!(protocol.motion, motion, "{name}");
+        assert_eq!(protocol.motion, Some(motion), "{name}");
         assert_eq!(protocol.model, paper_ball(Separation::Bonded), "{name}");
     }
 }
@@ -48,7 +48,7 @@ fn the_papers_tests_are_the_papers() {
 fn a_grip_loses_its_contact() {
     let protocol = read_protocol(&folder("protocols/grip.toml")).expect("a protocol");
     assert_eq!(protocol.model.separation, Separation::Unilateral);
-    let result = simulate(&protocol.motion, &protocol.model, &protocol.sampling).expect("a result");
+    let result = protocol.simulate().expect("a result");
     assert!(result.events.len() >= 3, "{:?}", result.events);
     assert!(result.force.iter().all(|force| *force >= 0.0));
 }

@@ -2,7 +2,7 @@
 
 use palpate::{
     contact::{Shape, Sides},
-    simulate::{Sampling, Separation},
+    simulate::{ProgramStep, Sampling, Separation},
 };
 
 use crate::{SQUEEZE, protocol, says, with};
@@ -18,10 +18,10 @@ fn a_short_protocol_has_the_usual_rest() {
     assert_eq!(squeeze.model.separation, Separation::Unilateral);
     assert_eq!((squeeze.model.law.exponent(), squeeze.model.law.rate_coefficient()), (5.0, 2e4));
     assert_eq!(squeeze.sampling, Sampling::Rate(100.0));
-    assert_eq!((squeeze.steps[0].to, squeeze.steps[0].rate), (0.005, 0.5 / 60.0));
-    assert_eq!(squeeze.steps[0].hold, 10.0);
+    let (to, rate) = (0.005, 0.5 / 60.0);
+    assert_eq!(squeeze.steps, [ProgramStep::Move { to, rate }, ProgramStep::HoldPosition { duration: 10.0 }]);
     let no_hold = protocol(&with("hold = \"10 s\"", "")).unwrap();
-    assert_eq!(no_hold.steps[0].hold, 0.0);
+    assert_eq!(no_hold.steps, [ProgramStep::Move { to, rate }]);
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn shapes_and_choices() {
     assert_eq!(model.specimen.sides(), Sides::One);
     let times = with("[output]", "[output]\ntimes = [\"0.6 s\", \"600 ms\", \"10.6 s\"]");
     let squeeze = protocol(&times).unwrap();
-    assert_eq!(squeeze.sampling, Sampling::Times(vec![0.6, 0.6, squeeze.motion.end()]));
+    assert_eq!(squeeze.sampling, Sampling::Times(vec![0.6, 0.6, squeeze.motion.unwrap().end()]));
 }
 
 #[test]
@@ -218,4 +218,51 @@ fn what_is_missing_or_too_much_is_named() {
     );
     let both = with("[output]", "[output]\nsample_rate = \"9 Hz\"\ntimes = [\"1 s\"]");
     says(protocol(&both), "output.sample_rate", "either this or output.times, found both", "remove");
+}
+
+const STEP: &str = "to = \"5 mm\"\nrate = \"500 mm/min\"\nhold = \"10 s\"";
+
+#[test]
+fn steps_in_force_and_in_displacement() {
+    let text = with(
+        STEP,
+        "to_force = \"10 N\"\nrate = \"50 mm/min\"\nhold = \"30 s\"\n[[step]]\nhold_force = \"0.5 min\"\n\
+         [[step]]\nto_force = \"2 N\"\nforce_rate = \"60 N/min\"\n[[step]]\nto = \"0 mm\"\nrate = \"1 mm/s\"",
+    );
+    let mixed = protocol(&text).unwrap();
+    assert_eq!(mixed.motion, None);
+    let rate = 0.05 / 60.0;
+    let expected = [
+        ProgramStep::MoveToForce { force: 10.0, rate },
+        ProgramStep::HoldPosition { duration: 30.0 },
+        ProgramStep::HoldForce { duration: 30.0 },
+        ProgramStep::Press { to: 2.0, rate: 1.0 },
+        ProgramStep::Move { to: 0.0, rate: 1e-3 },
+    ];
+    assert_eq!(mixed.steps, expected);
+    let result = mixed.simulate().unwrap();
+    assert!(result.force.iter().any(|force| (force - 10.0).abs() < 1e-12));
+    // A hold alone is a step too.
+    let still = with(STEP, &format!("{STEP}\n[[step]]\nhold = \"5 s\""));
+    let still = protocol(&still).unwrap();
+    assert!((still.motion.unwrap().end() - 15.6).abs() < 1e-12);
+}
+
+#[test]
+fn steps_that_say_too_much_or_too_little() {
+    for (step, key, message) in [
+        ("to = \"5 mm\"\nto_force = \"1 N\"\nrate = \"1 mm/s\"", "step[1].to_force", "step[1].to"),
+        ("to = \"5 mm\"", "step[1].rate", "the speed of the jaw"),
+        ("to_force = \"5 N\"", "step[1].rate", "force_rate"),
+        ("rate = \"1 mm/s\"", "step[1].to", "a displacement to go to, such as \"5 mm\" (or to_force"),
+        ("hold = \"1 s\"\nhold_force = \"1 s\"", "step[1].hold_force", "step[1].hold"),
+        ("to_force = \"5 kPa\"\nrate = \"1 mm/s\"", "step[1].to_force", "N, kN"),
+        ("to_force = \"1 N\"\nforce_rate = \"0 N/s\"", "step[1].force_rate", "a rate of force above 0 N/s"),
+        ("to_force = \"10 kN\"\nrate = \"1 mm/s\"", "step", "never meets a force of 10000 N"),
+        ("to_force = \"-1 N\"\nrate = \"1 mm/s\"", "step", "a jaw cannot pull"),
+    ] {
+        let result = protocol(&with(STEP, step));
+        let error = result.err().unwrap_or_else(|| panic!("{step} is accepted")).to_string();
+        assert!(error.contains(key) && error.contains(message), "{step}: {error}");
+    }
 }

@@ -15,7 +15,12 @@ fn unknown_keys_name_the_accepted_ones() {
         "line 4: specimen.raduis: unknown key (accepted: shape, radius,",
         "did you mean radius?",
     );
-    says(protocol(&with("hold =", "wait =")), "step[1].wait", "unknown key (accepted: to, rate, hold)", "");
+    says(
+        protocol(&with("hold =", "wait =")),
+        "step[1].wait",
+        "unknown key (accepted: to, to_force, rate, force_rate, hold, hold_force)",
+        "",
+    );
     says(
         protocol("titel = \"x\""),
         "titel",

@@ -24,7 +24,7 @@ pub use crate::contact::Work;
 pub use history::ForceHistory;
 pub use model::{ContactModel, Separation};
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};
-pub use program::{ProgramStep, StepEnd};
+pub use program::{ProgramStep, StepEnd, step_ends};
 pub use trajectory::{Sampling, Trajectory, simulate, simulate_force, simulate_program, simulate_under_force};
 pub use walk::{ContactEvent, ContactEventKind};
 pub use wave::{StrainWave, strain_wave, strain_wave_of_program, strain_wave_under_force};

@@ -69,8 +69,11 @@ impl ProgramStep {
     }
 }
 
-/// Where each step of a program ends.
-pub(super) fn step_ends(program: &[ProgramStep], model: &ContactModel) -> Result<Vec<StepEnd>, SimulateError> {
+/// Where each step of a program ends, without its course: see [`simulate_program`](super::simulate_program).
+///
+/// # Errors
+/// As for `simulate_program`.
+pub fn step_ends(program: &[ProgramStep], model: &ContactModel) -> Result<Vec<StepEnd>, SimulateError> {
     Walker::new(model, |_: &Stretch| Ok(())).run(program)
 }
 
