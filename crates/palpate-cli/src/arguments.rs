@@ -50,12 +50,13 @@ pub(crate) struct ReproduceArguments {
     pub(crate) png: bool,
 }
 
-/// Simulate the force of a squeeze protocol.
+/// Simulate squeeze, hold, creep and release by a protocol.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   palpate simulate examples/protocols/paper-a.toml --out a.csv --figure a.svg
   palpate simulate examples/protocols/grip.toml | head
+  palpate simulate examples/protocols/creep.toml --figure creep.svg --energy work.csv
   palpate simulate squeeze.toml --force-noise \"0.05 N\" --out record.csv  a record to try an analysis on
   palpate schema protocol                        what a protocol may say")]
 pub(crate) struct SimulateArguments {
@@ -71,6 +72,9 @@ pub(crate) struct SimulateArguments {
     /// File for the strain of every layer (CSV); needs a whole number of layers
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) wave: Option<PathBuf>,
+    /// File for the work of the jaw (CSV): done, given back and, at constant section, stored and lost
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) energy: Option<PathBuf>,
     /// Write a record as a machine would, with noise of this standard deviation on the force
     #[arg(long, value_name = "FORCE", value_parser = force, allow_hyphen_values = true)]
     pub(crate) force_noise: Option<f64>,

@@ -109,6 +109,30 @@ fn the_example_record_is_what_its_protocol_makes() {
 }
 
 #[test]
+fn simulate_goes_to_forces_and_accounts_for_work() {
+    let folder = tempfile::tempdir().unwrap();
+    let protocol = format!("{}/../../examples/protocols/creep.toml", env!("CARGO_MANIFEST_DIR"));
+    let outputs = ["--out", "a.csv", "--energy", "work.csv", "--wave", "wave.csv"];
+    let output = palpate(folder.path()).arg("simulate").arg(protocol).args(outputs).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let rows = |name: &str| -> Vec<Vec<f64>> {
+        let text = std::fs::read_to_string(folder.path().join(name)).unwrap();
+        text.lines()
+            .skip(1)
+            .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+            .collect()
+    };
+    let (series, work) = (rows("a.csv"), rows("work.csv"));
+    assert_eq!(series.len(), work.len());
+    let forces: Vec<f64> = series.iter().map(|row| row[3]).collect();
+    assert!(forces.iter().filter(|force| (**force - 10.0).abs() < 1e-9).count() > 1000);
+    let (last, most) = (&work[work.len() - 1], work.iter().map(|row| row[1]).fold(0.0, f64::max));
+    // Work is done, some of it is given back, and the rest is what the cycle cost.
+    assert!(last.len() == 3 && last[1] > 0.0 && last[1] < most && last[2] > 0.0, "{last:?} {most}");
+    assert!((most - last[2] - last[1]).abs() < 1e-4 * most, "{last:?} {most}");
+}
+
+#[test]
 fn simulate_writes_series_figure_and_wave() {
     let folder = tempdir().unwrap();
     let protocol = root().join("examples/protocols/paper-a.toml");

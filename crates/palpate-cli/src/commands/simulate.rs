@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use palpate::simulate::{ContactEventKind, StrainWave, Trajectory};
+use palpate::simulate::{ContactEventKind, Energy, StrainWave, Trajectory};
 use palpate::test_problems::Noise;
 use palpate_files::description::{Protocol, read_protocol};
 use palpate_report::figure::Figure;
@@ -20,7 +20,7 @@ use crate::terminal::{note, print_with};
 const DPI: f64 = 300.0;
 
 pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
-    for path in [&arguments.out, &arguments.wave].into_iter().flatten() {
+    for path in [&arguments.out, &arguments.wave, &arguments.energy].into_iter().flatten() {
         is_csv(path)?;
     }
     let protocol = read_protocol(&arguments.protocol).map_err(|error| {
@@ -32,6 +32,10 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     let trajectory = protocol.simulate().map_err(refused)?;
     let wave = match &arguments.wave {
         Some(_) => Some(protocol.strain_wave().map_err(refused)?),
+        None => None,
+    };
+    let energy = match &arguments.energy {
+        Some(_) => Some(protocol.energy().map_err(refused)?),
         None => None,
     };
     // Everything is made before anything is written.
@@ -48,6 +52,9 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     }
     if let (Some(path), Some(wave)) = (&arguments.wave, wave) {
         write_file(path, wave_table(&wave).to_csv().as_bytes())?;
+    }
+    if let (Some(path), Some(energy)) = (&arguments.energy, energy) {
+        write_file(path, energy_table(&energy).to_csv().as_bytes())?;
     }
     let noisy = arguments.force_noise.is_some() || arguments.displacement_noise.is_some();
     let series = |out: &mut dyn Write| match noisy {
@@ -136,5 +143,22 @@ fn wave_table(wave: &StrainWave) -> Table {
             std::iter::once(Cell::number(wave.time[row], 6)).chain(strains).collect()
         })
         .collect();
+    table
+}
+
+fn energy_table(energy: &Energy) -> Table {
+    let mut table = Table::new("energy", "Work of the jaw and what becomes of it.")
+        .column(TableColumn::new("Time", "time_s", "s"))
+        .column(TableColumn::new("Work", "work_j", "J"))
+        .column(TableColumn::new("Given back", "given_back_j", "J"));
+    let mut columns = vec![&energy.time, &energy.work, &energy.given_back];
+    if let Some(split) = &energy.split {
+        table = table
+            .column(TableColumn::new("Stored", "stored_j", "J"))
+            .column(TableColumn::new("Lost", "lost_j", "J"));
+        columns.extend([&split.stored, &split.lost]);
+    }
+    let row = |i: usize| columns.iter().map(|column| Cell::number(column[i], 6)).collect();
+    table.rows = (0..energy.time.len()).map(row).collect();
     table
 }

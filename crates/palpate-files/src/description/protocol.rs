@@ -6,8 +6,8 @@ use palpate::{
     contact::{Layers, Specimen},
     latency::LatencyLaw,
     simulate::{
-        self, ContactModel, Motion, ProgramStep, ProtocolStep, Sampling, SimulateError, StrainWave, Trajectory,
-        simulate, simulate_program, step_ends, strain_wave, strain_wave_of_program,
+        self, ContactModel, Energy, Motion, ProgramStep, ProtocolStep, Sampling, SimulateError, StrainWave, Trajectory,
+        energy, energy_of_program, simulate, simulate_program, step_ends, strain_wave, strain_wave_of_program,
     },
     units::Dimension,
 };
@@ -51,6 +51,17 @@ impl Protocol {
         match &self.motion {
             Some(motion) => simulate(motion, &self.model, &self.sampling),
             None => simulate_program(&self.steps, &self.model, &self.sampling).map(|(trajectory, _)| trajectory),
+        }
+    }
+
+    /// Work of the jaw over time, and what becomes of it.
+    ///
+    /// # Errors
+    /// [`SimulateError`] as for [`simulate_program`].
+    pub fn energy(&self) -> Result<Energy, SimulateError> {
+        match &self.motion {
+            Some(motion) => energy(motion, &self.model, &self.sampling),
+            None => energy_of_program(&self.steps, &self.model, &self.sampling),
         }
     }
 

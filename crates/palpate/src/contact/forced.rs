@@ -218,6 +218,12 @@ impl Forced {
         }
     }
 
+    /// Ends of the integration steps (s from the start of the piece).
+    pub(crate) fn step_ends(&self) -> impl Iterator<Item = f64> + '_ {
+        let (Path::Held { steps, .. } | Path::Changing(steps)) = &self.path;
+        steps.iter().map(Step::end)
+    }
+
     /// Displacement of the node behind the contact layer a time `elapsed` (s) after the start of the piece, m.
     pub(crate) fn behind_at(&self, elapsed: f64) -> f64 {
         match &self.path {

@@ -10,8 +10,10 @@
 //! | `walk.rs` | goes through a motion piece by piece: in contact, jaw off, in contact again |
 //! | `trajectory.rs` | the series at the asked times |
 //! | `wave.rs` | all layers over time (the strain wave) |
+//! | `energy.rs` | work of the jaw, what is stored and what is lost |
 
 mod course;
+mod energy;
 mod history;
 mod model;
 mod motion;
@@ -21,6 +23,7 @@ mod walk;
 mod wave;
 
 pub use crate::contact::Work;
+pub use energy::{Energy, EnergySplit, energy, energy_of_program};
 pub use history::ForceHistory;
 pub use model::{ContactModel, Separation};
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};

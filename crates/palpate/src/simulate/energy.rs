@@ -1,0 +1,217 @@
+//! Work of the jaw, and what becomes of it.
+
+use serde::{Deserialize, Serialize};
+
+use super::course::Course;
+use super::program::step_ends;
+use super::trajectory::sample_times;
+use super::walk::{Stretch, StretchState, walk};
+use super::{ContactModel, Motion, ProgramStep, Sampling, SimulateError};
+
+/// Energy of a simulated body over time, in J; both contacts of a body that is squeezed from two sides.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Energy {
+    /// Time, s.
+    pub time: Vec<f64>,
+    /// Work that the jaw has done on the body so far, ∫ F dd, less what the body gave back.
+    pub work: Vec<f64>,
+    /// What the body has given back of it so far: work at which force and travel were opposed.
+    pub given_back: Vec<f64>,
+    /// What is stored in the body and what it has lost to heat; `None` of a body whose area grows with the squeeze, where this law does
+    /// not say how much of the difference is stored.
+    pub split: Option<EnergySplit>,
+}
+
+/// Work split into what can be had back and what cannot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EnergySplit {
+    /// Stored: E A u²/(2 depth) + E A depth x²/(2 (m − 1)) a contact.
+    pub stored: Vec<f64>,
+    /// Lost, at the rate E A depth v |x|ⁿ⁺¹/(m − 1) a contact.
+    pub lost: Vec<f64>,
+}
+
+impl Energy {
+    /// What a closed cycle lost: the work between two samples at which the body is in the same state.
+    #[must_use]
+    pub fn lost_between(&self, from: usize, to: usize) -> f64 {
+        self.work[to] - self.work[from]
+    }
+}
+
+/// Energy of `model` under `motion`.
+///
+/// Work is integrated along with the contact, not from samples: its error is that of the force.
+///
+/// ```
+/// use palpate::contact::{Layers, Shape, Sides, Specimen};
+/// use palpate::latency::LatencyLaw;
+/// use palpate::simulate::{ContactModel, Motion, Sampling, Separation, energy};
+///
+/// let block = Shape::Prism { area: 1e-3, length: 0.04 };
+/// let model = ContactModel {
+///     specimen: Specimen::new(block, 1e5, Sides::One)?,
+///     law: LatencyLaw::new(3.0, 100.0)?,
+///     layers: Layers::new(8.0)?,
+///     separation: Separation::Bonded,
+/// };
+/// // 4 mm in 1 s, held for 1000 s: in the end what is stored is elastic, E A d²/(2 L) = 20 mJ.
+/// let squeeze = Motion::new(vec![0.0, 1.0, 1001.0], vec![0.0, 0.004, 0.004])?;
+/// let energy = energy(&squeeze, &model, &Sampling::Times(vec![1.0, 1001.0]))?;
+/// let split = energy.split.as_ref().unwrap();
+/// assert_eq!(energy.work[0], energy.work[1]); // a jaw that stands still does no work
+/// assert!((split.stored[1] - 0.02).abs() < 1e-4 && split.stored[0] > split.stored[1]);
+/// assert!((split.stored[1] + split.lost[1] - energy.work[1]).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As for [`simulate`](super::simulate()).
+pub fn energy(motion: &Motion, model: &ContactModel, sampling: &Sampling) -> Result<Energy, SimulateError> {
+    energy_of(Course::Motion(motion), model, sampling)
+}
+
+/// Energy of `model` under a program, as [`energy`].
+///
+/// # Errors
+/// As for [`simulate_program`](super::simulate_program).
+pub fn energy_of_program(
+    program: &[ProgramStep],
+    model: &ContactModel,
+    sampling: &Sampling,
+) -> Result<Energy, SimulateError> {
+    let ends = step_ends(program, model)?;
+    let times: Vec<f64> = [0.0].into_iter().chain(ends.iter().map(|end| end.time)).collect();
+    energy_of(Course::Program(program, &times), model, sampling)
+}
+
+fn energy_of(course: Course<'_>, model: &ContactModel, sampling: &Sampling) -> Result<Energy, SimulateError> {
+    let time = sample_times(course, sampling)?;
+    let contacts = 1.0 / model.specimen.contact_displacement(1.0);
+    let mut account = Account::default();
+    let (mut work, mut given_back, mut stored) = (Vec::new(), Vec::new(), Vec::new());
+    let last = course.end();
+    walk(course, model, |stretch| {
+        let inside = |time: f64| time < stretch.end || stretch.end == last;
+        let mut at = stretch.start;
+        while let Some(&next) = time.get(work.len()).filter(|time| inside(**time)) {
+            account.add(stretch, model, (at, next));
+            at = next;
+            work.push(account.work * contacts);
+            given_back.push(account.given_back * contacts);
+            stored.push(stored_at(stretch, model, next) * contacts);
+        }
+        account.add(stretch, model, (at, stretch.end));
+        Ok(())
+    })?;
+    let split = model.specimen.has_constant_section().then(|| EnergySplit {
+        lost: work.iter().zip(&stored).map(|(work, stored)| work - stored).collect(),
+        stored,
+    });
+    match work.iter().position(|work| !work.is_finite()) {
+        Some(index) => Err(SimulateError::OutOfRange { time: time[index] }),
+        None => Ok(Energy {
+            time,
+            work,
+            given_back,
+            split,
+        }),
+    }
+}
+
+/// What one contact's share of the jaw has done so far, J.
+#[derive(Default)]
+struct Account {
+    work: f64,
+    given_back: f64,
+}
+
+impl Account {
+    /// Adds the work from one time to another inside a stretch.
+    fn add(&mut self, stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64)) {
+        let kinks: Vec<f64> = match &stretch.state {
+            StretchState::Touching(element) if stretch.contact_speed != 0.0 => element.step_ends().collect(),
+            StretchState::Forced(forced) => forced.step_ends().collect(),
+            StretchState::Touching(_) | StretchState::Free { .. } => return,
+        };
+        let kinks = kinks.into_iter().map(|elapsed| stretch.start + elapsed);
+        let mut before = from;
+        for end in kinks.filter(|kink| from < *kink && *kink < to).chain([to]) {
+            let work = work_between(stretch, model, (before, end));
+            self.work += work;
+            self.given_back += (-work).max(0.0);
+            before = end;
+        }
+    }
+}
+
+/// ∫ F du over a smooth piece. Under a force by parts, since it is u that begins like √t at first touch.
+fn work_between(stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64)) -> f64 {
+    let specimen = &model.specimen;
+    match &stretch.state {
+        StretchState::Touching(element) => {
+            let power = |time: f64| {
+                let u = stretch.jaw_at(time);
+                let strain = element.excess_at(time - stretch.start) + specimen.equilibrium_strain(u);
+                specimen.force(strain, u) * stretch.contact_speed
+            };
+            integral(power, from, to)
+        }
+        StretchState::Forced(forced) => {
+            let force = |time: f64| forced.force_at(time - stretch.start);
+            let u = |time: f64| stretch.jaw_at(time);
+            let slope = (force(to) - force(from)) / (to - from).max(f64::MIN_POSITIVE);
+            // Against the displacement at one end, so that a held force keeps its digits.
+            let (start, end) = (u(from), u(to));
+            force(to) * (end - start) - slope * integral(|time| u(time) - start, from, to)
+        }
+        StretchState::Free { .. } => 0.0,
+    }
+}
+
+/// What one contact of a body of constant section stores, J.
+fn stored_at(stretch: &Stretch, model: &ContactModel, time: f64) -> f64 {
+    let (specimen, elapsed) = (&model.specimen, time - stretch.start);
+    let depth = specimen.depth();
+    let (u, excess) = match &stretch.state {
+        StretchState::Touching(element) => (stretch.jaw_at(time), element.excess_at(elapsed)),
+        StretchState::Forced(forced) => {
+            let state = forced.at(elapsed);
+            (state.displacement, state.excess)
+        }
+        StretchState::Free { surface, since } => {
+            let u = surface.displacement_at(time - since);
+            (u, -u / depth)
+        }
+    };
+    let (stiffness, _) = specimen.stiffness(u);
+    let elastic = 0.5 * stiffness * u * u / depth;
+    // A single layer has no excess.
+    if excess == 0.0 {
+        return elastic;
+    }
+    elastic + 0.5 * stiffness * depth * excess * excess / (model.layers.count() - 1.0)
+}
+
+/// Gauss and Legendre's rule with eight points.
+fn integral(f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
+    const NODES: [(f64, f64); 4] = [
+        (0.183_434_642_495_649_8, 0.362_683_783_378_361_98),
+        (0.525_532_409_916_329, 0.313_706_645_877_887_3),
+        (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
+        (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
+    ];
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    half * NODES.iter().map(|(x, weight)| weight * (f(middle - half * x) + f(middle + half * x))).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rule_integrates_polynomials_of_degree_15() {
+        let exact = (3f64.powi(16) - 1.0) / 16.0;
+        assert!((integral(|x| x.powi(15), 1.0, 3.0) / exact - 1.0).abs() < 1e-14);
+    }
+}

@@ -1,0 +1,123 @@
+//! Work of the jaw: the exact split at constant section, closed cycles, no work where nothing moves.
+
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
+use palpate::contact::{Layers, Shape, Sides, Specimen};
+use palpate::latency::LatencyLaw;
+use palpate::simulate::{
+    ContactModel, Energy, Motion, ProgramStep, Sampling, Separation, energy, energy_of_program, simulate,
+};
+
+fn model(shape: Shape, exponent: f64, rate: f64, layers: f64, separation: Separation) -> ContactModel {
+    ContactModel {
+        specimen: Specimen::new(shape, 1e5, Sides::Two).unwrap(),
+        law: LatencyLaw::new(exponent, rate).unwrap(),
+        layers: Layers::new(layers).unwrap(),
+        separation,
+    }
+}
+
+const BLOCK: Shape = Shape::Prism {
+    area: 1e-3,
+    length: 0.08,
+};
+
+/// d/dt of what is lost, from samples of the excess strain: E A depth v |x|ⁿ⁺¹/(m − 1) for each of two contacts.
+fn loss_by_the_law(model: &ContactModel, motion: &Motion, times: &[f64]) -> Vec<f64> {
+    let result = simulate(motion, model, &Sampling::Times(times.to_vec())).unwrap();
+    let (n, v) = (model.law.exponent(), model.law.rate_coefficient());
+    let scale = 1e5 * 1e-3 * model.specimen.depth() / (model.layers.count() - 1.0);
+    let rate: Vec<f64> = result.excess_strain.iter().map(|x| 2.0 * scale * v * x.abs().powf(n + 1.0)).collect();
+    let mut lost = vec![0.0];
+    for i in 1..times.len() {
+        lost.push(lost[i - 1] + 0.5 * (rate[i] + rate[i - 1]) * (times[i] - times[i - 1]));
+    }
+    lost
+}
+
+#[test]
+fn at_constant_section_work_is_stored_or_lost_by_the_law() {
+    let times: Vec<f64> = (0..=20_000).map(|i| 1e-3 * f64::from(i)).collect();
+    for (exponent, rate, layers) in [(1.0, 2.0, 8.0), (2.0, 50.0, 8.5), (5.0, 2e4, 64.0), (0.5, 0.5, 4.0)] {
+        for separation in [Separation::Bonded, Separation::Unilateral] {
+            let model = model(BLOCK, exponent, rate, layers, separation);
+            let motion =
+                Motion::new(vec![0.0, 2.0, 6.0, 7.0, 12.0, 20.0], vec![0.0, 0.02, 0.02, 0.0, 0.01, 0.004]).unwrap();
+            let energy = energy(&motion, &model, &Sampling::Times(times.clone())).unwrap();
+            let split = energy.split.unwrap();
+            let by_law = loss_by_the_law(&model, &motion, &times);
+            let most = *by_law.last().unwrap();
+            for i in 0..times.len() {
+                let off = (split.lost[i] - by_law[i]).abs();
+                assert!(
+                    off < 2e-5 * most,
+                    "n = {exponent}, {separation:?}, t = {}: {} {}",
+                    times[i],
+                    split.lost[i],
+                    by_law[i]
+                );
+                // Nothing is won back from heat.
+                assert!(i == 0 || split.lost[i] >= split.lost[i - 1] - 1e-13 * most, "t = {}", times[i]);
+                assert!(split.stored[i] >= 0.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_closed_cycle_of_the_papers_ball_loses_what_is_not_given_back() {
+    let ball = Shape::Ball { radius: 0.035 };
+    let model = model(ball, 5.0, 2e4, 8.0, Separation::Unilateral);
+    let motion = Motion::new(vec![0.0, 1.0, 2.0, 1e4], vec![0.0, 0.02, 0.0, 0.0]).unwrap();
+    let samples = Sampling::Times(vec![0.0, 1.0, 2.0, 1e4]);
+    let energy: Energy = energy(&motion, &model, &samples).unwrap();
+    assert!(energy.split.is_none());
+    assert_eq!(energy.work[2], energy.work[3]);
+    let (done, back) = (energy.work[1], energy.given_back[2]);
+    assert!(done > 0.0 && back > 0.0 && back < done);
+    assert!((energy.lost_between(0, 3) - (done - back)).abs() < 1e-15);
+    // By the trapezoidal rule from the series.
+    let times: Vec<f64> = (0..=200_000).map(|i| 1e-5 * f64::from(i)).collect();
+    let series = simulate(&motion, &model, &Sampling::Times(times)).unwrap();
+    let area: f64 = (1..series.len())
+        .map(|i| 0.5 * (series.force[i] + series.force[i - 1]) * (series.displacement[i] - series.displacement[i - 1]))
+        .sum();
+    assert!((area / energy.work[2] - 1.0).abs() < 1e-7, "{area} {}", energy.work[2]);
+}
+
+#[test]
+fn under_a_force_work_is_force_times_way() {
+    for shape in [BLOCK, Shape::Ball { radius: 0.04 }] {
+        let model = model(shape, 3.0, 500.0, 8.0, Separation::Unilateral);
+        let program = [
+            ProgramStep::Press { to: 8.0, rate: 4.0 },
+            ProgramStep::HoldForce { duration: 30.0 },
+            ProgramStep::Press { to: 2.0, rate: 6.0 },
+            ProgramStep::HoldForce { duration: 5.0 },
+        ];
+        let times: Vec<f64> = (0..=38_000).map(|i| 1e-3 * f64::from(i)).collect();
+        let sampling = Sampling::Times(times.clone());
+        let energy = energy_of_program(&program, &model, &sampling).unwrap();
+        let (series, _) = palpate::simulate::simulate_program(&program, &model, &sampling).unwrap();
+        let mut by_samples = 0.0;
+        for i in 1..times.len() {
+            by_samples +=
+                0.5 * (series.force[i] + series.force[i - 1]) * (series.displacement[i] - series.displacement[i - 1]);
+            assert!((energy.work[i] - by_samples).abs() < 1e-5 * energy.work[2000], "{shape:?} t = {}", times[i]);
+        }
+        // While the force is held the jaw follows: F Δd.
+        let creep = 8.0 * (series.displacement[32_000] - series.displacement[2000]);
+        assert!((energy.work[32_000] - energy.work[2000] - creep).abs() < 1e-12);
+        if let Some(split) = energy.split {
+            assert!((0..times.len()).all(|i| i == 0 || split.lost[i] >= split.lost[i - 1] - 1e-12));
+        }
+    }
+}
+
+#[test]
+fn one_layer_loses_nothing() {
+    let model = model(BLOCK, 5.0, 2e4, 1.0, Separation::Bonded);
+    let motion = Motion::new(vec![0.0, 1.0, 3.0], vec![0.0, 0.02, -0.01]).unwrap();
+    let energy = energy(&motion, &model, &Sampling::Times(vec![0.0, 0.5, 1.0, 2.0, 3.0])).unwrap();
+    assert!(energy.split.unwrap().lost.iter().all(|lost| lost.abs() < 1e-16));
+}
