@@ -158,7 +158,7 @@ fn energy_table(energy: &Energy) -> Table {
             .column(TableColumn::new("Lost", "lost_j", "J"));
         columns.extend([&split.stored, &split.lost]);
     }
-    let row = |i: usize| columns.iter().map(|column| Cell::number(column[i], 6)).collect();
+    let row = |i: usize| columns.iter().map(|column| Cell::number(column[i], 9)).collect();
     table.rows = (0..energy.time.len()).map(row).collect();
     table
 }
