@@ -11,21 +11,21 @@ use serde::Deserialize;
 
 use super::{error::DescriptionError, quantity::QuantityText, source::Source};
 
-/// Shape, size and stiffness of the body. Give the sizes that its shape needs: a ball takes radius; a strip
-/// takes width, thickness and length; a cylinder takes diameter and length; a block takes area and length.
+/// Shape, size and stiffness of the body. Give the sizes that its shape needs: a ball takes radius; a pad takes
+/// radius and thickness; a strip takes width, thickness and length; a cylinder takes diameter and length; a block takes area and length.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Specimen")]
 pub(super) struct SpecimenTable {
     /// The shape of the body.
     shape: ShapeName,
-    /// Radius of a ball.
+    /// Radius of a ball; outer radius of a pad.
     radius: Option<QuantityText>,
     /// Diameter of a cylinder that is loaded along its axis.
     diameter: Option<QuantityText>,
     /// Width of the section of a strip.
     width: Option<QuantityText>,
-    /// Thickness of the section of a strip.
+    /// Thickness of the section of a strip; of the soft layer of a pad, at most its radius.
     thickness: Option<QuantityText>,
     /// Area of the section of a block, which carries the force.
     area: Option<QuantityText>,
@@ -40,6 +40,8 @@ pub(super) struct SpecimenTable {
 enum ShapeName {
     /// A ball between flat plates; the contact grows with the squeeze.
     Ball,
+    /// A spherical fingertip: a soft pad over a rigid core.
+    Pad,
     /// A strip of rectangular section, pulled or pressed along its length.
     Strip,
     /// A cylinder, pulled or pressed along its axis.
@@ -54,6 +56,7 @@ impl ShapeName {
     fn name(self) -> &'static str {
         match self {
             Self::Ball => "ball",
+            Self::Pad => "pad",
             Self::Strip => "strip",
             Self::Cylinder => "cylinder",
             Self::Block => "block",
@@ -65,6 +68,7 @@ impl ShapeName {
     fn sizes(self) -> &'static [&'static str] {
         match self {
             Self::Ball => &["radius"],
+            Self::Pad => &["radius", "thickness"],
             Self::Strip => &["width", "thickness", "length"],
             Self::Cylinder => &["diameter", "length"],
             Self::Block => &["area", "length"],
@@ -87,6 +91,14 @@ impl SpecimenTable {
             ShapeName::Ball => Shape::Ball {
                 radius: length("radius", &self.radius)?,
             },
+            ShapeName::Pad => {
+                let (radius, thickness) = (length("radius", &self.radius)?, length("thickness", &self.thickness)?);
+                if let Some(written) = self.thickness.as_ref().filter(|_| thickness > radius) {
+                    let expected = "a thickness of at most the radius of the pad";
+                    return Err(source.value("specimen.thickness", expected, written));
+                }
+                Shape::Pad { radius, thickness }
+            }
             ShapeName::Strip => Shape::Prism {
                 area: length("width", &self.width)? * length("thickness", &self.thickness)?,
                 length: length("length", &self.length)?,
@@ -111,7 +123,7 @@ impl SpecimenTable {
     /// Refuses a body without a shape, which cannot be simulated.
     pub(super) fn known_shape(&self, source: &Source<'_>) -> Result<Shape, DescriptionError> {
         self.shape(source)?.ok_or_else(|| {
-            let expected = "\"ball\", \"strip\", \"cylinder\" or \"block\"";
+            let expected = "\"ball\", \"pad\", \"strip\", \"cylinder\" or \"block\"";
             source.value("specimen.shape", expected, "\"none\"")
         })
     }
@@ -155,6 +167,6 @@ impl SpecimenTable {
 pub(super) fn usual_sides(shape: &Shape) -> Sides {
     match shape {
         Shape::Ball { .. } => Sides::Two,
-        Shape::Prism { .. } => Sides::One,
+        Shape::Pad { .. } | Shape::Prism { .. } => Sides::One,
     }
 }

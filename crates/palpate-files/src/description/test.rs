@@ -135,7 +135,7 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
     let ball = matches!(
         geometry,
         Some(Geometry {
-            shape: Shape::Ball { .. },
+            shape: Shape::Ball { .. } | Shape::Pad { .. },
             ..
         })
     );

@@ -76,7 +76,7 @@ fn needed(key: &str) -> &'static str {
         "specimen" => "a table [specimen] with the shape and size of the body",
         "law" => "a table [law] with name, exponent and rate_coefficient",
         "step" => "one or more [[step]] tables with to and rate",
-        "shape" => "\"ball\", \"strip\", \"cylinder\" or \"block\"",
+        "shape" => "\"ball\", \"pad\", \"strip\", \"cylinder\" or \"block\"",
         "name" => "\"latency\"",
         "exponent" => "a number above 0, such as 5",
         "rate_coefficient" => "a rate, such as \"2e4 /s\"",

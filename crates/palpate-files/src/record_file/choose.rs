@@ -207,7 +207,7 @@ impl<'a> Chooser<'a> {
         match test.geometry.map(|body| body.shape) {
             None => Ok((1.0, true)),
             Some(Shape::Prism { area, .. }) => Ok((area, false)),
-            Some(Shape::Ball { .. }) => Err(ColumnError::NoSection {
+            Some(Shape::Ball { .. } | Shape::Pad { .. }) => Err(ColumnError::NoSection {
                 path: self.path.to_owned(),
                 column: NamedColumn::from(stress.column),
             }),

@@ -26,7 +26,7 @@ fn a_short_protocol_has_the_usual_rest() {
 
 #[test]
 fn shapes_and_choices() {
-    let strip = "shape = \"strip\"\nwidth = \"10 mm\"\nthickness = \"4 mm\"\nlength = \"20 mm\"";
+    let strip = "shape = \"strip\"\nwidth = \"10 mm\"\nthickness = \"10 mm\"\nlength = \"20 mm\"";
     let strip = with("shape = \"ball\"\nradius = \"35 mm\"", strip);
     let model = protocol(&strip).unwrap().model;
     assert_eq!(
@@ -51,6 +51,15 @@ fn shapes_and_choices() {
             length: 0.035
         }
     );
+    let pad = with("\"ball\"\nradius", "\"pad\"\nthickness = \"10 mm\"\nradius");
+    let model = protocol(&pad).unwrap().model;
+    let shape = Shape::Pad {
+        radius: 0.035,
+        thickness: 0.01,
+    };
+    assert_eq!((model.specimen.shape(), model.specimen.sides()), (shape, Sides::One));
+    let too_thick = protocol(&pad.replace("\"10 mm\"", "\"36 mm\""));
+    says(too_thick, "specimen.thickness", "at most the radius of the pad, found \"36 mm\"", "");
     let thick = with(
         "[contact]",
         "[contact]\nlayer_thickness = \"4.375 mm\"\nseparation = false\nsqueezed_from = \"one side\"",
@@ -151,7 +160,7 @@ fn absurd_values_name_their_keys() {
             "\"ball\"",
             "\"bal\"",
             "specimen.shape",
-            "\"ball\", \"strip\", \"cylinder\", \"block\" or \"none\", found \"bal\"",
+            "\"ball\", \"pad\", \"strip\", \"cylinder\", \"block\" or \"none\", found \"bal\"",
         ),
         ("\"latency\"", "\"maxwell\"", "law.name", "expected \"latency\", found \"maxwell\""),
         (
@@ -197,7 +206,7 @@ fn what_is_missing_or_too_much_is_named() {
         "such as \"28 kPa\"",
         "modulus = \"28 kPa\"",
     );
-    says(protocol(&with("shape = \"ball\"", "")), "specimen.shape", "\"ball\", \"strip\"", "");
+    says(protocol(&with("shape = \"ball\"", "")), "specimen.shape", "\"ball\", \"pad\", \"strip\"", "");
     says(
         protocol(&with("exponent = 5", "")),
         "law.exponent",

@@ -9,7 +9,7 @@ fn schemas_have_titles_words_and_strict_keys() {
     assert_eq!(protocol["additionalProperties"], false);
     assert_eq!(protocol["required"], serde_json::json!(["specimen", "law", "step"]));
     let text = protocol.to_string();
-    for word in ["two sides", "layer_thickness", "such as \\\"35 mm\\\"", "Radius of a ball."] {
+    for word in ["two sides", "layer_thickness", "such as \\\"35 mm\\\"", "Radius of a ball; outer radius of a pad."] {
         assert!(text.contains(word), "{word}");
     }
     let test = schema_test();

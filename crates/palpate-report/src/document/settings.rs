@@ -10,14 +10,17 @@ use serde::Serialize;
 /// Resolved settings.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct SettingsDocument {
-    /// `ball`, `prism` or `none`.
+    /// `ball`, `pad`, `prism` or `none`.
     pub shape: String,
-    /// Radius of a ball, m.
+    /// Radius of a ball or a pad, m.
     pub radius_m: Option<f64>,
     /// Section of a prism, m².
     pub area_m2: Option<f64>,
     /// Length of a prism, m.
     pub length_m: Option<f64>,
+    /// Thickness of a pad, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thickness_m: Option<f64>,
     /// Modulus, Pa.
     pub modulus_pa: Option<f64>,
     /// `given` or `estimated`.
@@ -74,12 +77,17 @@ impl SettingsDocument {
         Self {
             shape: match shape {
                 Some(Shape::Ball { .. }) => "ball",
+                Some(Shape::Pad { .. }) => "pad",
                 Some(Shape::Prism { .. }) => "prism",
                 None => "none",
             }
             .to_owned(),
             radius_m: match shape {
-                Some(Shape::Ball { radius }) => Some(radius),
+                Some(Shape::Ball { radius } | Shape::Pad { radius, .. }) => Some(radius),
+                _ => None,
+            },
+            thickness_m: match shape {
+                Some(Shape::Pad { thickness, .. }) => Some(thickness),
                 _ => None,
             },
             area_m2: match shape {

@@ -13,6 +13,14 @@ pub enum Shape {
         /// Radius r in m.
         radius: f64,
     },
+    /// A spherical fingertip: a soft pad of even thickness over a rigid core, pressed by a flat; equation (7) with the pad as deep as it is
+    /// thick.
+    Pad {
+        /// Outer radius R in m.
+        radius: f64,
+        /// Thickness of the soft layer in m, at most the radius; equal to it, the pad is a ball without a core.
+        thickness: f64,
+    },
     /// A body of constant section: strip, block, cylinder or a flat punch on a layer.
     Prism {
         /// Cross-section that carries the force, in m².
@@ -25,11 +33,12 @@ pub enum Shape {
 impl Shape {
     /// Distance from an undeformed contact to the plane that does not move, in m: the depth that is cut into layers.
     ///
-    /// The radius of a ball; the length of a prism, half of it when both ends move.
+    /// The radius of a ball; the thickness of a pad; the length of a prism, half of it when both ends move.
     #[must_use]
     pub fn depth(self, sides: Sides) -> f64 {
         match (self, sides) {
             (Self::Ball { radius }, _) => radius,
+            (Self::Pad { thickness, .. }, _) => thickness,
             (Self::Prism { length, .. }, Sides::One) => length,
             (Self::Prism { length, .. }, Sides::Two) => length / 2.0,
         }
@@ -68,6 +77,14 @@ pub enum SpecimenError {
         /// What was given, in that unit.
         found: f64,
     },
+    /// A pad thicker than its radius.
+    #[error("the thickness of a pad must be at most its radius of {radius} m, found {found} m")]
+    PadTooThick {
+        /// Radius, m.
+        radius: f64,
+        /// What was given, m.
+        found: f64,
+    },
     /// A contact displacement that is not below the depth of the body.
     #[error("contact displacement must stay below the {limit_name} of {limit} m, found {found} m")]
     TooDeep {
@@ -78,8 +95,10 @@ pub enum SpecimenError {
         /// The contact displacement asked for, in m.
         found: f64,
     },
-    /// A ball pulled away beyond the first touch while bonded to the jaw.
-    #[error("a ball has no contact area beyond first touch: contact displacement must be 0 m or more, found {found} m")]
+    /// A ball or a pad pulled away beyond the first touch while bonded to the jaw.
+    #[error(
+        "a round body has no contact area beyond first touch: contact displacement must be 0 m or more, found {found} m"
+    )]
     PulledOff {
         /// The contact displacement asked for, in m.
         found: f64,
@@ -103,6 +122,16 @@ impl Specimen {
         positive("modulus", "Pa", modulus)?;
         match shape {
             Shape::Ball { radius } => positive("radius", "m", radius)?,
+            Shape::Pad { radius, thickness } => {
+                positive("radius", "m", radius)?;
+                positive("thickness", "m", thickness)?;
+                if thickness > radius {
+                    return Err(SpecimenError::PadTooThick {
+                        radius,
+                        found: thickness,
+                    });
+                }
+            }
             Shape::Prism { area, length } => {
                 positive("area", "m²", area)?;
                 positive("length", "m", length)?;
@@ -147,11 +176,11 @@ impl Specimen {
     /// Contact area A in m² at contact displacement u₁ (m).
     ///
     /// A ball: A = π [r² − (r − u₁)²] = π (2 r u₁ − u₁²), equation (7), from 0 at first touch to π r² at u₁ = r;
-    /// zero before first touch. A prism: its section, whatever the displacement.
+    /// zero before first touch. A pad: the same with its outer radius, up to where it is pressed flat on the core. A prism: its section, whatever the displacement.
     #[must_use]
     pub fn contact_area(&self, contact_displacement: f64) -> f64 {
         match self.shape {
-            Shape::Ball { radius } => {
+            Shape::Ball { radius } | Shape::Pad { radius, .. } => {
                 let u = contact_displacement.max(0.0);
                 PI * u * (2.0 * radius - u)
             }
@@ -174,8 +203,10 @@ impl Specimen {
     /// S = E A(u₁), the force per strain of the contact layer (N), and its slope dS/du₁ (N/m).
     pub(crate) fn stiffness(&self, contact_displacement: f64) -> (f64, f64) {
         let growth = match self.shape {
-            Shape::Ball { radius } if contact_displacement >= 0.0 => 2.0 * PI * (radius - contact_displacement),
-            Shape::Ball { .. } | Shape::Prism { .. } => 0.0,
+            Shape::Ball { radius } | Shape::Pad { radius, .. } if contact_displacement >= 0.0 => {
+                2.0 * PI * (radius - contact_displacement)
+            }
+            _ => 0.0,
         };
         (self.modulus * self.contact_area(contact_displacement), self.modulus * growth)
     }
@@ -197,6 +228,7 @@ impl Specimen {
             return Err(SpecimenError::TooDeep {
                 limit_name: match (self.shape, self.sides) {
                     (Shape::Ball { .. }, _) => "radius",
+                    (Shape::Pad { .. }, _) => "thickness of the pad",
                     (Shape::Prism { .. }, Sides::One) => "length",
                     (Shape::Prism { .. }, Sides::Two) => "half length",
                 },
@@ -204,7 +236,7 @@ impl Specimen {
                 found: contact_displacement,
             });
         }
-        if bonded && contact_displacement < 0.0 && matches!(self.shape, Shape::Ball { .. }) {
+        if bonded && contact_displacement < 0.0 && !self.has_constant_section() {
             return Err(SpecimenError::PulledOff {
                 found: contact_displacement,
             });
@@ -233,6 +265,33 @@ mod tests {
         assert!((ball.contact_area(0.035) - PI * 0.035 * 0.035).abs() < 1e-18);
         // π (35² − 32.5²) mm² = π · 168.75 mm²
         assert!((ball.contact_area(0.0025) - PI * 168.75e-6).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_pad_as_thick_as_its_radius_is_a_ball_and_a_thin_one_is_stiff() {
+        let pad = |thickness| {
+            let shape = Shape::Pad {
+                radius: 0.01,
+                thickness,
+            };
+            Specimen::new(shape, 1e5, Sides::One)
+        };
+        let ball = Specimen::new(Shape::Ball { radius: 0.01 }, 1e5, Sides::One).unwrap();
+        let (thick, thin) = (pad(0.01).unwrap(), pad(0.002).unwrap());
+        for u in [0.0, 1e-4, 1.9e-3] {
+            let force = |body: &Specimen| body.force(body.equilibrium_strain(u), u);
+            assert_eq!(force(&thick), force(&ball));
+            assert!((force(&thin) - 5.0 * force(&ball)).abs() < 1e-12);
+        }
+        assert!(matches!(pad(0.011), Err(SpecimenError::PadTooThick { .. })));
+        let flat = thin.check_contact_displacement(0.002, false);
+        assert!(matches!(
+            flat,
+            Err(SpecimenError::TooDeep {
+                limit_name: "thickness of the pad",
+                ..
+            })
+        ));
     }
 
     #[test]

@@ -110,8 +110,8 @@ impl LoadingCurve {
             level: median(&mut displacement[hold.start..hold.end].to_vec()),
             speed,
             radius: match body {
-                Some((Shape::Ball { radius }, Sides::Two)) => Some(2.0 * radius),
-                Some((Shape::Ball { radius }, Sides::One)) => Some(radius),
+                Some((Shape::Ball { radius } | Shape::Pad { radius, .. }, Sides::Two)) => Some(2.0 * radius),
+                Some((Shape::Ball { radius } | Shape::Pad { radius, .. }, Sides::One)) => Some(radius),
                 _ => None,
             },
             laws,
