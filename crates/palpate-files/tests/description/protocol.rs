@@ -26,7 +26,7 @@ fn a_short_protocol_has_the_usual_rest() {
 
 #[test]
 fn shapes_and_choices() {
-    let strip = "shape = \"strip\"\nwidth = \"10 mm\"\nthickness = \"10 mm\"\nlength = \"20 mm\"";
+    let strip = "shape = \"strip\"\nwidth = \"10 mm\"\nthickness = \"4 mm\"\nlength = \"20 mm\"";
     let strip = with("shape = \"ball\"\nradius = \"35 mm\"", strip);
     let model = protocol(&strip).unwrap().model;
     assert_eq!(
