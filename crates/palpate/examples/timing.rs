@@ -8,7 +8,7 @@ use std::time::Instant;
 use palpate::choose::{CompareOptions, compare_laws};
 use palpate::identify::{ExponentChoice, FitOptions, LawOptions, Samples, fit_hold, fit_law};
 use palpate::laws::Law;
-use palpate::simulate::{Sampling, Separation, simulate, simulate_force};
+use palpate::simulate::{ContactState, Sampling, Separation, simulate, simulate_force};
 use palpate::test_problems::{Noise, noisy_hold, paper_ball, paper_test_a};
 
 fn main() {
@@ -19,6 +19,14 @@ fn main() {
         black_box(simulate_force(black_box(&motion), &model, &times)).is_ok()
     });
     report("simulate_protocol_a", 400, || black_box(simulate(black_box(&motion), &model, &sampling)).is_ok());
+    let (mut contact, mut tick) = (ContactState::default(), 0u32);
+    report("real_time_step_1000", 400, || {
+        (0..1000).all(|_| {
+            tick = (tick + 1) % 4000;
+            let displacement = 5e-6 * f64::from(tick.min(4000 - tick));
+            black_box(contact.step(black_box(&model), 1e-3, displacement)).is_ok()
+        })
+    });
     let (times, values) = noisy_hold(1000, 5.0, 1e-3);
     let options = FitOptions::default();
     report("fit_hold_1000", 400, || {

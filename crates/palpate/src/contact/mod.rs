@@ -19,6 +19,7 @@ mod free_surface;
 mod layers;
 mod specimen;
 
+pub(crate) use balance::{Layer, carried_at};
 pub(crate) use element::Element;
 pub(crate) use forced::{Body, Forced};
 pub(crate) use free_surface::FreeSurface;

@@ -10,6 +10,7 @@
 //! | `walk.rs` | goes through a motion piece by piece: in contact, jaw off, in contact again |
 //! | `trajectory.rs` | the series at the asked times |
 //! | `wave.rs` | all layers over time (the strain wave) |
+//! | `step.rs` | one step at a time, for controllers |
 //! | `energy.rs` | work of the jaw, what is stored and what is lost |
 
 mod course;
@@ -18,6 +19,7 @@ mod history;
 mod model;
 mod motion;
 mod program;
+mod step;
 mod trajectory;
 mod walk;
 mod wave;
@@ -28,6 +30,7 @@ pub use history::ForceHistory;
 pub use model::{ContactModel, Separation};
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};
 pub use program::{ProgramStep, StepEnd, step_ends};
+pub use step::{ContactState, StepError};
 pub use trajectory::{Sampling, Trajectory, simulate, simulate_force, simulate_program, simulate_under_force};
 pub use walk::{ContactEvent, ContactEventKind};
 pub use wave::{StrainWave, strain_wave, strain_wave_of_program, strain_wave_under_force};

@@ -1,0 +1,262 @@
+//! One step at a time, for controllers: what the contact does between two ticks of a clock.
+//!
+//! The whole state is the node behind the contact layer and the place of the jaw. A step of the jaw by Δu over dt splits the law of the contact
+//! layer, ẋ = g − v sgn(x)|x|ⁿ with g dt = Δu (m − 1)/depth, into half the drive, the closed form (4), (5) over dt, and the other half
+//! (Strang 1968): second order in dt, exact while the jaw stands still, stable at any dt, one power a step. With dt = 0 the contact
+//! layer takes the travel at once.
+
+use serde::{Deserialize, Serialize};
+
+use super::{ContactModel, Separation};
+use crate::contact::{Layer, SpecimenError, carried_at};
+
+/// The state of a contact between two steps: two numbers.
+///
+/// ```
+/// use palpate::contact::{Layers, Shape, Sides, Specimen};
+/// use palpate::latency::LatencyLaw;
+/// use palpate::simulate::{ContactModel, ContactState, Separation};
+///
+/// let model = ContactModel {
+///     specimen: Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two)?,
+///     law: LatencyLaw::new(5.0, 2e4)?,
+///     layers: Layers::new(8.0)?,
+///     separation: Separation::Unilateral,
+/// };
+/// let mut contact = ContactState::default();
+/// // 5 mm within 0.6 s at 1 kHz, then a hold of 10 s in one step
+/// let mut force = 0.0;
+/// for i in 1..=600 {
+///     force = contact.step(&model, 1e-3, 0.005 * f64::from(i) / 600.0)?;
+/// }
+/// assert!((force - 3.035_025).abs() < 1e-5);
+/// force = contact.step(&model, 10.0, 0.005)?;
+/// assert!((force - 1.556_133).abs() < 1e-5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactState {
+    /// One contact's share of the jaw's displacement, m.
+    jaw: f64,
+    /// Displacement of the node behind the contact layer, m: where the surface is once it is free.
+    behind: f64,
+}
+
+/// A step that cannot be taken; the state is as before.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// A time step, displacement or force that is NaN or infinite, or a time step below zero.
+    #[error("{name} must be finite and a time step 0 s or more, found {found}")]
+    Number {
+        /// `time step`, `displacement` or `force`.
+        name: &'static str,
+        /// What was given.
+        found: f64,
+    },
+    /// A displacement that the body cannot take.
+    #[error(transparent)]
+    Displacement(#[from] SpecimenError),
+    /// A force that no displacement carries, or that pulls where nothing can be pulled.
+    #[error("no displacement that the body can take carries {force} N")]
+    Force {
+        /// What was given, N.
+        force: f64,
+    },
+}
+
+impl ContactState {
+    /// Moves the jaw to `displacement` (m, since first touch) within `dt` (s) and returns the contact force (N).
+    ///
+    /// # Errors
+    /// [`StepError`] for numbers that are not finite, a negative time step, and a displacement that the body cannot take.
+    pub fn step(&mut self, model: &ContactModel, dt: f64, displacement: f64) -> Result<f64, StepError> {
+        check_step(dt, "displacement", displacement)?;
+        let (specimen, bonded) = (&model.specimen, model.separation == Separation::Bonded);
+        let to = specimen.contact_displacement(displacement);
+        specimen.check_contact_displacement(to, bonded)?;
+        let was_touching = bonded || self.jaw >= self.behind;
+        let next = if was_touching {
+            let next = self.pressed(model, dt, to);
+            if bonded || next.jaw >= next.behind { next } else { self.left(model, dt, to) }
+        } else {
+            self.met(model, dt, to)
+        };
+        *self = next;
+        Ok(self.force(model))
+    }
+
+    /// Brings the force to `force` (N) within `dt` (s) and returns the displacement of the jaw (m).
+    ///
+    /// The layer takes half the change at once, creeps for dt, and takes the other half: second order in dt, stable at any. At no force
+    /// the jaw follows the surface.
+    ///
+    /// # Errors
+    /// [`StepError`] for numbers that are not finite, a negative time step, and a force that no displacement carries.
+    pub fn step_force(&mut self, model: &ContactModel, dt: f64, force: f64) -> Result<f64, StepError> {
+        check_step(dt, "force", force)?;
+        let (specimen, bonded) = (&model.specimen, model.separation == Separation::Bonded);
+        let (depth, thickness) = (specimen.depth(), model.layers.thickness(specimen.depth()));
+        if force < 0.0 && !(bonded && specimen.has_constant_section()) {
+            return Err(StepError::Force { force });
+        }
+        let refused = StepError::Force { force };
+        let at = |force: f64, behind: f64| {
+            carried_at(specimen, Layer::Behind { behind, thickness }, force, bonded).ok_or(refused)
+        };
+        let held = |force: f64, excess: f64| carried_at(specimen, Layer::Excess(excess), force, bonded).ok_or(refused);
+        let halfway = 0.5 * (self.force(model).max(0.0) + force.max(0.0)) + 0.5 * force.min(0.0);
+        let u = at(halfway, self.behind)?;
+        let excess = (u - self.behind) / thickness - u / depth;
+        // Creep: the law in its own time, ṡ = K; the mean of K at both ends.
+        let first = share(model, u, excess);
+        let guess = model.law.excess_after(excess, first * dt);
+        let second = share(model, held(halfway, guess)?, guess);
+        let after = model.law.excess_after(excess, 0.5 * (first + second) * dt);
+        let u = held(halfway, after)?;
+        let behind = u - thickness * (after + u / depth);
+        let jaw = at(force, behind)?;
+        *self = Self { jaw, behind };
+        Ok(jaw / specimen.contact_displacement(1.0))
+    }
+
+    /// Contact force as it stands, N; zero while the jaw is off.
+    #[must_use]
+    pub fn force(&self, model: &ContactModel) -> f64 {
+        let strain = (self.jaw - self.behind) / model.layers.thickness(model.specimen.depth());
+        match model.separation {
+            Separation::Unilateral if strain <= 0.0 => 0.0,
+            _ => model.specimen.force(strain, self.jaw),
+        }
+    }
+
+    /// Displacement of the surface of the body at one contact, m: where the jaw is or, once it is off, the dent that is left.
+    #[must_use]
+    pub fn surface(&self, model: &ContactModel) -> f64 {
+        match model.separation {
+            Separation::Unilateral => self.jaw.max(self.behind),
+            Separation::Bonded => self.jaw,
+        }
+    }
+
+    /// Whether the jaw touches the body.
+    #[must_use]
+    pub fn is_touching(&self, model: &ContactModel) -> bool {
+        model.separation == Separation::Bonded || self.jaw >= self.behind
+    }
+
+    /// The state as bytes: the same on every machine.
+    #[must_use]
+    pub fn to_bytes(self) -> [u8; 16] {
+        let mut bytes = [0; 16];
+        bytes[..8].copy_from_slice(&self.jaw.to_le_bytes());
+        bytes[8..].copy_from_slice(&self.behind.to_le_bytes());
+        bytes
+    }
+
+    /// The state from [`to_bytes`](Self::to_bytes), to the last bit.
+    ///
+    /// # Errors
+    /// [`StepError::Number`] for bytes that hold no finite numbers.
+    pub fn from_bytes(bytes: [u8; 16]) -> Result<Self, StepError> {
+        let (mut jaw, mut behind) = ([0; 8], [0; 8]);
+        jaw.copy_from_slice(&bytes[..8]);
+        behind.copy_from_slice(&bytes[8..]);
+        let (jaw, behind) = (f64::from_le_bytes(jaw), f64::from_le_bytes(behind));
+        for found in [jaw, behind] {
+            check_step(0.0, "displacement", found)?;
+        }
+        Ok(Self { jaw, behind })
+    }
+
+    /// In contact all along.
+    fn pressed(self, model: &ContactModel, dt: f64, to: f64) -> Self {
+        let depth = model.specimen.depth();
+        let thickness = model.layers.thickness(depth);
+        let kick = 0.5 * model.layers.drive(to - self.jaw, depth);
+        let excess = (self.jaw - self.behind) / thickness - self.jaw / depth;
+        let excess = model.law.excess_after(excess + kick, dt) + kick;
+        Self {
+            jaw: to,
+            behind: to - thickness * (excess + to / depth),
+        }
+    }
+
+    /// The surface on its own for dt.
+    fn free(self, model: &ContactModel, dt: f64, to: f64) -> Self {
+        let depth = model.specimen.depth();
+        // ẏ = −(v/m) yⁿ with y = u/depth is the law itself in a slower time.
+        let left = model.law.excess_after(self.behind / depth, dt / model.layers.count());
+        Self {
+            jaw: to,
+            behind: depth * left,
+        }
+    }
+
+    /// The jaw leaves on the way: in contact until the force is gone, free from there.
+    fn left(self, model: &ContactModel, dt: f64, to: f64) -> Self {
+        let share = crossing(|share| {
+            let there = self.pressed(model, share * dt, self.jaw + share * (to - self.jaw));
+            there.jaw - there.behind
+        });
+        let leaving = self.pressed(model, share * dt, self.jaw + share * (to - self.jaw));
+        let surface = Self {
+            behind: leaving.jaw.max(leaving.behind),
+            ..leaving
+        };
+        surface.free(model, (1.0 - share) * dt, to)
+    }
+
+    /// The jaw is off; it may meet the surface on the way.
+    fn met(self, model: &ContactModel, dt: f64, to: f64) -> Self {
+        let apart = |share: f64| {
+            let there = self.free(model, share * dt, self.jaw + share * (to - self.jaw));
+            there.behind - there.jaw
+        };
+        if apart(1.0) > 0.0 {
+            return self.free(model, dt, to);
+        }
+        let share = crossing(apart);
+        let meeting = self.free(model, share * dt, self.jaw + share * (to - self.jaw));
+        let touching = Self {
+            jaw: meeting.behind,
+            ..meeting
+        };
+        touching.pressed(model, (1.0 - share) * dt, to)
+    }
+}
+
+fn check_step(dt: f64, name: &'static str, value: f64) -> Result<(), StepError> {
+    if !(dt.is_finite() && dt >= 0.0) {
+        return Err(StepError::Number {
+            name: "time step",
+            found: dt,
+        });
+    }
+    if !value.is_finite() {
+        return Err(StepError::Number { name, found: value });
+    }
+    Ok(())
+}
+
+/// K of [`contact::forced`](crate::contact).
+fn share(model: &ContactModel, u: f64, excess: f64) -> f64 {
+    let depth = model.specimen.depth();
+    let (stiffness, growth) = model.specimen.stiffness(u);
+    let bend = growth * (excess + u / depth) * depth;
+    let whole = bend + model.layers.count() * stiffness;
+    if whole > 0.0 { (bend + stiffness) / whole } else { 1.0 / model.layers.count() }
+}
+
+/// Where in 0…1 a function that begins above zero and ends below crosses it, to a thousandth of a millionth, in a bounded number of steps.
+fn crossing(f: impl Fn(f64) -> f64) -> f64 {
+    let (mut above, mut below) = (0.0, 1.0);
+    for _ in 0..30 {
+        let middle = 0.5 * (above + below);
+        if f(middle) > 0.0 {
+            above = middle;
+        } else {
+            below = middle;
+        }
+    }
+    above
+}
