@@ -58,11 +58,21 @@ Examples:
   palpate simulate examples/protocols/grip.toml | head
   palpate simulate examples/protocols/creep.toml --figure creep.svg --energy work.csv
   palpate simulate squeeze.toml --force-noise \"0.05 N\" --out record.csv  a record to try an analysis on
+  palpate simulate ball.toml --drive gripper.csv --drive-by force   a measured force, replayed
   palpate schema protocol                        what a protocol may say")]
 pub(crate) struct SimulateArguments {
     /// Protocol (TOML): specimen, law, contact and steps
     #[arg(value_name = "PROTOCOL.toml")]
     pub(crate) protocol: PathBuf,
+    /// Record to replay instead of the steps: its displacement, or its force
+    #[arg(long, value_name = "RECORD")]
+    pub(crate) drive: Option<PathBuf>,
+    /// Which column of the record drives the contact
+    #[arg(long, value_enum, default_value_t = DriveName::Displacement, requires = "drive")]
+    pub(crate) drive_by: DriveName,
+    /// Test description (TOML) of the record that drives
+    #[arg(long, value_name = "TEST.toml", requires = "drive")]
+    pub(crate) test: Option<PathBuf>,
     /// File for the series (CSV); standard output if not given
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
@@ -84,6 +94,15 @@ pub(crate) struct SimulateArguments {
     /// Which noise: the same seed gives the same record
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
+}
+
+/// What drives a simulated contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DriveName {
+    /// The measured displacement of the jaw
+    Displacement,
+    /// The measured force
+    Force,
 }
 
 /// Show what is in a record: columns, units, sampling, phases. Changes nothing.

@@ -108,6 +108,45 @@ fn the_example_record_is_what_its_protocol_makes() {
     }
 }
 
+/// What a simulation wrote, replayed: displacement from force, and force from displacement.
+#[test]
+fn simulate_replays_a_record() {
+    let folder = tempdir().unwrap();
+    let protocol = root().join("examples/protocols/paper-b.toml");
+    let protocol = protocol.to_str().unwrap();
+    done(folder.path(), &["simulate", protocol, "--force-noise", "1 nN", "--out", "made.csv"]);
+    done(
+        folder.path(),
+        &["simulate", protocol, "--drive", "made.csv", "--out", "moved.csv", "--energy", "work.csv"],
+    );
+    let column = |name: &str, at: usize| -> Vec<f64> {
+        let text = std::fs::read_to_string(folder.path().join(name)).unwrap();
+        let rows = text.lines().skip_while(|line| !line.starts_with("time_s")).skip(1);
+        rows.map(|line| line.split(',').nth(at).unwrap().parse().unwrap()).collect()
+    };
+    let (made, moved) = (column("made.csv", 2), column("moved.csv", 3));
+    let far = made.iter().zip(&moved).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(made.len() == moved.len() && far < 0.02, "{far}");
+    // Only the steps of a protocol may be missing where a record drives.
+    let bare = std::fs::read_to_string(protocol).unwrap();
+    let bare = file(folder.path(), "bare.toml", &bare[..bare.find("[[step]]").unwrap()]);
+    let moved_again = done(folder.path(), &["simulate", &bare, "--drive", "made.csv"]);
+    assert_eq!(moved_again, std::fs::read_to_string(folder.path().join("moved.csv")).unwrap());
+    let alone = palpate(folder.path(), &["simulate", &bare]);
+    assert!(String::from_utf8_lossy(&alone.stderr).contains("[[step]]"));
+    // The squeeze alone, pressed by its own force.
+    let squeeze = std::fs::read_to_string(folder.path().join("made.csv")).unwrap();
+    let rows: Vec<&str> = squeeze.lines().skip_while(|line| !line.starts_with("time_s")).take(1300).collect();
+    let squeeze = file(folder.path(), "squeeze.csv", rows.join("\n"));
+    done(
+        folder.path(),
+        &["simulate", &bare, "--drive", &squeeze, "--drive-by", "force", "--out", "pressed.csv"],
+    );
+    let (made, pressed) = (column("squeeze.csv", 1), column("pressed.csv", 1));
+    let far = made.iter().zip(&pressed).map(|(a, b)| (1e-3 * a - b).abs()).fold(0.0, f64::max);
+    assert!(made.len() == pressed.len() && far < 2e-5, "{far}");
+}
+
 #[test]
 fn simulate_goes_to_forces_and_accounts_for_work() {
     let folder = tempdir().unwrap();

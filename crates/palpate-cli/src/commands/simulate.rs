@@ -3,14 +3,17 @@
 use std::io::Write;
 use std::path::Path;
 
-use palpate::simulate::{ContactEventKind, Energy, StrainWave, Trajectory};
+use palpate::simulate::{
+    ContactEventKind, ContactModel, Energy, ForceHistory, Motion, MotionError, Sampling, SimulateError, StrainWave,
+    Trajectory, energy, energy_under_force, simulate, simulate_under_force, strain_wave, strain_wave_under_force,
+};
 use palpate::test_problems::Noise;
-use palpate_files::description::{Protocol, read_protocol};
+use palpate_files::description::{DescriptionError, Protocol, read_protocol, read_scene};
 use palpate_report::figure::Figure;
 use palpate_report::study::{trajectory_figure, write_trajectory};
 use palpate_report::table::{Cell, Table, TableColumn};
 
-use crate::arguments::SimulateArguments;
+use crate::arguments::{DriveName, SimulateArguments};
 use crate::failure::{Failure, Outcome};
 use crate::files::{write_file, write_file_with};
 use crate::progress::Working;
@@ -23,26 +26,22 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     for path in [&arguments.out, &arguments.wave, &arguments.energy].into_iter().flatten() {
         is_csv(path)?;
     }
-    let protocol = read_protocol(&arguments.protocol).map_err(|error| {
-        let hint = error.hint();
-        Failure::new(error, hint)
-    })?;
-    let refused = |error: palpate::simulate::SimulateError| Failure::of_file(&arguments.protocol, error, None);
+    let scene = match &arguments.drive {
+        None => Scene::Steps(read_protocol(&arguments.protocol).map_err(described)?),
+        Some(record) => driven(arguments, record)?,
+    };
+    let (title, model) = scene.what();
+    let of = arguments.drive.as_ref().unwrap_or(&arguments.protocol);
+    let refused = |error: SimulateError| Failure::of_file(of, error, None);
     let working = Working::new("simulating");
-    let trajectory = protocol.simulate().map_err(refused)?;
-    let wave = match &arguments.wave {
-        Some(_) => Some(protocol.strain_wave().map_err(refused)?),
-        None => None,
-    };
-    let energy = match &arguments.energy {
-        Some(_) => Some(protocol.energy().map_err(refused)?),
-        None => None,
-    };
+    let trajectory = scene.simulate().map_err(refused)?;
+    let wave = arguments.wave.as_ref().map(|_| scene.strain_wave().map_err(refused)).transpose()?;
+    let energy = arguments.energy.as_ref().map(|_| scene.energy().map_err(refused)).transpose()?;
     // Everything is made before anything is written.
     let figure = match &arguments.figure {
         Some(path) => {
             let name = path.file_stem().map_or("figure".to_owned(), |stem| stem.to_string_lossy().into_owned());
-            Some(picture(path, &trajectory_figure(&trajectory, &name, &caption(&protocol)))?)
+            Some(picture(path, &trajectory_figure(&trajectory, &name, &caption(title, model)))?)
         }
         None => None,
     };
@@ -77,6 +76,88 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     Ok(Outcome::Done)
 }
 
+fn described(error: DescriptionError) -> Failure {
+    let hint = error.hint();
+    Failure::new(error, hint)
+}
+
+/// What is simulated: a body with the steps of a protocol, or with what a record says.
+enum Scene {
+    Steps(Protocol),
+    Moved(Option<String>, ContactModel, Motion),
+    Pressed(Option<String>, ContactModel, ForceHistory),
+}
+
+impl Scene {
+    fn what(&self) -> (Option<&str>, &ContactModel) {
+        match self {
+            Self::Steps(protocol) => (protocol.title.as_deref(), &protocol.model),
+            Self::Moved(title, model, _) | Self::Pressed(title, model, _) => (title.as_deref(), model),
+        }
+    }
+
+    fn simulate(&self) -> Result<Trajectory, SimulateError> {
+        match self {
+            Self::Steps(protocol) => protocol.simulate(),
+            Self::Moved(_, model, motion) => simulate(motion, model, &Sampling::Times(motion.times().to_vec())),
+            Self::Pressed(_, model, force) => {
+                simulate_under_force(force, model, &Sampling::Times(force.times().to_vec()))
+            }
+        }
+    }
+
+    fn strain_wave(&self) -> Result<StrainWave, SimulateError> {
+        match self {
+            Self::Steps(protocol) => protocol.strain_wave(),
+            Self::Moved(_, model, motion) => strain_wave(motion, model, &Sampling::Times(motion.times().to_vec())),
+            Self::Pressed(_, model, force) => {
+                strain_wave_under_force(force, model, &Sampling::Times(force.times().to_vec()))
+            }
+        }
+    }
+
+    fn energy(&self) -> Result<Energy, SimulateError> {
+        match self {
+            Self::Steps(protocol) => protocol.energy(),
+            Self::Moved(_, model, motion) => energy(motion, model, &Sampling::Times(motion.times().to_vec())),
+            Self::Pressed(_, model, force) => {
+                energy_under_force(force, model, &Sampling::Times(force.times().to_vec()))
+            }
+        }
+    }
+}
+
+/// The body of the protocol, driven by a record from its first row on.
+fn driven(arguments: &SimulateArguments, path: &Path) -> Result<Scene, Failure> {
+    let (title, model) = read_scene(&arguments.protocol).map_err(described)?;
+    let test = super::record::description(arguments.test.as_deref())?;
+    let record = super::record::record(path, test.as_ref())?.record;
+    let times = record.time().to_vec();
+    let refused = |error: MotionError| Failure::of_file(path, error, None);
+    match arguments.drive_by {
+        DriveName::Displacement => {
+            let displacement = record.displacement().ok_or_else(|| {
+                Failure::of_file(
+                    path,
+                    "expected a displacement to replay, found none",
+                    Some("replay the force with --drive-by force, or name the column in a test description".to_owned()),
+                )
+            })?;
+            Ok(Scene::Moved(title, model, Motion::new(times, displacement.to_vec()).map_err(refused)?))
+        }
+        DriveName::Force => {
+            // Noise about zero pulls at nothing; a jaw that really pulls is told by its size.
+            let most = record.force().iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+            let quiet = |force: &f64| if *force < 0.0 && *force > -PULL * most { 0.0 } else { *force };
+            let forces = record.force().iter().map(quiet).collect();
+            Ok(Scene::Pressed(title, model, ForceHistory::new(times, forces).map_err(refused)?))
+        }
+    }
+}
+
+/// Share of the largest force up to which a measured pull is noise of the zero.
+const PULL: f64 = 0.02;
+
 /// The series as a machine would have recorded it: three columns, noise, and a preamble that says it is none.
 fn record(trajectory: &Trajectory, arguments: &SimulateArguments) -> String {
     let (force_noise, displacement_noise) =
@@ -97,11 +178,10 @@ fn record(trajectory: &Trajectory, arguments: &SimulateArguments) -> String {
     out
 }
 
-fn caption(protocol: &Protocol) -> String {
-    let model = &protocol.model;
+fn caption(title: Option<&str>, model: &ContactModel) -> String {
     format!(
         "{}Force, strain of the contact layer and displacement of the jaw; n = {}, v = {:e} 1/s, {} layers.",
-        protocol.title.as_ref().map_or(String::new(), |title| format!("{title}. ")),
+        title.map_or(String::new(), |title| format!("{title}. ")),
         model.law.exponent(),
         model.law.rate_coefficient(),
         model.layers.count()

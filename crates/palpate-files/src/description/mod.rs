@@ -32,6 +32,6 @@ mod words;
 pub use choices::{ChoiceError, parse_hold_start, parse_touch};
 pub use columns::{ClockChoice, ColumnChoice, ColumnChoices, ColumnRef};
 pub use error::{DescriptionError, KeyPlace};
-pub use protocol::{Protocol, parse_protocol, read_protocol};
+pub use protocol::{Protocol, parse_protocol, read_protocol, read_scene};
 pub use schema::{schema_protocol, schema_test};
 pub use test::{About, TestDescription, parse_test, read_test};

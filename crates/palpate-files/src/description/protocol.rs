@@ -88,8 +88,8 @@ pub(super) struct ProtocolTables {
     law: LawTable,
     #[serde(default)]
     contact: ContactTable,
-    /// Steps of the jaw in order, starting at first touch at time 0.
-    #[schemars(extend("minItems" = 1))]
+    /// Steps of the jaw in order, starting at first touch at time 0; none where a record drives the contact.
+    #[serde(default)]
     step: Vec<StepTable>,
     #[serde(default)]
     output: OutputTable,
@@ -175,6 +175,18 @@ struct OutputTable {
 /// protocol; it names the key.
 pub fn read_protocol(path: &Path) -> Result<Protocol, DescriptionError> {
     parse_protocol(&source::read(path)?, path)
+}
+
+/// Reads title, body, law and contact of the protocol in the file at `path`, whatever its steps: for a contact that a record drives.
+///
+/// # Errors
+/// As for [`read_protocol`], less those of steps and output.
+pub fn read_scene(path: &Path) -> Result<(Option<String>, ContactModel), DescriptionError> {
+    let text = source::read(path)?;
+    let source = Source { path, text: &text };
+    let tables: ProtocolTables = source.tables()?;
+    let model = model(&source, &tables)?;
+    Ok((tables.title, model))
 }
 
 /// Checks a protocol that was read already; `path` is used in messages alone.

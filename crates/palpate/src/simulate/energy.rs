@@ -6,7 +6,7 @@ use super::course::Course;
 use super::program::step_ends;
 use super::trajectory::sample_times;
 use super::walk::{Stretch, StretchState, walk};
-use super::{ContactModel, Motion, ProgramStep, Sampling, SimulateError};
+use super::{ContactModel, ForceHistory, Motion, ProgramStep, Sampling, SimulateError};
 
 /// Energy of a simulated body over time, in J; both contacts of a body that is squeezed from two sides.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -69,6 +69,18 @@ impl Energy {
 /// As for [`simulate`](super::simulate()).
 pub fn energy(motion: &Motion, model: &ContactModel, sampling: &Sampling) -> Result<Energy, SimulateError> {
     energy_of(Course::Motion(motion), model, sampling)
+}
+
+/// Energy of `model` under a force, as [`energy`].
+///
+/// # Errors
+/// As for [`simulate_under_force`](super::simulate_under_force).
+pub fn energy_under_force(
+    history: &ForceHistory,
+    model: &ContactModel,
+    sampling: &Sampling,
+) -> Result<Energy, SimulateError> {
+    energy_of(Course::Force(history), model, sampling)
 }
 
 /// Energy of `model` under a program, as [`energy`].

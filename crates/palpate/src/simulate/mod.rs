@@ -25,7 +25,7 @@ mod walk;
 mod wave;
 
 pub use crate::contact::Work;
-pub use energy::{Energy, EnergySplit, energy, energy_of_program};
+pub use energy::{Energy, EnergySplit, energy, energy_of_program, energy_under_force};
 pub use history::ForceHistory;
 pub use model::{ContactModel, Separation};
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};
