@@ -6,8 +6,7 @@ use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
     ContactEventKind, ContactModel, ForceHistory, Motion, ProgramStep, ProtocolStep as ProtocolMotion, Sampling,
-    Separation, SimulateError, Trajectory, protocol, simulate, simulate_program, simulate_under_force,
-    strain_wave_of_program, strain_wave_under_force,
+    Separation, SimulateError, Trajectory, protocol, simulate, step_ends, strain_wave,
 };
 
 fn ball(exponent: f64, rate_coefficient: f64, layers: f64) -> ContactModel {
@@ -25,7 +24,7 @@ fn history(knots: &[(f64, f64)]) -> ForceHistory {
 }
 
 fn under(knots: &[(f64, f64)], model: &ContactModel, times: &[f64]) -> Trajectory {
-    simulate_under_force(&history(knots), model, &Sampling::Times(times.to_vec())).unwrap()
+    simulate(&history(knots), model, &Sampling::Times(times.to_vec())).unwrap()
 }
 
 #[test]
@@ -74,7 +73,7 @@ fn force_and_displacement_are_two_ways_to_say_the_same() {
             let times: Vec<f64> = (0..=12_000).map(|i| 5e-4 * f64::from(i)).collect();
             let moved = simulate(&motion, &model, &Sampling::Times(times.clone())).unwrap();
             let force = ForceHistory::new(times.clone(), moved.force.clone()).unwrap();
-            let pressed = simulate_under_force(&force, &model, &Sampling::Times(times)).unwrap();
+            let pressed = simulate(&force, &model, &Sampling::Times(times)).unwrap();
             let far = (1..12_001).map(|i| (pressed.displacement[i] - moved.displacement[i]).abs()).fold(0.0, f64::max);
             assert!(far < 2e-7, "{shape:?} n = {exponent}: {far:e} m");
         }
@@ -116,8 +115,8 @@ fn the_contact_layer_of_the_wave_carries_the_force() {
     let model = ball(5.0, 2e4, 8.0);
     let squeeze = history(&[(0.0, 0.0), (1.0, 10.0), (11.0, 10.0), (11.0, 4.0), (20.0, 4.0)]);
     let times = Sampling::Times((1..=40).map(|i| 0.5 * f64::from(i)).collect());
-    let wave = strain_wave_under_force(&squeeze, &model, &times).unwrap();
-    let result = simulate_under_force(&squeeze, &model, &times).unwrap();
+    let wave = strain_wave(&squeeze, &model, &times).unwrap();
+    let result = simulate(&squeeze, &model, &times).unwrap();
     for i in 0..40 {
         assert!((wave.strain[0][i] - result.strain[i]).abs() < 1e-9, "{i}");
         assert!((wave.displacement[0][i] - result.contact_displacement[i]).abs() < 1e-12, "{i}");
@@ -128,7 +127,7 @@ fn the_contact_layer_of_the_wave_carries_the_force() {
 fn forces_that_no_indentation_carries_are_refused() {
     let model = ball(5.0, 2e4, 8.0);
     let all = Sampling::Rate(10.0);
-    let run = |knots: &[(f64, f64)], model: &ContactModel| simulate_under_force(&history(knots), model, &all);
+    let run = |knots: &[(f64, f64)], model: &ContactModel| simulate(&history(knots), model, &all);
     // All of it pressed flat carries E π r² = 107.8 N in the long run, eight times that at once.
     let Err(SimulateError::Force { time, force }) = run(&[(0.0, 0.0), (100.0, 200.0)], &model) else {
         panic!("200 N carried");
@@ -147,8 +146,7 @@ fn forces_that_no_indentation_carries_are_refused() {
 #[test]
 fn a_force_held_beyond_what_the_body_carries_for_long_breaks_off_when_it_gives_way() {
     // 150 N are carried at once, but not by what is left when the layers behind have followed.
-    let result =
-        simulate_under_force(&history(&[(0.0, 150.0), (1e6, 150.0)]), &ball(5.0, 2e4, 8.0), &Sampling::Rate(1e-4));
+    let result = simulate(&history(&[(0.0, 150.0), (1e6, 150.0)]), &ball(5.0, 2e4, 8.0), &Sampling::Rate(1e-4));
     let Err(SimulateError::Force { time, force }) = result else {
         panic!("{result:?}");
     };
@@ -169,7 +167,8 @@ fn a_mixed_program_switches_when_targets_are_met() {
         ProgramStep::MoveToForce { force: 1.0, rate },
         ProgramStep::Move { to: 0.0, rate },
     ];
-    let (result, ends) = simulate_program(&program, &model, &Sampling::Rate(1.0)).unwrap();
+    let result = simulate(&program, &model, &Sampling::Rate(1.0)).unwrap();
+    let ends = step_ends(&program, &model).unwrap();
     for (end, expected) in ends.iter().zip([10.0, f64::NAN, f64::NAN, 2.0, 6.0, 1.0, 0.0]) {
         assert!(expected.is_nan() || (end.force - expected).abs() < 1e-11, "{end:?} {expected}");
     }
@@ -189,7 +188,7 @@ fn a_mixed_program_switches_when_targets_are_met() {
         let at = result.time.iter().position(|time| *time == end.time).unwrap();
         assert!((result.displacement[at] - end.displacement).abs() < 1e-15);
     }
-    let wave = strain_wave_of_program(&program, &model, &Sampling::Times(result.time.clone())).unwrap();
+    let wave = strain_wave(&program, &model, &Sampling::Times(result.time.clone())).unwrap();
     for i in 0..result.len() {
         assert!(
             (wave.strain[0][i] - result.strain[i]).abs() < 1e-8,
@@ -203,7 +202,7 @@ fn a_mixed_program_switches_when_targets_are_met() {
 #[test]
 fn programs_that_cannot_be_run_say_which_step() {
     let model = ball(5.0, 2e4, 8.0);
-    let run = |program: &[ProgramStep]| simulate_program(program, &model, &Sampling::Rate(1.0)).map(|_| ());
+    let run = |program: &[ProgramStep]| simulate(program, &model, &Sampling::Rate(1.0)).map(|_| ());
     assert_eq!(run(&[]), Err(SimulateError::EmptyProgram));
     let squeeze = |force| ProgramStep::MoveToForce { force, rate: 0.01 };
     let Err(SimulateError::Unreachable { step: 1, most, .. }) = run(&[squeeze(1e4)]) else {

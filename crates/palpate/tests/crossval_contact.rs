@@ -9,8 +9,7 @@ use common::reference;
 use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactEventKind, ContactModel, ForceHistory, Motion, Sampling, Separation, simulate, simulate_force,
-    simulate_under_force, strain_wave,
+    ContactEventKind, ContactModel, ForceHistory, Motion, Sampling, Separation, simulate, simulate_force, strain_wave,
 };
 use serde::Deserialize;
 
@@ -283,7 +282,7 @@ fn under_a_force() {
         };
         let (times, forces) = case.knots.iter().copied().unzip();
         let history = ForceHistory::new(times, forces).unwrap();
-        let result = simulate_under_force(&history, &model, &Sampling::Times(case.times.clone())).unwrap();
+        let result = simulate(&history, &model, &Sampling::Times(case.times.clone())).unwrap();
         let off = distance(&result.contact_displacement, &case.contact_displacement) / model.specimen.depth();
         verdict.add(&case.name, "displacement", off, tolerance.displacement_over_depth);
         verdict.add(

@@ -4,9 +4,7 @@
 
 use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
-use palpate::simulate::{
-    ContactModel, Energy, Motion, ProgramStep, Sampling, Separation, energy, energy_of_program, simulate,
-};
+use palpate::simulate::{ContactModel, Energy, Motion, ProgramStep, Sampling, Separation, energy, simulate};
 
 fn model(shape: Shape, exponent: f64, rate: f64, layers: f64, separation: Separation) -> ContactModel {
     ContactModel {
@@ -97,8 +95,8 @@ fn under_a_force_work_is_force_times_way() {
         ];
         let times: Vec<f64> = (0..=38_000).map(|i| 1e-3 * f64::from(i)).collect();
         let sampling = Sampling::Times(times.clone());
-        let energy = energy_of_program(&program, &model, &sampling).unwrap();
-        let (series, _) = palpate::simulate::simulate_program(&program, &model, &sampling).unwrap();
+        let energy = energy(&program, &model, &sampling).unwrap();
+        let series = simulate(&program, &model, &sampling).unwrap();
         let parts = series.force.windows(2).zip(series.displacement.windows(2));
         let mut by_samples = 0.0;
         for ((force, way), work) in parts.zip(&energy.work[1..]) {

@@ -4,9 +4,7 @@
 
 use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
-use palpate::simulate::{
-    ContactModel, ContactState, ForceHistory, Motion, Sampling, Separation, StepError, simulate, simulate_under_force,
-};
+use palpate::simulate::{ContactModel, ContactState, ForceHistory, Motion, Sampling, Separation, StepError, simulate};
 
 fn ball(exponent: f64, rate_coefficient: f64, layers: f64, separation: Separation) -> ContactModel {
     ContactModel {
@@ -108,7 +106,7 @@ fn creep_step_by_step() {
         }
         displacement
     };
-    let exact = simulate_under_force(&history, &model, &Sampling::Times(vec![11.0])).unwrap().displacement[0];
+    let exact = simulate(&history, &model, &Sampling::Times(vec![11.0])).unwrap().displacement[0];
     let (coarse, fine) = ((run(100) - exact).abs(), (run(200) - exact).abs());
     println!("{coarse:.1e} m at 10 ms, order {:.2}", (coarse / fine).log2());
     assert!(coarse < 1e-7 && fine < 0.4 * coarse, "{coarse:e} {fine:e}");

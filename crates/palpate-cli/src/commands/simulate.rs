@@ -4,8 +4,8 @@ use std::io::Write;
 use std::path::Path;
 
 use palpate::simulate::{
-    ContactEventKind, ContactModel, Energy, ForceHistory, Motion, MotionError, Sampling, SimulateError, StrainWave,
-    Trajectory, energy, energy_under_force, simulate, simulate_under_force, strain_wave, strain_wave_under_force,
+    ContactEventKind, ContactModel, Drive, Energy, ForceHistory, Motion, MotionError, Sampling, SimulateError,
+    StrainWave, Trajectory, energy, simulate, strain_wave,
 };
 use palpate::test_problems::Noise;
 use palpate_files::description::{DescriptionError, Protocol, read_protocol, read_scene};
@@ -27,21 +27,21 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
         is_csv(path)?;
     }
     let scene = match &arguments.drive {
-        None => Scene::Steps(read_protocol(&arguments.protocol).map_err(described)?),
+        None => stepped(arguments)?,
         Some(record) => driven(arguments, record)?,
     };
-    let (title, model) = scene.what();
     let of = arguments.drive.as_ref().unwrap_or(&arguments.protocol);
     let refused = |error: SimulateError| Failure::of_file(of, error, None);
+    let (drive, model, sampling) = (scene.drive(), &scene.model, &scene.sampling);
     let working = Working::new("simulating");
-    let trajectory = scene.simulate().map_err(refused)?;
-    let wave = arguments.wave.as_ref().map(|_| scene.strain_wave().map_err(refused)).transpose()?;
-    let energy = arguments.energy.as_ref().map(|_| scene.energy().map_err(refused)).transpose()?;
+    let trajectory = simulate(drive, model, sampling).map_err(refused)?;
+    let wave = arguments.wave.as_ref().map(|_| strain_wave(drive, model, sampling).map_err(refused)).transpose()?;
+    let energy = arguments.energy.as_ref().map(|_| energy(drive, model, sampling).map_err(refused)).transpose()?;
     // Everything is made before anything is written.
     let figure = match &arguments.figure {
         Some(path) => {
             let name = path.file_stem().map_or("figure".to_owned(), |stem| stem.to_string_lossy().into_owned());
-            Some(picture(path, &trajectory_figure(&trajectory, &name, &caption(title, model)))?)
+            Some(picture(path, &trajectory_figure(&trajectory, &name, &caption(scene.title.as_deref(), model)))?)
         }
         None => None,
     };
@@ -82,49 +82,37 @@ fn described(error: DescriptionError) -> Failure {
 }
 
 /// What is simulated: a body with the steps of a protocol, or with what a record says.
-enum Scene {
+struct Scene {
+    title: Option<String>,
+    model: ContactModel,
+    driver: Driver,
+    sampling: Sampling,
+}
+
+enum Driver {
     Steps(Protocol),
-    Moved(Option<String>, ContactModel, Motion),
-    Pressed(Option<String>, ContactModel, ForceHistory),
+    Motion(Motion),
+    Force(ForceHistory),
 }
 
 impl Scene {
-    fn what(&self) -> (Option<&str>, &ContactModel) {
-        match self {
-            Self::Steps(protocol) => (protocol.title.as_deref(), &protocol.model),
-            Self::Moved(title, model, _) | Self::Pressed(title, model, _) => (title.as_deref(), model),
+    fn drive(&self) -> Drive<'_> {
+        match &self.driver {
+            Driver::Steps(protocol) => protocol.drive(),
+            Driver::Motion(motion) => motion.into(),
+            Driver::Force(history) => history.into(),
         }
     }
+}
 
-    fn simulate(&self) -> Result<Trajectory, SimulateError> {
-        match self {
-            Self::Steps(protocol) => protocol.simulate(),
-            Self::Moved(_, model, motion) => simulate(motion, model, &Sampling::Times(motion.times().to_vec())),
-            Self::Pressed(_, model, force) => {
-                simulate_under_force(force, model, &Sampling::Times(force.times().to_vec()))
-            }
-        }
-    }
-
-    fn strain_wave(&self) -> Result<StrainWave, SimulateError> {
-        match self {
-            Self::Steps(protocol) => protocol.strain_wave(),
-            Self::Moved(_, model, motion) => strain_wave(motion, model, &Sampling::Times(motion.times().to_vec())),
-            Self::Pressed(_, model, force) => {
-                strain_wave_under_force(force, model, &Sampling::Times(force.times().to_vec()))
-            }
-        }
-    }
-
-    fn energy(&self) -> Result<Energy, SimulateError> {
-        match self {
-            Self::Steps(protocol) => protocol.energy(),
-            Self::Moved(_, model, motion) => energy(motion, model, &Sampling::Times(motion.times().to_vec())),
-            Self::Pressed(_, model, force) => {
-                energy_under_force(force, model, &Sampling::Times(force.times().to_vec()))
-            }
-        }
-    }
+fn stepped(arguments: &SimulateArguments) -> Result<Scene, Failure> {
+    let protocol = read_protocol(&arguments.protocol).map_err(described)?;
+    Ok(Scene {
+        title: protocol.title.clone(),
+        model: protocol.model,
+        sampling: protocol.sampling.clone(),
+        driver: Driver::Steps(protocol),
+    })
 }
 
 /// The body of the protocol, driven by a record from its first row on.
@@ -133,26 +121,30 @@ fn driven(arguments: &SimulateArguments, path: &Path) -> Result<Scene, Failure> 
     let test = super::record::description(arguments.test.as_deref())?;
     let record = super::record::record(path, test.as_ref())?.record;
     let times = record.time().to_vec();
+    let sampling = Sampling::Times(times.clone());
     let refused = |error: MotionError| Failure::of_file(path, error, None);
-    match arguments.drive_by {
+    let driver = match arguments.drive_by {
         DriveName::Displacement => {
             let displacement = record.displacement().ok_or_else(|| {
-                Failure::of_file(
-                    path,
-                    "expected a displacement to replay, found none",
-                    Some("replay the force with --drive-by force, or name the column in a test description".to_owned()),
-                )
+                let hint = "replay the force with --drive-by force, or name the column in a test description";
+                Failure::of_file(path, "expected a displacement to replay, found none", Some(hint.to_owned()))
             })?;
-            Ok(Scene::Moved(title, model, Motion::new(times, displacement.to_vec()).map_err(refused)?))
+            Driver::Motion(Motion::new(times, displacement.to_vec()).map_err(refused)?)
         }
         DriveName::Force => {
             // Noise about zero pulls at nothing; a jaw that really pulls is told by its size.
             let most = record.force().iter().fold(0.0, |most: f64, force| most.max(force.abs()));
             let quiet = |force: &f64| if *force < 0.0 && *force > -PULL * most { 0.0 } else { *force };
             let forces = record.force().iter().map(quiet).collect();
-            Ok(Scene::Pressed(title, model, ForceHistory::new(times, forces).map_err(refused)?))
+            Driver::Force(ForceHistory::new(times, forces).map_err(refused)?)
         }
-    }
+    };
+    Ok(Scene {
+        title,
+        model,
+        driver,
+        sampling,
+    })
 }
 
 /// Share of the largest force up to which a measured pull is noise of the zero.

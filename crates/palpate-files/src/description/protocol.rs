@@ -5,10 +5,7 @@ use std::path::Path;
 use palpate::{
     contact::{Layers, Specimen},
     latency::LatencyLaw,
-    simulate::{
-        self, ContactModel, Energy, Motion, ProgramStep, ProtocolStep, Sampling, SimulateError, StrainWave, Trajectory,
-        energy, energy_of_program, simulate, simulate_program, step_ends, strain_wave, strain_wave_of_program,
-    },
+    simulate::{self, ContactModel, Drive, Motion, ProgramStep, ProtocolStep, Sampling, step_ends},
     units::Dimension,
 };
 use schemars::JsonSchema;
@@ -43,37 +40,10 @@ pub struct Protocol {
 }
 
 impl Protocol {
-    /// The contact over time.
-    ///
-    /// # Errors
-    /// [`SimulateError`] as for [`simulate_program`].
-    pub fn simulate(&self) -> Result<Trajectory, SimulateError> {
-        match &self.motion {
-            Some(motion) => simulate(motion, &self.model, &self.sampling),
-            None => simulate_program(&self.steps, &self.model, &self.sampling).map(|(trajectory, _)| trajectory),
-        }
-    }
-
-    /// Work of the jaw over time, and what becomes of it.
-    ///
-    /// # Errors
-    /// [`SimulateError`] as for [`simulate_program`].
-    pub fn energy(&self) -> Result<Energy, SimulateError> {
-        match &self.motion {
-            Some(motion) => energy(motion, &self.model, &self.sampling),
-            None => energy_of_program(&self.steps, &self.model, &self.sampling),
-        }
-    }
-
-    /// All layers over time.
-    ///
-    /// # Errors
-    /// [`SimulateError`] as for [`strain_wave_of_program`].
-    pub fn strain_wave(&self) -> Result<StrainWave, SimulateError> {
-        match &self.motion {
-            Some(motion) => strain_wave(motion, &self.model, &self.sampling),
-            None => strain_wave_of_program(&self.steps, &self.model, &self.sampling),
-        }
+    /// What drives the contact: the motion if there is one, else the steps.
+    #[must_use]
+    pub fn drive(&self) -> Drive<'_> {
+        self.motion.as_ref().map_or(Drive::Program(&self.steps), Drive::Motion)
     }
 }
 

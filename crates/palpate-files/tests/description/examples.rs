@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use palpate::{
     contact::{Shape, Sides},
     segment::{ContactChoice, HoldStart},
-    simulate::Separation,
+    simulate::{Separation, simulate},
     test_problems::{paper_ball, paper_test_a, paper_test_b},
 };
 use palpate_files::description::{read_protocol, read_test};
@@ -31,7 +31,7 @@ fn every_example_is_accepted() {
     for path in protocols {
         let protocol = read_protocol(&path).unwrap_or_else(|error| panic!("{error}"));
         assert!(protocol.title.is_some(), "{}", path.display());
-        protocol.simulate().expect("a simulation");
+        simulate(protocol.drive(), &protocol.model, &protocol.sampling).expect("a simulation");
     }
 }
 
@@ -48,7 +48,7 @@ fn the_papers_tests_are_the_papers() {
 fn a_grip_loses_its_contact() {
     let protocol = read_protocol(&folder("protocols/grip.toml")).expect("a protocol");
     assert_eq!(protocol.model.separation, Separation::Unilateral);
-    let result = protocol.simulate().expect("a result");
+    let result = simulate(protocol.drive(), &protocol.model, &protocol.sampling).expect("a result");
     assert!(result.events.len() >= 3, "{:?}", result.events);
     assert!(result.force.iter().all(|force| *force >= 0.0));
 }

@@ -2,7 +2,7 @@
 
 use palpate::{
     contact::{Shape, Sides},
-    simulate::{ProgramStep, Sampling, Separation},
+    simulate::{ProgramStep, Sampling, Separation, simulate},
 };
 
 use crate::{SQUEEZE, protocol, says, with};
@@ -249,7 +249,7 @@ fn steps_in_force_and_in_displacement() {
         ProgramStep::Move { to: 0.0, rate: 1e-3 },
     ];
     assert_eq!(mixed.steps, expected);
-    let result = mixed.simulate().unwrap();
+    let result = simulate(mixed.drive(), &mixed.model, &mixed.sampling).unwrap();
     assert!(result.force.iter().any(|force| (force - 10.0).abs() < 1e-12));
     // A hold alone is a step too.
     let still = with(STEP, &format!("{STEP}\n[[step]]\nhold = \"5 s\""));

@@ -3,10 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::course::Course;
-use super::program::step_ends;
 use super::trajectory::sample_times;
 use super::walk::{Stretch, StretchState, walk};
-use super::{ContactModel, ForceHistory, Motion, ProgramStep, Sampling, SimulateError};
+use super::{ContactModel, Drive, Sampling, SimulateError};
 
 /// Energy of a simulated body over time, in J; both contacts of a body that is squeezed from two sides.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -39,7 +38,7 @@ impl Energy {
     }
 }
 
-/// Energy of `model` under `motion`.
+/// Energy of `model` under a motion, a force or a program.
 ///
 /// Work is integrated along with the contact, not from samples: its error is that of the force.
 ///
@@ -67,43 +66,18 @@ impl Energy {
 ///
 /// # Errors
 /// As for [`simulate`](super::simulate()).
-pub fn energy(motion: &Motion, model: &ContactModel, sampling: &Sampling) -> Result<Energy, SimulateError> {
-    energy_of(Course::Motion(motion), model, sampling)
-}
-
-/// Energy of `model` under a force, as [`energy`].
-///
-/// # Errors
-/// As for [`simulate_under_force`](super::simulate_under_force).
-pub fn energy_under_force(
-    history: &ForceHistory,
+pub fn energy<'a>(
+    drive: impl Into<Drive<'a>>,
     model: &ContactModel,
     sampling: &Sampling,
 ) -> Result<Energy, SimulateError> {
-    energy_of(Course::Force(history), model, sampling)
-}
-
-/// Energy of `model` under a program, as [`energy`].
-///
-/// # Errors
-/// As for [`simulate_program`](super::simulate_program).
-pub fn energy_of_program(
-    program: &[ProgramStep],
-    model: &ContactModel,
-    sampling: &Sampling,
-) -> Result<Energy, SimulateError> {
-    let ends = step_ends(program, model)?;
-    let times: Vec<f64> = [0.0].into_iter().chain(ends.iter().map(|end| end.time)).collect();
-    energy_of(Course::Program(program, &times), model, sampling)
-}
-
-fn energy_of(course: Course<'_>, model: &ContactModel, sampling: &Sampling) -> Result<Energy, SimulateError> {
-    let time = sample_times(course, sampling)?;
+    let course = Course::new(drive.into(), model)?;
+    let time = sample_times(&course, sampling)?;
     let contacts = 1.0 / model.specimen.contact_displacement(1.0);
     let mut account = Account::default();
     let (mut work, mut given_back, mut stored) = (Vec::new(), Vec::new(), Vec::new());
     let last = course.end();
-    walk(course, model, |stretch| {
+    walk(course.drive, model, |stretch| {
         let inside = |time: f64| time < stretch.end || stretch.end == last;
         let mut at = stretch.start;
         while let Some(&next) = time.get(work.len()).filter(|time| inside(**time)) {

@@ -25,15 +25,16 @@ mod walk;
 mod wave;
 
 pub use crate::contact::Work;
-pub use energy::{Energy, EnergySplit, energy, energy_of_program, energy_under_force};
+pub use course::Drive;
+pub use energy::{Energy, EnergySplit, energy};
 pub use history::ForceHistory;
 pub use model::{ContactModel, Separation};
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};
 pub use program::{ProgramStep, StepEnd, step_ends};
 pub use step::{ContactState, StepError};
-pub use trajectory::{Sampling, Trajectory, simulate, simulate_force, simulate_program, simulate_under_force};
+pub use trajectory::{Sampling, Trajectory, simulate, simulate_force};
 pub use walk::{ContactEvent, ContactEventKind};
-pub use wave::{StrainWave, strain_wave, strain_wave_of_program, strain_wave_under_force};
+pub use wave::{StrainWave, strain_wave};
 
 use crate::contact::SpecimenError;
 

@@ -69,10 +69,10 @@ impl ProgramStep {
     }
 }
 
-/// Where each step of a program ends, without its course: see [`simulate_program`](super::simulate_program).
+/// Where each step of a program ends, without its course: see [`simulate`](super::simulate()).
 ///
 /// # Errors
-/// As for `simulate_program`.
+/// As for `simulate`.
 pub fn step_ends(program: &[ProgramStep], model: &ContactModel) -> Result<Vec<StepEnd>, SimulateError> {
     Walker::new(model, |_: &Stretch| Ok(())).run(program)
 }

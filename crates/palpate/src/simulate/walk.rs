@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::course::Course;
-use super::{ContactModel, ForceHistory, Motion, Separation, SimulateError, Work};
+use super::{ContactModel, Drive, ForceHistory, Motion, Separation, SimulateError, Work};
 use crate::contact::{Body, Element, Forced, FreeSurface};
 
 /// A contact that was lost or regained.
@@ -66,15 +65,15 @@ enum Contact {
 
 /// Walks through what drives the contact, handing every stretch to `visit` in order, and returns the events and the work.
 pub(super) fn walk(
-    course: Course<'_>,
+    drive: Drive<'_>,
     model: &ContactModel,
     visit: impl FnMut(&Stretch) -> Result<(), SimulateError>,
 ) -> Result<(Vec<ContactEvent>, Work), SimulateError> {
     let mut walker = Walker::new(model, visit);
-    match course {
-        Course::Motion(motion) => walker.travel(motion)?,
-        Course::Force(history) => walker.press(history)?,
-        Course::Program(program, _) => {
+    match drive {
+        Drive::Motion(motion) => walker.travel(motion)?,
+        Drive::Force(history) => walker.press(history)?,
+        Drive::Program(program) => {
             walker.run(program)?;
         }
     }

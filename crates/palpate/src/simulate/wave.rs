@@ -1,10 +1,9 @@
 //! All layers over time: the strain wave that travels from the contact to the plane of symmetry (figure 7 of the paper).
 
 use super::course::Course;
-use super::program::step_ends;
 use super::trajectory::sample_times;
 use super::walk::{Stretch, StretchState, walk};
-use super::{ContactModel, ForceHistory, Motion, ProgramStep, Sampling, SimulateError, Work};
+use super::{ContactModel, Drive, Sampling, SimulateError, Work};
 use crate::ode::Dop853;
 
 /// Tolerance of the node displacements, relative to the largest contact displacement of the motion.
@@ -23,7 +22,7 @@ pub struct StrainWave {
     pub work: Work,
 }
 
-/// Simulates every layer of `model` under `motion` (section IV of the paper, steps 1 to 3).
+/// Simulates every layer of `model` under a motion, a force or a program (section IV of the paper, steps 1 to 3).
 ///
 /// Node i + 1 follows node i by u̇ᵢ₊₁ = ℓ v sgn(xᵢ)|xᵢ|ⁿ with xᵢ = (uᵢ − uᵢ₊₁)/ℓ − uᵢ/Lᵢ and Lᵢ = depth − (i − 1) ℓ; the plane
 /// of symmetry does not move. Layer i does not feel layer i + 1, so the first layer is the one that
@@ -31,42 +30,17 @@ pub struct StrainWave {
 ///
 /// # Errors
 /// [`SimulateError::FractionalLayers`] unless the number of layers is whole; otherwise as for `simulate`.
-pub fn strain_wave(motion: &Motion, model: &ContactModel, sampling: &Sampling) -> Result<StrainWave, SimulateError> {
-    wave_of(Course::Motion(motion), model, sampling)
-}
-
-/// The same under a force: the first layer is the one that [`simulate_under_force`](super::simulate_under_force) reports.
-///
-/// # Errors
-/// [`SimulateError::FractionalLayers`] unless the number of layers is whole; otherwise as for `simulate_under_force`.
-pub fn strain_wave_under_force(
-    history: &ForceHistory,
+pub fn strain_wave<'a>(
+    drive: impl Into<Drive<'a>>,
     model: &ContactModel,
     sampling: &Sampling,
 ) -> Result<StrainWave, SimulateError> {
-    wave_of(Course::Force(history), model, sampling)
-}
-
-/// The same of a program: the first layer is the one that [`simulate_program`](super::simulate_program) reports.
-///
-/// # Errors
-/// [`SimulateError::FractionalLayers`] unless the number of layers is whole; otherwise as for `simulate_program`.
-pub fn strain_wave_of_program(
-    program: &[ProgramStep],
-    model: &ContactModel,
-    sampling: &Sampling,
-) -> Result<StrainWave, SimulateError> {
-    let ends = step_ends(program, model)?;
-    let times: Vec<f64> = [0.0].into_iter().chain(ends.iter().map(|end| end.time)).collect();
-    wave_of(Course::Program(program, &times), model, sampling)
-}
-
-fn wave_of(course: Course<'_>, model: &ContactModel, sampling: &Sampling) -> Result<StrainWave, SimulateError> {
+    let course = Course::new(drive.into(), model)?;
     let layers = model.layers.whole().ok_or(SimulateError::FractionalLayers {
         found: model.layers.count(),
     })?;
-    let time = sample_times(course, sampling)?;
-    let mut cascade = Cascade::new(model, layers, course);
+    let time = sample_times(&course, sampling)?;
+    let mut cascade = Cascade::new(model, layers, &course);
     let mut wave = StrainWave {
         strain: vec![Vec::with_capacity(time.len()); layers],
         displacement: vec![Vec::with_capacity(time.len()); layers],
@@ -74,7 +48,7 @@ fn wave_of(course: Course<'_>, model: &ContactModel, sampling: &Sampling) -> Res
         work: Work::default(),
     };
     let last = course.end();
-    let (_, walked) = walk(course, model, |stretch| {
+    let (_, walked) = walk(course.drive, model, |stretch| {
         cascade.pass(stretch, stretch.end == last, &mut wave);
         Ok(())
     })?;
@@ -107,13 +81,13 @@ struct Cascade<'a> {
 const STIFFEST: f64 = 1e5;
 
 impl<'a> Cascade<'a> {
-    fn new(model: &'a ContactModel, layers: usize, course: Course<'_>) -> Self {
-        let reach = match course {
-            Course::Motion(motion) => {
+    fn new(model: &'a ContactModel, layers: usize, course: &Course<'_>) -> Self {
+        let reach = match course.drive {
+            Drive::Motion(motion) => {
                 let travel = motion.displacements().iter().fold(0.0, |most: f64, d| most.max(d.abs()));
                 model.specimen.contact_displacement(travel)
             }
-            Course::Force(_) | Course::Program(..) => model.specimen.depth(),
+            Drive::Force(_) | Drive::Program(_) => model.specimen.depth(),
         };
         let (n, v) = (model.law.exponent(), model.law.rate_coefficient());
         let rest = if n < 1.0 {
