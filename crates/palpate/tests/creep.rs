@@ -221,3 +221,54 @@ fn programs_that_cannot_be_run_say_which_step() {
     let deep = ProgramStep::Move { to: 0.08, rate: 0.1 };
     assert!(matches!(run(&[deep]), Err(SimulateError::Displacement { .. })));
 }
+
+/// Let go until no force is left and watch: to rounding, that force came back as one that nothing carries.
+#[test]
+fn a_force_let_down_to_nothing_can_be_kept() {
+    for separation in [Separation::Unilateral, Separation::Bonded] {
+        let model = ContactModel {
+            separation,
+            ..ball(5.0, 2e4, 8.0)
+        };
+        for i in 1..60 {
+            let force = 0.37 * f64::from(i);
+            let rate = 1e-3;
+            let program = [
+                ProgramStep::MoveToForce { force, rate },
+                ProgramStep::HoldPosition { duration: 2.0 },
+                ProgramStep::MoveToForce { force: 0.0, rate },
+                ProgramStep::HoldForce { duration: 4.0 },
+                ProgramStep::Press { to: force, rate: 3.0 },
+                ProgramStep::HoldForce { duration: 1.0 },
+                ProgramStep::MoveToForce { force, rate },
+                ProgramStep::Press { to: force, rate: 3.0 },
+                ProgramStep::Press { to: 0.0, rate: 3.0 },
+                ProgramStep::HoldForce { duration: 4.0 },
+            ];
+            let ends = step_ends(&program, &model).unwrap_or_else(|error| panic!("{force} N: {error}"));
+            let forces: Vec<f64> = ends.iter().map(|end| end.force).collect();
+            assert!(
+                forces[0] == force && forces[2..4] == [0.0; 2] && forces[4..8] == [force; 4] && forces[8..] == [0.0; 2]
+            );
+            assert!(ends[3].displacement < ends[2].displacement);
+            // Where the force is already, nothing happens.
+            assert_eq!((ends[6].time, ends[7].time), (ends[5].time, ends[5].time));
+            let series = simulate(&program, &model, &Sampling::Rate(20.0)).unwrap();
+            assert!(series.force.iter().all(|force| force.is_finite()) && series.events.is_empty());
+        }
+    }
+}
+
+#[test]
+fn a_program_that_takes_no_time_is_none() {
+    let model = ball(5.0, 2e4, 8.0);
+    let program = [ProgramStep::MoveToForce { force: 0.0, rate: 1e-3 }, ProgramStep::Press { to: 0.0, rate: 1.0 }];
+    assert_eq!(simulate(&program, &model, &Sampling::Rate(1.0)), Err(SimulateError::EmptyProgram));
+}
+
+#[test]
+fn a_law_too_fast_for_a_slow_change_says_so_in_time() {
+    let slow = history(&[(0.0, 0.0), (1000.0, 10.0), (2000.0, 10.0)]);
+    let result = simulate(&slow, &ball(1.0, 1e8, 8.0), &Sampling::Rate(1.0));
+    assert!(matches!(result, Err(SimulateError::TooStiff { .. })), "{result:?}");
+}

@@ -119,3 +119,33 @@ fn one_layer_loses_nothing() {
     let energy = energy(&motion, &model, &Sampling::Times(vec![0.0, 0.5, 1.0, 2.0, 3.0])).unwrap();
     assert!(energy.split.unwrap().lost.iter().all(|lost| lost.abs() < 1e-16));
 }
+
+/// What is given back does not depend on when one looks.
+#[test]
+fn work_given_back_is_the_same_whatever_the_samples() {
+    let model = model(BLOCK, 5.0, 2e4, 8.0, Separation::Bonded);
+    let elastic = ContactModel {
+        layers: Layers::new(1.0).unwrap(),
+        ..model
+    };
+    let motion = Motion::new(vec![0.0, 1.0, 2.0, 3.0], vec![0.0, 0.02, -0.02, 0.0]).unwrap();
+    for model in [model, elastic] {
+        let few = energy(&motion, &model, &Sampling::Times(vec![3.0])).unwrap();
+        let many = energy(&motion, &model, &Sampling::Rate(977.0)).unwrap();
+        let last = many.time.len() - 1;
+        assert!(
+            (few.given_back[0] / many.given_back[last] - 1.0).abs() < 1e-9,
+            "{:?} {}",
+            few,
+            many.given_back[last]
+        );
+        assert!(
+            (few.work[0] - many.work[last]).abs()
+                < 1e-9 * many.work.iter().fold(0.0, |most: f64, work| most.max(*work))
+        );
+    }
+    // Of an elastic block all of it comes back, twice E A u²/(2 depth) for each of two contacts.
+    let few = energy(&motion, &elastic, &Sampling::Times(vec![3.0])).unwrap();
+    let expected = 2.0 * 2.0 * 0.5 * 1e5 * 1e-3 * 0.01 * 0.01 / 0.04;
+    assert!((few.given_back[0] / expected - 1.0).abs() < 1e-12, "{} {expected}", few.given_back[0]);
+}

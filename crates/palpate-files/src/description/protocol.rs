@@ -184,12 +184,17 @@ pub fn parse_protocol(text: &str, path: &Path) -> Result<Protocol, DescriptionEr
     let source = Source { path, text };
     let tables: ProtocolTables = source.tables()?;
     let model = model(&source, &tables)?;
-    let Steps { program, motion } = steps(&source, &tables.step, &model)?;
+    let Steps {
+        program,
+        motion,
+        tables: written,
+    } = steps(&source, &tables.step, &model)?;
     let refused = |found: String| source.value("step", "steps that can be simulated", &found);
     let end = match &motion {
         Some(motion) => motion.end(),
         None => {
-            let ends = step_ends(&program, &model).map_err(|error| refused(error.to_string()))?;
+            let ends = step_ends(&program, &model)
+                .map_err(|error| refused(error.in_step(|number| written[number - 1]).to_string()))?;
             ends.last().map_or(0.0, |end| end.time)
         }
     };
@@ -236,13 +241,15 @@ fn model(source: &Source<'_>, tables: &ProtocolTables) -> Result<ContactModel, D
 struct Steps {
     program: Vec<ProgramStep>,
     motion: Option<Motion>,
+    /// Number of the table, from 1, that each step of the program was written in.
+    tables: Vec<usize>,
 }
 
 fn steps(source: &Source<'_>, tables: &[StepTable], model: &ContactModel) -> Result<Steps, DescriptionError> {
     if tables.is_empty() {
         return Err(source.missing("step", "one or more [[step]] tables with to and rate"));
     }
-    let (mut program, mut moves) = (Vec::new(), Vec::new());
+    let (mut program, mut moves, mut written) = (Vec::new(), Vec::new(), Vec::new());
     let mut at = Some(0.0);
     for (index, table) in tables.iter().enumerate() {
         let key = |name: &str| format!("step[{}].{name}", index + 1);
@@ -279,8 +286,8 @@ fn steps(source: &Source<'_>, tables: &[StepTable], model: &ContactModel) -> Res
         }
         // Where the jaw stands after force control only the simulation knows.
         at = if matches!(hold, Some(ProgramStep::HoldForce { .. })) { None } else { to };
-        program.extend(ramp);
-        program.extend(hold);
+        program.extend(ramp.into_iter().chain(hold));
+        written.resize(program.len(), index + 1);
     }
     let in_displacement =
         |step: &ProgramStep| matches!(step, ProgramStep::Move { .. } | ProgramStep::HoldPosition { .. });
@@ -293,7 +300,11 @@ fn steps(source: &Source<'_>, tables: &[StepTable], model: &ContactModel) -> Res
     } else {
         None
     };
-    Ok(Steps { program, motion })
+    Ok(Steps {
+        program,
+        motion,
+        tables: written,
+    })
 }
 
 /// The first part of a step, if it has one.

@@ -257,6 +257,18 @@ fn steps_in_force_and_in_displacement() {
     assert!((still.motion.unwrap().end() - 15.6).abs() < 1e-12);
 }
 
+/// A hold is a step of its own to the simulation, and not to who wrote it.
+#[test]
+fn what_a_simulation_refuses_names_the_step_as_it_was_written() {
+    let text = with(
+        STEP,
+        "to_force = \"5 N\"\nrate = \"1 mm/s\"\nhold = \"2 s\"\n[[step]]\nto_force = \"5 N\"\nforce_rate = \"1 N/s\"\n\
+         hold_force = \"2 s\"\n[[step]]\nto_force = \"500 N\"\nrate = \"1 mm/s\"",
+    );
+    let error = protocol(&text).unwrap_err().to_string();
+    assert!(error.contains("step 3: the jaw never meets a force of 500 N"), "{error}");
+}
+
 #[test]
 fn steps_that_say_too_much_or_too_little() {
     for (step, key, message) in [
@@ -268,7 +280,7 @@ fn steps_that_say_too_much_or_too_little() {
         ("to_force = \"5 kPa\"\nrate = \"1 mm/s\"", "step[1].to_force", "N, kN"),
         ("to_force = \"1 N\"\nforce_rate = \"0 N/s\"", "step[1].force_rate", "a rate of force above 0 N/s"),
         ("to_force = \"10 kN\"\nrate = \"1 mm/s\"", "step", "never meets a force of 10000 N"),
-        ("to_force = \"-1 N\"\nrate = \"1 mm/s\"", "step", "a jaw cannot pull"),
+        ("to_force = \"-1 N\"\nrate = \"1 mm/s\"", "step", "a jaw that is not bonded"),
     ] {
         let result = protocol(&with(STEP, step));
         let error = result.err().unwrap_or_else(|| panic!("{step} is accepted")).to_string();

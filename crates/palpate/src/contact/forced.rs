@@ -59,11 +59,17 @@ enum Path {
     Changing(Vec<Step<[f64; 1]>>),
 }
 
-/// A force that no displacement carries: how long after the start of the piece, s.
+/// Why a piece could not be followed to its end, and how long after its start, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TooMuch {
-    pub(crate) elapsed: f64,
+pub(crate) enum Stopped {
+    /// No displacement carries the force.
+    TooMuch { elapsed: f64 },
+    /// The law is too fast for an explicit method beside so slow a change.
+    TooStiff { elapsed: f64 },
 }
+
+/// Steps of a changing force after which it is given up: less than a second.
+const MOST_STEPS: usize = 100_000;
 
 impl Body {
     fn thickness(&self) -> f64 {
@@ -98,8 +104,8 @@ impl Forced {
         behind: f64,
         duration: f64,
         work: &mut Work,
-    ) -> Result<Self, TooMuch> {
-        let (_, initial) = body.carry(from, behind).ok_or(TooMuch { elapsed: 0.0 })?;
+    ) -> Result<Self, Stopped> {
+        let (_, initial) = body.carry(from, behind).ok_or(Stopped::TooMuch { elapsed: 0.0 })?;
         let slope = if duration > 0.0 { (to - from) / duration } else { 0.0 };
         let path = if slope == 0.0 {
             Self::held(body, from, initial, duration, work)?
@@ -114,7 +120,7 @@ impl Forced {
         })
     }
 
-    fn held(body: Body, force: f64, initial: f64, duration: f64, work: &mut Work) -> Result<Path, TooMuch> {
+    fn held(body: Body, force: f64, initial: f64, duration: f64, work: &mut Work) -> Result<Path, Stopped> {
         let mut steps: Vec<Step<[f64; 1]>> = Vec::new();
         work.closed_forms += 1;
         if initial != 0.0 && duration > 0.0 {
@@ -139,7 +145,7 @@ impl Forced {
                 if carried(solver.state()[0]).0.is_none() {
                     let start = steps.last().map_or(0.0, Step::end);
                     let good = |elapsed: f64| carried(step.at(elapsed)[0]).0.is_some();
-                    return Err(TooMuch {
+                    return Err(Stopped::TooMuch {
                         elapsed: last_good(start, solver.time(), good),
                     });
                 }
@@ -157,13 +163,16 @@ impl Forced {
         behind: f64,
         duration: f64,
         work: &mut Work,
-    ) -> Result<Path, TooMuch> {
+    ) -> Result<Path, Stopped> {
         work.ramps += 1;
         let (depth, thickness) = (body.specimen.depth(), body.thickness());
         let mut solver = Dop853::new([behind], TOLERANCE * depth, duration / 64.0);
         let mut steps: Vec<Step<[f64; 1]>> = Vec::new();
         let carried = |elapsed: f64, behind: f64| body.carry(from + slope * elapsed, behind);
         while solver.time() < duration {
+            if steps.len() == MOST_STEPS {
+                return Err(Stopped::TooStiff { elapsed: solver.time() });
+            }
             let step = solver.step(duration, |elapsed, &[behind]| {
                 // Beyond what the body carries the step is thrown away below.
                 let excess = carried(elapsed, behind).map_or(0.0, |(_, excess)| excess);
@@ -172,7 +181,7 @@ impl Forced {
             if carried(solver.time(), solver.state()[0]).is_none() {
                 let good = |elapsed: f64| carried(elapsed, step.at(elapsed)[0]).is_some();
                 let start = steps.last().map_or(0.0, Step::end);
-                return Err(TooMuch {
+                return Err(Stopped::TooMuch {
                     elapsed: last_good(start, solver.time(), good),
                 });
             }

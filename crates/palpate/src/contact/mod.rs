@@ -21,7 +21,7 @@ mod specimen;
 
 pub(crate) use balance::{Layer, carried_at};
 pub(crate) use element::Element;
-pub(crate) use forced::{Body, Forced};
+pub(crate) use forced::{Body, Forced, Stopped};
 pub(crate) use free_surface::FreeSurface;
 pub use layers::{Layers, LayersError};
 pub use specimen::{Shape, Sides, Specimen, SpecimenError};

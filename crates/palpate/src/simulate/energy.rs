@@ -115,20 +115,73 @@ struct Account {
 impl Account {
     /// Adds the work from one time to another inside a stretch.
     fn add(&mut self, stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64)) {
+        let duration = stretch.end - stretch.start;
         let kinks: Vec<f64> = match &stretch.state {
-            StretchState::Touching(element) if stretch.contact_speed != 0.0 => element.step_ends().collect(),
-            StretchState::Forced(forced) => forced.step_ends().collect(),
+            StretchState::Touching(element) if stretch.contact_speed != 0.0 => {
+                let mut kinks: Vec<f64> = element.step_ends().collect();
+                // What follows the last step decays: pieces that grow.
+                let last = kinks.last().copied().unwrap_or(0.0);
+                let mut width = kinks.first().copied().unwrap_or(duration).max(1e-6 * duration);
+                let mut next = last + width;
+                while next < duration {
+                    kinks.push(next);
+                    width *= 1.5;
+                    next += width;
+                }
+                kinks
+            }
+            StretchState::Forced(forced) => {
+                // At first touch of a ball the displacement begins like √t: pieces that shrink towards it.
+                let first = forced.step_ends().next().unwrap_or(duration);
+                let small = (1..=16).rev().map(|k| first * 0.25f64.powi(k));
+                small.chain(forced.step_ends()).collect()
+            }
             StretchState::Touching(_) | StretchState::Free { .. } => return,
         };
         let kinks = kinks.into_iter().map(|elapsed| stretch.start + elapsed);
         let mut before = from;
         for end in kinks.filter(|kink| from < *kink && *kink < to).chain([to]) {
-            let work = work_between(stretch, model, (before, end));
-            self.work += work;
-            self.given_back += (-work).max(0.0);
+            let turn = turning(stretch, model, (before, end));
+            for (from, to) in [(before, turn), (turn, end)] {
+                if to > from {
+                    let work = work_between(stretch, model, (from, to));
+                    self.work += work;
+                    self.given_back += (-work).max(0.0);
+                }
+            }
             before = end;
         }
     }
+}
+
+/// Where work begins to be given back, or ends to be, inside a smooth piece; its end if nowhere.
+fn turning(stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64)) -> f64 {
+    let specimen = &model.specimen;
+    let power = |time: f64| {
+        let elapsed = time - stretch.start;
+        match &stretch.state {
+            StretchState::Touching(element) => {
+                let u = stretch.jaw_at(time);
+                specimen.force(element.excess_at(elapsed) + specimen.equilibrium_strain(u), u) * stretch.contact_speed
+            }
+            StretchState::Forced(forced) => forced.force_at(elapsed) * forced.at(elapsed).speed,
+            StretchState::Free { .. } => 0.0,
+        }
+    };
+    let gives = power(to) < 0.0;
+    if (power(from) < 0.0) == gives {
+        return to;
+    }
+    let (mut before, mut after) = (from, to);
+    for _ in 0..60 {
+        let middle = 0.5 * (before + after);
+        if (power(middle) < 0.0) == gives {
+            after = middle;
+        } else {
+            before = middle;
+        }
+    }
+    after
 }
 
 /// ∫ F du over a smooth piece. Under a force by parts, since it is u that begins like √t at first touch.

@@ -62,7 +62,7 @@ pub enum SimulateError {
     /// A force that pulls where nothing can be pulled.
     #[error(
         "at t = {time} s the force is {force} N: {}",
-        if *bonded { "a ball bonded to the jaw loses its contact area before it carries tension" } else { "a jaw cannot pull" }
+        if *bonded { "a ball bonded to the jaw loses its contact area before it carries tension" } else { "a jaw that is not bonded to the body cannot pull" }
     )]
     Tension {
         /// Time of the knot, s.
@@ -72,8 +72,17 @@ pub enum SimulateError {
         /// Whether body and jaw are bonded.
         bonded: bool,
     },
-    /// A program without a step.
-    #[error("a program needs one step or more, found none")]
+    /// A force that changes so slowly, or a law so fast, that too many steps would be needed.
+    #[error(
+        "the law relaxes too fast beside the change of force at t = {time} s: raise force_rate, or hold the force, whose simulation \
+         takes any law"
+    )]
+    TooStiff {
+        /// How far it came, s.
+        time: f64,
+    },
+    /// A program without a step that takes time.
+    #[error("a program needs a step that takes time, found none")]
     EmptyProgram,
     /// A number that makes no step.
     #[error("step {step}: {name} must be finite and, but for a target, above 0 {unit}, found {found} {unit}")]
@@ -145,4 +154,16 @@ pub enum SimulateError {
         /// Time, s.
         time: f64,
     },
+}
+
+impl SimulateError {
+    /// The same with the number of the step of a program turned into another: that of what the step was written in.
+    #[must_use]
+    pub fn in_step(mut self, number: impl Fn(usize) -> usize) -> Self {
+        if let Self::StepNumber { step, .. } | Self::Unreachable { step, .. } | Self::NoContact { step, .. } = &mut self
+        {
+            *step = number(*step);
+        }
+        self
+    }
 }

@@ -74,20 +74,22 @@ impl ProgramStep {
 /// # Errors
 /// As for `simulate`.
 pub fn step_ends(program: &[ProgramStep], model: &ContactModel) -> Result<Vec<StepEnd>, SimulateError> {
-    Walker::new(model, |_: &Stretch| Ok(())).run(program)
+    let ends = Walker::new(model, |_: &Stretch| Ok(())).run(program)?;
+    if ends.last().is_none_or(|end| end.time == 0.0) {
+        return Err(SimulateError::EmptyProgram);
+    }
+    Ok(ends)
 }
 
 impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'_, V> {
     /// Walks through a program that begins at time 0 with the jaw at first touch; returns where each step ended.
     pub(super) fn run(&mut self, program: &[ProgramStep]) -> Result<Vec<StepEnd>, SimulateError> {
-        if program.is_empty() {
-            return Err(SimulateError::EmptyProgram);
-        }
         let mut runner = Runner {
             model: self.model,
             walker: self,
             time: 0.0,
             jaw: 0.0,
+            kept: None,
         };
         let mut ends = Vec::with_capacity(program.len());
         for (index, step) in program.iter().enumerate() {
@@ -110,20 +112,37 @@ struct Runner<'w, 'a, V> {
     model: &'a ContactModel,
     time: f64,
     jaw: f64,
+    /// The force (N) that was asked for last, as long as it stands: what can be computed back is off by rounding.
+    kept: Option<f64>,
 }
 
 impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Runner<'_, '_, V> {
     fn take(&mut self, number: usize, step: ProgramStep) -> Result<StepEnd, SimulateError> {
         match step {
-            ProgramStep::Move { to, rate } => self.move_to(to, rate)?,
-            ProgramStep::MoveToForce { force, rate } => self.move_to_force(number, force, rate)?,
-            ProgramStep::HoldPosition { duration } => self.line(duration, self.jaw, None).map(|_| ())?,
+            ProgramStep::Move { to, rate } => {
+                self.kept = None;
+                self.move_to(to, rate)?;
+            }
+            ProgramStep::MoveToForce { force, rate } => {
+                self.move_to_force(number, force, rate)?;
+                self.kept = Some(force);
+            }
+            ProgramStep::HoldPosition { duration } => {
+                self.kept = None;
+                self.line(duration, self.jaw, None).map(|_| ())?;
+            }
             ProgramStep::Press { to, rate } => {
                 let force = self.force();
                 check_force(self.time, to, self.model)?;
                 self.press(number, (to - force).abs() / rate, to)?;
+                self.kept = Some(to);
             }
-            ProgramStep::HoldForce { duration } => self.press(number, duration, self.force())?,
+            ProgramStep::HoldForce { duration } => {
+                let force = self.force();
+                check_force(self.time, force, self.model)?;
+                self.press(number, duration, force)?;
+                self.kept = Some(force);
+            }
         }
         Ok(StepEnd {
             time: self.time,
@@ -135,8 +154,15 @@ impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Runner<'_, '_, V> {
     /// Contact force as it is, N.
     fn force(&self) -> f64 {
         let specimen = &self.model.specimen;
-        let strain = |excess: f64| excess + specimen.equilibrium_strain(self.jaw);
-        self.walker.excess().map_or(0.0, |excess| specimen.force(strain(excess), self.jaw))
+        let even = specimen.equilibrium_strain(self.jaw);
+        let computed = |excess: f64| {
+            let strain = excess + even;
+            // What two numbers leave of each other when they cancel is no force.
+            let none = strain.abs() <= 16.0 * f64::EPSILON * (excess.abs() + even.abs());
+            if none { 0.0 } else { specimen.force(strain, self.jaw) }
+        };
+        let now = || self.walker.excess().map_or(0.0, computed);
+        self.kept.unwrap_or_else(now)
     }
 
     fn move_to(&mut self, to: f64, rate: f64) -> Result<(), SimulateError> {
@@ -156,9 +182,11 @@ impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Runner<'_, '_, V> {
     fn move_to_force(&mut self, number: usize, force: f64, rate: f64) -> Result<(), SimulateError> {
         check_force(self.time, force, self.model)?;
         let now = self.force();
-        if now == force {
+        // There already, to rounding.
+        if (now - force).abs() <= 1e-12 * now.abs().max(force.abs()) && self.walker.excess().is_some() {
             return Ok(());
         }
+        self.kept = None;
         let specimen = &self.model.specimen;
         let depth = specimen.depth();
         // A jaw that approaches may go as deep as the body is; a strip in grips may be stretched as far as it likes.
@@ -183,11 +211,12 @@ impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Runner<'_, '_, V> {
 
     /// Moves straight for `duration` (s); whether the target was reached, if there is one.
     fn line(&mut self, duration: f64, to: f64, target: Option<f64>) -> Result<bool, SimulateError> {
-        if duration <= 0.0 {
+        let (start, from, end) = (self.time, self.jaw, self.time + duration);
+        // Shorter than time can tell: there already.
+        if end <= start {
             return Ok(false);
         }
-        let (start, from, end) = (self.time, self.jaw, self.time + duration);
-        if end <= start {
+        if !end.is_finite() {
             return Err(SimulateError::OutOfRange { time: start });
         }
         let reached = self.walker.line((start, end), (from, to), target)?;
@@ -204,16 +233,16 @@ impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Runner<'_, '_, V> {
                 time: self.time,
             });
         };
-        if duration <= 0.0 {
+        let end = self.time + duration;
+        if end <= self.time {
             return Ok(());
+        }
+        if !end.is_finite() {
+            return Err(SimulateError::OutOfRange { time: self.time });
         }
         let depth = self.model.specimen.depth();
         let strain = excess + self.model.specimen.equilibrium_strain(self.jaw);
         let behind = self.jaw - self.model.layers.thickness(depth) * strain;
-        let end = self.time + duration;
-        if end <= self.time {
-            return Err(SimulateError::OutOfRange { time: self.time });
-        }
         (self.jaw, _) = self.walker.force((self.time, end), (self.force(), to), behind)?;
         self.time = end;
         Ok(())

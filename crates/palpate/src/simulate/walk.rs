@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{ContactModel, Drive, ForceHistory, Motion, Separation, SimulateError, Work};
-use crate::contact::{Body, Element, Forced, FreeSurface};
+use crate::contact::{Body, Element, Forced, FreeSurface, Stopped};
 
 /// A contact that was lost or regained.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -141,7 +141,13 @@ impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
             if let Some(event) = event {
                 stretch.end = event.time;
             }
-            let reached = target.and_then(|target| reaching(&stretch, target, self.model));
+            let mut reached = target.and_then(|target| reaching(&stretch, target, self.model));
+            // A jaw that goes back until no force is left stays in touch: that is where it would leave.
+            let lost =
+                event.filter(|event| event.kind == ContactEventKind::Lost && target.is_some_and(|force| force <= 0.0));
+            if let Some(lost) = lost {
+                reached = Some(lost.time);
+            }
             if let Some(time) = reached {
                 (stretch.end, event) = (time, None);
             }
@@ -149,6 +155,10 @@ impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
                 (self.visit)(&stretch)?;
             }
             self.contact = after(&stretch, event, self.model, &mut self.work)?;
+            if let Some(lost) = lost {
+                let excess = -self.model.specimen.equilibrium_strain(lost.contact_displacement);
+                self.contact = Contact::Touching { excess };
+            }
             start = stretch.end;
             self.events.extend(event);
             if reached.is_some() {
@@ -187,13 +197,14 @@ impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
             layers: model.layers,
             bonded: model.separation == Separation::Bonded,
         };
-        let forced = Forced::solve(body, (from, to), behind, duration, &mut self.work).map_err(|too_much| {
-            let force = from + (to - from) * (too_much.elapsed / duration);
-            SimulateError::Force {
-                time: start + too_much.elapsed,
-                force,
-            }
-        })?;
+        let forced =
+            Forced::solve(body, (from, to), behind, duration, &mut self.work).map_err(|stopped| match stopped {
+                Stopped::TooMuch { elapsed } => SimulateError::Force {
+                    time: start + elapsed,
+                    force: from + (to - from) * (elapsed / duration),
+                },
+                Stopped::TooStiff { elapsed } => SimulateError::TooStiff { time: start + elapsed },
+            })?;
         let (first, last) = (forced.at(0.0), forced.at(duration));
         let behind = forced.behind_at(duration);
         if !(behind.is_finite() && last.displacement.is_finite()) {
