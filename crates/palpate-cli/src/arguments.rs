@@ -57,7 +57,7 @@ Examples:
   palpate simulate examples/protocols/paper-a.toml --out a.csv --figure a.svg
   palpate simulate examples/protocols/grip.toml | head
   palpate simulate examples/protocols/creep.toml --figure creep.svg --energy work.csv
-  palpate simulate squeeze.toml --force-noise \"0.05 N\" --out record.csv  a record to try an analysis on
+  palpate simulate squeeze.toml --force-noise \"0.05 N\" --out record.csv   a record to analyse
   palpate simulate ball.toml --drive gripper.csv --drive-by force   a measured force, replayed
   palpate schema protocol                        what a protocol may say")]
 pub(crate) struct SimulateArguments {

@@ -96,7 +96,9 @@ mod tests {
                 let u = carried_at(&ball, layer, force, false).unwrap();
                 let (strain, _) = layer.strain(u, 0.035);
                 let carried = ball.force(strain, u);
-                assert!((carried / force - 1.0).abs() < 1e-9, "{layer:?} {force}: {carried}");
+                // u is one of the doubles beside the place; the force between two of them is what rounding leaves.
+                let between = 4.0 * f64::EPSILON * ball.stiffness(u).0;
+                assert!((carried - force).abs() < 1e-12 * force + between, "{layer:?} {force}: {carried}");
             }
         }
         // E A(r) · 1 = 28 kPa · π (35 mm)² = 107.8 N
