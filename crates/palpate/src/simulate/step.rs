@@ -29,9 +29,9 @@ use crate::contact::{Layer, SpecimenError, carried_at};
 /// for i in 1..=600 {
 ///     force = contact.step(&model, 1e-3, 0.005 * f64::from(i) / 600.0)?;
 /// }
-/// assert!((force - 3.035_025).abs() < 1e-5);
+/// assert!((force - 3.035_025).abs() < 1e-3); // N; second order in dt
 /// force = contact.step(&model, 10.0, 0.005)?;
-/// assert!((force - 1.556_133).abs() < 1e-5);
+/// assert!((force - 1.556_133).abs() < 1e-4);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
