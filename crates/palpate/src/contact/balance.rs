@@ -1,6 +1,6 @@
 //! Where a body carries a given force.
 
-use super::Specimen;
+use super::{Layers, Specimen};
 
 /// What a contact displacement has to satisfy, as the strain of the contact layer that goes with it.
 #[derive(Debug, Clone, Copy)]
@@ -73,6 +73,18 @@ pub(crate) fn carried_at(specimen: &Specimen, layer: Layer, force: f64, bonded: 
         u = next;
     }
     Some(u)
+}
+
+/// The share K of the law's rate that the excess strain keeps under a force, and Q (N/m), the stiffness against a change of force, at contact
+/// displacement `u` (m): see `forced.rs`.
+pub(crate) fn share(specimen: &Specimen, layers: Layers, u: f64, excess: f64) -> (f64, f64) {
+    let depth = specimen.depth();
+    let (stiffness, growth) = specimen.stiffness(u);
+    let bend = growth * (excess + u / depth) * depth;
+    let whole = bend + layers.count() * stiffness;
+    // At first touch of a ball there is no area yet: the limit along the way there, with all of u on the contact layer.
+    let share = if whole > 0.0 { (bend + stiffness) / whole } else { 1.0 / layers.count() };
+    (share, (bend + stiffness) / depth)
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@
 //!
 //! **While it changes** u₂ is integrated as it stands: it stays smooth at first touch, where the displacement of a ball begins like √t.
 
-use super::balance::{Layer, carried_at};
+use super::balance::{Layer, carried_at, share};
 use super::{Layers, Specimen, Work};
 use crate::latency::LatencyLaw;
 use crate::ode::{Dop853, Step};
@@ -82,17 +82,6 @@ impl Body {
         let u = carried_at(&self.specimen, Layer::Behind { behind, thickness }, force, self.bonded)?;
         Some((u, (u - behind) / thickness - u / self.specimen.depth()))
     }
-
-    /// The share K of the law's rate that the excess strain keeps under a force, and Q (N/m).
-    fn share(&self, u: f64, excess: f64) -> (f64, f64) {
-        let depth = self.specimen.depth();
-        let (stiffness, growth) = self.specimen.stiffness(u);
-        let bend = growth * (excess + u / depth) * depth;
-        let whole = bend + self.layers.count() * stiffness;
-        // At first touch of a ball there is no area yet: the limit along the way there, with all of u on the contact layer.
-        let share = if whole > 0.0 { (bend + stiffness) / whole } else { 1.0 / self.layers.count() };
-        (share, (bend + stiffness) / depth)
-    }
 }
 
 impl Forced {
@@ -140,7 +129,7 @@ impl Forced {
                 let step = solver.step(duration, |_, &[s]| {
                     let (u, excess) = carried(s);
                     // Beyond what the body carries the step is thrown away below.
-                    [body.share(u.unwrap_or(body.specimen.depth()), excess).0]
+                    [share(&body.specimen, body.layers, u.unwrap_or(body.specimen.depth()), excess).0]
                 });
                 if carried(solver.state()[0]).0.is_none() {
                     let start = steps.last().map_or(0.0, Step::end);
@@ -212,7 +201,7 @@ impl Forced {
                 body.carry(force, behind).unwrap_or((f64::NAN, f64::NAN))
             }
         };
-        let (share, carrying) = body.share(displacement, excess);
+        let (share, carrying) = share(&body.specimen, body.layers, displacement, excess);
         let depth = body.specimen.depth();
         let by_law = body.law.rate(excess);
         let by_force = if self.slope == 0.0 { 0.0 } else { self.slope / carrying };

@@ -19,7 +19,7 @@ mod free_surface;
 mod layers;
 mod specimen;
 
-pub(crate) use balance::{Layer, carried_at};
+pub(crate) use balance::{Layer, carried_at, share};
 pub(crate) use element::Element;
 pub(crate) use forced::{Body, Forced, Stopped};
 pub(crate) use free_surface::FreeSurface;

@@ -154,20 +154,22 @@ impl Account {
     }
 }
 
+/// Power F u̇ of one contact's share of the jaw at a time inside a stretch, W.
+fn power_at(stretch: &Stretch, model: &ContactModel, time: f64) -> f64 {
+    let (specimen, elapsed) = (&model.specimen, time - stretch.start);
+    match &stretch.state {
+        StretchState::Touching(element) => {
+            let u = stretch.jaw_at(time);
+            specimen.force(element.excess_at(elapsed) + specimen.equilibrium_strain(u), u) * stretch.contact_speed
+        }
+        StretchState::Forced(forced) => forced.force_at(elapsed) * forced.at(elapsed).speed,
+        StretchState::Free { .. } => 0.0,
+    }
+}
+
 /// Where work begins to be given back, or ends to be, inside a smooth piece; its end if nowhere.
 fn turning(stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64)) -> f64 {
-    let specimen = &model.specimen;
-    let power = |time: f64| {
-        let elapsed = time - stretch.start;
-        match &stretch.state {
-            StretchState::Touching(element) => {
-                let u = stretch.jaw_at(time);
-                specimen.force(element.excess_at(elapsed) + specimen.equilibrium_strain(u), u) * stretch.contact_speed
-            }
-            StretchState::Forced(forced) => forced.force_at(elapsed) * forced.at(elapsed).speed,
-            StretchState::Free { .. } => 0.0,
-        }
-    };
+    let power = |time: f64| power_at(stretch, model, time);
     let gives = power(to) < 0.0;
     if (power(from) < 0.0) == gives {
         return to;
@@ -186,16 +188,8 @@ fn turning(stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64)) -> f
 
 /// ∫ F du over a smooth piece. Under a force by parts, since it is u that begins like √t at first touch.
 fn work_between(stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64)) -> f64 {
-    let specimen = &model.specimen;
     match &stretch.state {
-        StretchState::Touching(element) => {
-            let power = |time: f64| {
-                let u = stretch.jaw_at(time);
-                let strain = element.excess_at(time - stretch.start) + specimen.equilibrium_strain(u);
-                specimen.force(strain, u) * stretch.contact_speed
-            };
-            integral(power, from, to)
-        }
+        StretchState::Touching(_) => integral(|time| power_at(stretch, model, time), from, to),
         StretchState::Forced(forced) => {
             let force = |time: f64| forced.force_at(time - stretch.start);
             let u = |time: f64| stretch.jaw_at(time);

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::MotionError;
+use super::motion::{check_finite, value_at};
 
 /// A piecewise-linear history of the force on one contact: force F (N) over time (s), compression positive.
 ///
@@ -39,15 +40,7 @@ impl ForceHistory {
         if times.len() < 2 || times[0] == times[times.len() - 1] {
             return Err(MotionError::TooShort { found: times.len() });
         }
-        for (what, values) in [("time", &times), ("force", &forces)] {
-            if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-                return Err(MotionError::NotFinite {
-                    what,
-                    found: values[index],
-                    index,
-                });
-            }
-        }
+        check_finite(&times, "force", &forces)?;
         let stands = |index: usize| index >= 2 && times[index] == times[index - 2];
         if let Some(index) = (1..times.len()).find(|&i| times[i] < times[i - 1] || stands(i)) {
             return Err(MotionError::TimeNotRising {
@@ -86,16 +79,7 @@ impl ForceHistory {
     /// Force at `time`, N: after the step where there is one, constant before the first knot and after the last.
     #[must_use]
     pub fn force_at(&self, time: f64) -> f64 {
-        let after = self.times.partition_point(|&knot| knot <= time);
-        if after == 0 {
-            return self.forces[0];
-        }
-        if after == self.times.len() {
-            return self.forces[after - 1];
-        }
-        let (t0, t1) = (self.times[after - 1], self.times[after]);
-        let (f0, f1) = (self.forces[after - 1], self.forces[after]);
-        f0 + (f1 - f0) * ((time - t0) / (t1 - t0))
+        value_at(&self.times, &self.forces, time)
     }
 }
 

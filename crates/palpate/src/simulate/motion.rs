@@ -146,15 +146,7 @@ impl Motion {
         if times.len() < 2 {
             return Err(MotionError::TooShort { found: times.len() });
         }
-        for (what, values) in [("time", &times), ("displacement", &displacements)] {
-            if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-                return Err(MotionError::NotFinite {
-                    what,
-                    found: values[index],
-                    index,
-                });
-            }
-        }
+        check_finite(&times, "displacement", &displacements)?;
         if let Some(index) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
             return Err(MotionError::TimeNotRising {
                 before: times[index],
@@ -192,20 +184,39 @@ impl Motion {
     /// Displacement of the jaw at `time`, m; constant before the first knot and after the last.
     #[must_use]
     pub fn displacement_at(&self, time: f64) -> f64 {
-        let after = self.times.partition_point(|&knot| knot <= time);
-        if after == 0 {
-            return self.displacements[0];
-        }
-        if after == self.times.len() {
-            return self.displacements[after - 1];
-        }
-        let (t0, t1) = (self.times[after - 1], self.times[after]);
-        let (d0, d1) = (self.displacements[after - 1], self.displacements[after]);
-        if d0 == d1 {
-            return d0;
-        }
-        d0 + (d1 - d0) * ((time - t0) / (t1 - t0))
+        value_at(&self.times, &self.displacements, time)
     }
+}
+
+/// The value at `time` of a line straight between knots: constant before the first knot and after the last, after the step where two knots
+/// stand at one time.
+pub(super) fn value_at(times: &[f64], values: &[f64], time: f64) -> f64 {
+    let after = times.partition_point(|&knot| knot <= time);
+    if after == 0 {
+        return values[0];
+    }
+    if after == times.len() {
+        return values[after - 1];
+    }
+    let (from, to) = (values[after - 1], values[after]);
+    if from == to {
+        return from;
+    }
+    from + (to - from) * ((time - times[after - 1]) / (times[after] - times[after - 1]))
+}
+
+/// Checks that every number of both columns is finite.
+pub(super) fn check_finite(times: &[f64], what: &'static str, values: &[f64]) -> Result<(), MotionError> {
+    for (what, values) in [("time", times), (what, values)] {
+        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+            return Err(MotionError::NotFinite {
+                what,
+                found: values[index],
+                index,
+            });
+        }
+    }
+    Ok(())
 }
 
 impl Motion {

@@ -8,7 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{ContactModel, Separation};
-use crate::contact::{Layer, SpecimenError, carried_at};
+use crate::contact::{Layer, SpecimenError, carried_at, share};
 
 /// The state of a contact between two steps: two numbers.
 ///
@@ -108,9 +108,10 @@ impl ContactState {
         let u = at(halfway, self.behind)?;
         let excess = (u - self.behind) / thickness - u / depth;
         // Creep: the law in its own time, ṡ = K; the mean of K at both ends.
-        let first = share(model, u, excess);
+        let keeps = |u: f64, excess: f64| share(specimen, model.layers, u, excess).0;
+        let first = keeps(u, excess);
         let guess = model.law.excess_after(excess, first * dt);
-        let second = share(model, held(halfway, guess)?, guess);
+        let second = keeps(held(halfway, guess)?, guess);
         let after = model.law.excess_after(excess, 0.5 * (first + second) * dt);
         let u = held(halfway, after)?;
         let behind = u - thickness * (after + u / depth);
@@ -236,15 +237,6 @@ fn check_step(dt: f64, name: &'static str, value: f64) -> Result<(), StepError> 
         return Err(StepError::Number { name, found: value });
     }
     Ok(())
-}
-
-/// K of [`contact::forced`](crate::contact).
-fn share(model: &ContactModel, u: f64, excess: f64) -> f64 {
-    let depth = model.specimen.depth();
-    let (stiffness, growth) = model.specimen.stiffness(u);
-    let bend = growth * (excess + u / depth) * depth;
-    let whole = bend + model.layers.count() * stiffness;
-    if whole > 0.0 { (bend + stiffness) / whole } else { 1.0 / model.layers.count() }
 }
 
 /// Where in 0…1 a function that begins above zero and ends below crosses it, to a thousandth of a millionth, in a bounded number of steps.
