@@ -180,7 +180,7 @@ impl Fitted {
         self.solution.linear = refined.linear().to_vec();
         self.solution.nonlinear = refined.theta().to_vec();
         let searched = self.values();
-        let direct = self.direct(&|value, _, _| Estimate::fixed(value));
+        let direct = self.direct(&searched, &|value, _, _| Estimate::fixed(value));
         let numbers = direct.into_iter().map(|number| number.estimate.value);
         let all: Vec<f64> =
             numbers.chain(derived(law, self, &searched).into_iter().map(|number| number.value)).collect();

@@ -16,10 +16,11 @@ pub(super) fn build(form: Form, samples: &Samples<'_>, options: &LawOptions) -> 
         ConstantChoice::AsLaw => Some(0.0),
         ConstantChoice::Fixed(value) => Some(value),
     };
-    let free = form.numbers().iter().filter(|(_, name, kind)| is_free(name, *kind, options)).count();
+    let named = form.numbers();
+    let free = named.iter().filter(|(_, name, kind)| is_free(name, *kind, options)).count();
     samples.check(free + form.shapes.len() + usize::from(constant.is_none()))?;
     let scaled = Scaled::new(samples, constant)?;
-    let numbers = numbers(&form, &scaled, options)?;
+    let numbers = numbers(named, &scaled, options)?;
     let linear = linear_bounds(&form, constant.is_none(), samples, &scaled, options);
     for name in options.bounds.iter().map(|(name, _)| name).chain(options.fixed.iter().map(|(name, _)| name)) {
         let known = known_names(&form);
@@ -48,7 +49,11 @@ fn known_names(form: &Form) -> Vec<String> {
     constant.into_iter().chain(form.amplitude_names()).chain(numbers.map(|(_, name, _)| name)).collect()
 }
 
-fn numbers(form: &Form, scaled: &Scaled, options: &LawOptions) -> Result<Vec<Number>, FitError> {
+fn numbers(
+    named: Vec<(usize, String, NumberKind)>,
+    scaled: &Scaled,
+    options: &LawOptions,
+) -> Result<Vec<Number>, FitError> {
     let log_duration = scaled.duration.ln();
     // A value as the caller writes it, in the units of the fit.
     let inner = |kind: NumberKind, value: f64| match kind {
@@ -56,8 +61,8 @@ fn numbers(form: &Form, scaled: &Scaled, options: &LawOptions) -> Result<Vec<Num
         NumberKind::Time => log_duration - value.ln(),
         NumberKind::Rate | NumberKind::Reference => value.ln() + log_duration,
     };
-    let mut numbers = Vec::new();
-    for (shape, name, kind) in form.numbers() {
+    let mut numbers = Vec::with_capacity(named.len());
+    for (shape, name, kind) in named {
         let widest = match kind {
             NumberKind::Pure { low, high, .. } => (low, high),
             _ => scaled.log_rates(),

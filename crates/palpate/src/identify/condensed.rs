@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use super::separable::Target;
+use crate::vector::accelerated;
 use crate::vector::moments::moments;
+use crate::vector::products::LANES;
 
 /// Relative width in time of the bins; the shape of a law is close to a cubic inside one.
 pub(super) const WIDTH: f64 = 0.2;
@@ -59,13 +61,26 @@ impl Condensed {
             inside: 0.0,
             samples: times.len(),
         };
+        let mut pending = Pending::default();
         let mut from = 0;
         while from < times.len() {
             let end = times[from] * (1.0 + width);
             let until = from + 1 + count_below(&times[from + 1..], end);
-            condensed.bin(times, values, roots, from..until);
+            if until - from > 2 {
+                pending.push(times, values, roots, from..until);
+                if pending.is_full() {
+                    pending.empty_into(&mut condensed);
+                }
+            } else {
+                pending.empty_into(&mut condensed);
+                for i in from..until {
+                    let root = roots.map_or(1.0, |roots| roots[i]);
+                    condensed.node(times[i], values[i] * root, root);
+                }
+            }
             from = until;
         }
+        pending.empty_into(&mut condensed);
         condensed
     }
 
@@ -78,81 +93,106 @@ impl Condensed {
         Target::nodes(&self.values, &self.roots)
     }
 
-    fn bin(&mut self, times: &[f64], values: &[f64], roots: Option<&[f64]>, range: Range<usize>) {
-        if range.len() <= 2 {
-            for i in range {
-                self.node(times[i], values[i], roots.map_or(1.0, |roots| roots[i]));
-            }
-            return;
-        }
-        let moments = Moments::of(times, values, roots, range);
-        self.inside += moments.inside;
-        if moments.weight == 0.0 {
-            return;
-        }
-        if moments.width == 0.0 {
-            self.node(moments.time, moments.value, moments.weight.sqrt());
-            return;
-        }
-        // Gauss's rule with two nodes: zeros of x² − skewness · x − 1 in units of the spread, with shares of the weight 1/(1 + x²).
-        let root = (moments.skewness * moments.skewness + 4.0).sqrt();
-        let (early, late) = (0.5 * (moments.skewness - root), 0.5 * (moments.skewness + root));
-        let share = 1.0 / (1.0 + early * early);
-        for (x, share) in [(early, share), (late, 1.0 - share)] {
-            let along = x * moments.width;
-            self.node(moments.time + along, moments.value + moments.slope * along, (moments.weight * share).sqrt());
-        }
-    }
-
+    /// A node, unless it has no weight; `value` is times `root`.
     fn node(&mut self, time: f64, value: f64, root: f64) {
         if root > 0.0 {
             self.times.push(time);
-            self.values.push(value * root);
+            self.values.push(value);
             self.roots.push(root);
         }
     }
 }
 
-/// Weighted moments of the samples of a bin.
-struct Moments {
-    weight: f64,
-    time: f64,
-    value: f64,
-    /// Standard deviation of the times.
-    width: f64,
-    /// Third central moment of the times over `width`³.
-    skewness: f64,
-    /// Slope of the line through the samples.
-    slope: f64,
-    /// Weighted square of the distances from that line.
-    inside: f64,
+/// Bins whose nodes are made together, side by side: one at a time, each would wait for its own roots and quotients.
+#[derive(Default)]
+struct Pending {
+    count: usize,
+    /// Sums over the samples of each bin, about its place and level.
+    sums: [[f64; LANES]; 7],
+    places: [f64; LANES],
+    levels: [f64; LANES],
+    /// From a bin's place to its ends.
+    reaches: [f64; LANES],
 }
 
-impl Moments {
-    /// In one pass, about a place inside the bin, from which those about the mean are near.
-    fn of(times: &[f64], values: &[f64], roots: Option<&[f64]>, range: Range<usize>) -> Self {
-        let (first, last) = (times[range.start], times[range.end - 1]);
-        let (place, level) = (0.5 * (first + last), values[range.start]);
-        let [w, t, tt, ttt, y, ty, yy] = moments(times, values, roots, range, (place, level));
-        let each = if w > 0.0 { 1.0 / w } else { 0.0 };
-        let (t, y) = (t * each, y * each);
-        let ttt = ttt - 3.0 * t * tt + 2.0 * w * t * t * t;
-        let (tt, ty, yy) = (tt - w * t * t, ty - w * t * y, yy - w * y * y);
-        // A bin whose weight lies on one sample has no width.
-        let wide = tt > 1e-14 * w * (last - place).powi(2);
-        let per_square = if wide { 1.0 / tt } else { 0.0 };
-        let width = if wide { (tt * each).sqrt() } else { 0.0 };
-        let slope = ty * per_square;
-        Self {
-            weight: w,
-            time: place + t,
-            value: level + y,
-            width,
-            skewness: ttt * per_square * (w * per_square) * width,
-            slope,
-            inside: (yy - slope * ty).max(0.0),
+impl Pending {
+    fn push(&mut self, times: &[f64], values: &[f64], roots: Option<&[f64]>, range: Range<usize>) {
+        let (first, last, level) = (times[range.start], times[range.end - 1], values[range.start]);
+        let place = 0.5 * (first + last);
+        let sums = moments(times, values, roots, range, (place, level));
+        for (lanes, sum) in self.sums.iter_mut().zip(sums) {
+            lanes[self.count] = sum;
         }
+        (self.places[self.count], self.levels[self.count]) = (place, level);
+        self.reaches[self.count] = last - place;
+        self.count += 1;
     }
+
+    fn is_full(&self) -> bool {
+        self.count == LANES
+    }
+
+    fn empty_into(&mut self, condensed: &mut Condensed) {
+        if self.count == 0 {
+            return;
+        }
+        let nodes = self.nodes();
+        for lane in 0..self.count {
+            condensed.inside += nodes.inside[lane];
+            for [times, values, roots] in &nodes.both {
+                condensed.node(times[lane], values[lane], roots[lane]);
+            }
+        }
+        self.count = 0;
+    }
+
+    /// From sums to moments about the mean, near to which the place is; from these to nodes.
+    fn nodes(&self) -> Nodes {
+        accelerated(
+            #[inline(always)]
+            || {
+                let mut nodes = Nodes::default();
+                for lane in 0..LANES {
+                    let [w, t, tt, ttt, y, ty, yy] = std::array::from_fn(|k| self.sums[k][lane]);
+                    let each = if w > 0.0 { 1.0 / w } else { 0.0 };
+                    let (t, y) = (t * each, y * each);
+                    let ttt = ttt - 3.0 * t * tt + 2.0 * w * t * t * t;
+                    let (tt, ty, yy) = (tt - w * t * t, ty - w * t * y, yy - w * y * y);
+                    // A bin whose weight lies on one sample has no width, and one node.
+                    let wide = tt > 1e-14 * w * self.reaches[lane] * self.reaches[lane];
+                    let per_square = if wide { 1.0 / tt } else { 0.0 };
+                    let width = if wide { (tt * each).sqrt() } else { 0.0 };
+                    let slope = ty * per_square;
+                    let inside = yy - slope * ty;
+                    nodes.inside[lane] = if inside > 0.0 { inside } else { 0.0 };
+                    // Gauss's rule with two nodes: zeros of x² − skewness · x − 1 in units of the width, with shares of the
+                    // weight 1/(1 + x²).
+                    let skewness = ttt * per_square * (w * per_square) * width;
+                    let root = (skewness * skewness + 4.0).sqrt();
+                    let (early, late) = (0.5 * (skewness - root), 0.5 * (skewness + root));
+                    let share = if wide { 1.0 / (1.0 + early * early) } else { 1.0 };
+                    for ([times, values, roots], (x, share)) in
+                        nodes.both.iter_mut().zip([(early, share), (late, 1.0 - share)])
+                    {
+                        let along = x * width;
+                        roots[lane] = (w * share).sqrt();
+                        times[lane] = self.places[lane] + t + along;
+                        values[lane] = (self.levels[lane] + y + slope * along) * roots[lane];
+                    }
+                }
+                nodes
+            },
+        )
+    }
+}
+
+/// Nodes of bins side by side.
+#[derive(Default)]
+struct Nodes {
+    /// Times, values times roots, and roots, of the early and of the late node.
+    both: [[[f64; LANES]; 3]; 2],
+    /// Weighted squares of what the lines leave over.
+    inside: [f64; LANES],
 }
 
 /// How many of rising numbers lie below `end`: one look at eight of them.

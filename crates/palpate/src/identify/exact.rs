@@ -3,36 +3,36 @@
 use super::apart::{apart, rounding};
 use super::confluent::Confluent;
 use super::linear_algebra::Cholesky;
-use super::model::{Model, Sampled};
+use super::model::Sampled;
 use super::orthogonal::Orthogonal;
-use super::samples::Scaled;
 use super::separable::{Ending, Shapes, Solution, Target, Termination, Work, distance, refine, standing, stepped};
 use crate::vector::products::dot;
 
 /// The solution carried on to what doubles allow, where normal equations do not reach it: where numbers nearly imitate each other, and
 /// where next to nothing is left over. `inflation` as of the function of that name.
-pub(super) fn exact(model: &Model, scaled: &Scaled, solution: Solution, inflation: f64, work: &mut Work) -> Solution {
-    let all = model.at(&scaled.times);
-    let signal = scaled.target().square();
+pub(super) fn exact(
+    shapes: &Sampled<'_>,
+    target: Target<'_>,
+    solution: Solution,
+    inflation: f64,
+    work: &mut Work,
+) -> Solution {
+    let signal = target.square();
     let clean = solution.residual_square < CLEAN * signal && solution.residual_square > ROUNDING * signal;
-    if solution.nonlinear.is_empty() || !all.linear_bounds().is_empty() || !(clean || inflation > IMITATED) {
+    if solution.nonlinear.is_empty() || !shapes.linear_bounds().is_empty() || !(clean || inflation > IMITATED) {
         return solution;
     }
     // Straight to the last digit, with no regard for valleys elsewhere.
     let at = |theta: &[f64]| {
-        let here = Orthogonal::new(&all, theta, scaled.target());
+        let here = Orthogonal::new(shapes, theta, target);
         let square = here.square;
-        Some(Plain {
-            here,
-            square,
-            shapes: &all,
-        })
+        Some(Plain { here, square, shapes })
     };
-    let theta = descended(&solution.nonlinear, at, &all, f64::EPSILON, work);
-    let valley = valley(flat(Orthogonal::new(&all, &theta, scaled.target()), &all, scaled.target(), work));
+    let theta = descended(&solution.nonlinear, at, shapes, f64::EPSILON, work);
+    let valley = valley(flat(Orthogonal::new(shapes, &theta, target), shapes, target, work));
     // To within rounding of the values the gradient decides.
     if valley.square.sqrt() <= solution.residual_square.sqrt() + f64::EPSILON * signal.sqrt() {
-        standing(&all, scaled.target(), &valley.theta, &valley.linear, Termination::Converged)
+        standing(shapes, target, &valley.theta, &valley.linear, Termination::Converged)
     } else {
         solution
     }
@@ -73,7 +73,7 @@ pub(super) fn inflation(solution: &Solution) -> f64 {
         return f64::INFINITY;
     };
     let size = solution.linear.len() + solution.nonlinear.len();
-    let own = |i: usize| dot(&solution.columns[i], &solution.columns[i]) * inverse[i * (size + 1)];
+    let own = |i: usize| solution.column_squares[i] * inverse[i * (size + 1)];
     (0..solution.linear.len()).map(own).fold(1.0, f64::max)
 }
 

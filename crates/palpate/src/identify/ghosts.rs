@@ -29,10 +29,10 @@ const ALIKE: f64 = 0.05;
 
 /// The ghosts among the exponentials of a solution, in the order of its terms.
 pub(super) fn ghosts(model: &Model, solution: &Solution) -> Vec<Ghost> {
-    let (moving, _) = model.moving();
     if !model.is_series() {
         return Vec::new();
     }
+    let (moving, _) = model.moving();
     let size = solution.linear.len() + solution.nonlinear.len();
     let variance =
         |i: usize, j: usize| solution.inverse_normal.as_ref().map(|inverse| inverse[i * size + j] * solution.variance);

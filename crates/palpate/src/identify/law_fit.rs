@@ -6,6 +6,7 @@ use super::build::build;
 use super::derived::derived;
 use super::estimates::Estimate;
 use super::ghosts::{Ghost, ghosts};
+use super::linear_algebra::Few;
 use super::model::Model;
 use super::prediction::searched_name;
 use super::samples::{Samples, Scaled};
@@ -226,7 +227,11 @@ impl Fitted {
 
     /// The law with the numbers found.
     pub(super) fn curve(&self) -> LawCurve {
-        let (model, values) = (&self.model, self.values());
+        self.curve_of(&self.values())
+    }
+
+    fn curve_of(&self, values: &[f64]) -> LawCurve {
+        let model = &self.model;
         let numbers = self.natural_numbers();
         let constants = usize::from(model.constant);
         let constant = if model.constant { values[0] } else { self.scaled.center };
@@ -286,14 +291,16 @@ impl Fitted {
         solution.linear = (0..linear).map(|i| solution.linear[place(i)]).collect();
         solution.nonlinear = order.iter().map(|i| solution.nonlinear[*i]).collect();
         solution.columns = (0..linear).map(|i| solution.columns[place(i)].clone()).collect();
+        solution.column_squares = (0..linear).map(|i| solution.column_squares[place(i)]).collect();
         solution.derivatives = order.iter().map(|i| solution.derivatives[*i].clone()).collect();
     }
 
     pub(super) fn report(&self, law: Law, options: &LawOptions, work: Work) -> LawFit {
         let solution = &self.solution;
         let known = matches!(solution.termination, Termination::Converged | Termination::AmplitudeAtBound);
-        let (values, linear, scale) = (self.values(), self.model.linear(), self.scaled.range);
-        let units: Vec<f64> = (0..values.len()).map(|i| if i < linear { scale } else { 1.0 }).collect();
+        let (linear, scale) = (self.model.linear(), self.scaled.range);
+        let searched = linear + solution.nonlinear.len();
+        let units: Vec<f64> = (0..searched).map(|i| if i < linear { scale } else { 1.0 }).collect();
         let assessed =
             Assessed::new(solution, &self.amplitudes(), &units, scale, (options.confidence, options.noise), known);
         let loading = if matches!(law, Law::Latency { .. }) { None } else { options.loading.clone() };
@@ -322,7 +329,7 @@ impl Fitted {
     pub(super) fn report_with(&self, law: Law, assessed: Assessed, work: Work) -> LawFit {
         let (solution, values, scale) = (&self.solution, self.values(), self.scaled.range);
         let estimate = |value: f64, gradient: &[f64], scale: Scale| assessed.estimate(value, gradient, scale);
-        let mut numbers = self.direct(&estimate);
+        let mut numbers = self.direct(&values, &estimate);
         for number in derived(law, self, &values) {
             numbers.push(LawNumber {
                 name: number.name,
@@ -339,7 +346,7 @@ impl Fitted {
         LawFit {
             law,
             response: self.model.form.response,
-            curve: self.curve(),
+            curve: self.curve_of(&values),
             loading: None,
             numbers,
             parameters: self.names(),
@@ -376,12 +383,11 @@ impl Fitted {
     }
 
     /// The numbers that were searched, and those held, as they are reported: times for ln of rates.
-    pub(super) fn direct(&self, estimate: &impl Fn(f64, &[f64], Scale) -> Estimate) -> Vec<LawNumber> {
-        let (model, values) = (&self.model, self.values());
-        let row = |i: usize, entry: f64| -> Vec<f64> {
-            (0..values.len()).map(|j| if i == j { entry } else { 0.0 }).collect()
-        };
-        let mut numbers = Vec::new();
+    pub(super) fn direct(&self, values: &[f64], estimate: &impl Fn(f64, &[f64], Scale) -> Estimate) -> Vec<LawNumber> {
+        let model = &self.model;
+        let row =
+            |i: usize, entry: f64| -> Few { (0..values.len()).map(|j| if i == j { entry } else { 0.0 }).collect() };
+        let mut numbers = Vec::with_capacity(1 + model.form.shapes.len() + model.numbers.len());
         let constant = model.form.constant_name().to_owned();
         let names = model.form.amplitude_names();
         if model.constant {

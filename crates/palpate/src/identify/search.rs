@@ -9,7 +9,7 @@ use super::linear_algebra::Square;
 use super::model::{Model, Sampled};
 use super::samples::Scaled;
 use super::separable::{
-    Ending, Refined, STRAIGHT, Solution, Target, Termination, Work, curvature, descend, distance, polished, refine,
+    Ending, Near, Refined, Solution, Target, Termination, Work, curvature, descend, distance, polished, refine,
     standing, stepped,
 };
 use super::starts::{ends, starts};
@@ -46,7 +46,7 @@ pub(super) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
         solution = thorough(model, scaled, &nodes, solution, most_iterations, work);
         mark_merged(model, &mut solution);
     } else {
-        solution = exact(model, scaled, solution, inflation, work);
+        solution = exact(&shapes, target, solution, inflation, work);
     }
     Some(solution)
 }
@@ -131,7 +131,7 @@ fn settle(
 ) -> Refined {
     let hessian = valley.curvature.as_ref();
     hessian
-        .and_then(|hessian| descend(shapes, target, &valley.theta, hessian, STRAIGHT, work))
+        .and_then(|hessian| descend(shapes, target, &valley.theta, hessian, Near::of(target), work))
         .unwrap_or_else(|| refine(shapes, target, &valley.theta, Ending::tight(most_iterations), work))
 }
 
@@ -258,7 +258,7 @@ const ROUGH: f64 = 1e-5;
 fn bottom(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], most_iterations: usize, aside: &mut Work) -> Valley {
     let slope = curvature(shapes, target, theta, aside);
     let last = slope.as_ref().map(|(hessian, gradient)| stepped(theta, hessian, gradient, 0.0, shapes));
-    if let Some(next) = last.filter(|next| distance(theta, next) <= TELLING) {
+    if let Some(next) = last.filter(|next| Near::TELLING.holds(distance(theta, next), 0.0)) {
         return Valley {
             theta: next.to_vec(),
             curvature: slope.map(|(hessian, _)| hessian),
@@ -267,14 +267,10 @@ fn bottom(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], most_iteratio
     let curvature = slope.map(|(hessian, _)| hessian);
     let refined = curvature
         .as_ref()
-        .and_then(|hessian| descend(shapes, target, theta, hessian, TELLING, aside))
+        .and_then(|hessian| descend(shapes, target, theta, hessian, Near::TELLING, aside))
         .unwrap_or_else(|| refine(shapes, target, theta, Ending::tight(most_iterations), aside));
     Valley {
         theta: refined.into_theta(shapes),
         curvature,
     }
 }
-
-/// Length of the last step to the bottom of a valley of condensed samples: what its tangent misses is far below what condensing
-/// moves the bottom by.
-const TELLING: f64 = 3e-4;

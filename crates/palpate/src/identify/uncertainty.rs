@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::estimates::Estimate;
-use super::noise::{Columns, Noise};
+use super::noise::{Columns, Lags, Noise};
 use super::separable::Solution;
 use super::{NoiseChoice, NoiseModel};
-use crate::statistics::{coverage_factor, lag_one_correlation};
+use crate::statistics::coverage_factor;
 
 /// How a number is brought to its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -107,7 +107,7 @@ impl Assessed {
         known: bool,
     ) -> Self {
         let (samples, size) = (solution.residuals.len(), units.len());
-        let correlation = lag_one_correlation(&solution.residuals);
+        let lags = Lags::of(&solution.residuals);
         let freedom = (samples - size) as f64;
         let scaled = |matrix: &[f64], variance: f64| -> Vec<Vec<f64>> {
             let entry = |i: usize, j: usize| matrix[i * size + j] * variance * units[i] * units[j];
@@ -115,8 +115,8 @@ impl Assessed {
         };
         let columns: Vec<&[f64]> = solution.columns.iter().chain(&solution.derivatives).map(Vec::as_slice).collect();
         let noise = match choice {
-            NoiseChoice::White => Noise::white(&solution.residuals, freedom),
-            NoiseChoice::FromResiduals => Noise::of(&columns, &solution.residuals),
+            NoiseChoice::White => Noise::white(&lags, freedom),
+            NoiseChoice::FromResiduals => Noise::of(&columns, &solution.residuals, &lags),
         };
         // A robust loss has its own s²; the noise of its residuals stands in the same ratio to it as that of plain ones.
         let ratio = solution.variance * freedom / solution.residual_square;
@@ -145,7 +145,7 @@ impl Assessed {
             white,
             uncertainty: uncertainty.filter(|found| finite(&found.covariance)),
             noise: noise.model,
-            correlation,
+            correlation: lags.first,
         }
     }
 

@@ -51,18 +51,18 @@ impl Form {
     /// Names of the amplitudes, numbered where there are several.
     pub(crate) fn amplitude_names(&self) -> Vec<String> {
         let name = |shape: &Shape| if *shape == Shape::Straight { "flow" } else { "amplitude" };
-        self.numbered(|shape| vec![name(shape)]).into_iter().map(|(_, name)| name).collect()
+        self.numbered(|shape| [name(shape)]).into_iter().map(|(_, name)| name).collect()
     }
 
     /// Name, kind and shape of every nonlinear number.
     pub(crate) fn numbers(&self) -> Vec<(usize, String, NumberKind)> {
-        let names = self.numbered(|shape| shape.numbers().iter().map(|number| number.name).collect());
+        let names = self.numbered(|shape| shape.numbers().iter().map(|number| number.name));
         let kinds = self.shapes.iter().flat_map(|shape| shape.numbers().iter().map(|number| number.kind));
         names.into_iter().zip(kinds).map(|((shape, name), kind)| (shape, name, kind)).collect()
     }
 
     /// Names of each shape, with the number of the shape among its like where there are several.
-    fn numbered(&self, names: impl Fn(&Shape) -> Vec<&'static str>) -> Vec<(usize, String)> {
+    fn numbered<N: IntoIterator<Item = &'static str>>(&self, names: impl Fn(&Shape) -> N) -> Vec<(usize, String)> {
         let like = |shape: &Shape| self.shapes.iter().filter(|other| *other == shape).count();
         let mut all = Vec::new();
         for (index, shape) in self.shapes.iter().enumerate() {

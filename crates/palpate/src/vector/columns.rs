@@ -1,9 +1,9 @@
 //! One look at a whole column, one column made of another.
 
-use super::accelerated;
+use fearless_simd::{Simd, SimdBase, dispatch, f64x8};
 
-/// Numbers looked at together.
-const LANES: usize = 8;
+use super::products::LANES;
+use super::{accelerated, level};
 
 /// Whether every number is finite.
 pub(crate) fn all_finite(column: &[f64]) -> bool {
@@ -24,23 +24,21 @@ pub(crate) fn rises(column: &[f64]) -> bool {
 
 /// Least and greatest number; (∞, −∞) if there is none.
 pub(crate) fn extremes(column: &[f64]) -> (f64, f64) {
-    accelerated(
-        #[inline(always)]
-        || {
-            let (blocks, rest) = column.as_chunks::<LANES>();
-            let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
-            for block in blocks {
-                for lane in 0..LANES {
-                    low[lane] = if block[lane] < low[lane] { block[lane] } else { low[lane] };
-                    high[lane] = if block[lane] > high[lane] { block[lane] } else { high[lane] };
-                }
-            }
-            let all = |lanes: [f64; LANES], pick: fn(f64, f64) -> f64| {
-                lanes.into_iter().chain(rest.iter().copied()).reduce(pick).unwrap_or(f64::NAN)
-            };
-            (all(low, f64::min), all(high, f64::max))
-        },
-    )
+    dispatch!(level(), simd => extremes_with(simd, column))
+}
+
+#[inline(always)]
+fn extremes_with<S: Simd>(simd: S, column: &[f64]) -> (f64, f64) {
+    let (blocks, rest) = column.as_chunks::<LANES>();
+    let (mut low, mut high) = (f64x8::splat(simd, f64::INFINITY), f64x8::splat(simd, f64::NEG_INFINITY));
+    for block in blocks {
+        let block = f64x8::from_slice(simd, block);
+        (low, high) = (low.min(block), high.max(block));
+    }
+    let (low, high): ([f64; LANES], [f64; LANES]) = (low.into(), high.into());
+    let least = low.iter().chain(rest).copied().fold(f64::INFINITY, f64::min);
+    let greatest = high.iter().chain(rest).copied().fold(f64::NEG_INFINITY, f64::max);
+    (least, greatest)
 }
 
 /// (x − `offset`) · `factor` for every x.

@@ -159,47 +159,74 @@ pub(crate) fn form_residuals(
 }
 
 /// residual = `values` (or what it was) − Σ aᵢ cᵢ; returns the sum of squares.
-#[inline(always)]
 fn subtract<const C: usize>(
     values: Option<&[f64]>,
     columns: [&[f64]; C],
     amplitudes: [f64; C],
     residuals: &mut [f64],
 ) -> f64 {
+    dispatch!(level(), simd => subtract_with(simd, values, columns, amplitudes, residuals))
+}
+
+#[inline(always)]
+fn subtract_with<S: Simd, const C: usize>(
+    simd: S,
+    values: Option<&[f64]>,
+    columns: [&[f64]; C],
+    amplitudes: [f64; C],
+    residuals: &mut [f64],
+) -> f64 {
     let count = residuals.len();
+    if let Some(values) = values
+        && C == 0
+    {
+        residuals.copy_from_slice(values);
+    }
+    let values = values.filter(|_| C > 0).map(|values| &values[..count]);
     let columns = columns.map(|column| &column[..count]);
-    let values = values.map(|values| values[..count].as_chunks::<LANES>());
-    accelerated(
-        #[inline(always)]
-        || {
-            let mut sums = [0.0; LANES];
-            let (blocks, rest) = residuals.as_chunks_mut::<LANES>();
-            let whole = columns.map(|column| column.as_chunks::<LANES>().0);
-            for (index, block) in blocks.iter_mut().enumerate() {
-                let mut now = values.map_or(*block, |(values, _)| values[index]);
-                for i in 0..C {
-                    let column = &whole[i][index];
-                    for lane in 0..LANES {
-                        now[lane] -= amplitudes[i] * column[lane];
-                    }
-                }
-                for lane in 0..LANES {
-                    sums[lane] += now[lane] * now[lane];
-                }
-                *block = now;
+    let mut sum = f64x8::splat(simd, 0.0);
+    let whole = columns.map(blocks);
+    let last = std::array::from_fn(|i| padded(columns[i]));
+    let (residual_blocks, rest) = residuals.as_chunks_mut::<LANES>();
+    let mut late = [0.0; LANES];
+    match values {
+        // Two loops: one that picks its source at every block becomes code that copies by way of memory.
+        Some(values) => {
+            let value_blocks = &blocks(values)[..residual_blocks.len()];
+            for (index, block) in residual_blocks.iter_mut().enumerate() {
+                *block = less(simd, &mut sum, &value_blocks[index], whole.map(|blocks| &blocks[index]), amplitudes);
             }
-            for (lane, residual) in rest.iter_mut().enumerate() {
-                if let Some((_, late)) = values {
-                    *residual = late[lane];
-                }
-                for i in 0..C {
-                    *residual -= amplitudes[i] * columns[i][blocks.len() * LANES + lane];
-                }
-                sums[lane] += *residual * *residual;
+            late = padded(values);
+        }
+        None => {
+            for (index, block) in residual_blocks.iter_mut().enumerate() {
+                *block = less(simd, &mut sum, block, whole.map(|blocks| &blocks[index]), amplitudes);
             }
-            total(sums)
-        },
-    )
+            late[..rest.len()].copy_from_slice(rest);
+        }
+    }
+    if !rest.is_empty() {
+        let now = less(simd, &mut sum, &late, last.each_ref(), amplitudes);
+        rest.copy_from_slice(&now[..rest.len()]);
+    }
+    total(sum.into())
+}
+
+/// before − Σ aᵢ cᵢ of a block; its squares are added to `sum`.
+#[inline(always)]
+fn less<S: Simd, const C: usize>(
+    simd: S,
+    sum: &mut f64x8<S>,
+    before: &[f64; LANES],
+    columns: [&[f64; LANES]; C],
+    amplitudes: [f64; C],
+) -> [f64; LANES] {
+    let mut now = f64x8::from_slice(simd, before);
+    for i in 0..C {
+        now -= f64x8::from_slice(simd, columns[i]) * amplitudes[i];
+    }
+    *sum += now * now;
+    now.into()
 }
 
 /// Of [`LANES`] columns side by side, `rows`: `sums[0]` = Σ wᵢ xᵢ² and `sums[k + 1]` = Σ fᵢ xᵢ for every column f of `factors`.

@@ -1,7 +1,7 @@
 //! From the best point to numbers with their errors.
 
 use super::super::law_fit::Fitted;
-use super::super::linear_algebra::Cholesky;
+use super::super::linear_algebra::{Cholesky, Few};
 use super::super::separable::{Solution, Termination, Work};
 use super::super::uncertainty::Assessed;
 use super::arrow::Point;
@@ -140,6 +140,7 @@ impl Joint {
                 variance,
                 columns: Vec::new(),
                 derivatives: Vec::new(),
+                column_squares: Few::new(),
                 inverse_normal: inverse
                     .map(|inverse| (0..count * count).map(|i| entry(inverse, i / count, i % count)).collect()),
                 termination,

@@ -29,7 +29,7 @@ use likelihood::Neighbours;
 use mixture::Mixture;
 use rows::Rows;
 
-use crate::statistics::{dot, lag_one_correlation};
+use crate::statistics::dot;
 use crate::vector::products::cross_products;
 
 /// How residuals correlate with their neighbours, by sample.
@@ -128,10 +128,10 @@ const EVIDENCE: f64 = 4.0;
 
 impl Noise {
     /// White noise that left these residuals.
-    pub(super) fn white(residuals: &[f64], freedom: f64) -> Self {
+    pub(super) fn white(lags: &Lags, freedom: f64) -> Self {
         Self {
             model: NoiseModel::White,
-            variance: dot(residuals, residuals) / freedom,
+            variance: lags.square / freedom,
             beside: Vec::new(),
         }
     }
@@ -139,16 +139,17 @@ impl Noise {
     /// The noise that left these residuals beside a fit with this Jacobian, whose columns may have any size.
     ///
     /// Of a long series four stretches, evenly spread, say how it correlates; its size comes from all samples.
-    pub(super) fn of(jacobian: &[&[f64]], residuals: &[f64]) -> Self {
+    pub(super) fn of(jacobian: &[&[f64]], residuals: &[f64], lags: &Lags) -> Self {
         if residuals.len() <= STRETCHES * STRETCH {
-            return Self::of_all(jacobian, residuals);
+            return Self::of_all(jacobian, residuals, lags);
         }
         let few: Vec<Vec<f64>> = jacobian.iter().copied().chain([residuals]).map(stretches).collect();
         let columns: Vec<&[f64]> = few[..jacobian.len()].iter().map(Vec::as_slice).collect();
         let left = &few[jacobian.len()];
-        let mut noise = Self::of_all(&columns, left);
-        let whole = dot(residuals, residuals) / (residuals.len() - jacobian.len()) as f64;
-        let scale = whole / (dot(left, left) / (left.len() - jacobian.len()) as f64);
+        let few = Lags::of(left);
+        let mut noise = Self::of_all(&columns, left, &few);
+        let whole = lags.square / (residuals.len() - jacobian.len()) as f64;
+        let scale = whole / (few.square / (left.len() - jacobian.len()) as f64);
         if scale.is_finite() {
             noise.variance *= scale;
             noise.beside.iter_mut().for_each(|(_, variance)| *variance *= scale);
@@ -156,9 +157,9 @@ impl Noise {
         noise
     }
 
-    fn of_all(jacobian: &[&[f64]], residuals: &[f64]) -> Self {
-        let white = Self::white(residuals, (residuals.len() - jacobian.len()) as f64);
-        let signs = Signs::of(residuals, jacobian.len());
+    fn of_all(jacobian: &[&[f64]], residuals: &[f64], lags: &Lags) -> Self {
+        let white = Self::white(lags, (residuals.len() - jacobian.len()) as f64);
+        let signs = Signs::of(residuals, lags, jacobian.len());
         if signs.white() {
             return white;
         }
@@ -192,6 +193,31 @@ fn stretches(series: &[f64]) -> Vec<f64> {
     (0..STRETCHES).flat_map(|i| &series[i * apart..i * apart + STRETCH]).copied().collect()
 }
 
+/// Sums of products of residuals with those after them.
+pub(super) struct Lags {
+    /// Σ rᵢ².
+    square: f64,
+    /// Σ rᵢ rᵢ₊₁ over it.
+    pub(super) first: f64,
+    /// Σ rᵢ rᵢ₊₂ over it.
+    second: f64,
+}
+
+impl Lags {
+    pub(super) fn of(residuals: &[f64]) -> Self {
+        let square = dot(residuals, residuals);
+        let correlation = |lag: usize| match residuals.get(lag..) {
+            Some(later) if square > 0.0 => (dot(later, &residuals[..later.len()]) / square).clamp(-1.0, 1.0),
+            _ => 0.0,
+        };
+        Self {
+            square,
+            first: correlation(1),
+            second: correlation(2),
+        }
+    }
+}
+
 /// What a glance at the residuals says, so that white ones cost next to nothing.
 struct Signs {
     /// Neighbours correlate.
@@ -202,9 +228,9 @@ struct Signs {
 
 impl Signs {
     /// Two standard deviations of white noise; fitted numbers pull correlations down by some p/N a lag.
-    fn of(residuals: &[f64], parameters: usize) -> Self {
+    fn of(residuals: &[f64], lags: &Lags, parameters: usize) -> Self {
         let count = residuals.len() as f64;
-        let square = dot(residuals, residuals);
+        let Lags { square, first, second } = *lags;
         if residuals.len() < 8 || square <= f64::MIN_POSITIVE * 1e20 {
             return Self {
                 neighbours: false,
@@ -212,8 +238,6 @@ impl Signs {
             };
         }
         let taken = parameters as f64 / count;
-        let first = lag_one_correlation(residuals);
-        let second = dot(&residuals[2..], residuals) / square;
         let neighbours = first + taken > 2.0 / count.sqrt();
         // Sums over blocks show a slow drift that is lost in the noise of neighbours.
         let length = residuals.len().isqrt();
@@ -269,7 +293,8 @@ mod tests {
 
     fn found(noise: &[f64]) -> Noise {
         let columns = line(noise.len());
-        Noise::of(&[&columns[0], &columns[1]], &without_line(noise))
+        let left = without_line(noise);
+        Noise::of(&[&columns[0], &columns[1]], &left, &Lags::of(&left))
     }
 
     /// All correlations, row by row.
@@ -357,7 +382,7 @@ mod tests {
 
     #[test]
     fn residuals_that_are_nothing_are_white() {
-        let nothing = Noise::of(&[&[1.0; 20]], &[0.0; 20]);
+        let nothing = Noise::of(&[&[1.0; 20]], &[0.0; 20], &Lags::of(&[0.0; 20]));
         assert_eq!((nothing.model, nothing.variance), (NoiseModel::White, 0.0));
         assert_eq!(NoiseModel::White.effective_samples(20), 20.0);
     }

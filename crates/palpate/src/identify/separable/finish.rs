@@ -8,10 +8,19 @@ use super::{Shapes, Solution, Target, Termination};
 use crate::identify::linear_algebra::Cholesky;
 use crate::vector::products::normal_equations;
 
-pub(super) fn finish(here: Point, shapes: &impl Shapes, mut termination: Termination) -> Solution {
+/// The solution at a point, with the `last` step still to be taken from there if there is one.
+pub(super) fn finish(
+    mut here: Point,
+    last: Option<&[f64]>,
+    shapes: &impl Shapes,
+    mut termination: Termination,
+) -> Solution {
     let linear = here.columns.len();
     let size = linear + here.theta.len();
     let (normal, _) = here.normal(shapes);
+    if let Some(step) = last {
+        here.lean(&normal, step);
+    }
     // A number at a bound has no errors, the others have theirs beside it.
     let free: SmallVec<[usize; 8]> = (0..size).filter(|&i| i >= linear || !here.held[i]).collect();
     let inverse_normal = Cholesky::new(&block(&normal, size, &free), free.len()).map(|factor| {
@@ -44,6 +53,7 @@ pub(super) fn finish(here: Point, shapes: &impl Shapes, mut termination: Termina
         }
     }
     Solution {
+        column_squares: (0..linear).map(|i| here.gram[i * (linear + 1)]).collect(),
         linear: here.linear,
         nonlinear: here.theta,
         residual_square: here.square,
@@ -72,5 +82,5 @@ pub(in crate::identify) fn standing(
         *held = value <= low || value >= high;
     }
     here.form_residuals(target.values);
-    finish(here, shapes, termination)
+    finish(here, None, shapes, termination)
 }

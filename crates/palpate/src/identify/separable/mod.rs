@@ -22,11 +22,12 @@ mod step;
 use serde::{Deserialize, Serialize};
 
 pub(super) use finish::standing;
-pub(super) use newton::{STRAIGHT, curvature, descend, polished};
+pub(super) use newton::{Near, curvature, descend, polished};
 pub(super) use point::Spare;
 pub(super) use refine::{Refined, refine};
 pub(super) use step::{distance, stepped};
 
+use super::linear_algebra::Few;
 use crate::vector::products::dot;
 
 /// The columns of a separable model and their derivatives.
@@ -108,6 +109,8 @@ pub(super) struct Solution {
     /// Columns and derivatives there, times the roots of the weights.
     pub(super) columns: Vec<Vec<f64>>,
     pub(super) derivatives: Vec<Vec<f64>>,
+    /// Sums of squares of the columns.
+    pub(super) column_squares: Few,
     /// (JᵀJ)⁻¹ over linear, then nonlinear numbers, row-major; `None` if singular.
     pub(super) inverse_normal: Option<Vec<f64>>,
     pub(super) termination: Termination,

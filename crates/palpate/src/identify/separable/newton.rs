@@ -55,14 +55,14 @@ pub(in crate::identify) fn curvature(
 const STEPS: usize = 12;
 
 /// Newton's method from a point near the optimum, with a curvature from elsewhere: the gradient comes from all samples, the
-/// curvature from few. A step of at most `near` is the last, and is taken along the tangent. `None` if it does not lead downhill
-/// to where the gradient vanishes.
+/// curvature from few. A step that is `near` is the last, and is taken along the tangent. `None` if it does not lead downhill to
+/// where the gradient vanishes.
 pub(in crate::identify) fn descend(
     shapes: &impl Shapes,
     target: Target<'_>,
     theta: &[f64],
     hessian: &[f64],
-    near: f64,
+    near: Near,
     work: &mut Work,
 ) -> Option<Refined> {
     let mut here = Point::new(shapes, theta.len(), target.values.len());
@@ -80,15 +80,21 @@ pub(in crate::identify) fn descend(
         if here.singular || here.held.contains(&true) {
             return None;
         }
-        let short = distance(&here.theta, &next) <= near;
+        let short = near.holds(distance(&here.theta, &next), gain.abs() / here.square);
         let arrived = gain.abs() <= NOTHING * here.square + target.floor();
+        let leans = gain.abs() <= SLIGHT * here.square && shapes.linear_bounds().is_empty();
         if short && !arrived {
-            here.slide(shapes, &next, target);
+            if !leans {
+                here.slide(shapes, &next, target);
+            }
             work.iterations += 1;
         }
         if short || arrived {
+            // A step that promises nothing is rounding.
+            let rest = |(next, here): (&f64, &f64)| if arrived { 0.0 } else { next - here };
+            let step = next.iter().zip(&here.theta).map(rest);
             return Some(Refined {
-                settled: short && near <= STRAIGHT,
+                last: short.then(|| step.collect()),
                 point: here,
                 termination: Termination::Converged,
             });
@@ -101,7 +107,7 @@ pub(in crate::identify) fn descend(
         if gain.abs() > 0.5 * promised.abs() || here.square > square * (1.0 + 1e-10) + target.floor() {
             // What is left of the gain is rounding once it stops falling far below the residual.
             return (promised.abs() < 1e-16 * square).then_some(Refined {
-                settled: false,
+                last: None,
                 point: here,
                 termination: Termination::Converged,
             });
@@ -113,9 +119,45 @@ pub(in crate::identify) fn descend(
 /// Share of the residual square that a step may promise at the optimum: of a thousand samples, some 10⁻⁸ of the errors.
 const NOTHING: f64 = 1e-19;
 
-/// Change of a nonlinear number, a logarithm or a few units at most, over which its tangent is the shape itself to rounding, and
-/// errors stay as they are to eight digits.
-pub(in crate::identify) const STRAIGHT: f64 = 3e-9;
+/// Share of the residual square up to which a step changes residuals by too little to be formed anew.
+const SLIGHT: f64 = 1e-11;
+
+/// When a step is short enough for its tangent.
+#[derive(Clone, Copy)]
+pub(in crate::identify) struct Near {
+    /// Largest change of a nonlinear number, a logarithm or a few units at most.
+    step: f64,
+    /// Largest share of the residual square that the step promises.
+    gain: f64,
+}
+
+impl Near {
+    /// The tangent is the shape itself to rounding, and errors stay as they are to eight digits.
+    const STRAIGHT: Self = Self {
+        step: 3e-9,
+        gain: f64::INFINITY,
+    };
+
+    /// Of many noisy samples: the step ends within 10⁻⁵ standard errors of the optimum, the curvature being good to four digits, and
+    /// so are the errors then.
+    const NOISY: Self = Self { step: 3e-5, gain: 1e-7 };
+
+    /// What the tangent misses is far below what condensing moves a bottom by.
+    pub(in crate::identify) const TELLING: Self = Self {
+        step: 3e-4,
+        gain: f64::INFINITY,
+    };
+
+    /// The last step among these samples.
+    pub(in crate::identify) fn of(target: Target<'_>) -> Self {
+        if target.exact { Self::STRAIGHT } else { Self::NOISY }
+    }
+
+    /// Whether a step is that short.
+    pub(in crate::identify) fn holds(self, step: f64, gain: f64) -> bool {
+        step <= Self::STRAIGHT.step || (step <= self.step && gain <= self.gain)
+    }
+}
 
 /// Most undamped steps after the residual has stopped falling.
 const POLISHING: usize = 30;
@@ -130,8 +172,8 @@ pub(in crate::identify) fn polished(
     work: &mut Work,
 ) -> Solution {
     let mut here = refined.point;
-    if refined.settled || refined.termination != Termination::Converged {
-        return finish(here, shapes, refined.termination);
+    if refined.last.is_some() || refined.termination != Termination::Converged {
+        return finish(here, refined.last.as_deref(), shapes, refined.termination);
     }
     // The gain that a full step promises, gᵀ H⁻¹ g, measures the gradient.
     let outlook = |point: &Point| {
@@ -141,7 +183,7 @@ pub(in crate::identify) fn polished(
         Some((next, gain))
     };
     let Some((mut next, mut gain)) = outlook(&here) else {
-        return finish(here, shapes, Termination::Converged);
+        return finish(here, None, shapes, Termination::Converged);
     };
     // Few samples make wide errors and cost nothing to polish.
     let samples = target.values.len();
@@ -163,5 +205,5 @@ pub(in crate::identify) fn polished(
         }
     }
     trial.release(shapes);
-    finish(here, shapes, Termination::Converged)
+    finish(here, None, shapes, Termination::Converged)
 }

@@ -78,6 +78,20 @@ impl Point {
         self.solve(shapes, target);
     }
 
+    /// A step along the tangent so short that columns and residuals stay as they are: the linear numbers follow it as the normal
+    /// equations say.
+    pub(super) fn lean(&mut self, normal: &[f64], step: &[f64]) {
+        let (l, size) = (self.columns.len(), self.columns.len() + step.len());
+        let Some(factor) = Cholesky::new(&self.gram, l) else {
+            return;
+        };
+        let across = |i: usize| -> f64 { step.iter().zip(&normal[i * size + l..]).map(|(by, entry)| by * entry).sum() };
+        let mut change: Few = (0..l).map(across).collect();
+        factor.solve(&mut change);
+        self.linear.iter_mut().zip(change).for_each(|(value, by)| *value -= by);
+        self.theta.iter_mut().zip(step).for_each(|(value, by)| *value += by);
+    }
+
     /// Solves for the linear numbers and forms the residuals.
     fn solve(&mut self, shapes: &impl Shapes, target: Target<'_>) {
         let values = target.values;

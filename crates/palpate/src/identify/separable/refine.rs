@@ -3,12 +3,13 @@
 use super::point::Point;
 use super::step::{distance, projected, promise, stepped};
 use super::{Ending, Shapes, Target, Termination, Work};
+use crate::identify::linear_algebra::Few;
 
 /// Where a refinement ended.
 pub(in crate::identify) struct Refined {
     pub(super) point: Point,
-    /// Whether no step can bring it any closer.
-    pub(super) settled: bool,
+    /// The last step, still to be taken along the tangent, after which none brings it any closer.
+    pub(super) last: Option<Few>,
     pub(super) termination: Termination,
 }
 
@@ -30,7 +31,9 @@ impl Refined {
 
     /// The nonlinear numbers alone.
     pub(in crate::identify) fn into_theta(self, shapes: &impl Shapes) -> Vec<f64> {
-        let theta = self.point.theta.clone();
+        let mut theta = self.point.theta.clone();
+        let last = self.last.iter().flatten();
+        theta.iter_mut().zip(last).for_each(|(value, step)| *value += step);
         self.point.release(shapes);
         theta
     }
@@ -98,7 +101,7 @@ pub(in crate::identify) fn refine(
     trial.release(shapes);
     Refined {
         point: here,
-        settled: false,
+        last: None,
         termination,
     }
 }
