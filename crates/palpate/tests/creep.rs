@@ -65,7 +65,7 @@ fn force_and_displacement_are_two_ways_to_say_the_same() {
     for shape in [Shape::Ball { radius: 0.035 }, prism] {
         for (exponent, rate) in [(1.0, 2.0), (2.0, 50.0), (5.0, 2e4)] {
             let model = ContactModel {
-                specimen: Specimen::new(shape, 28e3, Sides::Two).unwrap(),
+                specimen: Specimen::new(shape.clone(), 28e3, Sides::Two).unwrap(),
                 ..ball(exponent, rate, 8.5)
             };
             // Fine enough that straight pieces of force stand for the bent one.

@@ -1,12 +1,12 @@
 //! Contact force, strain wave, separation and creep against mpmath and SciPy (`contact_force.json`, `cascade.json`,
-//! `separation.json`, `creep.json`).
+//! `separation.json`, `creep.json`, `bodies.json`).
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
 mod common;
 
 use common::reference;
-use palpate::contact::{Layers, Shape, Sides, Specimen};
+use palpate::contact::{Curve, Equilibrium, Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
     ContactEventKind, ContactModel, ForceHistory, Motion, Sampling, Separation, simulate, simulate_force, strain_wave,
@@ -291,6 +291,78 @@ fn under_a_force() {
             distance(&result.excess_strain, &case.excess_strain),
             tolerance.excess_strain,
         );
+    }
+    verdict.finish();
+}
+
+#[derive(Deserialize)]
+struct BodyTolerance {
+    force_relative_to_largest: f64,
+    displacement_over_depth: f64,
+}
+
+#[derive(Deserialize)]
+struct BodyCase {
+    name: String,
+    body: String,
+    depth: f64,
+    modulus: f64,
+    poisson_ratio: Option<f64>,
+    #[serde(default)]
+    rows: Vec<(f64, f64)>,
+    exponent: f64,
+    rate_coefficient: f64,
+    layers: f64,
+    sides: u32,
+    knots: Vec<(f64, f64)>,
+    times: Vec<f64>,
+    /// Of a motion.
+    force: Option<Vec<f64>>,
+    /// Of a force.
+    contact_displacement: Option<Vec<f64>>,
+}
+
+impl BodyCase {
+    fn specimen(&self) -> Specimen {
+        let sides = if self.sides == 2 { Sides::Two } else { Sides::One };
+        let ball = Shape::Ball { radius: self.depth };
+        let (shape, equilibrium) = match (self.body.as_str(), self.poisson_ratio) {
+            ("hertz", Some(poisson_ratio)) => (ball, Equilibrium::Hertz { poisson_ratio }),
+            ("measured", _) => (ball, Equilibrium::measured(&self.rows).unwrap()),
+            _ => {
+                let area = Curve::new(&self.rows).unwrap();
+                let depth = self.depth;
+                (Shape::Profile { depth, area }, Equilibrium::EvenStrain)
+            }
+        };
+        Specimen::new(shape, self.modulus, sides).unwrap().with_equilibrium(equilibrium).unwrap()
+    }
+}
+
+#[test]
+fn bodies_by_tables_and_hertz() {
+    let (tolerance, cases) = reference::<BodyTolerance, BodyCase>("bodies");
+    let mut verdict = Verdict::new();
+    for case in &cases {
+        let model = ContactModel {
+            specimen: case.specimen(),
+            law: LatencyLaw::new(case.exponent, case.rate_coefficient).unwrap(),
+            layers: Layers::new(case.layers).unwrap(),
+            separation: Separation::Bonded,
+        };
+        let (times, values) = case.knots.iter().copied().unzip();
+        let sampling = Sampling::Times(case.times.clone());
+        if let Some(expected) = &case.force {
+            let result = simulate(&Motion::new(times, values).unwrap(), &model, &sampling).unwrap();
+            let off = distance(&result.force, expected) / largest(expected);
+            verdict.add(&case.name, "force", off, tolerance.force_relative_to_largest);
+        } else if let Some(expected) = &case.contact_displacement {
+            let result = simulate(&ForceHistory::new(times, values).unwrap(), &model, &sampling).unwrap();
+            let off = distance(&result.contact_displacement, expected) / case.depth;
+            verdict.add(&case.name, "displacement", off, tolerance.displacement_over_depth);
+        } else {
+            panic!("{}: neither force nor displacement", case.name);
+        }
     }
     verdict.finish();
 }

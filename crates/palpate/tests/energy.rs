@@ -86,7 +86,7 @@ fn a_closed_cycle_of_the_papers_ball_loses_what_is_not_given_back() {
 #[test]
 fn under_a_force_work_is_force_times_way() {
     for shape in [BLOCK, Shape::Ball { radius: 0.04 }] {
-        let model = model(shape, 3.0, 500.0, 8.0, Separation::Unilateral);
+        let model = model(shape.clone(), 3.0, 500.0, 8.0, Separation::Unilateral);
         let program = [
             ProgramStep::Press { to: 8.0, rate: 4.0 },
             ProgramStep::HoldForce { duration: 30.0 },
@@ -126,10 +126,10 @@ fn work_given_back_is_the_same_whatever_the_samples() {
     let model = model(BLOCK, 5.0, 2e4, 8.0, Separation::Bonded);
     let elastic = ContactModel {
         layers: Layers::new(1.0).unwrap(),
-        ..model
+        ..model.clone()
     };
     let motion = Motion::new(vec![0.0, 1.0, 2.0, 3.0], vec![0.0, 0.02, -0.02, 0.0]).unwrap();
-    for model in [model, elastic] {
+    for model in [model, elastic.clone()] {
         let few = energy(&motion, &model, &Sampling::Times(vec![3.0])).unwrap();
         let many = energy(&motion, &model, &Sampling::Rate(977.0)).unwrap();
         let last = many.time.len() - 1;

@@ -127,7 +127,7 @@ impl Scene {
     fn run(&self, separation: Separation) -> Trajectory {
         let model = ContactModel {
             separation,
-            ..self.model
+            ..self.model.clone()
         };
         simulate(&self.motion(), &model, &Sampling::Times(self.samples(400))).unwrap()
     }
@@ -190,7 +190,7 @@ proptest! {
                     prop_assert!((strain - result.strain[k]).abs() <= 1e-12, "{strain} {}", result.strain[k]);
                 }
             }
-            let model = ContactModel { separation, ..scene.model };
+            let model = ContactModel { separation, ..scene.model.clone() };
             let alone = simulate_force(&scene.motion(), &model, &result.time).unwrap();
             for (a, b) in alone.iter().zip(&result.force) {
                 prop_assert!((a - b).abs() <= 1e-14 * force);
@@ -249,8 +249,8 @@ proptest! {
 
     #[test]
     fn one_layer_is_elastic(scene in scenes()) {
-        let model = ContactModel { layers: Layers::new(1.0).unwrap(), ..scene.model };
-        let result = Scene { model, ..scene }.run(Separation::Unilateral);
+        let model = ContactModel { layers: Layers::new(1.0).unwrap(), ..scene.model.clone() };
+        let result = Scene { model: model.clone(), ..scene }.run(Separation::Unilateral);
         prop_assert!(result.events.is_empty());
         for k in 0..result.len() {
             prop_assert_eq!(result.excess_strain[k], 0.0);
@@ -269,7 +269,7 @@ proptest! {
         let stiffer = ContactModel {
             law: LatencyLaw::new(n, v * c.powf(1.0 - n)).unwrap(),
             layers: Layers::new(1.0 + c * (m - 1.0)).unwrap(),
-            ..scene.model
+            ..scene.model.clone()
         };
         let scaled = simulate(&scene.motion(), &stiffer, &Sampling::Times(reference.time.clone())).unwrap();
         let scale = largest(&reference.excess_strain);
@@ -277,7 +277,7 @@ proptest! {
             let (a, b) = (reference.excess_strain[k], scaled.excess_strain[k] / c);
             prop_assert!((a - b).abs() <= 1e-9 * scale, "{a} {b} at {} s", reference.time[k]);
         }
-        let faster = ContactModel { law: LatencyLaw::new(n, v * c).unwrap(), ..scene.model };
+        let faster = ContactModel { law: LatencyLaw::new(n, v * c).unwrap(), ..scene.model.clone() };
         let times = scene.motion().times().iter().map(|t| t / c).collect();
         let motion = Motion::new(times, scene.motion().displacements().to_vec()).unwrap();
         let last = motion.end();
@@ -294,10 +294,10 @@ proptest! {
     fn a_strain_wave_is_finite_and_begins_with_the_contact_layer(
         scene in scenes().prop_filter("n ≥ 1", |scene| scene.model.law.exponent() >= 1.0), layers in 2..40u32,
     ) {
-        let scene = Scene { model: ContactModel { layers: Layers::new(f64::from(layers)).unwrap(), ..scene.model }, ..scene };
+        let scene = Scene { model: ContactModel { layers: Layers::new(f64::from(layers)).unwrap(), ..scene.model.clone() }, ..scene };
         let sampling = Sampling::Times(scene.samples(50));
         for separation in [Separation::Bonded, Separation::Unilateral] {
-            let model = ContactModel { separation, ..scene.model };
+            let model = ContactModel { separation, ..scene.model.clone() };
             let contact = simulate(&scene.motion(), &model, &sampling).unwrap();
             let wave = strain_wave(&scene.motion(), &model, &sampling).unwrap();
             let numbers = || wave.strain.iter().chain(&wave.displacement).flatten();
@@ -461,7 +461,7 @@ proptest! {
             if let Ok(found) = find_phases(&record, &SegmentOptions::default()) {
                 prop_assert!(covers(&found, record.len()), "{:?}", found.segments);
                 let ball = Some(Shape::Ball { radius: 0.035 });
-                let _ = find_contact(&record, &found, ball, ContactChoice::Auto);
+                let _ = find_contact(&record, &found, ball.as_ref(), ContactChoice::Auto);
                 for hold in found.holds().filter(|hold| hold.phase == Phase::Hold) {
                     let _ = classify_relaxation(&record.force()[hold.start..hold.end]);
                 }

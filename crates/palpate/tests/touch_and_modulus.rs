@@ -10,7 +10,7 @@ use palpate::simulate::{ContactModel, Motion, ProtocolStep, Separation, protocol
 use palpate::test_problems::{Noise, PAPER_RATE, paper_ball};
 
 /// A test bench: what meets the body, how, and how well it is seen.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Bench {
     model: ContactModel,
     /// Travel through air before first touch, m.
@@ -131,7 +131,7 @@ fn without_noise_first_touch_behind_air_is_exact() {
     for levels in LEVELS {
         for bench in [Bench::paper(0.001, 0.0), Bench::paper(0.005, 0.0), Bench::paper(0.02, 0.0), strip(0.003, 0.0)] {
             for zero in [0.0, -0.7] {
-                let bench = Bench { zero, ..bench };
+                let bench = Bench { zero, ..bench.clone() };
                 let touch = bench.touch(&bench.record(&levels, 10.0, 1));
                 let error = touch.tare.displacement - bench.air;
                 assert!(error.abs() < 1e-7, "{levels:?} after {} m: {error:e} m", bench.air);
@@ -176,7 +176,7 @@ fn a_record_without_air_is_not_tared() {
     for seed in 1..=25 {
         for noise in [0.0, 0.02, 0.05] {
             let levels = LEVELS[seed as usize % 3];
-            for bench in [Bench::paper(0.0, noise), strip(0.0, noise), Bench { noise, ..slow }] {
+            for bench in [Bench::paper(0.0, noise), strip(0.0, noise), Bench { noise, ..slow.clone() }] {
                 let touch = bench.touch(&bench.record(&levels, 10.0, seed));
                 assert_eq!((touch.tare.displacement, touch.air_travel), (0.0, 0.0), "seed {seed} {levels:?} {noise}");
                 assert_eq!(touch.tare.force, 0.0);
@@ -305,9 +305,9 @@ fn a_jaw_that_goes_through_the_body_is_an_error() {
         length: 0.005,
     };
     for (shape, sides, reach, limit) in [
-        (ball, Sides::Two, 0.075, 0.07),
+        (ball.clone(), Sides::Two, 0.075, 0.07),
         (ball, Sides::One, 0.036, 0.035),
-        (cylinder, Sides::One, 0.01, 0.005),
+        (cylinder.clone(), Sides::One, 0.01, 0.005),
     ] {
         let error = analyze(&record(reach), &options(shape, sides, Separation::Unilateral)).unwrap_err();
         let AnalysisError::BeyondBody {

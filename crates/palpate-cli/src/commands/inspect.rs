@@ -150,7 +150,7 @@ fn phases(
     if dropouts > 0 {
         let _ = writeln!(out, "\n{dropouts} rows of the displacement stray alone (dropouts)");
     }
-    let body = test.and_then(|test| test.geometry).map(|geometry| (geometry.shape, geometry.sides));
+    let body = test.and_then(|test| test.geometry.as_ref()).map(|geometry| (&geometry.shape, geometry.sides));
     let choice = test.map(|test| test.touch).unwrap_or_default();
     let contact = find_contact_of(&record, &segmentation, body, choice);
     if contact.air_travel > 0.0 {

@@ -109,7 +109,7 @@ fn stepped(arguments: &SimulateArguments) -> Result<Scene, Failure> {
     let protocol = read_protocol(&arguments.protocol).map_err(described)?;
     Ok(Scene {
         title: protocol.title.clone(),
-        model: protocol.model,
+        model: protocol.model.clone(),
         sampling: protocol.sampling.clone(),
         driver: Driver::Steps(protocol),
     })

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use palpate::{
-    contact::{Layers, Specimen},
+    contact::{Layers, SpecimenError},
     latency::LatencyLaw,
     simulate::{self, ContactModel, Drive, Motion, ProgramStep, ProtocolStep, Sampling, step_ends},
     units::Dimension,
@@ -16,7 +16,7 @@ use super::{
     error::DescriptionError,
     quantity::QuantityText,
     source::{self, Source},
-    specimen::{self, SpecimenTable},
+    specimen::SpecimenTable,
 };
 
 /// Layers where nothing is said, as in the paper.
@@ -209,15 +209,8 @@ pub fn parse_protocol(text: &str, path: &Path) -> Result<Protocol, DescriptionEr
 }
 
 fn model(source: &Source<'_>, tables: &ProtocolTables) -> Result<ContactModel, DescriptionError> {
-    let shape = tables.specimen.known_shape(source)?;
-    let modulus = tables
-        .specimen
-        .modulus(source)?
-        .ok_or_else(|| source.missing("specimen.modulus", "Young's modulus, such as \"28 kPa\""))?;
-    let sides = tables.contact.squeezed_from.map(Into::into);
-    let sides = sides.unwrap_or_else(|| specimen::usual_sides(&shape));
-    let refused = |key: &str, error: &dyn std::error::Error| source.value(key, "a body", error);
-    let specimen = Specimen::new(shape, modulus, sides).map_err(|error| refused("specimen", &error))?;
+    let specimen = tables.specimen.body(source, tables.contact.squeezed_from.map(Into::into))?;
+    let refused = |key: &str, error: &dyn std::error::Error| source.value(key, "a law", error);
     let exponent = source.number("law.exponent", tables.law.exponent, "a number above 0", |exponent| exponent > 0.0)?;
     let key = "law.rate_coefficient";
     let rate = source.positive(key, &tables.law.rate_coefficient, Dimension::Rate)?;
@@ -377,14 +370,17 @@ fn check_displacement(
     let specimen = &model.specimen;
     let bonded = model.separation == simulate::Separation::Bonded;
     let contact_displacement = specimen.contact_displacement(to);
-    if specimen.check_contact_displacement(contact_displacement, bonded).is_ok() {
-        return Ok(());
-    }
-    let most = specimen.depth() / specimen.contact_displacement(1.0) * 1e3;
-    let expected = if to < 0.0 {
-        "a displacement of 0 mm or more for a bonded ball".to_owned()
-    } else {
-        format!("a displacement below {most} mm, where nothing of the body would be left")
+    let expected = match specimen.check_contact_displacement(contact_displacement, bonded) {
+        Ok(()) => return Ok(()),
+        Err(SpecimenError::TooDeep { limit, limit_name, .. }) => {
+            let most = limit / specimen.contact_displacement(1.0) * 1e3;
+            let why = match limit_name {
+                table if table.contains("table") => format!("the {table}"),
+                _ => "where nothing of the body would be left".to_owned(),
+            };
+            format!("a displacement below {most} mm, {why}")
+        }
+        Err(_) => "a displacement of 0 mm or more for a bonded body whose contact grows".to_owned(),
     };
     Err(source.value(key, expected, written))
 }

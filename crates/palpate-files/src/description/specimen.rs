@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use palpate::{
-    contact::{Shape, Sides},
+    contact::{Curve, Equilibrium, Shape, Sides, Specimen},
     units::Dimension,
 };
 use schemars::JsonSchema;
@@ -12,7 +12,8 @@ use serde::Deserialize;
 use super::{error::DescriptionError, quantity::QuantityText, source::Source};
 
 /// Shape, size and stiffness of the body. Give the sizes that its shape needs: a ball takes radius; a pad takes
-/// radius and thickness; a strip takes width, thickness and length; a cylinder takes diameter and length; a block takes area and length.
+/// radius and thickness; a strip takes width, thickness and length; a cylinder takes diameter and length; a block takes area and length;
+/// a profile takes depth and areas.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Specimen")]
@@ -31,8 +32,30 @@ pub(super) struct SpecimenTable {
     area: Option<QuantityText>,
     /// Free length along the force, from grip to grip or plate to plate: of a strip, a cylinder or a block.
     length: Option<QuantityText>,
+    /// Depth of a profile, from the undeformed contact to the plane that does not move.
+    depth: Option<QuantityText>,
+    /// Contact area of a profile: rows of contact displacement and area, from first touch on, such as ["1 mm", "40 mm^2"].
+    areas: Option<Vec<(QuantityText, QuantityText)>>,
     /// Young's modulus.
     modulus: Option<QuantityText>,
+    /// Law of the force once relaxation is over, in a protocol: even strain (the paper's, if nothing is said) or hertz.
+    equilibrium: Option<EquilibriumName>,
+    /// Poisson's ratio of a body with hertz, from 0 to 0.5.
+    poisson_ratio: Option<f64>,
+    /// Measured force once relaxation is over, in a protocol: rows of contact displacement and force, from first touch on, such as
+    /// ["1 mm", "0.2 N"]. In place of modulus and equilibrium.
+    equilibrium_forces: Option<Vec<(QuantityText, QuantityText)>>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[schemars(rename = "Equilibrium")]
+enum EquilibriumName {
+    /// Force = modulus × displacement/depth × contact area.
+    #[serde(rename = "even strain")]
+    EvenStrain,
+    /// Force = 4/3 modulus/(1 − ν²) √radius displacement^(3/2).
+    #[serde(rename = "hertz")]
+    Hertz,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
@@ -48,6 +71,8 @@ enum ShapeName {
     Cylinder,
     /// Any body of constant section.
     Block,
+    /// Any other body, by a table of its contact area.
+    Profile,
     /// Nothing is known: forces stay forces, no strain is computed.
     None,
 }
@@ -60,6 +85,7 @@ impl ShapeName {
             Self::Strip => "strip",
             Self::Cylinder => "cylinder",
             Self::Block => "block",
+            Self::Profile => "profile",
             Self::None => "none",
         }
     }
@@ -72,6 +98,7 @@ impl ShapeName {
             Self::Strip => &["width", "thickness", "length"],
             Self::Cylinder => &["diameter", "length"],
             Self::Block => &["area", "length"],
+            Self::Profile => &["depth", "areas"],
             Self::None => &[],
         }
     }
@@ -111,6 +138,15 @@ impl SpecimenTable {
                 area: size("area", &self.area, Dimension::Area)?,
                 length: length("length", &self.length)?,
             },
+            ShapeName::Profile => {
+                let key = "specimen.areas";
+                let rows = rows(source, key, self.areas.as_deref().unwrap_or_default(), Dimension::Area)?;
+                let expected = "rows of contact displacement and contact area";
+                Shape::Profile {
+                    depth: length("depth", &self.depth)?,
+                    area: Curve::new(&rows).map_err(|error| source.value(key, expected, &error))?,
+                }
+            }
         }))
     }
 
@@ -120,10 +156,71 @@ impl SpecimenTable {
         modulus.map(|modulus| source.positive("specimen.modulus", modulus, Dimension::Pressure)).transpose()
     }
 
+    /// The body of a protocol, pressed from `sides`.
+    pub(super) fn body(&self, source: &Source<'_>, sides: Option<Sides>) -> Result<Specimen, DescriptionError> {
+        let shape = self.known_shape(source)?;
+        let sides = sides.unwrap_or_else(|| usual_sides(&shape));
+        let modulus = match (self.modulus(source)?, &self.equilibrium_forces) {
+            (Some(modulus), None) => modulus,
+            // Nothing is made of it.
+            (None, Some(_)) => 1.0,
+            (Some(_), Some(_)) => return Err(source.both("specimen.equilibrium_forces", "specimen.modulus")),
+            (None, None) => return Err(source.missing("specimen.modulus", "Young's modulus, such as \"28 kPa\"")),
+        };
+        let specimen =
+            Specimen::new(shape, modulus, sides).map_err(|error| source.value("specimen", "a body", &error))?;
+        let (key, equilibrium) = self.equilibrium(source)?;
+        specimen
+            .with_equilibrium(equilibrium)
+            .map_err(|error| source.value(key, "a law that goes with the body", &error))
+    }
+
+    /// The law of the equilibrium force, and the key that says so.
+    fn equilibrium(&self, source: &Source<'_>) -> Result<(&'static str, Equilibrium), DescriptionError> {
+        let (named, ratio, measured) =
+            ("specimen.equilibrium", "specimen.poisson_ratio", "specimen.equilibrium_forces");
+        match (self.equilibrium, self.poisson_ratio, &self.equilibrium_forces) {
+            (Some(_), _, Some(_)) => Err(source.both(measured, named)),
+            (None | Some(EquilibriumName::EvenStrain), Some(_), _) => {
+                let reason = "without equilibrium = \"hertz\", the only law that asks for it";
+                Err(source.unused(ratio, reason, "remove poisson_ratio"))
+            }
+            (Some(EquilibriumName::Hertz), None, _) => {
+                Err(source.missing(ratio, "Poisson's ratio for Hertz's law, 0.5 of a body that keeps its volume"))
+            }
+            (Some(EquilibriumName::Hertz), Some(poisson_ratio), None) => {
+                Ok((ratio, Equilibrium::Hertz { poisson_ratio }))
+            }
+            (None, None, Some(forces)) => {
+                let rows = rows(source, measured, forces, Dimension::Force)?;
+                let expected = "rows of contact displacement and force";
+                let law = Equilibrium::measured(&rows).map_err(|error| source.value(measured, expected, &error))?;
+                Ok((measured, law))
+            }
+            (None | Some(EquilibriumName::EvenStrain), None, None) => Ok((named, Equilibrium::EvenStrain)),
+        }
+    }
+
+    /// Refuses laws of the equilibrium force where one is found from a record.
+    pub(super) fn no_equilibrium(&self, source: &Source<'_>) -> Result<(), DescriptionError> {
+        let given = [
+            ("equilibrium", self.equilibrium.is_some()),
+            ("poisson_ratio", self.poisson_ratio.is_some()),
+            ("equilibrium_forces", self.equilibrium_forces.is_some()),
+        ];
+        match given.iter().find(|(_, given)| *given) {
+            Some((name, _)) => {
+                let reason = "in a test, whose strains are those of force over modulus and area";
+                Err(source.unused(&format!("specimen.{name}"), reason, &format!("keep {name} for a protocol")))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Refuses a body without a shape, which cannot be simulated.
-    pub(super) fn known_shape(&self, source: &Source<'_>) -> Result<Shape, DescriptionError> {
+    fn known_shape(&self, source: &Source<'_>) -> Result<Shape, DescriptionError> {
         self.shape(source)?.ok_or_else(|| {
-            let expected = "\"ball\", \"pad\", \"strip\", \"cylinder\" or \"block\"";
+            let expected = "\"ball\", \"pad\", \"strip\", \"cylinder\", \"block\" or \"profile\"";
             source.value("specimen.shape", expected, "\"none\"")
         })
     }
@@ -132,13 +229,17 @@ impl SpecimenTable {
     fn check_sizes(&self, source: &Source<'_>) -> Result<(), DescriptionError> {
         let shape = self.shape.name();
         let wanted = self.shape.sizes();
+        let areas = self.areas.as_ref().map(|rows| format!("{} rows", rows.len()));
+        let written = |size: &Option<QuantityText>| size.as_ref().map(ToString::to_string);
         let given = [
-            ("radius", &self.radius),
-            ("diameter", &self.diameter),
-            ("width", &self.width),
-            ("thickness", &self.thickness),
-            ("area", &self.area),
-            ("length", &self.length),
+            ("radius", written(&self.radius)),
+            ("diameter", written(&self.diameter)),
+            ("width", written(&self.width)),
+            ("thickness", written(&self.thickness)),
+            ("area", written(&self.area)),
+            ("length", written(&self.length)),
+            ("depth", written(&self.depth)),
+            ("areas", areas),
         ];
         for (name, size) in given {
             let key = format!("specimen.{name}");
@@ -152,8 +253,12 @@ impl SpecimenTable {
                     return Err(source.unused(&key, &reason, &format!("remove {name}")));
                 }
                 None if wanted.contains(&name) => {
-                    let example = if name == "area" { "40 mm^2" } else { "35 mm" };
-                    let expected = format!("the {name} of a {shape}, such as \"{example}\"");
+                    let example = match name {
+                        "area" => "\"40 mm^2\"",
+                        "areas" => "[[\"0 mm\", \"0 mm^2\"], [\"1 mm\", \"40 mm^2\"]]",
+                        _ => "\"35 mm\"",
+                    };
+                    let expected = format!("the {name} of a {shape}, such as {example}");
                     return Err(source.missing(key, &expected));
                 }
                 _ => {}
@@ -167,6 +272,19 @@ impl SpecimenTable {
 pub(super) fn usual_sides(shape: &Shape) -> Sides {
     match shape {
         Shape::Ball { .. } => Sides::Two,
-        Shape::Pad { .. } | Shape::Prism { .. } => Sides::One,
+        Shape::Pad { .. } | Shape::Prism { .. } | Shape::Profile { .. } => Sides::One,
     }
+}
+
+/// Rows of contact displacement and what belongs to it, in SI.
+fn rows(
+    source: &Source<'_>,
+    key: &str,
+    rows: &[(QuantityText, QuantityText)],
+    dimension: Dimension,
+) -> Result<Vec<(f64, f64)>, DescriptionError> {
+    let row = |(place, value): &(QuantityText, QuantityText)| {
+        Ok((source.si(key, place, Dimension::Length)?, source.si(key, value, dimension)?))
+    };
+    rows.iter().map(row).collect()
 }

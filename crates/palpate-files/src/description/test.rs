@@ -87,7 +87,7 @@ impl TestDescription {
     #[must_use]
     pub fn analysis_options(&self) -> AnalysisOptions {
         AnalysisOptions {
-            geometry: self.geometry,
+            geometry: self.geometry.clone(),
             segment: self.segment,
             touch: self.touch,
             separation: self.separation,
@@ -132,24 +132,19 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
     let tables: TestTables = source.tables()?;
     let geometry = geometry(&source, &tables)?;
     let columns = tables.columns.checked(&source)?;
-    let ball = matches!(
-        geometry,
-        Some(Geometry {
-            shape: Shape::Ball { .. } | Shape::Pad { .. },
-            ..
-        })
-    );
-    if ball && columns.stress.is_some() {
-        let reason = "for a ball, whose contact area changes with the squeeze";
+    let grows = geometry.as_ref().is_some_and(|body| !matches!(body.shape, Shape::Prism { .. }));
+    if grows && columns.stress.is_some() {
+        let reason = "for a body whose contact area changes with the squeeze";
         return Err(source.unused("columns.stress", reason, "give columns.force"));
     }
     let contact = &tables.contact;
     let touch = match &contact.touch {
         Some(text) => settings::touch(&source, text)?,
-        None if ball => ContactChoice::Auto,
+        None if grows => ContactChoice::Auto,
         None => ContactChoice::AsRecorded,
     };
     let (fit, exponents) = settings::fit(&source, &tables.fit)?;
+    let layers = layers(&source, contact, geometry.as_ref())?;
     Ok(TestDescription {
         about: About {
             title: tables.about.title,
@@ -159,8 +154,8 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
         layout: tables.file,
         columns,
         geometry,
-        separation: contact::separation(contact.separation.unwrap_or(ball)),
-        layers: layers(&source, contact, geometry.as_ref())?,
+        separation: contact::separation(contact.separation.unwrap_or(grows)),
+        layers,
         touch,
         segment: settings::segment(&source, &tables.phases)?,
         fit,
@@ -173,7 +168,10 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
 fn geometry(source: &Source<'_>, tables: &TestTables) -> Result<Option<Geometry>, DescriptionError> {
     let sides = tables.contact.squeezed_from.map(Sides::from);
     let shape = match &tables.specimen {
-        Some(specimen) => specimen.shape(source)?,
+        Some(specimen) => {
+            specimen.no_equilibrium(source)?;
+            specimen.shape(source)?
+        }
         None => None,
     };
     let modulus = match &tables.specimen {
@@ -190,8 +188,8 @@ fn geometry(source: &Source<'_>, tables: &TestTables) -> Result<Option<Geometry>
         return Ok(None);
     };
     Ok(Some(Geometry {
-        shape,
         sides: sides.unwrap_or_else(|| specimen::usual_sides(&shape)),
+        shape,
         modulus,
     }))
 }

@@ -204,10 +204,10 @@ impl<'a> Chooser<'a> {
         let Some(stress) = stress else {
             return Ok((1.0, false));
         };
-        match test.geometry.map(|body| body.shape) {
+        match test.geometry.as_ref().map(|body| &body.shape) {
             None => Ok((1.0, true)),
-            Some(Shape::Prism { area, .. }) => Ok((area, false)),
-            Some(Shape::Ball { .. } | Shape::Pad { .. }) => Err(ColumnError::NoSection {
+            Some(Shape::Prism { area, .. }) => Ok((*area, false)),
+            Some(Shape::Ball { .. } | Shape::Pad { .. } | Shape::Profile { .. }) => Err(ColumnError::NoSection {
                 path: self.path.to_owned(),
                 column: NamedColumn::from(stress.column),
             }),

@@ -11,7 +11,7 @@ use crate::{SQUEEZE, protocol, says, with};
 fn a_short_protocol_has_the_usual_rest() {
     let squeeze = protocol(SQUEEZE).unwrap();
     assert_eq!(squeeze.title, None);
-    assert_eq!(squeeze.model.specimen.shape(), Shape::Ball { radius: 0.035 });
+    assert_eq!(squeeze.model.specimen.shape(), &Shape::Ball { radius: 0.035 });
     assert_eq!(squeeze.model.specimen.modulus(), 28_000.0);
     assert_eq!(squeeze.model.specimen.sides(), Sides::Two);
     assert_eq!(squeeze.model.layers.count(), 8.0);
@@ -25,25 +25,70 @@ fn a_short_protocol_has_the_usual_rest() {
 }
 
 #[test]
+fn bodies_by_their_tables_and_laws_of_the_relaxed_force() {
+    let rows = "areas = [[\"0 mm\", \"0 mm^2\"], [\"1 mm\", \"40 mm^2\"], [\"5 mm\", \"1 cm^2\"]]";
+    let punch = with("\"ball\"\nradius = \"35 mm\"", &format!("\"profile\"\ndepth = \"2 cm\"\n{rows}"));
+    let body = protocol(&punch).unwrap().model.specimen;
+    assert_eq!((body.depth(), body.sides()), (0.02, Sides::One));
+    assert!((body.contact_area(0.001) - 4e-5).abs() < 1e-19 && (body.contact_area(0.004) - 1e-4).abs() < 3e-5);
+    let short = punch.replace("[\"5 mm\"", "[\"2 mm\"");
+    says(protocol(&short), "step[1].to", "below 2 mm, the last row of the table of areas", "");
+    says(
+        protocol(&punch.replace("1 cm^2", "1 mm^2")),
+        "specimen.areas",
+        "row 3: values must be 0 or more and must not fall",
+        "",
+    );
+    says(protocol(&punch.replace("\"1 mm\"", "\"1 N\"")), "specimen.areas", "\"1 N\"", "");
+    says(protocol(&punch.replace(rows, "areas = []")), "specimen.areas", "at least 2 rows", "");
+    says(protocol(&punch.replace(rows, "")), "specimen.areas", "the areas of a profile", "");
+
+    let hertz = with("radius", "equilibrium = \"hertz\"\npoisson_ratio = 0.5\nradius");
+    let body = protocol(&hertz).unwrap().model.specimen;
+    let expected = 4.0 / 3.0 * 28e3 / 0.75 * 0.035f64.sqrt() * 1e-3f64.powf(1.5);
+    assert!((body.force(body.equilibrium_strain(1e-3), 1e-3) / expected - 1.0).abs() < 1e-14);
+    says(protocol(&hertz.replace("= 0.5", "= 0.6")), "specimen.poisson_ratio", "from 0 to 0.5, found 0.6", "");
+    says(protocol(&hertz.replace("poisson_ratio = 0.5", "")), "specimen.poisson_ratio", "Hertz's law", "");
+    says(protocol(&with("radius", "poisson_ratio = 0.4\nradius")), "specimen.poisson_ratio", "hertz", "");
+
+    let rows = "equilibrium_forces = [[\"0 mm\", \"0 N\"], [\"1 mm\", \"0.2 N\"], [\"4 mm\", \"2 N\"]]";
+    let measured = with("modulus = \"28 kPa\"", rows);
+    let body = protocol(&measured).unwrap().model.specimen;
+    assert!((body.force(body.equilibrium_strain(0.004), 0.004) - 2.0).abs() < 1e-14);
+    says(
+        protocol(&measured.replace("2 N\"", "0.5 N\"")),
+        "specimen.equilibrium_forces",
+        "must not fall",
+        "row 3",
+    );
+    says(
+        protocol(&with("radius", &format!("{rows}\nradius"))),
+        "specimen.equilibrium_forces",
+        "specimen.modulus",
+        "",
+    );
+}
+
+#[test]
 fn shapes_and_choices() {
     let strip = "shape = \"strip\"\nwidth = \"10 mm\"\nthickness = \"4 mm\"\nlength = \"20 mm\"";
     let strip = with("shape = \"ball\"\nradius = \"35 mm\"", strip);
     let model = protocol(&strip).unwrap().model;
     assert_eq!(
         model.specimen.shape(),
-        Shape::Prism {
+        &Shape::Prism {
             area: 4e-5,
             length: 0.02
         }
     );
     assert_eq!(model.specimen.sides(), Sides::One);
     let cylinder = with("shape = \"ball\"\nradius", "shape = \"cylinder\"\nlength = \"2 cm\"\ndiameter");
-    let Shape::Prism { area, length } = protocol(&cylinder).unwrap().model.specimen.shape() else {
+    let Shape::Prism { area, length } = *protocol(&cylinder).unwrap().model.specimen.shape() else {
         panic!("no prism");
     };
     assert!((area - std::f64::consts::PI * 0.0175 * 0.0175).abs() < 1e-18 && length == 0.02);
     let block = with("\"ball\"\nradius", "\"block\"\narea = \"40 mm^2\"\nlength");
-    let shape = protocol(&block).unwrap().model.specimen.shape();
+    let shape = protocol(&block).unwrap().model.specimen.shape().clone();
     assert_eq!(
         shape,
         Shape::Prism {
@@ -57,7 +102,7 @@ fn shapes_and_choices() {
         radius: 0.035,
         thickness: 0.01,
     };
-    assert_eq!((model.specimen.shape(), model.specimen.sides()), (shape, Sides::One));
+    assert_eq!((model.specimen.shape(), model.specimen.sides()), (&shape, Sides::One));
     let too_thick = protocol(&pad.replace("\"10 mm\"", "\"36 mm\""));
     says(too_thick, "specimen.thickness", "at most the radius of the pad, found \"36 mm\"", "");
     let thick = with(

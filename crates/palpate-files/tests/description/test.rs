@@ -62,7 +62,7 @@ fn everything_said() {
     assert_eq!(displacement.clock.unwrap().column, ColumnRef::Number(4));
     assert_eq!(all.columns.force.unwrap().column, None);
     let body = all.geometry.unwrap();
-    assert_eq!((body.shape, body.sides), (Shape::Ball { radius: 0.035 }, Sides::One));
+    assert_eq!((&body.shape, body.sides), (&Shape::Ball { radius: 0.035 }, Sides::One));
     assert_eq!(body.modulus, Some(28e3));
     assert_eq!((all.separation, all.layers), (Separation::Bonded, Some(LayersChoice::Thickness(0.005))));
     assert_eq!(LayersChoice::Thickness(0.005).layers(body.shape.depth(body.sides)).unwrap().count(), 0.035 / 0.005);

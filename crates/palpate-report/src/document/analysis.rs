@@ -386,7 +386,7 @@ fn tables(analysis: &Analysis) -> Option<TablesDocument> {
         };
         holds.filter_map(row).collect()
     };
-    analysis.specimen?;
+    analysis.specimen.as_ref()?;
     Some(TablesDocument {
         common_exponent: Some(n),
         loading: rows(After::Loading),

@@ -72,33 +72,34 @@ pub struct SettingsDocument {
 impl SettingsDocument {
     pub(super) fn new(analysis: &Analysis) -> Self {
         let (options, segment) = (&analysis.options, &analysis.segmentation.settings);
-        let shape = options.geometry.map(|geometry| geometry.shape);
-        let sides = options.geometry.map(|geometry| geometry.sides);
+        let shape = options.geometry.as_ref().map(|geometry| &geometry.shape);
+        let sides = options.geometry.as_ref().map(|geometry| geometry.sides);
         Self {
             shape: match shape {
                 Some(Shape::Ball { .. }) => "ball",
                 Some(Shape::Pad { .. }) => "pad",
                 Some(Shape::Prism { .. }) => "prism",
+                Some(Shape::Profile { .. }) => "profile",
                 None => "none",
             }
             .to_owned(),
             radius_m: match shape {
-                Some(Shape::Ball { radius } | Shape::Pad { radius, .. }) => Some(radius),
+                Some(Shape::Ball { radius } | Shape::Pad { radius, .. }) => Some(*radius),
                 _ => None,
             },
             thickness_m: match shape {
-                Some(Shape::Pad { thickness, .. }) => Some(thickness),
+                Some(Shape::Pad { thickness, .. }) => Some(*thickness),
                 _ => None,
             },
             area_m2: match shape {
-                Some(Shape::Prism { area, .. }) => Some(area),
+                Some(Shape::Prism { area, .. }) => Some(*area),
                 _ => None,
             },
             length_m: match shape {
-                Some(Shape::Prism { length, .. }) => Some(length),
+                Some(Shape::Prism { length, .. }) => Some(*length),
                 _ => None,
             },
-            modulus_pa: analysis.specimen.map(|specimen| specimen.modulus()),
+            modulus_pa: analysis.specimen.as_ref().map(palpate::contact::Specimen::modulus),
             modulus_source: analysis.modulus_source.map(|source| {
                 match source {
                     ModulusSource::Given => "given",

@@ -80,7 +80,7 @@ fn fits(analysis: &Analysis) -> Pairs {
         ),
         ("Intervals", format!("{} %", number(100.0 * options.fit.confidence))),
     ];
-    if let Some(specimen) = analysis.specimen {
+    if let Some(specimen) = &analysis.specimen {
         pairs.push(("Modulus", format!("{} kPa", significant(specimen.modulus() / 1e3, 4))));
         pairs.push(("Depth cut into layers", format!("{} mm", number(1e3 * specimen.depth()))));
     }

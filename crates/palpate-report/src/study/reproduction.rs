@@ -86,13 +86,13 @@ fn reproduce_test(motion: &Motion, model: &ContactModel) -> Result<ReproducedTes
     let sampling = Sampling::Rate(SAMPLE_RATE);
     let free = ContactModel {
         separation: Separation::Unilateral,
-        ..*model
+        ..model.clone()
     };
     let bonded = simulate(motion, model, &sampling)?;
     let record = Record::new(bonded.time.clone(), Some(bonded.displacement.clone()), bonded.force.clone())?;
     let options = AnalysisOptions {
         geometry: Some(Geometry {
-            shape: model.specimen.shape(),
+            shape: model.specimen.shape().clone(),
             sides: model.specimen.sides(),
             modulus: Some(model.specimen.modulus()),
         }),

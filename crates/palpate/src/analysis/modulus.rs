@@ -49,7 +49,7 @@ pub(super) fn implied_modulus(
     geometry: &Geometry,
     options: &AnalysisOptions,
 ) -> Option<ImpliedModulus> {
-    let body = Specimen::new(geometry.shape, 1.0, geometry.sides).ok()?;
+    let body = Specimen::new(geometry.shape.clone(), 1.0, geometry.sides).ok()?;
     let displacement = record.displacement()?;
     let holds: Vec<RelaxedHold> = segmentation
         .holds()

@@ -10,7 +10,7 @@ use crate::simulate::Separation;
 use crate::strain::RateWindow;
 
 /// The body as far as it is known; SI units.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Geometry {
     /// Shape.
     pub shape: Shape,

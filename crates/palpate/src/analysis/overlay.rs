@@ -62,7 +62,7 @@ pub(super) fn overlay(
     let measured: Vec<f64> = samples.iter().map(|i| record.force()[*i]).collect();
     let simulated = |layers: Layers| {
         let model = ContactModel {
-            specimen: *specimen,
+            specimen: specimen.clone(),
             law,
             layers,
             separation: options.separation,

@@ -109,7 +109,7 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
         findings.push(Finding::PhasesFromForce);
     }
     findings.extend(suspicious_signs(&record, &segmentation));
-    let body = options.geometry.map(|geometry| (geometry.shape, geometry.sides));
+    let body = options.geometry.as_ref().map(|geometry| (&geometry.shape, geometry.sides));
     let contact = find_contact_of(&record, &segmentation, body, options.touch);
     if contact.air_travel > 0.0 {
         findings.push(Finding::AirTravel {
@@ -131,8 +131,8 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
     findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
     let across = across(&holds, options, 4.0 * segmentation.settings.tolerance);
     findings.extend(changing_rate(&across.joint));
-    let overlay = specimen.and_then(|specimen| {
-        let result = overlay(&record, &segmentation, &specimen, &holds, across.common_exponent, options);
+    let overlay = specimen.as_ref().and_then(|specimen| {
+        let result = overlay(&record, &segmentation, specimen, &holds, across.common_exponent, options);
         result.map_err(|reason| findings.push(Finding::NoOverlay { reason })).ok()
     });
     if let Some(relative) = overlay.as_ref().map(|overlay| overlay.relative).filter(|relative| *relative > POOR) {
@@ -167,13 +167,13 @@ fn specimen(
     options: &AnalysisOptions,
     findings: &mut Vec<Finding>,
 ) -> Result<(Option<Specimen>, Option<ModulusSource>), SpecimenError> {
-    let Some(geometry) = options.geometry.filter(|_| record.displacement().is_some()) else {
+    let Some(geometry) = options.geometry.as_ref().filter(|_| record.displacement().is_some()) else {
         return Ok((None, None));
     };
-    let implied = implied_modulus(record, segmentation, &geometry, options);
+    let implied = implied_modulus(record, segmentation, geometry, options);
     match (geometry.modulus, implied) {
         (Some(given), implied) => {
-            let specimen = Specimen::new(geometry.shape, given, geometry.sides)?;
+            let specimen = Specimen::new(geometry.shape.clone(), given, geometry.sides)?;
             if let Some(implied) = implied.filter(|implied| !(0.8..=1.25).contains(&(implied.value / given))) {
                 findings.push(Finding::ModulusMismatch {
                     given,
@@ -187,11 +187,11 @@ fn specimen(
                 modulus: implied.value,
                 standard_error: implied.standard_error,
             });
-            let specimen = Specimen::new(geometry.shape, implied.value, geometry.sides)?;
+            let specimen = Specimen::new(geometry.shape.clone(), implied.value, geometry.sides)?;
             Ok((Some(specimen), Some(ModulusSource::Estimated)))
         }
         // Validates the geometry even where no modulus can be told.
-        (None, None) => Specimen::new(geometry.shape, 1.0, geometry.sides).map(|_| (None, None)),
+        (None, None) => Specimen::new(geometry.shape.clone(), 1.0, geometry.sides).map(|_| (None, None)),
     }
 }
 
@@ -199,7 +199,7 @@ fn specimen(
 ///
 /// A ball and a body between plates have that limit; a strip in grips can be stretched beyond its own length.
 fn beyond_body(record: &Record, options: &AnalysisOptions) -> Result<(), AnalysisError> {
-    let (Some(geometry), Some(displacement)) = (options.geometry, record.displacement()) else {
+    let (Some(geometry), Some(displacement)) = (&options.geometry, record.displacement()) else {
         return Ok(());
     };
     let is_strip = matches!(geometry.shape, Shape::Prism { .. }) && options.separation == Separation::Bonded;
@@ -207,7 +207,7 @@ fn beyond_body(record: &Record, options: &AnalysisOptions) -> Result<(), Analysi
         return Ok(());
     }
     // The limit is one of geometry; any modulus will do.
-    let body = Specimen::new(geometry.shape, 1.0, geometry.sides)?;
+    let body = Specimen::new(geometry.shape.clone(), 1.0, geometry.sides)?;
     let share = body.contact_displacement(1.0);
     for (index, travel) in displacement.iter().enumerate() {
         if let Err(SpecimenError::TooDeep { limit, limit_name, .. }) =

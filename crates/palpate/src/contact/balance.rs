@@ -53,7 +53,7 @@ pub(crate) fn carried_at(specimen: &Specimen, layer: Layer, force: f64, bonded: 
     if force < 0.0 {
         return None;
     }
-    let (mut low, mut high) = (free.max(0.0), depth);
+    let (mut low, mut high) = (free.max(0.0), specimen.limit().at);
     if excess_force(high).0 <= 0.0 {
         return None;
     }

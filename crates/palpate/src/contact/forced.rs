@@ -20,7 +20,7 @@ use crate::ode::{Dop853, Step};
 const TOLERANCE: f64 = 1e-13;
 
 /// The body and its law, as a force meets them.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Body {
     pub(crate) specimen: Specimen,
     pub(crate) law: LatencyLaw,
@@ -97,9 +97,9 @@ impl Forced {
         let (_, initial) = body.carry(from, behind).ok_or(Stopped::TooMuch { elapsed: 0.0 })?;
         let slope = if duration > 0.0 { (to - from) / duration } else { 0.0 };
         let path = if slope == 0.0 {
-            Self::held(body, from, initial, duration, work)?
+            Self::held(&body, from, initial, duration, work)?
         } else {
-            Self::changing(body, (from, slope), behind, duration, work)?
+            Self::changing(&body, (from, slope), behind, duration, work)?
         };
         Ok(Self {
             body,
@@ -109,7 +109,7 @@ impl Forced {
         })
     }
 
-    fn held(body: Body, force: f64, initial: f64, duration: f64, work: &mut Work) -> Result<Path, Stopped> {
+    fn held(body: &Body, force: f64, initial: f64, duration: f64, work: &mut Work) -> Result<Path, Stopped> {
         let mut steps: Vec<Step<[f64; 1]>> = Vec::new();
         work.closed_forms += 1;
         if initial != 0.0 && duration > 0.0 {
@@ -147,7 +147,7 @@ impl Forced {
     }
 
     fn changing(
-        body: Body,
+        body: &Body,
         (from, slope): (f64, f64),
         behind: f64,
         duration: f64,

@@ -2,7 +2,10 @@
 //!
 //! | file | what | equations |
 //! |---|---|---|
-//! | `specimen.rs` | shape, modulus, contact area, equilibrium strain | (6), (7), (8), (11) |
+//! | `shape.rs` | the form of the body: contact area, depth, and where they come from | (7), (8) |
+//! | `equilibrium.rs` | the force that it tends to: the paper's, Hertz's, or a measured one | (11) |
+//! | `curve.rs` | a smooth curve through the rows of a table | |
+//! | `specimen.rs` | the body with its modulus: force, equilibrium strain, what it can take | (6), (8), (11) |
 //! | `layers.rs` | how the body is cut into layers and how travel of the jaw becomes drive | section IV, steps 1–2 |
 //! | `element.rs` | the contact layer through one straight piece of motion: hold or ramp | section IV, step 3 |
 //! | `balance.rs` | where a body carries a given force | (11) |
@@ -13,18 +16,24 @@
 //! layers; the interior is solved only to show the strain wave (`simulate::wave`).
 
 mod balance;
+mod curve;
 mod element;
+mod equilibrium;
 mod forced;
 mod free_surface;
 mod layers;
+mod shape;
 mod specimen;
 
 pub(crate) use balance::{Layer, carried_at, share};
+pub use curve::{Curve, CurveError};
 pub(crate) use element::Element;
+pub use equilibrium::{Equilibrium, EquilibriumError};
 pub(crate) use forced::{Body, Forced, Stopped};
 pub(crate) use free_surface::FreeSurface;
 pub use layers::{Layers, LayersError};
-pub use specimen::{Shape, Sides, Specimen, SpecimenError};
+pub use shape::{Shape, Statement};
+pub use specimen::{Sides, Specimen, SpecimenError};
 
 /// What a simulation cost, in counts that do not depend on the machine.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

@@ -1,49 +1,9 @@
 //! The body that is squeezed.
 
-use std::f64::consts::PI;
-
 use serde::{Deserialize, Serialize};
 
-/// Shape of the body, all lengths in m and areas in m².
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", tag = "kind")]
-pub enum Shape {
-    /// A ball pressed by flat plates; the contact circle grows with the squeeze, equation (7).
-    Ball {
-        /// Radius r in m.
-        radius: f64,
-    },
-    /// A spherical fingertip: a soft pad of even thickness over a rigid core, pressed by a flat; equation (7) with the pad as deep as it is
-    /// thick.
-    Pad {
-        /// Outer radius R in m.
-        radius: f64,
-        /// Thickness of the soft layer in m, at most the radius; equal to it, the pad is a ball without a core.
-        thickness: f64,
-    },
-    /// A body of constant section: strip, block, cylinder or a flat punch on a layer.
-    Prism {
-        /// Cross-section that carries the force, in m².
-        area: f64,
-        /// Length along the force, in m: the whole length between the two grips or plates.
-        length: f64,
-    },
-}
-
-impl Shape {
-    /// Distance from an undeformed contact to the plane that does not move, in m: the depth that is cut into layers.
-    ///
-    /// The radius of a ball; the thickness of a pad; the length of a prism, half of it when both ends move.
-    #[must_use]
-    pub fn depth(self, sides: Sides) -> f64 {
-        match (self, sides) {
-            (Self::Ball { radius }, _) => radius,
-            (Self::Pad { thickness, .. }, _) => thickness,
-            (Self::Prism { length, .. }, Sides::One) => length,
-            (Self::Prism { length, .. }, Sides::Two) => length / 2.0,
-        }
-    }
-}
+use super::shape::Limit;
+use super::{Equilibrium, EquilibriumError, Shape};
 
 /// From how many sides the body is squeezed: decides which share of the jaw's travel one contact takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -57,11 +17,13 @@ pub enum Sides {
 }
 
 /// A body with its modulus: what turns displacement and force into strain.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Specimen {
     shape: Shape,
     modulus: f64,
     sides: Sides,
+    #[serde(default)]
+    equilibrium: Equilibrium,
 }
 
 /// Numbers that make no specimen, or a displacement that it cannot take.
@@ -85,7 +47,7 @@ pub enum SpecimenError {
         /// What was given, m.
         found: f64,
     },
-    /// A contact displacement that is not below the depth of the body.
+    /// A contact displacement beyond what the body, or a table of it, has.
     #[error("contact displacement must stay below the {limit_name} of {limit} m, found {found} m")]
     TooDeep {
         /// What limits it.
@@ -95,9 +57,9 @@ pub enum SpecimenError {
         /// The contact displacement asked for, in m.
         found: f64,
     },
-    /// A ball or a pad pulled away beyond the first touch while bonded to the jaw.
+    /// A body whose contact grows, pulled away beyond the first touch while bonded to the jaw.
     #[error(
-        "a round body has no contact area beyond first touch: contact displacement must be 0 m or more, found {found} m"
+        "a body whose contact grows has none beyond first touch: contact displacement must be 0 m or more, found {found} m"
     )]
     PulledOff {
         /// The contact displacement asked for, in m.
@@ -120,9 +82,9 @@ impl Specimen {
     /// ```
     pub fn new(shape: Shape, modulus: f64, sides: Sides) -> Result<Self, SpecimenError> {
         positive("modulus", "Pa", modulus)?;
-        match shape {
-            Shape::Ball { radius } => positive("radius", "m", radius)?,
-            Shape::Pad { radius, thickness } => {
+        match &shape {
+            &Shape::Ball { radius } => positive("radius", "m", radius)?,
+            &Shape::Pad { radius, thickness } => {
                 positive("radius", "m", radius)?;
                 positive("thickness", "m", thickness)?;
                 if thickness > radius {
@@ -132,18 +94,52 @@ impl Specimen {
                     });
                 }
             }
-            Shape::Prism { area, length } => {
+            &Shape::Prism { area, length } => {
                 positive("area", "m²", area)?;
                 positive("length", "m", length)?;
             }
+            Shape::Profile { depth, area } => {
+                positive("depth", "m", *depth)?;
+                positive("area at the last row", "m²", area.value(area.end()))?;
+            }
         }
-        Ok(Self { shape, modulus, sides })
+        Ok(Self {
+            shape,
+            modulus,
+            sides,
+            equilibrium: Equilibrium::EvenStrain,
+        })
+    }
+
+    /// The same body with another law of the force that it tends to.
+    ///
+    /// ```
+    /// use palpate::contact::{Equilibrium, Shape, Sides, Specimen};
+    /// // A ball of 20 mm radius and 100 kPa that keeps its volume, pressed 1 mm deep by a rigid flat:
+    /// // 4/3 · 100 kPa/0.75 · √(20 mm) · (1 mm)^(3/2) = 0.795 N
+    /// let ball = Specimen::new(Shape::Ball { radius: 0.02 }, 1e5, Sides::One)?;
+    /// let ball = ball.with_equilibrium(Equilibrium::Hertz { poisson_ratio: 0.5 })?;
+    /// assert!((ball.force(ball.equilibrium_strain(1e-3), 1e-3) - 0.795_046_5).abs() < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`EquilibriumError`] for Hertz's law with a body that is not round or a Poisson's ratio that no solid has.
+    pub fn with_equilibrium(self, equilibrium: Equilibrium) -> Result<Self, EquilibriumError> {
+        equilibrium.check(&self.shape)?;
+        Ok(Self { equilibrium, ..self })
+    }
+
+    /// The law of the force that it tends to.
+    #[must_use]
+    pub fn equilibrium(&self) -> &Equilibrium {
+        &self.equilibrium
     }
 
     /// The shape.
     #[must_use]
-    pub fn shape(&self) -> Shape {
-        self.shape
+    pub fn shape(&self) -> &Shape {
+        &self.shape
     }
 
     /// Young's modulus E in Pa.
@@ -176,16 +172,11 @@ impl Specimen {
     /// Contact area A in m² at contact displacement u₁ (m).
     ///
     /// A ball: A = π [r² − (r − u₁)²] = π (2 r u₁ − u₁²), equation (7), from 0 at first touch to π r² at u₁ = r;
-    /// zero before first touch. A pad: the same with its outer radius, up to where it is pressed flat on the core. A prism: its section, whatever the displacement.
+    /// zero before first touch. A pad: the same with its outer radius, up to where it is pressed flat on the core. A prism: its section,
+    /// whatever the displacement. A profile: its table.
     #[must_use]
     pub fn contact_area(&self, contact_displacement: f64) -> f64 {
-        match self.shape {
-            Shape::Ball { radius } | Shape::Pad { radius, .. } => {
-                let u = contact_displacement.max(0.0);
-                PI * u * (2.0 * radius - u)
-            }
-            Shape::Prism { area, .. } => area,
-        }
+        self.shape.area(contact_displacement).0
     }
 
     /// Strain that spreads evenly behind the contact once relaxation is over, ε_e,1 = u₁/depth.
@@ -194,26 +185,29 @@ impl Specimen {
         contact_displacement / self.depth()
     }
 
-    /// Force in N of a contact whose layer has strain `strain`: F = E ε A(u₁), equation (11).
+    /// Force in N of a contact whose layer has strain `strain`: F = E ε A(u₁), equation (11), or S(u₁) ε with the stiffness S of another
+    /// law of [`Equilibrium`].
     #[must_use]
     pub fn force(&self, strain: f64, contact_displacement: f64) -> f64 {
-        self.modulus * strain * self.contact_area(contact_displacement)
+        match self.equilibrium {
+            Equilibrium::EvenStrain => self.modulus * strain * self.contact_area(contact_displacement),
+            _ => self.stiffness(contact_displacement).0 * strain,
+        }
     }
 
     /// S = E A(u₁), the force per strain of the contact layer (N), and its slope dS/du₁ (N/m).
     pub(crate) fn stiffness(&self, contact_displacement: f64) -> (f64, f64) {
-        let growth = match self.shape {
-            Shape::Ball { radius } | Shape::Pad { radius, .. } if contact_displacement >= 0.0 => {
-                2.0 * PI * (radius - contact_displacement)
-            }
-            _ => 0.0,
-        };
-        (self.modulus * self.contact_area(contact_displacement), self.modulus * growth)
+        self.equilibrium.stiffness(&self.shape, self.modulus, self.depth(), contact_displacement)
     }
 
-    /// Whether the area is the same at any displacement.
+    /// Whether the force per strain is the same at any displacement.
     pub(crate) fn has_constant_section(&self) -> bool {
-        matches!(self.shape, Shape::Prism { .. })
+        matches!((&self.shape, &self.equilibrium), (Shape::Prism { .. }, Equilibrium::EvenStrain))
+    }
+
+    /// How deep the body can be squeezed; a strip in grips can be stretched further.
+    pub(crate) fn limit(&self) -> Limit {
+        self.shape.limit(self.sides).or_table(self.equilibrium.end(), "last row of the table of forces")
     }
 
     /// Checks that a contact displacement (m) is one the body can take.
@@ -222,17 +216,12 @@ impl Specimen {
     /// [`SpecimenError::TooDeep`] at or beyond the depth, except for a prism `bonded` at its ends: a strip in grips may be
     /// stretched to several times its length. [`SpecimenError::PulledOff`] below zero when `bonded` to a ball.
     pub fn check_contact_displacement(&self, contact_displacement: f64, bonded: bool) -> Result<(), SpecimenError> {
-        let limit = self.depth();
-        let is_strip = bonded && matches!(self.shape, Shape::Prism { .. });
-        if contact_displacement >= limit && !is_strip {
+        let limit = self.limit();
+        let is_strip = bonded && self.has_constant_section();
+        if limit.is_passed_by(contact_displacement) && !is_strip {
             return Err(SpecimenError::TooDeep {
-                limit_name: match (self.shape, self.sides) {
-                    (Shape::Ball { .. }, _) => "radius",
-                    (Shape::Pad { .. }, _) => "thickness of the pad",
-                    (Shape::Prism { .. }, Sides::One) => "length",
-                    (Shape::Prism { .. }, Sides::Two) => "half length",
-                },
-                limit,
+                limit_name: limit.name,
+                limit: limit.at,
                 found: contact_displacement,
             });
         }
@@ -256,6 +245,7 @@ fn positive(name: &'static str, unit: &'static str, found: f64) -> Result<(), Sp
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn area_of_a_ball_grows_from_nothing_to_its_great_circle() {
@@ -292,6 +282,31 @@ mod tests {
                 ..
             })
         ));
+    }
+
+    #[test]
+    fn a_measured_law_passes_through_its_rows_and_ends_with_them() {
+        let rows = [(0.0, 0.0), (0.001, 0.1), (0.002, 0.28), (0.004, 0.8)];
+        let ball = || Specimen::new(Shape::Ball { radius: 0.02 }, 1e5, Sides::One).unwrap();
+        let body = ball().with_equilibrium(Equilibrium::measured(&rows).unwrap()).unwrap();
+        for (u, force) in rows {
+            assert!((body.force(body.equilibrium_strain(u), u) - force).abs() < 1e-15);
+        }
+        assert!(body.check_contact_displacement(0.004, false).is_ok());
+        let beyond = body.check_contact_displacement(0.0041, false);
+        assert!(matches!(beyond, Err(SpecimenError::TooDeep { limit, .. }) if limit == 0.004));
+        let softening = Equilibrium::measured(&[(0.0, 0.0), (0.001, 0.2), (0.002, 0.3)]);
+        assert!(matches!(softening, Err(EquilibriumError::Softening { row: 3, .. })));
+        assert_eq!(Equilibrium::measured(&[(0.0, 0.1), (1.0, 0.2)]), Err(EquilibriumError::Touch { found: 0.1 }));
+        let block = Shape::Prism {
+            area: 1e-4,
+            length: 0.1,
+        };
+        let block = Specimen::new(block, 1e5, Sides::One).unwrap();
+        let hertz = |poisson_ratio| Equilibrium::Hertz { poisson_ratio };
+        assert_eq!(block.with_equilibrium(hertz(0.5)), Err(EquilibriumError::NotRound));
+        assert_eq!(ball().with_equilibrium(hertz(0.51)), Err(EquilibriumError::PoissonRatio { found: 0.51 }));
+        assert!(ball().with_equilibrium(hertz(f64::NAN)).is_err());
     }
 
     #[test]

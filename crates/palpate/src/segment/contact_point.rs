@@ -62,7 +62,7 @@ const BASELINE: usize = 5;
 pub fn find_contact(
     record: &Record,
     segmentation: &Segmentation,
-    shape: Option<Shape>,
+    shape: Option<&Shape>,
     choice: ContactChoice,
 ) -> ContactPoint {
     find_contact_of(record, segmentation, shape.map(|shape| (shape, Sides::Two)), choice)
@@ -79,7 +79,7 @@ pub fn find_contact(
 pub fn find_contact_of(
     record: &Record,
     segmentation: &Segmentation,
-    body: Option<(Shape, Sides)>,
+    body: Option<(&Shape, Sides)>,
     choice: ContactChoice,
 ) -> ContactPoint {
     let as_recorded = ContactPoint::at(record, 0.0);
@@ -111,7 +111,7 @@ fn automatic(
     record: &Record,
     displacement: &[f64],
     segmentation: &Segmentation,
-    body: Option<(Shape, Sides)>,
+    body: Option<(&Shape, Sides)>,
 ) -> Option<ContactPoint> {
     let (ramp, hold) = first_rise(record, segmentation)?;
     let force = record.force();

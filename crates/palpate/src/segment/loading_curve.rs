@@ -88,7 +88,7 @@ impl LoadingCurve {
         displacement: &[f64],
         ramp: &Segment,
         hold: &Segment,
-        body: Option<(Shape, Sides)>,
+        body: Option<(&Shape, Sides)>,
     ) -> Option<Self> {
         let laws = laws(record, hold)?;
         let foot = ramp.start.saturating_sub(1);
@@ -111,7 +111,7 @@ impl LoadingCurve {
             speed,
             radius: match body {
                 Some((Shape::Ball { radius } | Shape::Pad { radius, .. }, Sides::Two)) => Some(2.0 * radius),
-                Some((Shape::Ball { radius } | Shape::Pad { radius, .. }, Sides::One)) => Some(radius),
+                Some((Shape::Ball { radius } | Shape::Pad { radius, .. }, Sides::One)) => Some(*radius),
                 _ => None,
             },
             laws,

@@ -17,7 +17,7 @@ pub enum Separation {
 }
 
 /// A soft body between jaws, obeying the latency law in layers (section IV of the paper).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ContactModel {
     /// Shape and modulus.
     pub specimen: Specimen,

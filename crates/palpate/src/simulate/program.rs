@@ -192,7 +192,7 @@ impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Runner<'_, '_, V> {
         // A jaw that approaches may go as deep as the body is; a strip in grips may be stretched as far as it likes.
         let strip = specimen.has_constant_section() && self.model.separation == super::Separation::Bonded;
         let farthest = match (force > now, strip) {
-            (true, false) => depth * (1.0 - 1e-12),
+            (true, false) => specimen.limit().at * (1.0 - 1e-12),
             (false, false) => 0.0,
             (true, true) => self.jaw.max(0.0) + 100.0 * depth,
             (false, true) => self.jaw.min(0.0) - 100.0 * depth,

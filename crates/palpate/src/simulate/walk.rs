@@ -192,7 +192,7 @@ impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
     ) -> Result<(f64, f64), SimulateError> {
         let (model, duration) = (self.model, end - start);
         let body = Body {
-            specimen: model.specimen,
+            specimen: model.specimen.clone(),
             law: model.law,
             layers: model.layers,
             bonded: model.separation == Separation::Bonded,

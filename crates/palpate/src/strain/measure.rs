@@ -20,6 +20,6 @@ use crate::contact::Specimen;
 /// ```
 #[must_use]
 pub fn contact_strain(force: f64, displacement: f64, specimen: &Specimen) -> Option<f64> {
-    let area = specimen.contact_area(specimen.contact_displacement(displacement));
-    (area > 0.0).then(|| force / (specimen.modulus() * area))
+    let (stiffness, _) = specimen.stiffness(specimen.contact_displacement(displacement));
+    (stiffness > 0.0).then(|| force / stiffness)
 }

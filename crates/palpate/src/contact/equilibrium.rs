@@ -1,0 +1,152 @@
+//! The force that a body tends to once relaxation is over.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Curve, CurveError, Shape};
+
+/// Law of the equilibrium force F_e of a contact: what the force F tends to while the jaw stands still.
+///
+/// The force of a contact is F = S(u) ε, with ε the strain of the contact layer and S the stiffness against it; relaxed, ε = u/depth.
+/// A law of F_e is therefore one of S = F_e depth/u, and the strain in excess of equilibrium adds S(u) x to it.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum Equilibrium {
+    /// The paper's: F_e = E (u/depth) A(u), equation (11).
+    #[default]
+    EvenStrain,
+    /// Hertz (1881), a ball of modulus E pressed by a rigid flat: F_e = 4/3 E/(1 − ν²) √r u^(3/2).
+    ///
+    /// For balls and pads, from small contacts up to u ≈ r/10, and a pad much thicker than the contact is wide.
+    Hertz {
+        /// Poisson's ratio ν, from 0 to 0.5.
+        poisson_ratio: f64,
+    },
+    /// Measured: S(u) through the rows of a table of F_e.
+    Measured {
+        /// F_e/u in N/m at contact displacements in m.
+        force_per_displacement: Curve,
+    },
+}
+
+/// A law of the equilibrium force that does not go with a body.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum EquilibriumError {
+    /// A Poisson's ratio beyond what solids have.
+    #[error("Poisson's ratio must be from 0 to 0.5, found {found}")]
+    PoissonRatio {
+        /// What was given.
+        found: f64,
+    },
+    /// Hertz's law for a body that is not round.
+    #[error("Hertz's law needs a ball or a pad: the radius of its contact comes from theirs")]
+    NotRound,
+    /// A table whose rows make no law.
+    #[error("table of equilibrium forces, {0}")]
+    Table(#[from] CurveError),
+    /// A force where nothing touches.
+    #[error("table of equilibrium forces, row 1: the force at first touch is 0 N, found {found} N")]
+    Touch {
+        /// What was given, N.
+        found: f64,
+    },
+    /// A body that gets softer as it is squeezed.
+    #[error(
+        "table of equilibrium forces, row {row}: force over displacement must not fall, found {found:.4e} N/m after {before:.4e} N/m"
+    )]
+    Softening {
+        /// Which row, from 1.
+        row: usize,
+        /// F_e/u there, N/m.
+        found: f64,
+        /// F_e/u a row before, N/m.
+        before: f64,
+    },
+}
+
+impl Equilibrium {
+    /// A measured law from rows of contact displacement (m) and equilibrium force (N), the first of them first touch: (0, 0).
+    ///
+    /// Between rows F_e/u is a cubic that rises as the rows do; at first touch it is that of the line through the first two rows after.
+    ///
+    /// ```
+    /// use palpate::contact::{Equilibrium, Shape, Sides, Specimen};
+    /// let measured = Equilibrium::measured(&[(0.0, 0.0), (0.001, 0.1), (0.002, 0.28), (0.004, 0.8)])?;
+    /// let ball = Specimen::new(Shape::Ball { radius: 0.02 }, 1e5, Sides::One)?.with_equilibrium(measured)?;
+    /// let relaxed = |u: f64| ball.force(ball.equilibrium_strain(u), u);
+    /// assert!((relaxed(0.002) - 0.28).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`EquilibriumError`] for rows that do not begin at first touch, do not rise, or whose force per displacement falls.
+    pub fn measured(rows: &[(f64, f64)]) -> Result<Self, EquilibriumError> {
+        // Rows that make no curve are told by it.
+        Curve::named(rows, "forces")?;
+        if rows[0].1 != 0.0 {
+            return Err(EquilibriumError::Touch { found: rows[0].1 });
+        }
+        let mut ratios: Vec<(f64, f64)> = rows[1..].iter().map(|(u, force)| (*u, force / u)).collect();
+        for (index, pair) in ratios.windows(2).enumerate() {
+            if pair[1].1 < pair[0].1 {
+                return Err(EquilibriumError::Softening {
+                    row: index + 3,
+                    found: pair[1].1,
+                    before: pair[0].1,
+                });
+            }
+        }
+        let touch = match *ratios.as_slice() {
+            [(near, low), (far, high), ..] => (low - near * (high - low) / (far - near)).max(0.0),
+            [(_, only), ..] => only,
+            [] => 0.0,
+        };
+        ratios.insert(0, (0.0, touch));
+        Ok(Self::Measured {
+            force_per_displacement: Curve::named(&ratios, "forces over displacements")?,
+        })
+    }
+
+    /// Checks that the law goes with a shape.
+    pub(super) fn check(&self, shape: &Shape) -> Result<(), EquilibriumError> {
+        match self {
+            Self::Hertz { poisson_ratio } => {
+                if !(0.0..=0.5).contains(poisson_ratio) {
+                    return Err(EquilibriumError::PoissonRatio { found: *poisson_ratio });
+                }
+                match shape {
+                    Shape::Ball { .. } | Shape::Pad { .. } => Ok(()),
+                    Shape::Prism { .. } | Shape::Profile { .. } => Err(EquilibriumError::NotRound),
+                }
+            }
+            Self::EvenStrain | Self::Measured { .. } => Ok(()),
+        }
+    }
+
+    /// S(u), the force per strain of the contact layer (N), and its slope dS/du (N/m).
+    pub(super) fn stiffness(&self, shape: &Shape, modulus: f64, depth: f64, u: f64) -> (f64, f64) {
+        match (self, shape) {
+            (Self::Measured { force_per_displacement }, _) => {
+                let (ratio, slope) = force_per_displacement.value_and_slope(u);
+                (ratio * depth, slope * depth)
+            }
+            (Self::Hertz { poisson_ratio }, Shape::Ball { radius } | Shape::Pad { radius, .. }) => {
+                let scale = 4.0 / 3.0 * modulus / (1.0 - poisson_ratio * poisson_ratio) * radius.sqrt() * depth;
+                let root = u.max(0.0).sqrt();
+                // Right at first touch the slope has no bound; there is no force yet either.
+                (scale * root, if u > 0.0 { 0.5 * scale / root } else { 0.0 })
+            }
+            _ => {
+                let (area, growth) = shape.area(u);
+                (modulus * area, modulus * growth)
+            }
+        }
+    }
+
+    /// The deepest contact displacement that is known, m; infinite where a formula goes on.
+    pub(super) fn end(&self) -> f64 {
+        match self {
+            Self::Measured { force_per_displacement } => force_per_displacement.end(),
+            Self::EvenStrain | Self::Hertz { .. } => f64::INFINITY,
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! The form of the body that is squeezed.
+
+use std::f64::consts::PI;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Curve, Sides};
+
+/// Shape of the body, all lengths in m and areas in m².
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum Shape {
+    /// A ball pressed by flat plates; the contact circle grows with the squeeze, equation (7).
+    Ball {
+        /// Radius r in m.
+        radius: f64,
+    },
+    /// A spherical fingertip: a soft pad of even thickness over a rigid core, pressed by a flat; equation (7) with the pad as deep as it is
+    /// thick.
+    Pad {
+        /// Outer radius R in m.
+        radius: f64,
+        /// Thickness of the soft layer in m, at most the radius; equal to it, the pad is a ball without a core.
+        thickness: f64,
+    },
+    /// A body of constant section: strip, block, cylinder or a flat punch on a layer.
+    Prism {
+        /// Cross-section that carries the force, in m².
+        area: f64,
+        /// Length along the force, in m: the whole length between the two grips or plates.
+        length: f64,
+    },
+    /// Any other body, by a table of its contact area.
+    Profile {
+        /// Distance from an undeformed contact to the plane that does not move, in m.
+        depth: f64,
+        /// Contact area in m² at contact displacements in m, from first touch on.
+        area: Curve,
+    },
+}
+
+/// What a body takes its contact area and its equilibrium strain from, and how far that holds: for people to read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Statement {
+    /// Contact area A at contact displacement u.
+    pub area: &'static str,
+    /// Equilibrium strain of the contact layer.
+    pub equilibrium_strain: &'static str,
+    /// Where both come from.
+    pub source: &'static str,
+    /// Contact displacements for which they are meant.
+    pub range: &'static str,
+}
+
+impl Shape {
+    /// Distance from an undeformed contact to the plane that does not move, in m: the depth that is cut into layers.
+    ///
+    /// The radius of a ball; the thickness of a pad; the length of a prism, half of it when both ends move; what a profile says.
+    #[must_use]
+    pub fn depth(&self, sides: Sides) -> f64 {
+        match (self, sides) {
+            (Self::Ball { radius }, _) => *radius,
+            (Self::Pad { thickness, .. }, _) => *thickness,
+            (Self::Prism { length, .. }, Sides::One) => *length,
+            (Self::Prism { length, .. }, Sides::Two) => length / 2.0,
+            (Self::Profile { depth, .. }, _) => *depth,
+        }
+    }
+
+    /// Where area and equilibrium strain come from, and how far they hold.
+    ///
+    /// ```
+    /// use palpate::contact::Shape;
+    /// let said = Shape::Ball { radius: 0.035 }.statement();
+    /// assert_eq!(said.area, "A = π (2 r u − u²)");
+    /// ```
+    #[must_use]
+    pub fn statement(&self) -> Statement {
+        match self {
+            Self::Ball { .. } => Statement {
+                area: "A = π (2 r u − u²)",
+                equilibrium_strain: "ε_e = u/r",
+                source: "Tsai, Kao et al., equations (7) and (8): the circle in which a plane cuts the undeformed ball",
+                range: "0 ≤ u < r; the plane through the centre does not move, from one side as from two",
+            },
+            Self::Pad { .. } => Statement {
+                area: "A = π (2 R u − u²)",
+                equilibrium_strain: "ε_e = u/thickness",
+                source: "equation (7) with the outer radius; the strain spreads evenly down to the rigid core",
+                range: "0 ≤ u < thickness; good while the contact is wider than the pad is thick, and the pad free to bulge",
+            },
+            Self::Prism { .. } => Statement {
+                area: "A constant",
+                equilibrium_strain: "ε_e = u/length, of a body moved at both ends u/(length/2)",
+                source: "uniform bar",
+                range: "u < length in compression, any length of a strip in grips; ends that slip or lie free of bulging",
+            },
+            Self::Profile { .. } => Statement {
+                area: "A from a table, a rising cubic between its rows",
+                equilibrium_strain: "ε_e = u/depth",
+                source: "measured or drawn",
+                range: "0 ≤ u up to the last row, and below the depth",
+            },
+        }
+    }
+
+    /// Contact area A in m² and its slope dA/du in m at contact displacement u (m).
+    pub(super) fn area(&self, u: f64) -> (f64, f64) {
+        match self {
+            Self::Ball { radius } | Self::Pad { radius, .. } => {
+                let growth = if u >= 0.0 { 2.0 * PI * (radius - u) } else { 0.0 };
+                let u = u.max(0.0);
+                (PI * u * (2.0 * radius - u), growth)
+            }
+            Self::Prism { area, .. } => (*area, 0.0),
+            Self::Profile { area, .. } => area.value_and_slope(u),
+        }
+    }
+
+    /// How deep the body can be squeezed.
+    pub(super) fn limit(&self, sides: Sides) -> Limit {
+        let depth = |name| Limit {
+            at: self.depth(sides),
+            name,
+            included: false,
+        };
+        match (self, sides) {
+            (Self::Ball { .. }, _) => depth("radius"),
+            (Self::Pad { .. }, _) => depth("thickness of the pad"),
+            (Self::Prism { .. }, Sides::One) => depth("length"),
+            (Self::Prism { .. }, Sides::Two) => depth("half length"),
+            (Self::Profile { area, .. }, _) => depth("depth").or_table(area.end(), "last row of the table of areas"),
+        }
+    }
+}
+
+/// The deepest contact displacement of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Limit {
+    /// Where it is, m.
+    pub(crate) at: f64,
+    /// What sets it.
+    pub(crate) name: &'static str,
+    /// Whether it may be reached: the end of a table may, the end of a body not.
+    pub(crate) included: bool,
+}
+
+impl Limit {
+    /// The end of a table if that comes first.
+    pub(super) fn or_table(self, end: f64, name: &'static str) -> Self {
+        if end < self.at {
+            return Self {
+                at: end,
+                name,
+                included: true,
+            };
+        }
+        self
+    }
+
+    /// Whether a contact displacement (m) is beyond it.
+    pub(crate) fn is_passed_by(self, contact_displacement: f64) -> bool {
+        contact_displacement > self.at || (contact_displacement == self.at && !self.included)
+    }
+}
