@@ -188,8 +188,10 @@ impl SpecimenTable {
             (Some(EquilibriumName::Hertz), None, _) => {
                 Err(source.missing(ratio, "Poisson's ratio for Hertz's law, 0.5 of a body that keeps its volume"))
             }
-            (Some(EquilibriumName::Hertz), Some(poisson_ratio), None) => {
-                Ok((ratio, Equilibrium::Hertz { poisson_ratio }))
+            (Some(EquilibriumName::Hertz), Some(found), None) => {
+                let allowed = |found| (0.0..=0.5).contains(&found);
+                let poisson_ratio = source.number(ratio, found, "a number from 0 to 0.5", allowed)?;
+                Ok((named, Equilibrium::Hertz { poisson_ratio }))
             }
             (None, None, Some(forces)) => {
                 let rows = rows(source, measured, forces, Dimension::Force)?;

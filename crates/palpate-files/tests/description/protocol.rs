@@ -47,7 +47,12 @@ fn bodies_by_their_tables_and_laws_of_the_relaxed_force() {
     let body = protocol(&hertz).unwrap().model.specimen;
     let expected = 4.0 / 3.0 * 28e3 / 0.75 * 0.035f64.sqrt() * 1e-3f64.powf(1.5);
     assert!((body.force(body.equilibrium_strain(1e-3), 1e-3) / expected - 1.0).abs() < 1e-14);
-    says(protocol(&hertz.replace("= 0.5", "= 0.6")), "specimen.poisson_ratio", "from 0 to 0.5, found 0.6", "");
+    says(
+        protocol(&hertz.replace("= 0.5", "= 0.6")),
+        "specimen.poisson_ratio",
+        "expected a number from 0 to 0.5, found 0.6",
+        "",
+    );
     says(protocol(&hertz.replace("poisson_ratio = 0.5", "")), "specimen.poisson_ratio", "Hertz's law", "");
     says(protocol(&with("radius", "poisson_ratio = 0.4\nradius")), "specimen.poisson_ratio", "hertz", "");
 
@@ -56,10 +61,10 @@ fn bodies_by_their_tables_and_laws_of_the_relaxed_force() {
     let body = protocol(&measured).unwrap().model.specimen;
     assert!((body.force(body.equilibrium_strain(0.004), 0.004) - 2.0).abs() < 1e-14);
     says(
-        protocol(&measured.replace("2 N\"", "0.5 N\"")),
+        protocol(&measured.replace("\"2 N\"", "\"0.5 N\"")),
         "specimen.equilibrium_forces",
-        "must not fall",
-        "row 3",
+        "row 3: force over displacement must not fall",
+        "",
     );
     says(
         protocol(&with("radius", &format!("{rows}\nradius"))),
@@ -205,7 +210,7 @@ fn absurd_values_name_their_keys() {
             "\"ball\"",
             "\"bal\"",
             "specimen.shape",
-            "\"ball\", \"pad\", \"strip\", \"cylinder\", \"block\" or \"none\", found \"bal\"",
+            "\"ball\", \"pad\", \"strip\", \"cylinder\", \"block\", \"profile\" or \"none\", found \"bal\"",
         ),
         ("\"latency\"", "\"maxwell\"", "law.name", "expected \"latency\", found \"maxwell\""),
         (

@@ -120,7 +120,7 @@ fn wrong_values_name_their_keys() {
         (
             "specimen = { shape = \"ball\", radius = \"1 m\" }\ncolumns.stress = {}",
             "columns.stress",
-            "not used for a ball",
+            "not used for a body whose contact area changes",
         ),
         (
             "specimen = { shape = \"none\", length = \"1 m\" }",
