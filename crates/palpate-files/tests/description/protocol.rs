@@ -224,7 +224,7 @@ fn absurd_values_name_their_keys() {
             "shape = \"ball\"\nradius = \"35 mm\"",
             "shape = \"none\"",
             "specimen.shape",
-            "\"cylinder\" or \"block\", found \"none\"",
+            "\"block\" or \"profile\", found \"none\"",
         ),
         (
             "\"35 mm\"",
