@@ -4,7 +4,9 @@
 
 use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
-use palpate::simulate::{ContactModel, Energy, Motion, ProgramStep, Sampling, Separation, energy, simulate};
+use palpate::simulate::{
+    ContactModel, Energy, Motion, ProgramStep, Sampling, Separation, cycles, energy, simulate, work_by_step,
+};
 
 fn model(shape: Shape, exponent: f64, rate: f64, layers: f64, separation: Separation) -> ContactModel {
     ContactModel {
@@ -148,4 +150,45 @@ fn work_given_back_is_the_same_whatever_the_samples() {
     let few = energy(&motion, &elastic, &Sampling::Times(vec![3.0])).unwrap();
     let expected = 2.0 * 2.0 * 0.5 * 1e5 * 1e-3 * 0.01 * 0.01 / 0.04;
     assert!((few.given_back[0] / expected - 1.0).abs() < 1e-12, "{} {expected}", few.given_back[0]);
+}
+
+#[test]
+fn steps_and_cycles_share_out_the_work_of_the_jaw() {
+    let program = [
+        ProgramStep::MoveToForce { force: 8.0, rate: 0.01 },
+        ProgramStep::HoldPosition { duration: 3.0 },
+        ProgramStep::HoldForce { duration: 5.0 },
+        ProgramStep::Move { to: 0.0, rate: 0.01 },
+        ProgramStep::HoldPosition { duration: 20.0 },
+        ProgramStep::Move { to: 0.012, rate: 0.01 },
+        ProgramStep::Move { to: 0.0, rate: 0.01 },
+        ProgramStep::Move { to: 0.006, rate: 0.01 },
+    ];
+    for (shape, separation) in [
+        (BLOCK, Separation::Bonded),
+        (BLOCK, Separation::Unilateral),
+        (Shape::Ball { radius: 0.04 }, Separation::Unilateral),
+    ] {
+        let model = model(shape.clone(), 3.0, 500.0, 8.0, separation);
+        let steps = work_by_step(&program, &model).unwrap();
+        assert_eq!(steps.len(), program.len());
+        let whole = energy(&program, &model, &Sampling::Times(vec![steps[7].until])).unwrap();
+        let sum = |of: fn(&palpate::simulate::StepWork) -> f64| steps.iter().map(of).sum::<f64>();
+        assert!((sum(|step| step.work) - whole.work[0]).abs() < 1e-14);
+        assert!((sum(|step| step.given_back) - whole.given_back[0]).abs() < 1e-14);
+        // A jaw that stands still does no work, one that goes on under a kept force does.
+        assert_eq!(steps[1].work, 0.0);
+        assert!(steps[2].work > 0.0 && steps[3].given_back > 0.0, "{steps:?}");
+        for step in &steps {
+            // The law only ever takes: to rounding of what was done.
+            assert_eq!(step.lost.is_some(), shape == BLOCK);
+            assert!(step.lost.is_none_or(|lost| lost >= -1e-14), "{step:?}");
+        }
+        let cycles = cycles(&steps);
+        assert_eq!(cycles.len(), 3);
+        assert_eq!(cycles[0].until, steps[4].until);
+        assert!(cycles[0].is_closed && cycles[1].is_closed && !cycles[2].is_closed);
+        assert!(cycles.iter().all(|cycle| (cycle.done - cycle.given_back - cycle.lost).abs() < 1e-15));
+        assert!(cycles[..2].iter().all(|cycle| 0.05 < cycle.share_lost && cycle.share_lost < 1.0), "{cycles:?}");
+    }
 }

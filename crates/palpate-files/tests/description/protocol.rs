@@ -236,7 +236,12 @@ fn absurd_values_name_their_keys() {
         says(protocol(&with(old, new)), key, message, "");
     }
     let bonded = with("[contact]", "[contact]\nseparation = false").replace("\"5 mm\"", "\"-5 mm\"");
-    says(protocol(&bonded), "step[1].to", "0 mm or more for a bonded ball, found \"-5 mm\"", "");
+    says(
+        protocol(&bonded),
+        "step[1].to",
+        "0 mm or more for a bonded body whose contact grows, found \"-5 mm\"",
+        "",
+    );
     says(protocol(&with("\"ball\"", "\"bal\"")), "specimen.shape", "found \"bal\"", "did you mean \"ball\"?");
     let second = format!("{SQUEEZE}[[step]]\nto = \"80 mm\"\nrate = \"1 mm/s\"\n");
     says(protocol(&second), "step[2].to", "squeeze.toml, line 17: step[2].to", "");

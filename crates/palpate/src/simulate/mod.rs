@@ -12,8 +12,10 @@
 //! | `wave.rs` | all layers over time (the strain wave) |
 //! | `step.rs` | one step at a time, for controllers |
 //! | `energy.rs` | work of the jaw, what is stored and what is lost |
+//! | `cycles.rs` | the same step by step and cycle by cycle |
 
 mod course;
+mod cycles;
 mod energy;
 mod history;
 mod model;
@@ -26,6 +28,7 @@ mod wave;
 
 pub use crate::contact::Work;
 pub use course::Drive;
+pub use cycles::{Cycle, StepWork, cycles, work_by_step};
 pub use energy::{Energy, EnergySplit, energy};
 pub use history::ForceHistory;
 pub use model::{ContactModel, Separation};

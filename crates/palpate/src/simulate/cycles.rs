@@ -1,0 +1,167 @@
+//! Work step by step and cycle by cycle.
+
+use serde::{Deserialize, Serialize};
+
+use super::course::Course;
+use super::{ContactModel, Drive, Sampling, SimulateError, energy, simulate};
+
+/// What the jaw did between two knots of a drive, J; both contacts of a body that is squeezed from two sides.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StepWork {
+    /// When the step began, s.
+    pub from: f64,
+    /// When it ended, s.
+    pub until: f64,
+    /// Displacement of the jaw at its start, m.
+    pub displacement_from: f64,
+    /// Displacement of the jaw at its end, m.
+    pub displacement_until: f64,
+    /// Work done on the body, less what it gave back.
+    pub work: f64,
+    /// Work that the body gave back.
+    pub given_back: f64,
+    /// What it lost to heat; `None` of a body whose stiffness grows with the squeeze.
+    pub lost: Option<f64>,
+}
+
+/// What a cycle of squeeze and release cost, J.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Cycle {
+    /// When the squeeze began, s.
+    pub from: f64,
+    /// When the next one began, or the drive ended, s.
+    pub until: f64,
+    /// Work done on the body.
+    pub done: f64,
+    /// Work that it gave back.
+    pub given_back: f64,
+    /// The area of the loop of force against displacement, `done` − `given_back`: lost, but for what a body that has not come to rest
+    /// still holds.
+    pub lost: f64,
+    /// `lost`/`done`; 0 where no work was done.
+    pub share_lost: f64,
+    /// Whether the jaw ended where it began, to a hundredth of its travel: else the loop has no area.
+    pub is_closed: bool,
+}
+
+/// Work between the knots of a drive: the steps of a program, the corners of a motion or of a force.
+///
+/// ```
+/// use palpate::contact::{Layers, Shape, Sides, Specimen};
+/// use palpate::latency::LatencyLaw;
+/// use palpate::simulate::{ContactModel, Motion, Separation, cycles, work_by_step};
+///
+/// let block = Shape::Prism { area: 1e-3, length: 0.04 };
+/// let model = ContactModel {
+///     specimen: Specimen::new(block, 1e5, Sides::One)?,
+///     law: LatencyLaw::new(3.0, 100.0)?,
+///     layers: Layers::new(8.0)?,
+///     separation: Separation::Bonded,
+/// };
+/// // Squeezed and let go twice; in between the body comes to rest.
+/// let motion = Motion::new(vec![0.0, 1.0, 2.0, 1e6, 1e6 + 1.0, 1e6 + 2.0], vec![0.0, 4e-3, 0.0, 0.0, 4e-3, 0.0])?;
+/// let steps = work_by_step(&motion, &model)?;
+/// assert_eq!(steps[2].work, 0.0); // the jaw stands still
+/// let cycles = cycles(&steps);
+/// assert_eq!(cycles.len(), 2);
+/// assert!(cycles[0].is_closed && (cycles[0].lost / cycles[1].lost - 1.0).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As for [`simulate`](super::simulate()).
+pub fn work_by_step<'a>(drive: impl Into<Drive<'a>>, model: &ContactModel) -> Result<Vec<StepWork>, SimulateError> {
+    let drive = drive.into();
+    let mut knots = Course::new(drive, model)?.times().to_vec();
+    knots.dedup();
+    let sampling = Sampling::Times(knots);
+    let energy = energy(drive, model, &sampling)?;
+    let at = simulate(drive, model, &sampling)?.displacement;
+    let lost = energy.split.map(|split| split.lost);
+    let step = |i: usize| StepWork {
+        from: energy.time[i],
+        until: energy.time[i + 1],
+        displacement_from: at[i],
+        displacement_until: at[i + 1],
+        work: energy.work[i + 1] - energy.work[i],
+        given_back: energy.given_back[i + 1] - energy.given_back[i],
+        lost: lost.as_ref().map(|lost| lost[i + 1] - lost[i]),
+    };
+    Ok((0..energy.time.len() - 1).map(step).collect())
+}
+
+/// Share of the whole travel below which a turn of the jaw is none: noise of a measured displacement.
+const TURN: f64 = 0.01;
+
+/// The cycles of consecutive steps: from where the jaw begins to squeeze, after having stood or gone back, to where it does so again, or to
+/// the end. Turns of less than a hundredth of the whole travel count as none.
+#[must_use]
+pub fn cycles(steps: &[StepWork]) -> Vec<Cycle> {
+    let Some(last) = steps.last() else {
+        return Vec::new();
+    };
+    let at: Vec<f64> = steps.iter().map(|step| step.displacement_from).chain([last.displacement_until]).collect();
+    let starts = squeezes(&at);
+    let ends = starts.iter().skip(1).copied().chain([steps.len()]);
+    let cycle = |(from, until): (usize, usize)| {
+        let inside = &steps[from..until];
+        let given_back: f64 = inside.iter().map(|step| step.given_back).sum();
+        let lost: f64 = inside.iter().map(|step| step.work).sum();
+        let done = lost + given_back;
+        let (low, high) = range(&at[from..=until]);
+        Cycle {
+            from: steps[from].from,
+            until: steps[until - 1].until,
+            done,
+            given_back,
+            lost,
+            share_lost: if done > 0.0 { lost / done } else { 0.0 },
+            is_closed: (at[until] - at[from]).abs() <= TURN * (high - low),
+        }
+    };
+    starts.iter().copied().zip(ends).map(cycle).collect()
+}
+
+/// Where a displacement begins to rise from a low: the last place of each low.
+fn squeezes(at: &[f64]) -> Vec<usize> {
+    let (least, greatest) = range(at);
+    let turn = TURN * (greatest - least);
+    let (mut starts, mut low, mut high) = (Vec::new(), 0, 0);
+    let mut is_rising = false;
+    if turn == 0.0 {
+        return starts;
+    }
+    for i in 0..at.len() {
+        if at[i] <= at[low] {
+            low = i;
+        }
+        if at[i] >= at[high] {
+            high = i;
+        }
+        if !is_rising && at[i] - at[low] > turn {
+            starts.push(low);
+            (is_rising, high) = (true, i);
+        } else if is_rising && at[high] - at[i] > turn {
+            (is_rising, low) = (false, i);
+        }
+    }
+    starts
+}
+
+fn range(at: &[f64]) -> (f64, f64) {
+    at.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), d| (low.min(*d), high.max(*d)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_squeeze_begins_where_the_jaw_last_stood_low() {
+        assert_eq!(squeezes(&[0.0, 5.0, 5.0, 0.0, 0.0, 7.0, 1.0]), [0, 4]);
+        assert_eq!(squeezes(&[3.0, 0.0, 2.0, 2.001, 2.0, 4.0, 0.0]), [1]);
+        assert_eq!(squeezes(&[0.0, 0.0, 0.0]), [0usize; 0]);
+        assert_eq!(squeezes(&[5.0, 3.0, 1.0]), [0usize; 0]);
+        assert_eq!(squeezes(&[0.0, 1.0]), [0]);
+    }
+}
