@@ -57,6 +57,7 @@ Examples:
   palpate simulate examples/protocols/paper-a.toml --out a.csv --figure a.svg
   palpate simulate examples/protocols/grip.toml | head
   palpate simulate examples/protocols/creep.toml --figure creep.svg --energy work.csv
+  palpate simulate cycles.toml --hysteresis loop.svg --energy-by-cycle loop.csv
   palpate simulate squeeze.toml --force-noise \"0.05 N\" --out record.csv   a record to analyse
   palpate simulate ball.toml --drive gripper.csv --drive-by force   a measured force, replayed
   palpate schema protocol                        what a protocol may say")]
@@ -79,12 +80,24 @@ pub(crate) struct SimulateArguments {
     /// File for a figure (.svg or .png)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
+    /// File for a figure of force against displacement, with what every cycle cost (.svg or .png)
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) hysteresis: Option<PathBuf>,
     /// File for the strain of every layer (CSV); needs a whole number of layers
-    #[arg(long, value_name = "FILE.csv")]
+    #[arg(long, visible_alias = "layers-out", value_name = "FILE.csv")]
     pub(crate) wave: Option<PathBuf>,
-    /// File for the work of the jaw (CSV): done, given back and, at constant section, stored and lost
+    /// File for a figure of the strain of every layer over time (.svg or .png); likewise
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) strain_map: Option<PathBuf>,
+    /// File for the work of the jaw over time (CSV): done, given back and, at constant section, stored and lost
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) energy: Option<PathBuf>,
+    /// File for the same step by step (CSV)
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) energy_by_step: Option<PathBuf>,
+    /// File for what every cycle of squeeze and release cost (CSV)
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) energy_by_cycle: Option<PathBuf>,
     /// Write a record as a machine would, with noise of this standard deviation on the force
     #[arg(long, value_name = "FORCE", value_parser = force, allow_hyphen_values = true)]
     pub(crate) force_noise: Option<f64>,

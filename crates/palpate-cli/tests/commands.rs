@@ -171,6 +171,39 @@ fn simulate_goes_to_forces_and_accounts_for_work() {
 }
 
 #[test]
+fn simulate_says_what_every_cycle_cost() {
+    let folder = tempdir().unwrap();
+    let protocol = root().join("examples/protocols/cycles.toml");
+    let outputs = [
+        "--out=series.csv",
+        "--hysteresis=loop.svg",
+        "--strain-map=map.svg",
+        "--energy-by-step=steps.csv",
+        "--energy-by-cycle=cycles.csv",
+        "--layers-out=layers.csv",
+    ];
+    done(folder.path(), &[["simulate", protocol.to_str().unwrap()].as_slice(), &outputs].concat());
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    let cycles: Vec<Vec<String>> = read("cycles.csv")
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(str::to_owned).collect())
+        .collect();
+    let share: Vec<f64> = cycles.iter().map(|row| row[6].parse().unwrap()).collect();
+    // The faster, the more of the work is lost.
+    assert!(share.len() == 3 && share[0] < share[1] && share[1] < share[2] && share[2] < 1.0, "{share:?}");
+    assert!(cycles.iter().all(|row| row[7] == "yes"));
+    let number = |cell: &str| -> f64 { cell.parse().unwrap() };
+    let work: f64 = read("steps.csv").lines().skip(1).map(|line| number(line.split(',').nth(5).unwrap())).sum();
+    let lost: f64 = cycles.iter().map(|row| number(&row[5])).sum();
+    assert!((work - lost).abs() < 1e-9 * work, "{work} {lost}");
+    assert!(read("loop.svg").contains("cycle 3: 138 mJ of 188 mJ lost"));
+    assert!(read("map.svg").contains("layer 8") && read("layers.csv").starts_with("time_s,strain_layer_1,"));
+    let refused = palpate(folder.path(), &["simulate", protocol.to_str().unwrap(), "--energy-by-cycle", "loop.txt"]);
+    assert_eq!(refused.status.code(), Some(2));
+}
+
+#[test]
 fn simulate_writes_series_figure_and_wave() {
     let folder = tempdir().unwrap();
     let protocol = root().join("examples/protocols/paper-a.toml");

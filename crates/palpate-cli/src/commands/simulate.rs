@@ -1,16 +1,18 @@
 //! `palpate simulate`: protocol to series and figure.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use palpate::simulate::{
     ContactEventKind, ContactModel, Drive, Energy, ForceHistory, Motion, MotionError, Sampling, SimulateError,
-    StrainWave, Trajectory, energy, simulate, strain_wave,
+    StrainWave, Trajectory, cycles, energy, simulate, strain_wave, work_by_step,
 };
 use palpate::test_problems::Noise;
 use palpate_files::description::{DescriptionError, Protocol, read_protocol, read_scene};
 use palpate_report::figure::Figure;
-use palpate_report::study::{trajectory_figure, write_trajectory};
+use palpate_report::study::{
+    cycle_table, hysteresis_figure, step_work_table, trajectory_figure, wave_figure, write_trajectory,
+};
 use palpate_report::table::{Cell, Table, TableColumn};
 
 use crate::arguments::{DriveName, SimulateArguments};
@@ -23,37 +25,24 @@ use crate::terminal::{note, print_with};
 const DPI: f64 = 300.0;
 
 pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
-    for path in [&arguments.out, &arguments.wave, &arguments.energy].into_iter().flatten() {
+    let tables = [&arguments.out, &arguments.wave, &arguments.energy];
+    let by_part = [&arguments.energy_by_step, &arguments.energy_by_cycle];
+    for path in tables.into_iter().chain(by_part).flatten() {
         is_csv(path)?;
     }
     let scene = match &arguments.drive {
         None => stepped(arguments)?,
         Some(record) => driven(arguments, record)?,
     };
-    let of = arguments.drive.as_ref().unwrap_or(&arguments.protocol);
-    let refused = |error: SimulateError| Failure::of_file(of, error, None);
-    let (drive, model, sampling) = (scene.drive(), &scene.model, &scene.sampling);
     let working = Working::new("simulating");
-    let trajectory = simulate(drive, model, sampling).map_err(refused)?;
-    let wave = arguments.wave.as_ref().map(|_| strain_wave(drive, model, sampling).map_err(refused)).transpose()?;
-    let energy = arguments.energy.as_ref().map(|_| energy(drive, model, sampling).map_err(refused)).transpose()?;
+    let of = arguments.drive.as_ref().unwrap_or(&arguments.protocol);
+    let trajectory = simulate(scene.drive(), &scene.model, &scene.sampling)
+        .map_err(|error: SimulateError| Failure::of_file(of, error, None))?;
     // Everything is made before anything is written.
-    let figure = match &arguments.figure {
-        Some(path) => {
-            let name = path.file_stem().map_or("figure".to_owned(), |stem| stem.to_string_lossy().into_owned());
-            Some(picture(path, &trajectory_figure(&trajectory, &name, &caption(scene.title.as_deref(), model)))?)
-        }
-        None => None,
-    };
+    let extras = extras(&scene, &trajectory, arguments, of)?;
     drop(working);
-    if let (Some(path), Some(picture)) = (&arguments.figure, figure) {
-        write_file(path, &picture)?;
-    }
-    if let (Some(path), Some(wave)) = (&arguments.wave, wave) {
-        write_file(path, wave_table(&wave).to_csv().as_bytes())?;
-    }
-    if let (Some(path), Some(energy)) = (&arguments.energy, energy) {
-        write_file(path, energy_table(&energy).to_csv().as_bytes())?;
+    for (path, bytes) in &extras {
+        write_file(path, bytes)?;
     }
     let noisy = arguments.force_noise.is_some() || arguments.displacement_noise.is_some();
     let series = |out: &mut dyn Write| match noisy {
@@ -74,6 +63,53 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
         note(&format!("contact {what} at {:.4} s, surface at {depth:.4} mm", event.time));
     }
     Ok(Outcome::Done)
+}
+
+/// Figures and tables that were asked for beside the series, each with the file it goes to.
+fn extras(
+    scene: &Scene,
+    trajectory: &Trajectory,
+    arguments: &SimulateArguments,
+    of: &Path,
+) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
+    let refused = |error: SimulateError| Failure::of_file(of, error, None);
+    let (drive, model, sampling) = (scene.drive(), &scene.model, &scene.sampling);
+    let title = |path: &Path| path.file_stem().map_or("figure".to_owned(), |stem| stem.to_string_lossy().into_owned());
+    let caption = |what: &str| caption(scene.title.as_deref(), what, model);
+    let mut made = Vec::new();
+    if let Some(path) = &arguments.figure {
+        let what = "Force, strain of the contact layer and displacement of the jaw";
+        made.push((path.clone(), picture(path, &trajectory_figure(trajectory, &title(path), &caption(what)))?));
+    }
+    if arguments.hysteresis.is_some() || arguments.energy_by_step.is_some() || arguments.energy_by_cycle.is_some() {
+        let steps = work_by_step(drive, model).map_err(refused)?;
+        let cycles = cycles(&steps);
+        if let Some(path) = &arguments.hysteresis {
+            let caption = caption("Force against displacement of the jaw; the area of a loop is what the cycle lost");
+            made.push((path.clone(), picture(path, &hysteresis_figure(trajectory, &cycles, &title(path), &caption))?));
+        }
+        if let Some(path) = &arguments.energy_by_step {
+            made.push((path.clone(), step_work_table(&steps).to_csv().into_bytes()));
+        }
+        if let Some(path) = &arguments.energy_by_cycle {
+            made.push((path.clone(), cycle_table(&cycles).to_csv().into_bytes()));
+        }
+    }
+    if arguments.wave.is_some() || arguments.strain_map.is_some() {
+        let wave = strain_wave(drive, model, sampling).map_err(refused)?;
+        if let Some(path) = &arguments.strain_map {
+            let caption = caption("Strain of every layer over time, and of some of them as lines");
+            made.push((path.clone(), picture(path, &wave_figure(&title(path), &wave, &caption))?));
+        }
+        if let Some(path) = &arguments.wave {
+            made.push((path.clone(), wave_table(&wave).to_csv().into_bytes()));
+        }
+    }
+    if let Some(path) = &arguments.energy {
+        let energy = energy(drive, model, sampling).map_err(refused)?;
+        made.push((path.clone(), energy_table(&energy).to_csv().into_bytes()));
+    }
+    Ok(made)
 }
 
 fn described(error: DescriptionError) -> Failure {
@@ -170,9 +206,9 @@ fn record(trajectory: &Trajectory, arguments: &SimulateArguments) -> String {
     out
 }
 
-fn caption(title: Option<&str>, model: &ContactModel) -> String {
+fn caption(title: Option<&str>, what: &str, model: &ContactModel) -> String {
     format!(
-        "{}Force, strain of the contact layer and displacement of the jaw; n = {}, v = {:e} 1/s, {} layers.",
+        "{}{what}; n = {}, v = {:e} 1/s, {} layers.",
         title.map_or(String::new(), |title| format!("{title}. ")),
         model.law.exponent(),
         model.law.rate_coefficient(),

@@ -14,6 +14,7 @@
 //! | `law_figures.rs` | the law and its closed form (figures 1 and 2 of the paper) |
 //! | `wave_figure.rs` | all layers over time (figure 7) |
 //! | `trajectory.rs` | a simulated series as CSV and figure |
+//! | `hysteresis.rs` | force against displacement; work by step and by cycle |
 //! | `reproduction.rs` | the paper's study: simulation, re-identification, checks |
 //! | `reproduction_page.rs` | its page |
 
@@ -22,6 +23,7 @@ mod comparison_figures;
 mod comparison_page;
 mod comparison_tables;
 mod findings;
+mod hysteresis;
 mod law_figures;
 mod method;
 mod record_figures;
@@ -35,7 +37,9 @@ mod wave_figure;
 pub use bundle::{Bundle, Pictures, StudyError};
 pub use comparison_page::comparison_bundle;
 pub use comparison_tables::{comparison_markdown, comparison_text};
+pub use hysteresis::{cycle_table, hysteresis_figure, step_work_table};
 pub use record_page::analysis_bundle;
 pub use record_tables::analysis_text;
 pub use reproduction::{Reproduction, reproduce, reproduction_bundle};
 pub use trajectory::{trajectory_figure, write_trajectory};
+pub use wave_figure::wave_figure;

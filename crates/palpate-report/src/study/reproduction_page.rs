@@ -24,7 +24,7 @@ pub(super) fn figures(study: &Reproduction) -> Vec<Figure> {
     let rates = [(&study.test_a, "figure_6a"), (&study.test_b, "figure_6b")];
     let rates = rates.into_iter().filter_map(|(test, name)| record_figures::strain_rates(&test.analysis, name));
     figures.extend(rates.map(Figure::without_letters));
-    figures.push(wave_figure::wave(
+    figures.push(wave_figure::wave_figure(
         "figure_7_strain_wave",
         &study.test_a.wave,
         "Strain of all eight layers in test (a), from the contact (layer 1) to the plane of symmetry. New displacement lands on the contact layer and travels inwards; in the holds the strain evens out.",

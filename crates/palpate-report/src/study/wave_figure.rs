@@ -5,7 +5,8 @@ use palpate::simulate::StrainWave;
 use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
 
 /// Strain of every layer as a map over time, and as lines.
-pub(super) fn wave(name: &str, wave: &StrainWave, caption: &str) -> Figure {
+#[must_use]
+pub fn wave_figure(name: &str, wave: &StrainWave, caption: &str) -> Figure {
     let layers = wave.strain.len();
     let depth: Vec<f64> = (1..=layers).map(|i| i as f64).collect();
     let values = wave.strain.iter().flatten().copied().collect();
