@@ -217,7 +217,7 @@ const MAY_USE: [(&str, &[&str]); 16] = [
     ("identify", &["contact", "latency", "laws", "random", "statistics", "vector"]),
     ("choose", &["identify", "laws", "statistics"]),
     ("segment", &["contact", "identify", "record", "statistics"]),
-    ("simulate", &["contact", "latency", "ode"]),
+    ("simulate", &["contact", "latency", "ode", "special"]),
     ("test_problems", &["contact", "latency", "simulate", "random"]),
 ];
 

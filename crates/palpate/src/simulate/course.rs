@@ -61,7 +61,7 @@ impl<'a> Course<'a> {
     /// nothing.
     pub(super) fn new(drive: Drive<'a>, model: &ContactModel) -> Result<Self, SimulateError> {
         let times = match drive {
-            Drive::Motion(motion) => Cow::Borrowed(motion.times()),
+            Drive::Motion(motion) => return Ok(Self::of_motion(motion)),
             Drive::Force(history) => Cow::Borrowed(history.times()),
             Drive::Program(program) => {
                 let ends = step_ends(program, model)?;
@@ -69,6 +69,14 @@ impl<'a> Course<'a> {
             }
         };
         Ok(Self { drive, times })
+    }
+
+    /// The course of a motion, whatever the model.
+    pub(super) fn of_motion(motion: &'a Motion) -> Self {
+        Self {
+            drive: Drive::Motion(motion),
+            times: Cow::Borrowed(motion.times()),
+        }
     }
 
     /// Times of the knots, s; of a program, the start and the ends of its steps.

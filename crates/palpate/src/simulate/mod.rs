@@ -12,12 +12,14 @@
 //! | `wave.rs` | all layers over time (the strain wave) |
 //! | `step.rs` | one step at a time, for controllers |
 //! | `energy.rs` | work of the jaw, what is stored and what is lost |
+//! | `linear/` | linear laws under the same motions |
 //! | `cycles.rs` | the same step by step and cycle by cycle |
 
 mod course;
 mod cycles;
 mod energy;
 mod history;
+mod linear;
 mod model;
 mod motion;
 mod program;
@@ -31,6 +33,7 @@ pub use course::Drive;
 pub use cycles::{Cycle, StepWork, cycles, work_by_step};
 pub use energy::{Energy, EnergySplit, energy};
 pub use history::ForceHistory;
+pub use linear::{LinearContact, LinearLaw, LinearLawError, LinearTerm, simulate_linear};
 pub use model::{ContactModel, Separation};
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};
 pub use program::{ProgramStep, StepEnd, step_ends};

@@ -56,7 +56,7 @@ impl Trajectory {
         self.time.is_empty()
     }
 
-    fn with_times(time: Vec<f64>) -> Self {
+    pub(super) fn with_times(time: Vec<f64>) -> Self {
         let room = || Vec::with_capacity(time.len());
         Self {
             displacement: room(),

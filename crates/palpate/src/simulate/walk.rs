@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{ContactModel, Drive, ForceHistory, Motion, Separation, SimulateError, Work};
-use crate::contact::{Body, Element, Forced, FreeSurface, Stopped};
+use crate::contact::{Body, Element, Forced, FreeSurface, Specimen, Stopped};
 
 /// A contact that was lost or regained.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -102,7 +102,7 @@ impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
     }
 
     fn travel(&mut self, motion: &Motion) -> Result<(), SimulateError> {
-        check_displacements(motion, self.model)?;
+        check_displacements(motion, &self.model.specimen, self.model.separation)?;
         let share = |displacement: f64| self.model.specimen.contact_displacement(displacement);
         let knots = motion.times().windows(2).zip(motion.displacements().windows(2));
         for (times, displacements) in knots {
@@ -239,12 +239,15 @@ pub(super) fn check_force(time: f64, force: f64, model: &ContactModel) -> Result
     Ok(())
 }
 
-fn check_displacements(motion: &Motion, model: &ContactModel) -> Result<(), SimulateError> {
-    let bonded = model.separation == Separation::Bonded;
+pub(super) fn check_displacements(
+    motion: &Motion,
+    specimen: &Specimen,
+    separation: Separation,
+) -> Result<(), SimulateError> {
+    let bonded = separation == Separation::Bonded;
     for (&time, &displacement) in motion.times().iter().zip(motion.displacements()) {
-        model
-            .specimen
-            .check_contact_displacement(model.specimen.contact_displacement(displacement), bonded)
+        specimen
+            .check_contact_displacement(specimen.contact_displacement(displacement), bonded)
             .map_err(|source| SimulateError::Displacement {
                 time,
                 displacement,
@@ -411,7 +414,7 @@ fn regain(stretch: &Stretch, surface: &FreeSurface, since: f64, model: &ContactM
 }
 
 /// Where a function that is positive at `positive` and negative at `negative` changes sign, by bisection to the last bit.
-fn crossing(mut positive: f64, mut negative: f64, f: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn crossing(mut positive: f64, mut negative: f64, f: impl Fn(f64) -> f64) -> f64 {
     loop {
         let middle = 0.5 * (positive + negative);
         if middle <= positive.min(negative) || middle >= positive.max(negative) {

@@ -1,0 +1,130 @@
+//! The surface once the jaw has left it.
+
+use super::law::LinearLaw;
+
+/// A stress-free surface on its way back: ε = 0, so that ε_e = −Σ x_k and ε̇_e = Σ λ_k x_k/(1 + Σ g_k).
+///
+/// The x_k then obey ẋ = A x with A = −Λ + g λᵀ/(1 + Σ g). Its rates μ are the retardation rates of the law, the roots of
+///
+/// ```text
+/// Σ g_k λ_k/(λ_k − μ) = 1 + Σ g_k
+/// ```
+///
+/// one below each λ_k (Gross 1953), with right and left vectors g_k/(λ_k − μ) and λ_k/(λ_k − μ).
+#[derive(Debug, Clone)]
+pub(super) struct Recovery {
+    modes: Vec<Mode>,
+}
+
+#[derive(Debug, Clone)]
+struct Mode {
+    /// μ, 1/s.
+    rate: f64,
+    /// Part of every x_k that fades at this rate.
+    parts: Vec<f64>,
+    /// Their sum.
+    sum: f64,
+}
+
+impl Recovery {
+    /// From the excess strains at the moment when the jaw left.
+    pub(super) fn new(law: &LinearLaw, excess: &[f64]) -> Self {
+        let terms = law.terms();
+        let whole = 1.0 + law.overshoot();
+        let mode = |index: usize| {
+            // In the distance δ = λ_i − μ from the rate above, which keeps its digits where the two are close.
+            let own = terms[index].rate;
+            let gap = if index == 0 { own } else { own - terms[index - 1].rate };
+            let off = |k: usize, delta: f64| (terms[k].rate - own) + delta;
+            let excess_of_sum = |delta: f64| {
+                let sum: f64 = (0..terms.len()).map(|k| terms[k].overshoot * terms[k].rate / off(k, delta)).sum();
+                sum - whole
+            };
+            let delta = root(gap, excess_of_sum);
+            let (mut along, mut size) = (0.0, 0.0);
+            for (k, (term, x)) in terms.iter().zip(excess).enumerate() {
+                along += term.rate * x / off(k, delta);
+                size += term.overshoot * term.rate / (off(k, delta) * off(k, delta));
+            }
+            let amount = along / size;
+            let parts: Vec<f64> =
+                terms.iter().enumerate().map(|(k, term)| amount * term.overshoot / off(k, delta)).collect();
+            Mode {
+                rate: own - delta,
+                sum: parts.iter().sum(),
+                parts,
+            }
+        };
+        Self {
+            modes: (0..terms.len()).map(mode).collect(),
+        }
+    }
+
+    /// Equilibrium strain of the surface a time `elapsed` (s) after the jaw left.
+    pub(super) fn equilibrium_strain(&self, elapsed: f64) -> f64 {
+        -self.modes.iter().map(|mode| mode.sum * (-mode.rate * elapsed).exp()).sum::<f64>()
+    }
+
+    /// The excess strains there.
+    pub(super) fn excess(&self, elapsed: f64) -> Vec<f64> {
+        let count = self.modes.len();
+        let mut excess = vec![0.0; count];
+        for mode in &self.modes {
+            let left = (-mode.rate * elapsed).exp();
+            excess.iter_mut().zip(&mode.parts).for_each(|(x, part)| *x += part * left);
+        }
+        excess
+    }
+}
+
+/// Where a falling function changes sign between 0, where it is +∞, and `gap`, by bisection to the last bit.
+fn root(gap: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let (mut above, mut below) = (0.0, gap);
+    loop {
+        // Geometric first: the root may be many orders of magnitude below the gap.
+        let middle = if above > 0.0 { (above * below).sqrt() } else { below * 1e-4 };
+        let middle = if above > 0.5 * below { 0.5 * (above + below) } else { middle };
+        if middle <= above || middle >= below {
+            return above.max(f64::MIN_POSITIVE);
+        }
+        if f(middle) > 0.0 {
+            above = middle;
+        } else {
+            below = middle;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::LinearTerm;
+
+    #[test]
+    fn recovery_begins_as_the_jaw_left_and_obeys_its_equation() {
+        let terms: Vec<LinearTerm> = [(2.0, 0.01), (1e-6, 0.5), (0.7, 0.51), (3.0, 40.0)]
+            .map(|(overshoot, rate)| LinearTerm { overshoot, rate })
+            .into();
+        let law = LinearLaw::new(&terms).unwrap();
+        let start = [0.03, -1e-7, 0.01, -0.2];
+        let recovery = Recovery::new(&law, &start);
+        for (found, expected) in recovery.excess(0.0).iter().zip(start) {
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
+        let whole = 1.0 + law.overshoot();
+        for t in [0.0, 0.01, 1.0, 100.0] {
+            let x = recovery.excess(t);
+            assert!((recovery.equilibrium_strain(t) + x.iter().sum::<f64>()).abs() < 1e-15);
+            let step = 1e-6 * (0.1 + t);
+            let (before, after) = (recovery.excess((t - step).max(0.0)), recovery.excess(t + step));
+            let width = t + step - (t - step).max(0.0);
+            let pushed = terms.iter().zip(&x).map(|(term, x)| term.rate * x).sum::<f64>() / whole;
+            for k in 0..4 {
+                let slope = (after[k] - before[k]) / width;
+                let expected = terms[k].overshoot * pushed - terms[k].rate * x[k];
+                let size = terms[k].rate * (x[k].abs() + 1e-3) + terms[k].overshoot * pushed.abs();
+                assert!((slope - expected).abs() < 1e-4 * size, "t = {t}, term {k}: {slope} {expected}");
+            }
+        }
+    }
+}

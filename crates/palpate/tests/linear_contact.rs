@@ -1,0 +1,179 @@
+//! Linear laws under a motion: against SciPy and mpmath (`linear_contacts.json`), and against the latency law with n = 1.
+
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
+mod common;
+
+use common::reference;
+use palpate::contact::{Layers, Shape, Sides, Specimen};
+use palpate::latency::LatencyLaw;
+use palpate::simulate::{
+    ContactEventKind, ContactModel, LinearContact, LinearLaw, LinearTerm, Motion, Sampling, Separation, SimulateError,
+    simulate, simulate_linear,
+};
+use serde::Deserialize;
+
+#[derive(Deserialize)]
+struct Tolerance {
+    force_relative_to_largest: f64,
+    fractional_relative_to_largest: f64,
+    displacement_over_depth: f64,
+    event_time: f64,
+}
+
+#[derive(Deserialize)]
+struct Case {
+    name: String,
+    shape: String,
+    /// Radius of a ball; section and length of a block.
+    size: Vec<f64>,
+    modulus: f64,
+    sides: u32,
+    #[serde(default)]
+    terms: Vec<(f64, f64)>,
+    overshoot: Option<f64>,
+    time: Option<f64>,
+    order: Option<f64>,
+    bonded: bool,
+    knots: Vec<(f64, f64)>,
+    times: Vec<f64>,
+    force: Vec<f64>,
+    contact_displacement: Option<Vec<f64>>,
+    #[serde(default)]
+    events: Vec<(String, f64)>,
+}
+
+impl Case {
+    fn contact(&self) -> LinearContact {
+        let shape = match self.shape.as_str() {
+            "ball" => Shape::Ball { radius: self.size[0] },
+            _ => Shape::Prism {
+                area: self.size[0],
+                length: self.size[1],
+            },
+        };
+        let sides = if self.sides == 2 { Sides::Two } else { Sides::One };
+        let terms: Vec<LinearTerm> =
+            self.terms.iter().map(|&(overshoot, rate)| LinearTerm { overshoot, rate }).collect();
+        let law = match (self.overshoot, self.time, self.order) {
+            (Some(overshoot), Some(time), Some(order)) => {
+                LinearLaw::fractional(overshoot, time, order, (1e-4, 1e3)).unwrap()
+            }
+            _ => LinearLaw::new(&terms).unwrap(),
+        };
+        LinearContact {
+            specimen: Specimen::new(shape, self.modulus, sides).unwrap(),
+            law,
+            separation: if self.bonded { Separation::Bonded } else { Separation::Unilateral },
+        }
+    }
+}
+
+fn distance(found: &[f64], expected: &[f64]) -> f64 {
+    assert_eq!(found.len(), expected.len());
+    found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn linear_contacts_agree_with_scipy_and_mpmath() {
+    let (tolerance, cases) = reference::<Tolerance, Case>("linear_contacts");
+    for case in &cases {
+        let contact = case.contact();
+        let (times, displacements) = case.knots.iter().copied().unzip();
+        let motion = Motion::new(times, displacements).unwrap();
+        let result = simulate_linear(&motion, &contact, &Sampling::Times(case.times.clone())).unwrap();
+        let most = case.force.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+        let off = distance(&result.force, &case.force) / most;
+        println!("{}: force off by {off:.1e}, {} terms", case.name, contact.law.terms().len());
+        let limit = match case.order {
+            Some(_) => tolerance.fractional_relative_to_largest,
+            None => tolerance.force_relative_to_largest,
+        };
+        assert!(off < limit, "{}: {off:e}", case.name);
+        if let Some(expected) = &case.contact_displacement {
+            let off = distance(&result.contact_displacement, expected) / contact.specimen.depth();
+            assert!(off < tolerance.displacement_over_depth, "{}: {off:e}", case.name);
+        }
+        let name = |kind| if kind == ContactEventKind::Lost { "lost" } else { "regained" };
+        assert_eq!(result.events.len(), case.events.len(), "{}: {:?}", case.name, result.events);
+        for (found, (kind, time)) in result.events.iter().zip(&case.events) {
+            assert_eq!(name(found.kind), kind);
+            assert!((found.time - time).abs() < tolerance.event_time, "{}: {} {time}", case.name, found.time);
+        }
+    }
+}
+
+#[test]
+fn one_term_is_the_latency_law_with_exponent_one() {
+    let knots = [0.0, 1.0, 5.0, 5.5, 30.0, 31.0, 40.0, 40.5, 60.0];
+    let motion = Motion::new(knots.to_vec(), vec![0.0, 0.02, 0.02, 0.0, 0.0, 0.015, 0.015, 0.002, 0.002]).unwrap();
+    let sampling = Sampling::Rate(20.0);
+    let ball = Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two).unwrap();
+    for separation in [Separation::Bonded, Separation::Unilateral] {
+        let latency = ContactModel {
+            specimen: ball.clone(),
+            law: LatencyLaw::new(1.0, 0.7).unwrap(),
+            layers: Layers::new(8.0).unwrap(),
+            separation,
+        };
+        let linear = LinearContact {
+            specimen: ball.clone(),
+            law: LinearLaw::standard(7.0, 1.0 / 0.7).unwrap(),
+            separation,
+        };
+        let expected = simulate(&motion, &latency, &sampling).unwrap();
+        let found = simulate_linear(&motion, &linear, &sampling).unwrap();
+        assert_eq!(found.time, expected.time);
+        let most = expected.force.iter().fold(0.0, |most: f64, force| most.max(*force));
+        for (what, found, expected, size) in [
+            ("force", &found.force, &expected.force, most),
+            ("strain", &found.strain, &expected.strain, 1.0),
+            ("excess", &found.excess_strain, &expected.excess_strain, 1.0),
+            ("displacement", &found.displacement, &expected.displacement, 0.02),
+            ("surface", &found.contact_displacement, &expected.contact_displacement, 0.01),
+            ("rate", &found.strain_rate, &expected.strain_rate, 1.0),
+        ] {
+            let off = distance(found, expected) / size;
+            assert!(off < 1e-10, "{separation:?}, {what}: {off:e}");
+        }
+        assert_eq!(found.events.len(), expected.events.len());
+        assert_eq!(expected.events.is_empty(), separation == Separation::Bonded);
+        for (found, expected) in found.events.iter().zip(&expected.events) {
+            assert!(found.kind == expected.kind && (found.time - expected.time).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn a_linear_contact_obeys_superposition_and_refuses_what_the_body_cannot_take() {
+    let block = Shape::Prism {
+        area: 1e-3,
+        length: 0.04,
+    };
+    let contact = LinearContact {
+        specimen: Specimen::new(block, 1e5, Sides::One).unwrap(),
+        law: LinearLaw::fractional(4.0, 3.0, 0.3, (1e-3, 1e3)).unwrap(),
+        separation: Separation::Bonded,
+    };
+    let times = vec![0.0, 1.0, 3.0, 4.0, 50.0];
+    let (a, b) = ([0.0, 0.004, 0.004, 0.001, 0.001], [0.0, 0.0, 0.006, 0.006, -0.01]);
+    let force = |displacements: Vec<f64>| {
+        let motion = Motion::new(times.clone(), displacements).unwrap();
+        simulate_linear(&motion, &contact, &Sampling::Rate(10.0)).unwrap().force
+    };
+    let both = force(a.iter().zip(b).map(|(a, b)| 2.0 * a - 0.5 * b).collect());
+    let (alone, other) = (force(a.to_vec()), force(b.to_vec()));
+    let sum: Vec<f64> = alone.iter().zip(&other).map(|(a, b)| 2.0 * a - 0.5 * b).collect();
+    assert!(distance(&both, &sum) < 1e-10);
+
+    let ball = LinearContact {
+        specimen: Specimen::new(Shape::Ball { radius: 0.01 }, 1e5, Sides::One).unwrap(),
+        ..contact
+    };
+    let deep = Motion::new(vec![0.0, 1.0], vec![0.0, 0.01]).unwrap();
+    let refused = simulate_linear(&deep, &ball, &Sampling::Rate(1.0));
+    assert!(matches!(refused, Err(SimulateError::Displacement { .. })));
+    let motion = Motion::new(vec![0.0, 1.0], vec![0.0, 0.001]).unwrap();
+    assert!(simulate_linear(&motion, &ball, &Sampling::Times(vec![2.0])).is_err());
+    assert!(simulate_linear(&motion, &ball, &Sampling::Rate(f64::NAN)).is_err());
+}
