@@ -46,6 +46,52 @@ impl Drop for Reading {
     }
 }
 
+/// A bar over things that are counted, which may begin with some of them done.
+pub(crate) struct Counting {
+    since: Instant,
+    name: &'static str,
+    done: u64,
+    total: u64,
+    bar: Option<ProgressBar>,
+}
+
+impl Counting {
+    pub(crate) fn new(name: &'static str, done: u64, total: u64) -> Self {
+        Self {
+            since: Instant::now(),
+            name,
+            done,
+            total,
+            bar: None,
+        }
+    }
+
+    pub(crate) fn update(&mut self, done: u64) {
+        if self.bar.is_none() && self.since.elapsed() > QUIET {
+            let bar = ProgressBar::new(self.total);
+            if let Ok(style) = ProgressStyle::with_template("{msg} {bar:30} {human_pos}/{human_len} {eta}") {
+                bar.set_style(style);
+            }
+            bar.set_message(self.name);
+            // What was done before took no time of ours, and the rest is not as quick.
+            bar.set_position(self.done);
+            bar.reset_eta();
+            self.bar = Some(bar);
+        }
+        if let Some(bar) = &self.bar {
+            bar.set_position(done);
+        }
+    }
+}
+
+impl Drop for Counting {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 /// A line that says what is being done; it appears after a second and vanishes at the end.
 pub(crate) struct Working(ProgressBar);
 

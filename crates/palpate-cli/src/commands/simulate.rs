@@ -9,18 +9,15 @@ use palpate::simulate::{
 };
 use palpate::test_problems::Noise;
 use palpate_files::description::{DescriptionError, Protocol, read_protocol, read_scene};
-use palpate_report::figure::Figure;
 use palpate_report::study::{trajectory_figure, write_trajectory};
 use palpate_report::table::{Cell, Table, TableColumn};
 
+use super::picture::picture;
 use crate::arguments::{DriveName, SimulateArguments};
 use crate::failure::{Failure, Outcome};
 use crate::files::{write_file, write_file_with};
 use crate::progress::Working;
 use crate::terminal::{note, print_with};
-
-/// Resolution of PNG figures.
-const DPI: f64 = 300.0;
 
 pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     for path in [&arguments.out, &arguments.wave, &arguments.energy].into_iter().flatten() {
@@ -107,6 +104,9 @@ impl Scene {
 
 fn stepped(arguments: &SimulateArguments) -> Result<Scene, Failure> {
     let protocol = read_protocol(&arguments.protocol).map_err(described)?;
+    if protocol.has_sweep {
+        note("one run, with the numbers as they stand: the table [sweep] is for palpate sweep");
+    }
     Ok(Scene {
         title: protocol.title.clone(),
         model: protocol.model,
@@ -178,19 +178,6 @@ fn caption(title: Option<&str>, model: &ContactModel) -> String {
         model.law.rate_coefficient(),
         model.layers.count()
     )
-}
-
-fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, Failure> {
-    let failed = |error| Failure::of_file(path, error, None);
-    match path.extension().and_then(|extension| extension.to_str()) {
-        Some("svg") => Ok(figure.to_svg().map_err(failed)?.into_bytes()),
-        Some("png") => figure.to_png(DPI).map_err(failed),
-        _ => Err(Failure::of_file(
-            path,
-            "expected a figure ending in .svg or .png",
-            Some("name the figure FILE.svg or FILE.png".to_owned()),
-        )),
-    }
 }
 
 fn is_csv(path: &Path) -> Result<(), Failure> {

@@ -20,19 +20,19 @@ pub(super) struct SpecimenTable {
     /// The shape of the body.
     shape: ShapeName,
     /// Radius of a ball; outer radius of a pad.
-    radius: Option<QuantityText>,
+    pub(super) radius: Option<QuantityText>,
     /// Diameter of a cylinder that is loaded along its axis.
-    diameter: Option<QuantityText>,
+    pub(super) diameter: Option<QuantityText>,
     /// Width of the section of a strip.
-    width: Option<QuantityText>,
+    pub(super) width: Option<QuantityText>,
     /// Thickness of the section of a strip; of the soft layer of a pad, at most its radius.
-    thickness: Option<QuantityText>,
+    pub(super) thickness: Option<QuantityText>,
     /// Area of the section of a block, which carries the force.
-    area: Option<QuantityText>,
+    pub(super) area: Option<QuantityText>,
     /// Free length along the force, from grip to grip or plate to plate: of a strip, a cylinder or a block.
-    length: Option<QuantityText>,
+    pub(super) length: Option<QuantityText>,
     /// Young's modulus.
-    modulus: Option<QuantityText>,
+    pub(super) modulus: Option<QuantityText>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]

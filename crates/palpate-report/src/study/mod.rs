@@ -13,6 +13,7 @@
 //! | `method.rs` | the settings that a page tells |
 //! | `law_figures.rs` | the law and its closed form (figures 1 and 2 of the paper) |
 //! | `wave_figure.rs` | all layers over time (figure 7) |
+//! | `sweep_figure.rs` | many runs as a curve, heat maps or points |
 //! | `trajectory.rs` | a simulated series as CSV and figure |
 //! | `reproduction.rs` | the paper's study: simulation, re-identification, checks |
 //! | `reproduction_page.rs` | its page |
@@ -29,6 +30,7 @@ mod record_page;
 mod record_tables;
 mod reproduction;
 mod reproduction_page;
+mod sweep_figure;
 mod trajectory;
 mod wave_figure;
 
@@ -38,4 +40,5 @@ pub use comparison_tables::{comparison_markdown, comparison_text};
 pub use record_page::analysis_bundle;
 pub use record_tables::analysis_text;
 pub use reproduction::{Reproduction, reproduce, reproduction_bundle};
+pub use sweep_figure::{MOST_PANELS, SweptAxis, SweptResult, sweep_grid_figure, sweep_points_figure};
 pub use trajectory::{trajectory_figure, write_trajectory};

@@ -12,6 +12,7 @@
 //! | `wave.rs` | all layers over time (the strain wave) |
 //! | `step.rs` | one step at a time, for controllers |
 //! | `energy.rs` | work of the jaw, what is stored and what is lost |
+//! | `summary.rs` | what a whole simulation comes to, for sweeps |
 
 mod course;
 mod energy;
@@ -20,6 +21,7 @@ mod model;
 mod motion;
 mod program;
 mod step;
+mod summary;
 mod trajectory;
 mod walk;
 mod wave;
@@ -32,6 +34,7 @@ pub use model::{ContactModel, Separation};
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};
 pub use program::{ProgramStep, StepEnd, step_ends};
 pub use step::{ContactState, StepError};
+pub use summary::{Summary, summary};
 pub use trajectory::{Sampling, Trajectory, simulate, simulate_force};
 pub use walk::{ContactEvent, ContactEventKind};
 pub use wave::{StrainWave, strain_wave};
