@@ -7,10 +7,7 @@ use parquet::{
     column::reader::ColumnReader,
     data_type::ByteArray,
     errors::ParquetError,
-    file::{
-        reader::FileReader,
-        serialized_reader::SerializedFileReader,
-    },
+    file::{reader::FileReader, serialized_reader::SerializedFileReader},
 };
 
 use super::{Field, Kind, Rows, TableError, Values};

@@ -80,7 +80,7 @@ pub fn sweep_grid_figure(name: &str, caption: &str, axes: &[SweptAxis], result: 
             let panels = z.rising().into_iter().map(|k| {
                 let at = |i: usize, j: usize| (i * y.values.len() + j) * z.values.len() + k;
                 let unit = if z.unit.is_empty() { String::new() } else { format!(" {}", z.unit) };
-                let title = format!("{} = {}{unit}", z.label, significant(z.values[k], 3));
+                let title = format!("{} = {}{unit}", z.label, short(z.values[k]));
                 heat_map((x, y), result, at, range).title(title)
             });
             let rows = z.values.len().div_ceil(columns) as f64;
@@ -125,6 +125,15 @@ fn heat_map(
         range,
     };
     Panel::new(x.axis(), y.axis()).layer(Layer::Map(map)).empty_note("Every run was refused")
+}
+
+/// A value as people write it in a title: 2 and not 2.00.
+fn short(value: f64) -> String {
+    let text = significant(value, 3);
+    match text.contains('.') && !text.contains('×') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
 }
 
 /// Smallest and largest value, so that the colours of all panels mean the same.
