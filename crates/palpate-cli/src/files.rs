@@ -42,18 +42,19 @@ pub(crate) fn write_file_with(
         write(&mut out)?;
         out.flush()
     };
-    place_file(path, buffered).map_err(|error: io::Error| failure(path, &error))
-}
-
-/// Likewise, for writers with errors of their own.
-pub(crate) fn place_file<E: From<io::Error>>(
-    path: &Path,
-    write: impl FnOnce(&fs::File) -> Result<(), E>,
-) -> Result<(), E> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
+    place_file(path, folder, buffered).map_err(|error: io::Error| failure(path, &error))
+}
+
+/// Likewise, for writers with errors of their own, and with the temporary file in a folder on the same disk.
+pub(crate) fn place_file<E: From<io::Error>>(
+    path: &Path,
+    folder: &Path,
+    write: impl FnOnce(&fs::File) -> Result<(), E>,
+) -> Result<(), E> {
     fs::create_dir_all(folder)?;
     let file = tempfile::Builder::new().prefix(".palpate-").tempfile_in(folder)?;
     write(file.as_file())?;

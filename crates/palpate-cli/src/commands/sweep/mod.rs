@@ -48,7 +48,8 @@ pub(crate) fn run(arguments: &SweepArguments) -> Result<Outcome, Failure> {
         let mut parts = Parts::open(&out, &digest, fields.clone(), sweep.runs(), arguments.restart)?;
         taken_over = parts.runs_done();
         compute::compute(&sweep, path, &mut parts, threads(arguments))?;
-        place_file(&out, |file| {
+        // In the folder of the parts, where the next sweep clears away what a kill leaves behind.
+        place_file(&out, &folder_of(&out), |file| {
             let mut writer = TableWriter::new(file, &fields)?;
             parts.each(|rows| writer.write(rows))?;
             writer.finish(&[(MARK, &digest)])
