@@ -113,7 +113,9 @@ fn caption(sweep: &Sweep, result: &ResultColumn, stride: u64) -> String {
     let title = sweep.base().title.as_ref().map_or(String::new(), |title| format!("{title}. "));
     let over: Vec<&str> = sweep.numbers().iter().map(|number| number.path.as_str()).collect();
     let drawn = if stride == 1 { String::new() } else { format!(", one in {stride} drawn") };
-    format!("{title}{} over {}; {} runs{drawn}. Grey: refused.", result.label, over.join(", "), sweep.runs())
+    let is_map = matches!(sweep.plan(), Plan::Grid { counts } if counts.len() > 1);
+    let grey = if is_map { " Grey: refused." } else { "" };
+    format!("{title}{} over {}; {} runs{drawn}.{grey}", result.label, over.join(", "), sweep.runs())
 }
 
 /// Every `stride`-th value of a column, NaN where it is missing.

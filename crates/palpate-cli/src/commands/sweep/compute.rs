@@ -25,7 +25,7 @@ enum Message {
 pub(super) fn compute(sweep: &Sweep, path: &Path, parts: &mut Parts, threads: usize) -> Result<(), Failure> {
     let missing = parts.missing();
     let mut done = parts.runs_done();
-    let mut progress = Counting::new("simulating", done, sweep.runs());
+    let progress = Counting::new("simulating", done, sweep.runs());
     let (mut written, mut failed) = (Vec::new(), None);
     let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
     let (sender, messages) = channel();
