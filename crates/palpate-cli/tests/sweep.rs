@@ -242,6 +242,27 @@ fn restart_computes_everything() {
 }
 
 #[test]
+fn parts_that_outlived_their_table_are_taken_away_and_those_of_others_are_not() {
+    let folder = tempdir().unwrap();
+    let sweep = protocol(folder.path(), "law.exponent = \"1, 2\"");
+    let arguments = ["sweep", &sweep, "--out", "t.parquet"];
+    done(folder.path(), &arguments);
+    let out = folder.path().join("t.parquet");
+    let table = TableReader::new(File::open(&out).unwrap()).unwrap();
+    let digest = table.mark("palpate_sweep_sha256").unwrap();
+    let parts = folder.path().join("t.parquet.parts");
+    for (manifest, left) in [(digest, false), ("another", true)] {
+        fs::create_dir(&parts).unwrap();
+        fs::write(parts.join("sweep.txt"), manifest).unwrap();
+        fs::write(parts.join("part-0000000-0123456789abcdef.parquet"), "old").unwrap();
+        let output = palpate(folder.path(), &arguments);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(parts.exists(), left);
+    }
+    assert_eq!(names(&parts).len(), 2);
+}
+
+#[test]
 fn two_sweeps_into_one_table_are_refused() {
     let folder = tempdir().unwrap();
     let sweep = protocol(folder.path(), "law.exponent = \"1, 2\"");

@@ -26,7 +26,7 @@ use crate::failure::{Failure, Outcome};
 use crate::files::{place_file, write_file};
 use crate::terminal::note;
 use chart::Chart;
-use parts::{Parts, folder_of, table_failure};
+use parts::{Parts, belong, folder_of, table_failure};
 use rows::{fields, refusals};
 
 /// Under which the table says what sweep it holds.
@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &SweepArguments) -> Result<Outcome, Failure> {
         })
         .map_err(|error| table_failure(&out, &error))?;
         parts.remove()?;
-    } else if folder_of(&out).exists() {
+    } else if belong(&out, &digest) {
         // Killed after the table was whole: only its parts are left over.
         Parts::open(&out, &digest, fields.clone(), sweep.runs(), false)?.remove()?;
     }

@@ -175,6 +175,11 @@ pub(super) fn folder_of(out: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
+/// Whether there are parts beside the table `out`, and they are of the sweep with this digest.
+pub(super) fn belong(out: &Path, digest: &str) -> bool {
+    fs::read_to_string(folder_of(out).join(MANIFEST)).is_ok_and(|found| found.trim() == digest)
+}
+
 /// A failure of a table at `path`.
 pub(super) fn table_failure(path: &Path, error: &TableError) -> Failure {
     match error {
