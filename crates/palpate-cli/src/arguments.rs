@@ -114,7 +114,7 @@ Examples:
   palpate sweep examples/protocols/sweep.toml --out ball.parquet --figure ball.svg
   palpate sweep sweep.toml --figure share.png --show step_1_relaxed_share")]
 pub(crate) struct SweepArguments {
-    /// Protocol (TOML) with a table [sweep]
+    /// Protocol (TOML) with a table named sweep
     #[arg(value_name = "PROTOCOL.toml")]
     pub(crate) protocol: PathBuf,
     /// File for the table (Parquet), one row a run; PROTOCOL.parquet in this folder if not given
