@@ -25,6 +25,7 @@ Examples:
   palpate analyze test.csv --test ball.toml      the same with geometry: strains and v in 1/s
   palpate compare test.csv                       which law of relaxation to use, and how sure that is
   palpate simulate squeeze.toml --out force.csv  force of a squeeze protocol
+  palpate sweep sweep.toml --figure peak.svg     the same for many numbers at once
 
 Exit codes: 0 done, 1 done but the verdict is negative, 2 could not run.";
 
@@ -32,6 +33,7 @@ Exit codes: 0 done, 1 done but the verdict is negative, 2 could not run.";
 pub(crate) enum Command {
     Reproduce(ReproduceArguments),
     Simulate(SimulateArguments),
+    Sweep(SweepArguments),
     Inspect(InspectArguments),
     Analyze(AnalyzeArguments),
     Compare(CompareArguments),
@@ -107,6 +109,42 @@ pub(crate) struct SimulateArguments {
     /// Which noise: the same seed gives the same record
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
+}
+
+/// Simulate a protocol for many values of its numbers, to one table.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+The table [sweep] of the protocol says which numbers take which values:
+  [sweep]
+  law.rate_coefficient = \"log 1e3..1e6 /s, 50\"
+  specimen.radius = \"linear 20..40 mm, 9\"
+  step.1.hold = \"1, 10, 100 s\"
+Every value meets every other, unless method = \"latin hypercube\" with samples = N.
+
+A sweep that was killed goes on where it stopped: its finished parts lie in TABLE.parquet.parts.
+
+Examples:
+  palpate sweep examples/protocols/sweep.toml --out ball.parquet --figure ball.svg
+  palpate sweep sweep.toml --figure share.png --show step_1_relaxed_share")]
+pub(crate) struct SweepArguments {
+    /// Protocol (TOML) with a table named sweep
+    #[arg(value_name = "PROTOCOL.toml")]
+    pub(crate) protocol: PathBuf,
+    /// File for the table (Parquet), one row a run; PROTOCOL.parquet in this folder if not given
+    #[arg(long, value_name = "FILE.parquet")]
+    pub(crate) out: Option<PathBuf>,
+    /// File for a figure (.svg or .png): a curve, a heat map, several heat maps, or points
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) figure: Option<PathBuf>,
+    /// Which result the figure shows, by the name of its column
+    #[arg(long, value_name = "COLUMN", default_value = "peak_force_n", requires = "figure")]
+    pub(crate) show: String,
+    /// How many runs at once; all processors if not given. The table is the same for any number
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<std::num::NonZeroUsize>,
+    /// Compute all runs again, whatever was computed before
+    #[arg(long)]
+    pub(crate) restart: bool,
 }
 
 /// What drives a simulated contact.

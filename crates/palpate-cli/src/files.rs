@@ -8,7 +8,8 @@ use palpate_report::study::Bundle;
 
 use crate::failure::Failure;
 
-fn failure(path: &Path, error: &io::Error) -> Failure {
+/// What the operating system says about a file to be written, and what would help.
+pub(crate) fn failure(path: &Path, error: &io::Error) -> Failure {
     let hint = match error.kind() {
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             Some("choose a folder that you may write to".to_owned())
@@ -36,22 +37,30 @@ pub(crate) fn write_file_with(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Failure> {
+    let buffered = |file: &fs::File| -> io::Result<()> {
+        let mut out = io::BufWriter::new(file);
+        write(&mut out)?;
+        out.flush()
+    };
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let place = || -> io::Result<()> {
-        fs::create_dir_all(folder)?;
-        let mut file = tempfile::Builder::new().prefix(".palpate-").tempfile_in(folder)?;
-        let mut out = io::BufWriter::new(&mut file);
-        write(&mut out)?;
-        out.flush()?;
-        drop(out);
-        file.as_file().sync_all()?;
-        file.persist(path).map_err(|error| error.error)?;
-        open_to_all(path)
-    };
-    place().map_err(|error| failure(path, &error))
+    place_file(path, folder, buffered).map_err(|error: io::Error| failure(path, &error))
+}
+
+/// Likewise, for writers with errors of their own, and with the temporary file in a folder on the same disk.
+pub(crate) fn place_file<E: From<io::Error>>(
+    path: &Path,
+    folder: &Path,
+    write: impl FnOnce(&fs::File) -> Result<(), E>,
+) -> Result<(), E> {
+    fs::create_dir_all(folder)?;
+    let file = tempfile::Builder::new().prefix(".palpate-").tempfile_in(folder)?;
+    write(file.as_file())?;
+    file.as_file().sync_all()?;
+    file.persist(path).map_err(|error| error.error)?;
+    Ok(open_to_all(path)?)
 }
 
 /// Writes all files of a bundle below `folder`: all of them beside it first, then moved into place.

@@ -28,6 +28,7 @@ fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Simulate(arguments) => commands::simulate::run(&arguments),
+        Command::Sweep(arguments) => commands::sweep::run(&arguments),
         Command::Inspect(arguments) => commands::inspect::run(&arguments),
         Command::Analyze(arguments) => commands::analyze::run(&arguments),
         Command::Compare(arguments) => commands::compare::run(&arguments),

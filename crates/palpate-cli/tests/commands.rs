@@ -278,6 +278,7 @@ fn completions_and_help() {
     insta::assert_snapshot!("help_analyze", done(folder.path(), &["analyze", "--help"]));
     insta::assert_snapshot!("help_compare", done(folder.path(), &["compare", "--help"]));
     insta::assert_snapshot!("help_simulate", done(folder.path(), &["simulate", "--help"]));
+    insta::assert_snapshot!("help_sweep", done(folder.path(), &["sweep", "--help"]));
 }
 
 #[test]

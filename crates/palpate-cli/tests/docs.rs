@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use palpate::test_problems::{PAPER_TEST_A, PAPER_TEST_B};
-use palpate_files::description::{parse_protocol, parse_test};
+use palpate_files::description::{parse_protocol, parse_sweep, parse_test};
 
 fn root() -> PathBuf {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent();
@@ -180,6 +180,7 @@ fn descriptions_in_guides_and_examples_are_valid() {
     for (path, text) in texts {
         let is_protocol = text.lines().any(|line| line.starts_with("[[step]]"));
         let checked = match is_protocol {
+            true if text.contains("\n[sweep]") => parse_sweep(&text, Path::new(&path)).map(drop),
             true => parse_protocol(&text, Path::new(&path)).map(drop),
             false => parse_test(&text, Path::new(&path)).map(drop),
         };

@@ -5,8 +5,10 @@
 //!   columns out of it ([`text::read_columns`]).
 //! - [`description`] reads what people write in TOML: protocols to simulate ([`description::read_protocol`])
 //!   and tests to evaluate ([`description::read_test`]).
-//! - [`record_file`] puts both together: a file becomes a checked record in SI ([`record_file::read_record`]).
+//! - [`parquet_table`] writes tables of many rows as Parquet and reads them back.
+//! - [`record_file`] puts text and descriptions together: a file becomes a checked record in SI ([`record_file::read_record`]).
 
 pub mod description;
+pub mod parquet_table;
 pub mod record_file;
 pub mod text;

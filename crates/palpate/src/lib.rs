@@ -53,7 +53,7 @@ pub mod identify;
 pub mod latency;
 pub mod laws;
 mod ode;
-mod random;
+pub mod random;
 pub mod record;
 pub mod segment;
 pub mod simulate;

@@ -253,7 +253,8 @@ pub fn scale(value: f64, factor: f64) -> f64 {
 }
 
 /// Splits `"2e4 /s"` into the longest leading text that reads as a number and the rest.
-fn split_number(text: &str) -> (&str, &str) {
+#[must_use]
+pub fn split_number(text: &str) -> (&str, &str) {
     let mut end = 0;
     for (index, character) in text.char_indices() {
         let next = index + character.len_utf8();

@@ -9,20 +9,17 @@ use palpate::simulate::{
 };
 use palpate::test_problems::Noise;
 use palpate_files::description::{DescriptionError, Protocol, read_protocol, read_scene};
-use palpate_report::figure::Figure;
 use palpate_report::study::{
     cycle_table, hysteresis_figure, step_work_table, trajectory_figure, wave_figure, write_trajectory,
 };
 use palpate_report::table::{Cell, Table, TableColumn};
 
+use super::picture::picture;
 use crate::arguments::{DriveName, SimulateArguments};
 use crate::failure::{Failure, Outcome};
 use crate::files::{write_file, write_file_with};
 use crate::progress::Working;
 use crate::terminal::{note, print_with};
-
-/// Resolution of PNG figures.
-const DPI: f64 = 300.0;
 
 pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     let tables = [&arguments.out, &arguments.wave, &arguments.energy];
@@ -126,7 +123,7 @@ struct Scene {
 }
 
 enum Driver {
-    Steps(Protocol),
+    Steps(Box<Protocol>),
     Motion(Motion),
     Force(ForceHistory),
 }
@@ -143,11 +140,14 @@ impl Scene {
 
 fn stepped(arguments: &SimulateArguments) -> Result<Scene, Failure> {
     let protocol = read_protocol(&arguments.protocol).map_err(described)?;
+    if protocol.has_sweep {
+        note("one run, with the numbers as they stand: the table [sweep] is for palpate sweep");
+    }
     Ok(Scene {
         title: protocol.title.clone(),
         model: protocol.model.clone(),
         sampling: protocol.sampling.clone(),
-        driver: Driver::Steps(protocol),
+        driver: Driver::Steps(Box::new(protocol)),
     })
 }
 
@@ -214,19 +214,6 @@ fn caption(title: Option<&str>, what: &str, model: &ContactModel) -> String {
         model.law.rate_coefficient(),
         model.layers.count()
     )
-}
-
-fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, Failure> {
-    let failed = |error| Failure::of_file(path, error, None);
-    match path.extension().and_then(|extension| extension.to_str()) {
-        Some("svg") => Ok(figure.to_svg().map_err(failed)?.into_bytes()),
-        Some("png") => figure.to_png(DPI).map_err(failed),
-        _ => Err(Failure::of_file(
-            path,
-            "expected a figure ending in .svg or .png",
-            Some("name the figure FILE.svg or FILE.png".to_owned()),
-        )),
-    }
 }
 
 fn is_csv(path: &Path) -> Result<(), Failure> {

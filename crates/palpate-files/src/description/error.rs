@@ -98,6 +98,16 @@ pub enum DescriptionError {
         /// The keys that have a meaning here.
         accepted: Vec<String>,
     },
+    /// A sweep over a number that does not stand in the protocol.
+    #[error("{place}: no such number in this protocol (its numbers: {})", accepted.join(", "))]
+    UnknownNumber {
+        /// The key of the sweep.
+        place: KeyPlace,
+        /// The path of the number that it names.
+        number: String,
+        /// The numbers that stand in the protocol.
+        accepted: Vec<String>,
+    },
     /// A key that is needed is not there.
     #[error("{place}: missing, expected {expected}")]
     Missing {
@@ -160,6 +170,7 @@ impl DescriptionError {
     pub fn key(&self) -> Option<&str> {
         match self {
             Self::UnknownKey { place, .. }
+            | Self::UnknownNumber { place, .. }
             | Self::Missing { place, .. }
             | Self::Quantity { place, .. }
             | Self::Value { place, .. }
@@ -184,6 +195,10 @@ impl DescriptionError {
             Self::UnknownKey { place, accepted } => {
                 nearest(last_key(&place.key), accepted).map(|key| format!("did you mean {key}?"))
             }
+            Self::UnknownNumber { number, accepted, .. } => Some(nearest(number, accepted).map_or_else(
+                || "a sweep replaces numbers that stand in the file: write it where it belongs first".to_owned(),
+                |number| format!("did you mean {number}?"),
+            )),
             Self::Missing { place, expected } => {
                 let (_, example) = expected.split_once("such as ")?;
                 let key = last_key(&place.key);

@@ -10,6 +10,8 @@
 //! | `test.rs`, `test_tables.rs`, `settings.rs` | a test: its record, its body, how to evaluate it ([`TestDescription`]) |
 //! | `specimen.rs`, `contact.rs`, `columns.rs` | tables that they are made of |
 //! | `choices.rs` | choices that a command line offers too |
+//! | `sweep/` | numbers of a protocol replaced by many ([`Sweep`]) |
+//! | `numbers.rs` | the numbers of a protocol that can be replaced |
 //! | `quantity.rs` | a quantity as written |
 //! | `source.rs`, `places.rs`, `words.rs`, `error.rs` | what is wrong, where, and in plain words |
 //! | `schema.rs` | JSON Schemas for editors |
@@ -18,6 +20,7 @@ mod choices;
 mod columns;
 mod contact;
 mod error;
+mod numbers;
 mod places;
 mod protocol;
 mod quantity;
@@ -25,6 +28,7 @@ mod schema;
 mod settings;
 mod source;
 mod specimen;
+mod sweep;
 mod test;
 mod test_tables;
 mod words;
@@ -34,4 +38,5 @@ pub use columns::{ClockChoice, ColumnChoice, ColumnChoices, ColumnRef};
 pub use error::{DescriptionError, KeyPlace};
 pub use protocol::{Protocol, parse_protocol, read_protocol, read_scene};
 pub use schema::{schema_protocol, schema_test};
+pub use sweep::{Plan, Spacing, Sweep, SweptNumber, parse_sweep, read_sweep};
 pub use test::{About, TestDescription, parse_test, read_test};

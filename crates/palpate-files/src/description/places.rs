@@ -43,13 +43,14 @@ impl Places {
         hits.min_by_key(width).map_or_else(String::new, |entry| entry.path.clone())
     }
 
+    /// Where the key with this path starts, if it is there.
+    pub(super) fn start_exactly(&self, path: &str) -> Option<usize> {
+        self.entries.iter().find(|entry| entry.path == path).map(|entry| entry.key.start)
+    }
+
     /// Where the key with this path starts, or the nearest table around it that is there.
     pub(super) fn start_of(&self, path: &str) -> Option<usize> {
-        let found = self.entries.iter().find(|entry| entry.path == path);
-        if let Some(entry) = found {
-            return Some(entry.key.start);
-        }
-        self.start_of(path.rsplit_once('.')?.0)
+        self.start_exactly(path).or_else(|| self.start_of(path.rsplit_once('.')?.0))
     }
 }
 

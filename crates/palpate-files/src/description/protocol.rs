@@ -9,7 +9,7 @@ use palpate::{
     units::Dimension,
 };
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, de::IgnoredAny};
 
 use super::{
     contact::{self, SidesName},
@@ -31,12 +31,16 @@ pub struct Protocol {
     pub title: Option<String>,
     /// What the jaw does, step by step; holds are steps of their own.
     pub steps: Vec<ProgramStep>,
+    /// Number of the `[[step]]` table, from 1, that each of `steps` was written in.
+    pub written: Vec<usize>,
     /// The motion of the jaw, if displacements alone are asked for.
     pub motion: Option<Motion>,
     /// The body and its contact.
     pub model: ContactModel,
     /// When to report.
     pub sampling: Sampling,
+    /// Whether the file has a table `[sweep]`, which a single simulation leaves aside.
+    pub has_sweep: bool,
 }
 
 impl Protocol {
@@ -54,29 +58,33 @@ impl Protocol {
 pub(super) struct ProtocolTables {
     /// A title for figures and reports.
     title: Option<String>,
-    specimen: SpecimenTable,
-    law: LawTable,
+    pub(super) specimen: SpecimenTable,
+    pub(super) law: LawTable,
     #[serde(default)]
-    contact: ContactTable,
+    pub(super) contact: ContactTable,
     /// Steps of the jaw in order, starting at first touch at time 0; none where a record drives the contact.
     #[serde(default)]
-    step: Vec<StepTable>,
+    pub(super) step: Vec<StepTable>,
     #[serde(default)]
-    output: OutputTable,
+    pub(super) output: OutputTable,
+    /// Numbers to replace by many, for `palpate sweep`; left aside otherwise.
+    #[serde(default)]
+    #[schemars(with = "Option<super::sweep::SweepSchema>")]
+    sweep: Option<IgnoredAny>,
 }
 
 /// The law that strain follows.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Law")]
-struct LawTable {
+pub(super) struct LawTable {
     #[expect(dead_code, reason = "there is one law, and the table names it")]
     name: LawName,
     /// Exponent n, any number above 0.
     #[schemars(extend("exclusiveMinimum" = 0))]
-    exponent: f64,
+    pub(super) exponent: f64,
     /// Rate coefficient v, such as "2e4 /s".
-    rate_coefficient: QuantityText,
+    pub(super) rate_coefficient: QuantityText,
 }
 
 #[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
@@ -90,12 +98,12 @@ enum LawName {
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Contact", extend("not" = { "required": ["layers", "layer_thickness"] }))]
-struct ContactTable {
+pub(super) struct ContactTable {
     /// Number of layers, any number of 1 or more; 8 unless layer_thickness is given.
     #[schemars(extend("minimum" = 1))]
-    layers: Option<f64>,
+    pub(super) layers: Option<f64>,
     /// Thickness of one layer, instead of their number.
-    layer_thickness: Option<QuantityText>,
+    pub(super) layer_thickness: Option<QuantityText>,
     /// Two sides for a ball, one side for other shapes, unless said otherwise.
     squeezed_from: Option<SidesName>,
     /// true (the default): the jaw can only push and leaves the body when the force reaches zero.
@@ -111,31 +119,31 @@ struct ContactTable {
     { "required": ["rate", "force_rate"] },
     { "required": ["hold", "hold_force"] }
 ] }))]
-struct StepTable {
+pub(super) struct StepTable {
     /// Travel of the jaw since first touch at the end of the ramp; loading is positive. Needs rate.
-    to: Option<QuantityText>,
+    pub(super) to: Option<QuantityText>,
     /// Force to go to, by moving the jaw at rate until it is met or by raising the force at force_rate.
-    to_force: Option<QuantityText>,
+    pub(super) to_force: Option<QuantityText>,
     /// Speed of the jaw in the ramp, always above 0.
-    rate: Option<QuantityText>,
+    pub(super) rate: Option<QuantityText>,
     /// Rate at which the force goes to to_force, always above 0.
-    force_rate: Option<QuantityText>,
+    pub(super) force_rate: Option<QuantityText>,
     /// Time for which the jaw then stays where it is; none if left out.
-    hold: Option<QuantityText>,
+    pub(super) hold: Option<QuantityText>,
     /// Time for which the force is then kept as it is.
-    hold_force: Option<QuantityText>,
+    pub(super) hold_force: Option<QuantityText>,
 }
 
 /// When to report: at a rate, or at times.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Output", extend("not" = { "required": ["sample_rate", "times"] }))]
-struct OutputTable {
+pub(super) struct OutputTable {
     /// Samples per second; "100 Hz" unless times are given. Every kink of the motion is reported as well.
-    sample_rate: Option<QuantityText>,
+    pub(super) sample_rate: Option<QuantityText>,
     /// These times and no others, rising, inside the motion.
     #[schemars(extend("minItems" = 1))]
-    times: Option<Vec<QuantityText>>,
+    pub(super) times: Option<Vec<QuantityText>>,
 }
 
 /// Reads and checks the protocol in the file at `path`.
@@ -182,13 +190,17 @@ pub fn read_scene(path: &Path) -> Result<(Option<String>, ContactModel), Descrip
 /// As for [`read_protocol`], less those of the file.
 pub fn parse_protocol(text: &str, path: &Path) -> Result<Protocol, DescriptionError> {
     let source = Source { path, text };
-    let tables: ProtocolTables = source.tables()?;
-    let model = model(&source, &tables)?;
+    check(&source, &source.tables()?)
+}
+
+/// Checks the tables of a protocol, all that is wrong with which is said of places in `source`.
+pub(super) fn check(source: &Source<'_>, tables: &ProtocolTables) -> Result<Protocol, DescriptionError> {
+    let model = model(source, tables)?;
     let Steps {
         program,
         motion,
         tables: written,
-    } = steps(&source, &tables.step, &model)?;
+    } = steps(source, &tables.step, &model)?;
     let refused = |found: String| source.value("step", "steps that can be simulated", &found);
     let end = match &motion {
         Some(motion) => motion.end(),
@@ -198,13 +210,15 @@ pub fn parse_protocol(text: &str, path: &Path) -> Result<Protocol, DescriptionEr
             ends.last().map_or(0.0, |end| end.time)
         }
     };
-    let sampling = sampling(&source, &tables.output, end)?;
+    let sampling = sampling(source, &tables.output, end)?;
     Ok(Protocol {
-        title: tables.title,
+        title: tables.title.clone(),
         steps: program,
+        written,
         motion,
         model,
         sampling,
+        has_sweep: tables.sweep.is_some(),
     })
 }
 

@@ -17,6 +17,16 @@ pub(crate) struct QuantityText {
     bare: bool,
 }
 
+impl QuantityText {
+    /// A text with its unit.
+    pub(crate) fn of(text: impl Into<String>) -> Self {
+        Self {
+            text: text.into(),
+            bare: false,
+        }
+    }
+}
+
 impl JsonSchema for QuantityText {
     fn schema_name() -> Cow<'static, str> {
         "Quantity".into()

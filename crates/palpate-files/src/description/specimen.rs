@@ -21,27 +21,27 @@ pub(super) struct SpecimenTable {
     /// The shape of the body.
     shape: ShapeName,
     /// Radius of a ball; outer radius of a pad.
-    radius: Option<QuantityText>,
+    pub(super) radius: Option<QuantityText>,
     /// Diameter of a cylinder that is loaded along its axis.
-    diameter: Option<QuantityText>,
+    pub(super) diameter: Option<QuantityText>,
     /// Width of the section of a strip.
-    width: Option<QuantityText>,
+    pub(super) width: Option<QuantityText>,
     /// Thickness of the section of a strip; of the soft layer of a pad, at most its radius.
-    thickness: Option<QuantityText>,
+    pub(super) thickness: Option<QuantityText>,
     /// Area of the section of a block, which carries the force.
-    area: Option<QuantityText>,
+    pub(super) area: Option<QuantityText>,
     /// Free length along the force, from grip to grip or plate to plate: of a strip, a cylinder or a block.
-    length: Option<QuantityText>,
+    pub(super) length: Option<QuantityText>,
     /// Depth of a profile, from the undeformed contact to the plane that does not move.
-    depth: Option<QuantityText>,
+    pub(super) depth: Option<QuantityText>,
     /// Contact area of a profile: rows of contact displacement and area, from first touch on, such as ["1 mm", "40 mm^2"].
     areas: Option<Vec<(QuantityText, QuantityText)>>,
     /// Young's modulus.
-    modulus: Option<QuantityText>,
+    pub(super) modulus: Option<QuantityText>,
     /// Law of the force once relaxation is over, in a protocol: even strain (the paper's, if nothing is said) or hertz.
     equilibrium: Option<EquilibriumName>,
     /// Poisson's ratio of a body with hertz, from 0 to 0.5.
-    poisson_ratio: Option<f64>,
+    pub(super) poisson_ratio: Option<f64>,
     /// Measured force once relaxation is over, in a protocol: rows of contact displacement and force, from first touch on, such as
     /// ["1 mm", "0.2 N"]. In place of modulus and equilibrium.
     equilibrium_forces: Option<Vec<(QuantityText, QuantityText)>>,

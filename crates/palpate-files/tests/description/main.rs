@@ -3,6 +3,7 @@
 mod examples;
 mod protocol;
 mod schema;
+mod sweep;
 mod syntax;
 mod test;
 

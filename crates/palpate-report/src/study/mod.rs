@@ -13,6 +13,7 @@
 //! | `method.rs` | the settings that a page tells |
 //! | `law_figures.rs` | the law and its closed form (figures 1 and 2 of the paper) |
 //! | `wave_figure.rs` | all layers over time (figure 7) |
+//! | `sweep_figure.rs` | many runs as a curve, heat maps or points |
 //! | `trajectory.rs` | a simulated series as CSV and figure |
 //! | `hysteresis.rs` | force against displacement; work by step and by cycle |
 //! | `reproduction.rs` | the paper's study: simulation, re-identification, checks |
@@ -31,6 +32,7 @@ mod record_page;
 mod record_tables;
 mod reproduction;
 mod reproduction_page;
+mod sweep_figure;
 mod trajectory;
 mod wave_figure;
 
@@ -41,5 +43,6 @@ pub use hysteresis::{cycle_table, hysteresis_figure, step_work_table};
 pub use record_page::analysis_bundle;
 pub use record_tables::analysis_text;
 pub use reproduction::{Reproduction, reproduce, reproduction_bundle};
+pub use sweep_figure::{MOST_PANELS, SweptAxis, SweptResult, sweep_grid_figure, sweep_points_figure};
 pub use trajectory::{trajectory_figure, write_trajectory};
 pub use wave_figure::wave_figure;

@@ -107,14 +107,14 @@ pub fn energy<'a>(
 
 /// What one contact's share of the jaw has done so far, J.
 #[derive(Default)]
-struct Account {
-    work: f64,
-    given_back: f64,
+pub(super) struct Account {
+    pub(super) work: f64,
+    pub(super) given_back: f64,
 }
 
 impl Account {
     /// Adds the work from one time to another inside a stretch.
-    fn add(&mut self, stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64)) {
+    pub(super) fn add(&mut self, stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64)) {
         let duration = stretch.end - stretch.start;
         let kinks: Vec<f64> = match &stretch.state {
             StretchState::Touching(element) if stretch.contact_speed != 0.0 => {
@@ -203,7 +203,7 @@ fn work_between(stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64))
 }
 
 /// What one contact of a body of constant section stores, J.
-fn stored_at(stretch: &Stretch, model: &ContactModel, time: f64) -> f64 {
+pub(super) fn stored_at(stretch: &Stretch, model: &ContactModel, time: f64) -> f64 {
     let (specimen, elapsed) = (&model.specimen, time - stretch.start);
     let depth = specimen.depth();
     let (u, excess) = match &stretch.state {

@@ -14,6 +14,7 @@
 //! | `energy.rs` | work of the jaw, what is stored and what is lost |
 //! | `linear/` | linear laws under the same motions |
 //! | `cycles.rs` | the same step by step and cycle by cycle |
+//! | `summary.rs` | what a whole simulation comes to, for sweeps |
 
 mod course;
 mod cycles;
@@ -24,6 +25,7 @@ mod model;
 mod motion;
 mod program;
 mod step;
+mod summary;
 mod trajectory;
 mod walk;
 mod wave;
@@ -38,6 +40,7 @@ pub use model::{ContactModel, Separation};
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};
 pub use program::{ProgramStep, StepEnd, step_ends};
 pub use step::{ContactState, StepError};
+pub use summary::{Summary, summary};
 pub use trajectory::{Sampling, Trajectory, simulate, simulate_force};
 pub use walk::{ContactEvent, ContactEventKind};
 pub use wave::{StrainWave, strain_wave};

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::course::Course;
 use super::walk::{Stretch, StretchState, walk};
 use super::{ContactEvent, ContactModel, Drive, Motion, SimulateError, Work};
+use crate::contact::Specimen;
 
 /// When to report.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,7 +73,7 @@ impl Trajectory {
     }
 
     /// Appends the samples up to index `until`, whose times lie in `stretch`, column by column.
-    fn append(&mut self, stretch: &Stretch, model: &ContactModel, until: usize) {
+    pub(super) fn append(&mut self, stretch: &Stretch, model: &ContactModel, until: usize) {
         let (specimen, depth) = (&model.specimen, model.specimen.depth());
         let from = self.force.len();
         let times = &self.time[from..until];
@@ -229,31 +230,37 @@ pub fn simulate_force(motion: &Motion, model: &ContactModel, times: &[f64]) -> R
         let next = force.len();
         let inside = |time: &f64| *time < stretch.end || stretch.end == last;
         let times = &times[next..next + times[next..].partition_point(inside)];
-        match &stretch.state {
-            StretchState::Touching(element) => {
-                element.extend_excess(stretch.start, times, &mut force);
-                if stretch.contact_speed == 0.0 {
-                    // In a hold, where nearly all samples lie, only the excess changes.
-                    let u = stretch.contact_from;
-                    let (stiffness, equilibrium) = (specimen.force(1.0, u), specimen.equilibrium_strain(u));
-                    force[next..].iter_mut().for_each(|slot| *slot = stiffness * (*slot + equilibrium));
-                } else {
-                    for (slot, &time) in force[next..].iter_mut().zip(times) {
-                        let u = stretch.jaw_at(time);
-                        *slot = specimen.force(*slot + specimen.equilibrium_strain(u), u);
-                    }
-                }
-            }
-            StretchState::Forced(forced) => {
-                force.extend(times.iter().map(|time| forced.force_at(time - stretch.start)));
-            }
-            StretchState::Free { .. } => force.resize(next + times.len(), 0.0),
-        }
+        extend_forces(stretch, specimen, times, &mut force);
         Ok(())
     })?;
     match force.iter().position(|force| !force.is_finite()) {
         Some(index) => Err(SimulateError::OutOfRange { time: times[index] }),
         None => Ok(force),
+    }
+}
+
+/// Appends the contact force at `times` (s) inside a stretch.
+pub(super) fn extend_forces(stretch: &Stretch, specimen: &Specimen, times: &[f64], force: &mut Vec<f64>) {
+    let next = force.len();
+    match &stretch.state {
+        StretchState::Touching(element) => {
+            element.extend_excess(stretch.start, times, force);
+            if stretch.contact_speed == 0.0 {
+                // In a hold, where nearly all samples lie, only the excess changes.
+                let u = stretch.contact_from;
+                let (stiffness, equilibrium) = (specimen.force(1.0, u), specimen.equilibrium_strain(u));
+                force[next..].iter_mut().for_each(|slot| *slot = stiffness * (*slot + equilibrium));
+            } else {
+                for (slot, &time) in force[next..].iter_mut().zip(times) {
+                    let u = stretch.jaw_at(time);
+                    *slot = specimen.force(*slot + specimen.equilibrium_strain(u), u);
+                }
+            }
+        }
+        StretchState::Forced(forced) => {
+            force.extend(times.iter().map(|time| forced.force_at(time - stretch.start)));
+        }
+        StretchState::Free { .. } => force.resize(next + times.len(), 0.0),
     }
 }
 

@@ -1,0 +1,141 @@
+//! The table of a sweep as a figure.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use palpate_files::description::{Plan, Spacing, Sweep, SweptNumber};
+use palpate_files::parquet_table::{TableError, TableReader, Values};
+use palpate_report::study::{MOST_PANELS, SweptAxis, SweptResult, sweep_grid_figure, sweep_points_figure};
+
+use super::parts::table_failure;
+use super::rows::{ResultColumn, results};
+use crate::commands::picture::{check_picture, picture};
+use crate::failure::Failure;
+
+/// Most points that are drawn; more would hide each other.
+const MOST_POINTS: u64 = 5000;
+/// Most cells of heat maps, which are held in memory.
+const MOST_CELLS: u64 = 4_000_000;
+
+/// A figure that can be drawn once the table is there.
+pub(super) struct Chart {
+    pub(super) path: PathBuf,
+    result: ResultColumn,
+}
+
+impl Chart {
+    /// Checks that there is such a figure of the sweep.
+    pub(super) fn new(sweep: &Sweep, path: &Path, column: &str) -> Result<Self, Failure> {
+        check_picture(path)?;
+        let results = results(sweep);
+        let Some(result) = results.iter().find(|result| result.name == column) else {
+            let names: Vec<&str> = results.iter().map(|result| result.name.as_str()).collect();
+            let message = format!("--show {column}: no such result");
+            return Err(Failure::new(message, Some(format!("show one of {}", names.join(", ")))));
+        };
+        if let Plan::Grid { counts } = sweep.plan() {
+            let hint = "draw the columns of the table with another program, or sweep fewer numbers";
+            let refused = |message: String| Err(Failure::of_file(path, message, Some(hint.to_owned())));
+            match counts.as_slice() {
+                [_] | [_, _] => {}
+                [_, _, panels] if *panels <= MOST_PANELS => {}
+                [_, _, panels] => {
+                    let third = &sweep.numbers()[2].path;
+                    return refused(format!(
+                        "expected at most {MOST_PANELS} values of {third}, each of which takes a panel, found {panels}"
+                    ));
+                }
+                more => {
+                    return refused(format!("expected a grid of one to three swept numbers, found {}", more.len()));
+                }
+            }
+            if sweep.runs() > MOST_CELLS {
+                return refused(format!("expected at most {MOST_CELLS} runs to draw, found {}", sweep.runs()));
+            }
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            result: result.clone(),
+        })
+    }
+
+    /// Draws it from the table at `table`.
+    pub(super) fn draw(&self, sweep: &Sweep, table: &Path) -> Result<Vec<u8>, Failure> {
+        let stride = match sweep.plan() {
+            Plan::Grid { .. } => 1,
+            Plan::LatinHypercube { .. } => sweep.runs().div_ceil(MOST_POINTS).max(1),
+        };
+        let read =
+            |column: &str| read_column(table, column, stride as usize).map_err(|error| table_failure(table, &error));
+        let result = SweptResult {
+            label: self.result.label.clone(),
+            unit: self.result.unit.to_owned(),
+            values: read(&self.result.name)?,
+        };
+        let name = self.path.file_stem().map_or("figure".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let caption = caption(sweep, &self.result, stride);
+        let axes = sweep.numbers().iter().map(|number| {
+            let values = match number.grid() {
+                Some(values) if matches!(sweep.plan(), Plan::Grid { .. }) => values,
+                _ => read(&number.column)?,
+            };
+            Ok(axis(number, values))
+        });
+        let axes = axes.collect::<Result<Vec<_>, Failure>>()?;
+        let figure = match sweep.plan() {
+            Plan::Grid { .. } => sweep_grid_figure(&name, &caption, &axes, &result),
+            Plan::LatinHypercube { .. } => Some(sweep_points_figure(&name, &caption, &axes, &result)),
+        };
+        let figure = figure.ok_or_else(|| Failure::of_file(table, "expected one row a run, found others", None))?;
+        picture(&self.path, &figure)
+    }
+}
+
+fn axis(number: &SweptNumber, values: Vec<f64>) -> SweptAxis {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+    let logarithmic = match number.spacing {
+        Spacing::Logarithmic => true,
+        Spacing::Linear => false,
+        // A list over decades is meant by its ratios.
+        Spacing::Listed => low > 0.0 && high / low > 50.0,
+    };
+    let unit = if number.unit == "/s" { "1/s" } else { number.unit };
+    SweptAxis {
+        label: number.path.clone(),
+        unit: unit.to_owned(),
+        logarithmic,
+        values,
+    }
+}
+
+fn caption(sweep: &Sweep, result: &ResultColumn, stride: u64) -> String {
+    let title = sweep.base().title.as_ref().map_or(String::new(), |title| format!("{title}. "));
+    let over: Vec<&str> = sweep.numbers().iter().map(|number| number.path.as_str()).collect();
+    let drawn = if stride == 1 { String::new() } else { format!(", one in {stride} drawn") };
+    let is_map = matches!(sweep.plan(), Plan::Grid { counts } if counts.len() > 1);
+    let grey = if is_map { " Grey: refused." } else { "" };
+    format!("{title}{} over {}; {} runs{drawn}.{grey}", result.label, over.join(", "), sweep.runs())
+}
+
+/// Every `stride`-th value of a column, NaN where it is missing.
+fn read_column(table: &Path, name: &str, stride: usize) -> Result<Vec<f64>, TableError> {
+    let table = TableReader::new(File::open(table)?)?;
+    let column = table.fields().iter().position(|field| field.name == name);
+    let column = column.ok_or_else(|| TableError::Parquet {
+        message: format!("no column {name}"),
+    })?;
+    let (mut values, mut row) = (Vec::new(), 0usize);
+    for group in 0..table.groups() {
+        let Values::Number(numbers) = table.values(group, column)? else {
+            continue;
+        };
+        for number in numbers {
+            if row % stride == 0 {
+                values.push(number.unwrap_or(f64::NAN));
+            }
+            row += 1;
+        }
+    }
+    Ok(values)
+}

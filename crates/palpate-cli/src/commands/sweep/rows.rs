@@ -1,0 +1,169 @@
+//! What a run comes to, as a row of the table.
+
+use std::path::Path;
+
+use palpate::simulate::{ContactEventKind, ProgramStep, StepEnd, Summary, step_ends, summary};
+use palpate_files::description::{Protocol, Sweep};
+use palpate_files::parquet_table::{Field, Kind, Rows, Values};
+
+/// A column with a result.
+#[derive(Debug, Clone)]
+pub(super) struct ResultColumn {
+    /// Its name, which ends in its unit.
+    pub(super) name: String,
+    /// What a figure calls it.
+    pub(super) label: String,
+    /// Symbol of its unit.
+    pub(super) unit: &'static str,
+}
+
+/// Names, labels and units of what a whole run comes to, in the order of [`whole_run`].
+const WHOLE_RUN: [(&str, &str, &str); 12] = [
+    ("peak_force_n", "Peak force", "N"),
+    ("peak_time_s", "Time of the peak", "s"),
+    ("end_time_s", "End", "s"),
+    ("force_end_n", "Force at the end", "N"),
+    ("displacement_end_m", "Displacement at the end", "m"),
+    ("strain_end", "Strain at the end", ""),
+    ("excess_strain_end", "Excess strain at the end", ""),
+    ("work_j", "Work of the jaw", "J"),
+    ("given_back_j", "Work given back", "J"),
+    ("stored_j", "Energy stored", "J"),
+    ("lost_j", "Energy lost", "J"),
+    ("contact_lost_s", "Contact lost", "s"),
+];
+
+/// Likewise of a step, in the order of [`of_steps`].
+const STEP: [(&str, &str, &str); 3] = [
+    ("ramp_force_n", "force after the ramp", "N"),
+    ("end_force_n", "force at the end", "N"),
+    ("relaxed_share", "share relaxed in the hold", ""),
+];
+
+/// Name of the column that says why a run has no results.
+const REFUSED: &str = "refused";
+
+/// The result columns of a sweep.
+pub(super) fn results(sweep: &Sweep) -> Vec<ResultColumn> {
+    let of = |name: String, label: String, unit| ResultColumn { name, label, unit };
+    let whole = WHOLE_RUN.iter().map(|(name, label, unit)| of((*name).to_owned(), (*label).to_owned(), *unit));
+    let steps = (1..=sweep.steps()).flat_map(|step| {
+        STEP.iter()
+            .map(move |(name, label, unit)| of(format!("step_{step}_{name}"), format!("Step {step}: {label}"), *unit))
+    });
+    whole.chain(steps).collect()
+}
+
+/// All columns: the number of the run, the swept numbers, the results, and why there are none.
+pub(super) fn fields(sweep: &Sweep) -> Vec<Field> {
+    let swept = sweep.numbers().iter().map(|number| Field::new(&number.column, Kind::Number));
+    let results = results(sweep).into_iter().map(|column| Field::new(column.name, Kind::Number));
+    [Field::new("run", Kind::Count)]
+        .into_iter()
+        .chain(swept)
+        .chain(results)
+        .chain([Field::new(REFUSED, Kind::Text)])
+        .collect()
+}
+
+/// Simulates the runs with these indices, and hands each to `tell` once it is done.
+pub(super) fn simulated(sweep: &Sweep, path: &Path, runs: std::ops::Range<u64>, mut tell: impl FnMut()) -> Rows {
+    let results = results(sweep).len();
+    let mut numbers: Vec<Vec<Option<f64>>> = vec![Vec::new(); sweep.numbers().len() + results];
+    let (mut counts, mut reasons) = (Vec::new(), Vec::new());
+    for run in runs {
+        let (values, protocol) = sweep.run(run);
+        let outcome = protocol
+            .map_err(|error| without(path, &error.to_string()))
+            .and_then(|protocol| outcome(&protocol, sweep.steps()));
+        let (row, reason) = match outcome {
+            Ok(row) => (row, None),
+            Err(reason) => (vec![None; results], Some(reason)),
+        };
+        counts.push(i64::try_from(run + 1).unwrap_or(i64::MAX));
+        for (column, value) in numbers.iter_mut().zip(values.into_iter().map(Some).chain(row)) {
+            // + 0.0 turns −0 into 0.
+            column.push(value.map(|value| value + 0.0));
+        }
+        reasons.push(reason);
+        tell();
+    }
+    let numbers = numbers.into_iter().map(Values::Number);
+    let columns = [Values::Count(counts)].into_iter().chain(numbers).chain([Values::Text(reasons)]);
+    Rows {
+        columns: columns.collect(),
+    }
+}
+
+/// From the first and the last column: how many rows were refused, and the number and reason of the first that was.
+pub(super) fn refusals(runs: &Values, reasons: &Values) -> (u64, Option<(i64, String)>) {
+    let (Values::Count(runs), Values::Text(reasons)) = (runs, reasons) else {
+        return (0, None);
+    };
+    let mut refused = runs.iter().zip(reasons).filter_map(|(run, reason)| Some((*run, reason.clone()?)));
+    let first = refused.next();
+    (first.iter().count() as u64 + refused.count() as u64, first)
+}
+
+fn outcome(protocol: &Protocol, steps: usize) -> Result<Vec<Option<f64>>, String> {
+    let refused = |error: palpate::simulate::SimulateError| error.to_string();
+    let whole = summary(protocol.drive(), &protocol.model, &protocol.sampling).map_err(refused)?;
+    let ends = step_ends(&protocol.steps, &protocol.model).map_err(refused)?;
+    Ok(whole_run(&whole).into_iter().chain(of_steps(protocol, &ends, steps)).collect())
+}
+
+fn whole_run(run: &Summary) -> [Option<f64>; WHOLE_RUN.len()] {
+    let lost = run.events.iter().find(|event| event.kind == ContactEventKind::Lost);
+    [
+        Some(run.peak_force),
+        Some(run.peak_time),
+        Some(run.end_time),
+        Some(run.force),
+        Some(run.displacement),
+        Some(run.strain),
+        Some(run.excess_strain),
+        Some(run.work),
+        Some(run.given_back),
+        run.stored,
+        run.lost,
+        lost.map(|event| event.time),
+    ]
+}
+
+/// Three numbers for every `[[step]]` table: force after its ramp, force at its end, and which share its hold relaxed.
+fn of_steps(protocol: &Protocol, ends: &[StepEnd], steps: usize) -> Vec<Option<f64>> {
+    let mut row = Vec::with_capacity(steps * STEP.len());
+    let mut before = 0.0;
+    for table in 1..=steps {
+        let parts: Vec<(ProgramStep, f64)> = protocol
+            .steps
+            .iter()
+            .zip(&protocol.written)
+            .zip(ends)
+            .filter(|((_, written), _)| **written == table)
+            .map(|((step, _), end)| (*step, end.force))
+            .collect();
+        let (mut ramp, mut end, mut relaxed) = (None, None, None);
+        for (step, force) in parts {
+            match step {
+                ProgramStep::HoldPosition { .. } => relaxed = (before > 0.0).then(|| 1.0 - force / before),
+                ProgramStep::HoldForce { .. } => {}
+                ProgramStep::Move { .. } | ProgramStep::MoveToForce { .. } | ProgramStep::Press { .. } => {
+                    ramp = Some(force);
+                }
+            }
+            (before, end) = (force, Some(force));
+        }
+        row.extend([ramp, end, relaxed]);
+    }
+    row
+}
+
+/// A message without the path of the protocol in front, which the whole table shares.
+fn without(path: &Path, message: &str) -> String {
+    let path = path.display().to_string();
+    message
+        .strip_prefix(&path)
+        .map_or(message, |rest| rest.trim_start_matches([':', ',', ' ']))
+        .to_owned()
+}

@@ -1,0 +1,84 @@
+//! The numbers of a protocol that can be replaced.
+
+use palpate::units::Dimension;
+
+use super::{
+    protocol::{ProtocolTables, StepTable},
+    quantity::QuantityText,
+};
+
+/// A number that stands in a protocol.
+pub(super) struct Number<'t> {
+    /// Its path, such as `law.exponent` or `step[2].rate`.
+    pub(super) path: String,
+    pub(super) slot: Slot<'t>,
+}
+
+/// Where a number stands.
+pub(super) enum Slot<'t> {
+    /// A number without a unit.
+    Bare(&'t mut f64),
+    /// A quantity with its unit.
+    Quantity(&'t mut QuantityText, Dimension),
+}
+
+/// All numbers that stand in the tables, in their order.
+pub(super) fn numbers(tables: &mut ProtocolTables) -> Vec<Number<'_>> {
+    let mut found = Vec::new();
+    let mut bare = |path: &str, number| found.push(of(path, Slot::Bare(number)));
+    bare("law.exponent", &mut tables.law.exponent);
+    if let Some(layers) = &mut tables.contact.layers {
+        bare("contact.layers", layers);
+    }
+    let specimen = &mut tables.specimen;
+    if let Some(ratio) = &mut specimen.poisson_ratio {
+        bare("specimen.poisson_ratio", ratio);
+    }
+    let mut quantity = |path: &str, text, dimension| found.push(of(path, Slot::Quantity(text, dimension)));
+    quantity("law.rate_coefficient", &mut tables.law.rate_coefficient, Dimension::Rate);
+    for (path, text, dimension) in [
+        ("specimen.radius", &mut specimen.radius, Dimension::Length),
+        ("specimen.diameter", &mut specimen.diameter, Dimension::Length),
+        ("specimen.width", &mut specimen.width, Dimension::Length),
+        ("specimen.thickness", &mut specimen.thickness, Dimension::Length),
+        ("specimen.area", &mut specimen.area, Dimension::Area),
+        ("specimen.length", &mut specimen.length, Dimension::Length),
+        ("specimen.depth", &mut specimen.depth, Dimension::Length),
+        ("specimen.modulus", &mut specimen.modulus, Dimension::Pressure),
+        ("contact.layer_thickness", &mut tables.contact.layer_thickness, Dimension::Length),
+        ("output.sample_rate", &mut tables.output.sample_rate, Dimension::Frequency),
+    ] {
+        if let Some(text) = text {
+            quantity(path, text, dimension);
+        }
+    }
+    for (index, time) in tables.output.times.iter_mut().flatten().enumerate() {
+        quantity(&format!("output.times[{}]", index + 1), time, Dimension::Time);
+    }
+    for (index, step) in tables.step.iter_mut().enumerate() {
+        for (name, text, dimension) in in_step(step) {
+            if let Some(text) = text {
+                quantity(&format!("step[{}].{name}", index + 1), text, dimension);
+            }
+        }
+    }
+    found
+}
+
+fn in_step(step: &mut StepTable) -> [(&'static str, &mut Option<QuantityText>, Dimension); 6] {
+    [
+        ("to", &mut step.to, Dimension::Length),
+        ("to_force", &mut step.to_force, Dimension::Force),
+        ("rate", &mut step.rate, Dimension::Speed),
+        ("force_rate", &mut step.force_rate, Dimension::ForceRate),
+        ("hold", &mut step.hold, Dimension::Time),
+        ("hold_force", &mut step.hold_force, Dimension::Time),
+    ]
+}
+
+fn of<'t>(path: &str, slot: Slot<'t>) -> Number<'t> {
+    Number {
+        path: path.to_owned(),
+        slot,
+    }
+}

@@ -1,0 +1,45 @@
+//! What can go wrong with a table.
+
+use std::io;
+
+use parquet::errors::ParquetError;
+
+/// Why a table cannot be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum TableError {
+    /// The operating system refuses.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// The file is no Parquet, or a damaged one.
+    #[error("expected a whole Parquet file ({message})")]
+    Parquet {
+        /// What the reader says.
+        message: String,
+    },
+    /// A column that palpate does not write.
+    #[error("expected columns of whole numbers, numbers or texts, found {column} of another kind")]
+    Foreign {
+        /// Its name.
+        column: String,
+    },
+    /// Rows that do not belong to the table.
+    #[error("expected rows of the columns of the table, found others")]
+    OtherColumns,
+}
+
+impl From<ParquetError> for TableError {
+    fn from(error: ParquetError) -> Self {
+        match error {
+            // An error of the disk comes wrapped, and its kind says what would help.
+            ParquetError::External(source) => match source.downcast::<io::Error>() {
+                Ok(error) => Self::Io(*error),
+                Err(source) => Self::Parquet {
+                    message: source.to_string(),
+                },
+            },
+            error => Self::Parquet {
+                message: error.to_string(),
+            },
+        }
+    }
+}
