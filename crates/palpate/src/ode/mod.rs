@@ -5,7 +5,10 @@
 //! over to its steady state (`contact::element`); it is of high order because the golden numbers are asked for to
 //! nine digits and a reader of the strain wave should not meet the integrator in it.
 
+mod lanes;
 mod tableau;
+
+pub(crate) use lanes::Lanes;
 
 use tableau::{A, C, D, E3, E5};
 
