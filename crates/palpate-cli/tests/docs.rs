@@ -211,14 +211,14 @@ const MAY_USE: [(&str, &[&str]); 17] = [
     ("special", &["vector"]),
     ("latency", &["vector"]),
     ("laws", &["latency", "special", "vector"]),
-    ("contact", &["latency", "ode", "units"]),
+    ("contact", &["latency", "ode", "units", "vector"]),
     ("record", &["statistics"]),
     ("strain", &["contact"]),
     ("identify", &["contact", "latency", "laws", "random", "statistics", "vector"]),
     ("choose", &["identify", "laws", "statistics"]),
     ("segment", &["contact", "identify", "record", "statistics"]),
-    ("simulate", &["contact", "latency", "ode"]),
-    ("batch", &["contact", "ode", "simulate", "vector"]),
+    ("simulate", &["contact", "latency", "ode", "vector"]),
+    ("batch", &["contact", "latency", "ode", "simulate", "vector"]),
     ("test_problems", &["contact", "latency", "simulate", "random"]),
 ];
 

@@ -8,7 +8,7 @@
 
 use fearless_simd::Simd;
 
-use super::law::{BLOCK, Power, block, by_power, each, signed_power};
+use crate::latency::lanes::{BLOCK, Power, block, by_power, each, signed_power};
 use crate::ode::Lanes;
 
 /// Contacts that go through together; their layers are vectors enough.
@@ -116,12 +116,6 @@ impl Cascade {
     /// Displacements of the nodes behind the surface over the depth, node by node.
     pub(super) fn nodes(&self) -> &[f64] {
         &self.nodes.state
-    }
-
-    /// Steps accepted and tried.
-    #[cfg(test)]
-    pub(super) fn steps(&self) -> (u64, u64) {
-        (self.nodes.steps, self.nodes.tried)
     }
 
     /// Goes on for `elapsed` (s) with the surfaces going from `surface` at `speed` (1/s), both over the depth. `width` are first steps (s),

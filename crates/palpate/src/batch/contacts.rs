@@ -6,11 +6,11 @@ use std::ops::Range;
 use fearless_simd::{Simd, dispatch};
 
 use super::cascade::{self, Cascade, Stack};
-use super::law::Power;
 use super::layer::{self, ContactLayers, Laws};
 use super::parallel::for_each_part;
 use super::stops::Stops;
 use crate::contact::Shape;
+use crate::latency::lanes::Power;
 use crate::simulate::{ContactModel, Motion, Sampling, Separation, SimulateError, simulate_force, strain_wave};
 use crate::vector::level;
 

@@ -5,7 +5,7 @@
 
 use fearless_simd::Simd;
 
-use super::law::{BLOCK, Power, attraction, block, by_power, each, relaxed, steady_excess};
+use crate::latency::lanes::{BLOCK, Power, attraction, block, by_power, each, relaxed, steady_excess};
 use crate::ode::Lanes;
 use crate::vector::elementary::{exp, exp_m1, ln_1p};
 

@@ -10,12 +10,10 @@
 //! | `stops.rs` | a group of contacts on its way from knot to knot and sample to sample |
 //! | `layer.rs` | contact layers: closed form in holds, regularised equation in ramps |
 //! | `cascade.rs` | all layers |
-//! | `law.rs` | the law, lane by lane |
 //! | `parallel.rs` | groups spread over cores |
 
 mod cascade;
 mod contacts;
-mod law;
 mod layer;
 mod parallel;
 mod stops;

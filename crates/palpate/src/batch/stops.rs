@@ -84,9 +84,9 @@ impl<'a, const L: usize> Stops<'a, L> {
             piece: [0.0; L],
         };
         let mut going = false;
-        for lane in 0..L {
+        for (lane, &target) in targets.iter().enumerate() {
             let (batch, contact) = (self.batch, self.contact[lane]);
-            if self.time[lane] >= targets[lane] {
+            if self.time[lane] >= target {
                 continue;
             }
             going = true;
@@ -96,7 +96,7 @@ impl<'a, const L: usize> Stops<'a, L> {
             let knot = self.knot[lane];
             let (begin, end) = (batch.times[knot], batch.times[knot + 1]);
             let rise = batch.displacements[knot + 1] - batch.displacements[knot];
-            let until = targets[lane].min(end);
+            let until = target.min(end);
             leg.is_new[lane] = self.time[lane] == begin;
             leg.piece[lane] = end - begin;
             leg.elapsed[lane] = until - self.time[lane];

@@ -20,7 +20,7 @@ mod layers;
 mod specimen;
 
 pub(crate) use balance::{Layer, carried_at, share};
-pub(crate) use element::Element;
+pub(crate) use element::{Element, Ramps};
 pub(crate) use forced::{Body, Forced, Stopped};
 pub(crate) use free_surface::FreeSurface;
 pub use layers::{Layers, LayersError};

@@ -3,10 +3,8 @@
 use fearless_simd::{Simd, SimdBase, f64x8};
 
 use super::STAGES;
+use super::column::{ESTIMATE, WIDTH, sums, sums_of_any};
 use super::tableau::{A, C, E3, E5};
-
-/// Numbers in one vector.
-const WIDTH: usize = 8;
 
 /// Dormand–Prince 8(5,3) for `L` systems of the same size side by side, `L` a multiple of eight.
 ///
@@ -113,13 +111,19 @@ impl<const L: usize> Lanes<L> {
     fn advance<S: Simd>(&mut self, simd: S, width: &[f64; L], weights: &[(usize, f64)], before: usize) {
         let len = self.state.len();
         let stages = &self.stages[..before * len];
-        for (index, out) in self.point.chunks_exact_mut(WIDTH).enumerate() {
-            let at = index * WIDTH;
-            let sum = weighted(simd, weights, stages, len, at);
-            let width = f64x8::from_slice(simd, &width[at % L..at % L + WIDTH]);
-            let from = f64x8::from_slice(simd, &self.state[at..at + WIDTH]);
-            (from + width * sum).store_slice(out);
-        }
+        let (state, point) = (&self.state, &mut self.point);
+        sums_of_any(
+            simd,
+            weights,
+            (stages, len),
+            (0, len),
+            #[inline(always)]
+            |at, sum| {
+                let width = f64x8::from_slice(simd, &width[at % L..at % L + WIDTH]);
+                let from = f64x8::from_slice(simd, &state[at..at + WIDTH]);
+                (from + width * sum).store_slice(&mut point[at..at + WIDTH]);
+            },
+        );
     }
 
     /// Hairer's combination of the two estimates, in units of the tolerance.
@@ -127,15 +131,21 @@ impl<const L: usize> Lanes<L> {
     fn errors<S: Simd>(&self, simd: S, width: &[f64; L]) -> [f64; L] {
         let len = self.state.len();
         let (mut fifth, mut third) = ([0.0; L], [0.0; L]);
-        for at in (0..len).step_by(WIDTH) {
-            let lane = at % L;
-            for (sums, weights) in [(&mut fifth, E5), (&mut third, E3)] {
-                let sums = &mut sums[lane..lane + WIDTH];
-                let estimate = weighted(simd, weights, &self.stages, len, at);
-                let tolerance = f64x8::from_slice(simd, &self.tolerance[lane..lane + WIDTH]);
-                let estimate = estimate / tolerance;
-                (f64x8::from_slice(simd, sums) + estimate * estimate).store_slice(sums);
-            }
+        for (squares, terms) in [(&mut fifth, E5), (&mut third, E3)] {
+            let stages = (self.stages.as_slice(), len);
+            sums::<S, ESTIMATE>(
+                simd,
+                terms,
+                stages,
+                (0, len),
+                #[inline(always)]
+                |at, sum| {
+                    let lane = at % L;
+                    let estimate = sum / f64x8::from_slice(simd, &self.tolerance[lane..lane + WIDTH]);
+                    let squares = &mut squares[lane..lane + WIDTH];
+                    (f64x8::from_slice(simd, squares) + estimate * estimate).store_slice(squares);
+                },
+            );
         }
         let components = (len / L) as f64;
         let mut error = [0.0; L];
@@ -164,17 +174,6 @@ impl<const L: usize> Lanes<L> {
             }
         }
     }
-}
-
-/// Σ weight · stage for eight numbers from `at` on.
-#[inline(always)]
-fn weighted<S: Simd>(simd: S, weights: &[(usize, f64)], stages: &[f64], len: usize, at: usize) -> f64x8<S> {
-    let mut sum = f64x8::splat(simd, 0.0);
-    for &(stage, weight) in weights {
-        let from = stage * len + at;
-        sum = sum + f64x8::splat(simd, weight) * f64x8::from_slice(simd, &stages[from..from + WIDTH]);
-    }
-    sum
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The law, lane by lane.
+//! The law, lane by lane: functions without branches for kernels over many contacts or layers.
 
 use crate::vector::elementary::{exp, exp_m1, ln, ln_1p};
 
@@ -8,7 +8,7 @@ const NEGLIGIBLE: f64 = 1e-60;
 
 /// Which power a group of lanes needs: one that all share, or one each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Power {
+pub(crate) enum Power {
     One,
     Two,
     Three,
@@ -18,7 +18,7 @@ pub(super) enum Power {
 
 impl Power {
     /// The cheapest that serves all exponents.
-    pub(super) fn of(exponents: &[f64]) -> Self {
+    pub(crate) fn of(exponents: &[f64]) -> Self {
         let all = |n: f64| exponents.iter().all(|found| *found == n);
         match () {
             () if all(1.0) => Self::One,
@@ -58,14 +58,14 @@ macro_rules! by_power {
     };
 }
 
-pub(super) use by_power;
+pub(crate) use by_power;
 
 /// Numbers that become one vector, or two.
-pub(super) const BLOCK: usize = 8;
+pub(crate) const BLOCK: usize = 8;
 
 /// One block of a column, by value: what the compiler knows not to overlap, it turns into vectors.
 #[inline(always)]
-pub(super) fn block(column: &[f64], at: usize) -> [f64; BLOCK] {
+pub(crate) fn block(column: &[f64], at: usize) -> [f64; BLOCK] {
     let mut copy = [0.0; BLOCK];
     copy.copy_from_slice(&column[at..at + BLOCK]);
     copy
@@ -73,18 +73,21 @@ pub(super) fn block(column: &[f64], at: usize) -> [f64; BLOCK] {
 
 /// `f` of every lane of a block.
 #[inline(always)]
-pub(super) fn each(f: impl Fn(usize) -> f64) -> [f64; BLOCK] {
+pub(crate) fn each(f: impl Fn(usize) -> f64) -> [f64; BLOCK] {
     let mut out = [0.0; BLOCK];
-    for lane in 0..BLOCK {
-        out[lane] = f(lane);
+    for (lane, out) in out.iter_mut().enumerate() {
+        *out = f(lane);
     }
     out
 }
 
+/// Excess strains below this move nothing: not only their fifth powers are normal doubles, but the squares of errors made of them.
+const STILL: f64 = 1e-30;
+
 /// sgn(x)|x|ⁿ; `rest` is where the law is made linear (0: nowhere).
 #[inline(always)]
-pub(super) fn signed_power(power: Power, x: f64, n: f64, rest: f64) -> f64 {
-    let x = if x.abs() < NEGLIGIBLE { 0.0 } else { x };
+pub(crate) fn signed_power(power: Power, x: f64, n: f64, rest: f64) -> f64 {
+    let x = if x.abs() < STILL { 0.0 } else { x };
     match power {
         Power::One => x,
         Power::Two => x * x.abs(),
@@ -104,7 +107,7 @@ pub(super) fn signed_power(power: Power, x: f64, n: f64, rest: f64) -> f64 {
 
 /// Excess strain a time `elapsed` after it was `x`, equations (4) and (5).
 #[inline(always)]
-pub(super) fn relaxed(power: Power, x: f64, n: f64, v: f64, elapsed: f64) -> f64 {
+pub(crate) fn relaxed(power: Power, x: f64, n: f64, v: f64, elapsed: f64) -> f64 {
     let size = x.abs();
     let size = if size < NEGLIGIBLE { 0.0 } else { size };
     let vt = v * elapsed;
@@ -129,7 +132,7 @@ pub(super) fn relaxed(power: Power, x: f64, n: f64, v: f64, elapsed: f64) -> f64
 
 /// q = (1 − sgn(z)|z|ⁿ)/(1 − z) from `distance` = 1 − z ≠ 0.
 #[inline(always)]
-pub(super) fn attraction(power: Power, distance: f64, n: f64) -> f64 {
+pub(crate) fn attraction(power: Power, distance: f64, n: f64) -> f64 {
     let z = 1.0 - distance;
     match power {
         Power::One => 1.0,
@@ -159,7 +162,7 @@ pub(super) fn attraction(power: Power, distance: f64, n: f64) -> f64 {
 
 /// sgn(g) (|g|/v)^(1/n), the excess strain that a drive g ≠ 0 keeps up.
 #[inline(always)]
-pub(super) fn steady_excess(g: f64, n: f64, v: f64) -> f64 {
+pub(crate) fn steady_excess(g: f64, n: f64, v: f64) -> f64 {
     let ratio = g.abs() / v;
     let ratio = if ratio > f64::MIN_POSITIVE { ratio } else { f64::MIN_POSITIVE };
     let size = exp(ln(ratio) / n);
