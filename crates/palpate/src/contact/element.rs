@@ -47,6 +47,8 @@ pub(crate) struct Ramp {
     side: f64,
     /// g/x*, 1/s: what turns time into that of the steps and of the approach.
     rate: f64,
+    /// Length of the piece, in that time.
+    until: f64,
     /// y over time, until the steady state is near or the piece ends.
     steps: Vec<Step<[f64; 1]>>,
     /// What follows.
@@ -172,6 +174,7 @@ impl Element {
             steady,
             side,
             rate,
+            until,
             steps,
             approach,
         })
@@ -202,13 +205,14 @@ impl Element {
         }
     }
 
-    /// Ends of the integration steps (s from the start of the piece); between two of them the excess is smooth.
+    /// Ends of the integration steps inside the piece (s from its start); between two of them the excess is smooth. The last step may
+    /// be that of an earlier ramp and reach beyond the piece.
     pub(crate) fn step_ends(&self) -> impl Iterator<Item = f64> + '_ {
-        let (steps, rate) = match self {
-            Self::Ramp(ramp) => (ramp.steps.as_slice(), ramp.rate),
-            Self::Hold { .. } => (&[] as &[_], 1.0),
+        let (steps, rate, until) = match self {
+            Self::Ramp(ramp) => (ramp.steps.as_slice(), ramp.rate, ramp.until),
+            Self::Hold { .. } => (&[] as &[_], 1.0, 0.0),
         };
-        steps.iter().map(move |step| step.end() / rate)
+        steps.iter().map(Step::end).take_while(move |end| *end < until).map(move |end| end / rate)
     }
 }
 
@@ -301,7 +305,8 @@ mod tests {
                 for i in 1..=200 {
                     let t = 0.045 * f64::from(i);
                     let off = (element.excess_at(t) - alone.excess_at(t)).abs();
-                    assert!(off < 3e-12 * steady, "n = {n}, from {part}, t = {t}: {off:e}");
+                    // At x = 0 a power that is not whole has a kink, which costs a step an order or two.
+                    assert!(off < 5e-11 * steady, "n = {n}, from {part}, t = {t}: {off:e}");
                 }
             }
         }
