@@ -203,7 +203,7 @@ fn the_guide_explains_every_finding() {
 }
 
 /// The order of modules that `ARCHITECTURE.md` draws; `analysis` may use all of them.
-const MAY_USE: [(&str, &[&str]); 16] = [
+const MAY_USE: [(&str, &[&str]); 17] = [
     ("vector", &[]),
     ("ode", &[]),
     ("units", &[]),
@@ -212,13 +212,14 @@ const MAY_USE: [(&str, &[&str]); 16] = [
     ("special", &["vector"]),
     ("latency", &["vector"]),
     ("laws", &["latency", "special", "vector"]),
-    ("contact", &["latency", "ode", "units"]),
+    ("contact", &["latency", "ode", "units", "vector"]),
     ("record", &["statistics"]),
     ("strain", &["contact"]),
     ("identify", &["contact", "latency", "laws", "random", "statistics", "vector"]),
     ("choose", &["identify", "laws", "statistics"]),
     ("segment", &["contact", "identify", "record", "statistics"]),
-    ("simulate", &["contact", "latency", "ode", "special"]),
+    ("simulate", &["contact", "latency", "ode", "special", "vector"]),
+    ("batch", &["contact", "latency", "ode", "simulate", "vector"]),
     ("test_problems", &["contact", "latency", "simulate", "random"]),
 ];
 

@@ -1,14 +1,20 @@
-//! Times the kernels that users wait for; prints one JSON object a line (read by `validation/peers.py`).
+//! Times the kernels that users wait for; prints one JSON object a line (read by `validation/peers.py` and
+//! `validation/simulation_speed.py`, which asks for `--simulations` alone).
 //!
 //! Run it with `cargo run --release -p palpate --example timing`.
 
 use std::hint::black_box;
 use std::time::Instant;
 
+use palpate::batch::Batch;
 use palpate::choose::{CompareOptions, compare_laws};
+use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::identify::{ExponentChoice, FitOptions, LawOptions, Samples, fit_hold, fit_law};
+use palpate::latency::LatencyLaw;
 use palpate::laws::Law;
-use palpate::simulate::{ContactState, Sampling, Separation, simulate, simulate_force};
+use palpate::simulate::{
+    ContactModel, ContactState, Motion, Sampling, Separation, simulate, simulate_force, strain_wave_within,
+};
 use palpate::test_problems::{Noise, noisy_hold, paper_ball, paper_test_a};
 
 fn main() {
@@ -27,6 +33,11 @@ fn main() {
             black_box(contact.step(black_box(&model), 1e-3, displacement)).is_ok()
         })
     });
+    cascades();
+    batches();
+    if std::env::args().any(|argument| argument == "--simulations") {
+        return;
+    }
     let (times, values) = noisy_hold(1000, 5.0, 1e-3);
     let options = FitOptions::default();
     report("fit_hold_1000", 400, || {
@@ -38,6 +49,46 @@ fn main() {
     });
     fit_laws();
     compare();
+}
+
+/// All layers of the paper's ball through test (a), each step within 1e-8 of the travel.
+fn cascades() {
+    for layers in [8.0, 512.0] {
+        let model = ContactModel {
+            layers: Layers::new(layers).expect("whole and above 0"),
+            ..paper_ball(Separation::Bonded)
+        };
+        let sampling = Sampling::Times(vec![66.0]);
+        let runs = if layers < 100.0 { 200 } else { 9 };
+        report(&format!("strain_wave_{layers}_layers"), runs, || {
+            black_box(strain_wave_within(black_box(&paper_test_a()), &model, &sampling, 1e-8)).is_ok()
+        });
+    }
+}
+
+/// 10,000 balls, each with its own numbers, squeezed by 5 mm within 0.6 s and held for 10 s; prints the forces of the first four.
+fn batches() {
+    let motion = Motion::new(vec![0.0, 0.6, 10.6], vec![0.0, 0.005, 0.005]).expect("time rises");
+    for (name, spread) in [("", 0.0), ("_own_exponents", 2.0)] {
+        let models: Vec<ContactModel> = (0..10_000).map(|index| ball(f64::from(index) / 10_000.0, spread)).collect();
+        let batch = Batch::shared(&models, &motion).expect("the ball takes 5 mm");
+        report(&format!("batch_force{name}"), 15, || black_box(batch.final_forces()).is_ok());
+        report(&format!("batch_layers{name}"), 7, || black_box(batch.strains_at(&[10.6], 1e-7)).is_ok());
+        let forces = batch.final_forces().expect("numbers in range");
+        println!("{{\"name\":\"forces{name}\",\"seconds\":0,\"forces\":{:?}}}", &forces[9_996..]);
+    }
+}
+
+/// A ball somewhat like the paper's: `part` from 0 to 1 says how much.
+fn ball(part: f64, spread: f64) -> ContactModel {
+    let shape = Shape::Ball {
+        radius: 0.03 + 0.01 * part,
+    };
+    ContactModel {
+        specimen: Specimen::new(shape, 2e4 + 1e4 * part, Sides::Two).expect("above 0"),
+        law: LatencyLaw::new(5.0 - spread * part, 1e4 * (1.0 + part)).expect("above 0"),
+        ..paper_ball(Separation::Bonded)
+    }
 }
 
 /// Every law fitted to 200 and to 1000 samples of a hold that is its own or close to it.

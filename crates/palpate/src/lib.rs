@@ -19,6 +19,7 @@
 //! | [`choose`] | which law to use, by what each foretells |
 //! | [`contact`] | the body, its layers and its contact, equations (7) and (11) |
 //! | [`simulate`] | from a motion of the jaw to the force |
+//! | [`batch`] | thousands of contacts at once |
 //! | [`analysis`] | all of it for one record, with findings in plain words |
 //! | [`test_problems`] | known problems with known answers |
 //!
@@ -47,6 +48,7 @@
 //! ```
 
 pub mod analysis;
+pub mod batch;
 pub mod choose;
 pub mod contact;
 pub mod identify;

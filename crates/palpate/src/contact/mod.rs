@@ -27,7 +27,7 @@ mod specimen;
 
 pub(crate) use balance::{Layer, carried_at, share};
 pub use curve::{Curve, CurveError};
-pub(crate) use element::Element;
+pub(crate) use element::{Element, Ramps};
 pub use equilibrium::{Equilibrium, EquilibriumError};
 pub(crate) use forced::{Body, Forced, Stopped};
 pub(crate) use free_surface::FreeSurface;

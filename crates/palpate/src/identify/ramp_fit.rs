@@ -18,7 +18,7 @@ use super::samples::Samples;
 use super::separable::{Ending, Shapes, Solution, Target, Termination, Work, polished, refine};
 use super::uncertainty::{Assessed, Scale};
 use super::{FitError, FitOptions, NoiseChoice};
-use crate::contact::{Element, Work as Effort};
+use crate::contact::{Element, Ramps, Work as Effort};
 use crate::latency::{LatencyLaw, decay_many, decay_with_gradient_many};
 use crate::laws::{ExponentChoice, Loading};
 
@@ -158,7 +158,8 @@ fn excess_share(loading: &Loading, log_rate: f64, exponent: f64) -> f64 {
     let mut effort = Effort::default();
     loading.pieces().fold(0.0, |excess, piece| {
         let duration = piece.from - piece.to;
-        Element::solve(law, excess, piece.change / duration, duration, &mut effort).excess_at(duration)
+        let ramps = &mut Ramps::default();
+        Element::solve(law, excess, piece.change / duration, duration, ramps, &mut effort).excess_at(duration)
     })
 }
 

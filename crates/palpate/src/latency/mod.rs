@@ -13,9 +13,11 @@
 //! | `law.rs` | the law with its numbers put in, and the linear law | (1), (2), (3), (10) |
 //! | `decay.rs` | the closed form φ and its derivatives, one value at a time | (4), (5) |
 //! | `batch.rs` | the same for many times at once, at the speed of vector units | (4), (5) |
+//! | `lanes.rs` | the law for kernels over many contacts or layers | (2)–(5) |
 
 mod batch;
 mod decay;
+pub(crate) mod lanes;
 mod law;
 
 pub use batch::{decay_many, decay_with_gradient_many, decay_with_log_rate_many};

@@ -5,7 +5,12 @@
 //! over to its steady state (`contact::element`); it is of high order because the golden numbers are asked for to
 //! nine digits and a reader of the strain wave should not meet the integrator in it.
 
+mod column;
+mod lanes;
 mod tableau;
+
+pub(crate) use column::{Column, Slopes, WIDTH};
+pub(crate) use lanes::Lanes;
 
 use tableau::{A, C, D, E3, E5};
 
@@ -62,6 +67,7 @@ pub(crate) struct Step<S> {
 
 impl<S: State> Step<S> {
     /// The solution at `time` inside the step.
+    #[inline(always)]
     pub(crate) fn at(&self, time: f64) -> S {
         let x = (time - self.start) / self.width;
         S::build(self.from.len(), |i| {
@@ -71,6 +77,24 @@ impl<S: State> Step<S> {
             }
             self.from.get(i) + y
         })
+    }
+
+    /// The same step `by` later.
+    pub(crate) fn later(&self, by: f64) -> Self {
+        Self {
+            start: self.start + by,
+            ..self.clone()
+        }
+    }
+
+    /// The state at its start.
+    pub(crate) fn from(&self) -> &S {
+        &self.from
+    }
+
+    /// Start of the step.
+    pub(crate) fn start(&self) -> f64 {
+        self.start
     }
 
     /// End of the step.

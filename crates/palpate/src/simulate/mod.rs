@@ -43,7 +43,7 @@ pub use step::{ContactState, StepError};
 pub use summary::{Summary, summary};
 pub use trajectory::{Sampling, Trajectory, simulate, simulate_force};
 pub use walk::{ContactEvent, ContactEventKind};
-pub use wave::{StrainWave, strain_wave};
+pub use wave::{StrainWave, strain_wave, strain_wave_within};
 
 use crate::contact::SpecimenError;
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{ContactModel, Drive, ForceHistory, Motion, Separation, SimulateError, Work};
-use crate::contact::{Body, Element, Forced, FreeSurface, Specimen, Stopped};
+use crate::contact::{Body, Element, Forced, FreeSurface, Ramps, Specimen, Stopped};
 
 /// A contact that was lost or regained.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -86,6 +86,7 @@ pub(super) struct Walker<'a, V> {
     pub(super) model: &'a ContactModel,
     visit: V,
     contact: Contact,
+    ramps: Ramps,
     events: Vec<ContactEvent>,
     work: Work,
 }
@@ -96,6 +97,7 @@ impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
             model,
             visit,
             contact: Contact::Touching { excess: 0.0 },
+            ramps: Ramps::default(),
             events: Vec::new(),
             work: Work::default(),
         }
@@ -131,7 +133,8 @@ impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
                 state: match self.contact {
                     Contact::Touching { excess } => {
                         let drive = self.model.layers.drive(speed, self.model.specimen.depth());
-                        let element = Element::solve(self.model.law, excess, drive, end - start, &mut self.work);
+                        let element =
+                            Element::solve(self.model.law, excess, drive, end - start, &mut self.ramps, &mut self.work);
                         StretchState::Touching(element)
                     }
                     Contact::Free { surface, since } => StretchState::Free { surface, since },

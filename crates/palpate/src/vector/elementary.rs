@@ -15,14 +15,32 @@ const MANTISSA: u32 = 52;
 /// eˣ; below x = −708 (3e-308) it is 0, above 709 it stays at e⁷⁰⁹ = 8.2e307.
 #[inline(always)]
 pub(crate) fn exp(x: f64) -> f64 {
-    const LOWEST: f64 = -708.0;
-    const HIGHEST: f64 = 709.0;
     let clamped = if x < LOWEST { LOWEST } else { x };
     let clamped = if clamped > HIGHEST { HIGHEST } else { clamped };
-    // x = k ln 2 + r with |r| ≤ ln 2 / 2.
-    let shifted = clamped * LOG2_E + MAGIC;
+    let (series, power) = reduced(clamped);
+    let scaled = (1.0 + series) * power;
+    if x < LOWEST { 0.0 } else { scaled }
+}
+
+/// eˣ − 1, as accurate near x = 0 as elsewhere; −1 below x = −708, and above 709 it stays at e⁷⁰⁹.
+#[inline(always)]
+pub(crate) fn exp_m1(x: f64) -> f64 {
+    let clamped = if x < LOWEST { LOWEST } else { x };
+    let clamped = if clamped > HIGHEST { HIGHEST } else { clamped };
+    let (series, power) = reduced(clamped);
+    // With power = 1 nothing cancels; otherwise the result is no smaller than a quarter.
+    (power - 1.0) + series * power
+}
+
+const LOWEST: f64 = -708.0;
+const HIGHEST: f64 = 709.0;
+
+/// eʳ − 1 and 2ᵏ with x = k ln 2 + r and |r| ≤ ln 2 / 2, for x from [`LOWEST`] to [`HIGHEST`].
+#[inline(always)]
+fn reduced(x: f64) -> (f64, f64) {
+    let shifted = x * LOG2_E + MAGIC;
     let k = shifted - MAGIC;
-    let r = (clamped - k * LN_2_HIGH) - k * LN_2_LOW;
+    let r = (x - k * LN_2_HIGH) - k * LN_2_LOW;
     // Minimax (eʳ − 1 − r)/r²; eʳ within 1.6e-17.
     // Pairs of terms side by side, so that additions need not wait for each other.
     let square = r * r;
@@ -33,10 +51,8 @@ pub(crate) fn exp(x: f64) -> f64 {
         + (2.480_152_129_595_437_6e-5 + 2.755_726_845_999_706_4e-6 * r) * square;
     let third = 2.762_008_844_540_974_6e-7 + 2.510_038_549_551_032e-8 * r;
     let series = first + (second + third * fourth) * fourth;
-    let value = 1.0 + (r + square * series);
-    let power = (shifted.to_bits() << MANTISSA).wrapping_add(1f64.to_bits());
-    let scaled = value * f64::from_bits(power);
-    if x < LOWEST { 0.0 } else { scaled }
+    let power = f64::from_bits((shifted.to_bits() << MANTISSA).wrapping_add(1f64.to_bits()));
+    (r + square * series, power)
 }
 
 /// w = 2ᵏ m with m from √½ to √2, for normal w > 0: k, k in the place of the exponent, and m.
@@ -132,6 +148,19 @@ mod tests {
         assert_eq!((exp(-708.1), exp(f64::NEG_INFINITY)), (0.0, 0.0));
         assert_eq!((exp(710.0), exp(f64::INFINITY)), (exp(709.0), exp(709.0)));
         assert!(exp(f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn exponential_less_one_matches_the_standard_library() {
+        for i in 0..COUNT {
+            let x = 10f64.powf(f64::from(i) * 9e-5 - 15.2);
+            for x in [x, -x] {
+                let expected = if x < -708.0 { -1.0 } else { x.exp_m1() };
+                assert!(x > 709.0 || (exp_m1(x) - expected).abs() <= 5e-16 * expected.abs(), "{x:e}");
+            }
+        }
+        assert_eq!((exp_m1(0.0), exp_m1(-1e300), exp_m1(1e-300)), (0.0, -1.0, 1e-300));
+        assert!(exp_m1(f64::NAN).is_nan());
     }
 
     #[test]

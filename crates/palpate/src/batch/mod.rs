@@ -1,0 +1,21 @@
+//! Thousands of contacts at once, each with its own body, law, layers and motion.
+//!
+//! Contacts stand in columns (a structure of arrays) and go through the kernels side by side, as many as the vector units of the
+//! processor hold, and through its cores in groups. Groups are the same on any number of threads, and so are the results, to the last bit.
+//! Each lane takes steps of its own: a slow or a stiff neighbour changes nothing.
+//!
+//! | file | what |
+//! |---|---|
+//! | `contacts.rs` | `Batch`: the contacts in columns, checked; forces and strains of all of them |
+//! | `stops.rs` | a group of contacts on its way from knot to knot and sample to sample |
+//! | `layer.rs` | contact layers: closed form in holds, regularised equation in ramps |
+//! | `cascade.rs` | all layers |
+//! | `parallel.rs` | groups spread over cores |
+
+mod cascade;
+mod contacts;
+mod layer;
+mod parallel;
+mod stops;
+
+pub use contacts::{Batch, BatchError, LayerStrains};

@@ -1,0 +1,17 @@
+//! Groups spread over cores.
+
+/// Calls `work` with the number and the part of every group: parts of `len` numbers, the last one may be shorter.
+///
+/// Parts are the same on any number of threads, and so are the bits in them.
+pub(super) fn for_each_part(out: &mut [f64], len: usize, work: impl Fn(usize, &mut [f64]) + Sync + Send) {
+    if len == 0 {
+        return;
+    }
+    #[cfg(feature = "rayon")]
+    {
+        use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
+        out.par_chunks_mut(len).enumerate().for_each(|(index, part)| work(index, part));
+    }
+    #[cfg(not(feature = "rayon"))]
+    out.chunks_mut(len).enumerate().for_each(|(index, part)| work(index, part));
+}

@@ -1,0 +1,62 @@
+//! What a simulation costs, counted: a slow-down shows here without a clock.
+
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
+use palpate::contact::Layers;
+use palpate::latency::LatencyLaw;
+use palpate::simulate::{
+    ContactModel, ForceHistory, Sampling, Separation, Work, simulate, strain_wave, strain_wave_within,
+};
+use palpate::test_problems::{paper_ball, paper_test_a};
+
+/// At most as many steps and evaluations as once counted, and at least half of them: fewer would not be the same work.
+fn is_near(work: Work, steps: u64, evaluations: u64) {
+    // Rounding may cost a step more on another machine.
+    assert!(work.steps <= steps + 2 + steps / 50, "{work:?}, expected {steps} steps");
+    assert!(
+        work.evaluations <= evaluations + 40 + evaluations / 50,
+        "{work:?}, expected {evaluations} evaluations"
+    );
+    assert!(2 * work.steps > steps && 2 * work.evaluations > evaluations, "{work:?}");
+}
+
+fn end() -> Sampling {
+    Sampling::Times(vec![66.0])
+}
+
+#[test]
+fn the_papers_test_takes_one_ramp_and_a_little() {
+    let work = simulate(&paper_test_a(), &paper_ball(Separation::Bonded), &end()).unwrap().work;
+    assert_eq!((work.closed_forms, work.ramps, work.events), (6, 6, 0));
+    is_near(work, 28, 482);
+}
+
+#[test]
+fn a_fast_law_costs_no_more() {
+    let model = ContactModel {
+        law: LatencyLaw::new(5.0, 2e14).unwrap(),
+        ..paper_ball(Separation::Bonded)
+    };
+    is_near(simulate(&paper_test_a(), &model, &end()).unwrap().work, 26, 452);
+}
+
+#[test]
+fn all_layers() {
+    let (motion, model) = (paper_test_a(), paper_ball(Separation::Bonded));
+    is_near(strain_wave(&motion, &model, &end()).unwrap().work, 822, 10_850);
+    is_near(strain_wave_within(&motion, &model, &end(), 1e-8).unwrap().work, 261, 3_746);
+    let thin = ContactModel {
+        layers: Layers::new(512.0).unwrap(),
+        ..model
+    };
+    is_near(strain_wave_within(&motion, &thin, &end(), 1e-8).unwrap().work, 4_122, 59_026);
+}
+
+#[test]
+fn a_held_force() {
+    let history = ForceHistory::new(vec![0.0, 1.0, 61.0], vec![0.0, 10.0, 10.0]).unwrap();
+    let work = simulate(&history, &paper_ball(Separation::Bonded), &Sampling::Times(vec![61.0])).unwrap().work;
+    assert_eq!((work.closed_forms, work.ramps), (1, 1));
+    // A ramp of force and a minute of creep.
+    is_near(work, 130, 2_060);
+}
