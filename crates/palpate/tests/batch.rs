@@ -216,7 +216,7 @@ fn wrong_batches_say_which_contact() {
     assert!(matches!(batch.strains_at(&[1.0], 0.1), Err(BatchError::Tolerance { .. })));
     let halves = ContactModel {
         layers: Layers::new(7.5).unwrap(),
-        ..model
+        ..model.clone()
     };
     let batch = Batch::shared(&[model, halves], &motion).unwrap();
     let error = batch.strains_at(&[1.0], 1e-8).unwrap_err();

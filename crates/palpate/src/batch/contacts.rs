@@ -7,7 +7,7 @@ use fearless_simd::{Simd, dispatch};
 
 use super::cascade::{self, Cascade, Stack};
 use super::layer::{self, ContactLayers, Laws};
-use super::parallel::for_each_part;
+use super::parallel::{for_each, for_each_part};
 use super::stops::Stops;
 use crate::contact::{Equilibrium, Shape};
 use crate::latency::lanes::Power;
@@ -302,15 +302,16 @@ impl Batch {
         Ok(())
     }
 
-    /// Fills the rows of the contacts that may be lost with what `simulated` says.
+    /// Fills the rows of the contacts that are simulated alone with what `simulated` says.
     fn one_by_one(
         &self,
         rows: &mut [f64],
         len: usize,
-        simulated: impl Fn(&ContactModel, &Motion) -> Result<Vec<f64>, SimulateError>,
+        simulated: impl Fn(&ContactModel, &Motion) -> Result<Vec<f64>, SimulateError> + Sync + Send,
     ) -> Result<(), BatchError> {
-        for (index, model, motion) in &self.alone {
-            let row = simulated(model, motion).map_err(|source| BatchError::Contact { index: *index, source })?;
+        let alone = for_each(self.alone.len(), |i| simulated(&self.alone[i].1, &self.alone[i].2));
+        for ((index, ..), row) in self.alone.iter().zip(alone) {
+            let row = row.map_err(|source| BatchError::Contact { index: *index, source })?;
             rows[index * len..][..len].copy_from_slice(&row);
         }
         Ok(())

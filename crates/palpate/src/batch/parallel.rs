@@ -15,3 +15,14 @@ pub(super) fn for_each_part(out: &mut [f64], len: usize, work: impl Fn(usize, &m
     #[cfg(not(feature = "rayon"))]
     out.chunks_mut(len).enumerate().for_each(|(index, part)| work(index, part));
 }
+
+/// What `of` makes of every number below `count`, in their order.
+pub(super) fn for_each<T: Send>(count: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    #[cfg(feature = "rayon")]
+    {
+        use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+        (0..count).into_par_iter().map(of).collect()
+    }
+    #[cfg(not(feature = "rayon"))]
+    (0..count).map(of).collect()
+}
