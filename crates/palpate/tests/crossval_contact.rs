@@ -9,7 +9,8 @@ use common::reference;
 use palpate::contact::{Curve, Equilibrium, Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactEventKind, ContactModel, ForceHistory, Motion, Sampling, Separation, simulate, simulate_force, strain_wave,
+    ContactEventKind, ContactModel, ForceHistory, Motion, Sampling, Separation, SimulateError, simulate,
+    simulate_force, strain_wave,
 };
 use serde::Deserialize;
 
@@ -365,4 +366,29 @@ fn bodies_by_tables_and_hertz() {
         }
     }
     verdict.finish();
+}
+
+#[test]
+fn a_wave_that_starts_from_a_squeezed_body_starts_relaxed() {
+    let model = palpate::test_problems::paper_ball(Separation::Bonded);
+    let still = Motion::new(vec![0.0, 5.0, 5.6, 10.0], vec![0.01, 0.01, 0.015, 0.015]).unwrap();
+    let sampling = Sampling::Times(vec![0.0, 2.0, 5.6, 10.0]);
+    let (wave, contact) =
+        (strain_wave(&still, &model, &sampling).unwrap(), simulate(&still, &model, &sampling).unwrap());
+    assert!(distance(&wave.strain[0], &contact.strain) < 1e-11);
+    for strain in &wave.strain {
+        // 5 mm a contact over 35 mm, the same in every layer while nothing moves.
+        assert!((strain[0] - 5.0 / 35.0).abs() < 1e-15 && (strain[1] - 5.0 / 35.0).abs() < 1e-13);
+    }
+}
+
+#[test]
+fn layers_that_relax_too_fast_are_refused_and_do_not_run_on() {
+    let mut model = palpate::test_problems::paper_ball(Separation::Bonded);
+    model.law = LatencyLaw::new(1.0, 1e8).unwrap();
+    let motion = Motion::new(vec![0.0, 1.0, 100.0], vec![0.0, 0.01, 0.01]).unwrap();
+    let sampling = Sampling::Times(vec![100.0]);
+    let refused = strain_wave(&motion, &model, &sampling);
+    assert!(matches!(refused, Err(SimulateError::StiffLayers { .. })), "{refused:?}");
+    assert!(simulate(&motion, &model, &sampling).is_ok());
 }

@@ -68,6 +68,12 @@ impl Column {
         }
     }
 
+    /// Starts from other numbers than 0, all of them followed.
+    pub(crate) fn start_at(&mut self, numbers: impl Iterator<Item = f64>) {
+        self.state[WIDTH..].iter_mut().zip(numbers).for_each(|(slot, number)| *slot = number);
+        self.active = self.len.next_multiple_of(WIDTH);
+    }
+
     /// The numbers.
     pub(crate) fn numbers(&self) -> &[f64] {
         &self.state[WIDTH..WIDTH + self.len]

@@ -90,6 +90,15 @@ pub enum SimulateError {
         /// How far it came, s.
         time: f64,
     },
+    /// Layers that relax too fast for all of them to be followed.
+    #[error(
+        "the layers relax too fast to be followed from t = {time} s on: ask for the contact alone, whose simulation takes any law, or for \
+         fewer layers"
+    )]
+    StiffLayers {
+        /// How far it came, s.
+        time: f64,
+    },
     /// A program without a step that takes time.
     #[error("a program needs a step that takes time, found none")]
     EmptyProgram,

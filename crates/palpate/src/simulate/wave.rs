@@ -35,7 +35,8 @@ pub struct StrainWave {
 /// [`simulate`](super::simulate()) reports.
 ///
 /// # Errors
-/// [`SimulateError::FractionalLayers`] unless the number of layers is whole; otherwise as for `simulate`.
+/// [`SimulateError::FractionalLayers`] unless the number of layers is whole, [`SimulateError::StiffLayers`] for a law so fast that
+/// following the layers would take very long; otherwise as for `simulate`.
 pub fn strain_wave<'a>(
     drive: impl Into<Drive<'a>>,
     model: &ContactModel,
@@ -81,8 +82,10 @@ pub fn strain_wave_within<'a>(
     };
     let last = course.end();
     let (_, walked) = walk(course.drive, model, |stretch| {
-        dispatch!(level(), simd => cascade.pass(simd, stretch, stretch.end == last, &mut wave));
-        Ok(())
+        let passed = dispatch!(level(), simd => cascade.pass(simd, stretch, stretch.end == last, &mut wave));
+        passed.map_err(|elapsed| SimulateError::StiffLayers {
+            time: stretch.start + elapsed,
+        })
     })?;
     wave.work.closed_forms += walked.closed_forms;
     wave.work.ramps += walked.ramps;
@@ -123,6 +126,9 @@ struct Chain<'a> {
 /// its steps to nothing. The law made linear below `rest` follows the same path to within `rest`.
 const STIFFEST: f64 = 1e5;
 
+/// Most steps through one stretch: a second for a few layers. A law so fast that it takes more is out of reach of an explicit method.
+const MOST_STEPS: u64 = 300_000;
+
 /// Part of the tolerance that nodes not reached yet may move in all.
 const UNSEEN: f64 = 1e-6;
 
@@ -154,15 +160,20 @@ impl<'a> Cascade<'a> {
             over_left: column(&|node| 1.0 / (depth - node as f64 * thickness)),
             is_node: column(&|_| 1.0),
         };
-        Self {
-            nodes: Column::new(nodes, tolerance),
-            chain,
+        let mut column = Column::new(nodes, tolerance);
+        // Relaxed at the first knot: the strain spreads evenly from where the jaw stands.
+        if let Drive::Motion(motion) = course.drive
+            && motion.displacements()[0] != 0.0
+        {
+            let surface = model.specimen.contact_displacement(motion.displacements()[0]);
+            column.start_at((1..layers).map(|node| surface * (1.0 - node as f64 / layers as f64)));
         }
+        Self { nodes: column, chain }
     }
 
-    /// Integrates through one stretch, writing the samples that fall into it.
+    /// Integrates through one stretch, writing the samples that fall into it; how far it came (s) if that takes too many steps.
     #[inline(always)]
-    fn pass<S: Simd>(&mut self, simd: S, stretch: &Stretch, is_last: bool, wave: &mut StrainWave) {
+    fn pass<S: Simd>(&mut self, simd: S, stretch: &Stretch, is_last: bool, wave: &mut StrainWave) -> Result<(), f64> {
         let duration = stretch.end - stretch.start;
         let (nodes, along) = (
             &mut self.nodes,
@@ -175,6 +186,9 @@ impl<'a> Cascade<'a> {
         nodes.restart(duration / 64.0);
         let mut inside = Vec::new();
         while nodes.time() < duration {
+            if nodes.steps - steps == MOST_STEPS {
+                return Err(nodes.time());
+            }
             nodes.step(simd, duration, &along);
             let mut looked = false;
             while let Some(&time) = wave.time.get(wave.strain[0].len()) {
@@ -198,6 +212,7 @@ impl<'a> Cascade<'a> {
         }
         wave.work.steps += nodes.steps - steps;
         wave.work.evaluations += nodes.evaluations - evaluations;
+        Ok(())
     }
 }
 
