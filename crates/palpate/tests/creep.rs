@@ -272,3 +272,15 @@ fn a_law_too_fast_for_a_slow_change_says_so_in_time() {
     let result = simulate(&slow, &ball(1.0, 1e8, 8.0), &Sampling::Rate(1.0));
     assert!(matches!(result, Err(SimulateError::TooStiff { .. })), "{result:?}");
 }
+
+#[test]
+fn a_motion_of_a_million_knots_is_followed() {
+    let model = palpate::test_problems::paper_ball(Separation::Unilateral);
+    let times: Vec<f64> = (0..1_000_000).map(|i| 1e-3 * f64::from(i)).collect();
+    // A tremble of 0.2 mm on a squeeze of 10 mm: a kink at every millisecond.
+    let displacement = |t: &f64| 0.01 * (t / 500.0).min(1.0) + 1e-4 * (40.0 * t).sin() * (t / 500.0).min(1.0);
+    let displacements: Vec<f64> = times.iter().map(displacement).collect();
+    let motion = Motion::new(times, displacements).unwrap();
+    let force = palpate::simulate::simulate_force(&motion, &model, &[250.0, 500.0, motion.end()]).unwrap();
+    assert!(force.iter().all(|force| force.is_finite() && *force > 0.0) && force[2] < force[1], "{force:?}");
+}
