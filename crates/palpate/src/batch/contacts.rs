@@ -11,7 +11,9 @@ use super::parallel::{for_each, for_each_part};
 use super::stops::Stops;
 use crate::contact::{Equilibrium, Shape};
 use crate::latency::lanes::Power;
-use crate::simulate::{ContactModel, Motion, Sampling, Separation, SimulateError, simulate_force, strain_wave};
+use crate::simulate::{
+    ContactModel, Motion, Sampling, Separation, SimulateError, check_displacements, simulate_force, strain_wave,
+};
 use crate::vector::level;
 
 /// Why a batch could not be made or simulated.
@@ -163,19 +165,9 @@ impl Batch {
         motion: &Motion,
         knots: (usize, usize),
     ) -> Result<(), BatchError> {
+        check_displacements(motion, &model.specimen, model.separation)
+            .map_err(|source| BatchError::Contact { index, source })?;
         let bonded = model.separation == Separation::Bonded;
-        for (&time, &displacement) in motion.times().iter().zip(motion.displacements()) {
-            let u = model.specimen.contact_displacement(displacement);
-            let checked = model.specimen.check_contact_displacement(u, bonded);
-            checked.map_err(|source| BatchError::Contact {
-                index,
-                source: SimulateError::Displacement {
-                    time,
-                    displacement,
-                    source,
-                },
-            })?;
-        }
         // Only a jaw that goes back can lose the contact. A stiffness from a table or with a root is no column.
         self.course.push(knots);
         let may_leave = !bonded && !motion.displacements().is_sorted();

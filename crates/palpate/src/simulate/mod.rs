@@ -42,6 +42,7 @@ pub use program::{ProgramStep, StepEnd, step_ends};
 pub use step::{ContactState, StepError};
 pub use summary::{Summary, summary};
 pub use trajectory::{Sampling, Trajectory, simulate, simulate_force};
+pub(crate) use walk::check_displacements;
 pub use walk::{ContactEvent, ContactEventKind};
 pub use wave::{StrainWave, strain_wave, strain_wave_within};
 

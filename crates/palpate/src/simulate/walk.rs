@@ -242,7 +242,8 @@ pub(super) fn check_force(time: f64, force: f64, model: &ContactModel) -> Result
     Ok(())
 }
 
-pub(super) fn check_displacements(
+/// Checks that the body can take every displacement of a motion.
+pub(crate) fn check_displacements(
     motion: &Motion,
     specimen: &Specimen,
     separation: Separation,
