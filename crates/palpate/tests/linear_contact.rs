@@ -8,8 +8,8 @@ use common::reference;
 use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactEventKind, ContactModel, LinearContact, LinearLaw, LinearTerm, Motion, Sampling, Separation, SimulateError,
-    simulate, simulate_linear,
+    ContactEventKind, ContactModel, LinearContact, LinearLaw, LinearTerm, Memory, Motion, Sampling, Separation, SimulateError,
+    simulate,
 };
 use serde::Deserialize;
 
@@ -64,6 +64,7 @@ impl Case {
         LinearContact {
             specimen: Specimen::new(shape, self.modulus, sides).unwrap(),
             law,
+            memory: Memory::Strain,
             separation: if self.bonded { Separation::Bonded } else { Separation::Unilateral },
         }
     }
@@ -81,7 +82,7 @@ fn linear_contacts_agree_with_scipy_and_mpmath() {
         let contact = case.contact();
         let (times, displacements) = case.knots.iter().copied().unzip();
         let motion = Motion::new(times, displacements).unwrap();
-        let result = simulate_linear(&motion, &contact, &Sampling::Times(case.times.clone())).unwrap();
+        let result = simulate(&motion, &contact, &Sampling::Times(case.times.clone())).unwrap();
         let most = case.force.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
         let off = distance(&result.force, &case.force) / most;
         println!("{}: force off by {off:.1e}, {} terms", case.name, contact.law.terms().len());
@@ -119,10 +120,11 @@ fn one_term_is_the_latency_law_with_exponent_one() {
         let linear = LinearContact {
             specimen: ball.clone(),
             law: LinearLaw::standard(7.0, 1.0 / 0.7).unwrap(),
+            memory: Memory::Strain,
             separation,
         };
         let expected = simulate(&motion, &latency, &sampling).unwrap();
-        let found = simulate_linear(&motion, &linear, &sampling).unwrap();
+        let found = simulate(&motion, &linear, &sampling).unwrap();
         assert_eq!(found.time, expected.time);
         let most = expected.force.iter().fold(0.0, |most: f64, force| most.max(*force));
         for (what, found, expected, size) in [
@@ -153,13 +155,14 @@ fn a_linear_contact_obeys_superposition_and_refuses_what_the_body_cannot_take() 
     let contact = LinearContact {
         specimen: Specimen::new(block, 1e5, Sides::One).unwrap(),
         law: LinearLaw::fractional(4.0, 3.0, 0.3, (1e-3, 1e3)).unwrap(),
+        memory: Memory::Strain,
         separation: Separation::Bonded,
     };
     let times = vec![0.0, 1.0, 3.0, 4.0, 50.0];
     let (a, b) = ([0.0, 0.004, 0.004, 0.001, 0.001], [0.0, 0.0, 0.006, 0.006, -0.01]);
     let force = |displacements: Vec<f64>| {
         let motion = Motion::new(times.clone(), displacements).unwrap();
-        simulate_linear(&motion, &contact, &Sampling::Rate(10.0)).unwrap().force
+        simulate(&motion, &contact, &Sampling::Rate(10.0)).unwrap().force
     };
     let both = force(a.iter().zip(b).map(|(a, b)| 2.0 * a - 0.5 * b).collect());
     let (alone, other) = (force(a.to_vec()), force(b.to_vec()));
@@ -171,9 +174,9 @@ fn a_linear_contact_obeys_superposition_and_refuses_what_the_body_cannot_take() 
         ..contact
     };
     let deep = Motion::new(vec![0.0, 1.0], vec![0.0, 0.01]).unwrap();
-    let refused = simulate_linear(&deep, &ball, &Sampling::Rate(1.0));
+    let refused = simulate(&deep, &ball, &Sampling::Rate(1.0));
     assert!(matches!(refused, Err(SimulateError::Displacement { .. })));
     let motion = Motion::new(vec![0.0, 1.0], vec![0.0, 0.001]).unwrap();
-    assert!(simulate_linear(&motion, &ball, &Sampling::Times(vec![2.0])).is_err());
-    assert!(simulate_linear(&motion, &ball, &Sampling::Rate(f64::NAN)).is_err());
+    assert!(simulate(&motion, &ball, &Sampling::Times(vec![2.0])).is_err());
+    assert!(simulate(&motion, &ball, &Sampling::Rate(f64::NAN)).is_err());
 }

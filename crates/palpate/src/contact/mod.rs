@@ -29,7 +29,7 @@ pub(crate) use balance::{Layer, carried_at, share};
 pub use curve::{Curve, CurveError};
 pub(crate) use element::{Element, Ramps};
 pub use equilibrium::{Equilibrium, EquilibriumError};
-pub(crate) use forced::{Body, Forced, Stopped};
+pub(crate) use forced::{Body, Carried, Forced, Stopped};
 pub(crate) use free_surface::FreeSurface;
 pub use layers::{Layers, LayersError};
 pub use shape::{Shape, Statement};

@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
-use super::program::step_ends;
-use super::{ContactModel, ForceHistory, Motion, ProgramStep, SimulateError};
+use super::layer::Layer;
+use super::program::ends_of;
+use super::{ForceHistory, Motion, ProgramStep, SimulateError};
 
 /// What drives a contact: a motion of the jaw, a force on the contact, or a program of steps in both.
 ///
@@ -59,24 +60,16 @@ pub(super) struct Course<'a> {
 impl<'a> Course<'a> {
     /// The course of `model` under a drive. When the steps of a program end is found out by running it once, which costs next to
     /// nothing.
-    pub(super) fn new(drive: Drive<'a>, model: &ContactModel) -> Result<Self, SimulateError> {
+    pub(super) fn new(drive: Drive<'a>, model: &impl Layer) -> Result<Self, SimulateError> {
         let times = match drive {
-            Drive::Motion(motion) => return Ok(Self::of_motion(motion)),
+            Drive::Motion(motion) => Cow::Borrowed(motion.times()),
             Drive::Force(history) => Cow::Borrowed(history.times()),
             Drive::Program(program) => {
-                let ends = step_ends(program, model)?;
+                let ends = ends_of(program, model)?;
                 Cow::Owned([0.0].into_iter().chain(ends.iter().map(|end| end.time)).collect())
             }
         };
         Ok(Self { drive, times })
-    }
-
-    /// The course of a motion, whatever the model.
-    pub(super) fn of_motion(motion: &'a Motion) -> Self {
-        Self {
-            drive: Drive::Motion(motion),
-            times: Cow::Borrowed(motion.times()),
-        }
     }
 
     /// Times of the knots, s; of a program, the start and the ends of its steps.

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::course::Course;
-use super::{ContactModel, Drive, Sampling, SimulateError, energy, simulate};
+use super::model::{Contact, by_law};
+use super::{Drive, Sampling, SimulateError, energy, simulate};
 
 /// What the jaw did between two knots of a drive, J; both contacts of a body that is squeezed from two sides.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -70,13 +71,16 @@ pub struct Cycle {
 ///
 /// # Errors
 /// As for [`simulate`](super::simulate()).
-pub fn work_by_step<'a>(drive: impl Into<Drive<'a>>, model: &ContactModel) -> Result<Vec<StepWork>, SimulateError> {
-    let drive = drive.into();
-    let mut knots = Course::new(drive, model)?.times().to_vec();
+pub fn work_by_step<'a, 'b>(
+    drive: impl Into<Drive<'a>>,
+    contact: impl Into<Contact<'b>>,
+) -> Result<Vec<StepWork>, SimulateError> {
+    let (drive, contact) = (drive.into(), contact.into());
+    let mut knots = by_law!(contact, contact => Course::new(drive, contact)?.times().to_vec());
     knots.dedup();
     let sampling = Sampling::Times(knots);
-    let energy = energy(drive, model, &sampling)?;
-    let at = simulate(drive, model, &sampling)?.displacement;
+    let energy = energy(drive, contact, &sampling)?;
+    let at = simulate(drive, contact, &sampling)?.displacement;
     let lost = energy.split.map(|split| split.lost);
     let step = |i: usize| StepWork {
         from: energy.time[i],

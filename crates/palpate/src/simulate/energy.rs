@@ -3,9 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::course::Course;
+use super::layer::Layer;
+use super::model::{Contact, by_law};
 use super::trajectory::sample_times;
 use super::walk::{Stretch, StretchState, walk};
-use super::{ContactModel, Drive, Sampling, SimulateError};
+use super::{Drive, Sampling, SimulateError};
 
 /// Energy of a simulated body over time, in J; both contacts of a body that is squeezed from two sides.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -66,14 +68,18 @@ impl Energy {
 ///
 /// # Errors
 /// As for [`simulate`](super::simulate()).
-pub fn energy<'a>(
+pub fn energy<'a, 'b>(
     drive: impl Into<Drive<'a>>,
-    model: &ContactModel,
+    contact: impl Into<Contact<'b>>,
     sampling: &Sampling,
 ) -> Result<Energy, SimulateError> {
-    let course = Course::new(drive.into(), model)?;
+    by_law!(contact.into(), contact => energy_of(drive.into(), contact, sampling))
+}
+
+fn energy_of<L: Layer>(drive: Drive<'_>, model: &L, sampling: &Sampling) -> Result<Energy, SimulateError> {
+    let course = Course::new(drive, model)?;
     let time = sample_times(&course, sampling)?;
-    let contacts = 1.0 / model.specimen.contact_displacement(1.0);
+    let contacts = 1.0 / model.specimen().contact_displacement(1.0);
     let mut account = Account::default();
     let (mut work, mut given_back, mut stored) = (Vec::new(), Vec::new(), Vec::new());
     let last = course.end();
@@ -90,7 +96,7 @@ pub fn energy<'a>(
         account.add(stretch, model, (at, stretch.end));
         Ok(())
     })?;
-    let split = model.specimen.has_constant_section().then(|| EnergySplit {
+    let split = model.specimen().has_constant_section().then(|| EnergySplit {
         lost: work.iter().zip(&stored).map(|(work, stored)| work - stored).collect(),
         stored,
     });
@@ -114,11 +120,11 @@ pub(super) struct Account {
 
 impl Account {
     /// Adds the work from one time to another inside a stretch.
-    pub(super) fn add(&mut self, stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64)) {
+    pub(super) fn add<L: Layer>(&mut self, stretch: &Stretch<L>, model: &L, (from, to): (f64, f64)) {
         let duration = stretch.end - stretch.start;
         let kinks: Vec<f64> = match &stretch.state {
-            StretchState::Touching(element) if stretch.contact_speed != 0.0 => {
-                let mut kinks: Vec<f64> = element.step_ends().collect();
+            StretchState::Touching(piece) if stretch.contact_speed != 0.0 => {
+                let mut kinks = L::ends_in(piece);
                 // What follows the last step decays: pieces that grow.
                 let last = kinks.last().copied().unwrap_or(0.0);
                 let mut width = kinks.first().copied().unwrap_or(duration).max(1e-6 * duration);
@@ -132,9 +138,10 @@ impl Account {
             }
             StretchState::Forced(forced) => {
                 // At first touch of a ball the displacement begins like √t: pieces that shrink towards it.
-                let first = forced.step_ends().next().unwrap_or(duration);
+                let ends = L::ends_under(forced);
+                let first = ends.first().copied().unwrap_or(duration);
                 let small = (1..=16).rev().map(|k| first * 0.25f64.powi(k));
-                small.chain(forced.step_ends()).collect()
+                small.chain(ends).collect()
             }
             StretchState::Touching(_) | StretchState::Free { .. } => return,
         };
@@ -155,20 +162,20 @@ impl Account {
 }
 
 /// Power F u̇ of one contact's share of the jaw at a time inside a stretch, W.
-fn power_at(stretch: &Stretch, model: &ContactModel, time: f64) -> f64 {
-    let (specimen, elapsed) = (&model.specimen, time - stretch.start);
+fn power_at<L: Layer>(stretch: &Stretch<L>, model: &L, time: f64) -> f64 {
+    let (specimen, elapsed) = (model.specimen(), time - stretch.start);
     match &stretch.state {
-        StretchState::Touching(element) => {
+        StretchState::Touching(piece) => {
             let u = stretch.jaw_at(time);
-            specimen.force(element.excess_at(elapsed) + specimen.equilibrium_strain(u), u) * stretch.contact_speed
+            specimen.force(model.strain_in(piece, elapsed) + specimen.equilibrium_strain(u), u) * stretch.contact_speed
         }
-        StretchState::Forced(forced) => forced.force_at(elapsed) * forced.at(elapsed).speed,
+        StretchState::Forced(forced) => L::force_under(forced, elapsed) * L::carried(forced, elapsed).speed,
         StretchState::Free { .. } => 0.0,
     }
 }
 
 /// Where work begins to be given back, or ends to be, inside a smooth piece; its end if nowhere.
-fn turning(stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64)) -> f64 {
+fn turning<L: Layer>(stretch: &Stretch<L>, model: &L, (from, to): (f64, f64)) -> f64 {
     let power = |time: f64| power_at(stretch, model, time);
     let gives = power(to) < 0.0;
     if (power(from) < 0.0) == gives {
@@ -187,11 +194,11 @@ fn turning(stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64)) -> f
 }
 
 /// ∫ F du over a smooth piece. Under a force by parts, since it is u that begins like √t at first touch.
-fn work_between(stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64)) -> f64 {
+fn work_between<L: Layer>(stretch: &Stretch<L>, model: &L, (from, to): (f64, f64)) -> f64 {
     match &stretch.state {
         StretchState::Touching(_) => integral(|time| power_at(stretch, model, time), from, to),
         StretchState::Forced(forced) => {
-            let force = |time: f64| forced.force_at(time - stretch.start);
+            let force = |time: f64| L::force_under(forced, time - stretch.start);
             let u = |time: f64| stretch.jaw_at(time);
             let slope = (force(to) - force(from)) / (to - from).max(f64::MIN_POSITIVE);
             // Against the displacement at one end, so that a held force keeps its digits.
@@ -203,27 +210,17 @@ fn work_between(stretch: &Stretch, model: &ContactModel, (from, to): (f64, f64))
 }
 
 /// What one contact of a body of constant section stores, J.
-pub(super) fn stored_at(stretch: &Stretch, model: &ContactModel, time: f64) -> f64 {
-    let (specimen, elapsed) = (&model.specimen, time - stretch.start);
-    let depth = specimen.depth();
+pub(super) fn stored_at<L: Layer>(stretch: &Stretch<L>, model: &L, time: f64) -> f64 {
+    let elapsed = time - stretch.start;
     let (u, excess) = match &stretch.state {
-        StretchState::Touching(element) => (stretch.jaw_at(time), element.excess_at(elapsed)),
-        StretchState::Forced(forced) => {
-            let state = forced.at(elapsed);
-            (state.displacement, state.excess)
-        }
+        StretchState::Touching(piece) => (stretch.jaw_at(time), model.excess_in(piece, elapsed)),
+        StretchState::Forced(forced) => (stretch.jaw_at(time), L::excess_under(forced, elapsed)),
         StretchState::Free { surface, since } => {
-            let u = surface.displacement_at(time - since);
-            (u, -u / depth)
+            let u = model.surface(surface, time - since);
+            (u, model.met(surface, time - since, u))
         }
     };
-    let (stiffness, _) = specimen.stiffness(u);
-    let elastic = 0.5 * stiffness * u * u / depth;
-    // A single layer has no excess.
-    if excess == 0.0 {
-        return elastic;
-    }
-    elastic + 0.5 * stiffness * depth * excess * excess / (model.layers.count() - 1.0)
+    model.stored(&excess, u)
 }
 
 /// Gauss and Legendre's rule with eight points.

@@ -7,12 +7,13 @@
 //! | `program.rs` | steps in displacement and in force, one after the other |
 //! | `course.rs` | what drives a contact: a motion, a force history or a program |
 //! | `model.rs` | the contact model: specimen, law, layers, and whether the jaw can pull |
+//! | `layer.rs` | what the walk asks of the contact layer, whichever law it obeys |
 //! | `walk.rs` | goes through a motion piece by piece: in contact, jaw off, in contact again |
 //! | `trajectory.rs` | the series at the asked times |
 //! | `wave.rs` | all layers over time (the strain wave) |
 //! | `step.rs` | one step at a time, for controllers |
 //! | `energy.rs` | work of the jaw, what is stored and what is lost |
-//! | `linear/` | linear laws under the same motions |
+//! | `linear/` | linear laws under the same drives |
 //! | `cycles.rs` | the same step by step and cycle by cycle |
 //! | `summary.rs` | what a whole simulation comes to, for sweeps |
 
@@ -20,6 +21,7 @@ mod course;
 mod cycles;
 mod energy;
 mod history;
+mod layer;
 mod linear;
 mod model;
 mod motion;
@@ -35,8 +37,8 @@ pub use course::Drive;
 pub use cycles::{Cycle, StepWork, cycles, work_by_step};
 pub use energy::{Energy, EnergySplit, energy};
 pub use history::ForceHistory;
-pub use linear::{LinearContact, LinearLaw, LinearLawError, LinearTerm, simulate_linear};
-pub use model::{ContactModel, Separation};
+pub use linear::{LinearContact, LinearLaw, LinearLawError, LinearTerm, Memory};
+pub use model::{Contact, ContactModel, Separation};
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};
 pub use program::{ProgramStep, StepEnd, step_ends};
 pub use step::{ContactState, StepError};

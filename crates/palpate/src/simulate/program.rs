@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::layer::Layer;
+use super::model::{Contact, by_law};
 use super::walk::{Stretch, Walker, check_force};
-use super::{ContactModel, SimulateError};
+use super::SimulateError;
 
 /// One step of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -73,15 +75,22 @@ impl ProgramStep {
 ///
 /// # Errors
 /// As for `simulate`.
-pub fn step_ends(program: &[ProgramStep], model: &ContactModel) -> Result<Vec<StepEnd>, SimulateError> {
-    let ends = Walker::new(model, |_: &Stretch| Ok(())).run(program)?;
+pub fn step_ends<'a>(
+    program: &[ProgramStep],
+    contact: impl Into<Contact<'a>>,
+) -> Result<Vec<StepEnd>, SimulateError> {
+    by_law!(contact.into(), contact => ends_of(program, contact))
+}
+
+pub(super) fn ends_of<L: Layer>(program: &[ProgramStep], model: &L) -> Result<Vec<StepEnd>, SimulateError> {
+    let ends = Walker::new(model, |_: &Stretch<L>| Ok(())).run(program)?;
     if ends.last().is_none_or(|end| end.time == 0.0) {
         return Err(SimulateError::EmptyProgram);
     }
     Ok(ends)
 }
 
-impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'_, V> {
+impl<L: Layer, V: FnMut(&Stretch<L>) -> Result<(), SimulateError>> Walker<'_, L, V> {
     /// Walks through a program that begins at time 0 with the jaw at first touch; returns where each step ended.
     pub(super) fn run(&mut self, program: &[ProgramStep]) -> Result<Vec<StepEnd>, SimulateError> {
         let mut runner = Runner {
@@ -107,16 +116,16 @@ impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'_, V> {
 }
 
 /// Where the program stands; `jaw` is one contact's share.
-struct Runner<'w, 'a, V> {
-    walker: &'w mut Walker<'a, V>,
-    model: &'a ContactModel,
+struct Runner<'w, 'a, L: Layer, V> {
+    walker: &'w mut Walker<'a, L, V>,
+    model: &'a L,
     time: f64,
     jaw: f64,
     /// The force (N) that was asked for last, as long as it stands: what can be computed back is off by rounding.
     kept: Option<f64>,
 }
 
-impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Runner<'_, '_, V> {
+impl<L: Layer, V: FnMut(&Stretch<L>) -> Result<(), SimulateError>> Runner<'_, '_, L, V> {
     fn take(&mut self, number: usize, step: ProgramStep) -> Result<StepEnd, SimulateError> {
         match step {
             ProgramStep::Move { to, rate } => {
@@ -146,16 +155,17 @@ impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Runner<'_, '_, V> {
         }
         Ok(StepEnd {
             time: self.time,
-            displacement: self.jaw / self.model.specimen.contact_displacement(1.0),
+            displacement: self.jaw / self.model.specimen().contact_displacement(1.0),
             force: self.force(),
         })
     }
 
     /// Contact force as it is, N.
     fn force(&self) -> f64 {
-        let specimen = &self.model.specimen;
+        let specimen = self.model.specimen();
         let even = specimen.equilibrium_strain(self.jaw);
-        let computed = |excess: f64| {
+        let computed = |excess: &L::Excess| {
+            let excess = self.model.strain_of(excess, self.jaw);
             let strain = excess + even;
             // What two numbers leave of each other when they cancel is no force.
             let none = strain.abs() <= 16.0 * f64::EPSILON * (excess.abs() + even.abs());
@@ -166,9 +176,9 @@ impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Runner<'_, '_, V> {
     }
 
     fn move_to(&mut self, to: f64, rate: f64) -> Result<(), SimulateError> {
-        let share = self.model.specimen.contact_displacement(1.0);
-        let bonded = self.model.separation == super::Separation::Bonded;
-        self.model.specimen.check_contact_displacement(to * share, bonded).map_err(|source| {
+        let share = self.model.specimen().contact_displacement(1.0);
+        let bonded = self.model.is_bonded();
+        self.model.specimen().check_contact_displacement(to * share, bonded).map_err(|source| {
             SimulateError::Displacement {
                 time: self.time,
                 displacement: to,
@@ -187,10 +197,10 @@ impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Runner<'_, '_, V> {
             return Ok(());
         }
         self.kept = None;
-        let specimen = &self.model.specimen;
+        let specimen = self.model.specimen();
         let depth = specimen.depth();
         // A jaw that approaches may go as deep as the body is; a strip in grips may be stretched as far as it likes.
-        let strip = specimen.has_constant_section() && self.model.separation == super::Separation::Bonded;
+        let strip = specimen.has_constant_section() && self.model.is_bonded();
         let farthest = match (force > now, strip) {
             (true, false) => specimen.limit().at * (1.0 - 1e-12),
             (false, false) => 0.0,
@@ -240,10 +250,8 @@ impl<V: FnMut(&Stretch) -> Result<(), SimulateError>> Runner<'_, '_, V> {
         if !end.is_finite() {
             return Err(SimulateError::OutOfRange { time: self.time });
         }
-        let depth = self.model.specimen.depth();
-        let strain = excess + self.model.specimen.equilibrium_strain(self.jaw);
-        let behind = self.jaw - self.model.layers.thickness(depth) * strain;
-        (self.jaw, _) = self.walker.force((self.time, end), (self.force(), to), behind)?;
+        let behind = self.model.behind(excess, self.jaw);
+        (self.jaw, _) = self.walker.force((self.time, end), (self.force(), to), &behind)?;
         self.time = end;
         Ok(())
     }

@@ -4,9 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use super::course::Course;
 use super::energy::{Account, stored_at};
+use super::layer::Layer;
+use super::model::{Contact, by_law};
 use super::trajectory::{Trajectory, extend_forces, sample_times};
 use super::walk::walk;
-use super::{ContactEvent, ContactModel, Drive, Sampling, SimulateError};
+use super::{ContactEvent, Drive, Sampling, SimulateError};
 
 /// A simulation in a few numbers, SI units, compression positive.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -61,14 +63,18 @@ pub struct Summary {
 ///
 /// # Errors
 /// As for `simulate`.
-pub fn summary<'a>(
+pub fn summary<'a, 'b>(
     drive: impl Into<Drive<'a>>,
-    model: &ContactModel,
+    contact: impl Into<Contact<'b>>,
     sampling: &Sampling,
 ) -> Result<Summary, SimulateError> {
-    let course = Course::new(drive.into(), model)?;
+    by_law!(contact.into(), contact => summed_up(drive.into(), contact, sampling))
+}
+
+fn summed_up<L: Layer>(drive: Drive<'_>, model: &L, sampling: &Sampling) -> Result<Summary, SimulateError> {
+    let course = Course::new(drive, model)?;
     let times = times_and_knots(&course, sampling)?;
-    let (last, contacts) = (course.end(), 1.0 / model.specimen.contact_displacement(1.0));
+    let (last, contacts) = (course.end(), 1.0 / model.specimen().contact_displacement(1.0));
     let (mut peak, mut next) = (Peak::default(), 0);
     let (mut account, mut stored) = (Account::default(), 0.0);
     let mut end = Trajectory::default();
@@ -77,7 +83,7 @@ pub fn summary<'a>(
         let until = next + times[next..].partition_point(inside);
         for times in times[next..until].chunks(CHUNK) {
             peak.forces.clear();
-            extend_forces(stretch, &model.specimen, times, &mut peak.forces);
+            extend_forces(stretch, model, times, &mut peak.forces);
             peak.take(times)?;
         }
         next = until;
@@ -90,7 +96,7 @@ pub fn summary<'a>(
         Ok(())
     })?;
     let (work, stored) = (account.work * contacts, stored * contacts);
-    let divided = model.specimen.has_constant_section();
+    let divided = model.specimen().has_constant_section();
     let at_end = |series: &[f64]| series.first().copied().filter(|value| value.is_finite());
     let sound = [&end.force, &end.displacement, &end.strain, &end.excess_strain].map(|series| at_end(series));
     let ([Some(force), Some(displacement), Some(strain), Some(excess_strain)], true) = (sound, work.is_finite()) else {

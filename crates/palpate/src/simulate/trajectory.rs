@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::course::Course;
+use super::layer::Layer;
+use super::model::{Contact, by_law};
 use super::walk::{Stretch, StretchState, walk};
-use super::{ContactEvent, ContactModel, Drive, Motion, SimulateError, Work};
-use crate::contact::Specimen;
+use super::{ContactEvent, Drive, Motion, SimulateError, Work};
 
 /// When to report.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,8 +74,8 @@ impl Trajectory {
     }
 
     /// Appends the samples up to index `until`, whose times lie in `stretch`, column by column.
-    pub(super) fn append(&mut self, stretch: &Stretch, model: &ContactModel, until: usize) {
-        let (specimen, depth) = (&model.specimen, model.specimen.depth());
+    pub(super) fn append<L: Layer>(&mut self, stretch: &Stretch<L>, model: &L, until: usize) {
+        let (specimen, depth) = (model.specimen(), model.specimen().depth());
         let from = self.force.len();
         let times = &self.time[from..until];
         let per_side = 1.0 / specimen.contact_displacement(1.0);
@@ -83,12 +84,10 @@ impl Trajectory {
             self.displacement.extend(jaw.clone().map(|u| u * per_side));
         }
         match &stretch.state {
-            StretchState::Touching(element) => {
+            StretchState::Touching(piece) => {
                 self.contact_displacement.extend(jaw);
-                element.extend_excess(stretch.start, times, &mut self.excess_strain);
-                model.law.extend_rates(&self.excess_strain[from..], &mut self.strain_rate);
-                let by_jaw = model.layers.drive(stretch.contact_speed, depth) + stretch.contact_speed / depth;
-                self.strain_rate[from..].iter_mut().for_each(|rate| *rate += by_jaw);
+                let line = (stretch.start, stretch.contact_speed);
+                model.extend(piece, line, times, &mut self.excess_strain, &mut self.strain_rate);
                 let contact = &self.contact_displacement[from..];
                 self.equilibrium_strain.extend(contact.iter().map(|u| specimen.equilibrium_strain(*u)));
                 let parts = self.equilibrium_strain[from..].iter().zip(&self.excess_strain[from..]);
@@ -99,11 +98,11 @@ impl Trajectory {
             StretchState::Forced(forced) => {
                 for time in times {
                     let elapsed = time - stretch.start;
-                    let state = forced.at(elapsed);
+                    let state = L::carried(forced, elapsed);
                     let equilibrium = specimen.equilibrium_strain(state.displacement);
                     self.displacement.push(state.displacement * per_side);
                     self.contact_displacement.push(state.displacement);
-                    self.force.push(forced.force_at(elapsed));
+                    self.force.push(L::force_under(forced, elapsed));
                     self.equilibrium_strain.push(equilibrium);
                     self.excess_strain.push(state.excess);
                     self.strain.push(equilibrium + state.excess);
@@ -111,7 +110,7 @@ impl Trajectory {
                 }
             }
             StretchState::Free { surface, since } => {
-                let surface = times.iter().map(|time| surface.displacement_at(time - since));
+                let surface = times.iter().map(|time| model.surface(surface, time - since));
                 self.contact_displacement.extend(surface);
                 let contact = &self.contact_displacement[from..];
                 self.equilibrium_strain.extend(contact.iter().map(|u| specimen.equilibrium_strain(*u)));
@@ -189,12 +188,16 @@ impl Trajectory {
 /// [`SimulateError`] if the motion goes where the specimen cannot, or the sampling does not fit the drive; under a force
 /// [`SimulateError::Force`] where no displacement of the body carries it and [`SimulateError::Tension`] where it would need glue; in a program
 /// for a step with wrong numbers, a force that the jaw never meets, and force control while the jaw is off the body.
-pub fn simulate<'a>(
+pub fn simulate<'a, 'b>(
     drive: impl Into<Drive<'a>>,
-    model: &ContactModel,
+    contact: impl Into<Contact<'b>>,
     sampling: &Sampling,
 ) -> Result<Trajectory, SimulateError> {
-    let course = Course::new(drive.into(), model)?;
+    by_law!(contact.into(), contact => trajectory(drive.into(), contact, sampling))
+}
+
+fn trajectory<L: Layer>(drive: Drive<'_>, model: &L, sampling: &Sampling) -> Result<Trajectory, SimulateError> {
+    let course = Course::new(drive, model)?;
     let mut result = Trajectory::with_times(sample_times(&course, sampling)?);
     let (last, mut next) = (course.end(), 0);
     let (events, work) = walk(course.drive, model, |stretch| {
@@ -221,16 +224,24 @@ pub fn simulate<'a>(
 ///
 /// # Errors
 /// As for [`simulate`].
-pub fn simulate_force(motion: &Motion, model: &ContactModel, times: &[f64]) -> Result<Vec<f64>, SimulateError> {
+pub fn simulate_force<'a>(
+    motion: &Motion,
+    contact: impl Into<Contact<'a>>,
+    times: &[f64],
+) -> Result<Vec<f64>, SimulateError> {
+    by_law!(contact.into(), contact => forces(motion, contact, times))
+}
+
+fn forces<L: Layer>(motion: &Motion, model: &L, times: &[f64]) -> Result<Vec<f64>, SimulateError> {
     let course = Course::new(motion.into(), model)?;
     check_times(&course, times)?;
-    let (last, specimen) = (motion.end(), &model.specimen);
+    let last = motion.end();
     let mut force: Vec<f64> = Vec::with_capacity(times.len());
     walk(course.drive, model, |stretch| {
         let next = force.len();
         let inside = |time: &f64| *time < stretch.end || stretch.end == last;
         let times = &times[next..next + times[next..].partition_point(inside)];
-        extend_forces(stretch, specimen, times, &mut force);
+        extend_forces(stretch, model, times, &mut force);
         Ok(())
     })?;
     match force.iter().position(|force| !force.is_finite()) {
@@ -240,11 +251,11 @@ pub fn simulate_force(motion: &Motion, model: &ContactModel, times: &[f64]) -> R
 }
 
 /// Appends the contact force at `times` (s) inside a stretch.
-pub(super) fn extend_forces(stretch: &Stretch, specimen: &Specimen, times: &[f64], force: &mut Vec<f64>) {
-    let next = force.len();
+pub(super) fn extend_forces<L: Layer>(stretch: &Stretch<L>, model: &L, times: &[f64], force: &mut Vec<f64>) {
+    let (next, specimen) = (force.len(), model.specimen());
     match &stretch.state {
-        StretchState::Touching(element) => {
-            element.extend_excess(stretch.start, times, force);
+        StretchState::Touching(piece) => {
+            model.extend_strains(piece, stretch.start, times, force);
             if stretch.contact_speed == 0.0 {
                 // In a hold, where nearly all samples lie, only the excess changes.
                 let u = stretch.contact_from;
@@ -258,7 +269,7 @@ pub(super) fn extend_forces(stretch: &Stretch, specimen: &Specimen, times: &[f64
             }
         }
         StretchState::Forced(forced) => {
-            force.extend(times.iter().map(|time| forced.force_at(time - stretch.start)));
+            force.extend(times.iter().map(|time| L::force_under(forced, time - stretch.start)));
         }
         StretchState::Free { .. } => force.resize(next + times.len(), 0.0),
     }

@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ContactModel, Drive, ForceHistory, Motion, Separation, SimulateError, Work};
-use crate::contact::{Body, Element, Forced, FreeSurface, Ramps, Specimen, Stopped};
+use super::layer::{Layer, crossing};
+use super::{Drive, ForceHistory, Motion, Separation, SimulateError, Work};
+use crate::contact::{Specimen, Stopped};
 
 /// A contact that was lost or regained.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -28,27 +29,27 @@ pub enum ContactEventKind {
 
 /// A stretch of time over which the jaw moves at constant speed, or its force changes at a constant rate, and the contact does not change
 /// its state.
-pub(super) struct Stretch {
+pub(super) struct Stretch<L: Layer> {
     pub(super) start: f64,
     pub(super) end: f64,
     /// Share of one contact at `start`, m.
     pub(super) contact_from: f64,
     /// Speed of one contact's share, m/s; of a force, at the start.
     pub(super) contact_speed: f64,
-    pub(super) state: StretchState,
+    pub(super) state: StretchState<L>,
 }
 
-pub(super) enum StretchState {
-    Touching(Element),
-    Forced(Forced),
-    Free { surface: FreeSurface, since: f64 },
+pub(super) enum StretchState<L: Layer> {
+    Touching(L::Moving),
+    Forced(L::Pressed),
+    Free { surface: L::Surface, since: f64 },
 }
 
-impl Stretch {
+impl<L: Layer> Stretch<L> {
     /// One contact's share of the jaw's travel at `time`, m.
     pub(super) fn jaw_at(&self, time: f64) -> f64 {
         if let StretchState::Forced(forced) = &self.state {
-            return forced.at(time - self.start).displacement;
+            return L::displacement_under(forced, time - self.start);
         }
         if self.contact_speed == 0.0 {
             return self.contact_from;
@@ -58,16 +59,16 @@ impl Stretch {
 }
 
 /// The state carried from one stretch to the next.
-enum Contact {
-    Touching { excess: f64 },
-    Free { surface: FreeSurface, since: f64 },
+enum Contact<L: Layer> {
+    Touching { excess: L::Excess },
+    Free { surface: L::Surface, since: f64 },
 }
 
 /// Walks through what drives the contact, handing every stretch to `visit` in order, and returns the events and the work.
-pub(super) fn walk(
+pub(super) fn walk<L: Layer>(
     drive: Drive<'_>,
-    model: &ContactModel,
-    visit: impl FnMut(&Stretch) -> Result<(), SimulateError>,
+    model: &L,
+    visit: impl FnMut(&Stretch<L>) -> Result<(), SimulateError>,
 ) -> Result<(Vec<ContactEvent>, Work), SimulateError> {
     let mut walker = Walker::new(model, visit);
     match drive {
@@ -82,30 +83,33 @@ pub(super) fn walk(
 }
 
 /// Goes from one stretch to the next.
-pub(super) struct Walker<'a, V> {
-    pub(super) model: &'a ContactModel,
+pub(super) struct Walker<'a, L: Layer, V> {
+    pub(super) model: &'a L,
     visit: V,
-    contact: Contact,
-    ramps: Ramps,
+    contact: Contact<L>,
+    known: L::Known,
     events: Vec<ContactEvent>,
     work: Work,
 }
 
-impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
-    pub(super) fn new(model: &'a ContactModel, visit: V) -> Self {
+impl<'a, L: Layer, V: FnMut(&Stretch<L>) -> Result<(), SimulateError>> Walker<'a, L, V> {
+    pub(super) fn new(model: &'a L, visit: V) -> Self {
         Self {
             model,
             visit,
-            contact: Contact::Touching { excess: 0.0 },
-            ramps: Ramps::default(),
+            contact: Contact::Touching {
+                excess: model.relaxed(),
+            },
+            known: L::Known::default(),
             events: Vec::new(),
             work: Work::default(),
         }
     }
 
     fn travel(&mut self, motion: &Motion) -> Result<(), SimulateError> {
-        check_displacements(motion, &self.model.specimen, self.model.separation)?;
-        let share = |displacement: f64| self.model.specimen.contact_displacement(displacement);
+        let specimen = self.model.specimen();
+        check_displacements(motion, specimen, self.model.separation())?;
+        let share = |displacement: f64| specimen.contact_displacement(displacement);
         let knots = motion.times().windows(2).zip(motion.displacements().windows(2));
         for (times, displacements) in knots {
             let ends = (share(displacements[0]), share(displacements[1]));
@@ -125,19 +129,22 @@ impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
         let speed = (to - from) / (end - begin);
         let mut start = begin;
         while start < end {
+            let contact_from = if start == begin { from } else { from + speed * (start - begin) };
             let mut stretch = Stretch {
                 start,
                 end,
-                contact_from: if start == begin { from } else { from + speed * (start - begin) },
+                contact_from,
                 contact_speed: speed,
-                state: match self.contact {
+                state: match &self.contact {
                     Contact::Touching { excess } => {
-                        let drive = self.model.layers.drive(speed, self.model.specimen.depth());
-                        let element =
-                            Element::solve(self.model.law, excess, drive, end - start, &mut self.ramps, &mut self.work);
-                        StretchState::Touching(element)
+                        let line = (contact_from, speed);
+                        let (known, work) = (&mut self.known, &mut self.work);
+                        StretchState::Touching(self.model.moving(excess, line, end - start, known, work))
                     }
-                    Contact::Free { surface, since } => StretchState::Free { surface, since },
+                    Contact::Free { surface, since } => StretchState::Free {
+                        surface: surface.clone(),
+                        since: *since,
+                    },
                 },
             };
             let mut event = next_event(&stretch, self.model);
@@ -146,9 +153,8 @@ impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
             }
             let mut reached = target.and_then(|target| reaching(&stretch, target, self.model));
             // A jaw that goes back until no force is left stays in touch: that is where it would leave.
-            let lost =
-                event.filter(|event| event.kind == ContactEventKind::Lost && target.is_some_and(|force| force <= 0.0));
-            if let Some(lost) = lost {
+            let stays = target.is_some_and(|force| force <= 0.0);
+            if let Some(lost) = event.filter(|event| event.kind == ContactEventKind::Lost && stays) {
                 reached = Some(lost.time);
             }
             if let Some(time) = reached {
@@ -158,10 +164,6 @@ impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
                 (self.visit)(&stretch)?;
             }
             self.contact = after(&stretch, event, self.model, &mut self.work)?;
-            if let Some(lost) = lost {
-                let excess = -self.model.specimen.equilibrium_strain(lost.contact_displacement);
-                self.contact = Contact::Touching { excess };
-            }
             start = stretch.end;
             self.events.extend(event);
             if reached.is_some() {
@@ -173,47 +175,41 @@ impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
 
     /// Walks through a force history. The jaw keeps in touch: at no force it follows the surface.
     fn press(&mut self, history: &ForceHistory) -> Result<(), SimulateError> {
-        let mut behind = 0.0;
+        let mut behind = self.model.behind(&self.model.relaxed(), 0.0);
         for (&time, &force) in history.times().iter().zip(history.forces()) {
             check_force(time, force, self.model)?;
         }
         for (times, forces) in history.times().windows(2).zip(history.forces().windows(2)) {
             if times[1] > times[0] {
-                (_, behind) = self.force((times[0], times[1]), (forces[0], forces[1]), behind)?;
+                (_, behind) = self.force((times[0], times[1]), (forces[0], forces[1]), &behind)?;
             }
         }
         Ok(())
     }
 
-    /// Walks along a straight piece of force, the node behind the contact layer at `behind` (m); returns the contact displacement and
-    /// that node's at the end.
+    /// Walks along a straight piece of force with `behind` behind the contact layer; returns the contact displacement (m) and what is
+    /// behind the layer at the end.
     pub(super) fn force(
         &mut self,
         (start, end): (f64, f64),
         (from, to): (f64, f64),
-        behind: f64,
-    ) -> Result<(f64, f64), SimulateError> {
-        let (model, duration) = (self.model, end - start);
-        let body = Body {
-            specimen: model.specimen.clone(),
-            law: model.law,
-            layers: model.layers,
-            bonded: model.separation == Separation::Bonded,
-        };
-        let forced =
-            Forced::solve(body, (from, to), behind, duration, &mut self.work).map_err(|stopped| match stopped {
-                Stopped::TooMuch { elapsed } => SimulateError::Force {
-                    time: start + elapsed,
-                    force: from + (to - from) * (elapsed / duration),
-                },
-                Stopped::TooStiff { elapsed } => SimulateError::TooStiff { time: start + elapsed },
-            })?;
-        let (first, last) = (forced.at(0.0), forced.at(duration));
-        let behind = forced.behind_at(duration);
-        if !(behind.is_finite() && last.displacement.is_finite()) {
+        behind: &L::Behind,
+    ) -> Result<(f64, L::Behind), SimulateError> {
+        let duration = end - start;
+        let forced = self.model.pressed((from, to), behind, duration, &mut self.work);
+        let forced = forced.map_err(|stopped| match stopped {
+            Stopped::TooMuch { elapsed } => SimulateError::Force {
+                time: start + elapsed,
+                force: from + (to - from) * (elapsed / duration),
+            },
+            Stopped::TooStiff { elapsed } => SimulateError::TooStiff { time: start + elapsed },
+        })?;
+        let (first, last) = (L::carried(&forced, 0.0), L::displacement_under(&forced, duration));
+        let (excess, behind) = (L::excess_under(&forced, duration), L::behind_under(&forced, duration));
+        if !(L::is_finite(&excess) && last.is_finite()) {
             return Err(SimulateError::OutOfRange { time: end });
         }
-        self.contact = Contact::Touching { excess: last.excess };
+        self.contact = Contact::Touching { excess };
         (self.visit)(&Stretch {
             start,
             end,
@@ -221,12 +217,12 @@ impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
             contact_speed: first.speed,
             state: StretchState::Forced(forced),
         })?;
-        Ok((last.displacement, behind))
+        Ok((last, behind))
     }
 
-    /// Excess strain of the contact layer; `None` while the jaw is off.
-    pub(super) fn excess(&self) -> Option<f64> {
-        match self.contact {
+    /// Excess of the contact layer; `None` while the jaw is off.
+    pub(super) fn excess(&self) -> Option<&L::Excess> {
+        match &self.contact {
             Contact::Touching { excess } => Some(excess),
             Contact::Free { .. } => None,
         }
@@ -234,9 +230,9 @@ impl<'a, V: FnMut(&Stretch) -> Result<(), SimulateError>> Walker<'a, V> {
 }
 
 /// Checks that a force can be asked for at all.
-pub(super) fn check_force(time: f64, force: f64, model: &ContactModel) -> Result<(), SimulateError> {
-    let bonded = model.separation == Separation::Bonded;
-    if force < 0.0 && !(bonded && model.specimen.has_constant_section()) {
+pub(super) fn check_force(time: f64, force: f64, model: &impl Layer) -> Result<(), SimulateError> {
+    let bonded = model.is_bonded();
+    if force < 0.0 && !(bonded && model.specimen().has_constant_section()) {
         return Err(SimulateError::Tension { time, force, bonded });
     }
     Ok(())
@@ -262,16 +258,16 @@ pub(crate) fn check_displacements(
 }
 
 /// When the force reaches a target in a stretch, from below if the jaw approaches, from above if it retreats.
-fn reaching(stretch: &Stretch, target: f64, model: &ContactModel) -> Option<f64> {
-    let (specimen, approaches) = (&model.specimen, stretch.contact_speed > 0.0);
+fn reaching<L: Layer>(stretch: &Stretch<L>, target: f64, model: &L) -> Option<f64> {
+    let (specimen, approaches) = (model.specimen(), stretch.contact_speed > 0.0);
     // Positive before the target is reached.
     let missing = |elapsed: f64| {
         let force = match &stretch.state {
-            StretchState::Touching(element) => {
+            StretchState::Touching(piece) => {
                 let u = stretch.jaw_at(stretch.start + elapsed);
-                specimen.force(element.excess_at(elapsed) + specimen.equilibrium_strain(u), u)
+                specimen.force(model.strain_in(piece, elapsed) + specimen.equilibrium_strain(u), u)
             }
-            StretchState::Forced(forced) => forced.force_at(elapsed),
+            StretchState::Forced(forced) => L::force_under(forced, elapsed),
             StretchState::Free { .. } => 0.0,
         };
         if approaches { target - force } else { force - target }
@@ -279,13 +275,13 @@ fn reaching(stretch: &Stretch, target: f64, model: &ContactModel) -> Option<f64>
     if missing(0.0) <= 0.0 {
         return Some(stretch.start);
     }
-    let StretchState::Touching(element) = &stretch.state else {
+    let StretchState::Touching(piece) = &stretch.state else {
         return None;
     };
     let duration = stretch.end - stretch.start;
     let mut before = 0.0;
     // Between two ends of steps the force bends a little; a step of a long ramp is cut once more.
-    for end in element.step_ends().filter(|end| *end < duration).chain([duration]) {
+    for end in L::ends_in(piece).into_iter().filter(|end| *end < duration).chain([duration]) {
         for part in 1..=PARTS {
             let elapsed = before + (end - before) * f64::from(part) / f64::from(PARTS);
             if missing(elapsed) <= 0.0 {
@@ -302,132 +298,59 @@ fn reaching(stretch: &Stretch, target: f64, model: &ContactModel) -> Option<f64>
 const PARTS: i32 = 4;
 
 /// The contact at the end of a stretch, changed by the event that ended it.
-fn after(
-    stretch: &Stretch,
+fn after<L: Layer>(
+    stretch: &Stretch<L>,
     event: Option<ContactEvent>,
-    model: &ContactModel,
+    model: &L,
     work: &mut Work,
-) -> Result<Contact, SimulateError> {
-    let depth = model.specimen.depth();
+) -> Result<Contact<L>, SimulateError> {
     let out_of_range = SimulateError::OutOfRange { time: stretch.end };
+    let elapsed = stretch.end - stretch.start;
     Ok(match (&stretch.state, event) {
-        (StretchState::Touching(element), None) => {
-            let excess = element.excess_at(stretch.end - stretch.start);
-            if !excess.is_finite() {
+        (StretchState::Touching(piece), None) => {
+            let excess = model.excess_in(piece, elapsed);
+            if !L::is_finite(&excess) {
                 return Err(out_of_range);
             }
             Contact::Touching { excess }
         }
-        (StretchState::Touching(_), Some(event)) => {
+        (StretchState::Touching(piece), Some(event)) => {
             work.closed_forms += 1;
-            let dent = event.contact_displacement;
+            let excess = model.excess_in(piece, elapsed);
             Contact::Free {
-                surface: FreeSurface::new(model.law, depth, model.layers.count(), dent).ok_or(out_of_range)?,
+                surface: model.left(&excess, event.contact_displacement).ok_or(out_of_range)?,
                 since: event.time,
             }
         }
         (StretchState::Free { surface, since }, None) => Contact::Free {
-            surface: *surface,
+            surface: surface.clone(),
             since: *since,
         },
         (StretchState::Forced(forced), _) => Contact::Touching {
-            excess: forced.at(stretch.end - stretch.start).excess,
+            excess: L::excess_under(forced, elapsed),
         },
-        // The surface is stress-free when the jaw arrives: ε₁ = 0.
-        (StretchState::Free { .. }, Some(event)) => Contact::Touching {
-            excess: -event.contact_displacement / depth,
+        (StretchState::Free { surface, since }, Some(event)) => Contact::Touching {
+            excess: model.met(surface, event.time - since, event.contact_displacement),
         },
     })
 }
 
 /// The event that ends a stretch early, if there is one.
-fn next_event(stretch: &Stretch, model: &ContactModel) -> Option<ContactEvent> {
-    if model.separation == Separation::Bonded {
+fn next_event<L: Layer>(stretch: &Stretch<L>, model: &L) -> Option<ContactEvent> {
+    if model.is_bonded() {
         return None;
     }
-    match &stretch.state {
-        StretchState::Touching(element) => loss(stretch, element, model),
-        StretchState::Free { surface, since } => regain(stretch, surface, *since, model),
-        StretchState::Forced(_) => None,
-    }
-}
-
-/// When the strain of the contact layer reaches zero.
-///
-/// Only a retreating jaw can lose the contact, and there the strain is either falling or rises once and then falls
-/// (its second derivative has one sign), so that a change of sign shows at the ends of the integration steps.
-fn loss(stretch: &Stretch, element: &Element, model: &ContactModel) -> Option<ContactEvent> {
-    if stretch.contact_speed >= 0.0 {
-        return None;
-    }
-    let strain = |elapsed: f64| {
-        let jaw = stretch.jaw_at(stretch.start + elapsed);
-        element.excess_at(elapsed) + model.specimen.equilibrium_strain(jaw)
-    };
-    let duration = stretch.end - stretch.start;
-    let mut touching = 0.0;
-    for elapsed in element.step_ends().chain([duration]) {
-        if elapsed <= duration && strain(elapsed) < 0.0 {
-            let elapsed = if strain(touching) <= 0.0 { touching } else { crossing(touching, elapsed, strain) };
-            let time = stretch.start + elapsed;
-            return Some(ContactEvent {
-                kind: ContactEventKind::Lost,
-                time,
-                contact_displacement: stretch.jaw_at(time),
-            });
+    let (times, speed, jaw) = ((stretch.start, stretch.end), stretch.contact_speed, |time: f64| stretch.jaw_at(time));
+    let (kind, time) = match &stretch.state {
+        StretchState::Touching(piece) => (ContactEventKind::Lost, model.loss(piece, times, speed, &jaw)?),
+        StretchState::Free { surface, since } => {
+            (ContactEventKind::Regained, model.meeting(surface, *since, times, speed, &jaw)?)
         }
-        touching = elapsed;
-    }
-    None
-}
-
-/// When the jaw meets the recovering surface.
-fn regain(stretch: &Stretch, surface: &FreeSurface, since: f64, model: &ContactModel) -> Option<ContactEvent> {
-    let lead = |time: f64| stretch.jaw_at(time) - surface.displacement_at(time - since);
-    let mut end = stretch.end;
-    if stretch.contact_speed < 0.0 {
-        // The surface slows down as it recovers, so the jaw's lead rises while the surface is the faster one
-        // and falls afterwards: only that first part can hold the meeting.
-        let depth = model.specimen.depth();
-        let thickness = model.layers.thickness(depth);
-        let surface_speed = |time: f64| {
-            let strain = surface.displacement_at(time - since) / depth;
-            thickness * model.law.rate(strain)
-        };
-        let faster = |time: f64| stretch.contact_speed - surface_speed(time);
-        if faster(stretch.start) <= 0.0 {
-            return None;
-        }
-        if faster(end) < 0.0 {
-            end = crossing(stretch.start, end, faster);
-        }
-    }
-    if lead(end) < 0.0 || (lead(end) == 0.0 && stretch.contact_speed < 0.0) {
-        return None;
-    }
-    let time = if lead(stretch.start) >= 0.0 {
-        stretch.start
-    } else {
-        crossing(stretch.start, end, |time| -lead(time))
+        StretchState::Forced(_) => return None,
     };
     Some(ContactEvent {
-        kind: ContactEventKind::Regained,
+        kind,
         time,
         contact_displacement: stretch.jaw_at(time),
     })
-}
-
-/// Where a function that is positive at `positive` and negative at `negative` changes sign, by bisection to the last bit.
-pub(super) fn crossing(mut positive: f64, mut negative: f64, f: impl Fn(f64) -> f64) -> f64 {
-    loop {
-        let middle = 0.5 * (positive + negative);
-        if middle <= positive.min(negative) || middle >= positive.max(negative) {
-            return negative;
-        }
-        if f(middle) > 0.0 {
-            positive = middle;
-        } else {
-            negative = middle;
-        }
-    }
 }

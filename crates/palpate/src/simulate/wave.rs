@@ -173,7 +173,7 @@ impl<'a> Cascade<'a> {
 
     /// Integrates through one stretch, writing the samples that fall into it; how far it came (s) if that takes too many steps.
     #[inline(always)]
-    fn pass<S: Simd>(&mut self, simd: S, stretch: &Stretch, is_last: bool, wave: &mut StrainWave) -> Result<(), f64> {
+    fn pass<S: Simd>(&mut self, simd: S, stretch: &Stretch<ContactModel>, is_last: bool, wave: &mut StrainWave) -> Result<(), f64> {
         let duration = stretch.end - stretch.start;
         let (nodes, along) = (
             &mut self.nodes,
@@ -231,7 +231,7 @@ impl Chain<'_> {
 /// The nodes along one stretch.
 struct Along<'a> {
     chain: &'a Chain<'a>,
-    stretch: &'a Stretch,
+    stretch: &'a Stretch<ContactModel>,
 }
 
 impl<S: Simd> Slopes<S> for Along<'_> {
@@ -273,7 +273,7 @@ impl<S: Simd> Slopes<S> for Along<'_> {
 }
 
 /// Displacement of the surface: the jaw's share while it touches, the first inner node once it is free of stress.
-fn surface(stretch: &Stretch, elapsed: f64, nodes: &[f64]) -> f64 {
+fn surface(stretch: &Stretch<ContactModel>, elapsed: f64, nodes: &[f64]) -> f64 {
     match stretch.state {
         StretchState::Touching(_) | StretchState::Forced(_) => stretch.jaw_at(stretch.start + elapsed),
         StretchState::Free { .. } => nodes.first().copied().unwrap_or(0.0),

@@ -1,4 +1,4 @@
-//! Linear laws of relaxation under the same motions, so that laws are compared in what they foretell.
+//! Linear laws of relaxation under the same motions, forces and programs, so that laws are compared in what they foretell.
 //!
 //! The contact layer of the latency law is replaced by one with a memory that fades linearly,
 //!
@@ -6,21 +6,34 @@
 //! ε(t) = ∫ G(t − s) dε_e(s),   G(t) = 1 + Σ g_k exp(−λ_k t),   F = S(u) ε
 //! ```
 //!
-//! or, with an excess strain x_k for every term, ε = ε_e + Σ x_k and ẋ_k = g_k ε̇_e − λ_k x_k. While the jaw moves at constant speed each
-//! x_k has a closed form, so that a motion is followed by exact recursion from knot to knot. One term with g = m − 1 and λ = v is the
-//! latency law with n = 1.
+//! or, with an excess x_k for every term, ε = ε_e + Σ x_k and ẋ_k = g_k ε̇_e − λ_k x_k. One term with g = m − 1 and λ = v is the latency
+//! law with n = 1. Fung's quasi-linear law is the same with the relaxed force F_e(u) in the place of ε_e and F in that of ε. Either of them
+//! is called q below.
 //!
 //! | file | what |
 //! |---|---|
 //! | `law.rs` | the terms of a law: standard linear solid, Prony, Fung |
 //! | `fractional.rs` | the fractional Zener law as a sum of terms, with its error |
-//! | `recovery.rs` | the surface once the jaw has left it |
-//! | `course.rs` | through a motion: in contact, jaw off, in contact again |
+//! | `contact.rs` | the body with its law, and what the law remembers |
+//! | `stage.rs` | the memory while q is a polynomial of time: exact |
+//! | `moving.rs` | while the jaw moves at constant speed |
+//! | `pressed.rs` | while the force goes straight |
+//! | `recovery.rs` | what fades while no force changes |
+//! | `surface.rs` | the surface once the jaw has left it |
+//! | `layer.rs` | all of it as the walk through a drive asks for it |
 
-mod course;
+mod contact;
 mod fractional;
 mod law;
+mod layer;
+mod moving;
+mod pressed;
 mod recovery;
+mod stage;
+mod surface;
 
-pub use course::{LinearContact, simulate_linear};
+pub use contact::{LinearContact, Memory};
 pub use law::{LinearLaw, LinearLawError, LinearTerm};
+use moving::Moving;
+use pressed::Pressed;
+use surface::Surface;

@@ -1,8 +1,9 @@
-//! The surface once the jaw has left it.
+//! What fades while no force changes: the surface once the jaw has left it, and creep of a body of constant section.
 
 use super::law::LinearLaw;
 
-/// A stress-free surface on its way back: ε = 0, so that ε_e = −Σ x_k and ε̇_e = Σ λ_k x_k/(1 + Σ g_k).
+/// A stress-free surface on its way back: q + Σ x_k = 0, so that q̇ = Σ λ_k x_k/(1 + Σ g_k); or one under a constant force, less where it
+/// tends to.
 ///
 /// The x_k then obey ẋ = A x with A = −Λ + g λᵀ/(1 + Σ g). Its rates μ are the retardation rates of the law, the roots of
 ///
@@ -60,9 +61,23 @@ impl Recovery {
         }
     }
 
-    /// Equilibrium strain of the surface a time `elapsed` (s) after the jaw left.
-    pub(super) fn equilibrium_strain(&self, elapsed: f64) -> f64 {
+    /// q a time `elapsed` (s) after the force was gone.
+    pub(super) fn value(&self, elapsed: f64) -> f64 {
         -self.modes.iter().map(|mode| mode.sum * (-mode.rate * elapsed).exp()).sum::<f64>()
+    }
+
+    /// q̇ there.
+    pub(super) fn slope(&self, elapsed: f64) -> f64 {
+        self.modes.iter().map(|mode| mode.rate * mode.sum * (-mode.rate * elapsed).exp()).sum()
+    }
+
+    /// A lower bound of q between two times: every mode fades.
+    pub(super) fn least(&self, from: f64, until: f64) -> f64 {
+        let each = |mode: &Mode| {
+            let (early, late) = ((-mode.rate * from).exp(), (-mode.rate * until).exp());
+            (-mode.sum * early).min(-mode.sum * late)
+        };
+        self.modes.iter().map(each).sum()
     }
 
     /// The excess strains there.
@@ -114,7 +129,7 @@ mod tests {
         let whole = 1.0 + law.overshoot();
         for t in [0.0, 0.01, 1.0, 100.0] {
             let x = recovery.excess(t);
-            assert!((recovery.equilibrium_strain(t) + x.iter().sum::<f64>()).abs() < 1e-15);
+            assert!((recovery.value(t) + x.iter().sum::<f64>()).abs() < 1e-15);
             let step = 1e-6 * (0.1 + t);
             let (before, after) = (recovery.excess((t - step).max(0.0)), recovery.excess(t + step));
             let width = t + step - (t - step).max(0.0);

@@ -1,0 +1,291 @@
+//! The contact layer, whichever law it obeys.
+//!
+//! The walk through a drive asks for no more than this: the layer while the jaw moves, under a force, and the surface without a jaw.
+
+use super::{ContactModel, Separation, Work};
+use crate::contact::{Body, Carried, Element, Forced, FreeSurface, Ramps, Specimen, Stopped};
+
+/// A contact with a law of its layer.
+pub(super) trait Layer {
+    /// What the layer has in excess of equilibrium.
+    type Excess: Clone;
+    /// What stands behind the layer and does not jump with the force.
+    type Behind;
+    /// The layer through a straight piece of motion.
+    type Moving;
+    /// What such pieces leave to later ones.
+    type Known: Default;
+    /// The layer under a force that goes straight.
+    type Pressed;
+    /// The surface without a jaw.
+    type Surface: Clone;
+
+    fn specimen(&self) -> &Specimen;
+    fn separation(&self) -> Separation;
+    fn is_bonded(&self) -> bool {
+        self.separation() == Separation::Bonded
+    }
+
+    fn relaxed(&self) -> Self::Excess;
+    /// Excess strain at contact displacement `u` (m).
+    fn strain_of(&self, excess: &Self::Excess, u: f64) -> f64;
+    fn is_finite(excess: &Self::Excess) -> bool;
+    fn behind(&self, excess: &Self::Excess, u: f64) -> Self::Behind;
+    /// What one contact of a body of constant section stores, J.
+    fn stored(&self, excess: &Self::Excess, u: f64) -> f64;
+
+    /// From contact displacement `from` (m) at `speed` (m/s) for `duration` (s).
+    fn moving(
+        &self,
+        excess: &Self::Excess,
+        line: (f64, f64),
+        duration: f64,
+        known: &mut Self::Known,
+        work: &mut Work,
+    ) -> Self::Moving;
+    fn excess_in(&self, piece: &Self::Moving, elapsed: f64) -> Self::Excess;
+    fn strain_in(&self, piece: &Self::Moving, elapsed: f64) -> f64;
+    /// Appends the excess strain at times (s) in a piece that began at `start`.
+    fn extend_strains(&self, piece: &Self::Moving, start: f64, times: &[f64], strains: &mut Vec<f64>);
+    /// The same, and the rates (1/s) of the whole strain at `speed` (m/s).
+    fn extend(
+        &self,
+        piece: &Self::Moving,
+        start_and_speed: (f64, f64),
+        times: &[f64],
+        strains: &mut Vec<f64>,
+        rates: &mut Vec<f64>,
+    );
+    /// Times (s from its start) between which a piece is smooth.
+    fn ends_in(piece: &Self::Moving) -> Vec<f64>;
+    /// When (s) the strain of the layer reaches zero in a piece between two times, with the jaw at `jaw` and going at `speed` (m/s).
+    fn loss(&self, piece: &Self::Moving, times: (f64, f64), speed: f64, jaw: &impl Fn(f64) -> f64) -> Option<f64>;
+
+    fn pressed(
+        &self,
+        forces: (f64, f64),
+        behind: &Self::Behind,
+        duration: f64,
+        work: &mut Work,
+    ) -> Result<Self::Pressed, Stopped>;
+    fn force_under(piece: &Self::Pressed, elapsed: f64) -> f64;
+    fn carried(piece: &Self::Pressed, elapsed: f64) -> Carried;
+    fn displacement_under(piece: &Self::Pressed, elapsed: f64) -> f64 {
+        Self::carried(piece, elapsed).displacement
+    }
+    fn excess_under(piece: &Self::Pressed, elapsed: f64) -> Self::Excess;
+    fn behind_under(piece: &Self::Pressed, elapsed: f64) -> Self::Behind;
+    fn ends_under(piece: &Self::Pressed) -> Vec<f64>;
+
+    /// The surface that the jaw leaves at contact displacement `u` (m); `None` if the numbers ran out.
+    fn left(&self, excess: &Self::Excess, u: f64) -> Option<Self::Surface>;
+    fn surface(&self, surface: &Self::Surface, elapsed: f64) -> f64;
+    /// Excess of the layer of a surface that is met at contact displacement `u` (m).
+    fn met(&self, surface: &Self::Surface, elapsed: f64, u: f64) -> Self::Excess;
+    /// When between two times (s) the jaw, going at `speed` (m/s), meets the surface, which is on its own since `since` (s).
+    fn meeting(
+        &self,
+        surface: &Self::Surface,
+        since: f64,
+        times: (f64, f64),
+        speed: f64,
+        jaw: &impl Fn(f64) -> f64,
+    ) -> Option<f64>;
+}
+
+impl Layer for ContactModel {
+    type Excess = f64;
+    /// Displacement of the next node, m.
+    type Behind = f64;
+    type Moving = Element;
+    type Known = Ramps;
+    type Pressed = Forced;
+    type Surface = FreeSurface;
+
+    fn specimen(&self) -> &Specimen {
+        &self.specimen
+    }
+
+    fn separation(&self) -> Separation {
+        self.separation
+    }
+
+    fn relaxed(&self) -> f64 {
+        0.0
+    }
+
+    fn strain_of(&self, excess: &f64, _: f64) -> f64 {
+        *excess
+    }
+
+    fn is_finite(excess: &f64) -> bool {
+        excess.is_finite()
+    }
+
+    fn behind(&self, excess: &f64, u: f64) -> f64 {
+        let strain = excess + self.specimen.equilibrium_strain(u);
+        u - self.layers.thickness(self.specimen.depth()) * strain
+    }
+
+    fn stored(&self, &excess: &f64, u: f64) -> f64 {
+        let depth = self.specimen.depth();
+        let (stiffness, _) = self.specimen.stiffness(u);
+        let elastic = 0.5 * stiffness * u * u / depth;
+        // A single layer has no excess.
+        if excess == 0.0 {
+            return elastic;
+        }
+        elastic + 0.5 * stiffness * depth * excess * excess / (self.layers.count() - 1.0)
+    }
+
+    fn moving(
+        &self,
+        &excess: &f64,
+        (_, speed): (f64, f64),
+        duration: f64,
+        known: &mut Ramps,
+        work: &mut Work,
+    ) -> Element {
+        let drive = self.layers.drive(speed, self.specimen.depth());
+        Element::solve(self.law, excess, drive, duration, known, work)
+    }
+
+    fn excess_in(&self, piece: &Element, elapsed: f64) -> f64 {
+        piece.excess_at(elapsed)
+    }
+
+    fn strain_in(&self, piece: &Element, elapsed: f64) -> f64 {
+        piece.excess_at(elapsed)
+    }
+
+    fn extend_strains(&self, piece: &Element, start: f64, times: &[f64], strains: &mut Vec<f64>) {
+        piece.extend_excess(start, times, strains);
+    }
+
+    fn extend(
+        &self,
+        piece: &Element,
+        (start, speed): (f64, f64),
+        times: &[f64],
+        strains: &mut Vec<f64>,
+        rates: &mut Vec<f64>,
+    ) {
+        let from = strains.len();
+        piece.extend_excess(start, times, strains);
+        self.law.extend_rates(&strains[from..], rates);
+        let depth = self.specimen.depth();
+        let by_jaw = self.layers.drive(speed, depth) + speed / depth;
+        rates[from..].iter_mut().for_each(|rate| *rate += by_jaw);
+    }
+
+    fn ends_in(piece: &Element) -> Vec<f64> {
+        piece.step_ends().collect()
+    }
+
+    /// Only a retreating jaw can lose the contact, and there the strain is either falling or rises once and then falls
+    /// (its second derivative has one sign), so that a change of sign shows at the ends of the integration steps.
+    fn loss(&self, piece: &Element, (start, end): (f64, f64), speed: f64, jaw: &impl Fn(f64) -> f64) -> Option<f64> {
+        if speed >= 0.0 {
+            return None;
+        }
+        let strain = |elapsed: f64| piece.excess_at(elapsed) + self.specimen.equilibrium_strain(jaw(start + elapsed));
+        let (mut touching, duration) = (0.0, end - start);
+        for elapsed in piece.step_ends().chain([duration]) {
+            if elapsed <= duration && strain(elapsed) < 0.0 {
+                let gone = if strain(touching) <= 0.0 { touching } else { crossing(touching, elapsed, strain) };
+                return Some(start + gone);
+            }
+            touching = elapsed;
+        }
+        None
+    }
+
+    fn pressed(&self, forces: (f64, f64), &behind: &f64, duration: f64, work: &mut Work) -> Result<Forced, Stopped> {
+        let body = Body {
+            specimen: self.specimen.clone(),
+            law: self.law,
+            layers: self.layers,
+            bonded: self.is_bonded(),
+        };
+        Forced::solve(body, forces, behind, duration, work)
+    }
+
+    fn force_under(piece: &Forced, elapsed: f64) -> f64 {
+        piece.force_at(elapsed)
+    }
+
+    fn carried(piece: &Forced, elapsed: f64) -> Carried {
+        piece.at(elapsed)
+    }
+
+    fn excess_under(piece: &Forced, elapsed: f64) -> f64 {
+        piece.at(elapsed).excess
+    }
+
+    fn behind_under(piece: &Forced, elapsed: f64) -> f64 {
+        piece.behind_at(elapsed)
+    }
+
+    fn ends_under(piece: &Forced) -> Vec<f64> {
+        piece.step_ends().collect()
+    }
+
+    fn left(&self, _: &f64, u: f64) -> Option<FreeSurface> {
+        FreeSurface::new(self.law, self.specimen.depth(), self.layers.count(), u)
+    }
+
+    fn surface(&self, surface: &FreeSurface, elapsed: f64) -> f64 {
+        surface.displacement_at(elapsed)
+    }
+
+    /// The surface is stress-free when the jaw arrives: ε₁ = 0.
+    fn met(&self, _: &FreeSurface, _: f64, u: f64) -> f64 {
+        -u / self.specimen.depth()
+    }
+
+    fn meeting(
+        &self,
+        surface: &FreeSurface,
+        since: f64,
+        (start, mut end): (f64, f64),
+        speed: f64,
+        jaw: &impl Fn(f64) -> f64,
+    ) -> Option<f64> {
+        let lead = |time: f64| jaw(time) - surface.displacement_at(time - since);
+        if speed < 0.0 {
+            // The surface slows down as it recovers, so the jaw's lead rises while the surface is the faster one
+            // and falls afterwards: only that first part can hold the meeting.
+            let depth = self.specimen.depth();
+            let thickness = self.layers.thickness(depth);
+            let faster = |time: f64| {
+                let strain = surface.displacement_at(time - since) / depth;
+                speed - thickness * self.law.rate(strain)
+            };
+            if faster(start) <= 0.0 {
+                return None;
+            }
+            if faster(end) < 0.0 {
+                end = crossing(start, end, faster);
+            }
+        }
+        if lead(end) < 0.0 || (lead(end) == 0.0 && speed < 0.0) {
+            return None;
+        }
+        Some(if lead(start) >= 0.0 { start } else { crossing(start, end, |time| -lead(time)) })
+    }
+}
+
+/// Where a function that is positive at `positive` and negative at `negative` changes sign, by bisection to the last bit.
+pub(super) fn crossing(mut positive: f64, mut negative: f64, f: impl Fn(f64) -> f64) -> f64 {
+    loop {
+        let middle = 0.5 * (positive + negative);
+        if middle <= positive.min(negative) || middle >= positive.max(negative) {
+            return negative;
+        }
+        if f(middle) > 0.0 {
+            positive = middle;
+        } else {
+            negative = middle;
+        }
+    }
+}

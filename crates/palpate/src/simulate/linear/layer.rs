@@ -1,0 +1,148 @@
+//! A linear contact as the walk through a drive asks for it.
+
+use super::{LinearContact, Moving, Pressed, Surface};
+use crate::contact::{Carried, Specimen, Stopped};
+use crate::simulate::layer::Layer;
+use crate::simulate::{Separation, Work};
+
+impl Layer for LinearContact {
+    /// x_k, one for every term.
+    type Excess = Vec<f64>;
+    /// x_k − g_k q.
+    type Behind = Vec<f64>;
+    type Moving = Moving;
+    type Known = ();
+    type Pressed = Pressed;
+    type Surface = Surface;
+
+    fn specimen(&self) -> &Specimen {
+        &self.specimen
+    }
+
+    fn separation(&self) -> Separation {
+        self.separation
+    }
+
+    fn relaxed(&self) -> Vec<f64> {
+        vec![0.0; self.law.terms().len()]
+    }
+
+    fn strain_of(&self, excess: &Vec<f64>, u: f64) -> f64 {
+        let sum: f64 = excess.iter().sum();
+        if sum == 0.0 { 0.0 } else { sum / self.per_strain(u) }
+    }
+
+    fn is_finite(excess: &Vec<f64>) -> bool {
+        excess.iter().all(|x| x.is_finite())
+    }
+
+    fn behind(&self, excess: &Vec<f64>, u: f64) -> Vec<f64> {
+        let value = self.value(u);
+        excess.iter().zip(self.law.terms()).map(|(x, term)| x - term.overshoot * value).collect()
+    }
+
+    /// The springs of a generalised Maxwell body.
+    fn stored(&self, excess: &Vec<f64>, u: f64) -> f64 {
+        let (depth, (stiffness, _)) = (self.specimen.depth(), self.specimen.stiffness(u));
+        let (even, per) = (self.specimen.equilibrium_strain(u), self.per_strain(u));
+        let springs = excess.iter().zip(self.law.terms()).map(|(x, term)| (x / per).powi(2) / term.overshoot);
+        0.5 * stiffness * depth * (even * even + springs.sum::<f64>())
+    }
+
+    fn moving(&self, excess: &Vec<f64>, line: (f64, f64), duration: f64, (): &mut (), work: &mut Work) -> Moving {
+        work.closed_forms += 1;
+        Moving::solve(self, line, excess.clone(), duration)
+    }
+
+    fn excess_in(&self, piece: &Moving, elapsed: f64) -> Vec<f64> {
+        piece.memory(elapsed)
+    }
+
+    fn strain_in(&self, piece: &Moving, elapsed: f64) -> f64 {
+        piece.excess(elapsed)
+    }
+
+    fn extend_strains(&self, piece: &Moving, start: f64, times: &[f64], strains: &mut Vec<f64>) {
+        strains.extend(times.iter().map(|time| piece.excess(time - start)));
+    }
+
+    fn extend(
+        &self,
+        piece: &Moving,
+        (start, _): (f64, f64),
+        times: &[f64],
+        strains: &mut Vec<f64>,
+        rates: &mut Vec<f64>,
+    ) {
+        for time in times {
+            let (excess, rate) = piece.excess_and_rate(time - start);
+            strains.push(excess);
+            rates.push(rate);
+        }
+    }
+
+    fn ends_in(piece: &Moving) -> Vec<f64> {
+        piece.step_ends()
+    }
+
+    fn loss(&self, piece: &Moving, times: (f64, f64), _: f64, _: &impl Fn(f64) -> f64) -> Option<f64> {
+        piece.loss(times)
+    }
+
+    fn pressed(
+        &self,
+        forces: (f64, f64),
+        behind: &Vec<f64>,
+        duration: f64,
+        work: &mut Work,
+    ) -> Result<Pressed, Stopped> {
+        Pressed::solve(self, forces, behind, duration, work)
+    }
+
+    fn force_under(piece: &Pressed, elapsed: f64) -> f64 {
+        piece.force_at(elapsed)
+    }
+
+    fn carried(piece: &Pressed, elapsed: f64) -> Carried {
+        piece.at(elapsed)
+    }
+
+    fn displacement_under(piece: &Pressed, elapsed: f64) -> f64 {
+        piece.displacement(elapsed)
+    }
+
+    fn excess_under(piece: &Pressed, elapsed: f64) -> Vec<f64> {
+        piece.memory(elapsed)
+    }
+
+    fn behind_under(piece: &Pressed, elapsed: f64) -> Vec<f64> {
+        piece.behind(elapsed)
+    }
+
+    fn ends_under(piece: &Pressed) -> Vec<f64> {
+        piece.step_ends()
+    }
+
+    fn left(&self, excess: &Vec<f64>, _: f64) -> Option<Surface> {
+        Some(Surface::new(self, excess))
+    }
+
+    fn surface(&self, surface: &Surface, elapsed: f64) -> f64 {
+        surface.displacement(elapsed)
+    }
+
+    fn met(&self, surface: &Surface, elapsed: f64, _: f64) -> Vec<f64> {
+        surface.memory(elapsed)
+    }
+
+    fn meeting(
+        &self,
+        surface: &Surface,
+        since: f64,
+        times: (f64, f64),
+        _: f64,
+        jaw: &impl Fn(f64) -> f64,
+    ) -> Option<f64> {
+        surface.meeting(since, times, jaw)
+    }
+}

@@ -1,0 +1,191 @@
+//! A linear contact layer while the jaw moves at constant speed.
+//!
+//! A memory of strain has a closed form, since strain goes straight. A memory of force is driven by F_e(u(t)): stages over which that is a
+//! polynomial to rounding.
+
+use super::contact::{LinearContact, Memory};
+use super::stage::{DEGREE, GAUSS, Stage, legendre};
+
+/// Difference of q from its polynomial, relative to the largest q.
+const TOLERANCE: f64 = 1e-13;
+
+/// Most halvings of a piece on the way to a smooth stage: at first touch of a ball Hertz's force begins like t^1.5.
+const HALVINGS: u32 = 40;
+
+/// A straight piece of motion, from t = 0 at its start.
+#[derive(Debug, Clone)]
+pub(crate) struct Moving {
+    contact: LinearContact,
+    /// Contact displacement at the start (m) and its speed (m/s).
+    from: f64,
+    speed: f64,
+    duration: f64,
+    stages: Vec<Stage>,
+}
+
+impl Moving {
+    pub(super) fn solve(contact: &LinearContact, (from, speed): (f64, f64), before: Vec<f64>, duration: f64) -> Self {
+        let mut piece = Self {
+            contact: contact.clone(),
+            from,
+            speed,
+            duration,
+            stages: Vec::new(),
+        };
+        let (first, last) = (contact.value(from), contact.value(from + speed * duration));
+        if speed == 0.0 || contact.memory == Memory::Strain || contact.specimen.has_constant_section() {
+            let by = if speed == 0.0 { 0.0 } else { last - first };
+            piece.stages.push(Stage::straight(0.0, duration, first, by, before));
+        } else {
+            let allowed = TOLERANCE * first.abs().max(last.abs());
+            piece.divide((0.0, duration), before, allowed, HALVINGS);
+        }
+        piece
+    }
+
+    /// Appends the stages from one time to another; returns x_k at the end.
+    fn divide(&mut self, (start, end): (f64, f64), before: Vec<f64>, allowed: f64, halvings: u32) -> Vec<f64> {
+        let width = end - start;
+        let mut rates = [0.0; DEGREE];
+        for &(node, weight) in GAUSS.iter() {
+            let slope = width * self.contact.slope(self.jaw(start + width * node)) * self.speed;
+            for (p, (rate, value)) in rates.iter_mut().zip(legendre(node)).enumerate() {
+                *rate += (2 * p + 1) as f64 * weight * slope * value;
+            }
+        }
+        let rest = rates[DEGREE - 1].abs() + rates[DEGREE - 2].abs();
+        if rest > allowed && halvings > 0 {
+            let middle = start + 0.5 * width;
+            let before = self.divide((start, middle), before, allowed, halvings - 1);
+            return self.divide((middle, end), before, allowed, halvings - 1);
+        }
+        let stage = Stage {
+            start,
+            width,
+            from: self.contact.value(self.jaw(start)),
+            rates,
+            before,
+        };
+        let after = stage.memory(1.0, &self.contact.law);
+        self.stages.push(stage);
+        after
+    }
+
+    /// Contact displacement, m.
+    fn jaw(&self, elapsed: f64) -> f64 {
+        if self.speed == 0.0 { self.from } else { self.from + self.speed * elapsed }
+    }
+
+    fn stage(&self, elapsed: f64) -> &Stage {
+        let index = self.stages.partition_point(|stage| stage.end() < elapsed);
+        &self.stages[index.min(self.stages.len() - 1)]
+    }
+
+    /// x_k.
+    pub(super) fn memory(&self, elapsed: f64) -> Vec<f64> {
+        let stage = self.stage(elapsed);
+        stage.memory(stage.part(elapsed), &self.contact.law)
+    }
+
+    /// Excess strain of the contact layer, and its whole strain rate (1/s).
+    pub(super) fn excess_and_rate(&self, elapsed: f64) -> (f64, f64) {
+        let (stage, law, specimen) = (self.stage(elapsed), &self.contact.law, &self.contact.specimen);
+        let part = stage.part(elapsed);
+        let memory = stage.memory(part, law);
+        let sum: f64 = memory.iter().sum();
+        let relaxing: f64 = memory.iter().zip(law.terms()).map(|(x, term)| term.rate * x).sum();
+        let u = self.jaw(elapsed);
+        let pushed = if stage.is_straight() { stage.slope(part) } else { self.contact.slope(u) * self.speed };
+        let rate = pushed * (1.0 + law.overshoot()) - relaxing;
+        match self.contact.memory {
+            Memory::Strain => (sum, rate),
+            Memory::Force => {
+                let (stiffness, growth) = specimen.stiffness(u);
+                if sum == 0.0 && stiffness == 0.0 {
+                    // First touch of a relaxed ball: the whole force is there at once, as a multiple of the relaxed one.
+                    return (0.0, (1.0 + law.overshoot()) * self.speed / specimen.depth());
+                }
+                let excess = sum / stiffness;
+                let strain = excess + specimen.equilibrium_strain(u);
+                (excess, (rate - strain * growth * self.speed) / stiffness)
+            }
+        }
+    }
+
+    /// Excess strain of the contact layer.
+    pub(super) fn excess(&self, elapsed: f64) -> f64 {
+        let sum: f64 = self.memory(elapsed).iter().sum();
+        if sum == 0.0 { 0.0 } else { sum / self.contact.per_strain(self.jaw(elapsed)) }
+    }
+
+    /// Times (s from the start) between which nothing changes by much: ever further apart from the fastest rate on.
+    pub(super) fn step_ends(&self) -> Vec<f64> {
+        const GROWTH: f64 = 1.5;
+        let fastest = self.contact.law.terms().last().map_or(1.0, |term| term.rate);
+        let first = 0.5 / fastest;
+        let rungs = std::iter::successors(Some(first), |time| Some(GROWTH * time));
+        let mut ends: Vec<f64> = rungs.take_while(|end| *end < self.duration).collect();
+        ends.extend(self.stages.iter().map(Stage::end).filter(|end| *end < self.duration));
+        ends.sort_by(f64::total_cmp);
+        ends
+    }
+
+    /// When q + Σ x_k, and with it the force, reaches zero.
+    ///
+    /// Sums of exponentials may do so more than once in a hold; intervals are halved until bounds of every term tell that it does not, or
+    /// to the last bit.
+    pub(super) fn loss(&self, (start, end): (f64, f64)) -> Option<f64> {
+        let look = |time: f64| {
+            let elapsed = time - start;
+            let (value, memory) = (self.contact.value(self.jaw(elapsed)), self.memory(elapsed));
+            Look { time, value, memory }
+        };
+        self.first_below(&look(start), &look(end), &look)
+    }
+
+    fn first_below(&self, a: &Look, b: &Look, look: &impl Fn(f64) -> Look) -> Option<f64> {
+        if self.least(a, b) >= -a.rounding() {
+            return None;
+        }
+        let middle = 0.5 * (a.time + b.time);
+        if middle <= a.time || middle >= b.time {
+            return (b.sum() < 0.0).then_some(b.time);
+        }
+        let middle = look(middle);
+        self.first_below(a, &middle, look).or_else(|| self.first_below(&middle, b, look))
+    }
+
+    /// A lower bound of q + Σ x_k between two times.
+    fn least(&self, a: &Look, b: &Look) -> f64 {
+        let fall = (a.value - b.value).max(0.0);
+        let is_straight = self.stages.len() == 1 && self.stages[0].is_straight();
+        let width = b.time - a.time;
+        let each = |((a, b), term): ((&f64, &f64), &super::LinearTerm)| match is_straight {
+            // An exponential and a constant: nothing lies outside its ends.
+            true => a.min(*b),
+            // The memory that fades, and at most all of what is taken away.
+            false => a.min(a * (-term.rate * width).exp()).min(*b) - term.overshoot * fall,
+        };
+        let terms: f64 = a.memory.iter().zip(&b.memory).zip(self.contact.law.terms()).map(each).sum();
+        a.value.min(b.value) + terms
+    }
+}
+
+/// The layer at a moment.
+struct Look {
+    /// s
+    time: f64,
+    value: f64,
+    memory: Vec<f64>,
+}
+
+impl Look {
+    fn sum(&self) -> f64 {
+        self.value + self.memory.iter().sum::<f64>()
+    }
+
+    /// What rounding makes of a sum that is zero.
+    fn rounding(&self) -> f64 {
+        4.0 * f64::EPSILON * (self.value.abs() + self.memory.iter().map(|x| x.abs()).sum::<f64>())
+    }
+}

@@ -1,0 +1,367 @@
+//! A linear contact layer under a force that goes straight.
+//!
+//! The force asks for one contact displacement at any time: S(u) (q(u) + Σ x_k) = F, with the memory x_k of all that q was. Over a stage q̇ is
+//! a polynomial whose numbers are such that this holds at the nodes (collocation); the memory follows it exactly, so that fast terms ask for no short steps.
+//! By how much it fails between the nodes is the error, and sets the width of the stages.
+//!
+//! Where only the memory of a constant fades - no force, or a held one on a body of constant section - the retardation modes are a
+//! closed form.
+
+use std::sync::LazyLock;
+
+use super::{LinearContact, Memory};
+use super::recovery::Recovery;
+use super::stage::{DEGREE, Stage, dot, fading, integrated};
+use crate::contact::{Carried, Stopped};
+use crate::simulate::Work;
+
+/// Error of q, relative to the largest that the forces of a piece ask for at once.
+const TOLERANCE: f64 = 1e-12;
+
+/// Nodes, the last one at the end of a stage, and two places between them.
+const PLACES: usize = DEGREE + 2;
+
+/// Iterations of Newton's method after which a stage is tried anew, at a quarter of its width.
+const MOST_ITERATIONS: usize = 16;
+
+/// One straight piece of force, from t = 0 at its start.
+#[derive(Debug)]
+pub(crate) struct Pressed {
+    contact: LinearContact,
+    /// Force at the start (N) and its slope (N/s).
+    from: f64,
+    slope: f64,
+    path: Path,
+}
+
+#[derive(Debug)]
+enum Path {
+    /// q = `rest` − what fades.
+    Fading { rest: f64, recovery: Recovery },
+    Stages(Vec<Stage>),
+}
+
+impl Pressed {
+    /// Solves one piece of `duration` (s) under a force that goes straight from `from` to `to` (N), with x_k − g_k q at `behind`: what does
+    /// not jump with the force.
+    pub(super) fn solve(
+        contact: &LinearContact,
+        (from, to): (f64, f64),
+        behind: &[f64],
+        duration: f64,
+        work: &mut Work,
+    ) -> Result<Self, Stopped> {
+        let overloaded = Stopped::TooMuch { elapsed: 0.0 };
+        let u = contact.carried(from, behind.iter().sum()).ok_or(overloaded)?;
+        let value = contact.value(u);
+        let terms = contact.law.terms();
+        let memory: Vec<f64> = behind.iter().zip(terms).map(|(behind, term)| behind + term.overshoot * value).collect();
+        let mut piece = Self {
+            contact: contact.clone(),
+            from,
+            slope: if duration > 0.0 { (to - from) / duration } else { 0.0 },
+            path: Path::Stages(Vec::new()),
+        };
+        let is_plain = contact.memory == Memory::Force || contact.specimen.has_constant_section();
+        if duration == 0.0 {
+            piece.path = Path::Stages(vec![Stage::straight(0.0, 0.0, value, 0.0, memory)]);
+        } else if piece.slope == 0.0 && (from == 0.0 || is_plain) {
+            work.closed_forms += 1;
+            let rest = if from == 0.0 { 0.0 } else { from / contact.stiffness(u).0 };
+            let recovery = Recovery::new(&contact.law, &memory);
+            piece.path = Path::Fading { rest, recovery };
+            if let Err(elapsed) = piece.check(duration) {
+                return Err(Stopped::TooMuch { elapsed });
+            }
+        } else {
+            work.ramps += 1;
+            piece.path = Path::Stages(piece.stages(value, memory, (duration, to), work)?);
+        }
+        Ok(piece)
+    }
+
+    fn stages(
+        &self,
+        mut value: f64,
+        mut memory: Vec<f64>,
+        (duration, to): (f64, f64),
+        work: &mut Work,
+    ) -> Result<Vec<Stage>, Stopped> {
+        let contact = &self.contact;
+        let behind: f64 = memory.iter().zip(contact.law.terms()).map(|(x, term)| x - term.overshoot * value).sum();
+        let asked = contact.carried(to, behind).map_or(f64::INFINITY, |u| contact.value(u).abs());
+        let allowed = TOLERANCE * if asked.is_finite() { asked.max(value.abs()) } else { value.abs() };
+        let allowed = allowed.max(f64::MIN_POSITIVE);
+        let u = contact.place(value).unwrap_or(0.0);
+        // At first touch of a ball q begins like √t.
+        let mut width = if contact.stiffness(u).0 == 0.0 { 1e-20 * duration } else { 1e-3 * duration };
+        let (mut stages, mut time) = (Vec::new(), 0.0);
+        while time < duration {
+            let left = duration - time;
+            let ends = width >= left;
+            let tried = if ends { left } else { width };
+            let stage = self.stage(time, tried, value, &memory, allowed, work);
+            let wider = match &stage {
+                Some((_, error)) => 0.9 * (allowed / error).powf(1.0 / (DEGREE + 1) as f64),
+                None => 0.25,
+            };
+            match stage {
+                Some((stage, error)) if error <= allowed => {
+                    time = if ends { duration } else { stage.end() };
+                    value = stage.value(1.0);
+                    memory = stage.memory(1.0, &contact.law);
+                    stages.push(stage);
+                    work.steps += 1;
+                    width = tried * wider.clamp(0.2, 8.0);
+                }
+                _ => {
+                    width = tried * wider.clamp(0.1, 0.8);
+                    if time + width <= time {
+                        return Err(Stopped::TooMuch { elapsed: time });
+                    }
+                }
+            }
+        }
+        Ok(stages)
+    }
+
+    /// A stage of `width` (s) from a time, and by how much q may be off in it; `None` where nothing that the body can take was found.
+    fn stage(
+        &self,
+        start: f64,
+        width: f64,
+        from: f64,
+        before: &[f64],
+        allowed: f64,
+        work: &mut Work,
+    ) -> Option<(Stage, f64)> {
+        let (contact, law) = (&self.contact, &self.contact.law);
+        let places = &*WHERE;
+        // Memory of the past, and of the stage itself, at every place.
+        let mut past = [0.0; PLACES];
+        let mut own = [[0.0; DEGREE]; PLACES];
+        for (x, term) in before.iter().zip(law.terms()) {
+            let z = term.rate * width;
+            for ((past, own), (part, _)) in past.iter_mut().zip(&mut own).zip(places) {
+                *past += x * (-z * part).exp();
+                for (own, fading) in own.iter_mut().zip(fading(z, *part)) {
+                    *own += term.overshoot * fading;
+                }
+            }
+        }
+        let force = |place: usize| self.force_at(start + width * places[place].0);
+        // What the force asks for at once, were nothing to relax.
+        let behind: f64 = before.iter().zip(law.terms()).map(|(x, term)| x - term.overshoot * from).sum();
+        let mut rates = [0.0; DEGREE];
+        let mut first = [0.0; DEGREE];
+        for (node, first) in first.iter_mut().enumerate() {
+            *first = contact.value(contact.carried(force(node), behind)?) - from;
+        }
+        if !solve(std::array::from_fn(|node| places[node].1), &mut first) {
+            return None;
+        }
+        rates.copy_from_slice(&first);
+        // Off, and its slope against q + Σ x_k and q, at a place.
+        let look = |rates: &[f64; DEGREE], place: usize| {
+            let value = from + dot(rates, &places[place].1);
+            let sum = value + past[place] + dot(rates, &own[place]);
+            let u = contact.place(value)?;
+            let (stiffness, growth) = contact.stiffness(u);
+            let bend = if growth == 0.0 { 0.0 } else { growth * sum / contact.slope(u) };
+            let off = stiffness * sum - force(place);
+            (stiffness > 0.0).then_some((off, stiffness, bend))
+        };
+        let mut converged = false;
+        for _ in 0..MOST_ITERATIONS {
+            work.evaluations += 1;
+            let mut matrix = [[0.0; DEGREE]; DEGREE];
+            let mut off = [0.0; DEGREE];
+            for node in 0..DEGREE {
+                let (residual, stiffness, bend) = look(&rates, node)?;
+                let weight = 1.0 / (stiffness + bend.abs());
+                off[node] = weight * residual;
+                for ((slot, value), own) in matrix[node].iter_mut().zip(&places[node].1).zip(&own[node]) {
+                    *slot = weight * ((stiffness + bend) * value + stiffness * own);
+                }
+            }
+            if !solve(matrix, &mut off) {
+                return None;
+            }
+            let moved = (0..DEGREE).map(|node| dot(&off, &places[node].1).abs()).fold(0.0, f64::max);
+            rates.iter_mut().zip(off).for_each(|(rate, off)| *rate -= off);
+            if converged || moved == 0.0 {
+                converged = true;
+                break;
+            }
+            // One more step makes of this what rounding leaves.
+            converged = moved <= 1e-3 * allowed.max(f64::EPSILON * from.abs());
+        }
+        if !converged {
+            return None;
+        }
+        let mut error = f64::MIN_POSITIVE;
+        for place in DEGREE..PLACES {
+            let (off, stiffness, bend) = look(&rates, place)?;
+            error = error.max((off / (stiffness + bend)).abs());
+        }
+        let stage = Stage {
+            start,
+            width,
+            from,
+            rates,
+            before: before.to_vec(),
+        };
+        Some((stage, error))
+    }
+
+    /// Whether the body takes where a closed form goes; the time when it no longer does.
+    fn check(&self, duration: f64) -> Result<(), f64> {
+        let good = |elapsed: f64| self.contact.place(self.value_at(elapsed)).is_some();
+        if good(duration) {
+            return Ok(());
+        }
+        let (mut good_at, mut bad_at) = (0.0, duration);
+        loop {
+            let middle = 0.5 * (good_at + bad_at);
+            if middle <= good_at || middle >= bad_at {
+                return Err(good_at);
+            }
+            if good(middle) {
+                good_at = middle;
+            } else {
+                bad_at = middle;
+            }
+        }
+    }
+
+    /// Force, N.
+    pub(super) fn force_at(&self, elapsed: f64) -> f64 {
+        self.from + self.slope * elapsed
+    }
+
+    fn value_at(&self, elapsed: f64) -> f64 {
+        match &self.path {
+            Path::Fading { rest, recovery } => rest + recovery.value(elapsed),
+            Path::Stages(stages) => {
+                let stage = stage_at(stages, elapsed);
+                stage.value(stage.part(elapsed))
+            }
+        }
+    }
+
+    /// q̇.
+    fn slope_at(&self, elapsed: f64) -> f64 {
+        match &self.path {
+            Path::Fading { recovery, .. } => recovery.slope(elapsed),
+            Path::Stages(stages) => {
+                let stage = stage_at(stages, elapsed);
+                stage.slope(stage.part(elapsed))
+            }
+        }
+    }
+
+    /// x_k.
+    pub(super) fn memory(&self, elapsed: f64) -> Vec<f64> {
+        match &self.path {
+            Path::Fading { recovery, .. } => recovery.excess(elapsed),
+            Path::Stages(stages) => {
+                let stage = stage_at(stages, elapsed);
+                stage.memory(stage.part(elapsed), &self.contact.law)
+            }
+        }
+    }
+
+    /// x_k − g_k q.
+    pub(super) fn behind(&self, elapsed: f64) -> Vec<f64> {
+        let value = self.value_at(elapsed);
+        let each = |(x, term): (f64, &super::LinearTerm)| x - term.overshoot * value;
+        self.memory(elapsed).into_iter().zip(self.contact.law.terms()).map(each).collect()
+    }
+
+    /// Contact displacement, m; NaN where nothing carries the force.
+    pub(super) fn displacement(&self, elapsed: f64) -> f64 {
+        self.contact.place(self.value_at(elapsed)).unwrap_or(f64::NAN)
+    }
+
+    /// The contact.
+    pub(super) fn at(&self, elapsed: f64) -> Carried {
+        let specimen = &self.contact.specimen;
+        let displacement = self.displacement(elapsed);
+        let (stiffness, growth) = specimen.stiffness(displacement);
+        if stiffness == 0.0 {
+            // First touch of a ball: u begins like √t.
+            let rate = if self.slope == 0.0 { 0.0 } else { f64::INFINITY };
+            return Carried {
+                displacement,
+                excess: 0.0,
+                excess_rate: rate,
+                speed: rate,
+            };
+        }
+        let speed = self.slope_at(elapsed) / self.contact.slope(displacement);
+        let strain = self.force_at(elapsed) / stiffness;
+        let strain_rate = (self.slope - strain * growth * speed) / stiffness;
+        Carried {
+            displacement,
+            excess: strain - specimen.equilibrium_strain(displacement),
+            excess_rate: strain_rate - speed / specimen.depth(),
+            speed,
+        }
+    }
+
+    /// Ends of the stages (s from the start of the piece).
+    pub(super) fn step_ends(&self) -> Vec<f64> {
+        match &self.path {
+            Path::Stages(stages) => stages.iter().map(Stage::end).collect(),
+            Path::Fading { .. } => Vec::new(),
+        }
+    }
+}
+
+fn stage_at(stages: &[Stage], elapsed: f64) -> &Stage {
+    let index = stages.partition_point(|stage| stage.end() < elapsed);
+    &stages[index.min(stages.len() - 1)]
+}
+
+/// Where a stage is looked at, with the integrals of the polynomials up to there: nodes that crowd towards its ends, and one place early and
+/// one late between them.
+static WHERE: LazyLock<[(f64, [f64; DEGREE]); PLACES]> = LazyLock::new(|| {
+    let angle = std::f64::consts::PI / DEGREE as f64;
+    std::array::from_fn(|place| {
+        let part = match place {
+            _ if place + 1 == DEGREE => 1.0,
+            _ if place < DEGREE => 0.5 * (1.0 - (angle * (place + 1) as f64).cos()),
+            DEGREE => 0.5 * (1.0 - (0.5 * angle).cos()),
+            _ => 0.5 * (1.0 - (angle * (DEGREE as f64 - 1.5)).cos()),
+        };
+        (part, integrated(part))
+    })
+});
+
+/// Replaces `right` by the solution of a small system, by elimination with row exchange; `false` if it has none.
+fn solve(mut matrix: [[f64; DEGREE]; DEGREE], right: &mut [f64; DEGREE]) -> bool {
+    for column in 0..DEGREE {
+        let size = |row: &usize| matrix[*row][column].abs();
+        let pivot = (column..DEGREE).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(column);
+        let found = matrix[pivot][column];
+        if !(found.abs() > 0.0 && found.is_finite()) {
+            return false;
+        }
+        matrix.swap(column, pivot);
+        right.swap(column, pivot);
+        let (upper, lower) = matrix.split_at_mut(column + 1);
+        let known = upper[column];
+        for (row, numbers) in lower.iter_mut().enumerate() {
+            let factor = numbers[column] / known[column];
+            for (number, known) in numbers.iter_mut().zip(known) {
+                *number -= factor * known;
+            }
+            right[column + 1 + row] -= factor * right[column];
+        }
+    }
+    for row in (0..DEGREE).rev() {
+        let known: f64 = (row + 1..DEGREE).map(|column| matrix[row][column] * right[column]).sum();
+        right[row] = (right[row] - known) / matrix[row][row];
+    }
+    right.iter().all(|value| value.is_finite())
+}
