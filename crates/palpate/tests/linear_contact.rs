@@ -1,15 +1,15 @@
-//! Linear laws under a motion: against SciPy and mpmath (`linear_contacts.json`), and against the latency law with n = 1.
+//! Linear laws: against SciPy and mpmath (`linear_contacts.json`, `linear_forces.json`), and against the latency law with n = 1.
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
 mod common;
 
 use common::reference;
-use palpate::contact::{Layers, Shape, Sides, Specimen};
+use palpate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactEventKind, ContactModel, LinearContact, LinearLaw, LinearTerm, Memory, Motion, Sampling, Separation, SimulateError,
-    simulate,
+    ContactEventKind, ContactModel, ForceHistory, LinearContact, LinearLaw, LinearTerm, Memory, Motion, Sampling,
+    Separation, SimulateError, simulate,
 };
 use serde::Deserialize;
 
@@ -45,14 +45,6 @@ struct Case {
 
 impl Case {
     fn contact(&self) -> LinearContact {
-        let shape = match self.shape.as_str() {
-            "ball" => Shape::Ball { radius: self.size[0] },
-            _ => Shape::Prism {
-                area: self.size[0],
-                length: self.size[1],
-            },
-        };
-        let sides = if self.sides == 2 { Sides::Two } else { Sides::One };
         let terms: Vec<LinearTerm> =
             self.terms.iter().map(|&(overshoot, rate)| LinearTerm { overshoot, rate }).collect();
         let law = match (self.overshoot, self.time, self.order) {
@@ -62,12 +54,30 @@ impl Case {
             _ => LinearLaw::new(&terms).unwrap(),
         };
         LinearContact {
-            specimen: Specimen::new(shape, self.modulus, sides).unwrap(),
+            specimen: Specimen::new(shape(&self.shape, &self.size), self.modulus, sides(self.sides)).unwrap(),
             law,
             memory: Memory::Strain,
             separation: if self.bonded { Separation::Bonded } else { Separation::Unilateral },
         }
     }
+}
+
+fn shape(name: &str, size: &[f64]) -> Shape {
+    match name {
+        "ball" => Shape::Ball { radius: size[0] },
+        _ => Shape::Prism {
+            area: size[0],
+            length: size[1],
+        },
+    }
+}
+
+fn sides(count: u32) -> Sides {
+    if count == 2 { Sides::Two } else { Sides::One }
+}
+
+fn name(kind: ContactEventKind) -> &'static str {
+    if kind == ContactEventKind::Lost { "lost" } else { "regained" }
 }
 
 fn distance(found: &[f64], expected: &[f64]) -> f64 {
@@ -95,7 +105,6 @@ fn linear_contacts_agree_with_scipy_and_mpmath() {
             let off = distance(&result.contact_displacement, expected) / contact.specimen.depth();
             assert!(off < tolerance.displacement_over_depth, "{}: {off:e}", case.name);
         }
-        let name = |kind| if kind == ContactEventKind::Lost { "lost" } else { "regained" };
         assert_eq!(result.events.len(), case.events.len(), "{}: {:?}", case.name, result.events);
         for (found, (kind, time)) in result.events.iter().zip(&case.events) {
             assert_eq!(name(found.kind), kind);
@@ -179,4 +188,80 @@ fn a_linear_contact_obeys_superposition_and_refuses_what_the_body_cannot_take() 
     let motion = Motion::new(vec![0.0, 1.0], vec![0.0, 0.001]).unwrap();
     assert!(simulate(&motion, &ball, &Sampling::Times(vec![2.0])).is_err());
     assert!(simulate(&motion, &ball, &Sampling::Rate(f64::NAN)).is_err());
+}
+
+#[derive(Deserialize)]
+struct ForcesTolerance {
+    force_relative_to_largest: f64,
+    displacement_relative_to_largest: f64,
+    event_time: f64,
+}
+
+#[derive(Deserialize)]
+struct ForcesCase {
+    name: String,
+    shape: String,
+    size: Vec<f64>,
+    modulus: f64,
+    sides: u32,
+    poisson_ratio: Option<f64>,
+    terms: Vec<(f64, f64)>,
+    memory: Memory,
+    bonded: bool,
+    motion: bool,
+    knots: Vec<(f64, f64)>,
+    times: Vec<f64>,
+    #[serde(default)]
+    force: Vec<f64>,
+    displacement: Vec<f64>,
+    #[serde(default)]
+    events: Vec<(String, f64)>,
+}
+
+#[test]
+fn creep_and_memory_of_force_agree_with_scipy() {
+    let (tolerance, cases) = reference::<ForcesTolerance, ForcesCase>("linear_forces");
+    let largest = |series: &[f64]| series.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    for case in &cases {
+        let specimen = Specimen::new(shape(&case.shape, &case.size), case.modulus, sides(case.sides)).unwrap();
+        let specimen = match case.poisson_ratio {
+            Some(poisson_ratio) => specimen.with_equilibrium(Equilibrium::Hertz { poisson_ratio }).unwrap(),
+            None => specimen,
+        };
+        let terms: Vec<LinearTerm> =
+            case.terms.iter().map(|&(overshoot, rate)| LinearTerm { overshoot, rate }).collect();
+        let contact = LinearContact {
+            specimen,
+            law: LinearLaw::new(&terms).unwrap(),
+            memory: case.memory,
+            separation: if case.bonded { Separation::Bonded } else { Separation::Unilateral },
+        };
+        let (times, values) = case.knots.iter().copied().unzip();
+        let sampling = Sampling::Times(case.times.clone());
+        let result = match case.motion {
+            true => simulate(&Motion::new(times, values).unwrap(), &contact, &sampling).unwrap(),
+            false => simulate(&ForceHistory::new(times, values).unwrap(), &contact, &sampling).unwrap(),
+        };
+        let off = distance(&result.contact_displacement, &case.displacement) / largest(&case.displacement);
+        println!("{}: displacement off by {off:.1e}, {:?}", case.name, result.work);
+        assert!(off < tolerance.displacement_relative_to_largest, "{}: {off:e}", case.name);
+        if case.motion {
+            let off = distance(&result.force, &case.force) / largest(&case.force);
+            println!("    force off by {off:.1e}");
+            assert!(off < tolerance.force_relative_to_largest, "{}: {off:e}", case.name);
+        }
+        assert_eq!(result.events.len(), case.events.len(), "{}: {:?}", case.name, result.events);
+        for (found, (kind, time)) in result.events.iter().zip(&case.events) {
+            assert_eq!(name(found.kind), kind);
+            assert!((found.time - time).abs() < tolerance.event_time, "{}: {} {time}", case.name, found.time);
+        }
+        for i in 0..result.len() {
+            // What is reported hangs together: the force by the strain, strain by its parts.
+            let force = contact.specimen.force(result.strain[i], result.contact_displacement[i]);
+            let strain = result.equilibrium_strain[i] + result.excess_strain[i];
+            assert!((force - result.force[i]).abs() < 1e-10 * largest(&result.force), "{} {i}", case.name);
+            let touches = result.strain[i] != 0.0;
+            assert!(!touches || (strain - result.strain[i]).abs() < 1e-12, "{} {i}", case.name);
+        }
+    }
 }

@@ -4,11 +4,11 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use palpate::simulate::{
-    ContactEventKind, ContactModel, Drive, Energy, ForceHistory, Motion, MotionError, Sampling, SimulateError,
+    Contact, ContactEventKind, Drive, Energy, ForceHistory, Memory, Motion, MotionError, Sampling, SimulateError,
     StrainWave, Trajectory, cycles, energy, simulate, strain_wave, work_by_step,
 };
 use palpate::test_problems::Noise;
-use palpate_files::description::{DescriptionError, Protocol, read_protocol, read_scene};
+use palpate_files::description::{DescriptionError, Model, Protocol, read_protocol, read_scene};
 use palpate_report::study::{
     cycle_table, hysteresis_figure, step_work_table, trajectory_figure, wave_figure, write_trajectory,
 };
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     };
     let working = Working::new("simulating");
     let of = arguments.drive.as_ref().unwrap_or(&arguments.protocol);
-    let trajectory = simulate(scene.drive(), &scene.model, &scene.sampling)
+    let trajectory = simulate(scene.drive(), scene.model.contact(), &scene.sampling)
         .map_err(|error: SimulateError| Failure::of_file(of, error, None))?;
     // Everything is made before anything is written.
     let extras = extras(&scene, &trajectory, arguments, of)?;
@@ -70,7 +70,7 @@ fn extras(
     of: &Path,
 ) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
     let refused = |error: SimulateError| Failure::of_file(of, error, None);
-    let (drive, model, sampling) = (scene.drive(), &scene.model, &scene.sampling);
+    let (drive, model, sampling) = (scene.drive(), scene.model.contact(), &scene.sampling);
     let title = |path: &Path| path.file_stem().map_or("figure".to_owned(), |stem| stem.to_string_lossy().into_owned());
     let caption = |what: &str| caption(scene.title.as_deref(), what, model);
     let mut made = Vec::new();
@@ -93,7 +93,11 @@ fn extras(
         }
     }
     if arguments.wave.is_some() || arguments.strain_map.is_some() {
-        let wave = strain_wave(drive, model, sampling).map_err(refused)?;
+        let layered = scene.model.latency().ok_or_else(|| {
+            let hint = "name the latency law in [law], or leave --layers-out and --strain-map out";
+            Failure::of_file(of, "a linear law has no layers whose strain could be shown", Some(hint.to_owned()))
+        })?;
+        let wave = strain_wave(drive, layered, sampling).map_err(refused)?;
         if let Some(path) = &arguments.strain_map {
             let caption = caption("Strain of every layer over time, and of some of them as lines");
             made.push((path.clone(), picture(path, &wave_figure(&title(path), &wave, &caption))?));
@@ -117,7 +121,7 @@ fn described(error: DescriptionError) -> Failure {
 /// What is simulated: a body with the steps of a protocol, or with what a record says.
 struct Scene {
     title: Option<String>,
-    model: ContactModel,
+    model: Model,
     driver: Driver,
     sampling: Sampling,
 }
@@ -206,14 +210,26 @@ fn record(trajectory: &Trajectory, arguments: &SimulateArguments) -> String {
     out
 }
 
-fn caption(title: Option<&str>, what: &str, model: &ContactModel) -> String {
-    format!(
-        "{}{what}; n = {}, v = {:e} 1/s, {} layers.",
-        title.map_or(String::new(), |title| format!("{title}. ")),
-        model.law.exponent(),
-        model.law.rate_coefficient(),
-        model.layers.count()
-    )
+fn caption(title: Option<&str>, what: &str, model: Contact<'_>) -> String {
+    let law = match model {
+        Contact::Latency(model) => format!(
+            "n = {}, v = {:e} 1/s, {} layers",
+            model.law.exponent(),
+            model.law.rate_coefficient(),
+            model.layers.count()
+        ),
+        Contact::Linear(contact) => {
+            let memory = match contact.memory {
+                Memory::Strain => "strain",
+                Memory::Force => "force",
+            };
+            match contact.law.terms() {
+                [only] => format!("linear memory of {memory}, overshoot {}, {} s", only.overshoot, 1.0 / only.rate),
+                terms => format!("linear memory of {memory}, {} terms", terms.len()),
+            }
+        }
+    };
+    format!("{}{what}; {law}.", title.map_or(String::new(), |title| format!("{title}. ")))
 }
 
 fn is_csv(path: &Path) -> Result<(), Failure> {

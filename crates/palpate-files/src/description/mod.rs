@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `protocol.rs` | a protocol: body, law and steps of the jaw ([`Protocol`]) |
 //! | `test.rs`, `test_tables.rs`, `settings.rs` | a test: its record, its body, how to evaluate it ([`TestDescription`]) |
+//! | `law.rs` | the law of a protocol, with its body a [`Model`] |
 //! | `specimen.rs`, `contact.rs`, `columns.rs` | tables that they are made of |
 //! | `choices.rs` | choices that a command line offers too |
 //! | `sweep/` | numbers of a protocol replaced by many ([`Sweep`]) |
@@ -20,6 +21,7 @@ mod choices;
 mod columns;
 mod contact;
 mod error;
+mod law;
 mod numbers;
 mod places;
 mod protocol;
@@ -36,6 +38,7 @@ mod words;
 pub use choices::{ChoiceError, parse_hold_start, parse_touch};
 pub use columns::{ClockChoice, ColumnChoice, ColumnChoices, ColumnRef};
 pub use error::{DescriptionError, KeyPlace};
+pub use law::Model;
 pub use protocol::{Protocol, parse_protocol, read_protocol, read_scene};
 pub use schema::{schema_protocol, schema_test};
 pub use sweep::{Plan, Spacing, Sweep, SweptNumber, parse_sweep, read_sweep};

@@ -26,17 +26,32 @@ pub(super) enum Slot<'t> {
 pub(super) fn numbers(tables: &mut ProtocolTables) -> Vec<Number<'_>> {
     let mut found = Vec::new();
     let mut bare = |path: &str, number| found.push(of(path, Slot::Bare(number)));
-    bare("law.exponent", &mut tables.law.exponent);
-    if let Some(layers) = &mut tables.contact.layers {
-        bare("contact.layers", layers);
+    let (law, specimen) = (&mut tables.law, &mut tables.specimen);
+    for (path, number) in [
+        ("law.exponent", &mut law.exponent),
+        ("law.overshoot", &mut law.overshoot),
+        ("law.order", &mut law.order),
+        ("contact.layers", &mut tables.contact.layers),
+        ("specimen.poisson_ratio", &mut specimen.poisson_ratio),
+    ] {
+        if let Some(number) = number {
+            bare(path, number);
+        }
     }
-    let specimen = &mut tables.specimen;
-    if let Some(ratio) = &mut specimen.poisson_ratio {
-        bare("specimen.poisson_ratio", ratio);
+    for (index, term) in law.terms.iter_mut().flatten().enumerate() {
+        let path = |name: &str| format!("law.terms[{}].{name}", index + 1);
+        found.push(of(&path("overshoot"), Slot::Bare(&mut term.overshoot)));
+        found.push(of(&path("time"), Slot::Quantity(&mut term.time, Dimension::Time)));
+    }
+    for (index, term) in law.shares.iter_mut().flatten().enumerate() {
+        let path = |name: &str| format!("law.shares[{}].{name}", index + 1);
+        found.push(of(&path("share"), Slot::Bare(&mut term.share)));
+        found.push(of(&path("rate"), Slot::Quantity(&mut term.rate, Dimension::Rate)));
     }
     let mut quantity = |path: &str, text, dimension| found.push(of(path, Slot::Quantity(text, dimension)));
-    quantity("law.rate_coefficient", &mut tables.law.rate_coefficient, Dimension::Rate);
     for (path, text, dimension) in [
+        ("law.rate_coefficient", &mut law.rate_coefficient, Dimension::Rate),
+        ("law.time", &mut law.time, Dimension::Time),
         ("specimen.radius", &mut specimen.radius, Dimension::Length),
         ("specimen.diameter", &mut specimen.diameter, Dimension::Length),
         ("specimen.width", &mut specimen.width, Dimension::Length),

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use palpate::{
     contact::{Layers, SpecimenError},
-    latency::LatencyLaw,
-    simulate::{self, ContactModel, Drive, Motion, ProgramStep, ProtocolStep, Sampling, step_ends},
+    simulate::{
+        self, Contact, ContactModel, Drive, LinearContact, Motion, ProgramStep, ProtocolStep, Sampling, step_ends,
+    },
     units::Dimension,
 };
 use schemars::JsonSchema;
@@ -14,6 +15,7 @@ use serde::{Deserialize, de::IgnoredAny};
 use super::{
     contact::{self, SidesName},
     error::DescriptionError,
+    law::{Law, LawTable, Model},
     quantity::QuantityText,
     source::{self, Source},
     specimen::SpecimenTable,
@@ -36,7 +38,7 @@ pub struct Protocol {
     /// The motion of the jaw, if displacements alone are asked for.
     pub motion: Option<Motion>,
     /// The body and its contact.
-    pub model: ContactModel,
+    pub model: Model,
     /// When to report.
     pub sampling: Sampling,
     /// Whether the file has a table `[sweep]`, which a single simulation leaves aside.
@@ -44,6 +46,12 @@ pub struct Protocol {
 }
 
 impl Protocol {
+    /// The body, as simulations take it.
+    #[must_use]
+    pub fn contact(&self) -> Contact<'_> {
+        self.model.contact()
+    }
+
     /// What drives the contact: the motion if there is one, else the steps.
     #[must_use]
     pub fn drive(&self) -> Drive<'_> {
@@ -71,27 +79,6 @@ pub(super) struct ProtocolTables {
     #[serde(default)]
     #[schemars(with = "Option<super::sweep::SweepSchema>")]
     sweep: Option<IgnoredAny>,
-}
-
-/// The law that strain follows.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Law")]
-pub(super) struct LawTable {
-    #[expect(dead_code, reason = "there is one law, and the table names it")]
-    name: LawName,
-    /// Exponent n, any number above 0.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub(super) exponent: f64,
-    /// Rate coefficient v, such as "2e4 /s".
-    pub(super) rate_coefficient: QuantityText,
-}
-
-#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-enum LawName {
-    /// The nonlinear latency law: strain rate = −v · sign(excess strain) · |excess strain|ⁿ.
-    Latency,
 }
 
 /// How the jaw meets the body.
@@ -159,7 +146,7 @@ pub fn read_protocol(path: &Path) -> Result<Protocol, DescriptionError> {
 ///
 /// # Errors
 /// As for [`read_protocol`], less those of steps and output.
-pub fn read_scene(path: &Path) -> Result<(Option<String>, ContactModel), DescriptionError> {
+pub fn read_scene(path: &Path) -> Result<(Option<String>, Model), DescriptionError> {
     let text = source::read(path)?;
     let source = Source { path, text: &text };
     let tables: ProtocolTables = source.tables()?;
@@ -205,7 +192,7 @@ pub(super) fn check(source: &Source<'_>, tables: &ProtocolTables) -> Result<Prot
     let end = match &motion {
         Some(motion) => motion.end(),
         None => {
-            let ends = step_ends(&program, &model)
+            let ends = step_ends(&program, model.contact())
                 .map_err(|error| refused(error.in_step(|number| written[number - 1]).to_string()))?;
             ends.last().map_or(0.0, |end| end.time)
         }
@@ -222,26 +209,40 @@ pub(super) fn check(source: &Source<'_>, tables: &ProtocolTables) -> Result<Prot
     })
 }
 
-fn model(source: &Source<'_>, tables: &ProtocolTables) -> Result<ContactModel, DescriptionError> {
+fn model(source: &Source<'_>, tables: &ProtocolTables) -> Result<Model, DescriptionError> {
     let specimen = tables.specimen.body(source, tables.contact.squeezed_from.map(Into::into))?;
-    let refused = |key: &str, error: &dyn std::error::Error| source.value(key, "a law", error);
-    let exponent = source.number("law.exponent", tables.law.exponent, "a number above 0", |exponent| exponent > 0.0)?;
-    let key = "law.rate_coefficient";
-    let rate = source.positive(key, &tables.law.rate_coefficient, Dimension::Rate)?;
-    let law = LatencyLaw::new(exponent, rate).map_err(|error| refused("law", &error))?;
     let contact = &tables.contact;
-    let thickness = contact.layer_thickness.as_ref();
-    let choice = contact::layers(source, contact.layers, thickness, specimen.depth())?;
+    let separation = contact::separation(contact.separation.unwrap_or(true));
+    match tables.law.law(source)? {
+        Law::Latency(law) => Ok(Model::Latency(ContactModel {
+            layers: layers(source, contact, specimen.depth())?,
+            specimen,
+            law,
+            separation,
+        })),
+        Law::Linear(law, memory) => {
+            let given = [("layers", contact.layers.is_some()), ("layer_thickness", contact.layer_thickness.is_some())];
+            if let Some((name, _)) = given.iter().find(|(_, given)| *given) {
+                let reason = "with a linear law, whose overshoot is a number of its own";
+                return Err(source.unused(&format!("contact.{name}"), reason, &format!("remove {name}")));
+            }
+            Ok(Model::Linear(LinearContact {
+                specimen,
+                law,
+                memory,
+                separation,
+            }))
+        }
+    }
+}
+
+fn layers(source: &Source<'_>, contact: &ContactTable, depth: f64) -> Result<Layers, DescriptionError> {
+    let choice = contact::layers(source, contact.layers, contact.layer_thickness.as_ref(), depth)?;
     let layers = match choice {
-        Some(choice) => choice.layers(specimen.depth()).ok(),
+        Some(choice) => choice.layers(depth).ok(),
         None => Layers::new(USUAL_LAYERS).ok(),
     };
-    Ok(ContactModel {
-        specimen,
-        law,
-        layers: layers.ok_or_else(|| source.missing("contact.layers", "a number of 1 or more"))?,
-        separation: contact::separation(contact.separation.unwrap_or(true)),
-    })
+    layers.ok_or_else(|| source.missing("contact.layers", "a number of 1 or more"))
 }
 
 /// Steps one by one, and as a motion if they are one.
@@ -252,7 +253,7 @@ struct Steps {
     tables: Vec<usize>,
 }
 
-fn steps(source: &Source<'_>, tables: &[StepTable], model: &ContactModel) -> Result<Steps, DescriptionError> {
+fn steps(source: &Source<'_>, tables: &[StepTable], model: &Model) -> Result<Steps, DescriptionError> {
     if tables.is_empty() {
         return Err(source.missing("step", "one or more [[step]] tables with to and rate"));
     }
@@ -319,7 +320,7 @@ fn ramp(
     source: &Source<'_>,
     key: &impl Fn(&str) -> String,
     table: &StepTable,
-    model: &ContactModel,
+    model: &Model,
 ) -> Result<Option<ProgramStep>, DescriptionError> {
     let both = |a: &str, b: &str| source.both(&key(a), &key(b));
     match (&table.to, &table.to_force, &table.rate, &table.force_rate) {
@@ -379,10 +380,10 @@ fn check_displacement(
     key: &str,
     written: &QuantityText,
     to: f64,
-    model: &ContactModel,
+    model: &Model,
 ) -> Result<(), DescriptionError> {
-    let specimen = &model.specimen;
-    let bonded = model.separation == simulate::Separation::Bonded;
+    let specimen = model.specimen();
+    let bonded = model.contact().separation() == simulate::Separation::Bonded;
     let contact_displacement = specimen.contact_displacement(to);
     let expected = match specimen.check_contact_displacement(contact_displacement, bonded) {
         Ok(()) => return Ok(()),

@@ -74,15 +74,18 @@ fn quoted(message: &str) -> Vec<String> {
 fn needed(key: &str) -> &'static str {
     match key {
         "specimen" => "a table [specimen] with the shape and size of the body",
-        "law" => "a table [law] with name, exponent and rate_coefficient",
+        "law" => "a table [law] with name and the numbers of that law, such as exponent and rate_coefficient",
         "step" => "one or more [[step]] tables with to and rate",
         "shape" => "\"ball\", \"pad\", \"strip\", \"cylinder\" or \"block\"",
-        "name" => "\"latency\"",
+        "name" => "a law: \"latency\", \"standard-linear-solid\", \"prony\", \"fung\" or \"fractional-zener\"",
+        "overshoot" => "a number above 0, such as 3",
+        "share" => "a number above 0, such as 0.3",
+        "time" => "a time, such as \"2 s\"",
         "exponent" => "a number above 0, such as 5",
         "rate_coefficient" => "a rate, such as \"2e4 /s\"",
         "modulus" => "a modulus, such as \"28 kPa\"",
         "to" => "a displacement of the jaw, such as \"5 mm\"",
-        "rate" => "a speed, such as \"500 mm/min\"",
+        "rate" => "a speed, such as \"500 mm/min\", or in a law a rate, such as \"0.5 /s\"",
         "column" => "the number of a column, from 1, or its name in quotes",
         _ => "a value",
     }

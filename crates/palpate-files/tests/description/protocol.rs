@@ -2,8 +2,10 @@
 
 use palpate::{
     contact::{Shape, Sides},
-    simulate::{ProgramStep, Sampling, Separation, simulate},
+    simulate::{LinearLaw, Memory, ProgramStep, Sampling, Separation, simulate},
 };
+
+use palpate_files::description::Model;
 
 use crate::{SQUEEZE, protocol, says, with};
 
@@ -11,12 +13,13 @@ use crate::{SQUEEZE, protocol, says, with};
 fn a_short_protocol_has_the_usual_rest() {
     let squeeze = protocol(SQUEEZE).unwrap();
     assert_eq!(squeeze.title, None);
-    assert_eq!(squeeze.model.specimen.shape(), &Shape::Ball { radius: 0.035 });
-    assert_eq!(squeeze.model.specimen.modulus(), 28_000.0);
-    assert_eq!(squeeze.model.specimen.sides(), Sides::Two);
-    assert_eq!(squeeze.model.layers.count(), 8.0);
-    assert_eq!(squeeze.model.separation, Separation::Unilateral);
-    assert_eq!((squeeze.model.law.exponent(), squeeze.model.law.rate_coefficient()), (5.0, 2e4));
+    assert_eq!(squeeze.model.specimen().shape(), &Shape::Ball { radius: 0.035 });
+    assert_eq!(squeeze.model.specimen().modulus(), 28_000.0);
+    assert_eq!(squeeze.model.specimen().sides(), Sides::Two);
+    assert_eq!(squeeze.model.latency().unwrap().layers.count(), 8.0);
+    assert_eq!(squeeze.contact().separation(), Separation::Unilateral);
+    let law = squeeze.model.latency().unwrap().law;
+    assert_eq!((law.exponent(), law.rate_coefficient()), (5.0, 2e4));
     assert_eq!(squeeze.sampling, Sampling::Rate(100.0));
     let (to, rate) = (0.005, 0.5 / 60.0);
     assert_eq!(squeeze.steps, [ProgramStep::Move { to, rate }, ProgramStep::HoldPosition { duration: 10.0 }]);
@@ -28,7 +31,7 @@ fn a_short_protocol_has_the_usual_rest() {
 fn bodies_by_their_tables_and_laws_of_the_relaxed_force() {
     let rows = "areas = [[\"0 mm\", \"0 mm^2\"], [\"1 mm\", \"40 mm^2\"], [\"5 mm\", \"1 cm^2\"]]";
     let punch = with("\"ball\"\nradius = \"35 mm\"", &format!("\"profile\"\ndepth = \"2 cm\"\n{rows}"));
-    let body = protocol(&punch).unwrap().model.specimen;
+    let body = protocol(&punch).unwrap().model.specimen().clone();
     assert_eq!((body.depth(), body.sides()), (0.02, Sides::One));
     assert!((body.contact_area(0.001) - 4e-5).abs() < 1e-19 && (body.contact_area(0.004) - 1e-4).abs() < 3e-5);
     let short = punch.replace("[\"5 mm\"", "[\"2 mm\"");
@@ -44,7 +47,7 @@ fn bodies_by_their_tables_and_laws_of_the_relaxed_force() {
     says(protocol(&punch.replace(rows, "")), "specimen.areas", "the areas of a profile", "");
 
     let hertz = with("radius", "equilibrium = \"hertz\"\npoisson_ratio = 0.5\nradius");
-    let body = protocol(&hertz).unwrap().model.specimen;
+    let body = protocol(&hertz).unwrap().model.specimen().clone();
     let expected = 4.0 / 3.0 * 28e3 / 0.75 * 0.035f64.sqrt() * 1e-3f64.powf(1.5);
     assert!((body.force(body.equilibrium_strain(1e-3), 1e-3) / expected - 1.0).abs() < 1e-14);
     says(
@@ -58,7 +61,7 @@ fn bodies_by_their_tables_and_laws_of_the_relaxed_force() {
 
     let rows = "equilibrium_forces = [[\"0 mm\", \"0 N\"], [\"1 mm\", \"0.2 N\"], [\"4 mm\", \"2 N\"]]";
     let measured = with("modulus = \"28 kPa\"", rows);
-    let body = protocol(&measured).unwrap().model.specimen;
+    let body = protocol(&measured).unwrap().model.specimen().clone();
     assert!((body.force(body.equilibrium_strain(0.004), 0.004) - 2.0).abs() < 1e-14);
     says(
         protocol(&measured.replace("\"2 N\"", "\"0.5 N\"")),
@@ -80,20 +83,20 @@ fn shapes_and_choices() {
     let strip = with("shape = \"ball\"\nradius = \"35 mm\"", strip);
     let model = protocol(&strip).unwrap().model;
     assert_eq!(
-        model.specimen.shape(),
+        model.specimen().shape(),
         &Shape::Prism {
             area: 4e-5,
             length: 0.02
         }
     );
-    assert_eq!(model.specimen.sides(), Sides::One);
+    assert_eq!(model.specimen().sides(), Sides::One);
     let cylinder = with("shape = \"ball\"\nradius", "shape = \"cylinder\"\nlength = \"2 cm\"\ndiameter");
-    let Shape::Prism { area, length } = *protocol(&cylinder).unwrap().model.specimen.shape() else {
+    let Shape::Prism { area, length } = *protocol(&cylinder).unwrap().model.specimen().shape() else {
         panic!("no prism");
     };
     assert!((area - std::f64::consts::PI * 0.0175 * 0.0175).abs() < 1e-18 && length == 0.02);
     let block = with("\"ball\"\nradius", "\"block\"\narea = \"40 mm^2\"\nlength");
-    let shape = protocol(&block).unwrap().model.specimen.shape().clone();
+    let shape = protocol(&block).unwrap().model.specimen().shape().clone();
     assert_eq!(
         shape,
         Shape::Prism {
@@ -107,7 +110,7 @@ fn shapes_and_choices() {
         radius: 0.035,
         thickness: 0.01,
     };
-    assert_eq!((model.specimen.shape(), model.specimen.sides()), (&shape, Sides::One));
+    assert_eq!((model.specimen().shape(), model.specimen().sides()), (&shape, Sides::One));
     let too_thick = protocol(&pad.replace("\"10 mm\"", "\"36 mm\""));
     says(too_thick, "specimen.thickness", "at most the radius of the pad, found \"36 mm\"", "");
     let thick = with(
@@ -115,8 +118,8 @@ fn shapes_and_choices() {
         "[contact]\nlayer_thickness = \"4.375 mm\"\nseparation = false\nsqueezed_from = \"one side\"",
     );
     let model = protocol(&thick).unwrap().model;
-    assert_eq!((model.layers.count(), model.separation), (8.0, Separation::Bonded));
-    assert_eq!(model.specimen.sides(), Sides::One);
+    assert_eq!((model.latency().unwrap().layers.count(), model.contact().separation()), (8.0, Separation::Bonded));
+    assert_eq!(model.specimen().sides(), Sides::One);
     let times = with("[output]", "[output]\ntimes = [\"0.6 s\", \"600 ms\", \"10.6 s\"]");
     let squeeze = protocol(&times).unwrap();
     assert_eq!(squeeze.sampling, Sampling::Times(vec![0.6, 0.6, squeeze.motion.unwrap().end()]));
@@ -212,7 +215,7 @@ fn absurd_values_name_their_keys() {
             "specimen.shape",
             "\"ball\", \"pad\", \"strip\", \"cylinder\", \"block\", \"profile\" or \"none\", found \"bal\"",
         ),
-        ("\"latency\"", "\"maxwell\"", "law.name", "expected \"latency\", found \"maxwell\""),
+        ("\"latency\"", "\"maxwell\"", "law.name", "or \"fractional-zener\", found \"maxwell\""),
         (
             "[contact]",
             "[contact]\nsqueezed_from = \"top\"",
@@ -341,4 +344,60 @@ fn steps_that_say_too_much_or_too_little() {
         let error = result.err().unwrap_or_else(|| panic!("{step} is accepted")).to_string();
         assert!(error.contains(key) && error.contains(message), "{step}: {error}");
     }
+}
+
+const LINEAR: &str = r#"
+    specimen = { shape = "ball", radius = "35 mm", modulus = "28 kPa" }
+    law = { name = "prony", terms = [{ overshoot = 2, time = "0.5 s" }, { overshoot = 1, time = "20 s" }] }
+    step = [{ to = "5 mm", rate = "500 mm/min", hold = "10 s" }]
+"#;
+
+#[test]
+fn linear_laws_stand_in_a_protocol() {
+    let law = |text: &str| match protocol(text).unwrap().model {
+        Model::Linear(contact) => (contact.law, contact.memory),
+        Model::Latency(_) => panic!("expected a linear law"),
+    };
+    let (prony, memory) = law(LINEAR);
+    assert_eq!((prony.relaxation(0.0), memory), (4.0, Memory::Strain));
+    assert!((prony.relaxation(20.0) - (1.0 + (-1f64).exp() + 2.0 * (-40f64).exp())).abs() < 1e-15);
+    let terms = "terms = [{ overshoot = 2, time = \"0.5 s\" }, { overshoot = 1, time = \"20 s\" }]";
+    let other = |name: &str, numbers: &str| LINEAR.replace("prony", name).replace(terms, numbers);
+    let (zener, _) = law(&other("standard-linear-solid", "overshoot = 3, time = \"2 s\""));
+    assert_eq!(zener, LinearLaw::standard(3.0, 2.0).unwrap());
+    let shares = "shares = [{ share = 0.3, rate = \"1 /s\" }, { share = 0.2, rate = \"0.1 /s\" }]";
+    assert_eq!(law(&other("fung", shares)), (LinearLaw::fung(&[(0.3, 1.0), (0.2, 0.1)]).unwrap(), Memory::Force));
+    assert_eq!(law(&other("fung", &format!("memory = \"strain\", {shares}"))).1, Memory::Strain);
+    let (fractional, _) = law(&other("fractional-zener", "overshoot = 2, time = \"5 s\", order = 0.5"));
+    assert!((fractional.relaxation(5.0) - (1.0 + 2.0 * 0.427_583_576_155_807)).abs() < 1e-7);
+    assert!(protocol(LINEAR).unwrap().model.latency().is_none());
+}
+
+#[test]
+fn numbers_that_make_no_linear_law_are_refused_with_their_key() {
+    let changed = |from: &str, to: &str| {
+        assert!(LINEAR.contains(from), "{from}");
+        let error = protocol(&LINEAR.replace(from, to)).unwrap_err();
+        let text = error.to_string();
+        (error.key().map(str::to_owned), text)
+    };
+    for (from, to, key, says) in [
+        ("overshoot = 2", "overshoot = -2", "law.terms[1].overshoot", "above 0"),
+        ("\"20 s\"", "\"0 s\"", "law.terms[2].time", "above 0"),
+        ("\"20 s\"", "\"20 N\"", "law.terms[2].time", "20 N"),
+        ("name = \"prony\"", "name = \"fung\"", "law.terms", "which takes shares"),
+        ("name = \"prony\"", "exponent = 5, name = \"prony\"", "law.exponent", "which takes terms"),
+        ("name = \"prony\"", "name = \"latency\"", "law.exponent", "exponent"),
+        ("name = \"prony\"", "name = \"maxwell\"", "law.name", "maxwell"),
+        ("step =", "contact = { layers = 8 }\n    step =", "contact.layers", "linear law"),
+    ] {
+        let (found, text) = changed(from, to);
+        assert_eq!(found.as_deref(), Some(key), "{text}");
+        assert!(text.contains(says), "{text}");
+    }
+    let whole = LINEAR.replace("prony", "fung").replace("terms =", "shares =");
+    let whole = whole.replace("overshoot = 2, time = \"0.5 s\"", "share = 0.7, rate = \"1 /s\"");
+    let whole = whole.replace("overshoot = 1, time = \"20 s\"", "share = 0.4, rate = \"0.1 /s\"");
+    let error = protocol(&whole).unwrap_err();
+    assert_eq!(error.key(), Some("law.shares"), "{error}");
 }

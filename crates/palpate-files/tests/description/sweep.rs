@@ -30,7 +30,7 @@ fn a_grid_meets_every_value_with_every_other() {
     let expected: Vec<Vec<f64>> = [1.0, 3.0, 5.0].iter().flat_map(|n| [vec![*n, 0.03], vec![*n, 0.04]]).collect();
     assert_eq!(runs, expected);
     let model = sweep.run(3).1.unwrap().model;
-    assert_eq!((model.law.exponent(), model.specimen.depth()), (3.0, 0.04));
+    assert_eq!((model.latency().unwrap().law.exponent(), model.specimen().depth()), (3.0, 0.04));
     let names: Vec<_> = sweep.numbers().iter().map(|number| (number.column.as_str(), number.unit)).collect();
     assert_eq!(names, [("law_exponent", ""), ("specimen_radius_m", "m")]);
     assert_eq!(sweep.numbers()[1].spacing, Spacing::Linear);

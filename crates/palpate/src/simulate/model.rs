@@ -62,6 +62,15 @@ impl<'a> Contact<'a> {
             Self::Linear(contact) => &contact.specimen,
         }
     }
+
+    /// Whether the jaw can pull.
+    #[must_use]
+    pub fn separation(self) -> Separation {
+        match self {
+            Self::Latency(contact) => contact.separation,
+            Self::Linear(contact) => contact.separation,
+        }
+    }
 }
 
 /// Runs what is written once for every law with the law of a contact.

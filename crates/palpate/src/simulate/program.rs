@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::SimulateError;
 use super::layer::Layer;
 use super::model::{Contact, by_law};
 use super::walk::{Stretch, Walker, check_force};
-use super::SimulateError;
 
 /// One step of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -75,10 +75,7 @@ impl ProgramStep {
 ///
 /// # Errors
 /// As for `simulate`.
-pub fn step_ends<'a>(
-    program: &[ProgramStep],
-    contact: impl Into<Contact<'a>>,
-) -> Result<Vec<StepEnd>, SimulateError> {
+pub fn step_ends<'a>(program: &[ProgramStep], contact: impl Into<Contact<'a>>) -> Result<Vec<StepEnd>, SimulateError> {
     by_law!(contact.into(), contact => ends_of(program, contact))
 }
 

@@ -173,7 +173,13 @@ impl<'a> Cascade<'a> {
 
     /// Integrates through one stretch, writing the samples that fall into it; how far it came (s) if that takes too many steps.
     #[inline(always)]
-    fn pass<S: Simd>(&mut self, simd: S, stretch: &Stretch<ContactModel>, is_last: bool, wave: &mut StrainWave) -> Result<(), f64> {
+    fn pass<S: Simd>(
+        &mut self,
+        simd: S,
+        stretch: &Stretch<ContactModel>,
+        is_last: bool,
+        wave: &mut StrainWave,
+    ) -> Result<(), f64> {
         let duration = stretch.end - stretch.start;
         let (nodes, along) = (
             &mut self.nodes,

@@ -9,9 +9,9 @@
 
 use std::sync::LazyLock;
 
-use super::{LinearContact, Memory};
 use super::recovery::Recovery;
 use super::stage::{DEGREE, Stage, dot, fading, integrated};
+use super::{LinearContact, Memory};
 use crate::contact::{Carried, Stopped};
 use crate::simulate::Work;
 
@@ -37,7 +37,10 @@ pub(crate) struct Pressed {
 #[derive(Debug)]
 enum Path {
     /// q = `rest` − what fades.
-    Fading { rest: f64, recovery: Recovery },
+    Fading {
+        rest: f64,
+        recovery: Recovery,
+    },
     Stages(Vec<Stage>),
 }
 

@@ -178,7 +178,8 @@ mod tests {
 
     #[test]
     fn a_stage_in_two_halves_is_the_stage() {
-        let law = LinearLaw::new(&[(2.0, 0.3), (0.5, 40.0)].map(|(overshoot, rate)| LinearTerm { overshoot, rate })).unwrap();
+        let law =
+            LinearLaw::new(&[(2.0, 0.3), (0.5, 40.0)].map(|(overshoot, rate)| LinearTerm { overshoot, rate })).unwrap();
         let stage = Stage {
             start: 3.0,
             width: 2.0,
@@ -195,7 +196,8 @@ mod tests {
             let dt = (b - a) * stage.width;
             for (x, term) in x.iter_mut().zip(law.terms()) {
                 let push = |c: f64, left: f64| (-term.rate * left * dt).exp() * term.overshoot * stage.slope(c);
-                *x = *x * (-term.rate * dt).exp() + dt / 6.0 * (push(a, 1.0) + 4.0 * push(0.5 * (a + b), 0.5) + push(b, 0.0));
+                *x = *x * (-term.rate * dt).exp()
+                    + dt / 6.0 * (push(a, 1.0) + 4.0 * push(0.5 * (a + b), 0.5) + push(b, 0.0));
             }
         }
         for (found, expected) in whole.iter().zip(x) {

@@ -1,0 +1,257 @@
+//! The table `[law]` of a protocol: which law the body obeys, with its numbers.
+
+use std::fmt::Display;
+
+use palpate::{
+    contact::Specimen,
+    latency::LatencyLaw,
+    simulate::{Contact, ContactModel, LinearContact, LinearLaw, LinearLawError, LinearTerm, Memory},
+    units::Dimension,
+};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{error::DescriptionError, quantity::QuantityText, source::Source};
+
+/// A body in contact, whichever law it obeys.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Model {
+    /// The latency law in layers.
+    Latency(ContactModel),
+    /// A linear law.
+    Linear(LinearContact),
+}
+
+impl Model {
+    /// As simulations take it.
+    #[must_use]
+    pub fn contact(&self) -> Contact<'_> {
+        match self {
+            Self::Latency(model) => model.into(),
+            Self::Linear(contact) => contact.into(),
+        }
+    }
+
+    /// The body.
+    #[must_use]
+    pub fn specimen(&self) -> &Specimen {
+        self.contact().specimen()
+    }
+
+    /// The latency law with its layers, if it is that.
+    #[must_use]
+    pub fn latency(&self) -> Option<&ContactModel> {
+        match self {
+            Self::Latency(model) => Some(model),
+            Self::Linear(_) => None,
+        }
+    }
+}
+
+impl<'a> From<&'a Model> for Contact<'a> {
+    fn from(model: &'a Model) -> Self {
+        model.contact()
+    }
+}
+
+/// The law that strain follows. Give the numbers that it needs: latency takes exponent and rate_coefficient; standard-linear-solid takes
+/// overshoot and time; prony takes terms; fung takes shares; fractional-zener takes overshoot, time and order.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Law")]
+pub(super) struct LawTable {
+    name: LawName,
+    /// Exponent n of the latency law, any number above 0.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(super) exponent: Option<f64>,
+    /// Rate coefficient v of the latency law, such as "2e4 /s".
+    pub(super) rate_coefficient: Option<QuantityText>,
+    /// By how much a sudden squeeze overshoots equilibrium, as a multiple of it.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(super) overshoot: Option<f64>,
+    /// Relaxation time, such as "2 s".
+    pub(super) time: Option<QuantityText>,
+    /// Order of a fractional law, from 0.05 to below 1.
+    pub(super) order: Option<f64>,
+    /// Terms of a Prony series: G = 1 + sum of overshoot exp(-t/time).
+    #[schemars(extend("minItems" = 1))]
+    pub(super) terms: Option<Vec<TermTable>>,
+    /// Terms of Fung's reduced relaxation function: g = c0 + sum of share exp(-rate t), all shares and c0 together 1.
+    #[schemars(extend("minItems" = 1))]
+    pub(super) shares: Option<Vec<ShareTable>>,
+    /// What a linear law remembers: strain, or the relaxed force (quasi-linear). Strain if nothing is said, but force with fung.
+    memory: Option<MemoryName>,
+}
+
+/// A term of a Prony series.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Term")]
+pub(super) struct TermTable {
+    /// By how much a sudden squeeze overshoots equilibrium by this term, as a multiple of it.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(super) overshoot: f64,
+    /// Its relaxation time, such as "2 s".
+    pub(super) time: QuantityText,
+}
+
+/// A term of Fung's reduced relaxation function.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Share")]
+pub(super) struct ShareTable {
+    /// c, its share of the force right after a sudden squeeze.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(super) share: f64,
+    /// Its rate ν, such as "0.5 /s".
+    pub(super) rate: QuantityText,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+enum LawName {
+    /// The nonlinear latency law: strain rate = −v · sign(excess strain) · |excess strain|ⁿ.
+    Latency,
+    /// One relaxation time beside a spring (Zener).
+    StandardLinearSolid,
+    /// Several relaxation times beside a spring.
+    Prony,
+    /// Fung's reduced relaxation function of several terms.
+    Fung,
+    /// A fractional element beside a spring, good from a millionth of its time to a million times it.
+    FractionalZener,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+enum MemoryName {
+    /// Strain: the area is that of the moment.
+    Strain,
+    /// The relaxed force, Fung's quasi-linear viscoelasticity.
+    Force,
+}
+
+/// A law, whichever it is.
+pub(super) enum Law {
+    Latency(LatencyLaw),
+    Linear(LinearLaw, Memory),
+}
+
+impl LawName {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Latency => "latency",
+            Self::StandardLinearSolid => "standard-linear-solid",
+            Self::Prony => "prony",
+            Self::Fung => "fung",
+            Self::FractionalZener => "fractional-zener",
+        }
+    }
+
+    /// The numbers that it needs.
+    fn numbers(self) -> &'static [&'static str] {
+        match self {
+            Self::Latency => &["exponent", "rate_coefficient"],
+            Self::StandardLinearSolid => &["overshoot", "time"],
+            Self::Prony => &["terms"],
+            Self::Fung => &["shares"],
+            Self::FractionalZener => &["overshoot", "time", "order"],
+        }
+    }
+}
+
+/// How far on either side of its own time a fractional law is good.
+const FRACTIONAL_REACH: f64 = 1e6;
+
+impl LawTable {
+    /// The law, once its numbers are checked.
+    pub(super) fn law(&self, source: &Source<'_>) -> Result<Law, DescriptionError> {
+        self.check_numbers(source)?;
+        let above = |key: &str, number: Option<f64>| {
+            let number = number.ok_or_else(|| source.missing(key, "a number above 0"))?;
+            source.number(key, number, "a number above 0", |number| number > 0.0)
+        };
+        let quantity = |key: &str, text: Option<&QuantityText>, dimension| {
+            let text = text.ok_or_else(|| source.missing(key, "a quantity with its unit"))?;
+            source.positive(key, text, dimension)
+        };
+        let time = || quantity("law.time", self.time.as_ref(), Dimension::Time);
+        let refused = |error: &dyn Display| source.value("law", "a law", &error.to_string());
+        let linear = match self.name {
+            LawName::Latency => {
+                let exponent = above("law.exponent", self.exponent)?;
+                let rate = quantity("law.rate_coefficient", self.rate_coefficient.as_ref(), Dimension::Rate)?;
+                return LatencyLaw::new(exponent, rate).map(Law::Latency).map_err(|error| refused(&error));
+            }
+            LawName::StandardLinearSolid => LinearLaw::standard(above("law.overshoot", self.overshoot)?, time()?),
+            LawName::Prony => LinearLaw::new(&self.prony(source)?),
+            LawName::Fung => LinearLaw::fung(&self.fung(source)?),
+            LawName::FractionalZener => {
+                let (overshoot, time) = (above("law.overshoot", self.overshoot)?, time()?);
+                let reach = (time / FRACTIONAL_REACH, time * FRACTIONAL_REACH);
+                LinearLaw::fractional(overshoot, time, self.order.unwrap_or(f64::NAN), reach)
+            }
+        };
+        let memory = match (self.memory, self.name) {
+            (Some(MemoryName::Force), _) | (None, LawName::Fung) => Memory::Force,
+            _ => Memory::Strain,
+        };
+        linear.map(|law| Law::Linear(law, memory)).map_err(|error| match error {
+            LinearLawError::Order { found } => source.value("law.order", "an order from 0.05 to below 1", &found),
+            LinearLawError::Empty => source.missing(format!("law.{}", self.name.numbers()[0]), "one term or more"),
+            LinearLawError::NotPositive { term: 0, found, .. } => {
+                let expected = "shares that leave something at rest, less than 1 together";
+                source.value("law.shares", expected, &(1.0 - found))
+            }
+            error => refused(&error),
+        })
+    }
+
+    fn prony(&self, source: &Source<'_>) -> Result<Vec<LinearTerm>, DescriptionError> {
+        let term = |(index, term): (usize, &TermTable)| {
+            let key = |name: &str| format!("law.terms[{}].{name}", index + 1);
+            let overshoot = source.number(&key("overshoot"), term.overshoot, "a number above 0", |g| g > 0.0)?;
+            let rate = 1.0 / source.positive(&key("time"), &term.time, Dimension::Time)?;
+            Ok(LinearTerm { overshoot, rate })
+        };
+        self.terms.iter().flatten().enumerate().map(term).collect()
+    }
+
+    fn fung(&self, source: &Source<'_>) -> Result<Vec<(f64, f64)>, DescriptionError> {
+        let term = |(index, term): (usize, &ShareTable)| {
+            let key = |name: &str| format!("law.shares[{}].{name}", index + 1);
+            let share = source.number(&key("share"), term.share, "a share above 0", |share| share > 0.0)?;
+            Ok((share, source.positive(&key("rate"), &term.rate, Dimension::Rate)?))
+        };
+        self.shares.iter().flatten().enumerate().map(term).collect()
+    }
+
+    /// All numbers of the law must be there, and no other.
+    fn check_numbers(&self, source: &Source<'_>) -> Result<(), DescriptionError> {
+        let (law, wanted) = (self.name.name(), self.name.numbers());
+        let given = [
+            ("exponent", self.exponent.is_some(), "a number above 0, such as 5"),
+            ("rate_coefficient", self.rate_coefficient.is_some(), "a rate, such as \"2e4 /s\""),
+            ("overshoot", self.overshoot.is_some(), "a number above 0, such as 3"),
+            ("time", self.time.is_some(), "a time, such as \"2 s\""),
+            ("order", self.order.is_some(), "an order from 0.05 to below 1, such as 0.5"),
+            ("terms", self.terms.is_some(), "terms, such as [{ overshoot = 3, time = \"2 s\" }]"),
+            ("shares", self.shares.is_some(), "shares, such as [{ share = 0.3, rate = \"0.5 /s\" }]"),
+        ];
+        for (name, is_given, expected) in given {
+            let key = format!("law.{name}");
+            if is_given && !wanted.contains(&name) {
+                let reason = format!("with name = \"{law}\", which takes {}", wanted.join(", "));
+                return Err(source.unused(&key, &reason, &format!("remove {name}")));
+            }
+            if !is_given && wanted.contains(&name) {
+                return Err(source.missing(key, expected));
+            }
+        }
+        if self.memory.is_some() && self.name == LawName::Latency {
+            let reason = "with name = \"latency\", whose memory is its layers";
+            return Err(source.unused("law.memory", reason, "remove memory"));
+        }
+        Ok(())
+    }
+}
