@@ -23,6 +23,12 @@
 //! | [`analysis`] | all of it for one record, with findings in plain words |
 //! | [`test_problems`] | known problems with known answers |
 //!
+//! | feature | what |
+//! |---|---|
+//! | `std` (on) | everything; without it the scalar law, bodies and [one step at a time](simulate::ContactState#without-std) |
+//! | `alloc` | tables of bodies and their serde where there is no std; `std` has it |
+//! | `rayon` (on) | [`batch`] on all cores |
+//!
 //! ```
 //! use palpate::contact::{Layers, Shape, Sides, Specimen};
 //! use palpate::identify::{ExponentChoice, FitOptions, fit_hold};
@@ -47,23 +53,43 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(not(feature = "std"), no_std)]
+
+#[cfg(feature = "alloc")]
+extern crate alloc;
+
+#[cfg(feature = "std")]
 pub mod analysis;
+#[cfg(feature = "std")]
 pub mod batch;
+#[cfg(feature = "std")]
 pub mod choose;
 pub mod contact;
+#[cfg(feature = "std")]
 pub mod identify;
 pub mod latency;
+#[cfg(feature = "std")]
 pub mod laws;
+#[cfg(feature = "std")]
 mod ode;
+#[cfg(feature = "std")]
 pub mod random;
+#[cfg(feature = "std")]
 pub mod record;
+#[cfg(feature = "std")]
 pub mod segment;
 pub mod simulate;
+#[cfg(feature = "std")]
 pub mod special;
+#[cfg(feature = "std")]
 mod statistics;
+#[cfg(feature = "std")]
 pub mod strain;
+#[cfg(feature = "std")]
 pub mod test_problems;
+#[cfg(feature = "std")]
 pub mod units;
+#[cfg(feature = "std")]
 mod vector;
 
 /// The README's example, compiled and run with the other ones.

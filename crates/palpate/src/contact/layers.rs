@@ -67,7 +67,8 @@ impl Layers {
     /// m as a whole number, or `None`: only whole layers have an interior to show.
     #[must_use]
     pub fn whole(self) -> Option<usize> {
-        (self.0.fract() == 0.0 && self.0 < 1e6).then_some(self.0 as usize)
+        let whole = self.0 as usize;
+        (self.0 < 1e6 && whole as f64 == self.0).then_some(whole)
     }
 
     /// ℓ = depth/m in m.

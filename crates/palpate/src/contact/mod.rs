@@ -4,7 +4,8 @@
 //! |---|---|---|
 //! | `shape.rs` | the form of the body: contact area, depth, and where they come from | (7), (8) |
 //! | `equilibrium.rs` | the force that it tends to: the paper's, Hertz's, or a measured one | (11) |
-//! | `curve.rs` | a smooth curve through the rows of a table | |
+//! | `measured.rs` | the last of them, from the rows of a table | |
+//! | `curve/` | a smooth curve through the rows of a table | |
 //! | `specimen.rs` | the body with its modulus: force, equilibrium strain, what it can take | (6), (8), (11) |
 //! | `layers.rs` | how the body is cut into layers and how travel of the jaw becomes drive | section IV, steps 1–2 |
 //! | `element.rs` | the contact layer through one straight piece of motion: hold or ramp | section IV, step 3 |
@@ -17,25 +18,35 @@
 
 mod balance;
 mod curve;
+#[cfg(feature = "std")]
 mod element;
 mod equilibrium;
+#[cfg(feature = "std")]
 mod forced;
+#[cfg(feature = "std")]
 mod free_surface;
 mod layers;
+#[cfg(feature = "alloc")]
+mod measured;
 mod shape;
 mod specimen;
 
 pub(crate) use balance::{Layer, carried_at, share};
 pub use curve::{Curve, CurveError};
-pub(crate) use element::{Element, Ramps};
 pub use equilibrium::{Equilibrium, EquilibriumError};
-pub(crate) use forced::{Body, Carried, Forced, Stopped};
-pub(crate) use free_surface::FreeSurface;
 pub use layers::{Layers, LayersError};
 pub use shape::{Shape, Statement};
 pub use specimen::{Sides, Specimen, SpecimenError};
 
+#[cfg(feature = "std")]
+pub(crate) use {
+    element::{Element, Ramps},
+    forced::{Body, Carried, Forced, Stopped},
+    free_surface::FreeSurface,
+};
+
 /// What a simulation cost, in counts that do not depend on the machine.
+#[cfg(feature = "std")]
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Work {
     /// Holds and recoveries solved by the closed form.

@@ -1,14 +1,16 @@
 //! The form of the body that is squeezed.
 
-use std::f64::consts::PI;
-
-use serde::{Deserialize, Serialize};
+use core::f64::consts::PI;
 
 use super::{Curve, Sides};
 
 /// Shape of the body, all lengths in m and areas in m².
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", tag = "kind")]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "alloc",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case", tag = "kind")
+)]
 pub enum Shape {
     /// A ball pressed by flat plates; the contact circle grows with the squeeze, equation (7).
     Ball {

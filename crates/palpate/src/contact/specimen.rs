@@ -17,12 +17,13 @@ pub enum Sides {
 }
 
 /// A body with its modulus: what turns displacement and force into strain.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "alloc", derive(Serialize, Deserialize))]
 pub struct Specimen {
     shape: Shape,
     modulus: f64,
     sides: Sides,
-    #[serde(default)]
+    #[cfg_attr(feature = "alloc", serde(default))]
     equilibrium: Equilibrium,
 }
 

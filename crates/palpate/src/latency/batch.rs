@@ -9,6 +9,7 @@
 //! All columns come from one pass, as vector code of whatever the machine has. Values agree with the one-at-a-time
 //! functions to a few units in the last place.
 
+use super::LatencyLaw;
 use crate::vector::elementary::{Logarithm, exp};
 use crate::vector::fill;
 
@@ -30,6 +31,26 @@ pub(crate) fn decay_in_place(times: &mut [f64], rate: f64, exponent: f64) {
         let copy = &mut copy[..part.len()];
         copy.copy_from_slice(part);
         decay_many(copy, rate, exponent, part);
+    }
+}
+
+impl LatencyLaw {
+    /// Replaces every elapsed time (s) by the excess strain then, as [`excess_after`](Self::excess_after).
+    pub(crate) fn relax(&self, initial: f64, elapsed: &mut [f64]) {
+        decay_in_place(elapsed, self.relative_rate(initial), self.exponent());
+        elapsed.iter_mut().for_each(|phi| *phi *= initial);
+    }
+
+    /// Appends the strain rate at every one of the excess strains, as [`rate`](Self::rate).
+    pub(crate) fn extend_rates(&self, excess: &[f64], out: &mut Vec<f64>) {
+        let v = self.rate_coefficient();
+        // The choice of exponent stands outside the loop, so that the common ones run as vector code.
+        match self.exponent() {
+            1.0 => out.extend(excess.iter().map(|x| -v * x)),
+            3.0 => out.extend(excess.iter().map(|x| -v * (x * x * x))),
+            5.0 => out.extend(excess.iter().map(|x| -v * ((x * x) * (x * x) * x))),
+            _ => out.extend(excess.iter().map(|x| self.rate(*x))),
+        }
     }
 }
 

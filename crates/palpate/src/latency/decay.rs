@@ -1,5 +1,8 @@
 //! The normalised closed form of the law, equations (4) and (5) in one.
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 /// Value and derivatives of the normalised excess strain φ(t; λ, n).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Decay {

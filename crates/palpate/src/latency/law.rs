@@ -1,8 +1,9 @@
 //! The law with its numbers put in.
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 use serde::{Deserialize, Serialize};
 
-use super::batch::decay_in_place;
 use super::decay::decay;
 
 /// Numbers that make no law.
@@ -114,24 +115,6 @@ impl LatencyLaw {
             return initial / (1.0 + 4.0 * s).sqrt().sqrt();
         }
         initial * decay(s, self.exponent)
-    }
-
-    /// Replaces every elapsed time (s) by the excess strain then, as [`excess_after`](Self::excess_after).
-    pub(crate) fn relax(&self, initial: f64, elapsed: &mut [f64]) {
-        decay_in_place(elapsed, self.relative_rate(initial), self.exponent);
-        elapsed.iter_mut().for_each(|phi| *phi *= initial);
-    }
-
-    /// Appends the strain rate at every one of the excess strains, as [`rate`](Self::rate).
-    pub(crate) fn extend_rates(&self, excess: &[f64], out: &mut Vec<f64>) {
-        let v = self.rate_coefficient;
-        // The choice of exponent stands outside the loop, so that the common ones run as vector code.
-        match self.exponent {
-            1.0 => out.extend(excess.iter().map(|x| -v * x)),
-            3.0 => out.extend(excess.iter().map(|x| -v * (x * x * x))),
-            5.0 => out.extend(excess.iter().map(|x| -v * ((x * x) * (x * x) * x))),
-            _ => out.extend(excess.iter().map(|x| self.rate(*x))),
-        }
     }
 
     /// The excess strain that a steady drive `drive` = g (1/s) keeps up: sgn(g) (|g|/v)^(1/n).

@@ -15,11 +15,14 @@
 //! | `batch.rs` | the same for many times at once, at the speed of vector units | (4), (5) |
 //! | `lanes.rs` | the law for kernels over many contacts or layers | (2)–(5) |
 
+#[cfg(feature = "std")]
 mod batch;
 mod decay;
+#[cfg(feature = "std")]
 pub(crate) mod lanes;
 mod law;
 
+#[cfg(feature = "std")]
 pub use batch::{decay_many, decay_with_gradient_many, decay_with_log_rate_many};
 pub use decay::{Decay, decay, decay_with_gradient};
 pub use law::{LatencyLaw, LawError, LinearLatency};

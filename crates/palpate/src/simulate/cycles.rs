@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::contact::{Contact, by_law};
 use super::course::Course;
-use super::model::{Contact, by_law};
 use super::{Drive, Sampling, SimulateError, energy, simulate};
 
 /// What the jaw did between two knots of a drive, J; both contacts of a body that is squeezed from two sides.

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::SimulateError;
+use super::contact::{Contact, by_law};
 use super::layer::Layer;
-use super::model::{Contact, by_law};
 use super::walk::{Stretch, Walker, check_force};
 
 /// One step of a program.

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::contact::{Contact, by_law};
 use super::course::Course;
 use super::energy::{Account, stored_at};
 use super::layer::Layer;
-use super::model::{Contact, by_law};
 use super::trajectory::{Trajectory, extend_forces, sample_times};
 use super::walk::walk;
 use super::{ContactEvent, Drive, Sampling, SimulateError};

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::contact::{Contact, by_law};
 use super::course::Course;
 use super::layer::Layer;
-use super::model::{Contact, by_law};
 use super::walk::{Stretch, StretchState, walk};
 use super::{ContactEvent, Drive, Motion, SimulateError, Work};
 

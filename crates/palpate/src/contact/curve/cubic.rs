@@ -1,8 +1,10 @@
-//! A smooth curve through measured points that rises where they do.
+//! The cubic between the rows.
 
-use std::sync::Arc;
+use alloc::{sync::Arc, vec::Vec};
 
 use serde::{Deserialize, Serialize};
+
+use super::CurveError;
 
 /// A curve through points at rising places, between them the cubic of Fritsch and Butland (1984): it passes through every point, its slope
 /// is continuous, and where the points rise so does the curve.
@@ -28,55 +30,6 @@ struct Knot {
     place: f64,
     value: f64,
     slope: f64,
-}
-
-/// Points that make no curve; rows count from 1.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum CurveError {
-    /// Fewer than two points.
-    #[error("a table needs at least 2 rows, found {found}")]
-    TooFew {
-        /// How many there are.
-        found: usize,
-    },
-    /// A number that is not finite.
-    #[error("row {row}: expected two finite numbers, found {place} and {value}")]
-    NotFinite {
-        /// Which row.
-        row: usize,
-        /// Its place.
-        place: f64,
-        /// Its value.
-        value: f64,
-    },
-    /// Places that do not begin at first touch.
-    #[error("row 1: a table begins at a contact displacement of 0, found {found}")]
-    Start {
-        /// The first place.
-        found: f64,
-    },
-    /// Places that do not rise.
-    #[error("row {row}: contact displacements must rise, found {found} after {before}")]
-    NotRising {
-        /// Which row.
-        row: usize,
-        /// Its place.
-        found: f64,
-        /// The place before.
-        before: f64,
-    },
-    /// Values that fall, or lie below zero.
-    #[error("row {row}: {what} must be 0 or more and must not fall, found {found} after {before}")]
-    Falling {
-        /// Which row.
-        row: usize,
-        /// What the values are.
-        what: &'static str,
-        /// Its value.
-        found: f64,
-        /// The value before.
-        before: f64,
-    },
 }
 
 impl Curve {
@@ -197,7 +150,7 @@ fn slopes(points: &[(f64, f64)]) -> Vec<f64> {
     let last = sides.len() - 1;
     let first = outer(sides[0], sides.get(1));
     let end = outer(sides[last], last.checked_sub(1).map(|before| &sides[before]));
-    std::iter::once(first).chain(sides.windows(2).map(inner)).chain([end]).collect()
+    core::iter::once(first).chain(sides.windows(2).map(inner)).chain([end]).collect()
 }
 
 impl TryFrom<Vec<(f64, f64)>> for Curve {
