@@ -1,5 +1,5 @@
 //! Contact force, strain wave, separation and creep against mpmath and SciPy (`contact_force.json`, `cascade.json`,
-//! `separation.json`, `creep.json`, `bodies.json`).
+//! `cascade_grid.json`, `separation.json`, `creep.json`, `bodies.json`).
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
@@ -149,6 +149,44 @@ fn every_layer() {
         }
         verdict.add(&case.contact.name, "displacement", displacement, tolerance.displacement);
         verdict.add(&case.contact.name, "excess strain", excess, tolerance.excess_strain);
+    }
+    verdict.finish();
+}
+
+#[derive(Deserialize)]
+struct GridTolerance {
+    displacement_over_radius: f64,
+    strain: f64,
+}
+
+#[derive(Deserialize)]
+struct GridCase {
+    #[serde(flatten)]
+    contact: Contact,
+    displacement: Vec<Vec<f64>>,
+}
+
+#[test]
+fn every_layer_from_slow_to_fast_laws_and_from_1_to_512_layers() {
+    let (tolerance, cases) = reference::<GridTolerance, GridCase>("cascade_grid");
+    let mut verdict = Verdict::new();
+    for case in &cases {
+        let (motion, model) = (case.contact.motion(), case.contact.model(Separation::Bonded));
+        let wave = strain_wave(&motion, &model, &Sampling::Times(case.contact.times.clone())).unwrap();
+        let (layers, radius) = (wave.strain.len(), case.contact.radius);
+        assert_eq!(layers as f64, case.contact.layers);
+        let (mut displacement, mut strain) = (0.0f64, 0.0f64);
+        for (k, expected) in case.displacement.iter().enumerate() {
+            let found: Vec<f64> = (0..layers).map(|i| wave.displacement[i][k]).collect();
+            displacement = displacement.max(distance(&found, expected) / radius);
+            let inner = expected.iter().skip(1).copied().chain([0.0]);
+            let expected: Vec<f64> =
+                expected.iter().zip(inner).map(|(a, b)| (a - b) / radius * layers as f64).collect();
+            let found: Vec<f64> = (0..layers).map(|i| wave.strain[i][k]).collect();
+            strain = strain.max(distance(&found, &expected));
+        }
+        verdict.add(&case.contact.name, "displacement", displacement, tolerance.displacement_over_radius);
+        verdict.add(&case.contact.name, "strain", strain, tolerance.strain);
     }
     verdict.finish();
 }

@@ -42,6 +42,32 @@ fn of_second_order_in_ramps() {
 }
 
 #[test]
+fn of_second_order_under_a_changing_force() {
+    // 2 N at once, then to 9 N and back to 4 N; first touch itself has a root that no step of one width follows.
+    let (times, forces) = (vec![0.0, 1.0, 2.0, 3.0], vec![2.0, 9.0, 9.0, 4.0]);
+    let history = ForceHistory::new(times, forces).unwrap();
+    for (exponent, rate, layers) in [(1.0, 2.0, 8.0), (2.0, 50.0, 8.5), (5.0, 2e4, 8.0)] {
+        let model = ball(exponent, rate, layers, Separation::Unilateral);
+        let error = |steps: u32| {
+            let times: Vec<f64> = (0..=steps).map(|i| 3.0 * f64::from(i) / f64::from(steps)).collect();
+            let exact = simulate(&history, &model, &Sampling::Times(times.clone())).unwrap();
+            let mut contact = ContactState::default();
+            contact.step_force(&model, 0.0, 2.0).unwrap();
+            let mut worst: f64 = 0.0;
+            for i in 1..times.len() {
+                let found = contact.step_force(&model, times[i] - times[i - 1], history.force_at(times[i])).unwrap();
+                worst = worst.max((found - exact.displacement[i]).abs());
+            }
+            worst
+        };
+        let (coarse, fine) = (error(600), error(1200));
+        let order = (coarse / fine).log2();
+        println!("n = {exponent}: {coarse:.1e} m at 5 ms, order {order:.2}");
+        assert!((1.8..2.3).contains(&order), "n = {exponent}: {order}");
+    }
+}
+
+#[test]
 fn a_hold_is_exact_in_steps_of_any_length() {
     let model = ball(5.0, 2e4, 8.0, Separation::Unilateral);
     let start = {

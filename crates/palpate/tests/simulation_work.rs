@@ -5,7 +5,8 @@
 use palpate::contact::Layers;
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactModel, ForceHistory, Sampling, Separation, Work, simulate, strain_wave, strain_wave_within,
+    ContactModel, ForceHistory, LinearContact, LinearLaw, LinearTerm, Memory, Sampling, Separation, Work, simulate,
+    strain_wave, strain_wave_within,
 };
 use palpate::test_problems::{paper_ball, paper_test_a};
 
@@ -59,4 +60,19 @@ fn a_held_force() {
     assert_eq!((work.closed_forms, work.ramps), (1, 1));
     // A ramp of force and a minute of creep.
     is_near(work, 130, 2_060);
+}
+
+#[test]
+fn a_force_on_a_linear_law() {
+    let terms = [(1.0, 0.01), (0.5, 0.3), (2.0, 6.0)].map(|(overshoot, rate)| LinearTerm { overshoot, rate });
+    let contact = LinearContact {
+        specimen: paper_ball(Separation::Bonded).specimen,
+        law: LinearLaw::new(&terms).unwrap(),
+        memory: Memory::Strain,
+        separation: Separation::Bonded,
+    };
+    let history = ForceHistory::new(vec![0.0, 1.0, 61.0], vec![0.0, 10.0, 10.0]).unwrap();
+    let work = simulate(&history, &contact, &Sampling::Times(vec![61.0])).unwrap().work;
+    assert_eq!((work.closed_forms, work.ramps), (0, 2));
+    is_near(work, 220, 897);
 }

@@ -313,3 +313,65 @@ fn weighted<S: Simd>(simd: S, weights: &[(usize, f64)], stages: &[f64], room: us
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fearless_simd::{Level, dispatch};
+
+    /// ẏ_i = y_{i−1} − y_i behind y_0 = exp(−t): y_i = tⁱ/i! exp(−t).
+    struct Queue;
+
+    impl<S: Simd> Slopes<S> for Queue {
+        fn fill(&self, _: S, time: f64, state: &mut [f64], slopes: &mut [f64], (from, until): (usize, usize)) {
+            if from == WIDTH {
+                state[WIDTH - 1] = (-time).exp();
+            }
+            for at in from..until {
+                slopes[at] = state[at - 1] - state[at];
+            }
+        }
+
+        fn passes_on(&self, _: f64) -> bool {
+            true
+        }
+    }
+
+    /// Largest error at the end of steps of one width, and halfway through them, up to t = 3.
+    fn errors(steps: u32) -> (f64, f64) {
+        let width = 3.0 / f64::from(steps);
+        let off = |numbers: &[f64], time: f64| {
+            let mut exact = (-time).exp();
+            let mut worst: f64 = 0.0;
+            for (i, found) in numbers.iter().enumerate() {
+                exact *= time / (i + 1) as f64;
+                worst = worst.max((found - exact).abs());
+            }
+            worst
+        };
+        let mut column = Column::new(6, f64::INFINITY);
+        column.restart(width);
+        let (mut ends, mut halfway, mut inside) = (0.0f64, 0.0f64, Vec::new());
+        for step in 1..=steps {
+            column.width = width;
+            let end = width * f64::from(step);
+            dispatch!(Level::new(), simd => {
+                column.step(simd, end, &Queue);
+                column.look(simd, &Queue);
+                column.at(simd, end - 0.5 * width, &mut inside);
+                column.leave();
+            });
+            ends = ends.max(off(column.numbers(), column.time()));
+            halfway = halfway.max(off(&inside, end - 0.5 * width));
+        }
+        (ends, halfway)
+    }
+
+    #[test]
+    fn order_of_convergence_of_a_chain_is_eight_and_seven_between_steps() {
+        let (coarse, fine) = (errors(6), errors(12));
+        let (ends, halfway) = ((coarse.0 / fine.0).log2(), (coarse.1 / fine.1).log2());
+        println!("orders {ends:.2} and {halfway:.2}: {fine:?}");
+        assert!((7.5..9.5).contains(&ends) && (6.7..9.5).contains(&halfway), "{ends} {halfway}");
+    }
+}

@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 
 use super::recovery::Recovery;
 use super::stage::{DEGREE, Stage, dot, fading, integrated};
-use super::{LinearContact, Memory};
+use super::{LinearContact, LinearTerm, Memory};
 use crate::contact::{Carried, Stopped};
 use crate::simulate::Work;
 
@@ -277,7 +277,7 @@ impl Pressed {
     /// x_k − g_k q.
     pub(super) fn behind(&self, elapsed: f64) -> Vec<f64> {
         let value = self.value_at(elapsed);
-        let each = |(x, term): (f64, &super::LinearTerm)| x - term.overshoot * value;
+        let each = |(x, term): (f64, &LinearTerm)| x - term.overshoot * value;
         self.memory(elapsed).into_iter().zip(self.contact.law.terms()).map(each).collect()
     }
 
@@ -367,4 +367,78 @@ fn solve(mut matrix: [[f64; DEGREE]; DEGREE], right: &mut [f64; DEGREE]) -> bool
         right[row] = (right[row] - known) / matrix[row][row];
     }
     right.iter().all(|value| value.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Shape, Sides, Specimen};
+    use crate::simulate::{LinearLaw, Separation};
+
+    fn ball(memory: Memory) -> LinearContact {
+        LinearContact {
+            specimen: Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two).unwrap(),
+            law: LinearLaw::new(&[(2.0, 0.7), (1.0, 0.05)].map(|(overshoot, rate)| LinearTerm { overshoot, rate }))
+                .unwrap(),
+            memory,
+            separation: Separation::Unilateral,
+        }
+    }
+
+    #[test]
+    fn order_of_convergence_of_the_collocation_is_seven_or_more() {
+        // From 2 N to 9 N within 20 s, by stages of one width.
+        let contact = ball(Memory::Strain);
+        let mut piece = Pressed::solve(&contact, (2.0, 9.0), &[0.0, 0.0], 20.0, &mut Work::default()).unwrap();
+        let exact = piece.value_at(20.0);
+        let (first, memory) = (piece.value_at(0.0), piece.memory(0.0));
+        piece.path = Path::Stages(Vec::new());
+        let error = |count: u32| {
+            let (mut value, mut memory) = (first, memory.clone());
+            let width = 20.0 / f64::from(count);
+            for stage in 0..count {
+                let start = width * f64::from(stage);
+                let (stage, _) = piece.stage(start, width, value, &memory, 1e-12, &mut Work::default()).unwrap();
+                (value, memory) = (stage.value(1.0), stage.memory(1.0, &contact.law));
+            }
+            (value - exact).abs()
+        };
+        let (coarse, fine) = (error(4), error(8));
+        let order = (coarse / fine).log2();
+        println!("order {order:.2}: {coarse:.1e} {fine:.1e}");
+        assert!((6.7..9.5).contains(&order), "{order}: {coarse:e} {fine:e}");
+    }
+
+    #[test]
+    fn terms_that_are_over_at_once_ask_for_no_short_stages() {
+        let mut contact = ball(Memory::Strain);
+        let steps = |contact: &LinearContact| {
+            let mut work = Work::default();
+            let behind = vec![0.0; contact.law.terms().len()];
+            Pressed::solve(contact, (5.0, 5.0), &behind, 1e4, &mut work).unwrap();
+            work.steps
+        };
+        let slow = steps(&contact);
+        contact.law = LinearLaw::new(
+            &[(2.0, 0.7), (1.0, 0.05), (1e-3, 1e9)].map(|(overshoot, rate)| LinearTerm { overshoot, rate }),
+        )
+        .unwrap();
+        let fast = steps(&contact);
+        assert!(fast < slow + 60, "{slow} {fast}");
+    }
+
+    #[test]
+    fn a_force_too_large_after_some_creep_is_refused_with_its_moment() {
+        let contact = ball(Memory::Strain);
+        // 150 N on a ball of E A(r) = 107.8 N: carried while the body is stiff.
+        let stopped = Pressed::solve(&contact, (150.0, 150.0), &[0.0, 0.0], 1e3, &mut Work::default()).unwrap_err();
+        let Stopped::TooMuch { elapsed } = stopped else {
+            panic!("{stopped:?}")
+        };
+        assert!((0.1..100.0).contains(&elapsed), "{elapsed}");
+        let short =
+            Pressed::solve(&contact, (150.0, 150.0), &[0.0, 0.0], 0.99 * elapsed, &mut Work::default()).unwrap();
+        assert!(short.displacement(0.99 * elapsed) < 0.035);
+        assert!(Pressed::solve(&contact, (500.0, 500.0), &[0.0, 0.0], 1.0, &mut Work::default()).is_err());
+    }
 }
