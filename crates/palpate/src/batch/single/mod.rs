@@ -28,11 +28,14 @@ impl Batch {
     /// the place at a time is found by Newton's method. Strains are in units of the largest u₁/depth, and what has been summed up (times,
     /// displacements and the excess itself) stays in double precision.
     ///
-    /// **Accuracy**: MEASURED.
+    /// **Accuracy**, measured against double precision at the knots and nine times between any two, in units of the largest force of a
+    /// contact: 3.4·10⁻⁷ at most over n = 0.5, 1, 1.5, 2, 3, 5, 7.3, six decades of v, m = 2, 8, 8.5, 64, 512, balls, pads and strips, ramps from
+    /// a millisecond to a day and holds from a millisecond to thirty days; 1.7·10⁻⁶ at most in 90,000 random contacts with n from 0.5 to
+    /// 8 and m up to 630. 10⁻⁵ is what is promised and tested.
     ///
     /// What single precision cannot do is done in double precision, at its speed: exponents below 0.5 and above 8, laws so
     /// slow or so fast that powers of them leave the range of single precision (κt beyond 10³⁰, κ = v (u₁/depth)ⁿ⁻¹), ramps that begin
-    /// at an excess of 10⁴ times their steady one, and the contacts that are simulated one by one. Strains of layers are in double
+    /// at an excess of 10⁶ times their steady one, and the contacts that are simulated one by one. Strains of layers are in double
     /// precision only: with m layers they are m differences of nodes, and 512 layers would leave five digits of seven.
     ///
     /// Results are the same bits on any number of threads and on every instruction set.
@@ -139,5 +142,34 @@ impl Batch {
 fn replace(forces: &mut [f32], row: usize, index: usize, found: &[f64]) {
     for (force, found) in forces[index * row..][..row].iter_mut().zip(found) {
         *force = *found as f32;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::latency::LatencyLaw;
+    use crate::simulate::{ContactModel, Separation};
+    use crate::test_problems::{paper_ball, paper_test_a};
+    use crate::vector::tests::on_every_level;
+
+    #[test]
+    fn the_same_bits_on_every_instruction_set() {
+        for exponents in
+            [[1.0; 16], [2.0; 16], [3.0; 16], [5.0; 16], std::array::from_fn(|lane| 0.6 + 0.45 * lane as f64)]
+        {
+            let models = exponents.map(|n| ContactModel {
+                law: LatencyLaw::new(n, 300.0).unwrap(),
+                ..paper_ball(Separation::Bonded)
+            });
+            let batch = Batch::shared(&models, &paper_test_a()).unwrap();
+            let forces = on_every_level(|| {
+                // On this thread, which is the one that pretends.
+                let mut forces = vec![0.0; 32];
+                dispatch!(level(), _simd => batch.single_of(0, Some(&[43.2, 66.0]), &mut forces));
+                forces.into_iter().map(f64::from).collect()
+            });
+            assert!(forces.iter().all(|force| force.is_finite()));
+        }
     }
 }

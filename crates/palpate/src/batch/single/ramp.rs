@@ -43,7 +43,7 @@ const BACK: f32 = 0.625;
 const NEAR: f32 = 0.015;
 
 /// Excess, in units of the steady one, from which pieces would be too many.
-pub(super) const FARTHEST: f32 = 1e4;
+pub(super) const FARTHEST: f32 = 1e6;
 
 /// Pieces from there to the steady state are fewer.
 const MOST_PIECES: usize = 48;
