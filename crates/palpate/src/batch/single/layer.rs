@@ -65,8 +65,8 @@ impl ContactLayers {
     #[inline(always)]
     pub(super) fn strains(&self) -> [f64; LANES] {
         let mut strains = [0.0; LANES];
-        for lane in 0..LANES {
-            strains[lane] = self.excess[lane] * self.unit[lane];
+        for ((strain, z), unit) in strains.iter_mut().zip(&self.excess).zip(&self.unit) {
+            *strain = z * unit;
         }
         strains
     }

@@ -119,11 +119,10 @@ fn gained_by(power: Power, n: &Column, mut place: Place, mut left: Column) -> Co
 #[inline(always)]
 fn pieces(place: &Place) -> Column {
     let mut way = [0.0; LANES];
-    for lane in 0..LANES {
-        let z = place.excess[lane];
+    for (way, &z) in way.iter_mut().zip(&place.excess) {
         let back = if z > -LAST_BACK { -z } else { z * (BACK - 1.0) };
         let early = if z < 0.0 { back } else { BORDER - z };
-        way[lane] = if z < BORDER { early } else { PIECE };
+        *way = if z < BORDER { early } else { PIECE };
     }
     way
 }
