@@ -1,10 +1,10 @@
 //! The contacts in columns.
 
-use std::f64::consts::PI;
 use std::ops::Range;
 
 use fearless_simd::{Simd, dispatch};
 
+use super::body::Bodies;
 use super::cascade::{self, Cascade, Stack};
 use super::layer::{self, ContactLayers, Laws};
 use super::parallel::{for_each, for_each_part};
@@ -71,16 +71,16 @@ pub enum BatchError {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Batch {
-    modulus: Vec<f64>,
-    depth: Vec<f64>,
+    pub(super) modulus: Vec<f64>,
+    pub(super) depth: Vec<f64>,
     /// A = section + π u (round − u) for u > 0: a body of constant section, or a round one of twice this radius (m², m).
-    section: Vec<f64>,
-    round: Vec<f64>,
+    pub(super) section: Vec<f64>,
+    pub(super) round: Vec<f64>,
     /// 1 for a round body, 0 for one of constant section.
-    is_round: Vec<f64>,
-    exponent: Vec<f64>,
-    rate_coefficient: Vec<f64>,
-    layers: Vec<f64>,
+    pub(super) is_round: Vec<f64>,
+    pub(super) exponent: Vec<f64>,
+    pub(super) rate_coefficient: Vec<f64>,
+    pub(super) layers: Vec<f64>,
     /// One contact's share of the jaw's travel.
     pub(super) share: Vec<f64>,
     /// Knots of every contact, as indices into the two columns after it.
@@ -88,7 +88,7 @@ pub struct Batch {
     pub(super) times: Vec<f64>,
     pub(super) displacements: Vec<f64>,
     /// Contacts that may be lost, with their index.
-    alone: Vec<(usize, ContactModel, Motion)>,
+    pub(super) alone: Vec<(usize, ContactModel, Motion)>,
 }
 
 impl Batch {
@@ -274,7 +274,7 @@ impl Batch {
     }
 
     /// Checks that times rise and lie inside every motion.
-    fn check_times(&self, times: &[f64]) -> Result<(), BatchError> {
+    pub(super) fn check_times(&self, times: &[f64]) -> Result<(), BatchError> {
         let rises = |index: usize| index == 0 || times[index - 1] <= times[index];
         let disorder = (0..times.len()).find(|index| !rises(*index));
         for index in 0..self.len() {
@@ -294,6 +294,19 @@ impl Batch {
         Ok(())
     }
 
+    /// What `simulated` says of the contacts that are simulated alone, with their indices.
+    pub(super) fn simulated_alone(
+        &self,
+        simulated: impl Fn(&ContactModel, &Motion) -> Result<Vec<f64>, SimulateError> + Sync + Send,
+    ) -> Result<Vec<(usize, Vec<f64>)>, BatchError> {
+        let alone = for_each(self.alone.len(), |i| simulated(&self.alone[i].1, &self.alone[i].2));
+        let named = alone.into_iter().zip(&self.alone).map(|(row, (index, ..))| match row {
+            Ok(row) => Ok((*index, row)),
+            Err(source) => Err(BatchError::Contact { index: *index, source }),
+        });
+        named.collect()
+    }
+
     /// Fills the rows of the contacts that are simulated alone with what `simulated` says.
     fn one_by_one(
         &self,
@@ -301,17 +314,20 @@ impl Batch {
         len: usize,
         simulated: impl Fn(&ContactModel, &Motion) -> Result<Vec<f64>, SimulateError> + Sync + Send,
     ) -> Result<(), BatchError> {
-        let alone = for_each(self.alone.len(), |i| simulated(&self.alone[i].1, &self.alone[i].2));
-        for ((index, ..), row) in self.alone.iter().zip(alone) {
-            let row = row.map_err(|source| BatchError::Contact { index: *index, source })?;
+        for (index, row) in self.simulated_alone(simulated)? {
             rows[index * len..][..len].copy_from_slice(&row);
         }
         Ok(())
     }
 
     /// Rows of `len` finite numbers, or which contact has another.
-    fn checked(&self, rows: Vec<f64>, len: usize, times: Option<&[f64]>) -> Result<Vec<f64>, BatchError> {
-        match rows.iter().position(|number| !number.is_finite()) {
+    pub(super) fn checked<T: Copy + Into<f64>>(
+        &self,
+        rows: Vec<T>,
+        len: usize,
+        times: Option<&[f64]>,
+    ) -> Result<Vec<T>, BatchError> {
+        match rows.iter().position(|number| !(*number).into().is_finite()) {
             None => Ok(rows),
             Some(place) => {
                 let index = place / len;
@@ -323,18 +339,35 @@ impl Batch {
         }
     }
 
+    /// The contacts of the group that begins at `first`; past the last contact it is repeated.
+    pub(super) fn group<const L: usize>(&self, first: usize) -> [usize; L] {
+        std::array::from_fn(|lane| (first + lane).min(self.len() - 1))
+    }
+
+    /// Forces of some contacts in double precision, row by row.
+    pub(super) fn forces_in_double(&self, contacts: &[usize], times: Option<&[f64]>) -> Vec<f64> {
+        const L: usize = layer::GROUP;
+        let row = times.map_or(1, <[f64]>::len);
+        let mut forces = vec![0.0; contacts.len() * row];
+        for_each_part(&mut forces, L * row, |index, part| {
+            let group = std::array::from_fn(|lane| contacts[(index * L + lane).min(contacts.len() - 1)]);
+            dispatch!(level(), simd => self.forces_of(simd, group, times, part));
+        });
+        forces
+    }
+
     fn fill_forces(&self, times: Option<&[f64]>, forces: &mut [f64]) {
         let row = times.map_or(1, <[f64]>::len);
         for_each_part(forces, layer::GROUP * row, |index, part| {
-            dispatch!(level(), simd => self.forces_of(simd, index * layer::GROUP, times, part));
+            dispatch!(level(), simd => self.forces_of(simd, self.group(index * layer::GROUP), times, part));
         });
     }
 
     /// The forces of one group, contact by contact.
     #[inline(always)]
-    fn forces_of<S: Simd>(&self, simd: S, first: usize, times: Option<&[f64]>, part: &mut [f64]) {
+    fn forces_of<S: Simd>(&self, simd: S, group: [usize; layer::GROUP], times: Option<&[f64]>, part: &mut [f64]) {
         const L: usize = layer::GROUP;
-        let mut stops = Stops::<L>::new(self, first);
+        let mut stops = Stops::<L>::new(self, group);
         let exponent = stops.column(&self.exponent);
         let laws = Laws {
             power: Power::of(&exponent),
@@ -342,9 +375,7 @@ impl Batch {
             rate_coefficient: stops.column(&self.rate_coefficient),
         };
         let (depth, layers) = (stops.column(&self.depth), stops.column(&self.layers));
-        let modulus = stops.column(&self.modulus);
-        let (section, round) = (stops.column(&self.section), stops.column(&self.round));
-        let is_round = stops.column(&self.is_round);
+        let bodies = Bodies::new(self, &stops);
         let mut contact = ContactLayers::new();
         let samples = times.map_or(1, <[f64]>::len);
         for sample in 0..samples {
@@ -356,14 +387,8 @@ impl Batch {
                 }
                 contact.advance(simd, &laws, &drive, &leg.elapsed);
             }
-            let u = stops.displacement();
-            let mut force = [0.0; L];
-            for lane in 0..L {
-                let indentation = if u[lane] > 0.0 { u[lane] } else { 0.0 };
-                let area = section[lane] + is_round[lane] * (PI * indentation * (round[lane] - indentation));
-                force[lane] = modulus[lane] * (contact.excess[lane] + u[lane] / depth[lane]) * area;
-            }
-            for (row, force) in part.chunks_exact_mut(samples).zip(force) {
+            let forces = bodies.forces(&contact.excess, &stops.displacement());
+            for (row, force) in part.chunks_exact_mut(samples).zip(forces) {
                 row[sample] = force;
             }
         }
@@ -380,7 +405,7 @@ impl Batch {
         part: &mut [f64],
     ) {
         const L: usize = cascade::GROUP;
-        let mut stops = Stops::<L>::new(self, first);
+        let mut stops = Stops::<L>::new(self, self.group(first));
         let (depth, layers) = (stops.column(&self.depth), stops.column(&self.layers));
         let (begin, end) = (stops.time, stops.ends());
         let stack = Stack::new(
@@ -461,7 +486,7 @@ mod tests {
             on_every_level(|| {
                 // On this thread, which is the one that pretends.
                 let mut forces = vec![0.0; 32];
-                dispatch!(level(), simd => batch.forces_of(simd, 0, None, &mut forces));
+                dispatch!(level(), simd => batch.forces_of(simd, batch.group(0), None, &mut forces));
                 let mut strains = vec![0.0; 8 * 8];
                 dispatch!(level(), simd => batch.strains_of(simd, 0, &[43.0], (1e-8, 8), &mut strains));
                 forces.extend(strains);

@@ -8,14 +8,18 @@
 //! |---|---|
 //! | `contacts.rs` | `Batch`: the contacts in columns, checked; forces and strains of all of them |
 //! | `stops.rs` | a group of contacts on its way from knot to knot and sample to sample |
+//! | `body.rs` | force from excess strain and displacement |
 //! | `layer.rs` | contact layers: closed form in holds, regularised equation in ramps |
 //! | `cascade.rs` | all layers |
+//! | `single/` | forces in single precision |
 //! | `parallel.rs` | groups spread over cores |
 
+mod body;
 mod cascade;
 mod contacts;
 mod layer;
 mod parallel;
+mod single;
 mod stops;
 
 pub use contacts::{Batch, BatchError, LayerStrains};

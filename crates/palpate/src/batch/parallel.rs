@@ -3,7 +3,7 @@
 /// Calls `work` with the number and the part of every group: parts of `len` numbers, the last one may be shorter.
 ///
 /// Parts are the same on any number of threads, and so are the bits in them.
-pub(super) fn for_each_part(out: &mut [f64], len: usize, work: impl Fn(usize, &mut [f64]) + Sync + Send) {
+pub(super) fn for_each_part<T: Send>(out: &mut [T], len: usize, work: impl Fn(usize, &mut [T]) + Sync + Send) {
     if len == 0 {
         return;
     }

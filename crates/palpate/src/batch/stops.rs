@@ -6,7 +6,7 @@ use super::contacts::Batch;
 #[derive(Debug)]
 pub(super) struct Stops<'a, const L: usize> {
     batch: &'a Batch,
-    /// The contact in every lane; past the last contact it is repeated.
+    /// The contact in every lane.
     contact: [usize; L],
     /// Index of the knot at which the present piece begins.
     knot: [usize; L],
@@ -28,9 +28,8 @@ pub(super) struct Leg<const L: usize> {
 }
 
 impl<'a, const L: usize> Stops<'a, L> {
-    /// The group of contacts from `first` on, at the start of their motions.
-    pub(super) fn new(batch: &'a Batch, first: usize) -> Self {
-        let contact = std::array::from_fn(|lane| (first + lane).min(batch.len() - 1));
+    /// A group of contacts at the start of their motions.
+    pub(super) fn new(batch: &'a Batch, contact: [usize; L]) -> Self {
         let knot = contact.map(|contact| batch.knots(contact).start);
         Self {
             batch,
