@@ -5,6 +5,7 @@
 
 use fearless_simd::Simd;
 
+use crate::contact::{is_kinked, longest_step, rest_of};
 use crate::latency::lanes::{BLOCK, Power, attraction, block, by_power, each, relaxed, steady_excess};
 use crate::ode::Lanes;
 use crate::vector::elementary::{exp, exp_m1, ln_1p};
@@ -16,7 +17,7 @@ pub(super) const GROUP: usize = 32;
 const NEAR: f64 = 3e-4;
 
 /// Tolerance of a step, relative to what the excess passes through.
-const TOLERANCE: f64 = 1e-11;
+const TOLERANCE: f64 = 1e-12;
 
 /// The laws of a group.
 #[derive(Debug, Clone)]
@@ -112,15 +113,35 @@ impl ContactLayers {
             width[lane] = if first < until[lane] { first } else { until[lane] };
         }
         self.ramps.restart(width);
+        // Where the power is not smooth at rest, steps shrink towards it and grow away from it.
+        let (mut passes, mut rest, mut any_passes) = ([false; GROUP], [0.0; GROUP], false);
+        for lane in 0..GROUP {
+            let z = -exp_m1(-start[lane]);
+            passes[lane] = side[lane] > 0.0 && is_kinked(n[lane], z) && elapsed[lane] > 0.0;
+            any_passes |= passes[lane];
+        }
+        if any_passes {
+            for lane in 0..GROUP {
+                rest[lane] = rest_of(n[lane], reach[lane]);
+            }
+        }
         loop {
             let (mut going, mut target) = (false, until);
+            if any_passes {
+                slopes(laws, &side, &self.ramps.state, &mut slope);
+            }
             for lane in 0..GROUP {
                 let y = self.ramps.state[lane];
                 // An error of y matters as far as it moves x = x* (1 ∓ e^(−y)).
                 let ease = exp(y);
                 let ease = if ease < 1.0 { 1.0 } else { ease };
                 self.ramps.tolerance[lane] = TOLERANCE * reach[lane] * if ease > 1e9 { 1e9 } else { ease };
-                target[lane] = if y < far[lane] { until[lane] } else { self.ramps.time[lane] };
+                let time = self.ramps.time[lane];
+                target[lane] = if y < far[lane] { until[lane] } else { time };
+                if passes[lane] {
+                    let longest = time + longest_step(-exp_m1(-y), slope[lane], rest[lane]);
+                    target[lane] = if longest < target[lane] { longest } else { target[lane] };
+                }
                 going |= self.ramps.time[lane] < target[lane];
             }
             if !going {
@@ -154,7 +175,12 @@ fn slopes(laws: &Laws, side: &[f64; GROUP], y: &[f64], out: &mut [f64]) {
         let (y, side, n) = (block(y, at), block(side, at), block(&laws.exponent, at));
         let slopes = each(
             #[inline(always)]
-            |lane| attraction(power, side[lane] * exp(-y[lane]), n[lane]),
+            |lane| {
+                let distance = side[lane] * exp(-y[lane]);
+                // Powers that are not whole tell z far below 1 from 0.
+                let z = if power == Power::Any && side[lane] > 0.0 { -exp_m1(-y[lane]) } else { 1.0 - distance };
+                attraction(power, z, distance, n[lane])
+            },
         );
         out[at..at + BLOCK].copy_from_slice(&slopes);
     });

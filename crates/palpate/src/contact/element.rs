@@ -27,7 +27,35 @@ use crate::vector::replace;
 const NEAR: f64 = 3e-4;
 
 /// Tolerance of a step, relative to what the excess passes through.
-const TOLERANCE: f64 = 1e-12;
+const TOLERANCE: f64 = 1e-13;
+
+/// Whether a power that is not smooth at rest, x = 0, is met or near on the way from z: any but whole exponents, and even ones where the way
+/// goes through.
+#[inline(always)]
+pub(crate) fn is_kinked(exponent: f64, z: f64) -> bool {
+    let is_odd = exponent % 2.0 == 1.0;
+    let is_even = exponent % 2.0 == 0.0;
+    !(is_odd || (is_even && z >= 0.0))
+}
+
+/// |z| below which the power moves nothing that matters: what a step through rest may pass over.
+#[inline(always)]
+pub(crate) fn rest_of(exponent: f64, reach: f64) -> f64 {
+    (TOLERANCE * reach).powf(1.0 / (exponent + 1.0))
+}
+
+/// The longest step from z with ẏ = `slope` there, in units of x*/g, where rest is met: steps shrink towards it and grow away from it, so
+/// that each sees a smooth power.
+#[inline(always)]
+pub(crate) fn longest_step(z: f64, slope: f64, rest: f64) -> f64 {
+    match z {
+        _ if z > 0.5 => f64::INFINITY,
+        _ if z >= 0.0 => z.max(rest),
+        _ if z >= -2.0 * rest => rest - z,
+        // |z|/|ż|, a lower bound of the time to rest.
+        _ => 0.4 * -z / ((1.0 - z) * slope),
+    }
+}
 
 /// Excess strain x(t) of the contact layer over one straight piece, from t = 0 at its start.
 #[derive(Debug)]
@@ -131,7 +159,10 @@ impl Element {
         let z = initial / steady;
         let side = if z == 1.0 { 0.0 } else { (1.0 - z).signum() };
         let rate = drive / steady;
-        let slope = |y: f64| attraction(side * exp(-y), law.exponent());
+        let slope = |y: f64| {
+            let z = if side > 0.0 { -exp_m1(-y) } else { 1.0 + exp(-y) };
+            attraction(z, side * exp(-y), law.exponent())
+        };
         // z may be far below 1, where 1 − z would lose it.
         let start = if side > 0.0 { -(-z).ln_1p() } else { -(z - 1.0).ln() };
         let until = rate * duration;
@@ -140,6 +171,7 @@ impl Element {
         let first = until.min(0.5 / slope(start));
         let mut solver = Dop853::new([start], TOLERANCE * reach, if first > 0.0 { first } else { until });
         let far = (law.exponent().max(1.0) / NEAR).ln();
+        let (passes_rest, rest) = (side > 0.0 && is_kinked(law.exponent(), z), rest_of(law.exponent(), reach));
         let mut steps = Vec::with_capacity(32);
         let mut end = (0.0, start);
         while side != 0.0 && end.0 < until && end.1 < far {
@@ -150,7 +182,8 @@ impl Element {
             }
             // An error of y matters as far as it moves x = x* (1 ∓ e^(−y)).
             solver.set_tolerance(TOLERANCE * reach * y.exp().clamp(1.0, 1e9));
-            steps.push(solver.step(until, |_, &[y]| [slope(y)]));
+            let longest = if passes_rest { longest_step(-exp_m1(-y), slope(y), rest) } else { f64::INFINITY };
+            steps.push(solver.step(until.min(time + longest), |_, &[y]| [slope(y)]));
             end = (solver.time(), solver.state()[0]);
         }
         work.steps += solver.steps;
@@ -257,15 +290,16 @@ impl Ramp {
     }
 }
 
-/// q = (1 − sgn(z)|z|ⁿ)/(1 − z) from `distance` = 1 − z ≠ 0; positive, and n at z = 1.
-fn attraction(distance: f64, n: f64) -> f64 {
-    let z = 1.0 - distance;
+/// q = (1 − sgn(z)|z|ⁿ)/(1 − z) from z and `distance` = 1 − z ≠ 0, of which one may be far smaller than the other can tell; positive, and n at
+/// z = 1.
+fn attraction(z: f64, distance: f64, n: f64) -> f64 {
     // Whole odd n: the geometric sum, without a power and without cancellation.
     match n {
         1.0 => 1.0,
         3.0 => 1.0 + z * (1.0 + z),
         5.0 => 1.0 + z * (1.0 + z * (1.0 + z * (1.0 + z))),
-        _ if z > 0.0 => -(n * (-distance).ln_1p()).exp_m1() / distance,
+        _ if z > 0.5 => -(n * (-distance).ln_1p()).exp_m1() / distance,
+        _ if z > 0.0 => (1.0 - z.powf(n)) / distance,
         _ => (1.0 + (-z).powf(n)) / distance,
     }
 }
@@ -273,6 +307,7 @@ fn attraction(distance: f64, n: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Noise;
 
     #[test]
     fn a_ramp_from_rest_follows_the_hyperbolic_tangent_for_n_2() {
@@ -287,21 +322,63 @@ mod tests {
         }
     }
 
+    /// Time from rest to z in units of x*/g, for |z| < 1: the implicit closed form ∫ dz/(1 − sgn(z)|z|ⁿ).
+    fn time_to(z: f64, n: f64) -> f64 {
+        let (mut sum, mut k) = (0.0, 0.0);
+        loop {
+            let sign = if z < 0.0 && k % 2.0 == 1.0 { -1.0 } else { 1.0 };
+            let term = sign * z.signum() * z.abs().powf(k * n + 1.0) / (k * n + 1.0);
+            sum += term;
+            if term.abs() < 1e-18 {
+                return sum;
+            }
+            k += 1.0;
+        }
+    }
+
+    #[test]
+    fn ramps_from_and_through_rest_keep_their_time_for_any_exponent() {
+        let mut noise = Noise::new(5);
+        let mut worst: (f64, String) = (0.0, String::new());
+        for i in 0..20_000 {
+            let n = if i % 10 == 0 { f64::from(1 + i / 10 % 7) } else { 0.5 + 7.5 * noise.uniform() };
+            let start = match i % 4 {
+                0 => 0.0,
+                1 => 0.9 * 1e-6f64.powf(noise.uniform()),
+                _ => -0.9 * noise.uniform(),
+            };
+            let until = 0.01f64.powf(noise.uniform());
+            let law = LatencyLaw::new(n, 1.0).unwrap();
+            let element = Element::solve(law, start, 1.0, until, &mut Ramps::default(), &mut Work::default());
+            for part in [0.1, 0.45, 1.0] {
+                let z = element.excess_at(part * until);
+                let off = time_to(z, n) - time_to(start, n) - part * until;
+                if off.abs() > worst.0 {
+                    worst = (off.abs(), format!("n = {n}, from {start} for {until}, at {part}: {off:e}"));
+                }
+            }
+        }
+        println!("{}", worst.1);
+        assert!(worst.0 < 1e-10, "{}", worst.1);
+    }
+
     #[test]
     fn a_ramp_goes_on_along_an_earlier_one() {
         for (n, v) in [(5.0, 2e4), (3.7, 800.0), (2.0, 5e3), (0.7, 9.0)] {
             let law = LatencyLaw::new(n, v).unwrap();
             let (mut ramps, mut work) = (Ramps::default(), Work::default());
             Element::solve(law, 0.0, 0.8, 9.0, &mut ramps, &mut work);
-            let first = work.steps;
-            // From further away, faster, and from near: the last two need no steps of their own.
+            // From further away, from a place on the curve, and from beyond the steady state, where there is none yet.
             let steady = law.steady_excess(0.8);
             for (part, drive) in [(-0.3, 0.8f64), (0.1, 1.3), (0.6, -0.4)] {
                 let initial = part * steady * drive.signum();
                 let before = work.steps;
                 let element = Element::solve(law, initial, drive, 9.0, &mut ramps, &mut work);
-                assert!(work.steps - before < first, "n = {n}, from {part}: {} of {first}", work.steps - before);
-                let alone = Element::solve(law, initial, drive, 9.0, &mut Ramps::default(), &mut Work::default());
+                let mut own = Work::default();
+                let alone = Element::solve(law, initial, drive, 9.0, &mut Ramps::default(), &mut own);
+                let (used, on_curve) = (work.steps - before, part == 0.1);
+                let most = if on_curve { 0 } else { own.steps };
+                assert!(used <= most, "n = {n}, from {part}: {used}, alone {}", own.steps);
                 for i in 1..=200 {
                     let t = 0.045 * f64::from(i);
                     let off = (element.excess_at(t) - alone.excess_at(t)).abs();

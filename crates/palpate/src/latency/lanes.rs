@@ -130,10 +130,9 @@ pub(crate) fn relaxed(power: Power, x: f64, n: f64, v: f64, elapsed: f64) -> f64
     }
 }
 
-/// q = (1 − sgn(z)|z|ⁿ)/(1 − z) from `distance` = 1 − z ≠ 0.
+/// q = (1 − sgn(z)|z|ⁿ)/(1 − z) from z and `distance` = 1 − z ≠ 0, of which one may be far smaller than the other can tell.
 #[inline(always)]
-pub(crate) fn attraction(power: Power, distance: f64, n: f64) -> f64 {
-    let z = 1.0 - distance;
+pub(crate) fn attraction(power: Power, z: f64, distance: f64, n: f64) -> f64 {
     match power {
         Power::One => 1.0,
         Power::Two => {
@@ -149,11 +148,13 @@ pub(crate) fn attraction(power: Power, distance: f64, n: f64) -> f64 {
             (1.0 + z) + square * ((1.0 + z) + square)
         }
         Power::Any => {
+            let size = z.abs();
+            let size = if size > NEGLIGIBLE { size } else { NEGLIGIBLE };
             // |z| − 1, without loss near z = 1.
             let beyond = if z > 0.0 { -distance } else { distance - 2.0 };
-            const LEAST: f64 = -1.0 + f64::EPSILON / 2.0;
-            let beyond = if beyond > LEAST { beyond } else { LEAST };
-            let less_one = exp_m1(n * ln_1p(beyond));
+            let beyond = if beyond > -0.5 { beyond } else { -0.5 };
+            let log = if beyond > -0.5 { ln_1p(beyond) } else { ln(size) };
+            let less_one = exp_m1(n * log);
             let above = if z > 0.0 { -less_one } else { 2.0 + less_one };
             above / distance
         }

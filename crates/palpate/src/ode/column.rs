@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, SimdBase, f64x8};
 
 use super::tableau::{A, C, D, E3, E5};
-use super::{DENSE_STAGES, STAGES};
+use super::{DENSE_STAGES, STAGES, combined};
 
 /// Numbers in one vector, and room before the first one for what moves it.
 pub(crate) const WIDTH: usize = 8;
@@ -107,7 +107,7 @@ impl Column {
             // A last sliver is taken together with the step before it.
             let is_last = self.width >= remaining * (1.0 - 1e-12);
             let width = if is_last { remaining } else { self.width };
-            let (mut squares, mut edge) = ([[0.0; WIDTH]; 2], [0.0; STAGES]);
+            let (mut squares, mut edge) = ([[0.0; WIDTH]; 3], [0.0; STAGES]);
             let end = WIDTH + self.active;
             for from in (WIDTH..end).step_by(TILE) {
                 let until = (from + TILE).min(end);
@@ -219,9 +219,9 @@ impl Column {
         rhs.fill(simd, time, &mut self.point, &mut new[..room], range);
     }
 
-    /// Adds the squares of both estimates, in units of the tolerance.
+    /// Adds the squares of both estimates and of the slope at the end, in units of the tolerance.
     #[inline(always)]
-    fn estimate<S: Simd>(&self, simd: S, range: (usize, usize), squares: &mut [[f64; WIDTH]; 2]) {
+    fn estimate<S: Simd>(&self, simd: S, range: (usize, usize), squares: &mut [[f64; WIDTH]; 3]) {
         let scale = f64x8::splat(simd, 1.0 / self.tolerance);
         for (squares, terms) in squares.iter_mut().zip([E5, E3]) {
             let mut total = f64x8::from_slice(simd, squares);
@@ -238,15 +238,22 @@ impl Column {
             );
             total.store_slice(squares);
         }
+        let last = &self.stages[(STAGES - 1) * self.state.len()..];
+        let mut total = f64x8::from_slice(simd, &squares[2]);
+        for slope in last[range.0..range.1].chunks_exact(WIDTH) {
+            let slope = f64x8::from_slice(simd, slope) * scale;
+            total += slope * slope;
+        }
+        total.store_slice(&mut squares[2]);
     }
 
-    /// Hairer's combination of the two estimates.
-    fn error(&self, width: f64, squares: &[[f64; WIDTH]; 2]) -> f64 {
-        let [fifth, third] = squares.map(|squares| squares.iter().sum::<f64>());
+    /// The error of a step, in units of the tolerance.
+    fn error(&self, width: f64, squares: &[[f64; WIDTH]; 3]) -> f64 {
+        let [fifth, third, slope] = squares.map(|squares| squares.iter().sum::<f64>());
         if fifth == 0.0 && third == 0.0 {
             return 0.0;
         }
-        width.abs() * fifth / ((fifth + 0.01 * third) * self.len as f64).sqrt()
+        combined(width.abs(), fifth, third, slope, self.len as f64)
     }
 }
 

@@ -2,9 +2,9 @@
 
 use fearless_simd::{Simd, SimdBase, f64x8};
 
-use super::STAGES;
 use super::column::{ESTIMATE, WIDTH, sums, sums_of_any};
 use super::tableau::{A, C, E3, E5};
+use super::{STAGES, combined};
 
 /// Dormand–Prince 8(5,3) for `L` systems of the same size side by side, `L` a multiple of eight.
 ///
@@ -126,7 +126,7 @@ impl<const L: usize> Lanes<L> {
         );
     }
 
-    /// Hairer's combination of the two estimates, in units of the tolerance.
+    /// The error of a step, in units of the tolerance.
     #[inline(always)]
     fn errors<S: Simd>(&self, simd: S, width: &[f64; L]) -> [f64; L] {
         let len = self.state.len();
@@ -147,12 +147,17 @@ impl<const L: usize> Lanes<L> {
                 },
             );
         }
+        let mut slope = [0.0; L];
+        for last in self.stages[(STAGES - 1) * len..STAGES * len].chunks_exact(L) {
+            for lane in 0..L {
+                let last = last[lane] / self.tolerance[lane];
+                slope[lane] += last * last;
+            }
+        }
         let components = (len / L) as f64;
         let mut error = [0.0; L];
         for lane in 0..L {
-            let both = (fifth[lane] + 0.01 * third[lane]) * components;
-            // No error at all, and one too small to be squared, is 1e-160: no division by zero.
-            error[lane] = width[lane] * fifth[lane] / both.max(f64::MIN_POSITIVE).sqrt();
+            error[lane] = combined(width[lane], fifth[lane], third[lane], slope[lane], components);
             error[lane] = if error[lane] < 1e-30 { 1e-30 } else { error[lane] };
         }
         error

@@ -19,6 +19,24 @@ const STAGES: usize = 13;
 /// Stages once the dense output is asked for.
 const DENSE_STAGES: usize = 16;
 
+/// Hairer's combination of the squares of both estimates, over `len` numbers.
+///
+/// Where the right-hand side is a power that is not whole, at x = 0, the fifth-order estimate may pass through zero by accident, the power's part
+/// and the smooth part cancelling. It is taken to be no smaller than the third-order one tells: along smooth solutions the two are of sixth and
+/// fourth order in the width, so that the first is some hundredth of the second to the power 3/2, in units of the slope.
+#[inline(always)]
+fn combined(width: f64, fifth: f64, third: f64, slope: f64, len: f64) -> f64 {
+    // All of them are squares; 1e-300 is no slope at all.
+    let least = ACCIDENT * ACCIDENT * third * (third / if slope > 1e-300 { slope } else { 1e-300 }).sqrt();
+    let fifth = if fifth > least { fifth } else { least };
+    let both = (fifth + 0.01 * third) * len;
+    // No error at all, and one too small to be squared: no division by zero.
+    width * fifth / if both > f64::MIN_POSITIVE { both } else { f64::MIN_POSITIVE }.sqrt()
+}
+
+/// The least that the fifth-order estimate is of the third-order one to the power 3/2 along smooth solutions.
+const ACCIDENT: f64 = 0.004;
+
 /// A point of phase space: one number or many.
 pub(crate) trait State: Clone {
     /// Number of components.
@@ -203,18 +221,19 @@ impl<S: State> Dop853<S> {
         S::build(self.state.len(), |i| self.state.get(i) + width * weighted(weights, stages, i))
     }
 
-    /// Hairer's combination of the two estimates, in units of the tolerance.
+    /// The error of a step, in units of the tolerance.
     fn error(&self, width: f64, stages: &[S]) -> f64 {
         let len = self.state.len();
-        let (mut fifth, mut third) = (0.0, 0.0);
+        let (mut fifth, mut third, mut slope) = (0.0, 0.0, 0.0);
         for i in 0..len {
             fifth += (weighted(E5, stages, i) / self.tolerance).powi(2);
             third += (weighted(E3, stages, i) / self.tolerance).powi(2);
+            slope += (stages[STAGES - 1].get(i) / self.tolerance).powi(2);
         }
         if fifth == 0.0 && third == 0.0 {
             return 0.0;
         }
-        width.abs() * fifth / ((fifth + 0.01 * third) * len as f64).sqrt()
+        combined(width.abs(), fifth, third, slope, len as f64)
     }
 
     fn dense(&mut self, width: f64, mut stages: Vec<S>, rhs: &mut impl FnMut(f64, &S) -> S) -> Step<S> {
