@@ -159,9 +159,12 @@ impl Element {
         let z = initial / steady;
         let side = if z == 1.0 { 0.0 } else { (1.0 - z).signum() };
         let rate = drive / steady;
+        let is_whole = law.exponent().fract() == 0.0;
         let slope = |y: f64| {
-            let z = if side > 0.0 { -exp_m1(-y) } else { 1.0 + exp(-y) };
-            attraction(z, side * exp(-y), law.exponent())
+            let distance = side * exp(-y);
+            // Powers that are not whole tell z far below 1 from 0.
+            let z = if is_whole || side < 0.0 { 1.0 - distance } else { -exp_m1(-y) };
+            attraction(z, distance, law.exponent())
         };
         // z may be far below 1, where 1 − z would lose it.
         let start = if side > 0.0 { -(-z).ln_1p() } else { -(z - 1.0).ln() };

@@ -13,6 +13,20 @@ pub(crate) fn all_finite(column: &[f64]) -> bool {
     )
 }
 
+/// Whether no number is less than the one before it, and none is NaN.
+pub(crate) fn rises_or_stays(column: &[f64]) -> bool {
+    let later = column.get(1..).unwrap_or(&[]);
+    accelerated(
+        #[inline(always)]
+        || {
+            column
+                .iter()
+                .zip(later)
+                .fold(!column.first().is_some_and(|x| x.is_nan()), |good, (before, after)| good & (before <= after))
+        },
+    )
+}
+
 /// Whether every number is above the one before it.
 pub(crate) fn rises(column: &[f64]) -> bool {
     let later = column.get(1..).unwrap_or(&[]);
