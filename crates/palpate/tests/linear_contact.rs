@@ -9,7 +9,7 @@ use palpate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
     ContactEventKind, ContactModel, ForceHistory, LinearContact, LinearLaw, LinearTerm, Memory, Motion, Sampling,
-    Separation, SimulateError, simulate,
+    Separation, SimulateError, energy, simulate,
 };
 use serde::Deserialize;
 
@@ -263,5 +263,39 @@ fn creep_and_memory_of_force_agree_with_scipy() {
             let touches = result.strain[i] != 0.0;
             assert!(!touches || (strain - result.strain[i]).abs() < 1e-12, "{} {i}", case.name);
         }
+    }
+}
+
+/// A gripper opens before it closes: with a memory of force, too, the body stays where it is, and work is a number.
+#[test]
+fn a_jaw_that_goes_away_first_leaves_the_body_at_rest() {
+    let ball = Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two).unwrap();
+    let hertz = ball.clone().with_equilibrium(Equilibrium::Hertz { poisson_ratio: 0.5 }).unwrap();
+    let motion = Motion::new(vec![0.0, 1.0, 3.0, 5.0, 6.0], vec![0.0, -0.01, 0.01, 0.01, -0.01]).unwrap();
+    let late = Motion::new(vec![0.0, 1.0, 3.0, 4.0], vec![0.0, 0.01, 0.01, -0.01]).unwrap();
+    for (specimen, memory) in
+        [(&ball, Memory::Strain), (&ball, Memory::Force), (&hertz, Memory::Strain), (&hertz, Memory::Force)]
+    {
+        let contact = LinearContact {
+            specimen: specimen.clone(),
+            law: LinearLaw::standard(2.0, 1.0).unwrap(),
+            memory,
+            separation: Separation::Unilateral,
+        };
+        let sampling = Sampling::Rate(100.0);
+        let result = simulate(&motion, &contact, &sampling).unwrap();
+        let kinds: Vec<_> = result.events.iter().map(|event| event.kind).collect();
+        let (lost, regained) = (ContactEventKind::Lost, ContactEventKind::Regained);
+        assert_eq!(kinds, [lost, regained, lost], "{memory:?}");
+        assert!(result.events[0].time < 1e-9 && (result.events[1].time - 2.0).abs() < 1e-9, "{:?}", result.events);
+        assert!(result.contact_displacement.iter().all(|u| *u > -1e-12));
+        // From touch on as if it had begun there.
+        let touched = simulate(&late, &contact, &sampling).unwrap();
+        for i in 0..=300 {
+            assert!((result.force[200 + i] - touched.force[i]).abs() < 1e-9 * touched.force[100], "{memory:?} {i}");
+        }
+        let work = energy(&motion, &contact, &sampling).unwrap().work;
+        let expected = energy(&late, &contact, &sampling).unwrap().work;
+        assert!((work[600] / expected[400] - 1.0).abs() < 1e-9, "{memory:?}: {} {}", work[600], expected[400]);
     }
 }

@@ -134,6 +134,11 @@ impl Account {
                     width *= 1.5;
                     next += width;
                 }
+                // Where the body does not get stiffer evenly.
+                let when = |u: f64| (u - stretch.contact_from) / stretch.contact_speed;
+                let reach = stretch.contact_from.max(stretch.jaw_at(stretch.end));
+                kinks.extend(model.specimen().bends(reach).into_iter().map(when));
+                kinks.sort_by(f64::total_cmp);
                 kinks
             }
             StretchState::Forced(forced) => {

@@ -12,7 +12,7 @@ use std::sync::LazyLock;
 use super::recovery::Recovery;
 use super::stage::{DEGREE, Stage, dot, fading, integrated};
 use super::{LinearContact, Memory};
-use crate::contact::{Carried, Stopped};
+use crate::contact::{Carried, ForceLine, Stopped};
 use crate::simulate::Work;
 
 /// Error of q, relative to the largest that the forces of a piece ask for at once.
@@ -28,9 +28,7 @@ const MOST_ITERATIONS: usize = 16;
 #[derive(Debug)]
 pub(crate) struct Pressed {
     contact: LinearContact,
-    /// Force at the start (N) and its slope (N/s).
-    from: f64,
-    slope: f64,
+    force: ForceLine,
     path: Path,
 }
 
@@ -61,14 +59,13 @@ impl Pressed {
         let memory: Vec<f64> = behind.iter().zip(terms).map(|(behind, term)| behind + term.overshoot * value).collect();
         let mut piece = Self {
             contact: contact.clone(),
-            from,
-            slope: if duration > 0.0 { (to - from) / duration } else { 0.0 },
+            force: ForceLine { from, to, duration },
             path: Path::Stages(Vec::new()),
         };
         let is_plain = contact.memory == Memory::Force || contact.specimen.has_constant_section();
         if duration == 0.0 {
             piece.path = Path::Stages(vec![Stage::straight(0.0, 0.0, value, 0.0, memory)]);
-        } else if piece.slope == 0.0 && (from == 0.0 || is_plain) {
+        } else if piece.force.slope() == 0.0 && (from == 0.0 || is_plain) {
             work.closed_forms += 1;
             let rest = if from == 0.0 { 0.0 } else { from / contact.stiffness(u).0 };
             let recovery = Recovery::new(&contact.law, &memory);
@@ -239,7 +236,7 @@ impl Pressed {
 
     /// Force, N.
     pub(super) fn force_at(&self, elapsed: f64) -> f64 {
-        self.from + self.slope * elapsed
+        self.force.at(elapsed)
     }
 
     fn value_at(&self, elapsed: f64) -> f64 {
@@ -293,7 +290,7 @@ impl Pressed {
         let (stiffness, growth) = specimen.stiffness(displacement);
         if stiffness == 0.0 {
             // First touch of a ball: u begins like √t.
-            let rate = if self.slope == 0.0 { 0.0 } else { f64::INFINITY };
+            let rate = if self.force.slope() == 0.0 { 0.0 } else { f64::INFINITY };
             return Carried {
                 displacement,
                 excess: 0.0,
@@ -303,7 +300,7 @@ impl Pressed {
         }
         let speed = self.slope_at(elapsed) / self.contact.slope(displacement);
         let strain = self.force_at(elapsed) / stiffness;
-        let strain_rate = (self.slope - strain * growth * speed) / stiffness;
+        let strain_rate = (self.force.slope() - strain * growth * speed) / stiffness;
         Carried {
             displacement,
             excess: strain - specimen.equilibrium_strain(displacement),
