@@ -89,9 +89,9 @@ impl Pressed {
     ) -> Result<Vec<Stage>, Stopped> {
         let contact = &self.contact;
         let behind: f64 = memory.iter().zip(contact.law.terms()).map(|(x, term)| x - term.overshoot * value).sum();
-        let asked = contact.carried(to, behind).map_or(f64::INFINITY, |u| contact.value(u).abs());
-        let allowed = TOLERANCE * if asked.is_finite() { asked.max(value.abs()) } else { value.abs() };
-        let allowed = allowed.max(f64::MIN_POSITIVE);
+        // A force that the body cannot carry at once asks for all of it.
+        let asked = contact.carried(to, behind).unwrap_or(contact.specimen.limit().at);
+        let allowed = (TOLERANCE * contact.value(asked).abs().max(value.abs())).max(f64::MIN_POSITIVE);
         let u = contact.place(value).unwrap_or(0.0);
         // At first touch of a ball q begins like √t.
         let mut width = if contact.stiffness(u).0 == 0.0 { 1e-20 * duration } else { 1e-3 * duration };
@@ -202,7 +202,9 @@ impl Pressed {
         let mut error = f64::MIN_POSITIVE;
         for place in DEGREE..PLACES {
             let (off, stiffness, bend) = look(&rates, place)?;
-            error = error.max((off / (stiffness + bend)).abs());
+            // Over so short a time the layer is stiffer than relaxed, by what does not fade within it.
+            let share = 1.0 + own[place][0] / places[place].1[0];
+            error = error.max((off / (share * stiffness + bend)).abs());
         }
         let stage = Stage {
             start,
