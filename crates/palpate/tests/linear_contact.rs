@@ -8,8 +8,8 @@ use common::reference;
 use palpate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactEventKind, ContactModel, ForceHistory, LinearContact, LinearLaw, LinearTerm, Memory, Motion, Sampling,
-    Separation, SimulateError, energy, simulate,
+    ContactEventKind, ContactModel, ForceHistory, LinearContact, LinearLaw, LinearTerm, Memory, Motion, ProgramStep,
+    Sampling, Separation, SimulateError, energy, simulate, step_ends,
 };
 use serde::Deserialize;
 
@@ -297,5 +297,44 @@ fn a_jaw_that_goes_away_first_leaves_the_body_at_rest() {
         let work = energy(&motion, &contact, &sampling).unwrap().work;
         let expected = energy(&late, &contact, &sampling).unwrap().work;
         assert!((work[600] / expected[400] - 1.0).abs() < 1e-9, "{memory:?}: {} {}", work[600], expected[400]);
+    }
+}
+
+/// However much is asked for, it is followed until the body gives way, and laws that relax nearly all of their force are followed as well.
+#[test]
+fn a_body_pressed_beyond_what_it_carries_says_when_it_gave_way() {
+    let ball = Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two).unwrap();
+    for memory in [Memory::Strain, Memory::Force] {
+        let contact = |overshoot: f64| LinearContact {
+            specimen: ball.clone(),
+            law: LinearLaw::standard(overshoot, 1.0).unwrap(),
+            memory,
+            separation: Separation::Unilateral,
+        };
+        // 107.8 N relaxed, 323.3 N at once.
+        let mut before = 0.0;
+        for most in [200.0, 330.0, 1e3, 1e6] {
+            let press = [ProgramStep::Press { to: most, rate: 1.0 }];
+            let Err(SimulateError::Force { time, force }) = step_ends(&press, &contact(2.0)) else {
+                panic!("{most} N carried");
+            };
+            assert!(
+                time > 100.0 && time < 323.0 && (force - time).abs() < 1e-9,
+                "{memory:?} {most}: {time} s {force} N"
+            );
+            assert!(before == 0.0 || (time - before).abs() < 1e-3, "{time} {before}");
+            before = time;
+        }
+        for overshoot in [1e3, 1e5, 1e7, 1e9] {
+            let press = [ProgramStep::Press { to: 5.0, rate: 1.0 }, ProgramStep::HoldForce { duration: 10.0 }];
+            let found = step_ends(&press, &contact(overshoot)).unwrap_or_else(|error| panic!("{overshoot:e}: {error}"));
+            // So long before it comes to rest it is a dashpot with F + ∫F dt = 5 + 62.5 N after 15 s.
+            let u = found[1].displacement / 2.0;
+            let push = match memory {
+                Memory::Force => ball.force(u / 0.035, u) * overshoot,
+                Memory::Strain => continue,
+            };
+            assert!((push / 67.5 - 1.0).abs() < 20.0 / overshoot + 1e-6, "{overshoot:e}: {push}");
+        }
     }
 }
