@@ -338,3 +338,50 @@ fn a_body_pressed_beyond_what_it_carries_says_when_it_gave_way() {
         }
     }
 }
+
+/// A measured force is many short pieces: each of them costs a few steps.
+#[test]
+fn a_measured_force_costs_few_steps_a_sample() {
+    let terms: Vec<LinearTerm> = (-3..=3)
+        .map(|k| LinearTerm {
+            overshoot: 0.5,
+            rate: 10f64.powi(k),
+        })
+        .collect();
+    for memory in [Memory::Strain, Memory::Force] {
+        let contact = LinearContact {
+            specimen: Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two).unwrap(),
+            law: LinearLaw::new(&terms).unwrap(),
+            memory,
+            separation: Separation::Unilateral,
+        };
+        let times: Vec<f64> = (0..2000).map(|i| 0.01 * f64::from(i)).collect();
+        let forces = times.iter().map(|t| 5.0 * t.sin().abs()).collect();
+        let history = ForceHistory::new(times, forces).unwrap();
+        let start = std::time::Instant::now();
+        let work = simulate(&history, &contact, &Sampling::Rate(1.0)).unwrap().work;
+        println!("{memory:?}: {work:?}, {:?}", start.elapsed());
+        assert!(work.steps < 5 * 2000, "{work:?}");
+    }
+}
+
+/// Of a body whose stiffness goes to nothing at first touch, what rounding leaves of a force near its end stands for far more displacement
+/// than steps are good to: they once shrank for ever.
+#[test]
+fn a_force_let_down_on_a_body_soft_at_first_touch_comes_to_an_end() {
+    let rows = [(0.0, 0.0), (0.2, 0.06), (0.32, 0.34), (0.53, 1.0)];
+    let body = Specimen::new(Shape::Ball { radius: 1.0 }, 1e3, Sides::One).unwrap();
+    let body = body.with_equilibrium(Equilibrium::measured(&rows).unwrap()).unwrap();
+    for overshoot in [1e-6, 1e-3, 0.0147, 0.3] {
+        let contact = LinearContact {
+            specimen: body.clone(),
+            law: LinearLaw::standard(overshoot, 2.8).unwrap(),
+            memory: Memory::Strain,
+            separation: Separation::Unilateral,
+        };
+        let history = ForceHistory::new(vec![0.0, 1.0, 2.0, 2.3, 9.0], vec![0.0, 0.3, 0.3, 0.0, 0.0]).unwrap();
+        let result = simulate(&history, &contact, &Sampling::Rate(100.0)).unwrap();
+        assert!(result.work.steps < 2000, "{:?}", result.work);
+        assert!(result.contact_displacement.iter().all(|u| (-1e-12..0.4).contains(u)));
+    }
+}

@@ -21,6 +21,9 @@ const TOLERANCE: f64 = 1e-12;
 /// Nodes, the last one at the end of a stage, and two places between them.
 const PLACES: usize = DEGREE + 2;
 
+/// Stages tried in one piece, after which it is given up.
+const MOST_TRIES: u32 = 20_000;
+
 /// Iterations of Newton's method after which a stage is tried anew, at a quarter of its width.
 const MOST_ITERATIONS: usize = 16;
 
@@ -94,9 +97,14 @@ impl Pressed {
         let allowed = (TOLERANCE * contact.value(asked).abs().max(value.abs())).max(f64::MIN_POSITIVE);
         let u = contact.place(value).unwrap_or(0.0);
         // At first touch of a ball q begins like √t.
-        let mut width = if contact.stiffness(u).0 == 0.0 { 1e-20 * duration } else { 1e-3 * duration };
+        let mut width = if contact.stiffness(u).0 == 0.0 { 1e-20 * duration } else { duration };
         let (mut stages, mut time) = (Vec::new(), 0.0);
+        let mut tries = 0;
         while time < duration {
+            tries += 1;
+            if tries > MOST_TRIES {
+                return Err(Stopped::TooStiff { elapsed: time });
+            }
             let left = duration - time;
             let ends = width >= left;
             let tried = if ends { left } else { width };
@@ -199,12 +207,14 @@ impl Pressed {
         if !converged {
             return None;
         }
+        // By how much a force on its way down to nothing is off is a multiple of where it came from, not of itself.
+        let rounding = 8.0 * f64::EPSILON * self.force.from.abs().max(self.force.to.abs());
         let mut error = f64::MIN_POSITIVE;
         for place in DEGREE..PLACES {
             let (off, stiffness, bend) = look(&rates, place)?;
             // Over so short a time the layer is stiffer than relaxed, by what does not fade within it.
             let share = 1.0 + own[place][0] / places[place].1[0];
-            error = error.max((off / (share * stiffness + bend)).abs());
+            error = error.max(((off.abs() - rounding).max(0.0) / (share * stiffness + bend)).abs());
         }
         let stage = Stage {
             start,
