@@ -392,7 +392,7 @@ fn run(scene: &Scene, motion: &Motion) -> Trajectory {
 }
 
 proptest! {
-    #![proptest_config(cases(150))]
+    #![proptest_config(cases(80))]
 
     #[test]
     fn a_later_start_changes_nothing(scene in scenes(), knots in knots(), later in -3.0..3.0f64) {
@@ -550,7 +550,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases(100))]
+    #![proptest_config(cases(60))]
 
     /// At constant section the work splits exactly, for any drive.
     #[test]
