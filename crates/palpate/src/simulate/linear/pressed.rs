@@ -24,6 +24,9 @@ const PLACES: usize = DEGREE + 2;
 /// Stages tried in one piece, after which it is given up.
 const MOST_TRIES: u32 = 20_000;
 
+/// Stages in which the body could not carry the force, after which it is taken not to.
+const MOST_REFUSED: u32 = 1000;
+
 /// Iterations of Newton's method after which a stage is tried anew, at a quarter of its width.
 const MOST_ITERATIONS: usize = 16;
 
@@ -99,7 +102,7 @@ impl Pressed {
         // At first touch of a ball q begins like √t.
         let mut width = if contact.stiffness(u).0 == 0.0 { 1e-20 * duration } else { duration };
         let (mut stages, mut time) = (Vec::new(), 0.0);
-        let mut tries = 0;
+        let (mut tries, mut refused) = (0, 0);
         while time < duration {
             tries += 1;
             if tries > MOST_TRIES {
@@ -109,6 +112,11 @@ impl Pressed {
             let ends = width >= left;
             let tried = if ends { left } else { width };
             let stage = self.stage(time, tried, value, &memory, allowed, work);
+            // Ever shorter steps to where the body gives way.
+            refused += u32::from(stage.is_none());
+            if refused > MOST_REFUSED {
+                return Err(Stopped::TooMuch { elapsed: time });
+            }
             let wider = match &stage {
                 Some((_, error)) => 0.9 * (allowed / error).powf(1.0 / (DEGREE + 1) as f64),
                 None => 0.25,
