@@ -2,11 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::contact::{Layers, Shape, Sides, Specimen};
+use palpate::contact::{Curve, Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactEventKind, ContactModel, ForceHistory, Motion, ProgramStep, ProtocolStep as ProtocolMotion, Sampling,
-    Separation, SimulateError, Trajectory, protocol, simulate, step_ends, strain_wave,
+    ContactEventKind, ContactModel, ForceHistory, LinearContact, LinearLaw, Memory, Motion, ProgramStep,
+    ProtocolStep as ProtocolMotion, Sampling, Separation, SimulateError, Trajectory, protocol, simulate, step_ends,
+    strain_wave,
 };
 
 fn ball(exponent: f64, rate_coefficient: f64, layers: f64) -> ContactModel {
@@ -283,4 +284,40 @@ fn a_motion_of_a_million_knots_is_followed() {
     let motion = Motion::new(times, displacements).unwrap();
     let force = palpate::simulate::simulate_force(&motion, &model, &[250.0, 500.0, motion.end()]).unwrap();
     assert!(force.iter().all(|force| force.is_finite() && *force > 0.0) && force[2] < force[1], "{force:?}");
+}
+
+/// from + (to − from)/duration · t is not `to` at the end, but for rounding: below 0 N by it, nothing would carry the force.
+#[test]
+fn a_force_let_down_to_nothing_ends_at_nothing() {
+    let area = Curve::new(&[(0.0, 0.3e-4), (4e-3, 0.4e-4)]).unwrap();
+    let profile = Specimen::new(Shape::Profile { depth: 8e-3, area }, 4e4, Sides::One).unwrap();
+    for separation in [Separation::Bonded, Separation::Unilateral] {
+        let latency = ContactModel {
+            specimen: profile.clone(),
+            law: LatencyLaw::new(2.0, 10.0).unwrap(),
+            layers: Layers::new(5.0).unwrap(),
+            separation,
+        };
+        let linear = LinearContact {
+            specimen: profile.clone(),
+            law: LinearLaw::standard(4.0, 1.0).unwrap(),
+            memory: Memory::Strain,
+            separation,
+        };
+        for i in 1..300 {
+            let (force, rate) = (1e-3 * f64::from(i), 0.1 + 0.017 * f64::from(i % 29));
+            let program = [
+                ProgramStep::HoldPosition {
+                    duration: 0.37 * f64::from(i % 7) + 0.1,
+                },
+                ProgramStep::Press { to: force, rate },
+                ProgramStep::Press { to: 0.0, rate },
+                ProgramStep::HoldForce { duration: 1.0 },
+            ];
+            for ends in [step_ends(&program, &latency), step_ends(&program, &linear)] {
+                let ends = ends.unwrap_or_else(|error| panic!("{force} N at {rate} N/s: {error}"));
+                assert!(ends[1].force == force && ends[2].force == 0.0 && ends[3].displacement > 0.0);
+            }
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::contact::{Layers, Shape, Sides, Specimen};
+use palpate::contact::{Curve, Equilibrium, Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
     ContactModel, Energy, Motion, ProgramStep, Sampling, Separation, cycles, energy, simulate, work_by_step,
@@ -190,5 +190,39 @@ fn steps_and_cycles_share_out_the_work_of_the_jaw() {
         assert!(cycles[0].is_closed && cycles[1].is_closed && !cycles[2].is_closed);
         assert!(cycles.iter().all(|cycle| (cycle.done - cycle.given_back - cycle.lost).abs() < 1e-15));
         assert!(cycles[..2].iter().all(|cycle| 0.05 < cycle.share_lost && cycle.share_lost < 1.0), "{cycles:?}");
+    }
+}
+
+/// Hertz's force begins like u^(3/2), and a table bends at its rows: work is integrated between such places, as exactly as elsewhere.
+#[test]
+fn work_on_bodies_that_stiffen_unevenly_is_as_exact() {
+    let elastic = |specimen: Specimen| ContactModel {
+        specimen,
+        law: LatencyLaw::new(1.0, 1.0).unwrap(),
+        layers: Layers::new(1.0).unwrap(),
+        separation: Separation::Bonded,
+    };
+    let motion = Motion::new(vec![0.0, 1.0], vec![0.0, 0.002]).unwrap();
+    let done = |model: &ContactModel| energy(&motion, model, &Sampling::Times(vec![1.0])).unwrap().work[0];
+    let ball = Specimen::new(Shape::Ball { radius: 0.02 }, 1e5, Sides::One).unwrap();
+    let hertz = elastic(ball.clone().with_equilibrium(Equilibrium::Hertz { poisson_ratio: 0.5 }).unwrap());
+    let exact = 0.4 * 0.002 * hertz.specimen.force(0.1, 0.002);
+    assert!((done(&hertz) / exact - 1.0).abs() < 1e-10, "{}", done(&hertz) / exact - 1.0);
+    let rows = [(0.0, 0.0), (0.0004, 0.01), (0.0009, 0.05), (0.0016, 0.2), (0.004, 0.8)];
+    let area: Vec<(f64, f64)> = rows.iter().map(|(u, force)| (*u, 1e-3 * force)).collect();
+    let area = Curve::new(&area).unwrap();
+    let profile = Specimen::new(Shape::Profile { depth: 0.02, area }, 1e5, Sides::One).unwrap();
+    for body in [ball.with_equilibrium(Equilibrium::measured(&rows).unwrap()).unwrap(), profile] {
+        let model = elastic(body);
+        // Simpson's rule, from row to row.
+        let (mut exact, force) = (0.0, |u: f64| model.specimen.force(u / 0.02, u));
+        for pair in [0.0, 0.0004, 0.0009, 0.0016, 0.002].windows(2) {
+            let width = (pair[1] - pair[0]) / 1000.0;
+            for i in 0..1000 {
+                let u = pair[0] + width * f64::from(i);
+                exact += width / 6.0 * (force(u) + 4.0 * force(u + 0.5 * width) + force(u + width));
+            }
+        }
+        assert!((done(&model) / exact - 1.0).abs() < 1e-10, "{}", done(&model) / exact - 1.0);
     }
 }

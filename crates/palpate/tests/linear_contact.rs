@@ -8,8 +8,8 @@ use common::reference;
 use palpate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactEventKind, ContactModel, ForceHistory, LinearContact, LinearLaw, LinearTerm, Memory, Motion, Sampling,
-    Separation, SimulateError, simulate,
+    ContactEventKind, ContactModel, ForceHistory, LinearContact, LinearLaw, LinearTerm, Memory, Motion, ProgramStep,
+    Sampling, Separation, SimulateError, energy, simulate, step_ends,
 };
 use serde::Deserialize;
 
@@ -263,5 +263,125 @@ fn creep_and_memory_of_force_agree_with_scipy() {
             let touches = result.strain[i] != 0.0;
             assert!(!touches || (strain - result.strain[i]).abs() < 1e-12, "{} {i}", case.name);
         }
+    }
+}
+
+/// A gripper opens before it closes: with a memory of force, too, the body stays where it is, and work is a number.
+#[test]
+fn a_jaw_that_goes_away_first_leaves_the_body_at_rest() {
+    let ball = Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two).unwrap();
+    let hertz = ball.clone().with_equilibrium(Equilibrium::Hertz { poisson_ratio: 0.5 }).unwrap();
+    let motion = Motion::new(vec![0.0, 1.0, 3.0, 5.0, 6.0], vec![0.0, -0.01, 0.01, 0.01, -0.01]).unwrap();
+    let late = Motion::new(vec![0.0, 1.0, 3.0, 4.0], vec![0.0, 0.01, 0.01, -0.01]).unwrap();
+    for (specimen, memory) in
+        [(&ball, Memory::Strain), (&ball, Memory::Force), (&hertz, Memory::Strain), (&hertz, Memory::Force)]
+    {
+        let contact = LinearContact {
+            specimen: specimen.clone(),
+            law: LinearLaw::standard(2.0, 1.0).unwrap(),
+            memory,
+            separation: Separation::Unilateral,
+        };
+        let sampling = Sampling::Rate(100.0);
+        let result = simulate(&motion, &contact, &sampling).unwrap();
+        let kinds: Vec<_> = result.events.iter().map(|event| event.kind).collect();
+        let (lost, regained) = (ContactEventKind::Lost, ContactEventKind::Regained);
+        assert_eq!(kinds, [lost, regained, lost], "{memory:?}");
+        assert!(result.events[0].time < 1e-9 && (result.events[1].time - 2.0).abs() < 1e-9, "{:?}", result.events);
+        assert!(result.contact_displacement.iter().all(|u| *u > -1e-12));
+        // From touch on as if it had begun there.
+        let touched = simulate(&late, &contact, &sampling).unwrap();
+        for i in 0..=300 {
+            assert!((result.force[200 + i] - touched.force[i]).abs() < 1e-9 * touched.force[100], "{memory:?} {i}");
+        }
+        let work = energy(&motion, &contact, &sampling).unwrap().work;
+        let expected = energy(&late, &contact, &sampling).unwrap().work;
+        assert!((work[600] / expected[400] - 1.0).abs() < 1e-9, "{memory:?}: {} {}", work[600], expected[400]);
+    }
+}
+
+/// However much is asked for, it is followed until the body gives way, and laws that relax nearly all of their force are followed as well.
+#[test]
+fn a_body_pressed_beyond_what_it_carries_says_when_it_gave_way() {
+    let ball = Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two).unwrap();
+    for memory in [Memory::Strain, Memory::Force] {
+        let contact = |overshoot: f64| LinearContact {
+            specimen: ball.clone(),
+            law: LinearLaw::standard(overshoot, 1.0).unwrap(),
+            memory,
+            separation: Separation::Unilateral,
+        };
+        // 107.8 N relaxed, 323.3 N at once.
+        let mut before = 0.0;
+        for most in [200.0, 330.0, 1e3, 1e6] {
+            let press = [ProgramStep::Press { to: most, rate: 1.0 }];
+            let Err(SimulateError::Force { time, force }) = step_ends(&press, &contact(2.0)) else {
+                panic!("{most} N carried");
+            };
+            assert!(
+                time > 100.0 && time < 323.0 && (force - time).abs() < 1e-9,
+                "{memory:?} {most}: {time} s {force} N"
+            );
+            assert!(before == 0.0 || (time - before).abs() < 1e-3, "{time} {before}");
+            before = time;
+        }
+        for overshoot in [1e3, 1e5, 1e7, 1e9] {
+            let press = [ProgramStep::Press { to: 5.0, rate: 1.0 }, ProgramStep::HoldForce { duration: 10.0 }];
+            let found = step_ends(&press, &contact(overshoot)).unwrap_or_else(|error| panic!("{overshoot:e}: {error}"));
+            // So long before it comes to rest it is a dashpot with F + ∫F dt = 5 + 62.5 N after 15 s.
+            let u = found[1].displacement / 2.0;
+            let push = match memory {
+                Memory::Force => ball.force(u / 0.035, u) * overshoot,
+                Memory::Strain => continue,
+            };
+            assert!((push / 67.5 - 1.0).abs() < 20.0 / overshoot + 1e-6, "{overshoot:e}: {push}");
+        }
+    }
+}
+
+/// A measured force is many short pieces: each of them costs a few steps.
+#[test]
+fn a_measured_force_costs_few_steps_a_sample() {
+    let terms: Vec<LinearTerm> = (-3..=3)
+        .map(|k| LinearTerm {
+            overshoot: 0.5,
+            rate: 10f64.powi(k),
+        })
+        .collect();
+    for memory in [Memory::Strain, Memory::Force] {
+        let contact = LinearContact {
+            specimen: Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two).unwrap(),
+            law: LinearLaw::new(&terms).unwrap(),
+            memory,
+            separation: Separation::Unilateral,
+        };
+        let times: Vec<f64> = (0..2000).map(|i| 0.01 * f64::from(i)).collect();
+        let forces = times.iter().map(|t| 5.0 * t.sin().abs()).collect();
+        let history = ForceHistory::new(times, forces).unwrap();
+        let start = std::time::Instant::now();
+        let work = simulate(&history, &contact, &Sampling::Rate(1.0)).unwrap().work;
+        println!("{memory:?}: {work:?}, {:?}", start.elapsed());
+        assert!(work.steps < 5 * 2000, "{work:?}");
+    }
+}
+
+/// Of a body whose stiffness goes to nothing at first touch, what rounding leaves of a force near its end stands for far more displacement
+/// than steps are good to: they once shrank for ever.
+#[test]
+fn a_force_let_down_on_a_body_soft_at_first_touch_comes_to_an_end() {
+    let rows = [(0.0, 0.0), (0.2, 0.06), (0.32, 0.34), (0.53, 1.0)];
+    let body = Specimen::new(Shape::Ball { radius: 1.0 }, 1e3, Sides::One).unwrap();
+    let body = body.with_equilibrium(Equilibrium::measured(&rows).unwrap()).unwrap();
+    for overshoot in [1e-6, 1e-3, 0.0147, 0.3] {
+        let contact = LinearContact {
+            specimen: body.clone(),
+            law: LinearLaw::standard(overshoot, 2.8).unwrap(),
+            memory: Memory::Strain,
+            separation: Separation::Unilateral,
+        };
+        let history = ForceHistory::new(vec![0.0, 1.0, 2.0, 2.3, 9.0], vec![0.0, 0.3, 0.3, 0.0, 0.0]).unwrap();
+        let result = simulate(&history, &contact, &Sampling::Rate(100.0)).unwrap();
+        assert!(result.work.steps < 2000, "{:?}", result.work);
+        assert!(result.contact_displacement.iter().all(|u| (-1e-12..0.4).contains(u)));
     }
 }

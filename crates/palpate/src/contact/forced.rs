@@ -41,13 +41,37 @@ pub(crate) struct Carried {
     pub(crate) speed: f64,
 }
 
+/// A force that goes straight from t = 0 on, and ends where it is to end: what rounding leaves of a force of 0 N may be a pull.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ForceLine {
+    /// Force at the start and at the end, N.
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    /// How long it takes, s.
+    pub(crate) duration: f64,
+}
+
+impl ForceLine {
+    /// Force at `elapsed` (s), N.
+    pub(crate) fn at(&self, elapsed: f64) -> f64 {
+        if elapsed <= 0.0 || self.duration == 0.0 {
+            return self.from;
+        }
+        let part = elapsed / self.duration;
+        if part >= 1.0 { self.to } else { self.from + (self.to - self.from) * part }
+    }
+
+    /// N/s
+    pub(crate) fn slope(&self) -> f64 {
+        if self.duration > 0.0 { (self.to - self.from) / self.duration } else { 0.0 }
+    }
+}
+
 /// One straight piece of a force history, from t = 0 at its start.
 #[derive(Debug)]
 pub(crate) struct Forced {
     body: Body,
-    /// Force at the start (N) and its slope (N/s).
-    from: f64,
-    slope: f64,
+    force: ForceLine,
     path: Path,
 }
 
@@ -95,18 +119,13 @@ impl Forced {
         work: &mut Work,
     ) -> Result<Self, Stopped> {
         let (_, initial) = body.carry(from, behind).ok_or(Stopped::TooMuch { elapsed: 0.0 })?;
-        let slope = if duration > 0.0 { (to - from) / duration } else { 0.0 };
-        let path = if slope == 0.0 {
+        let force = ForceLine { from, to, duration };
+        let path = if force.slope() == 0.0 {
             Self::held(&body, from, initial, duration, work)?
         } else {
-            Self::changing(&body, (from, slope), behind, duration, work)?
+            Self::changing(&body, force, behind, work)?
         };
-        Ok(Self {
-            body,
-            from,
-            slope,
-            path,
-        })
+        Ok(Self { body, force, path })
     }
 
     fn held(body: &Body, force: f64, initial: f64, duration: f64, work: &mut Work) -> Result<Path, Stopped> {
@@ -146,18 +165,13 @@ impl Forced {
         Ok(Path::Held { initial, steps })
     }
 
-    fn changing(
-        body: &Body,
-        (from, slope): (f64, f64),
-        behind: f64,
-        duration: f64,
-        work: &mut Work,
-    ) -> Result<Path, Stopped> {
+    fn changing(body: &Body, force: ForceLine, behind: f64, work: &mut Work) -> Result<Path, Stopped> {
         work.ramps += 1;
+        let duration = force.duration;
         let (depth, thickness) = (body.specimen.depth(), body.thickness());
         let mut solver = Dop853::new([behind], TOLERANCE * depth, duration / 64.0);
         let mut steps: Vec<Step<[f64; 1]>> = Vec::new();
-        let carried = |elapsed: f64, behind: f64| body.carry(from + slope * elapsed, behind);
+        let carried = |elapsed: f64, behind: f64| body.carry(force.at(elapsed), behind);
         while solver.time() < duration {
             if steps.len() == MOST_STEPS {
                 return Err(Stopped::TooStiff { elapsed: solver.time() });
@@ -183,7 +197,7 @@ impl Forced {
 
     /// Force a time `elapsed` (s) after the start of the piece, N.
     pub(crate) fn force_at(&self, elapsed: f64) -> f64 {
-        self.from + self.slope * elapsed
+        self.force.at(elapsed)
     }
 
     /// The contact a time `elapsed` (s) after the start of the piece; NaN where nothing carries the force.
@@ -204,7 +218,8 @@ impl Forced {
         let (share, carrying) = share(&body.specimen, body.layers, displacement, excess);
         let depth = body.specimen.depth();
         let by_law = body.law.rate(excess);
-        let by_force = if self.slope == 0.0 { 0.0 } else { self.slope / carrying };
+        let slope = self.force.slope();
+        let by_force = if slope == 0.0 { 0.0 } else { slope / carrying };
         let excess_rate = share * (by_force * (body.layers.count() - 1.0) / depth + by_law);
         let (stiffness, _) = body.specimen.stiffness(displacement);
         let yielding = if stiffness == 0.0 { -depth } else { -stiffness / carrying };

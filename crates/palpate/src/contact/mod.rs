@@ -41,7 +41,7 @@ pub use specimen::{Sides, Specimen, SpecimenError};
 #[cfg(feature = "std")]
 pub(crate) use {
     element::{Element, Ramps, is_kinked, longest_step, rest_of},
-    forced::{Body, Carried, Forced, Stopped},
+    forced::{Body, Carried, ForceLine, Forced, Stopped},
     free_surface::FreeSurface,
 };
 

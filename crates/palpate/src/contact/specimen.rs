@@ -201,6 +201,22 @@ impl Specimen {
         self.equilibrium.stiffness(&self.shape, self.modulus, self.depth(), contact_displacement)
     }
 
+    /// Contact displacements (m) between which the stiffness is smooth, up to `reach`: the rows of tables, and ever closer places to first
+    /// touch where it begins like √u.
+    #[cfg(feature = "std")]
+    pub(crate) fn bends(&self, reach: f64) -> Vec<f64> {
+        let mut bends: Vec<f64> = match &self.equilibrium {
+            Equilibrium::Hertz { .. } => (1..=24).map(|k| reach * 0.25f64.powi(k)).collect(),
+            Equilibrium::Measured { force_per_displacement } => force_per_displacement.places().collect(),
+            Equilibrium::EvenStrain => match &self.shape {
+                Shape::Profile { area, .. } => area.places().collect(),
+                _ => Vec::new(),
+            },
+        };
+        bends.retain(|u| *u < reach);
+        bends
+    }
+
     /// Whether the force per strain is the same at any displacement.
     pub(crate) fn has_constant_section(&self) -> bool {
         matches!((&self.shape, &self.equilibrium), (Shape::Prism { .. }, Equilibrium::EvenStrain))

@@ -134,15 +134,14 @@ impl Account {
                     width *= 1.5;
                     next += width;
                 }
+                // Where the body does not get stiffer evenly.
+                let when = |u: f64| (u - stretch.contact_from) / stretch.contact_speed;
+                let reach = stretch.contact_from.max(stretch.jaw_at(stretch.end));
+                kinks.extend(model.specimen().bends(reach).into_iter().map(when));
+                kinks.sort_by(f64::total_cmp);
                 kinks
             }
-            StretchState::Forced(forced) => {
-                // At first touch of a ball the displacement begins like √t: pieces that shrink towards it.
-                let ends = L::ends_under(forced);
-                let first = ends.first().copied().unwrap_or(duration);
-                let small = (1..=16).rev().map(|k| first * 0.25f64.powi(k));
-                small.chain(ends).collect()
-            }
+            StretchState::Forced(forced) => L::ends_under(forced),
             StretchState::Touching(_) | StretchState::Free { .. } => return,
         };
         let kinks = kinks.into_iter().map(|elapsed| stretch.start + elapsed);
@@ -200,10 +199,17 @@ fn work_between<L: Layer>(stretch: &Stretch<L>, model: &L, (from, to): (f64, f64
         StretchState::Forced(forced) => {
             let force = |time: f64| L::force_under(forced, time - stretch.start);
             let u = |time: f64| stretch.jaw_at(time);
-            let slope = (force(to) - force(from)) / (to - from).max(f64::MIN_POSITIVE);
+            let rise = force(to) - force(from);
             // Against the displacement at one end, so that a held force keeps its digits.
             let (start, end) = (u(from), u(to));
-            force(to) * (end - start) - slope * integral(|time| u(time) - start, from, to)
+            let held = force(to) * (end - start);
+            if rise == 0.0 {
+                return held;
+            }
+            // The displacement begins like a root of time at first touch, and bends at the rows of tables.
+            let way = |time: f64| u(time) - start;
+            let allowed = (to - from) * (1e-12 * (end - start).abs() + 1e-14 * end.abs());
+            held - rise / (to - from) * refined(&way, (from, to), integral(way, from, to), allowed, HALVINGS)
         }
         StretchState::Free { .. } => 0.0,
     }
@@ -221,6 +227,20 @@ pub(super) fn stored_at<L: Layer>(stretch: &Stretch<L>, model: &L, time: f64) ->
         }
     };
     model.stored(&excess, u)
+}
+
+/// Most halvings of a piece.
+const HALVINGS: u32 = 30;
+
+/// An integral whose value by the rule over the whole piece is `whole`, by the rule over halves of it until they agree to `allowed`.
+fn refined(f: &impl Fn(f64) -> f64, (from, to): (f64, f64), whole: f64, allowed: f64, halvings: u32) -> f64 {
+    let middle = 0.5 * (from + to);
+    let (early, late) = (integral(f, from, middle), integral(f, middle, to));
+    if halvings == 0 || (early + late - whole).abs() <= allowed {
+        return early + late;
+    }
+    let early = refined(f, (from, middle), early, allowed, halvings - 1);
+    early + refined(f, (middle, to), late, allowed, halvings - 1)
 }
 
 /// Gauss and Legendre's rule with eight points.

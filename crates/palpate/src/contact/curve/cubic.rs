@@ -115,6 +115,12 @@ impl Curve {
         (value, slope.max(0.0))
     }
 
+    /// The places of the points.
+    #[cfg(feature = "std")]
+    pub(crate) fn places(&self) -> impl Iterator<Item = f64> + '_ {
+        self.knots.iter().map(|knot| knot.place)
+    }
+
     /// The points it passes through.
     #[must_use]
     pub fn points(&self) -> Vec<(f64, f64)> {

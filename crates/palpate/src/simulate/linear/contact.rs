@@ -33,11 +33,13 @@ pub struct LinearContact {
 
 /// The quantity q that the law remembers, strain u/depth or relaxed force F_e(u), at a contact displacement.
 impl LinearContact {
-    /// q at contact displacement `u` (m).
+    /// q at contact displacement `u` (m). Beyond first touch, where a body whose contact grows carries nothing, the relaxed force would
+    /// pull as it pushes on this side: a jaw that cannot pull is off.
     pub(super) fn value(&self, u: f64) -> f64 {
         let strain = self.specimen.equilibrium_strain(u);
         match self.memory {
             Memory::Strain => strain,
+            Memory::Force if u < 0.0 && !self.specimen.has_constant_section() => -self.specimen.force(-strain, -u),
             Memory::Force => self.specimen.force(strain, u),
         }
     }
@@ -48,6 +50,7 @@ impl LinearContact {
         match self.memory {
             Memory::Strain => 1.0 / depth,
             Memory::Force => {
+                let u = if self.specimen.has_constant_section() { u } else { u.abs() };
                 let (stiffness, growth) = self.specimen.stiffness(u);
                 (stiffness + growth * u) / depth
             }
@@ -71,6 +74,13 @@ impl LinearContact {
             Memory::Strain => self.specimen.stiffness(u),
             Memory::Force => (1.0, 0.0),
         }
+    }
+
+    /// Excess strain of the contact layer at `u` (m) that stands for Σ x_k. Where there is no area yet, nothing but rounding is left of a
+    /// memory of force, unless the body is bonded to the jaw.
+    pub(super) fn excess_strain(&self, sum: f64, u: f64) -> f64 {
+        let per = self.per_strain(u);
+        if sum == 0.0 || (per == 0.0 && !self.is_bonded()) { 0.0 } else { sum / per }
     }
 
     /// What q + Σ x_k is of the strain of the contact layer at `u` (m): 1, or S.

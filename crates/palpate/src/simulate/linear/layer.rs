@@ -28,8 +28,7 @@ impl Layer for LinearContact {
     }
 
     fn strain_of(&self, excess: &Vec<f64>, u: f64) -> f64 {
-        let sum: f64 = excess.iter().sum();
-        if sum == 0.0 { 0.0 } else { sum / self.per_strain(u) }
+        self.excess_strain(excess.iter().sum(), u)
     }
 
     fn is_finite(excess: &Vec<f64>) -> bool {

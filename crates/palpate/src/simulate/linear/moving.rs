@@ -101,7 +101,7 @@ impl Moving {
             Memory::Strain => (sum, rate),
             Memory::Force => {
                 let (stiffness, growth) = specimen.stiffness(u);
-                if sum == 0.0 && stiffness == 0.0 {
+                if stiffness == 0.0 && (sum == 0.0 || !self.contact.is_bonded()) {
                     // First touch of a relaxed ball: the whole force is there at once, as a multiple of the relaxed one.
                     return (0.0, (1.0 + law.overshoot()) * self.speed / specimen.depth());
                 }
@@ -114,8 +114,7 @@ impl Moving {
 
     /// Excess strain of the contact layer.
     pub(super) fn excess(&self, elapsed: f64) -> f64 {
-        let sum: f64 = self.memory(elapsed).iter().sum();
-        if sum == 0.0 { 0.0 } else { sum / self.contact.per_strain(self.jaw(elapsed)) }
+        self.contact.excess_strain(self.memory(elapsed).iter().sum(), self.jaw(elapsed))
     }
 
     /// Times (s from the start) between which nothing changes by much: ever further apart from the fastest rate on.

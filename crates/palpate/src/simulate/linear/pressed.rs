@@ -12,7 +12,7 @@ use std::sync::LazyLock;
 use super::recovery::Recovery;
 use super::stage::{DEGREE, Stage, dot, fading, integrated};
 use super::{LinearContact, LinearTerm, Memory};
-use crate::contact::{Carried, Stopped};
+use crate::contact::{Carried, ForceLine, Stopped};
 use crate::simulate::Work;
 
 /// Error of q, relative to the largest that the forces of a piece ask for at once.
@@ -21,6 +21,12 @@ const TOLERANCE: f64 = 1e-12;
 /// Nodes, the last one at the end of a stage, and two places between them.
 const PLACES: usize = DEGREE + 2;
 
+/// Stages tried in one piece, after which it is given up.
+const MOST_TRIES: u32 = 20_000;
+
+/// Stages in which the body could not carry the force, after which it is taken not to.
+const MOST_REFUSED: u32 = 1000;
+
 /// Iterations of Newton's method after which a stage is tried anew, at a quarter of its width.
 const MOST_ITERATIONS: usize = 16;
 
@@ -28,9 +34,7 @@ const MOST_ITERATIONS: usize = 16;
 #[derive(Debug)]
 pub(crate) struct Pressed {
     contact: LinearContact,
-    /// Force at the start (N) and its slope (N/s).
-    from: f64,
-    slope: f64,
+    force: ForceLine,
     path: Path,
 }
 
@@ -61,14 +65,13 @@ impl Pressed {
         let memory: Vec<f64> = behind.iter().zip(terms).map(|(behind, term)| behind + term.overshoot * value).collect();
         let mut piece = Self {
             contact: contact.clone(),
-            from,
-            slope: if duration > 0.0 { (to - from) / duration } else { 0.0 },
+            force: ForceLine { from, to, duration },
             path: Path::Stages(Vec::new()),
         };
         let is_plain = contact.memory == Memory::Force || contact.specimen.has_constant_section();
         if duration == 0.0 {
             piece.path = Path::Stages(vec![Stage::straight(0.0, 0.0, value, 0.0, memory)]);
-        } else if piece.slope == 0.0 && (from == 0.0 || is_plain) {
+        } else if piece.force.slope() == 0.0 && (from == 0.0 || is_plain) {
             work.closed_forms += 1;
             let rest = if from == 0.0 { 0.0 } else { from / contact.stiffness(u).0 };
             let recovery = Recovery::new(&contact.law, &memory);
@@ -92,18 +95,28 @@ impl Pressed {
     ) -> Result<Vec<Stage>, Stopped> {
         let contact = &self.contact;
         let behind: f64 = memory.iter().zip(contact.law.terms()).map(|(x, term)| x - term.overshoot * value).sum();
-        let asked = contact.carried(to, behind).map_or(f64::INFINITY, |u| contact.value(u).abs());
-        let allowed = TOLERANCE * if asked.is_finite() { asked.max(value.abs()) } else { value.abs() };
-        let allowed = allowed.max(f64::MIN_POSITIVE);
+        // A force that the body cannot carry at once asks for all of it.
+        let asked = contact.carried(to, behind).unwrap_or(contact.specimen.limit().at);
+        let allowed = (TOLERANCE * contact.value(asked).abs().max(value.abs())).max(f64::MIN_POSITIVE);
         let u = contact.place(value).unwrap_or(0.0);
         // At first touch of a ball q begins like √t.
-        let mut width = if contact.stiffness(u).0 == 0.0 { 1e-20 * duration } else { 1e-3 * duration };
+        let mut width = if contact.stiffness(u).0 == 0.0 { 1e-20 * duration } else { duration };
         let (mut stages, mut time) = (Vec::new(), 0.0);
+        let (mut tries, mut refused) = (0, 0);
         while time < duration {
+            tries += 1;
+            if tries > MOST_TRIES {
+                return Err(Stopped::TooStiff { elapsed: time });
+            }
             let left = duration - time;
             let ends = width >= left;
             let tried = if ends { left } else { width };
             let stage = self.stage(time, tried, value, &memory, allowed, work);
+            // Ever shorter steps to where the body gives way.
+            refused += u32::from(stage.is_none());
+            if refused > MOST_REFUSED {
+                return Err(Stopped::TooMuch { elapsed: time });
+            }
             let wider = match &stage {
                 Some((_, error)) => 0.9 * (allowed / error).powf(1.0 / (DEGREE + 1) as f64),
                 None => 0.25,
@@ -202,10 +215,14 @@ impl Pressed {
         if !converged {
             return None;
         }
+        // By how much a force on its way down to nothing is off is a multiple of where it came from, not of itself.
+        let rounding = 8.0 * f64::EPSILON * self.force.from.abs().max(self.force.to.abs());
         let mut error = f64::MIN_POSITIVE;
         for place in DEGREE..PLACES {
             let (off, stiffness, bend) = look(&rates, place)?;
-            error = error.max((off / (stiffness + bend)).abs());
+            // Over so short a time the layer is stiffer than relaxed, by what does not fade within it.
+            let share = 1.0 + own[place][0] / places[place].1[0];
+            error = error.max(((off.abs() - rounding).max(0.0) / (share * stiffness + bend)).abs());
         }
         let stage = Stage {
             start,
@@ -239,7 +256,7 @@ impl Pressed {
 
     /// Force, N.
     pub(super) fn force_at(&self, elapsed: f64) -> f64 {
-        self.from + self.slope * elapsed
+        self.force.at(elapsed)
     }
 
     fn value_at(&self, elapsed: f64) -> f64 {
@@ -293,7 +310,7 @@ impl Pressed {
         let (stiffness, growth) = specimen.stiffness(displacement);
         if stiffness == 0.0 {
             // First touch of a ball: u begins like √t.
-            let rate = if self.slope == 0.0 { 0.0 } else { f64::INFINITY };
+            let rate = if self.force.slope() == 0.0 { 0.0 } else { f64::INFINITY };
             return Carried {
                 displacement,
                 excess: 0.0,
@@ -303,7 +320,7 @@ impl Pressed {
         }
         let speed = self.slope_at(elapsed) / self.contact.slope(displacement);
         let strain = self.force_at(elapsed) / stiffness;
-        let strain_rate = (self.slope - strain * growth * speed) / stiffness;
+        let strain_rate = (self.force.slope() - strain * growth * speed) / stiffness;
         Carried {
             displacement,
             excess: strain - specimen.equilibrium_strain(displacement),
