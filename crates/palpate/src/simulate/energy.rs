@@ -26,9 +26,9 @@ pub struct Energy {
 /// Work split into what can be had back and what cannot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EnergySplit {
-    /// Stored: E A u²/(2 depth) + E A depth x²/(2 (m − 1)) a contact.
+    /// Stored: E A u²/(2 depth) + E A depth x²/(2 (m − 1)) a contact; by a linear law E A u²/(2 depth) + E A depth Σ x_k²/(2 g_k).
     pub stored: Vec<f64>,
-    /// Lost, at the rate E A depth v |x|ⁿ⁺¹/(m − 1) a contact.
+    /// Lost, at the rate E A depth v |x|ⁿ⁺¹/(m − 1) a contact; by a linear law E A depth Σ λ_k x_k²/g_k.
     pub lost: Vec<f64>,
 }
 
