@@ -355,6 +355,7 @@ fn may_be_refused(error: &SimulateError) -> bool {
             | E::Tension { .. }
             | E::EmptyProgram
             | E::TooStiff { .. }
+            | E::NoArea { .. }
     )
 }
 

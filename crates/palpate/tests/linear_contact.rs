@@ -385,3 +385,28 @@ fn a_force_let_down_on_a_body_soft_at_first_touch_comes_to_an_end() {
         assert!(result.contact_displacement.iter().all(|u| (-1e-12..0.4).contains(u)));
     }
 }
+
+/// It came out as a number beyond the range of doubles.
+#[test]
+fn a_bonded_ball_that_remembers_force_cannot_go_back_to_first_touch() {
+    let ball = LinearContact {
+        specimen: Specimen::new(Shape::Ball { radius: 0.01 }, 1e5, Sides::One).unwrap(),
+        law: LinearLaw::standard(3.0, 2.0).unwrap(),
+        memory: Memory::Force,
+        separation: Separation::Bonded,
+    };
+    let there_and = |back: f64| Motion::new(vec![0.0, 1.0, 2.0], vec![0.0, 2e-3, back]).unwrap();
+    let sampling = Sampling::Times(vec![0.0, 1.0, 2.0]);
+    assert_eq!(simulate(&there_and(0.0), &ball, &sampling), Err(SimulateError::NoArea { time: 2.0 }));
+    assert!(simulate(&there_and(1e-4), &ball, &sampling).is_ok());
+    let unilateral = LinearContact {
+        separation: Separation::Unilateral,
+        ..ball.clone()
+    };
+    assert_eq!(simulate(&there_and(0.0), &unilateral, &sampling).unwrap().events.len(), 1);
+    let of_strain = LinearContact {
+        memory: Memory::Strain,
+        ..ball
+    };
+    assert_eq!(simulate(&there_and(0.0), &of_strain, &sampling).unwrap().force[2], 0.0);
+}

@@ -54,6 +54,15 @@ pub enum SimulateError {
         /// How far it came, s.
         time: f64,
     },
+    /// A body whose contact grows, bonded to a jaw that goes back to first touch, under a law that remembers force.
+    #[error(
+        "at t = {time} s the jaw is back at first touch, where the contact has no area for the force that a memory of force keeps: stay \
+         above 0 m, let the jaw leave the body, or let the law remember strain"
+    )]
+    NoArea {
+        /// When, s.
+        time: f64,
+    },
     /// A program without a step that takes time.
     #[error("a program needs a step that takes time, found none")]
     EmptyProgram,

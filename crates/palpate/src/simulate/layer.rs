@@ -26,6 +26,11 @@ pub(super) trait Layer {
         self.separation() == Separation::Bonded
     }
 
+    /// Whether the jaw may go back to contact displacement `u` (m).
+    fn can_go_back_to(&self, _: f64) -> bool {
+        true
+    }
+
     fn relaxed(&self) -> Self::Excess;
     /// Excess strain at contact displacement `u` (m).
     fn strain_of(&self, excess: &Self::Excess, u: f64) -> f64;

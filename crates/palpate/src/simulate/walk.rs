@@ -126,6 +126,9 @@ impl<'a, L: Layer, V: FnMut(&Stretch<L>) -> Result<(), SimulateError>> Walker<'a
         (from, to): (f64, f64),
         target: Option<f64>,
     ) -> Result<Option<f64>, SimulateError> {
+        if target.is_none() && from > 0.0 && !self.model.can_go_back_to(to) {
+            return Err(SimulateError::NoArea { time: end });
+        }
         let speed = (to - from) / (end - begin);
         let mut start = begin;
         while start < end {

@@ -1,6 +1,6 @@
 //! A linear contact as the walk through a drive asks for it.
 
-use super::{LinearContact, Moving, Pressed, Surface};
+use super::{LinearContact, Memory, Moving, Pressed, Surface};
 use crate::contact::{Carried, Specimen, Stopped};
 use crate::simulate::layer::Layer;
 use crate::simulate::{Separation, Work};
@@ -21,6 +21,12 @@ impl Layer for LinearContact {
 
     fn separation(&self) -> Separation {
         self.separation
+    }
+
+    /// What a memory of force keeps needs an area.
+    fn can_go_back_to(&self, u: f64) -> bool {
+        let grows = !self.specimen.has_constant_section();
+        !(self.is_bonded() && self.memory == Memory::Force && grows && u <= 0.0)
     }
 
     fn relaxed(&self) -> Vec<f64> {

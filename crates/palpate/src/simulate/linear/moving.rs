@@ -5,6 +5,7 @@
 
 use super::contact::{LinearContact, Memory};
 use super::stage::{DEGREE, GAUSS, Stage, legendre};
+use crate::simulate::layer::crossing;
 
 /// Difference of q from its polynomial, relative to the largest q.
 const TOLERANCE: f64 = 1e-13;
@@ -21,6 +22,8 @@ pub(crate) struct Moving {
     speed: f64,
     duration: f64,
     stages: Vec<Stage>,
+    /// By how much q + Σ x_k may be off, q being a polynomial.
+    unsure: f64,
 }
 
 impl Moving {
@@ -31,6 +34,7 @@ impl Moving {
             speed,
             duration,
             stages: Vec::new(),
+            unsure: 0.0,
         };
         let (first, last) = (contact.value(from), contact.value(from + speed * duration));
         if speed == 0.0 || contact.memory == Memory::Strain || contact.specimen.has_constant_section() {
@@ -38,6 +42,7 @@ impl Moving {
             piece.stages.push(Stage::straight(0.0, duration, first, by, before));
         } else {
             let allowed = TOLERANCE * first.abs().max(last.abs());
+            piece.unsure = (1.0 + contact.law.overshoot()) * allowed;
             piece.divide((0.0, duration), before, allowed, HALVINGS);
         }
         piece
@@ -139,11 +144,16 @@ impl Moving {
             let (value, memory) = (self.contact.value(self.jaw(elapsed)), self.memory(elapsed));
             Look { time, value, memory }
         };
-        self.first_below(&look(start), &look(end), &look)
+        let below = self.first_below(&look(start), &look(end), &look)?;
+        if self.unsure == 0.0 {
+            return Some(below);
+        }
+        // It is surely lost there, and was on the way.
+        Some(crossing(start, below, |time| look(time).sum()))
     }
 
     fn first_below(&self, a: &Look, b: &Look, look: &impl Fn(f64) -> Look) -> Option<f64> {
-        if self.least(a, b) >= -a.rounding() {
+        if self.least(a, b) >= -(a.rounding() + self.unsure) {
             return None;
         }
         let middle = 0.5 * (a.time + b.time);

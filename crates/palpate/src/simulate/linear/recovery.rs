@@ -71,6 +71,11 @@ impl Recovery {
         self.modes.iter().map(|mode| mode.rate * mode.sum * (-mode.rate * elapsed).exp()).sum()
     }
 
+    /// The sum of the sizes of all modes at the start: what the rounding of their sum is relative to.
+    pub(super) fn size(&self) -> f64 {
+        self.modes.iter().map(|mode| mode.sum.abs()).sum()
+    }
+
     /// A lower bound of q between two times: every mode fades.
     pub(super) fn least(&self, from: f64, until: f64) -> f64 {
         let each = |mode: &Mode| {
