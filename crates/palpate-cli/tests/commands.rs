@@ -212,7 +212,7 @@ fn simulate_writes_series_figure_and_wave() {
     done(folder.path(), &[["simulate", protocol].as_slice(), &outputs].concat());
     let series = std::fs::read_to_string(folder.path().join("a.csv")).unwrap();
     let mut lines = series.lines();
-    let header = "time_s,displacement_m,contact_displacement_m,force_n,strain,equilibrium_strain,excess_strain,strain_rate_per_s";
+    let header = "time_s,displacement_m,contact_displacement_m,force_n,strain,equilibrium_strain,excess_strain,strain_rate_per_s,in_contact";
     assert_eq!(lines.next(), Some(header));
     let peak = lines.find(|line| line.starts_with("43,")).unwrap();
     let force: f64 = peak.split(',').nth(3).unwrap().parse().unwrap();

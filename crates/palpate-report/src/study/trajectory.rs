@@ -25,13 +25,13 @@ pub fn write_trajectory(out: &mut dyn Write, trajectory: &Trajectory) -> io::Res
         ("strain_rate_per_s", &trajectory.strain_rate),
     ];
     let names = columns.map(|(name, _)| name);
-    write!(out, "{}\r\n", names.join(","))?;
+    write!(out, "{},in_contact\r\n", names.join(","))?;
     for row in 0..trajectory.len() {
         for (i, (_, values)) in columns.iter().enumerate() {
             // + 0.0 turns −0 into 0.
             write!(out, "{}{}", if i > 0 { "," } else { "" }, exact(values[row] + 0.0))?;
         }
-        out.write_all(b"\r\n")?;
+        write!(out, ",{}\r\n", u8::from(trajectory.in_contact[row]))?;
     }
     Ok(())
 }

@@ -40,6 +40,8 @@ pub struct Trajectory {
     pub excess_strain: Vec<f64>,
     /// Strain rate of the contact layer, 1/s; at a knot, that of the piece that begins there.
     pub strain_rate: Vec<f64>,
+    /// Whether the jaw touches the body; at the moment of a loss or a return, what it is from there on.
+    pub in_contact: Vec<bool>,
     /// Contacts lost and regained, in order.
     pub events: Vec<ContactEvent>,
     /// What it cost.
@@ -69,6 +71,7 @@ impl Trajectory {
             equilibrium_strain: room(),
             excess_strain: room(),
             strain_rate: room(),
+            in_contact: Vec::with_capacity(time.len()),
             time,
             ..Self::default()
         }
@@ -84,6 +87,7 @@ impl Trajectory {
         if !matches!(stretch.state, StretchState::Forced(_)) {
             self.displacement.extend(jaw.clone().map(|u| u * per_side));
         }
+        self.in_contact.resize(until, !matches!(stretch.state, StretchState::Free { .. }));
         match &stretch.state {
             StretchState::Touching(piece) => {
                 self.contact_displacement.extend(jaw);
