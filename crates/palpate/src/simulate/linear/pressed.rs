@@ -169,14 +169,12 @@ impl Pressed {
         // What the force asks for at once, were nothing to relax.
         let behind: f64 = before.iter().zip(law.terms()).map(|(x, term)| x - term.overshoot * from).sum();
         let mut rates = [0.0; DEGREE];
-        let mut first = [0.0; DEGREE];
-        for (node, first) in first.iter_mut().enumerate() {
-            *first = contact.value(contact.carried(force(node), behind)?) - from;
+        for (node, rate) in rates.iter_mut().enumerate() {
+            *rate = contact.value(contact.carried(force(node), behind)?) - from;
         }
-        if !solve(std::array::from_fn(|node| places[node].1), &mut first) {
+        if !solve(std::array::from_fn(|node| places[node].1), &mut rates) {
             return None;
         }
-        rates.copy_from_slice(&first);
         // Off, and its slope against q + Σ x_k and q, at a place.
         let look = |rates: &[f64; DEGREE], place: usize| {
             let value = from + dot(rates, &places[place].1);
