@@ -1,14 +1,14 @@
 //! The contact layers of a group of contacts, through a stretch in which every jaw keeps its speed.
 //!
-//! The equations and variables are those of `crate::contact`: closed form in a hold, y = −ln|1 − x/x*| in a ramp, the law expanded to second
-//! order once x* is near. Here lanes go side by side: each has its own exponent, rate coefficient, drive, duration and steps.
+//! The equations and variables are those of `crate::contact`: closed form in a hold, z = x/x* in a ramp, the law expanded to second order once
+//! x* is near. Here lanes go side by side: each has its own exponent, rate coefficient, drive, duration and steps.
 
 use fearless_simd::Simd;
 
 use crate::contact::{is_kinked, longest_step, rest_of};
-use crate::latency::lanes::{BLOCK, Power, attraction, block, by_power, each, relaxed, steady_excess};
+use crate::latency::lanes::{BLOCK, Power, block, by_power, each, relaxed, signed_power, steady_excess};
 use crate::ode::Lanes;
-use crate::vector::elementary::{exp, exp_m1, ln_1p};
+use crate::vector::elementary::exp_m1;
 
 /// Contacts that go through a kernel together: enough vectors in flight that none waits for the other.
 pub(super) const GROUP: usize = 32;
@@ -85,39 +85,34 @@ impl ContactLayers {
         elapsed: &[f64; GROUP],
     ) -> [f64; GROUP] {
         let n = &laws.exponent;
-        let (mut steady, mut side, mut until) = ([1.0; GROUP], [1.0; GROUP], [0.0; GROUP]);
-        let (mut reach, mut far, mut start) = ([1.0; GROUP], [0.0; GROUP], [0.0; GROUP]);
+        let (mut steady, mut until, mut reach) = ([1.0; GROUP], [0.0; GROUP], [1.0; GROUP]);
+        let (mut near, mut start) = ([0.0; GROUP], [0.0; GROUP]);
         for lane in 0..GROUP {
             let moves = elapsed[lane] > 0.0;
             let g = if moves { drive[lane] } else { laws.rate_coefficient[lane] };
             steady[lane] = steady_excess(g, n[lane], laws.rate_coefficient[lane]);
-            let z = if moves { initial[lane] / steady[lane] } else { 0.0 };
-            side[lane] = if z > 1.0 { -1.0 } else { 1.0 };
+            start[lane] = if moves { initial[lane] / steady[lane] } else { 0.0 };
             until[lane] = g / steady[lane] * elapsed[lane];
-            let passes = if z.abs() > until[lane] { z.abs() } else { until[lane] };
+            let z = start[lane].abs();
+            let passes = if z > until[lane] { z } else { until[lane] };
             reach[lane] = if passes < 1.0 { passes } else { 1.0 };
-            // z may be far below 1, where 1 − z would lose it.
-            let beyond = if z > 1.0 { z - 2.0 } else { -z };
-            let y = -ln_1p(if z == 1.0 { 0.0 } else { beyond });
-            let least = if n[lane] > 1.0 { n[lane] } else { 1.0 };
-            far[lane] = ln_1p(least / NEAR - 1.0);
-            // A ramp that begins at its steady state has come near it as far as a double can tell.
-            start[lane] = if z == 1.0 { 700.0 } else { y };
+            near[lane] = NEAR / if n[lane] > 1.0 { n[lane] } else { 1.0 };
+            // The law itself where it is no more than of second order.
+            near[lane] = if n[lane] == 1.0 { f64::INFINITY } else { near[lane] };
         }
         self.ramps.state.copy_from_slice(&start);
-        let mut slope = [0.0; GROUP];
-        slopes(laws, &side, &start, &mut slope);
+        let mut speed = [0.0; GROUP];
+        speeds(laws, &start, &mut speed);
         let mut width = [0.0; GROUP];
         for lane in 0..GROUP {
-            let first = 0.5 / slope[lane];
+            let first = 0.5 * ((1.0 - start[lane]) / speed[lane]);
             width[lane] = if first < until[lane] { first } else { until[lane] };
         }
         self.ramps.restart(width);
         // Where the power is not smooth at rest, steps shrink towards it and grow away from it.
         let (mut passes, mut rest, mut any_passes) = ([false; GROUP], [0.0; GROUP], false);
         for lane in 0..GROUP {
-            let z = -exp_m1(-start[lane]);
-            passes[lane] = side[lane] > 0.0 && is_kinked(n[lane], z) && elapsed[lane] > 0.0;
+            passes[lane] = start[lane] <= 1.0 && is_kinked(n[lane], start[lane]) && elapsed[lane] > 0.0;
             any_passes |= passes[lane];
         }
         if any_passes {
@@ -128,18 +123,17 @@ impl ContactLayers {
         loop {
             let (mut going, mut target) = (false, until);
             if any_passes {
-                slopes(laws, &side, &self.ramps.state, &mut slope);
+                speeds(laws, &self.ramps.state, &mut speed);
             }
             for lane in 0..GROUP {
-                let y = self.ramps.state[lane];
-                // An error of y matters as far as it moves x = x* (1 ∓ e^(−y)).
-                let ease = exp(y);
-                let ease = if ease < 1.0 { 1.0 } else { ease };
-                self.ramps.tolerance[lane] = TOLERANCE * reach[lane] * if ease > 1e9 { 1e9 } else { ease };
+                let z = self.ramps.state[lane];
+                let distance = (1.0 - z).abs();
+                self.ramps.tolerance[lane] = TOLERANCE * reach[lane] * if distance > 1.0 { distance } else { 1.0 };
                 let time = self.ramps.time[lane];
-                target[lane] = if y < far[lane] { until[lane] } else { time };
+                let is_far = (distance > near[lane]) & !((n[lane] == 2.0) & (z >= 0.0));
+                target[lane] = if is_far { until[lane] } else { time };
                 if passes[lane] {
-                    let longest = time + longest_step(-exp_m1(-y), slope[lane], rest[lane]);
+                    let longest = time + longest_step(z, speed[lane], rest[lane]);
                     target[lane] = if longest < target[lane] { longest } else { target[lane] };
                 }
                 going |= self.ramps.time[lane] < target[lane];
@@ -151,37 +145,35 @@ impl ContactLayers {
                 simd,
                 &target,
                 #[inline(always)]
-                |_, y, out| slopes(laws, &side, y, out),
+                |_, z, out| speeds(laws, z, out),
             );
         }
         let mut excess = [0.0; GROUP];
         for lane in 0..GROUP {
-            let y = self.ramps.state[lane];
-            let close = -side[lane] * exp(-y);
+            let z = self.ramps.state[lane];
             let left = until[lane] - self.ramps.time[lane];
-            let lost = exp_m1(-n[lane] * left);
-            let deviation = close * (1.0 + lost) / (1.0 - 0.5 * (n[lane] - 1.0) * close * lost);
-            let path = if side[lane] > 0.0 { -exp_m1(-y) } else { 1.0 + close };
-            excess[lane] = steady[lane] * if left > 0.0 { 1.0 + deviation } else { path };
+            let left = if left > 0.0 { left } else { 0.0 };
+            let (deviation, change) = (z - 1.0, exp_m1(-n[lane] * left));
+            let bend = 0.5 * (n[lane] - 1.0) * deviation;
+            let slower = 1.0 - bend * change;
+            let small = z + deviation * (1.0 + bend) * change / slower;
+            let large = 1.0 + deviation * (1.0 + change) / slower;
+            let moved = if z.abs() < 0.5 { small } else { large };
+            excess[lane] = steady[lane] * if left > 0.0 { moved } else { z };
         }
         excess
     }
 }
 
-/// ẏ in units of g/x*.
+/// ż in units of g/x*.
 #[inline(always)]
-fn slopes(laws: &Laws, side: &[f64; GROUP], y: &[f64], out: &mut [f64]) {
+fn speeds(laws: &Laws, z: &[f64], out: &mut [f64]) {
     by_power!(laws.power, power => for at in (0..GROUP).step_by(BLOCK) {
-        let (y, side, n) = (block(y, at), block(side, at), block(&laws.exponent, at));
-        let slopes = each(
+        let (z, n) = (block(z, at), block(&laws.exponent, at));
+        let speeds = each(
             #[inline(always)]
-            |lane| {
-                let distance = side[lane] * exp(-y[lane]);
-                // Powers that are not whole tell z far below 1 from 0.
-                let z = if power == Power::Any && side[lane] > 0.0 { -exp_m1(-y[lane]) } else { 1.0 - distance };
-                attraction(power, z, distance, n[lane])
-            },
+            |lane| 1.0 - signed_power(power, z[lane], n[lane], 0.0),
         );
-        out[at..at + BLOCK].copy_from_slice(&slopes);
+        out[at..at + BLOCK].copy_from_slice(&speeds);
     });
 }

@@ -4,22 +4,22 @@
 //!
 //! ẋ = g − v sgn(x) |x|ⁿ,  g = u̇₁ (m − 1)/depth.
 //!
-//! A hold (g = 0) has the closed form (4), (5). A ramp tends to the steady excess x* = sgn(g)(|g|/v)^(1/n). With z = x/x*
-//! and y = −ln|1 − z| its equation becomes
+//! A hold (g = 0) has the closed form (4), (5). A ramp tends to the steady excess x* = sgn(g)(|g|/v)^(1/n). With z = x/x* its equation
+//! becomes, in units x*/g of time,
 //!
-//! ẏ = (g/x*) q(z),  q(z) = (1 − sgn(z)|z|ⁿ)/(1 − z),
+//! ż = 1 − sgn(z)|z|ⁿ.
 //!
-//! which is smooth, turns into a straight line of slope n g/x* as the steady state is neared, and keeps 1 − z to full
-//! relative accuracy on the way. An error-controlled Runge–Kutta method with dense output takes a few dozen steps
-//! for it, however long the ramp and however fast the layer.
+//! An error-controlled Runge–Kutta method with dense output takes a few dozen steps for it, until the steady state is near, and from there
+//! on the law expanded to second order has a closed form, however long the ramp and however fast the layer. For n = 1 and, once z ≥ 0, for
+//! n = 2 that is the law itself.
 //!
-//! In units of x*/g time is the same for every ramp of a law: all of them are stretches of one curve on either side of the steady
-//! state. A ramp that comes to where an earlier one was goes on along its steps.
+//! In these units all ramps of a law are stretches of one curve on either side of the steady state. A ramp that comes to where an earlier
+//! one was goes on along its steps.
 
 use super::Work;
-use crate::latency::LatencyLaw;
+use crate::latency::{LatencyLaw, signed_power};
 use crate::ode::{Dop853, Step};
-use crate::vector::elementary::{exp, exp_m1};
+use crate::vector::elementary::exp_m1;
 use crate::vector::replace;
 
 /// Distance from the steady state, times n, below which the law expanded to second order is exact to rounding: what the
@@ -44,16 +44,16 @@ pub(crate) fn rest_of(exponent: f64, reach: f64) -> f64 {
     (TOLERANCE * reach).powf(1.0 / (exponent + 1.0))
 }
 
-/// The longest step from z with ẏ = `slope` there, in units of x*/g, where rest is met: steps shrink towards it and grow away from it, so
+/// The longest step from z with ż = `speed` there, in units of x*/g, where rest is met: steps shrink towards it and grow away from it, so
 /// that each sees a smooth power.
 #[inline(always)]
-pub(crate) fn longest_step(z: f64, slope: f64, rest: f64) -> f64 {
+pub(crate) fn longest_step(z: f64, speed: f64, rest: f64) -> f64 {
     match z {
         _ if z > 0.5 => f64::INFINITY,
         _ if z >= 0.0 => z.max(rest),
         _ if z >= -2.0 * rest => rest - z,
         // |z|/|ż|, a lower bound of the time to rest.
-        _ => 0.4 * -z / ((1.0 - z) * slope),
+        _ => 0.4 * -z / speed,
     }
 }
 
@@ -71,62 +71,80 @@ pub(crate) enum Element {
 pub(crate) struct Ramp {
     /// x*.
     steady: f64,
-    /// Sign of 1 − z; zero if the ramp begins at its steady state.
-    side: f64,
     /// g/x*, 1/s: what turns time into that of the steps and of the approach.
     rate: f64,
     /// Length of the piece, in that time.
     until: f64,
-    /// y over time, until the steady state is near or the piece ends.
-    steps: Vec<Step<[f64; 1]>>,
+    /// z over time, until the steady state is near or the piece ends.
+    steps: Vec<Step>,
     /// What follows.
     approach: Approach,
 }
 
-/// The last stretch: x = x* (1 + δ) with δ' = −n δ (1 + c δ), the law to second order around its steady state.
+/// The last stretch: z = 1 + δ with δ' = −n δ (1 + c δ), the law to second order around its steady state.
 #[derive(Debug, Clone, Copy)]
 struct Approach {
+    /// Time at its start.
     from: f64,
-    deviation: f64,
+    /// z then.
+    excess: f64,
     exponent: f64,
+    /// c = (n − 1)/2.
     curvature: f64,
 }
 
 impl Approach {
-    /// δ(t) = δ₀ e^(−nt)/(1 + c δ₀ (1 − e^(−nt))).
+    /// δ(t) = δ₀ e/(1 + c δ₀ E) and z(t) = z₀ − δ₀ (1 + c δ₀) E/(1 + c δ₀ E) with e = e^(−nt) and E = 1 − e: the first loses nothing of a large
+    /// deviation that fades, the second nothing of a small z that grows.
     #[inline(always)]
-    fn deviation_at(&self, time: f64) -> f64 {
-        let decay = exp(-self.exponent * (time - self.from));
-        self.deviation * decay / (1.0 + self.curvature * self.deviation * (1.0 - decay))
+    fn excess_at(&self, time: f64) -> f64 {
+        let deviation = self.excess - 1.0;
+        let bend = self.curvature * deviation;
+        let change = exp_m1(-self.exponent * (time - self.from));
+        let slower = 1.0 - bend * change;
+        if self.excess.abs() < 0.5 {
+            self.excess + deviation * (1.0 + bend) * change / slower
+        } else {
+            1.0 + deviation * (1.0 + change) / slower
+        }
+    }
+
+    /// Times that cut it, as far as it is not steady yet, into parts of half a time constant.
+    fn parts(&self) -> impl Iterator<Item = f64> + use<> {
+        let (from, width) = (self.from, 0.5 / self.exponent);
+        let count = (2.0 * ((self.excess - 1.0).abs() * self.exponent / NEAR).ln()).max(0.0) as u32;
+        (1..=count).map(move |part| from + width * f64::from(part))
     }
 }
 
 /// The way of an earlier ramp of the same law to its steady state.
 #[derive(Debug, Default)]
 pub(crate) struct Ramps {
+    /// Sign of 1 − z.
     side: f64,
     reach: f64,
-    steps: Vec<Step<[f64; 1]>>,
-    /// y at the ends of the steps, rising.
+    steps: Vec<Step>,
+    /// z at the ends of the steps.
     ends: Vec<f64>,
 }
 
 impl Ramps {
-    /// Whether the curve passes y on this side, to the accuracy that a ramp of this reach needs.
-    fn serves(&self, side: f64, reach: f64, y: f64) -> bool {
-        let passed = || self.steps[0].from()[0] <= y && y < self.ends[self.ends.len() - 1];
+    /// Whether the curve passes z on this side, to the accuracy that a ramp of this reach needs.
+    fn serves(&self, side: f64, reach: f64, z: f64) -> bool {
+        let passed =
+            || self.side * (z - self.steps[0].from()) >= 0.0 && self.side * (self.ends[self.ends.len() - 1] - z) > 0.0;
         !self.steps.is_empty() && self.side == side && self.reach <= reach && passed()
     }
 
-    /// Appends the steps from where the curve is at y, moved to `time`, as far as `until`; slope is ẏ there. Returns time and y at the end of
+    /// Appends the steps from where the curve is at z, moved to `time`, as far as `until`; speed is ż there. Returns time and z at the end of
     /// the curve.
-    fn follow(&self, y: f64, slope: f64, time: f64, until: f64, steps: &mut Vec<Step<[f64; 1]>>) -> (f64, f64) {
-        let index = self.ends.partition_point(|end| *end <= y);
+    fn follow(&self, z: f64, speed: f64, time: f64, until: f64, steps: &mut Vec<Step>) -> (f64, f64) {
+        let index = self.ends.partition_point(|end| self.side * (z - end) >= 0.0);
         let step = &self.steps[index];
         // Newton's method; the slope is that of the goal, which is near.
-        let mut at = step.end() - (self.ends[index] - y) / slope;
+        let mut at = step.end() - (self.ends[index] - z) / speed;
         for _ in 0..12 {
-            let off = (y - step.at(at)[0]) / slope;
+            let off = (z - step.at(at)) / speed;
             at = (at + off).min(step.end());
             if off.abs() <= f64::EPSILON * at.abs().max(1e-3) {
                 break;
@@ -156,59 +174,52 @@ impl Element {
         }
         work.ramps += 1;
         let steady = law.steady_excess(drive);
-        let z = initial / steady;
-        let side = if z == 1.0 { 0.0 } else { (1.0 - z).signum() };
+        let n = law.exponent();
+        let start = initial / steady;
+        let side = if start > 1.0 { -1.0 } else { 1.0 };
         let rate = drive / steady;
-        let is_whole = law.exponent().fract() == 0.0;
-        let slope = |y: f64| {
-            let distance = side * exp(-y);
-            // Powers that are not whole tell z far below 1 from 0.
-            let z = if is_whole || side < 0.0 { 1.0 - distance } else { -exp_m1(-y) };
-            attraction(z, distance, law.exponent())
-        };
-        // z may be far below 1, where 1 − z would lose it.
-        let start = if side > 0.0 { -(-z).ln_1p() } else { -(z - 1.0).ln() };
+        let speed = |z: f64| 1.0 - signed_power(z, n);
         let until = rate * duration;
         // What the piece passes through, in units of x*: errors are measured by it.
-        let reach = z.abs().max(until).min(1.0);
-        let first = until.min(0.5 / slope(start));
-        let mut solver = Dop853::new([start], TOLERANCE * reach, if first > 0.0 { first } else { until });
-        let far = (law.exponent().max(1.0) / NEAR).ln();
-        let (passes_rest, rest) = (side > 0.0 && is_kinked(law.exponent(), z), rest_of(law.exponent(), reach));
+        let reach = start.abs().max(until).min(1.0);
+        let first = until.min(0.5 * ((1.0 - start) / speed(start)));
+        let mut solver = Dop853::new(start, TOLERANCE * reach, if first > 0.0 { first } else { until });
+        let near = if n == 1.0 { f64::INFINITY } else { NEAR / n.max(1.0) };
+        // What is not a number is near: nothing is left to follow.
+        let is_far = |z: f64| (1.0 - z).abs() > near && !(n == 2.0 && z >= 0.0);
+        let (passes_rest, rest) = (side > 0.0 && is_kinked(n, start), rest_of(n, reach));
         let mut steps = Vec::with_capacity(32);
         let mut end = (0.0, start);
-        while side != 0.0 && end.0 < until && end.1 < far {
-            let (time, y) = end;
-            if ramps.serves(side, reach, y) {
-                end = ramps.follow(y, slope(y), time, until, &mut steps);
+        while end.0 < until && is_far(end.1) {
+            let (time, z) = end;
+            if ramps.serves(side, reach, z) {
+                end = ramps.follow(z, speed(z), time, until, &mut steps);
                 break;
             }
-            // An error of y matters as far as it moves x = x* (1 ∓ e^(−y)).
-            solver.set_tolerance(TOLERANCE * reach * y.exp().clamp(1.0, 1e9));
-            let longest = if passes_rest { longest_step(-exp_m1(-y), slope(y), rest) } else { f64::INFINITY };
-            steps.push(solver.step(until.min(time + longest), |_, &[y]| [slope(y)]));
-            end = (solver.time(), solver.state()[0]);
+            solver.set_tolerance(TOLERANCE * reach * (1.0 - z).abs().max(1.0));
+            let longest = if passes_rest { longest_step(z, speed(z), rest) } else { f64::INFINITY };
+            steps.push(solver.step(until.min(time + longest), |_, z| speed(z)));
+            end = (solver.time(), solver.state());
         }
         work.steps += solver.steps;
         work.evaluations += solver.evaluations;
-        let is_longer = ramps.steps.is_empty() || ramps.side != side || start < ramps.steps[0].from()[0];
-        if solver.steps > 0 && end.1 >= far && end.0 <= until && (is_longer || reach < ramps.reach) {
+        let is_longer = ramps.steps.is_empty() || ramps.side != side || side * (ramps.steps[0].from() - start) > 0.0;
+        if solver.steps > 0 && !is_far(end.1) && end.0 <= until && (is_longer || reach < ramps.reach) {
             *ramps = Ramps {
                 side,
                 reach,
-                ends: steps.iter().map(|step| step.at(step.end())[0]).collect(),
+                ends: steps.iter().map(|step| step.at(step.end())).collect(),
                 steps: steps.clone(),
             };
         }
         let approach = Approach {
             from: end.0,
-            deviation: -side * (-end.1).exp(),
-            exponent: law.exponent(),
-            curvature: 0.5 * (law.exponent() - 1.0),
+            excess: end.1,
+            exponent: n,
+            curvature: 0.5 * (n - 1.0),
         };
         Self::Ramp(Ramp {
             steady,
-            side,
             rate,
             until,
             steps,
@@ -244,66 +255,41 @@ impl Element {
     /// Ends of the integration steps inside the piece (s from its start); between two of them the excess is smooth. The last step may
     /// be that of an earlier ramp and reach beyond the piece.
     pub(crate) fn step_ends(&self) -> impl Iterator<Item = f64> + '_ {
-        let (steps, rate, until) = match self {
-            Self::Ramp(ramp) => (ramp.steps.as_slice(), ramp.rate, ramp.until),
-            Self::Hold { .. } => (&[] as &[_], 1.0, 0.0),
+        let ramp = match self {
+            Self::Ramp(ramp) => Some(ramp),
+            Self::Hold { .. } => None,
         };
-        steps.iter().map(Step::end).take_while(move |end| *end < until).map(move |end| end / rate)
+        ramp.into_iter().flat_map(|ramp| {
+            let ends = ramp.steps.iter().map(Step::end).chain(ramp.approach.parts());
+            ends.take_while(|end| *end < ramp.until).map(|end| end / ramp.rate)
+        })
     }
 }
 
 impl Ramp {
-    /// x = x* (1 ∓ e^(−y)), without cancellation where x is far below x*.
-    #[inline(always)]
-    fn excess(&self, y: f64) -> f64 {
-        if self.side > 0.0 { -self.steady * exp_m1(-y) } else { self.steady * (1.0 - self.side * exp(-y)) }
-    }
-
     fn excess_at(&self, elapsed: f64) -> f64 {
         let time = self.rate * elapsed;
         let index = self.steps.partition_point(|step| step.end() < time);
-        match self.steps.get(index) {
-            Some(step) => {
-                let [y] = step.at(time);
-                self.excess(y)
-            }
-            None => self.steady * (1.0 + self.approach.deviation_at(time)),
-        }
+        self.steady * self.steps.get(index).map_or_else(|| self.approach.excess_at(time), |step| step.at(time))
     }
 
-    /// Replaces rising times by the excess strains then: the same numbers, a step at a time.
+    /// Replaces rising times by the excess strains then: the same numbers.
     fn replace_by_excess(&self, times: &mut [f64]) {
-        let rate = self.rate;
-        let mut rest = times;
-        for step in &self.steps {
-            let count = rest.partition_point(|elapsed| rate * elapsed <= step.end());
-            let (inside, after) = rest.split_at_mut(count);
-            replace(
-                inside,
-                #[inline(always)]
-                |elapsed| self.excess(step.at(rate * elapsed)[0]),
-            );
-            rest = after;
+        let (rate, steady) = (self.rate, self.steady);
+        let (mut steps, mut done) = (self.steps.iter().peekable(), 0);
+        for slot in times.iter_mut() {
+            let time = rate * *slot;
+            while steps.next_if(|step| step.end() < time).is_some() {}
+            let Some(step) = steps.peek() else { break };
+            *slot = steady * step.at(time);
+            done += 1;
         }
+        let rest = &mut times[done..];
         replace(
             rest,
             #[inline(always)]
-            |elapsed| self.steady * (1.0 + self.approach.deviation_at(rate * elapsed)),
+            |elapsed| steady * self.approach.excess_at(rate * elapsed),
         );
-    }
-}
-
-/// q = (1 − sgn(z)|z|ⁿ)/(1 − z) from z and `distance` = 1 − z ≠ 0, of which one may be far smaller than the other can tell; positive, and n at
-/// z = 1.
-fn attraction(z: f64, distance: f64, n: f64) -> f64 {
-    // Whole odd n: the geometric sum, without a power and without cancellation.
-    match n {
-        1.0 => 1.0,
-        3.0 => 1.0 + z * (1.0 + z),
-        5.0 => 1.0 + z * (1.0 + z * (1.0 + z * (1.0 + z))),
-        _ if z > 0.5 => -(n * (-distance).ln_1p()).exp_m1() / distance,
-        _ if z > 0.0 => (1.0 - z.powf(n)) / distance,
-        _ => (1.0 + (-z).powf(n)) / distance,
     }
 }
 

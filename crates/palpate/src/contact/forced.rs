@@ -78,9 +78,9 @@ pub(crate) struct Forced {
 #[derive(Debug)]
 enum Path {
     /// Excess strain at the start, and s over time.
-    Held { initial: f64, steps: Vec<Step<[f64; 1]>> },
+    Held { initial: f64, steps: Vec<Step> },
     /// u₂ over time.
-    Changing(Vec<Step<[f64; 1]>>),
+    Changing(Vec<Step>),
 }
 
 /// Why a piece could not be followed to its end, and how long after its start, s.
@@ -129,7 +129,7 @@ impl Forced {
     }
 
     fn held(body: &Body, force: f64, initial: f64, duration: f64, work: &mut Work) -> Result<Path, Stopped> {
-        let mut steps: Vec<Step<[f64; 1]>> = Vec::new();
+        let mut steps: Vec<Step> = Vec::new();
         work.closed_forms += 1;
         if initial != 0.0 && duration > 0.0 {
             let carried = |s: f64| {
@@ -140,19 +140,19 @@ impl Forced {
             let relative_rate = body.law.relative_rate(initial);
             // The first step sees the excess fall by a part of itself.
             let first = duration.min(0.1 / relative_rate);
-            let mut solver = Dop853::new([0.0], TOLERANCE * first, first);
+            let mut solver = Dop853::new(0.0, TOLERANCE * first, first);
             while solver.time() < duration {
                 // s matters as far as it moves x: relative to itself once it is long.
-                let reached = solver.state()[0].max(1.0 / relative_rate).min(duration);
+                let reached = solver.state().max(1.0 / relative_rate).min(duration);
                 solver.set_tolerance(TOLERANCE * reached);
-                let step = solver.step(duration, |_, &[s]| {
+                let step = solver.step(duration, |_, s| {
                     let (u, excess) = carried(s);
                     // Beyond what the body carries the step is thrown away below.
-                    [share(&body.specimen, body.layers, u.unwrap_or(body.specimen.depth()), excess).0]
+                    share(&body.specimen, body.layers, u.unwrap_or(body.specimen.depth()), excess).0
                 });
-                if carried(solver.state()[0]).0.is_none() {
+                if carried(solver.state()).0.is_none() {
                     let start = steps.last().map_or(0.0, Step::end);
-                    let good = |elapsed: f64| carried(step.at(elapsed)[0]).0.is_some();
+                    let good = |elapsed: f64| carried(step.at(elapsed)).0.is_some();
                     return Err(Stopped::TooMuch {
                         elapsed: last_good(start, solver.time(), good),
                     });
@@ -169,20 +169,20 @@ impl Forced {
         work.ramps += 1;
         let duration = force.duration;
         let (depth, thickness) = (body.specimen.depth(), body.thickness());
-        let mut solver = Dop853::new([behind], TOLERANCE * depth, duration / 64.0);
-        let mut steps: Vec<Step<[f64; 1]>> = Vec::new();
+        let mut solver = Dop853::new(behind, TOLERANCE * depth, duration / 64.0);
+        let mut steps: Vec<Step> = Vec::new();
         let carried = |elapsed: f64, behind: f64| body.carry(force.at(elapsed), behind);
         while solver.time() < duration {
             if steps.len() == MOST_STEPS {
                 return Err(Stopped::TooStiff { elapsed: solver.time() });
             }
-            let step = solver.step(duration, |elapsed, &[behind]| {
+            let step = solver.step(duration, |elapsed, behind| {
                 // Beyond what the body carries the step is thrown away below.
                 let excess = carried(elapsed, behind).map_or(0.0, |(_, excess)| excess);
-                [-thickness * body.law.rate(excess)]
+                -thickness * body.law.rate(excess)
             });
-            if carried(solver.time(), solver.state()[0]).is_none() {
-                let good = |elapsed: f64| carried(elapsed, step.at(elapsed)[0]).is_some();
+            if carried(solver.time(), solver.state()).is_none() {
+                let good = |elapsed: f64| carried(elapsed, step.at(elapsed)).is_some();
                 let start = steps.last().map_or(0.0, Step::end);
                 return Err(Stopped::TooMuch {
                     elapsed: last_good(start, solver.time(), good),
@@ -251,9 +251,9 @@ impl Forced {
 }
 
 /// The dense output at `elapsed`; `None` of no steps.
-fn dense(steps: &[Step<[f64; 1]>], elapsed: f64) -> Option<f64> {
+fn dense(steps: &[Step], elapsed: f64) -> Option<f64> {
     let index = steps.partition_point(|step| step.end() < elapsed).min(steps.len().checked_sub(1)?);
-    Some(steps[index].at(elapsed)[0])
+    Some(steps[index].at(elapsed))
 }
 
 /// The last moment at which `good` holds, by bisection to the last bit.

@@ -1,6 +1,6 @@
 //! The law, lane by lane: functions without branches for kernels over many contacts or layers.
 
-use crate::vector::elementary::{exp, exp_m1, ln, ln_1p};
+use crate::vector::elementary::{exp, ln, ln_1p};
 
 /// Excess strains below this count as none in a power of whole n: their fifth power is not a normal double, which
 /// processors multiply a hundred times more slowly, and moves nothing.
@@ -126,37 +126,6 @@ pub(crate) fn relaxed(power: Power, x: f64, n: f64, v: f64, elapsed: f64) -> f64
             let log = if z == 0.0 { s } else { log / p };
             let phi = if z > -1.0 { exp(-log) } else { 0.0 };
             if size > 0.0 { x * phi } else { x }
-        }
-    }
-}
-
-/// q = (1 − sgn(z)|z|ⁿ)/(1 − z) from z and `distance` = 1 − z ≠ 0, of which one may be far smaller than the other can tell.
-#[inline(always)]
-pub(crate) fn attraction(power: Power, z: f64, distance: f64, n: f64) -> f64 {
-    match power {
-        Power::One => 1.0,
-        Power::Two => {
-            if z > 0.0 {
-                1.0 + z
-            } else {
-                (1.0 + z * z) / distance
-            }
-        }
-        Power::Three => 1.0 + z * (1.0 + z),
-        Power::Five => {
-            let square = z * z;
-            (1.0 + z) + square * ((1.0 + z) + square)
-        }
-        Power::Any => {
-            let size = z.abs();
-            let size = if size > NEGLIGIBLE { size } else { NEGLIGIBLE };
-            // |z| − 1, without loss near z = 1.
-            let beyond = if z > 0.0 { -distance } else { distance - 2.0 };
-            let beyond = if beyond > -0.5 { beyond } else { -0.5 };
-            let log = if beyond > -0.5 { ln_1p(beyond) } else { ln(size) };
-            let less_one = exp_m1(n * log);
-            let above = if z > 0.0 { -less_one } else { 2.0 + less_one };
-            above / distance
         }
     }
 }

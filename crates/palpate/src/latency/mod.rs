@@ -25,4 +25,6 @@ mod law;
 #[cfg(feature = "std")]
 pub use batch::{decay_many, decay_with_gradient_many, decay_with_log_rate_many};
 pub use decay::{Decay, decay, decay_with_gradient};
+#[cfg(feature = "std")]
+pub(crate) use law::signed_power;
 pub use law::{LatencyLaw, LawError, LinearLatency};
