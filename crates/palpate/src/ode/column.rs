@@ -2,30 +2,33 @@
 
 use fearless_simd::{Simd, SimdBase, f64x8};
 
+use crate::vector::aligned::Aligned;
+
 use super::tableau::{A, C, D, E3, E5};
 use super::{DENSE_STAGES, STAGES, combined};
 
-/// Numbers in one vector, and room before the first one for what moves it.
+/// Numbers in one vector.
 pub(crate) const WIDTH: usize = 8;
 
 /// Dormand–Prince 8(5,3) with dense output for a chain: number i is moved by number i − 1 alone, the first one from outside.
 ///
-/// Numbers stand from index [`WIDTH`] on, the one that moves the first at `WIDTH − 1`. Only the first [`active`](Self::active) numbers are
-/// followed; the rest has not been reached yet and stays as it is.
+/// Only the first [`active`](Self::active) numbers are followed; the rest has not been reached yet and stays as it is.
 #[derive(Debug)]
 pub(crate) struct Column {
-    pub(crate) state: Vec<f64>,
+    pub(crate) state: Aligned,
     /// Numbers that are followed, a multiple of [`WIDTH`].
     pub(crate) active: usize,
     len: usize,
+    /// Numbers that share the tolerance: these, and those of other columns.
+    sharers: f64,
     time: f64,
     width: f64,
     narrowest: f64,
     tolerance: f64,
     has_slope: bool,
-    stages: Vec<f64>,
-    point: Vec<f64>,
-    before: Vec<f64>,
+    stages: Aligned,
+    point: Aligned,
+    before: Aligned,
     /// Start and width of the last step.
     last: (f64, f64),
     /// Accepted steps.
@@ -34,34 +37,36 @@ pub(crate) struct Column {
     pub(crate) evaluations: u64,
 }
 
-/// Numbers that go through all stages of a step before the next ones do: what they need stays in the nearest cache.
-const TILE: usize = 128;
-
-/// The right-hand side: time, state (with the number before the first at `WIDTH − 1`, which it has to set), slopes.
+/// The right-hand side.
 pub(crate) trait Slopes<S: Simd> {
-    /// Fills the slopes of the indices from `range.0` up to `range.1`.
-    fn fill(&self, simd: S, time: f64, state: &mut [f64], slopes: &mut [f64], range: (usize, usize));
+    /// What moves the first number, at `time`; `first` is that number then.
+    fn input(&self, time: f64, first: f64) -> f64;
+
+    /// Slopes of the eight numbers from index `at` on, each beside the one that moves it.
+    fn of(&self, simd: S, at: usize, movers: f64x8<S>, numbers: f64x8<S>) -> f64x8<S>;
 
     /// Whether the last of the active numbers has begun to move its neighbour.
     fn passes_on(&self, last: f64) -> bool;
 }
 
 impl Column {
-    /// `len` numbers at 0, errors kept below `tolerance` a step.
-    pub(crate) fn new(len: usize, tolerance: f64) -> Self {
-        let room = WIDTH + len.next_multiple_of(WIDTH);
+    /// `len` numbers at 0. The root of the mean square of the errors of a step, over these and others that make `sharers` together, is kept below
+    /// `tolerance`.
+    pub(crate) fn new(len: usize, sharers: usize, tolerance: f64) -> Self {
+        let room = len.next_multiple_of(WIDTH);
         Self {
-            state: vec![0.0; room],
-            active: WIDTH.min(len.next_multiple_of(WIDTH)),
+            state: Aligned::zeros(room),
+            active: WIDTH.min(room),
             len,
+            sharers: sharers as f64,
             time: 0.0,
             width: 0.0,
             narrowest: 0.0,
             tolerance,
             has_slope: false,
-            stages: vec![0.0; DENSE_STAGES * room],
-            point: vec![0.0; room],
-            before: vec![0.0; room],
+            stages: Aligned::zeros(DENSE_STAGES * room),
+            point: Aligned::zeros(room),
+            before: Aligned::zeros(room),
             last: (0.0, 0.0),
             steps: 0,
             evaluations: 0,
@@ -70,17 +75,22 @@ impl Column {
 
     /// Starts from other numbers than 0, all of them followed.
     pub(crate) fn start_at(&mut self, numbers: impl Iterator<Item = f64>) {
-        self.state[WIDTH..].iter_mut().zip(numbers).for_each(|(slot, number)| *slot = number);
-        self.active = self.len.next_multiple_of(WIDTH);
+        self.state.iter_mut().zip(numbers).for_each(|(slot, number)| *slot = number);
+        self.active = self.state.len();
     }
 
     /// The numbers.
     pub(crate) fn numbers(&self) -> &[f64] {
-        &self.state[WIDTH..WIDTH + self.len]
+        &self.state[..self.len]
     }
 
     pub(crate) fn time(&self) -> f64 {
         self.time
+    }
+
+    /// Whether all numbers are followed.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.active == self.state.len()
     }
 
     /// Sets the clock to 0 and the next step to `width`.
@@ -94,12 +104,10 @@ impl Column {
     /// Takes one step towards `until`, not beyond it.
     #[inline(always)]
     pub(crate) fn step<S: Simd>(&mut self, simd: S, until: f64, rhs: &impl Slopes<S>) {
-        let room = self.state.len();
         let mut rejected = false;
         loop {
             if !self.has_slope {
-                let range = (WIDTH, WIDTH + self.active);
-                rhs.fill(simd, self.time, &mut self.state, &mut self.stages[..room], range);
+                self.first_stage(simd, rhs);
                 self.evaluations += 1;
                 self.has_slope = true;
             }
@@ -107,30 +115,18 @@ impl Column {
             // A last sliver is taken together with the step before it.
             let is_last = self.width >= remaining * (1.0 - 1e-12);
             let width = if is_last { remaining } else { self.width };
-            let (mut squares, mut edge) = ([[0.0; WIDTH]; 3], [0.0; STAGES]);
-            let end = WIDTH + self.active;
-            for from in (WIDTH..end).step_by(TILE) {
-                let until = (from + TILE).min(end);
-                for (stage, edge) in edge.iter_mut().enumerate().skip(1) {
-                    // What moves the first number of a tile is the last one of the tile before, at this stage.
-                    let before = std::mem::replace(&mut self.point[from - 1], *edge);
-                    self.stage(simd, stage, width, rhs, (from, until));
-                    if stage < STAGES - 1 && from > WIDTH {
-                        self.point[from - 1] = before;
-                    }
-                    *edge = self.point[until - 1];
-                }
-                self.estimate(simd, (from, until), &mut squares);
+            for stage in 1..STAGES {
+                self.stage(simd, stage, width, rhs);
             }
             self.evaluations += STAGES as u64 - 1;
-            let most = self.state.len() - WIDTH;
-            if self.active < most && rhs.passes_on(self.point[WIDTH + self.active - 1]) {
-                self.active = (self.active + WIDTH).min(most);
+            if !self.is_whole() && rhs.passes_on(self.point[self.active - 1]) {
+                self.active += WIDTH;
                 self.has_slope = false;
                 continue;
             }
-            let error = self.error(width, &squares);
-            let growth = if error == 0.0 { 10.0 } else { 0.8 * error.powf(-0.125) };
+            let error = self.error(simd, width);
+            // err^(−1/8)
+            let growth = if error == 0.0 { 10.0 } else { 0.8 / error.sqrt().sqrt().sqrt() };
             if (error.is_nan() || error > 1.0) && width > self.narrowest {
                 self.width = (width * growth.max(0.2)).max(self.narrowest);
                 rejected = true;
@@ -156,7 +152,7 @@ impl Column {
         std::mem::swap(&mut self.state, &mut self.before);
         let time = std::mem::replace(&mut self.time, self.last.0);
         for stage in STAGES..DENSE_STAGES {
-            self.stage(simd, stage, self.last.1, rhs, (WIDTH, WIDTH + self.active));
+            self.stage(simd, stage, self.last.1, rhs);
         }
         self.evaluations += (DENSE_STAGES - STAGES) as u64;
         self.time = time;
@@ -169,6 +165,18 @@ impl Column {
         self.stages.copy_within((STAGES - 1) * room..STAGES * room, 0);
     }
 
+    /// Time, value and slope of the last number at both ends of the last step, before [`leave`](Self::leave).
+    pub(crate) fn ends_of_last(&self) -> [(f64, f64, f64); 2] {
+        let (room, at) = (self.state.len(), self.len - 1);
+        let slope = |stage: usize| self.stages[stage * room + at];
+        [(self.last.0, self.before[at], slope(0)), (self.time, self.state[at], slope(STAGES - 1))]
+    }
+
+    /// Makes the next step no wider than `width`.
+    pub(crate) fn cap(&mut self, width: f64) {
+        self.width = self.width.min(width);
+    }
+
     /// The numbers at `time` inside the last step.
     #[inline(always)]
     pub(crate) fn at<S: Simd>(&self, simd: S, time: f64, out: &mut Vec<f64>) {
@@ -178,7 +186,7 @@ impl Column {
         out.clear();
         out.resize(room, 0.0);
         out.copy_from_slice(&self.state);
-        for at in (WIDTH..WIDTH + self.active).step_by(WIDTH) {
+        for at in (0..self.active).step_by(WIDTH) {
             let read = |column: &[f64]| f64x8::from_slice(simd, &column[at..at + WIDTH]);
             let from = read(&self.before);
             let change = read(&self.state) - from;
@@ -195,69 +203,103 @@ impl Column {
             y = (y + change) * splat(x);
             (from + y).store_slice(&mut out[at..at + WIDTH]);
         }
-        out.drain(..WIDTH);
         out.truncate(self.len);
     }
 
+    /// Calls `look` with every eighth index, the eight numbers that move those from there on, and those numbers; `input` makes what moves the
+    /// first number of it.
     #[inline(always)]
-    fn stage<S: Simd>(&mut self, simd: S, stage: usize, width: f64, rhs: &impl Slopes<S>, range: (usize, usize)) {
-        let room = self.state.len();
+    pub(crate) fn scan<S: Simd>(
+        &self,
+        simd: S,
+        input: impl FnOnce(f64) -> f64,
+        mut look: impl FnMut(usize, f64x8<S>, f64x8<S>),
+    ) {
+        let Some(&first) = self.state.first() else { return };
+        let mut before = f64x8::splat(simd, input(first));
+        for at in (0..self.active).step_by(WIDTH) {
+            let numbers = f64x8::from_slice(simd, &self.state[at..at + WIDTH]);
+            look(at, before.slide::<7>(numbers), numbers);
+            before = numbers;
+        }
+    }
+
+    #[inline(always)]
+    fn first_stage<S: Simd>(&mut self, simd: S, rhs: &impl Slopes<S>) {
+        let mut slopes = std::mem::take(&mut self.stages);
+        self.scan(
+            simd,
+            |first| rhs.input(self.time, first),
+            #[inline(always)]
+            |at, movers, numbers| rhs.of(simd, at, movers, numbers).store_slice(&mut slopes[at..at + WIDTH]),
+        );
+        self.stages = slopes;
+    }
+
+    #[inline(always)]
+    fn stage<S: Simd>(&mut self, simd: S, stage: usize, width: f64, rhs: &impl Slopes<S>) {
+        let (room, active) = (self.state.len(), self.active);
         let (known, new) = self.stages.split_at_mut(stage * room);
-        let (state, point) = (&self.state, &mut self.point);
+        let (state, point, new) = (&self.state[..active], &mut self.point[..active], &mut new[..active]);
+        let (time, width) = (self.time + C[stage] * width, f64x8::splat(simd, width));
+        let mut before = f64x8::splat(simd, 0.0);
         sums_of_any(
             simd,
             A[stage],
             (known, room),
-            range,
+            active,
             #[inline(always)]
             |at, sum| {
-                let from = f64x8::from_slice(simd, &state[at..at + WIDTH]);
-                (from + f64x8::splat(simd, width) * sum).store_slice(&mut point[at..at + WIDTH]);
+                let numbers = f64x8::from_slice(simd, &state[at..at + WIDTH]) + width * sum;
+                numbers.store_slice(&mut point[at..at + WIDTH]);
+                if at == 0 {
+                    before = f64x8::splat(simd, rhs.input(time, point[0]));
+                }
+                rhs.of(simd, at, before.slide::<7>(numbers), numbers).store_slice(&mut new[at..at + WIDTH]);
+                before = numbers;
             },
         );
-        let time = self.time + C[stage] * width;
-        rhs.fill(simd, time, &mut self.point, &mut new[..room], range);
-    }
-
-    /// Adds the squares of both estimates and of the slope at the end, in units of the tolerance.
-    #[inline(always)]
-    fn estimate<S: Simd>(&self, simd: S, range: (usize, usize), squares: &mut [[f64; WIDTH]; 3]) {
-        let scale = f64x8::splat(simd, 1.0 / self.tolerance);
-        for (squares, terms) in squares.iter_mut().zip([E5, E3]) {
-            let mut total = f64x8::from_slice(simd, squares);
-            sums::<S, ESTIMATE>(
-                simd,
-                terms,
-                (&self.stages, self.state.len()),
-                range,
-                #[inline(always)]
-                |_, sum| {
-                    let estimate = sum * scale;
-                    total += estimate * estimate;
-                },
-            );
-            total.store_slice(squares);
-        }
-        let last = &self.stages[(STAGES - 1) * self.state.len()..];
-        let mut total = f64x8::from_slice(simd, &squares[2]);
-        for slope in last[range.0..range.1].chunks_exact(WIDTH) {
-            let slope = f64x8::from_slice(simd, slope) * scale;
-            total += slope * slope;
-        }
-        total.store_slice(&mut squares[2]);
     }
 
     /// The error of a step, in units of the tolerance.
-    fn error(&self, width: f64, squares: &[[f64; WIDTH]; 3]) -> f64 {
-        let [fifth, third, slope] = squares.map(|squares| squares.iter().sum::<f64>());
+    #[inline(always)]
+    fn error<S: Simd>(&self, simd: S, width: f64) -> f64 {
+        let (room, scale) = (self.state.len(), f64x8::splat(simd, 1.0 / self.tolerance));
+        let mut squares = [f64x8::splat(simd, 0.0); 3];
+        for (squares, terms) in squares.iter_mut().zip([E5, E3]) {
+            sums::<S, ESTIMATE>(
+                simd,
+                terms,
+                (&self.stages, room),
+                self.active,
+                #[inline(always)]
+                |_, sum| {
+                    let estimate = sum * scale;
+                    *squares += estimate * estimate;
+                },
+            );
+        }
+        let last = &self.stages[(STAGES - 1) * room..];
+        for slope in last[..self.active].chunks_exact(WIDTH) {
+            let slope = f64x8::from_slice(simd, slope) * scale;
+            squares[2] += slope * slope;
+        }
+        let [fifth, third, slope] = [total_of(squares[0]), total_of(squares[1]), total_of(squares[2])];
         if fifth == 0.0 && third == 0.0 {
             return 0.0;
         }
-        combined(width.abs(), fifth, third, slope, self.len as f64)
+        combined(width.abs(), fifth, third, slope, self.sharers)
     }
 }
 
-/// Calls `use_sum` with every eighth index from `from` up to `until` and the Σ weight · stage of the eight numbers there.
+/// The sum of eight numbers.
+#[inline(always)]
+fn total_of<S: Simd>(numbers: f64x8<S>) -> f64 {
+    let numbers: [f64; WIDTH] = numbers.into();
+    numbers.iter().sum()
+}
+
+/// Calls `use_sum` with every eighth index below `count` and the Σ weight · stage of the eight numbers there.
 ///
 /// The number of terms is a constant of the loop: with weights in registers and nothing to decide it runs four times as fast.
 #[inline(always)]
@@ -265,20 +307,20 @@ pub(super) fn sums<S: Simd, const N: usize>(
     simd: S,
     terms: &[(usize, f64)],
     (stages, room): (&[f64], usize),
-    (from, until): (usize, usize),
+    count: usize,
     mut use_sum: impl FnMut(usize, f64x8<S>),
 ) {
     let weights: [f64x8<S>; N] = std::array::from_fn(|term| f64x8::splat(simd, terms[term].1));
     let columns: [&[[f64; WIDTH]]; N] = std::array::from_fn(|term| {
         let column = terms[term].0 * room;
-        stages[column + from..column + until].as_chunks().0
+        stages[column..column + count].as_chunks().0
     });
     for (block, first) in columns[0].iter().enumerate() {
         let mut sum = weights[0] * f64x8::from_slice(simd, first);
         for term in 1..N {
             sum += weights[term] * f64x8::from_slice(simd, &columns[term][block]);
         }
-        use_sum(from + WIDTH * block, sum);
+        use_sum(WIDTH * block, sum);
     }
 }
 
@@ -288,21 +330,21 @@ pub(super) fn sums_of_any<S: Simd>(
     simd: S,
     terms: &[(usize, f64)],
     stages: (&[f64], usize),
-    range: (usize, usize),
+    count: usize,
     use_sum: impl FnMut(usize, f64x8<S>),
 ) {
     match terms.len() {
-        1 => sums::<S, 1>(simd, terms, stages, range, use_sum),
-        2 => sums::<S, 2>(simd, terms, stages, range, use_sum),
-        3 => sums::<S, 3>(simd, terms, stages, range, use_sum),
-        4 => sums::<S, 4>(simd, terms, stages, range, use_sum),
-        5 => sums::<S, 5>(simd, terms, stages, range, use_sum),
-        6 => sums::<S, 6>(simd, terms, stages, range, use_sum),
-        7 => sums::<S, 7>(simd, terms, stages, range, use_sum),
-        8 => sums::<S, 8>(simd, terms, stages, range, use_sum),
-        9 => sums::<S, 9>(simd, terms, stages, range, use_sum),
-        10 => sums::<S, 10>(simd, terms, stages, range, use_sum),
-        _ => sums::<S, 12>(simd, terms, stages, range, use_sum),
+        1 => sums::<S, 1>(simd, terms, stages, count, use_sum),
+        2 => sums::<S, 2>(simd, terms, stages, count, use_sum),
+        3 => sums::<S, 3>(simd, terms, stages, count, use_sum),
+        4 => sums::<S, 4>(simd, terms, stages, count, use_sum),
+        5 => sums::<S, 5>(simd, terms, stages, count, use_sum),
+        6 => sums::<S, 6>(simd, terms, stages, count, use_sum),
+        7 => sums::<S, 7>(simd, terms, stages, count, use_sum),
+        8 => sums::<S, 8>(simd, terms, stages, count, use_sum),
+        9 => sums::<S, 9>(simd, terms, stages, count, use_sum),
+        10 => sums::<S, 10>(simd, terms, stages, count, use_sum),
+        _ => sums::<S, 12>(simd, terms, stages, count, use_sum),
     }
 }
 
@@ -330,13 +372,13 @@ mod tests {
     struct Queue;
 
     impl<S: Simd> Slopes<S> for Queue {
-        fn fill(&self, _: S, time: f64, state: &mut [f64], slopes: &mut [f64], (from, until): (usize, usize)) {
-            if from == WIDTH {
-                state[WIDTH - 1] = (-time).exp();
-            }
-            for at in from..until {
-                slopes[at] = state[at - 1] - state[at];
-            }
+        fn input(&self, time: f64, _: f64) -> f64 {
+            (-time).exp()
+        }
+
+        #[inline(always)]
+        fn of(&self, _: S, _: usize, movers: f64x8<S>, numbers: f64x8<S>) -> f64x8<S> {
+            movers - numbers
         }
 
         fn passes_on(&self, _: f64) -> bool {
@@ -356,7 +398,7 @@ mod tests {
             }
             worst
         };
-        let mut column = Column::new(6, f64::INFINITY);
+        let mut column = Column::new(6, 6, f64::INFINITY);
         column.restart(width);
         let (mut ends, mut halfway, mut inside) = (0.0f64, 0.0f64, Vec::new());
         for step in 1..=steps {

@@ -116,7 +116,7 @@ impl<const L: usize> Lanes<L> {
             simd,
             weights,
             (stages, len),
-            (0, len),
+            len,
             #[inline(always)]
             |at, sum| {
                 let width = f64x8::from_slice(simd, &width[at % L..at % L + WIDTH]);
@@ -137,7 +137,7 @@ impl<const L: usize> Lanes<L> {
                 simd,
                 terms,
                 stages,
-                (0, len),
+                len,
                 #[inline(always)]
                 |at, sum| {
                     let lane = at % L;

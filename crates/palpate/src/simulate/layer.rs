@@ -195,8 +195,20 @@ impl Layer for ContactModel {
         }
         let strain = |elapsed: f64| piece.excess_at(elapsed) + self.specimen.equilibrium_strain(jaw(start + elapsed));
         let (mut touching, duration) = (0.0, end - start);
+        let by_jaw = self.layers.drive(speed, self.specimen.depth()) + speed / self.specimen.depth();
+        let gain = |elapsed: f64| self.law.rate(piece.excess_at(elapsed)) + by_jaw;
         for elapsed in piece.step_ends().chain([duration]) {
             if elapsed <= duration && strain(elapsed) < 0.0 {
+                if touching == 0.0 && strain(0.0) <= 0.0 && gain(0.0) > 0.0 {
+                    // Just met and still gaining on the jaw: it is lost after the strain has risen, if that is more than rounding.
+                    if gain(elapsed) < 0.0 {
+                        touching = crossing(0.0, elapsed, gain);
+                    }
+                    if strain(touching) <= 0.0 {
+                        touching = 0.0;
+                        continue;
+                    }
+                }
                 let gone = if strain(touching) <= 0.0 { touching } else { crossing(touching, elapsed, strain) };
                 return Some(start + gone);
             }

@@ -191,7 +191,8 @@ impl ContactState {
         let depth = model.specimen.depth();
         let thickness = model.layers.thickness(depth);
         let kick = 0.5 * model.layers.drive(to - self.jaw, depth);
-        let excess = (self.jaw - self.behind) / thickness - self.jaw / depth;
+        // A tick waits for the one before it: a product here is ready sooner than a division.
+        let excess = (self.jaw - self.behind) * (1.0 / thickness) - self.jaw / depth;
         let excess = model.law.excess_after(excess + kick, dt) + kick;
         Self {
             jaw: to,

@@ -151,6 +151,12 @@ impl<'a, L: Layer, V: FnMut(&Stretch<L>) -> Result<(), SimulateError>> Walker<'a
                 },
             };
             let mut event = next_event(&stretch, self.model);
+            // Lost at the moment it was met, again and again: that is rounding.
+            if let (Some(last), Some(now)) = (self.events.last(), event)
+                && (last.kind, last.time) == (ContactEventKind::Regained, now.time)
+            {
+                event = None;
+            }
             if let Some(event) = event {
                 stretch.end = event.time;
             }

@@ -7,6 +7,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `aligned.rs` | a column that begins at a cache line |
 //! | `columns.rs` | finite, rising, extremes; one column made of another |
 //! | `elementary.rs` | exp, ln and ln(1 + z) without branches |
 //! | `moments.rs` | sums over a run of samples |
@@ -14,6 +15,7 @@
 //! | `single.rs` | exp and ln in single precision |
 //! | `shapes.rs` | exponential, stretched exponential and logarithm of time with their derivatives |
 
+pub(crate) mod aligned;
 pub(crate) mod columns;
 pub(crate) mod elementary;
 pub(crate) mod moments;
