@@ -14,12 +14,49 @@ pub fn wave_figure(name: &str, wave: &StrainWave, caption: &str) -> Figure {
         .layer(Layer::map(wave.time.clone(), depth, values, "Strain", ""))
         .share(1.2);
     let mut lines = Panel::new(Axis::linear("Time", "s"), Axis::linear("Strain", ""));
-    for (i, strain) in wave.strain.iter().enumerate() {
-        // The contact, every second layer behind it, and the innermost.
-        if i == 0 || i == layers - 1 || (i % 2 == 1 && layers <= 16) {
-            let line = Layer::line(wave.time.clone(), strain.clone(), Role::Series((i / 2 + usize::from(i > 0)) as u8));
-            lines = lines.layer(line.label(format!("layer {}", i + 1)));
-        }
+    for (series, layer) in shown(layers).into_iter().enumerate() {
+        let line = Layer::line(wave.time.clone(), wave.strain[layer].clone(), Role::Series(series as u8));
+        lines = lines.layer(line.label(format!("layer {}", layer + 1)));
     }
     Figure::new(name, caption).panel(map).panel(lines).arrangement(Arrangement::Stacked)
+}
+
+/// Layers that have a line: the contact, every second one behind it, and the innermost; of many the contact, the quarters and the innermost.
+fn shown(layers: usize) -> Vec<usize> {
+    let innermost = layers - 1;
+    let between: Vec<usize> = if layers <= 16 {
+        (1..innermost).step_by(2).collect()
+    } else {
+        (1..=3).map(|quarter| quarter * layers / 4 - 1).collect()
+    };
+    let mut shown: Vec<usize> = [0].into_iter().chain(between).chain([innermost]).collect();
+    shown.dedup();
+    shown
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_or_many_layers_each_have_a_colour_of_their_own() {
+        assert_eq!(shown(1), [0]);
+        assert_eq!(shown(2), [0, 1]);
+        assert_eq!(shown(8), [0, 1, 3, 5, 7]);
+        assert_eq!(shown(9), [0, 1, 3, 5, 7, 8]);
+        assert_eq!(shown(512), [0, 127, 255, 383, 511]);
+        let wave = StrainWave {
+            time: vec![0.0, 1.0],
+            strain: vec![vec![0.0, 0.1]; 512],
+            displacement: vec![vec![0.0, 0.1]; 512],
+            work: palpate::simulate::Work::default(),
+        };
+        let figure = wave_figure("layers", &wave, "Many layers.");
+        let role = |layer: &Layer| match layer {
+            Layer::Line { role, .. } => *role,
+            _ => panic!("no line"),
+        };
+        let roles: Vec<Role> = figure.panels[1].layers.iter().map(role).collect();
+        assert_eq!(roles, [0, 1, 2, 3, 4].map(Role::Series));
+    }
 }
