@@ -133,13 +133,16 @@ pub(super) struct OutputTable {
     pub(super) times: Option<Vec<QuantityText>>,
 }
 
-/// Reads and checks the protocol in the file at `path`.
+/// The longest protocol that is read, in bytes: a million steps of one line for each number.
+const LONGEST: u64 = 64 << 20;
+
+/// Reads and checks the protocol in the file at `path`, of at most 64 MiB: more than a million steps, which take some 2 GiB of memory.
 ///
 /// # Errors
 /// [`DescriptionError`] where the file cannot be read, is no TOML, or holds a key or value that makes no
 /// protocol; it names the key.
 pub fn read_protocol(path: &Path) -> Result<Protocol, DescriptionError> {
-    parse_protocol(&source::read(path)?, path)
+    parse_protocol(&source::read(path, LONGEST)?, path)
 }
 
 /// Reads title, body, law and contact of the protocol in the file at `path`, whatever its steps: for a contact that a record drives.
@@ -147,7 +150,7 @@ pub fn read_protocol(path: &Path) -> Result<Protocol, DescriptionError> {
 /// # Errors
 /// As for [`read_protocol`], less those of steps and output.
 pub fn read_scene(path: &Path) -> Result<(Option<String>, Model), DescriptionError> {
-    let text = source::read(path)?;
+    let text = source::read(path, LONGEST)?;
     let source = Source { path, text: &text };
     let tables: ProtocolTables = source.tables()?;
     let model = model(&source, &tables)?;

@@ -13,10 +13,10 @@ use super::{
 };
 
 /// The longest description that is read, in bytes.
-const LONGEST: u64 = 1 << 20;
+pub(super) const LONGEST: u64 = 1 << 20;
 
-/// The text of the file at `path`.
-pub(super) fn read(path: &Path) -> Result<String, DescriptionError> {
+/// The text of the file at `path`, which may have `longest` bytes.
+pub(super) fn read(path: &Path, longest: u64) -> Result<String, DescriptionError> {
     let failed = |source: io::Error| {
         let path = path.to_owned();
         match source.kind() {
@@ -29,11 +29,11 @@ pub(super) fn read(path: &Path) -> Result<String, DescriptionError> {
     if about.is_dir() {
         return Err(DescriptionError::Directory { path: path.to_owned() });
     }
-    if about.len() > LONGEST {
+    if about.len() > longest {
         return Err(DescriptionError::TooLong {
             path: path.to_owned(),
             bytes: about.len(),
-            limit: LONGEST,
+            limit: longest,
         });
     }
     let bytes = fs::read(path).map_err(failed)?;

@@ -107,7 +107,7 @@ impl TestDescription {
 /// [`DescriptionError`] where the file cannot be read, is no TOML, or holds a key or value that makes no
 /// sense; it names the key.
 pub fn read_test(path: &Path) -> Result<TestDescription, DescriptionError> {
-    parse_test(&source::read(path)?, path)
+    parse_test(&source::read(path, source::LONGEST)?, path)
 }
 
 /// Checks a description that was read already; `path` is used in messages alone.

@@ -5,7 +5,7 @@ use palpate::{
     simulate::{LinearLaw, Memory, ProgramStep, Sampling, Separation, simulate},
 };
 
-use palpate_files::description::Model;
+use palpate_files::description::{Model, read_protocol};
 
 use crate::{SQUEEZE, protocol, says, with};
 
@@ -400,4 +400,20 @@ fn numbers_that_make_no_linear_law_are_refused_with_their_key() {
     let whole = whole.replace("overshoot = 1, time = \"20 s\"", "share = 0.4, rate = \"0.1 /s\"");
     let error = protocol(&whole).unwrap_err();
     assert_eq!(error.key(), Some("law.shares"), "{error}");
+}
+
+#[test]
+fn a_protocol_of_thirty_thousand_steps_is_read_and_one_of_a_record_s_length_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.toml");
+    let step = |i: u32| format!("[[step]]\nto = \"{} mm\"\nrate = \"50 mm/s\"\nhold = \"0.01 s\"\n", 4 + i % 2);
+    let steps: String = (0..30_000).map(step).collect();
+    std::fs::write(&path, format!("{SQUEEZE}{steps}")).unwrap();
+    assert!(std::fs::metadata(&path).unwrap().len() > 1 << 20);
+    // A move and a hold each.
+    assert_eq!(read_protocol(&path).unwrap().steps.len(), 60_002);
+
+    std::fs::File::create(&path).unwrap().set_len((64 << 20) + 1).unwrap();
+    let error = read_protocol(&path).unwrap_err();
+    assert!(error.to_string().contains("at most 67108864 bytes"), "{error}");
 }

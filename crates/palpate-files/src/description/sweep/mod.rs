@@ -198,7 +198,7 @@ impl Sweep {
 /// # Errors
 /// As for [`read_protocol`](super::read_protocol), and where the sweep names no number of the protocol, or values that are none.
 pub fn read_sweep(path: &Path) -> Result<Sweep, DescriptionError> {
-    parse_sweep(&source::read(path)?, path)
+    parse_sweep(&source::read(path, source::LONGEST)?, path)
 }
 
 /// Likewise for a text that was read already; `path` is used in messages alone.
