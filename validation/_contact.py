@@ -244,3 +244,14 @@ def integrate(case, times):
         values, _, x, _ = integrate_piece(x, g, v, n, (ta, tb), times)
         out.update(values)
     return [out[t] for t in times]
+
+
+def excess_of_layers(layers):
+    """Excess strains of all layers from u_2 .. u_m and u_1, in units of the depth."""
+    behind = 1.0 - np.arange(layers) / layers  # L_i
+
+    def excess(w, top):
+        u = np.concatenate([[top], w, [0.0]])
+        return layers * (u[:-1] - u[1:]) - u[:-1] / behind
+
+    return excess, behind

@@ -11,18 +11,13 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from _common import round_up, write_reference
-from _contact import Exact, ramp_and_hold
+from _contact import Exact, excess_of_layers, ramp_and_hold
 from contact_force import DOWN, UP, protocol
 
 
 def solve(case, times, method, rtol, atol):
     r, m, v, n = case["radius"], int(case["layers"]), case["rate_coefficient"], case["exponent"]
-    behind = 1.0 - np.arange(m) / m  # L_i / r
-
-    def excess(w, top):  # w: u_2 .. u_m over r
-        u = np.concatenate([[top], w, [0.0]])
-        return m * (u[:-1] - u[1:]) - u[:-1] / behind
-
+    excess, behind = excess_of_layers(m)
     out, w = {}, np.zeros(m - 1)
     for (ta, da), (tb, db) in zip(case["knots"], case["knots"][1:]):
         slope = (db - da) / (tb - ta) / case["sides"] / r

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from _common import round_up, write_reference
-from _contact import ramp_and_hold
+from _contact import excess_of_layers, ramp_and_hold
 from contact_force import protocol
 
 SHORT = ramp_and_hold([10.0, 20.0, 5.0], 500.0, 4.0)
@@ -34,12 +34,7 @@ CASES = [
 
 def solve(case, times, method, rtol):
     r, m, v, n = case["radius"], int(case["layers"]), case["rate_coefficient"], case["exponent"]
-    behind = 1.0 - np.arange(m) / m
-
-    def excess(w, top):
-        u = np.concatenate([[top], w, [0.0]])
-        return m * (u[:-1] - u[1:]) - u[:-1] / behind
-
+    excess, behind = excess_of_layers(m)
     out, w = {}, np.zeros(m - 1)
     for (ta, da), (tb, db) in zip(case["knots"], case["knots"][1:]):
         slope = (db - da) / (tb - ta) / case["sides"] / r
