@@ -4,7 +4,7 @@ use std::{fmt, io, path::PathBuf};
 
 use palpate::units::{Dimension, UnitError};
 
-use crate::text::{allowed, reason};
+use crate::error::{allowed, reason};
 
 /// Ends the words for what is accepted where a value is out of all proportion.
 pub(super) const BELIEVABLE: &str = "as bodies have it";

@@ -21,6 +21,7 @@ mod choices;
 mod columns;
 mod contact;
 mod error;
+mod file;
 mod law;
 mod numbers;
 mod places;

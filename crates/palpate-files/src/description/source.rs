@@ -180,7 +180,7 @@ impl Source<'_> {
             line,
             column,
             message: error.message().trim().replace('\n', ", "),
-            text: crate::text::shorten(text),
+            text: crate::error::shorten(text),
         }
     }
 

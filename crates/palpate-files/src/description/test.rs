@@ -19,7 +19,7 @@ use super::{
     specimen,
     test_tables::{ContactTable, TestTables},
 };
-use crate::text::LayoutOptions;
+use crate::contents::ReadOptions;
 
 /// What a test is about, in the words of whoever made it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -39,8 +39,8 @@ pub struct About {
 pub struct TestDescription {
     /// What it is about.
     pub about: About,
-    /// What is fixed about how the file is written.
-    pub layout: LayoutOptions,
+    /// What is fixed about how the file is written, and which of its tests is meant.
+    pub reading: ReadOptions,
     /// Which columns hold what.
     pub columns: ColumnChoices,
     /// The body, if it is known.
@@ -67,7 +67,7 @@ impl Default for TestDescription {
     fn default() -> Self {
         Self {
             about: About::default(),
-            layout: LayoutOptions::default(),
+            reading: ReadOptions::default(),
             columns: ColumnChoices::default(),
             geometry: None,
             separation: Separation::Bonded,
@@ -151,7 +151,7 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
             source: tables.about.source,
             note: tables.about.note,
         },
-        layout: tables.file,
+        reading: tables.file.checked(),
         columns,
         geometry,
         separation: contact::separation(contact.separation.unwrap_or(grows)),

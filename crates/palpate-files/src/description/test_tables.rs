@@ -3,8 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{columns::ColumnsTable, contact::SidesName, quantity::QuantityText, specimen::SpecimenTable};
-use crate::text::LayoutOptions;
+use super::{columns::ColumnsTable, contact::SidesName, file::FileTable, quantity::QuantityText, specimen::SpecimenTable};
 
 /// A squeeze-and-hold test: what its record holds, what was tested, and how to evaluate it. Every table may be
 /// left out. Quantities are texts with a unit.
@@ -14,9 +13,8 @@ use crate::text::LayoutOptions;
 pub(super) struct TestTables {
     #[serde(default)]
     pub(super) about: AboutTable,
-    /// How the file is written, where it should not be found out.
     #[serde(default)]
-    pub(super) file: LayoutOptions,
+    pub(super) file: FileTable,
     #[serde(default)]
     pub(super) columns: ColumnsTable,
     pub(super) specimen: Option<SpecimenTable>,

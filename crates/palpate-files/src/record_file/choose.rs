@@ -11,8 +11,8 @@ use super::{
     recognise,
 };
 use crate::{
+    contents::{ColumnInfo, Part},
     description::{ClockChoice, ColumnChoice, ColumnRef, TestDescription},
-    text::{ColumnInfo, Layout},
 };
 
 /// The columns to read and how to make a record of them.
@@ -48,15 +48,15 @@ impl Found<'_> {
 struct Chooser<'a> {
     path: &'a Path,
     columns: &'a [ColumnInfo],
-    layout: &'a Layout,
+    part: &'a Part,
 }
 
-/// Chooses the columns of the file at `path`.
-pub(super) fn choose(path: &Path, layout: &Layout, test: &TestDescription) -> Result<Plan, ColumnError> {
+/// Chooses the columns of one test in the file at `path`.
+pub(super) fn choose(path: &Path, part: &Part, test: &TestDescription) -> Result<Plan, ColumnError> {
     let chooser = Chooser {
         path,
-        columns: &layout.columns,
-        layout,
+        columns: &part.columns,
+        part,
     };
     let said = &test.columns;
     let (load, load_said) = chooser.force_or_stress(test)?;
@@ -156,7 +156,7 @@ impl<'a> Chooser<'a> {
     fn named(&self, key: &str, named: &ColumnRef) -> Result<&'a ColumnInfo, ColumnError> {
         let column = match named {
             ColumnRef::Number(number) => self.columns.get(number.wrapping_sub(1)),
-            ColumnRef::Name(name) => self.layout.column_named(name),
+            ColumnRef::Name(name) => self.part.column_named(name),
         };
         column.ok_or_else(|| ColumnError::NoSuchColumn {
             path: self.path.to_owned(),

@@ -6,8 +6,9 @@ use palpate::record::RecordError;
 
 use super::{Quantity, snippet};
 use crate::{
+    contents::ColumnInfo,
     description::ColumnRef,
-    text::{ColumnInfo, FileError},
+    error::FileError,
 };
 
 /// A column as messages name it: `column 3 (Force)`.
@@ -183,14 +184,34 @@ pub enum ReadError {
     #[error(transparent)]
     Column(#[from] ColumnError),
     /// The numbers make no record.
-    #[error("{}{}: {}", path.display(), line.map_or_else(String::new, |line| format!(", line {line}")), without_row(source))]
+    #[error("{}{}{}: {}", path.display(), in_part(part.as_deref()), at_line(*line), without_row(source))]
     Record {
         /// The file.
         path: PathBuf,
+        /// The part of the file, where it has several.
+        part: Option<String>,
         /// Line, from 1, where one line is to blame.
         line: Option<usize>,
         /// What is wrong.
         source: RecordError,
+    },
+    /// The file holds several tests and none was chosen.
+    #[error("{}: expected one test, found {}: {}", path.display(), parts.len(), first(parts))]
+    SeveralParts {
+        /// The file.
+        path: PathBuf,
+        /// Their names.
+        parts: Vec<String>,
+    },
+    /// The file holds no test of the name that was given.
+    #[error("{}: expected one of {}, found \"{found}\"", path.display(), first(parts))]
+    NoSuchPart {
+        /// The file.
+        path: PathBuf,
+        /// What was asked for.
+        found: String,
+        /// The names there are.
+        parts: Vec<String>,
     },
 }
 
@@ -202,8 +223,29 @@ impl ReadError {
             Self::File(error) => error.hint(),
             Self::Column(error) => Some(error.hint()),
             Self::Record { source, .. } => Some(source.hint().to_owned()),
+            Self::SeveralParts { parts, .. } => {
+                let first = parts.first().map_or("1", String::as_str);
+                Some(format!("choose one by its name or number: --part \"{first}\", or in a test description:\n[file]\npart = \"{first}\""))
+            }
+            Self::NoSuchPart { .. } => Some("name a part as the file does, or give its number, counted from 1".to_owned()),
         }
     }
+}
+
+fn in_part(part: Option<&str>) -> String {
+    part.map_or_else(String::new, |part| format!(", {part}"))
+}
+
+fn at_line(line: Option<usize>) -> String {
+    line.map_or_else(String::new, |line| format!(", line {line}"))
+}
+
+/// The first few names of parts.
+fn first(parts: &[String]) -> String {
+    const MOST: usize = 5;
+    let named: Vec<String> = parts.iter().take(MOST).map(|part| format!("\"{part}\"")).collect();
+    let more = if parts.len() > MOST { ", …" } else { "" };
+    format!("{}{more}", named.join(", "))
 }
 
 /// The message of a record error less its row: the line of the file says more.

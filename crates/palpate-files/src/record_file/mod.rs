@@ -2,6 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `parts.rs` | which parts of a file are tests ([`tests`]) |
 //! | `read.rs` | reads a record ([`read_record`]) |
 //! | `choose.rs` | chooses the columns, from a description or by the header |
 //! | `recognise.rs`, `header_words.rs` | tells columns by their names |
@@ -11,6 +12,7 @@
 mod choose;
 mod error;
 mod header_words;
+mod parts;
 mod quantity;
 mod read;
 mod recognise;
@@ -19,7 +21,8 @@ mod snippet;
 pub use error::{ColumnError, NamedColumn, ReadError};
 pub use quantity::Quantity;
 pub(crate) use quantity::unit_factor;
-pub use read::{RecordFile, read_record};
+pub use parts::{Tests, tests};
+pub use read::{RecordFile, read_part, read_record};
 
 use serde::Serialize;
 

@@ -7,10 +7,11 @@ use palpate::{
     units,
 };
 
-use super::{ColumnUse, Quantity, ReadError, Role, choose};
+use super::{ColumnUse, Quantity, ReadError, Role, choose, parts};
 use crate::{
+    contents::{Contents, Format, IgnoredLines, Part},
     description::TestDescription,
-    text::{self, IgnoredLines, Layout},
+    input::Packing,
 };
 
 /// A record and where it came from.
@@ -23,9 +24,15 @@ pub struct RecordFile {
     /// Which columns it was made of.
     pub columns: Vec<ColumnUse>,
     /// How the file is written.
-    pub layout: Layout,
-    /// Rows of the file. Where displacement and force have clocks of their own, the record can have fewer.
+    pub format: Format,
+    /// How the file is packed.
+    pub packing: Packing,
+    /// The part of the file that is this test.
+    pub part: Part,
+    /// Rows of the test. Where displacement and force have clocks of their own, the record can have fewer.
     pub rows: usize,
+    /// How many successive rows each sample of the record is the mean of; 1 unless the file is very long.
+    pub averaged: usize,
     /// Lines of the file that were passed over.
     pub ignored: IgnoredLines,
     /// The file holds stress and no section is known: the force of the record is that on 1 m².
@@ -34,7 +41,7 @@ pub struct RecordFile {
     pub bytes: u64,
 }
 
-/// Reads the record in the file of delimited text at `path`.
+/// Reads the record in the file at `path`, of any format.
 ///
 /// The columns and units are those that `description` says; what it leaves open is told by the header, which
 /// is understood in English, German, French, Spanish, Chinese and Japanese. What neither tells is an error that
@@ -55,8 +62,8 @@ pub struct RecordFile {
 /// ```
 ///
 /// # Errors
-/// [`ReadError`] where the file cannot be read, where it is not clear which column holds what, or where the
-/// numbers make no record, with the line.
+/// [`ReadError`] where the file cannot be read or holds several tests of which none is chosen, where it is not clear
+/// which column holds what, or where the numbers make no record, with the line.
 pub fn read_record(
     path: &Path,
     description: Option<&TestDescription>,
@@ -64,10 +71,34 @@ pub fn read_record(
 ) -> Result<RecordFile, ReadError> {
     let usual = TestDescription::default();
     let test = description.unwrap_or(&usual);
-    let layout = text::detect(path, &test.layout)?;
-    let plan = choose::choose(path, &layout, test)?;
+    let contents = Contents::open(path, &test.reading)?;
+    let tests = parts::tests(&contents, test)?;
+    match tests.parts[..] {
+        [only] => read_part(&contents, only, description, progress),
+        ref several => Err(ReadError::SeveralParts {
+            path: path.to_owned(),
+            parts: several.iter().map(|part| contents.parts()[*part].title().to_owned()).collect(),
+        }),
+    }
+}
+
+/// Reads the record in the part of a file with index `part`, as [`read_record`] does.
+///
+/// # Errors
+/// As for [`read_record`].
+pub fn read_part(
+    contents: &Contents,
+    part: usize,
+    description: Option<&TestDescription>,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<RecordFile, ReadError> {
+    let usual = TestDescription::default();
+    let test = description.unwrap_or(&usual);
+    let path = contents.path();
+    let about = &contents.parts()[part];
+    let plan = choose::choose(path, about, test)?;
     let numbers: Vec<usize> = plan.columns.iter().map(|column| column.number).collect();
-    let mut read = text::read_columns(path, &layout, &numbers, progress)?;
+    let mut read = contents.read(part, &numbers, progress)?;
     let values = std::mem::take(&mut read.values);
     let series = plan.columns.iter().zip(values).map(|(column, mut values)| {
         let section = if column.role.measured() == Quantity::Stress { plan.section } else { 1.0 };
@@ -76,6 +107,7 @@ pub fn read_record(
     });
     let record = assemble(series.collect()).map_err(|source| ReadError::Record {
         path: path.to_owned(),
+        part: about.name.clone(),
         line: source.row().and_then(|row| read.line_of(row)),
         source,
     })?;
@@ -83,8 +115,11 @@ pub fn read_record(
         path: path.to_owned(),
         record,
         columns: plan.columns,
-        layout,
+        format: contents.format(),
+        packing: contents.packing().clone(),
+        part: about.clone(),
         rows: read.rows(),
+        averaged: read.averaged,
         ignored: read.ignored,
         per_unit_area: plan.per_unit_area,
         bytes: read.bytes,

@@ -7,7 +7,7 @@ use super::{
     header_words::{OTHER, OTHER_CHARACTERS, VOCABULARY, Vocabulary},
     quantity::unit_factor,
 };
-use crate::text::{ColumnInfo, ColumnKind};
+use crate::contents::{ColumnInfo, ColumnKind};
 
 /// The columns that name `quantity` best: one if it is clear, several if it is not, none if none does.
 pub(super) fn candidates(columns: &[ColumnInfo], quantity: Quantity) -> Vec<&ColumnInfo> {

@@ -1,7 +1,7 @@
 //! Lines to paste into a test description.
 
 use super::{Quantity, error::NamedColumn, recognise};
-use crate::text::{ColumnInfo, ColumnKind};
+use crate::contents::{ColumnInfo, ColumnKind};
 
 /// Most columns that a message shows.
 const MOST: usize = 8;

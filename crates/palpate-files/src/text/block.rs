@@ -2,9 +2,10 @@
 
 use super::{
     fields::Fields,
-    layout::{ColumnKind, Delimiter},
+    layout::Delimiter,
     number::{self, Cell},
 };
+use crate::contents::ColumnKind;
 
 /// Rows that share a number of cells and hold numbers in the same columns.
 #[derive(Debug, Clone)]

@@ -3,95 +3,18 @@
 use std::path::Path;
 
 use super::{
-    error::FileError,
     layout::Layout,
     lines::LineReader,
     row::{Fault, RowPlan},
 };
+use crate::{
+    contents::{Columns, Footer},
+    error::FileError,
+    input::Input,
+};
 
 /// Most lines behind the data that pass for a footer. More are a part of the record that cannot be read.
 const LONGEST_FOOTER: usize = 50;
-
-/// Columns of numbers read from a file.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Columns {
-    /// One vector a chosen column, in the order chosen; all have the same length. Every value is finite.
-    pub values: Vec<Vec<f64>>,
-    /// What was passed over behind the first row.
-    pub ignored: IgnoredLines,
-    /// Size of the file in bytes.
-    pub bytes: u64,
-    rows: usize,
-    runs: Vec<Run>,
-}
-
-/// Lines passed over behind the first row of data.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct IgnoredLines {
-    /// How many blank lines there are, wherever they stand.
-    pub blank: usize,
-    /// Lines at the very end that are no data.
-    pub footer: Option<Footer>,
-}
-
-/// Lines at the very end of a file that are no data.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Footer {
-    /// First of these lines, from 1.
-    pub first_line: usize,
-    /// How many there are, blank ones aside.
-    pub lines: usize,
-    /// The first of them, shortened.
-    pub sample: String,
-}
-
-/// Rows on successive lines.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Run {
-    /// Index of the first row.
-    row: usize,
-    /// Line it stands on.
-    line: usize,
-}
-
-impl Columns {
-    /// Number of rows.
-    #[must_use]
-    pub fn rows(&self) -> usize {
-        self.rows
-    }
-
-    /// The line (from 1) that the row with index `row` (from 0) stands on; `None` behind the last row.
-    #[must_use]
-    pub fn line_of(&self, row: usize) -> Option<usize> {
-        let behind = self.runs.partition_point(|run| run.row <= row);
-        let run = self.runs.get(behind.checked_sub(1)?)?;
-        (row < self.rows).then(|| run.line + (row - run.row))
-    }
-
-    fn push(&mut self, row: &[f64], line: usize) {
-        let index = self.rows;
-        let follows = self.runs.last().is_some_and(|run| run.line + (index - run.row) == line);
-        if !follows {
-            self.runs.push(Run { row: index, line });
-        }
-        for (values, &value) in self.values.iter_mut().zip(row) {
-            values.push(value);
-        }
-        self.rows += 1;
-    }
-
-    /// Makes room for as many rows as the file should have, going by those read from its first `done` bytes, so
-    /// that growing does not copy what is there.
-    fn reserve(&mut self, done: u64, total: u64) {
-        let rows = self.rows;
-        let left = total.saturating_sub(done) as f64;
-        let more = rows as f64 * left / done.max(1) as f64 * 1.02;
-        for values in &mut self.values {
-            values.reserve(more as usize);
-        }
-    }
-}
 
 /// A faulty line that may turn out to start a footer.
 #[derive(Debug)]
@@ -102,8 +25,8 @@ struct Suspect {
 
 /// Reads the chosen columns (numbers from 1, in any order) of a file laid out as `layout` says.
 ///
-/// The file is streamed: memory is 8 bytes for each cell of the chosen columns and a few megabytes
-/// besides, whatever the size of the file. `progress` is told the bytes done and the bytes there are,
+/// The file is streamed: memory is 8 bytes for each cell of the chosen columns and a few megabytes besides, and
+/// no more than [`MOST_ROWS`](crate::contents::MOST_ROWS) rows are kept: of a longer file successive rows are averaged. `progress` is told the bytes done and the bytes there are,
 /// once for every quarter of a mebibyte or so and once at the end.
 ///
 /// Blank lines are passed over and counted. Lines at the very end that do not start like data are
@@ -114,20 +37,18 @@ struct Suspect {
 /// Where the file cannot be read, a column does not exist, or a row is faulty: the first fault is reported with
 /// its line and column. A file without any row gives [`FileError::NoDataRows`].
 pub fn read_columns(
-    path: &Path,
+    input: &Input,
     layout: &Layout,
     columns: &[usize],
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Columns, FileError> {
+    let path = input.name();
     let mut distinct = columns.to_vec();
     distinct.sort_unstable();
     distinct.dedup();
     let plan = RowPlan::new(path, layout, &distinct)?;
-    let mut reader = LineReader::open(path, layout.encoding)?;
-    let mut read = Columns {
-        values: vec![Vec::new(); distinct.len()],
-        ..Columns::default()
-    };
+    let mut reader = LineReader::open(input, layout.encoding)?;
+    let mut read = Columns::of(distinct.len());
     let mut row = vec![0.0; distinct.len()];
     let mut suspect: Option<Suspect> = None;
     let (mut told, mut reserved) = (0, false);
@@ -236,8 +157,6 @@ fn finish(path: &Path, mut read: Columns, suspect: Option<Suspect>, lines: usize
         }
         None => {}
     }
-    for values in &mut read.values {
-        values.shrink_to_fit();
-    }
+    read.finish();
     Ok(read)
 }

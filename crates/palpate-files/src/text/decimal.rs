@@ -2,11 +2,11 @@
 
 use super::{
     block::Block,
-    error::DecimalDoubt,
     fields::cells,
-    layout::{ColumnKind, DecimalMark, Delimiter},
+    layout::{DecimalMark, Delimiter},
     number::Cell,
 };
+use crate::{contents::ColumnKind, error::DecimalDoubt};
 
 /// Where the decimal mark is uncertain, and why.
 #[derive(Debug, Clone, PartialEq, Eq)]

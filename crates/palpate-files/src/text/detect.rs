@@ -5,12 +5,16 @@ use std::path::Path;
 use super::{
     block::{self, Block},
     decimal,
-    error::{FileError, shorten},
     fields::cells,
     header::{self, Header},
-    layout::{ColumnInfo, ColumnKind, Delimiter, Layout, LayoutOptions, Metadata},
+    layout::{Delimiter, Layout, LayoutOptions},
     metadata,
     sample::Sample,
+};
+use crate::{
+    contents::{ColumnInfo, ColumnKind, Metadata},
+    error::{FileError, shorten},
+    input::Input,
 };
 
 /// Finds out how a file of delimited text is written, from at most its first 256 KiB.
@@ -21,8 +25,9 @@ use super::{
 ///
 /// Where the file cannot be opened, is empty, is no delimited text ([`FileError::Foreign`]), has a
 /// single column, no rows of numbers, or numbers that can be read in two ways ([`FileError::AmbiguousDecimal`]).
-pub fn detect(path: &Path, options: &LayoutOptions) -> Result<Layout, FileError> {
-    let sample = Sample::take(path, options.encoding)?;
+pub fn detect(input: &Input, options: &LayoutOptions) -> Result<Layout, FileError> {
+    let path = input.name();
+    let sample = Sample::take(input, options.encoding)?;
     let lines = sample.lines();
     let skip = options.skip_lines.unwrap_or(0).min(lines.len());
     let mut block = find_block(path, &lines, skip, options)?;
@@ -122,6 +127,6 @@ fn first_filled(lines: &[&str], block: &Block, column: usize) -> String {
 fn named_values(lines: &[&str], skip: usize, block: &Block, header: &Header) -> Vec<Metadata> {
     (skip..block.first)
         .filter(|&index| header.names_line != Some(index) && header.units_line != Some(index))
-        .flat_map(|index| metadata::in_line(lines[index], block.delimiter, index + 1))
+        .flat_map(|index| metadata::in_line(lines[index], block.delimiter))
         .collect()
 }

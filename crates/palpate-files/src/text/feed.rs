@@ -2,22 +2,22 @@
 
 use std::{
     fmt,
-    fs::File,
-    io::{self, Read, Seek, SeekFrom},
-    path::Path,
+    io::{self, Read},
 };
 
 use super::encoding::Encoding;
+use crate::{
+    error::FileError,
+    input::{Input, InputReader},
+};
 
 /// Bytes taken in at once: large against the cost of a call, small against a processor cache.
 const PIECE: usize = 256 * 1024;
 
 /// A file that is decoded only where that is needed to tell its cells apart.
 pub(crate) struct Feed {
-    file: File,
+    bytes: InputReader,
     decoding: Option<Decoding>,
-    taken: u64,
-    size: u64,
 }
 
 struct Decoding {
@@ -28,35 +28,27 @@ struct Decoding {
 
 impl fmt::Debug for Feed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Feed").field("taken", &self.taken).field("size", &self.size).finish_non_exhaustive()
+        f.debug_struct("Feed").field("bytes", &self.bytes).finish_non_exhaustive()
     }
 }
 
 impl Feed {
     /// Opens a file behind its byte order mark, if it has one.
-    pub(crate) fn open(path: &Path, encoding: Encoding) -> io::Result<Self> {
-        let mut file = File::open(path)?;
-        let size = file.metadata()?.len();
-        let mut start = Vec::with_capacity(4);
-        file.by_ref().take(4).read_to_end(&mut start)?;
-        let taken = encoding.mark_length(&start) as u64;
-        file.seek(SeekFrom::Start(taken))?;
+    pub(crate) fn open(input: &Input, encoding: Encoding) -> Result<Self, FileError> {
+        let mut bytes = input.reader()?;
+        let mark = encoding.mark_length(input.beginning());
+        bytes.read_exact(&mut vec![0; mark]).map_err(|error| input.failed(error))?;
         let decoding = (!encoding.splits_like_ascii()).then(|| Decoding {
             decoder: encoding.codec().new_decoder_without_bom_handling(),
             raw: vec![0; PIECE],
             finished: false,
         });
-        Ok(Self {
-            file,
-            decoding,
-            taken,
-            size,
-        })
+        Ok(Self { bytes, decoding })
     }
 
     /// Bytes of the file taken in so far, and its size.
     pub(crate) fn progress(&self) -> (u64, u64) {
-        (self.taken, self.size.max(self.taken))
+        self.bytes.progress()
     }
 
     /// Appends the next piece and returns its length, 0 at the end of the file.
@@ -65,15 +57,14 @@ impl Feed {
         match &mut self.decoding {
             None => {
                 buffer.resize(held + PIECE, 0);
-                let got = read(&mut self.file, &mut buffer[held..]);
+                let got = read(&mut self.bytes, &mut buffer[held..]);
                 buffer.truncate(held + *got.as_ref().unwrap_or(&0));
-                self.taken += got? as u64;
+                got?;
             }
             Some(decoding) => {
                 // One piece may decode to nothing: the first byte of a pair, say.
                 while buffer.len() == held && !decoding.finished {
-                    let got = read(&mut self.file, &mut decoding.raw)?;
-                    self.taken += got as u64;
+                    let got = read(&mut self.bytes, &mut decoding.raw)?;
                     decoding.append(got, buffer);
                 }
             }
@@ -95,9 +86,9 @@ impl Decoding {
     }
 }
 
-fn read(file: &mut File, into: &mut [u8]) -> io::Result<usize> {
+fn read(bytes: &mut InputReader, into: &mut [u8]) -> io::Result<usize> {
     loop {
-        match file.read(into) {
+        match bytes.read(into) {
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
             other => return other,
         }

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::encoding::Encoding;
+use crate::contents::{ColumnInfo, Metadata};
 
 /// What stands between two cells of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -79,61 +80,8 @@ pub struct Layout {
     pub columns: Vec<ColumnInfo>,
 }
 
-impl Layout {
-    /// The column called `name`, if exactly one is. An exact match goes before one that differs in case.
-    #[must_use]
-    pub fn column_named(&self, name: &str) -> Option<&ColumnInfo> {
-        let only = |same: &dyn Fn(&str) -> bool| {
-            let mut hits = self.columns.iter().filter(|column| column.name.as_deref().is_some_and(same));
-            hits.next().filter(|_| hits.next().is_none())
-        };
-        only(&|own| own == name).or_else(|| only(&|own| own.to_lowercase() == name.to_lowercase()))
-    }
-}
-
-/// A named value from the lines above the data, such as `Diameter,"0.399",mm`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct Metadata {
-    /// Name, as written.
-    pub name: String,
-    /// Value, as written: no decimal mark is interpreted here.
-    pub value: String,
-    /// Unit, as written less any brackets.
-    pub unit: Option<String>,
-    /// Line it stands on.
-    pub line: usize,
-}
-
-/// What a column mostly holds, going by the rows at the beginning of the file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum ColumnKind {
-    /// Numbers.
-    Number,
-    /// Anything that is not a number.
-    Text,
-    /// Nothing.
-    Empty,
-}
-
-/// One column of a file.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct ColumnInfo {
-    /// Place in the row; the leftmost column is 1.
-    pub number: usize,
-    /// Name as written, less a unit that could be told from it. `None`: the column has no name.
-    pub name: Option<String>,
-    /// Unit as written, less any brackets; not interpreted.
-    pub unit: Option<String>,
-    /// What the column holds.
-    pub kind: ColumnKind,
-    /// Its first cell that is not empty, shortened.
-    pub sample: String,
-}
-
 /// What the caller knows about a file better than its bytes do. Everything left `None` is found out.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct LayoutOptions {
     /// What stands between two cells.
     pub delimiter: Option<Delimiter>,
@@ -146,4 +94,15 @@ pub struct LayoutOptions {
     /// `true`: the columns have a line of names, even where it looks like data.
     /// `false`: they have none, even where a line looks like it.
     pub header: Option<bool>,
+}
+
+impl fmt::Display for Layout {
+    /// One line for people: `utf-8 encoding, fields separated by comma, decimal point, data from line 3`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} encoding, fields separated by {}, decimal {}, data from line {}",
+            self.encoding, self.delimiter, self.decimal, self.first_data_line
+        )
+    }
 }

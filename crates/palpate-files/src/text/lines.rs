@@ -1,8 +1,7 @@
 //! Lines: of a text in memory, and of a file too large for it.
 
-use std::path::Path;
-
-use super::{encoding::Encoding, error::FileError, feed::Feed};
+use super::{encoding::Encoding, feed::Feed};
+use crate::{error::FileError, input::Input};
 
 /// Longest line that is read, in bytes. A row of ten thousand columns still fits.
 pub(crate) const LONGEST_LINE: usize = 256 * 1024;
@@ -26,7 +25,7 @@ pub(crate) fn of_text(text: &str) -> Vec<&str> {
 /// Hands out a file line by line from a buffer of bounded size.
 #[derive(Debug)]
 pub(crate) struct LineReader<'a> {
-    path: &'a Path,
+    input: &'a Input,
     feed: Feed,
     buffer: Vec<u8>,
     /// Where in the buffer the next line starts.
@@ -38,10 +37,10 @@ pub(crate) struct LineReader<'a> {
 }
 
 impl<'a> LineReader<'a> {
-    pub(crate) fn open(path: &'a Path, encoding: Encoding) -> Result<Self, FileError> {
-        let feed = Feed::open(path, encoding).map_err(|error| FileError::from_io(path, error))?;
+    pub(crate) fn open(input: &'a Input, encoding: Encoding) -> Result<Self, FileError> {
+        let feed = Feed::open(input, encoding)?;
         Ok(Self {
-            path,
+            input,
             feed,
             buffer: Vec::new(),
             start: 0,
@@ -79,7 +78,7 @@ impl<'a> LineReader<'a> {
             searched = ahead.len();
             if searched > LONGEST_LINE {
                 return Err(FileError::LineTooLong {
-                    path: self.path.to_owned(),
+                    path: self.input.name().to_owned(),
                     line: self.line + 1,
                     limit: LONGEST_LINE,
                 });
@@ -101,7 +100,7 @@ impl<'a> LineReader<'a> {
         self.buffer.drain(..self.start);
         self.start = 0;
         let taken = self.feed.fill(&mut self.buffer);
-        taken.map(|bytes| bytes > 0).map_err(|error| FileError::from_io(self.path, error))
+        taken.map(|bytes| bytes > 0).map_err(|error| self.input.failed(error))
     }
 }
 
@@ -126,7 +125,8 @@ mod tests {
             text.push_str(["\n", "\r\n", "\r", "\n\n"][row % 4]);
         }
         std::fs::write(&path, &text)?;
-        let mut reader = LineReader::open(&path, Encoding::Utf8)?;
+        let input = Input::open(&path)?;
+        let mut reader = LineReader::open(&input, Encoding::Utf8)?;
         for expected in of_text(&text) {
             assert_eq!(reader.next_line()?, Some(expected.as_bytes()));
         }

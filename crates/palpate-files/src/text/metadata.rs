@@ -2,14 +2,15 @@
 
 use super::{
     fields::cells,
-    layout::{Delimiter, Metadata},
+    layout::Delimiter,
     number::{self, Cell},
     unit,
 };
+use crate::contents::Metadata;
 
 /// The named values in one line: `name,"value",unit`, `name: value`, `name = value` or `a=1;b=2;`. A line that
 /// holds none is a title or a remark and gives nothing.
-pub(crate) fn in_line(text: &str, delimiter: Delimiter, line: usize) -> Vec<Metadata> {
+pub(crate) fn in_line(text: &str, delimiter: Delimiter) -> Vec<Metadata> {
     let text = without_comment_mark(text);
     let row = match delimiter {
         // Blanks occur inside names; here they tell nothing apart.
@@ -18,13 +19,13 @@ pub(crate) fn in_line(text: &str, delimiter: Delimiter, line: usize) -> Vec<Meta
     };
     let row: Vec<&str> = row.into_iter().filter(|cell| !cell.is_empty()).collect();
     if let Some(pairs) = equations(&row) {
-        let entry = |(name, value)| entry(name, value, None, line);
+        let entry = |(name, value)| entry(name, value, None);
         return pairs.into_iter().filter_map(entry).collect();
     }
     let found = match row[..] {
-        [name, value] => entry(name, value, None, line),
-        [name, value, unit] => entry(name, value, Some(unit), line),
-        [single] => single.split_once(':').and_then(|(name, value)| entry(name, value, None, line)),
+        [name, value] => entry(name, value, None),
+        [name, value, unit] => entry(name, value, Some(unit)),
+        [single] => single.split_once(':').and_then(|(name, value)| entry(name, value, None)),
         _ => None,
     };
     found.into_iter().collect()
@@ -44,7 +45,7 @@ fn equations<'a>(row: &[&'a str]) -> Option<Vec<(&'a str, &'a str)>> {
     pairs.filter(|pairs| !pairs.is_empty())
 }
 
-fn entry(name: &str, value: &str, unit: Option<&str>, line: usize) -> Option<Metadata> {
+fn entry(name: &str, value: &str, unit: Option<&str>) -> Option<Metadata> {
     let named = name.trim().trim_end_matches([':', '=']).trim_end();
     let value = value.trim();
     if named.is_empty() || value.is_empty() || number::classify(named.as_bytes()).is_numeric() {
@@ -66,7 +67,6 @@ fn entry(name: &str, value: &str, unit: Option<&str>, line: usize) -> Option<Met
         name,
         value: value.to_owned(),
         unit,
-        line,
     })
 }
 
@@ -79,7 +79,7 @@ mod tests {
     use super::*;
 
     fn only(text: &str, delimiter: Delimiter) -> (String, String, Option<String>) {
-        let found = in_line(text, delimiter, 1);
+        let found = in_line(text, delimiter);
         assert_eq!(found.len(), 1, "{text}");
         let Metadata { name, value, unit, .. } = found[0].clone();
         (name, value, unit)
@@ -100,11 +100,11 @@ mod tests {
 
     #[test]
     fn several_in_a_line_and_none() {
-        let found = in_line("chem=PE;T=150;", Delimiter::Tab, 1);
+        let found = in_line("chem=PE;T=150;", Delimiter::Tab);
         assert_eq!(found.len(), 2);
         assert_eq!((found[1].name.as_str(), found[1].value.as_str()), ("T", "150"));
-        assert!(in_line("A title", Delimiter::Comma, 1).is_empty());
-        assert!(in_line("1,2", Delimiter::Comma, 1).is_empty());
-        assert!(in_line("", Delimiter::Comma, 1).is_empty());
+        assert!(in_line("A title", Delimiter::Comma).is_empty());
+        assert!(in_line("1,2", Delimiter::Comma).is_empty());
+        assert!(in_line("", Delimiter::Comma).is_empty());
     }
 }

@@ -6,19 +6,21 @@
 //!
 //! Nothing is guessed twice and nothing is dropped in silence: a cell that cannot be read is an error that
 //! names its line and column, and the few lines that may be passed over (blank ones, a footer) are
-//! counted in [`Columns::ignored`].
+//! counted in [`Columns::ignored`](crate::contents::Columns::ignored).
 //!
 //! ```
+//! use palpate_files::input::Input;
 //! use palpate_files::text::{LayoutOptions, detect, read_columns};
 //!
 //! # let folder = tempfile::tempdir()?;
 //! # let path = folder.path().join("press.csv");
 //! std::fs::write(&path, "Time (s);Force (N)\n0,00;0,01\n0,10;0,52\n")?;
-//! let layout = detect(&path, &LayoutOptions::default())?;
+//! let input = Input::open(&path)?;
+//! let layout = detect(&input, &LayoutOptions::default())?;
 //! assert_eq!(layout.columns[1].name.as_deref(), Some("Force"));
 //! assert_eq!(layout.columns[1].unit.as_deref(), Some("N"));
 //!
-//! let read = read_columns(&path, &layout, &[1, 2], &mut |_done, _total| {})?;
+//! let read = read_columns(&input, &layout, &[1, 2], &mut |_done, _total| {})?;
 //! assert_eq!(read.values, [vec![0.0, 0.1], vec![0.01, 0.52]]);
 //! assert_eq!(read.line_of(1), Some(3));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -29,24 +31,20 @@ mod columns;
 mod decimal;
 mod detect;
 mod encoding;
-mod error;
 mod feed;
 mod fields;
-mod foreign;
 mod header;
-mod hint;
 mod layout;
 mod lines;
 mod metadata;
-mod number;
+pub(crate) mod number;
+mod part;
 mod row;
 mod sample;
 mod unit;
 
-pub use columns::{Columns, Footer, IgnoredLines, read_columns};
+pub use columns::read_columns;
 pub use detect::detect;
 pub use encoding::{Encoding, UnknownEncoding};
-pub use error::{CellPlace, DecimalDoubt, FileError};
-pub(crate) use error::{allowed, reason, shorten};
-pub use foreign::Foreign;
-pub use layout::{ColumnInfo, ColumnKind, DecimalMark, Delimiter, Layout, LayoutOptions, Metadata};
+pub use layout::{DecimalMark, Delimiter, Layout, LayoutOptions};
+pub(crate) use part::look_into;

@@ -4,10 +4,13 @@ use std::path::Path;
 
 use super::{
     block,
-    error::{CellPlace, FileError, shorten},
     fields::Fields,
-    layout::{ColumnKind, Layout},
+    layout::Layout,
     number::{self, Cell},
+};
+use crate::{
+    contents::ColumnKind,
+    error::{CellPlace, FileError, shorten},
 };
 
 /// How to read the rows of one file.

@@ -1,12 +1,14 @@
 //! Looking at the beginning of a file.
 
-use std::{fs::File, io::Read, path::Path};
+use std::io::Read;
 
 use super::{
     encoding::{self, Encoding},
-    error::FileError,
-    foreign::{self, Foreign},
     lines::{self, LONGEST_LINE},
+};
+use crate::{
+    error::FileError,
+    input::{self, Foreign, Input},
 };
 
 /// Most lines looked at; what they do not show of a layout, more would not either.
@@ -23,29 +25,29 @@ pub(crate) struct Sample {
 
 impl Sample {
     /// Reads the beginning of a file and decodes it, as `fixed` or as what it looks like.
-    pub(crate) fn take(path: &Path, fixed: Option<Encoding>) -> Result<Self, FileError> {
-        let bytes = beginning(path).map_err(|error| FileError::from_io(path, error))?;
+    pub(crate) fn take(input: &Input, fixed: Option<Encoding>) -> Result<Self, FileError> {
+        let bytes = beginning(input)?;
         let cut = bytes.len() > LONGEST_LINE;
         let foreign = |looks_like| FileError::Foreign {
-            path: path.to_owned(),
+            path: input.name().to_owned(),
             looks_like,
         };
-        if let Some(looks_like) = foreign::recognise(&bytes) {
+        if let Some(looks_like) = input::recognise_foreign(&bytes) {
             return Err(foreign(looks_like));
         }
         let encoding = fixed.or_else(|| encoding::recognise(&bytes)).ok_or_else(|| foreign(Foreign::Binary))?;
         let body = &bytes[encoding.mark_length(&bytes)..];
         let (text, _) = encoding.codec().decode_without_bom_handling(body);
-        if foreign::mostly_control(&text) {
+        if input::mostly_control(&text) {
             return Err(foreign(Foreign::Binary));
         }
         if text.trim().is_empty() && !cut {
-            return Err(FileError::Empty { path: path.to_owned() });
+            return Err(FileError::Empty { path: input.name().to_owned() });
         }
         let text = text.into_owned();
         if cut && memchr::memchr2(b'\n', b'\r', text.as_bytes()).is_none() {
             return Err(FileError::LineTooLong {
-                path: path.to_owned(),
+                path: input.name().to_owned(),
                 line: 1,
                 limit: LONGEST_LINE,
             });
@@ -65,12 +67,9 @@ impl Sample {
 }
 
 /// Up to one byte more than the sample wants, which tells whether there is more.
-fn beginning(path: &Path) -> std::io::Result<Vec<u8>> {
-    let file = File::open(path)?;
-    if file.metadata()?.is_dir() {
-        return Err(std::io::ErrorKind::IsADirectory.into());
-    }
+fn beginning(input: &Input) -> Result<Vec<u8>, FileError> {
     let mut bytes = Vec::new();
-    file.take(LONGEST_LINE as u64 + 1).read_to_end(&mut bytes)?;
+    let reader = input.reader()?;
+    reader.take(LONGEST_LINE as u64 + 1).read_to_end(&mut bytes).map_err(|error| input.failed(error))?;
     Ok(bytes)
 }

@@ -1,13 +1,13 @@
-//! What can be wrong with a file of delimited text.
+//! What can be wrong with a file.
 
 use std::{
     fmt, io,
     path::{Path, PathBuf},
 };
 
-use super::{
-    foreign::Foreign,
-    layout::{DecimalMark, Delimiter},
+use crate::{
+    input::Foreign,
+    text::{DecimalMark, Delimiter},
 };
 
 /// Where in a file a cell stands.
@@ -55,7 +55,7 @@ impl fmt::Display for DecimalDoubt {
     }
 }
 
-/// Why a file of delimited text cannot be read.
+/// Why a file cannot be read.
 ///
 /// [`FileError::hint`] says what would help, where that is known.
 #[derive(Debug, thiserror::Error)]
@@ -88,13 +88,51 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
     },
-    /// The file is no delimited text.
-    #[error("{}: expected delimited text, found {looks_like}", path.display())]
+    /// The file holds no record in any format that is known here.
+    #[error("{}: expected a record, found {looks_like}", path.display())]
     Foreign {
         /// The file.
         path: PathBuf,
         /// What it looks like.
         looks_like: Foreign,
+    },
+    /// An archive that holds no file, or several.
+    #[error("{}: expected a zip archive of one file, found {}", path.display(), files(members))]
+    Archive {
+        /// The archive.
+        path: PathBuf,
+        /// The files in it.
+        members: Vec<String>,
+    },
+    /// A part of the file is not as its format has it: cut off, overwritten, or written by another rule.
+    #[error("{}: {place}: expected {expected}, found {found}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// Where in the file.
+        place: String,
+        /// What should be there.
+        expected: String,
+        /// What is there.
+        found: String,
+    },
+    /// More than is read of any file.
+    #[error("{}: {what} has more than {}, which is the most that is read", path.display(), bytes(*most_bytes))]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// What is too large.
+        what: &'static str,
+        /// The limit.
+        most_bytes: u64,
+    },
+    /// No part of the file is a table of numbers.
+    #[error("{}: expected a test, found none: {}", path.display(), skipped(parts))]
+    NoParts {
+        /// The file.
+        path: PathBuf,
+        /// The parts that were looked at, with why they are none.
+        parts: Vec<(String, String)>,
     },
     /// A line is longer than any row of a table would be.
     #[error("{}, line {line}: expected lines of at most {limit} bytes, this one is longer", path.display())]
@@ -223,6 +261,35 @@ impl FileError {
             io::ErrorKind::IsADirectory => Self::Directory { path },
             _ => Self::Unreadable { path, source },
         }
+    }
+}
+
+/// The first few of the files in an archive.
+fn files(members: &[String]) -> String {
+    const MOST: usize = 3;
+    let named: Vec<&str> = members.iter().take(MOST).map(String::as_str).collect();
+    match (members.len(), named.join(", ")) {
+        (0, _) => "none".to_owned(),
+        (count, named) if count > MOST => format!("{count}: {named}, …"),
+        (count, named) => format!("{count}: {named}"),
+    }
+}
+
+/// The first few of the parts of a file, with why they are no tests.
+fn skipped(parts: &[(String, String)]) -> String {
+    const MOST: usize = 3;
+    let named: Vec<String> = parts.iter().take(MOST).map(|(name, reason)| format!("{name}: {reason}")).collect();
+    let more = if parts.len() > MOST { "; …" } else { "" };
+    format!("{}{more}", named.join("; "))
+}
+
+/// A number of bytes in words.
+fn bytes(count: u64) -> String {
+    match count {
+        0..1024 => format!("{count} bytes"),
+        1024..1_048_576 => format!("{} KiB", count >> 10),
+        1_048_576..1_073_741_824 => format!("{} MiB", count >> 20),
+        _ => format!("{} GiB", count >> 30),
     }
 }
 

@@ -1,22 +1,14 @@
-//! Recognising files that are no delimited text at all.
+//! Recognising files that hold no record in any format known here.
 
 use std::fmt;
 
-/// What a file that is no delimited text looks like.
+/// What a file looks like that holds no record in any format known here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Foreign {
-    /// An Excel workbook (`.xlsx`).
-    ExcelWorkbook,
-    /// An Excel workbook of the old kind (`.xls`), or another old Office document.
-    OldOffice,
-    /// A zip archive, which many instruments use as their own format.
+    /// A zip archive that is none of the formats known here.
     Zip,
-    /// A gzip-compressed file.
-    Gzip,
     /// A file compressed in another way (bzip2, xz, zstd, 7z).
     Compressed,
-    /// Apache Parquet.
-    Parquet,
     /// HDF5, or a MATLAB file of version 7.3.
     Hdf5,
     /// A MATLAB file of version 5 to 7.
@@ -42,12 +34,8 @@ pub enum Foreign {
 impl fmt::Display for Foreign {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::ExcelWorkbook => "an Excel workbook (xlsx)",
-            Self::OldOffice => "an old Excel workbook (xls)",
             Self::Zip => "a zip archive",
-            Self::Gzip => "a gzip-compressed file",
             Self::Compressed => "a compressed file",
-            Self::Parquet => "a Parquet file",
             Self::Hdf5 => "an HDF5 file",
             Self::Matlab => "a MATLAB file",
             Self::Numpy => "a NumPy array",
@@ -63,10 +51,8 @@ impl fmt::Display for Foreign {
 }
 
 /// First bytes that belong to one format only.
-const SIGNATURES: [(&[u8], Foreign); 17] = [
-    (b"\x1F\x8B", Foreign::Gzip),
-    (b"\xD0\xCF\x11\xE0", Foreign::OldOffice),
-    (b"PAR1", Foreign::Parquet),
+const SIGNATURES: [(&[u8], Foreign); 15] = [
+    (b"PK\x03\x04", Foreign::Zip),
     (b"\x89HDF\r\n", Foreign::Hdf5),
     (b"MATLAB 5.0 MAT-file", Foreign::Matlab),
     (b"\x93NUMPY", Foreign::Numpy),
@@ -83,14 +69,8 @@ const SIGNATURES: [(&[u8], Foreign); 17] = [
     (b"<html", Foreign::Markup),
 ];
 
-/// What `sample`, the beginning of a file, looks like if it is no delimited text.
+/// What `sample`, the beginning of a file, looks like if no format known here is right.
 pub(crate) fn recognise(sample: &[u8]) -> Option<Foreign> {
-    if sample.starts_with(b"PK\x03\x04") {
-        // Every part of an archive is listed by name in front of its content.
-        let workbook = memchr::memmem::find(sample, b"xl/").is_some()
-            || memchr::memmem::find(sample, b"[Content_Types].xml").is_some();
-        return Some(if workbook { Foreign::ExcelWorkbook } else { Foreign::Zip });
-    }
     let signed = SIGNATURES
         .iter()
         .find(|(start, _)| sample.get(..start.len()).is_some_and(|first| first.eq_ignore_ascii_case(start)));
@@ -129,8 +109,6 @@ mod tests {
             let file = [start, b" more"].concat();
             assert_eq!(recognise(&file), Some(expected));
         }
-        assert_eq!(recognise(b"PK\x03\x04....[Content_Types].xml"), Some(Foreign::ExcelWorkbook));
-        assert_eq!(recognise(b"PK\x03\x04....header.properties"), Some(Foreign::Zip));
         assert_eq!(recognise(b" \n{ \"a\": 1}"), Some(Foreign::Json));
         assert_eq!(recognise(b"<!DOCTYPE html>"), Some(Foreign::Markup));
         assert_eq!(recognise(b"Time,Force\n"), None);

@@ -1,10 +1,12 @@
 //! What would help against an error, in words that go with any front end.
 
-use super::{
+use crate::{
     error::{DecimalDoubt, FileError, allowed},
-    foreign::Foreign,
-    layout::DecimalMark,
-    number::{self, Cell},
+    input::Foreign,
+    text::{
+        DecimalMark,
+        number::{self, Cell},
+    },
 };
 
 impl FileError {
@@ -17,6 +19,11 @@ impl FileError {
             Self::Unreadable { source, .. } => allowed(source),
             Self::Empty { .. } => Some("export the record again".to_owned()),
             Self::Foreign { looks_like, .. } => Some(foreign(*looks_like).to_owned()),
+            Self::Archive { members, .. } if members.is_empty() => Some("pack the record again".to_owned()),
+            Self::Archive { .. } => Some("unpack it and name the files one by one, or their folder".to_owned()),
+            Self::Damaged { .. } => Some("copy or export the file again; it may be cut off".to_owned()),
+            Self::TooLarge { .. } => Some("split the file, or export less of it".to_owned()),
+            Self::NoParts { .. } => Some("a test needs a table of numbers with time and force side by side".to_owned()),
             Self::LineTooLong { .. } => Some("check that the file has line ends and the right encoding".to_owned()),
             Self::OneColumn { delimiter, .. } => Some(match delimiter {
                 Some(delimiter) => format!("the delimiter was fixed to {delimiter}: leave it to be found out"),
@@ -49,10 +56,10 @@ impl FileError {
 
 fn foreign(looks_like: Foreign) -> &'static str {
     match looks_like {
-        Foreign::ExcelWorkbook | Foreign::OldOffice | Foreign::Markup => {
+        Foreign::Markup => {
             "open it in a spreadsheet program and save the sheet as CSV"
         }
-        Foreign::Gzip | Foreign::Zip | Foreign::Compressed => "unpack it first, or export the record as text",
+        Foreign::Zip | Foreign::Compressed => "unpack it first, or export the record as text",
         Foreign::Picture | Foreign::Pdf => "a record of numbers is needed, not a document",
         Foreign::Binary => "export the record as text, or fix its encoding if it is text",
         _ => "export the record as delimited text",

@@ -1,0 +1,151 @@
+//! Columns of numbers, as any format gives them.
+
+use super::averaging::{MOST_ROWS, Waiting};
+
+/// Columns of numbers read from a file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Columns {
+    /// One vector a chosen column, in the order chosen; all have the same length. From text every value is finite.
+    pub values: Vec<Vec<f64>>,
+    /// How many successive rows of the file each value is the mean of; 1 up to [`MOST_ROWS`].
+    pub averaged: usize,
+    /// What was passed over behind the first row.
+    pub ignored: IgnoredLines,
+    /// Size of the file in bytes.
+    pub bytes: u64,
+    rows: usize,
+    runs: Vec<Run>,
+    pub(super) waiting: Waiting,
+}
+
+/// Lines passed over behind the first row of data.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct IgnoredLines {
+    /// How many blank lines there are, wherever they stand.
+    pub blank: usize,
+    /// Lines at the very end that are no data.
+    pub footer: Option<Footer>,
+}
+
+/// Lines at the very end of a file that are no data.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Footer {
+    /// First of these lines, from 1.
+    pub first_line: usize,
+    /// How many there are, blank ones aside.
+    pub lines: usize,
+    /// The first of them, shortened.
+    pub sample: String,
+}
+
+/// Rows on successive lines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Run {
+    /// Index of the first row.
+    row: usize,
+    /// Line it stands on.
+    line: usize,
+}
+
+/// Most runs of rows whose lines are remembered; beyond them errors name no line.
+const MOST_RUNS: usize = 1 << 20;
+
+impl Columns {
+    /// No rows yet of `count` columns.
+    pub(crate) fn of(count: usize) -> Self {
+        Self {
+            values: vec![Vec::new(); count],
+            averaged: 1,
+            ..Self::default()
+        }
+    }
+
+    /// Number of rows of the file that were read; [`values`](Self::values) has fewer where they are averaged.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// The line (from 1) of the file or sheet that the value with index `index` (from 0), or the first that went into
+    /// it, stands on; `None` behind the last one and in formats without lines.
+    #[must_use]
+    pub fn line_of(&self, index: usize) -> Option<usize> {
+        let row = index.checked_mul(self.averaged)?;
+        let behind = self.runs.partition_point(|run| run.row <= row);
+        let run = self.runs.get(behind.checked_sub(1)?)?;
+        let known = row < self.rows && (behind < self.runs.len() || self.runs.len() < MOST_RUNS);
+        known.then(|| run.line + (row - run.row))
+    }
+
+    /// Adds a row that stands on a line of the file.
+    #[inline]
+    pub(crate) fn push(&mut self, row: &[f64], line: usize) {
+        let index = self.rows;
+        let follows = self.runs.last().is_some_and(|run| run.line + (index - run.row) == line);
+        if !follows && self.runs.len() < MOST_RUNS {
+            self.runs.push(Run { row: index, line });
+        }
+        self.push_values(row);
+    }
+
+    /// Adds a row of a format without lines.
+    #[inline]
+    pub(crate) fn push_values(&mut self, row: &[f64]) {
+        self.rows += 1;
+        if self.averaged > 1 {
+            self.average(row);
+        } else {
+            for (values, &value) in self.values.iter_mut().zip(row) {
+                values.push(value);
+            }
+        }
+        if self.values.first().is_some_and(|values| values.len() >= MOST_ROWS) {
+            self.halve();
+        }
+    }
+
+    /// Makes room for as many rows as the file should have, going by those read from its first `done` bytes, so
+    /// that growing does not copy what is there.
+    pub(crate) fn reserve(&mut self, done: u64, total: u64) {
+        let rows = self.rows;
+        let left = total.saturating_sub(done) as f64;
+        let more = rows as f64 * left / done.max(1) as f64 * 1.02;
+        let more = (more as usize).min(MOST_ROWS.saturating_sub(rows));
+        for values in &mut self.values {
+            values.reserve(more);
+        }
+    }
+
+    /// The end of the file: what waits for a mean is written, and memory that is not needed is given back.
+    pub(crate) fn finish(&mut self) {
+        self.take_waiting();
+        for values in &mut self.values {
+            values.shrink_to_fit();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_beyond_the_most_become_means_and_keep_their_lines() {
+        let mut columns = Columns::of(2);
+        let rows = 5 * MOST_ROWS / 2 + 3;
+        for row in 0..rows {
+            columns.push(&[row as f64, 2.0], row + 10);
+        }
+        columns.finish();
+        assert_eq!((columns.rows(), columns.averaged), (rows, 4));
+        assert_eq!(columns.values[0].len(), rows.div_ceil(4));
+        // Means of 0..4, of 4..8, and of the three rows left over.
+        let last = rows - rows % 4;
+        assert_eq!(columns.values[0][..2], [1.5, 5.5]);
+        let left = (last..rows).map(|row| row as f64).sum::<f64>() / (rows - last) as f64;
+        assert_eq!(columns.values[0].last(), Some(&left));
+        assert!(columns.values[1].iter().all(|value| *value == 2.0));
+        assert_eq!((columns.line_of(0), columns.line_of(2)), (Some(10), Some(18)));
+        assert_eq!(columns.line_of(rows), None);
+    }
+}

@@ -1,0 +1,97 @@
+//! One test in a file: its columns and what stands beside them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A part of a file that holds one test: all of a text, one sheet of a workbook, one curve, one value of `test_id`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Part {
+    /// What the file calls it; `None` where the file holds one test and gives it no name.
+    pub name: Option<String>,
+    /// How it is written, in one line for people.
+    pub written: String,
+    /// Number of rows, where it is known before they are read.
+    pub rows: Option<u64>,
+    /// The columns, left to right.
+    pub columns: Vec<ColumnInfo>,
+    /// Named values that stand beside the data, in file order.
+    pub metadata: Vec<Metadata>,
+    /// Stretches of rows that the file itself labels, such as the pause of a force curve; in order.
+    pub labels: Vec<Label>,
+}
+
+/// A stretch of rows under one label.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Label {
+    /// The label, as written.
+    pub name: String,
+    /// First row, from 0.
+    pub start: usize,
+    /// Row behind the last.
+    pub end: usize,
+}
+
+impl Part {
+    /// The column called `name`, if exactly one is. An exact match goes before one that differs in case.
+    #[must_use]
+    pub fn column_named(&self, name: &str) -> Option<&ColumnInfo> {
+        let only = |same: &dyn Fn(&str) -> bool| {
+            let mut hits = self.columns.iter().filter(|column| column.name.as_deref().is_some_and(same));
+            hits.next().filter(|_| hits.next().is_none())
+        };
+        only(&|own| own == name).or_else(|| only(&|own| own.to_lowercase() == name.to_lowercase()))
+    }
+
+    /// What messages call it.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        self.name.as_deref().unwrap_or("the file")
+    }
+}
+
+/// A part of a file that is no test.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct SkippedPart {
+    /// What the file calls it.
+    pub name: String,
+    /// Why it is none.
+    pub reason: String,
+}
+
+/// A named value that stands beside the data, such as `Diameter,"0.399",mm`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Metadata {
+    /// Name, as written.
+    pub name: String,
+    /// Value, as written: no decimal mark is interpreted here.
+    pub value: String,
+    /// Unit, as written less any brackets.
+    pub unit: Option<String>,
+}
+
+/// What a column mostly holds; of text, going by the rows at its beginning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ColumnKind {
+    /// Numbers.
+    Number,
+    /// Anything that is not a number.
+    Text,
+    /// Nothing.
+    Empty,
+}
+
+/// One column of a file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct ColumnInfo {
+    /// Place in the row; the leftmost column is 1.
+    pub number: usize,
+    /// Name as written, less a unit that could be told from it. `None`: the column has no name.
+    pub name: Option<String>,
+    /// Unit as written, less any brackets; not interpreted.
+    pub unit: Option<String>,
+    /// What the column holds.
+    pub kind: ColumnKind,
+    /// Its first cell that is not empty, shortened.
+    pub sample: String,
+}

@@ -1,0 +1,169 @@
+//! Telling packed files by their content, and unpacking them.
+
+use std::{
+    fmt,
+    io::{self, Read, Seek},
+};
+
+use flate2::read::MultiGzDecoder;
+use zip::ZipArchive;
+
+use super::{Input, MOST_UNPACKED};
+use crate::error::FileError;
+
+/// How a file is packed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Packing {
+    /// Not at all. A workbook or force curve that is a zip archive by itself counts as not packed.
+    None,
+    /// By gzip.
+    Gzip,
+    /// Alone in a zip archive.
+    Zip {
+        /// Its name in the archive.
+        member: String,
+    },
+}
+
+impl fmt::Display for Packing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None => f.write_str("not packed"),
+            Self::Gzip => f.write_str("packed by gzip"),
+            Self::Zip { member } => write!(f, "packed in a zip archive as {member}"),
+        }
+    }
+}
+
+/// Whether the bytes of an archive's first member can begin here.
+pub(crate) fn is_zip(beginning: &[u8]) -> bool {
+    beginning.starts_with(b"PK\x03\x04")
+}
+
+/// Members by which formats that are zip archives are known.
+const FORMATS: [&str; 4] = ["[Content_Types].xml", "xl/workbook.xml", "header.properties", "mimetype"];
+
+/// How `input`, of which nothing is known but its stored bytes, is packed.
+pub(super) fn recognise(input: &Input) -> Result<Packing, FileError> {
+    let beginning = input.beginning();
+    if beginning.starts_with(b"\x1F\x8B") {
+        return Ok(Packing::Gzip);
+    }
+    if is_zip(beginning) {
+        return archive(input);
+    }
+    Ok(Packing::None)
+}
+
+fn archive(input: &Input) -> Result<Packing, FileError> {
+    let archive = ZipArchive::new(input.stored()?).map_err(|error| damaged(input, &error))?;
+    let names: Vec<String> = archive.file_names().filter_map(|name| Some(name.ok()?.into_owned())).collect();
+    if names.iter().any(|name| FORMATS.contains(&name.as_str())) {
+        return Ok(Packing::None);
+    }
+    // Folders, and what macOS puts beside every file.
+    let noise = |name: &str| name.ends_with('/') || name.starts_with("__MACOSX/") || name.ends_with(".DS_Store");
+    let mut files: Vec<String> = names.into_iter().filter(|name| !noise(name)).collect();
+    match files.len() {
+        1 => Ok(Packing::Zip { member: files.remove(0) }),
+        _ => Err(FileError::Archive {
+            path: input.name().to_owned(),
+            members: files,
+        }),
+    }
+}
+
+fn damaged(input: &Input, error: &zip::result::ZipError) -> FileError {
+    FileError::Damaged {
+        path: input.name().to_owned(),
+        place: "zip archive".to_owned(),
+        expected: "a whole archive".to_owned(),
+        found: error.to_string(),
+    }
+}
+
+/// The unpacked bytes behind `stored`; more than [`MOST_UNPACKED`] of them are an error of the reader.
+pub(super) fn unpacked<R: Read + Seek + Send + 'static>(
+    stored: R,
+    packing: &Packing,
+) -> io::Result<Box<dyn Read + Send>> {
+    Ok(match packing {
+        Packing::None => Box::new(stored),
+        Packing::Gzip => Box::new(Limited::of(MultiGzDecoder::new(stored))),
+        Packing::Zip { member } => {
+            let archive = ZipArchive::new(stored).map_err(io::Error::other)?;
+            Box::new(Limited::of(Member::of(archive, member)?))
+        }
+    })
+}
+
+/// One member of an archive, unpacked as it is read.
+///
+/// The reader of the archive borrows from it; to hold both, the member's raw bytes are cut out of the archive and
+/// unpacked here.
+struct Member {
+    bytes: Box<dyn Read + Send>,
+    sum: flate2::Crc,
+    expected_sum: u32,
+}
+
+impl Member {
+    fn of<R: Read + Seek + Send + 'static>(mut archive: ZipArchive<R>, name: &str) -> io::Result<Self> {
+        let (start, packed, method, expected_sum) = {
+            let member = archive.by_name(name).map_err(io::Error::other)?;
+            if member.encrypted() {
+                return Err(io::Error::other("the file in the archive is encrypted"));
+            }
+            let start = member.data_start().ok_or_else(|| io::Error::other("the archive does not say where its file begins"))?;
+            (start, member.compressed_size(), member.compression(), member.crc32())
+        };
+        let mut stored = archive.into_inner();
+        stored.seek(io::SeekFrom::Start(start))?;
+        let raw = io::BufReader::new(stored.take(packed));
+        let bytes: Box<dyn Read + Send> = match method {
+            zip::CompressionMethod::Stored => Box::new(raw),
+            zip::CompressionMethod::Deflated => Box::new(flate2::bufread::DeflateDecoder::new(raw)),
+            other => return Err(io::Error::other(format!("the archive packs by {other:?}; deflate is understood"))),
+        };
+        Ok(Self {
+            bytes,
+            sum: flate2::Crc::new(),
+            expected_sum,
+        })
+    }
+}
+
+impl Read for Member {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let got = self.bytes.read(into)?;
+        self.sum.update(&into[..got]);
+        if got == 0 && !into.is_empty() && self.sum.sum() != self.expected_sum {
+            return Err(io::Error::other("its bytes are not those that were packed (checksum)"));
+        }
+        Ok(got)
+    }
+}
+
+/// A reader that gives no more than [`MOST_UNPACKED`] bytes.
+struct Limited<R> {
+    inner: R,
+    left: u64,
+}
+
+impl<R> Limited<R> {
+    fn of(inner: R) -> Self {
+        Self {
+            inner,
+            left: MOST_UNPACKED,
+        }
+    }
+}
+
+impl<R: Read> Read for Limited<R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let got = self.inner.read(into)?;
+        let left = self.left.checked_sub(got as u64);
+        self.left = left.ok_or_else(|| io::Error::other(format!("it unpacks to more than {} GiB", MOST_UNPACKED >> 30)))?;
+        Ok(got)
+    }
+}
