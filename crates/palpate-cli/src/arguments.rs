@@ -159,12 +159,15 @@ pub(crate) enum DriveName {
 /// Show what is in a record: columns, units, sampling, phases. Changes nothing.
 #[derive(Debug, Args)]
 pub(crate) struct InspectArguments {
-    /// Record: delimited text with time, force and, if possible, displacement
+    /// Record with time, force and, if possible, displacement, in any format that is known
     #[arg(value_name = "RECORD")]
     pub(crate) record: PathBuf,
     /// Test description (TOML): columns, units, geometry
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
+    #[arg(long, value_name = "NAME")]
+    pub(crate) part: Option<String>,
 }
 
 /// Analyse records: phases, strains, laws, tables, figures, report.
@@ -177,12 +180,15 @@ Examples:
   palpate analyze *.csv --test strip.toml --out studies   one folder a record
   palpate analyze press.csv --format json | jq '.holds[].fits[0]'")]
 pub(crate) struct AnalyzeArguments {
-    /// Records: delimited text with time, force and, if possible, displacement
+    /// Records with time, force and, if possible, displacement: files, folders, or patterns in quotes
     #[arg(value_name = "RECORD", required = true)]
     pub(crate) records: Vec<PathBuf>,
     /// Test description (TOML): columns, units, geometry, options
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
+    #[arg(long, value_name = "NAME")]
+    pub(crate) part: Option<String>,
     /// Folder for report.html, analysis.json, tables and figures
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -238,6 +244,9 @@ pub(crate) struct CompareArguments {
     /// Test description (TOML): columns, units, geometry, options; for all records
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
+    #[arg(long, value_name = "NAME")]
+    pub(crate) part: Option<String>,
     /// Laws to compare; all that suit if not given
     #[arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = law)]
     pub(crate) laws: Option<Vec<Law>>,

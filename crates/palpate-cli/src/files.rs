@@ -150,21 +150,29 @@ pub(crate) fn sha256(path: &Path) -> Result<String, Failure> {
     hash().map_err(|error| Failure::of_file(path, error, None))
 }
 
+/// A name of a test as the name of a file: what no system allows there becomes a hyphen.
+pub(crate) fn file_name(name: &str) -> String {
+    let allowed = |letter: char| !letter.is_control() && !"/\\:*?\"<>|".contains(letter);
+    let name: String = name.chars().map(|letter| if allowed(letter) { letter } else { '-' }).collect();
+    let name = name.trim().trim_matches('.').trim();
+    if name.is_empty() { "test".to_owned() } else { name.to_owned() }
+}
+
 /// Folders for the results of several records: the file names, with a number where two are alike.
 pub(crate) fn folders(out: &Path, records: &[PathBuf]) -> Vec<PathBuf> {
     if records.len() == 1 {
         return vec![out.to_owned()];
     }
-    let mut taken: Vec<PathBuf> = Vec::new();
-    for record in records {
-        let stem = record.file_stem().unwrap_or(record.as_os_str()).to_string_lossy().into_owned();
-        let mut folder = out.join(&stem);
-        let mut number = 2;
-        while taken.contains(&folder) {
-            folder = out.join(format!("{stem}-{number}"));
-            number += 1;
-        }
-        taken.push(folder);
-    }
-    taken
+    let mut taken = Vec::new();
+    let stem = |record: &PathBuf| record.file_stem().unwrap_or(record.as_os_str()).to_string_lossy().into_owned();
+    records.iter().map(|record| folder_in(out, &stem(record), &mut taken)).collect()
+}
+
+/// A folder by its name in another one, with a number where that is taken.
+pub(crate) fn folder_in(out: &Path, name: &str, taken: &mut Vec<PathBuf>) -> PathBuf {
+    let numbered = (2..).map(|number| out.join(format!("{name}-{number}")));
+    let mut names = std::iter::once(out.join(name)).chain(numbered);
+    let folder = names.find(|folder| !taken.contains(folder)).unwrap_or_else(|| out.join(name));
+    taken.push(folder.clone());
+    folder
 }

@@ -3,6 +3,7 @@
 pub(crate) mod analyze;
 pub(crate) mod compare;
 pub(crate) mod completions;
+mod inputs;
 pub(crate) mod inspect;
 mod picture;
 mod record;
