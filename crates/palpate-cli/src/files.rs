@@ -1,6 +1,6 @@
 //! Output that appears whole or not at all.
 
-use std::fs;
+use std::fs::{self, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -129,6 +129,22 @@ fn open_to_all(path: &Path) -> io::Result<()> {
 #[cfg(not(unix))]
 fn open_to_all(_: &Path) -> io::Result<()> {
     Ok(())
+}
+
+/// A file that only one `work` can hold at a time.
+pub(crate) fn lock_file(path: &Path, work: &str) -> Result<fs::File, Failure> {
+    let file = fs::File::create(path).map_err(|error| failure(path, &error))?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => Err(Failure::of_file(
+            path,
+            format!("expected no other {work} at work here, found one"),
+            Some("wait for it, or name another table with --out".to_owned()),
+        )),
+        // A file system without locks: better without than not at all.
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(file),
+        Err(TryLockError::Error(error)) => Err(failure(path, &error)),
+    }
 }
 
 /// SHA-256 of a file, hexadecimal.

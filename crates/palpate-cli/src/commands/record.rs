@@ -70,6 +70,11 @@ impl<'t> Opened<'t> {
         self.contents.parts()[part].name.as_deref().filter(|_| several)
     }
 
+    /// The record in a part.
+    pub(super) fn read_quietly(&self, part: usize) -> Result<RecordFile, Failure> {
+        read_part(&self.contents, part, self.test, &mut |_, _| {}).map_err(refused)
+    }
+
     /// The record in a part, with progress.
     pub(super) fn read(&self, part: usize) -> Result<RecordFile, Failure> {
         let path = self.contents.path();
