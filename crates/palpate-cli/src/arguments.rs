@@ -39,6 +39,7 @@ pub(crate) enum Command {
     Analyze(AnalyzeArguments),
     Batch(BatchArguments),
     Compare(CompareArguments),
+    Convert(ConvertArguments),
     Schema(SchemaArguments),
     Completions(CompletionsArguments),
 }
@@ -160,6 +161,12 @@ pub(crate) enum DriveName {
 
 /// Show what is in a record: columns, units, sampling, phases. Changes nothing.
 #[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  palpate inspect press.csv                            columns, units, the cut into phases
+  palpate inspect press.csv --figure cut.svg           the cut as a figure
+  palpate inspect book.xlsx --part \"Specimen 3\"       one sheet of a workbook
+  palpate inspect press.csv --write-test press.toml    a first test description, every guess commented")]
 pub(crate) struct InspectArguments {
     /// Record with time, force and, if possible, displacement, in any format that is known
     #[arg(value_name = "RECORD")]
@@ -168,6 +175,37 @@ pub(crate) struct InspectArguments {
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
     /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
+    #[arg(long, value_name = "NAME")]
+    pub(crate) part: Option<String>,
+    /// File for a figure of the cut into phases (.svg or .png)
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) figure: Option<PathBuf>,
+    /// File for a first test description, with every guess commented; never over a file that is there
+    #[arg(long, value_name = "TEST.toml")]
+    pub(crate) write_test: Option<PathBuf>,
+}
+
+/// Write a record of any format as a plain table in SI, with where it comes from.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Columns: time_s, displacement_m (if recorded), force_n; loading is positive. Inside the file stands what it was
+made from: the record's path and SHA-256, the columns and units taken, the test description, the version of palpate
+(in a CSV as a first line that begins with #).
+
+Examples:
+  palpate convert press.xlsx --part \"Specimen 3\" --out press-3.csv
+  palpate convert cell.jpk-force --out cell.parquet")]
+pub(crate) struct ConvertArguments {
+    /// Record in any format that is known
+    #[arg(value_name = "RECORD")]
+    pub(crate) record: PathBuf,
+    /// File to write (.csv, .parquet or .json)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// Test description (TOML): columns, units
+    #[arg(long, value_name = "TEST.toml")]
+    pub(crate) test: Option<PathBuf>,
+    /// The one test of a file that holds several: its name, or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
 }

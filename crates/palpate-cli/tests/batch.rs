@@ -51,7 +51,11 @@ fn a_folder_becomes_one_table_of_holds_and_laws() {
     assert!((number("relative_rate_per_s", 3) - 1.0).abs() < 1e-2);
     assert!(number("exponent_low", 5) < number("exponent", 5) && number("exponent", 5) < number("exponent_high", 5));
     let text = fs::read_to_string(folder.join("holds.csv")).unwrap();
-    assert!(text.starts_with("# palpate_batch: {") && text.contains("\"software\":\"palpate "), "{}", &text[..200]);
+    assert!(
+        text.starts_with("# palpate_batch: {") && text.contains("\"software\":\"palpate "),
+        "{}",
+        &text[..200]
+    );
 }
 
 #[test]
@@ -60,7 +64,10 @@ fn parquet_holds_what_csv_holds() {
     let folder = folder.path();
     records(folder, 3);
     done(folder, &["batch", "curves", "--out", "holds.csv", "--laws", "maxwell,standard-linear-solid"]);
-    done(folder, &["batch", "curves/**/*.csv", "--out", "holds.parquet", "--laws", "maxwell,standard-linear-solid"]);
+    done(
+        folder,
+        &["batch", "curves/**/*.csv", "--out", "holds.parquet", "--laws", "maxwell,standard-linear-solid"],
+    );
     let table = lines(folder, "holds.csv");
     let parquet = TableReader::new(fs::File::open(folder.join("holds.parquet")).unwrap()).unwrap();
     assert_eq!(parquet.rows() as usize, table.len() - 1);
@@ -68,7 +75,9 @@ fn parquet_holds_what_csv_holds() {
     assert_eq!(names.join(","), table[0]);
     assert!(parquet.mark("palpate_batch").unwrap().contains("options"));
     let rmse = names.iter().position(|name| *name == "relative_rmse").unwrap();
-    let Values::Number(stored) = parquet.values(0, rmse).unwrap() else { panic!("no numbers") };
+    let Values::Number(stored) = parquet.values(0, rmse).unwrap() else {
+        panic!("no numbers")
+    };
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(folder.join("holds.csv")).unwrap();
     let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
     for (row, value) in rows.iter().zip(&stored) {

@@ -56,9 +56,7 @@ impl FileError {
 
 fn foreign(looks_like: Foreign) -> &'static str {
     match looks_like {
-        Foreign::Markup => {
-            "open it in a spreadsheet program and save the sheet as CSV"
-        }
+        Foreign::Markup => "open it in a spreadsheet program and save the sheet as CSV",
         Foreign::Zip | Foreign::Compressed => "unpack it first, or export the record as text",
         Foreign::Picture | Foreign::Pdf => "a record of numbers is needed, not a document",
         Foreign::Binary => "export the record as text, or fix its encoding if it is text",

@@ -17,5 +17,6 @@ pub mod figure;
 pub mod number;
 pub mod page;
 mod script;
+pub mod sparkline;
 pub mod study;
 pub mod table;

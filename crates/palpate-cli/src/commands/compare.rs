@@ -140,9 +140,7 @@ fn one(
 fn without(path: &Path, part: Option<&str>, failure: Failure) -> LeftOut {
     let (message, hint) = failure.into_parts();
     let own = path.display().to_string();
-    let reason = message
-        .strip_prefix(&own)
-        .map_or(message.as_str(), |rest| rest.trim_start_matches([':', ',', ' ']));
+    let reason = message.strip_prefix(&own).map_or(message.as_str(), |rest| rest.trim_start_matches([':', ',', ' ']));
     LeftOut {
         reason: reason.to_owned(),
         path: called(path, part),

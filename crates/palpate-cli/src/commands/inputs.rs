@@ -70,7 +70,11 @@ fn matching(pattern: &Path, paths: &mut Vec<PathBuf>) -> Result<(), Failure> {
     }
     if paths.len() == before {
         let hint = "* stands for any part of a name, ** for any folders: \"records/**/*.csv\"";
-        return Err(Failure::of_file(pattern, "expected a pattern that matches files, found none", Some(hint.to_owned())));
+        return Err(Failure::of_file(
+            pattern,
+            "expected a pattern that matches files, found none",
+            Some(hint.to_owned()),
+        ));
     }
     Ok(())
 }

@@ -91,16 +91,21 @@ pub(super) fn called(path: &Path, part: Option<&str>) -> String {
     part.map_or_else(|| path.display().to_string(), |part| format!("{}, {part}", path.display()))
 }
 
-/// The one record of a file.
-pub(super) fn record(path: &Path, test: Option<&TestDescription>) -> Result<RecordFile, Failure> {
-    let opened = Opened::open(path, test)?;
+/// The one test of a file.
+pub(super) fn one_part(opened: &Opened<'_>) -> Result<usize, Failure> {
     match opened.parts() {
-        [only] => opened.read(*only),
+        [only] => Ok(*only),
         several => Err(refused(ReadError::SeveralParts {
-            path: path.to_owned(),
+            path: opened.contents.path().to_owned(),
             parts: several.iter().map(|part| opened.contents.parts()[*part].title().to_owned()).collect(),
         })),
     }
+}
+
+/// The one record of a file.
+pub(super) fn record(path: &Path, test: Option<&TestDescription>) -> Result<RecordFile, Failure> {
+    let opened = Opened::open(path, test)?;
+    opened.read(one_part(&opened)?)
 }
 
 fn refused(error: ReadError) -> Failure {

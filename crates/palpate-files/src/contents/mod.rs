@@ -27,7 +27,7 @@ pub use part::{ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart};
 use crate::{
     error::FileError,
     input::{Input, Packing},
-    text::LayoutOptions,
+    text::{Layout, LayoutOptions},
 };
 
 /// What a caller knows about a file better than its bytes do. Everything left out is found out.
@@ -44,12 +44,12 @@ pub(crate) trait ReadPart: fmt::Debug + Send + Sync {
     /// Reads the columns with these numbers (from 1, in any order, perhaps one twice) of the part with this index.
     ///
     /// Both the index and the numbers are those of [`Contents::parts`].
-    fn read(
-        &self,
-        part: usize,
-        columns: &[usize],
-        progress: &mut dyn FnMut(u64, u64),
-    ) -> Result<Columns, FileError>;
+    fn read(&self, part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError>;
+
+    /// How delimited text is written; `None` in other formats.
+    fn layout(&self) -> Option<&Layout> {
+        None
+    }
 }
 
 /// A file that was looked into.
@@ -136,6 +136,12 @@ impl Contents {
     #[must_use]
     pub fn parts(&self) -> &[Part] {
         &self.parts
+    }
+
+    /// How delimited text is written; `None` in other formats.
+    #[must_use]
+    pub fn layout(&self) -> Option<&Layout> {
+        self.reader.layout()
     }
 
     /// What was passed over, in the order of the file.

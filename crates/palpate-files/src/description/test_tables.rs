@@ -3,7 +3,9 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{columns::ColumnsTable, contact::SidesName, file::FileTable, quantity::QuantityText, specimen::SpecimenTable};
+use super::{
+    columns::ColumnsTable, contact::SidesName, file::FileTable, quantity::QuantityText, specimen::SpecimenTable,
+};
 
 /// A squeeze-and-hold test: what its record holds, what was tested, and how to evaluate it. Every table may be
 /// left out. Quantities are texts with a unit.

@@ -65,7 +65,9 @@ fn archive(input: &Input) -> Result<Packing, FileError> {
     let noise = |name: &str| name.ends_with('/') || name.starts_with("__MACOSX/") || name.ends_with(".DS_Store");
     let mut files: Vec<String> = names.into_iter().filter(|name| !noise(name)).collect();
     match files.len() {
-        1 => Ok(Packing::Zip { member: files.remove(0) }),
+        1 => Ok(Packing::Zip {
+            member: files.remove(0),
+        }),
         _ => Err(FileError::Archive {
             path: input.name().to_owned(),
             members: files,
@@ -114,7 +116,9 @@ impl Member {
             if member.encrypted() {
                 return Err(io::Error::other("the file in the archive is encrypted"));
             }
-            let start = member.data_start().ok_or_else(|| io::Error::other("the archive does not say where its file begins"))?;
+            let start = member
+                .data_start()
+                .ok_or_else(|| io::Error::other("the archive does not say where its file begins"))?;
             (start, member.compressed_size(), member.compression(), member.crc32())
         };
         let mut stored = archive.into_inner();
@@ -163,7 +167,8 @@ impl<R: Read> Read for Limited<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let got = self.inner.read(into)?;
         let left = self.left.checked_sub(got as u64);
-        self.left = left.ok_or_else(|| io::Error::other(format!("it unpacks to more than {} GiB", MOST_UNPACKED >> 30)))?;
+        self.left =
+            left.ok_or_else(|| io::Error::other(format!("it unpacks to more than {} GiB", MOST_UNPACKED >> 30)))?;
         Ok(got)
     }
 }

@@ -5,11 +5,7 @@ use std::{fmt, path::PathBuf};
 use palpate::record::RecordError;
 
 use super::{Quantity, snippet};
-use crate::{
-    contents::ColumnInfo,
-    description::ColumnRef,
-    error::FileError,
-};
+use crate::{contents::ColumnInfo, description::ColumnRef, error::FileError};
 
 /// A column as messages name it: `column 3 (Force)`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -225,9 +221,13 @@ impl ReadError {
             Self::Record { source, .. } => Some(source.hint().to_owned()),
             Self::SeveralParts { parts, .. } => {
                 let first = parts.first().map_or("1", String::as_str);
-                Some(format!("choose one by its name or number: --part \"{first}\", or in a test description:\n[file]\npart = \"{first}\""))
+                Some(format!(
+                    "choose one by its name or number: --part \"{first}\", or in a test description:\n[file]\npart = \"{first}\""
+                ))
             }
-            Self::NoSuchPart { .. } => Some("name a part as the file does, or give its number, counted from 1".to_owned()),
+            Self::NoSuchPart { .. } => {
+                Some("name a part as the file does, or give its number, counted from 1".to_owned())
+            }
         }
     }
 }

@@ -6,10 +6,12 @@
 //! | `read.rs` | reads a record ([`read_record`]) |
 //! | `choose.rs` | chooses the columns, from a description or by the header |
 //! | `recognise.rs`, `header_words.rs` | tells columns by their names |
+//! | `describe.rs` | a first description of a test ([`describe`]) |
 //! | `quantity.rs` | what a column can hold, and its units |
 //! | `error.rs`, `snippet.rs` | what is not clear, and the lines of a description that would clear it up |
 
 mod choose;
+mod describe;
 mod error;
 mod header_words;
 mod parts;
@@ -18,10 +20,11 @@ mod read;
 mod recognise;
 mod snippet;
 
+pub use describe::describe;
 pub use error::{ColumnError, NamedColumn, ReadError};
+pub use parts::{Tests, tests};
 pub use quantity::Quantity;
 pub(crate) use quantity::unit_factor;
-pub use parts::{Tests, tests};
 pub use read::{RecordFile, read_part, read_record};
 
 use serde::Serialize;

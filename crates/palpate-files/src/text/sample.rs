@@ -42,7 +42,9 @@ impl Sample {
             return Err(foreign(Foreign::Binary));
         }
         if text.trim().is_empty() && !cut {
-            return Err(FileError::Empty { path: input.name().to_owned() });
+            return Err(FileError::Empty {
+                path: input.name().to_owned(),
+            });
         }
         let text = text.into_owned();
         if cut && memchr::memchr2(b'\n', b'\r', text.as_bytes()).is_none() {

@@ -40,7 +40,8 @@ fn the_same_from_a_disk_and_from_memory() {
 
 #[test]
 fn columns_by_name() {
-    let contents = contents("a.csv", "Force (N),displacement_mm,Force_N,Kraft [N]\n0,1,2,3.5\n1,2,3,4.5\n").expect("a table");
+    let contents =
+        contents("a.csv", "Force (N),displacement_mm,Force_N,Kraft [N]\n0,1,2,3.5\n1,2,3,4.5\n").expect("a table");
     let part = &contents.parts()[0];
     assert_eq!(part.column_named("kraft").map(|column| column.number), Some(4));
     assert_eq!(part.column_named("Force"), None);

@@ -85,6 +85,8 @@ fn changed_bytes_are_noticed() {
     let mut archive = zip(&[("a.csv", TABLE.as_bytes())], CompressionMethod::Stored);
     let place = archive.windows(2).position(|pair| pair == b"12").expect("a number");
     archive[place] = b'2';
-    let error = contents("a.zip", archive).and_then(|found| found.read(0, &[1], &mut |_, _| {})).expect_err("changed");
+    let error = contents("a.zip", archive)
+        .and_then(|found| found.read(0, &[1], &mut |_, _| {}))
+        .expect_err("changed");
     assert!(error.to_string().contains("checksum"), "{error}");
 }

@@ -53,7 +53,10 @@ fn everything_said() {
     "#;
     let all = test(text).unwrap();
     assert_eq!(all.about.note.as_deref(), Some("c"));
-    assert_eq!((all.reading.layout.delimiter, all.reading.layout.decimal), (Some(Delimiter::Semicolon), Some(DecimalMark::Comma)));
+    assert_eq!(
+        (all.reading.layout.delimiter, all.reading.layout.decimal),
+        (Some(Delimiter::Semicolon), Some(DecimalMark::Comma))
+    );
     assert_eq!((all.reading.layout.encoding, all.reading.layout.header), (Some(Encoding::Gbk), Some(false)));
     assert_eq!(all.reading.layout.skip_lines, Some(2));
     let displacement = all.columns.displacement.unwrap();

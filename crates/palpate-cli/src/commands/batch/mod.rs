@@ -41,7 +41,9 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
     let settings = settings(&options, arguments.test.as_deref(), test.as_ref())?;
     let digest = digest(&settings);
     let mut journal = Journal::open(&arguments.out, &digest, arguments.restart)?;
-    let threads = arguments.threads.map_or_else(|| thread::available_parallelism().map_or(1, usize::from), usize::from);
+    let threads = arguments
+        .threads
+        .map_or_else(|| thread::available_parallelism().map_or(1, usize::from), usize::from);
     let asked = Asked {
         test: test.as_ref(),
         described_by: arguments.test.as_deref(),

@@ -1,0 +1,139 @@
+//! The cut into phases: as a table, a sparkline and a figure.
+
+use std::fmt::Write as _;
+
+use palpate::record::Record;
+use palpate::segment::{Phase, SegmentError, SegmentOptions, Segmentation, find_contact_of, find_phases};
+use palpate_files::description::TestDescription;
+use palpate_report::figure::Figure;
+use palpate_report::number::significant;
+use palpate_report::sparkline::{sparkline, strip};
+use palpate_report::study::cut_figure;
+use palpate_report::table::{Cell, Table, TableColumn};
+
+/// Characters of a sparkline: what fits into a narrow terminal beside its label.
+const WIDTH: usize = 64;
+
+/// A record and its phases, or why there are none.
+pub(super) struct Cut {
+    record: Record,
+    dropouts: usize,
+    found: Result<Segmentation, SegmentError>,
+}
+
+impl Cut {
+    pub(super) fn of(record: &Record, test: Option<&TestDescription>) -> Self {
+        let (record, dropouts) = record.repaired();
+        let options = test.map_or_else(SegmentOptions::default, |test| test.segment);
+        let found = find_phases(&record, &options);
+        Self {
+            record,
+            dropouts,
+            found,
+        }
+    }
+
+    /// The phases, if there are any.
+    pub(super) fn found(&self) -> Option<&Segmentation> {
+        self.found.as_ref().ok()
+    }
+
+    /// The cut as a figure; of a record without phases, its curves.
+    pub(super) fn figure(&self) -> Figure {
+        let segments = self.found().map_or(&[][..], |found| &found.segments);
+        cut_figure(&self.record, segments, "cut")
+    }
+
+    /// Sparklines, phases and first touch as text.
+    pub(super) fn told(&self, test: Option<&TestDescription>) -> String {
+        let mut out = self.sparklines();
+        match &self.found {
+            Ok(found) => {
+                out.push_str(&self.phases(found));
+                out.push_str(&self.contact(found, test));
+            }
+            Err(error) => {
+                let _ = writeln!(out, "Phases: {error}");
+            }
+        }
+        out
+    }
+
+    /// Displacement and force in one line each, and what the jaw does below them.
+    fn sparklines(&self) -> String {
+        let time = self.record.time();
+        let mut out = String::new();
+        if let Some(displacement) = self.record.displacement() {
+            let _ = writeln!(out, "displacement  {}", sparkline(time, displacement, WIDTH));
+        }
+        let _ = writeln!(out, "force         {}", sparkline(time, self.record.force(), WIDTH));
+        if let Ok(found) = &self.found {
+            let stretches: Vec<(f64, f64, char)> = found
+                .segments
+                .iter()
+                .map(|segment| {
+                    let letter = match segment.phase {
+                        Phase::Rest => '·',
+                        Phase::Loading => '/',
+                        Phase::Hold => '━',
+                        Phase::Unloading => '\\',
+                    };
+                    // To where the next one begins, so that no gap is left between them.
+                    let end = segment.end.min(time.len() - 1);
+                    (time[segment.start], time[end], letter)
+                })
+                .collect();
+            let line = strip(time[0], time[time.len() - 1], &stretches, WIDTH);
+            let _ = writeln!(out, "phases        {}", line.trim_end());
+            let _ = writeln!(out, "              ━ hold  / loading  \\ unloading  · rest");
+        }
+        out.push('\n');
+        out
+    }
+
+    fn phases(&self, segmentation: &Segmentation) -> String {
+        let record = &self.record;
+        let mut table = Table::new("phases", "Phases")
+            .column(TableColumn::new("Phase", "phase", ""))
+            .column(TableColumn::new("From", "start_s", "s"))
+            .column(TableColumn::new("To", "end_s", "s"))
+            .column(TableColumn::new("Samples", "samples", ""))
+            .column(TableColumn::new("Displacement", "displacement_mm", "mm"))
+            .column(TableColumn::new("Force at start", "force_start_n", "N"))
+            .column(TableColumn::new("Force at end", "force_end_n", "N"));
+        for segment in &segmentation.segments {
+            let last = segment.end - 1;
+            let end = record.displacement().map(|displacement| 1e3 * displacement[last]);
+            table = table.row(vec![
+                Cell::text(format!("{:?}", segment.phase).to_lowercase()),
+                Cell::number(record.time()[segment.start], 6),
+                Cell::number(record.time()[last], 6),
+                Cell::Integer(segment.len() as i64),
+                Cell::number_or(end, 4, "not recorded"),
+                Cell::number(record.force()[segment.start], 4),
+                Cell::number(record.force()[last], 4),
+            ]);
+        }
+        let mut out = table.to_plain_text();
+        if self.dropouts > 0 {
+            let _ = writeln!(out, "\n{} rows of the displacement stray alone (dropouts)", self.dropouts);
+        }
+        out
+    }
+
+    /// Where the body was first touched, if the jaw went through air before.
+    fn contact(&self, segmentation: &Segmentation, test: Option<&TestDescription>) -> String {
+        let body = test.and_then(|test| test.geometry.as_ref()).map(|geometry| (&geometry.shape, geometry.sides));
+        let choice = test.map(|test| test.touch).unwrap_or_default();
+        let contact = find_contact_of(&self.record, segmentation, body, choice);
+        if contact.air_travel <= 0.0 {
+            return String::new();
+        }
+        format!(
+            "\nfirst touch at {} mm, after {} mm through air; force zero {} N\n",
+            significant(1e3 * contact.tare.displacement, 4),
+            significant(1e3 * contact.air_travel, 3),
+            significant(contact.tare.force, 3)
+        )
+    }
+}

@@ -1,0 +1,141 @@
+//! `palpate inspect` and `palpate convert`: what a file is, the cut into phases, a first description, a plain table.
+#![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{data, done, file, palpate, ramp_and_hold, refused};
+
+/// The table of phases of a record.
+fn phases(folder: &Path, arguments: &[&str]) -> String {
+    let told = done(folder, arguments);
+    told.split_once("\nPhases\n").unwrap_or_else(|| panic!("{told}")).1.to_owned()
+}
+
+#[test]
+fn the_cut_is_seen_at_a_glance() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let record = file(folder, "press.csv", ramp_and_hold(7.0, 20.0));
+    let told = done(folder, &["inspect", &record]);
+    let line = |label: &str| {
+        let line = told.lines().find(|line| line.starts_with(label)).unwrap_or_else(|| panic!("{told}"));
+        line[label.len()..].trim().to_owned()
+    };
+    assert_eq!(line("displacement  ").chars().count(), 64);
+    // One of eight seconds is a ramp.
+    assert_eq!(line("phases  "), format!("{}{}", "/".repeat(8), "━".repeat(56)));
+    let force = line("force  ");
+    assert!(force.starts_with('▁') && force.contains('█') && !force.ends_with('█'), "{force}");
+}
+
+#[test]
+fn the_cut_as_a_figure() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let record = file(folder, "press.csv", ramp_and_hold(7.0, 20.0));
+    done(folder, &["inspect", &record, "--figure", "cut.svg"]);
+    let figure = fs::read_to_string(folder.join("cut.svg")).unwrap();
+    assert!(figure.contains("Displacement") && figure.contains("Force"), "{}", &figure[..300]);
+    let error = refused(folder, &["inspect", &record, "--figure", "cut.pdf"]);
+    assert!(error.contains("expected a figure ending in .svg or .png"), "{error}");
+}
+
+#[test]
+fn a_first_description_gives_the_same_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let text = ramp_and_hold(7.0, 20.0);
+    let german: String = text
+        .lines()
+        .map(|line| line.replace(',', ";").replace('.', ",") + "\r\n")
+        .collect::<String>()
+        .replace("time_s;displacement_mm;force_n", "Prüfzeit (s);Weg (mm);Kraft (N)");
+    let latin: Vec<u8> = german.chars().map(|letter| letter as u8).collect();
+    let doubled = text.replace("time_s,displacement_mm,force_n", "Force,time_s,displacement_mm,Force (N)");
+    let doubled: String = doubled
+        .lines()
+        .enumerate()
+        .map(|(i, line)| if i == 0 { format!("{line}\n") } else { format!("x,{line}\n") })
+        .collect();
+    for (index, bytes) in [text.into_bytes(), latin, doubled.into_bytes()].into_iter().enumerate() {
+        let record = file(folder, &format!("{index}.csv"), bytes);
+        let test = format!("{index}.toml");
+        let before = phases(folder, &["inspect", &record, "--write-test", &test]);
+        assert_eq!(phases(folder, &["inspect", &record, "--test", &test]), before);
+        let written = fs::read_to_string(folder.join(&test)).unwrap();
+        for expected in ["# guessed", "[columns.force]", "# from the file", "# Holds found: 1.", "# radius = \"35 mm\""]
+        {
+            assert!(written.contains(expected), "{expected}: {written}");
+        }
+    }
+}
+
+#[test]
+fn what_the_file_does_not_say_is_asked_for_and_not_guessed() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let text = ramp_and_hold(7.0, 20.0).replace("time_s,displacement_mm,force_n", "Time,Pos,Force");
+    let record = file(folder, "gripper.csv", text);
+    let output = palpate(folder, &["inspect", &record, "--write-test", "t.toml"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    let written = fs::read_to_string(folder.join("t.toml")).unwrap();
+    assert!(written.contains("unit = \"?\"    # the file does not say; one of N, kN"), "{written}");
+    let error = refused(folder, &["inspect", &record, "--test", "t.toml"]);
+    assert!(error.contains("\"?\" is not a unit of time"), "{error}");
+    let answer = |text: String, unit: &str| text.replacen("unit = \"?\"", &format!("unit = \"{unit}\""), 1);
+    let answered = answer(answer(answer(written, "s"), "mm"), "N");
+    file(folder, "answered.toml", answered);
+    assert!(phases(folder, &["inspect", &record, "--test", "answered.toml"]).contains("hold"));
+}
+
+#[test]
+fn a_description_is_never_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let record = file(folder, "press.csv", ramp_and_hold(7.0, 20.0));
+    file(folder, "t.toml", "# mine\n");
+    let error = refused(folder, &["inspect", &record, "--write-test", "t.toml"]);
+    assert!(error.contains("expected the name of a new file"), "{error}");
+    assert_eq!(fs::read_to_string(folder.join("t.toml")).unwrap(), "# mine\n");
+}
+
+#[test]
+fn the_cut_of_a_real_record_can_be_drawn() {
+    let Some(record) = data("foam/XtraSoft.csv") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let told = done(folder.path(), &["inspect", record.to_str().unwrap(), "--figure", "cut.png"]);
+    assert!(told.contains("phases        ////━━━━"), "{told}");
+    assert!(fs::read(folder.path().join("cut.png")).unwrap().starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn a_record_as_a_plain_table_is_the_same_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let record = file(folder, "press.csv", ramp_and_hold(7.0, 20.0));
+    let before = phases(folder, &["inspect", &record]);
+    for name in ["plain.csv", "plain.json", "plain.parquet"] {
+        done(folder, &["convert", &record, "--out", name]);
+    }
+    let csv = fs::read_to_string(folder.join("plain.csv")).unwrap();
+    let mut lines = csv.lines();
+    let first = lines.next().unwrap();
+    let origin = first.strip_prefix("# palpate_record: ").unwrap();
+    let origin: serde_json::Value = serde_json::from_str(origin).unwrap();
+    assert_eq!((origin["input"]["path"].as_str(), origin["input"]["rows"].as_u64()), (Some("press.csv"), Some(161)));
+    assert_eq!(origin["input"]["sha256"].as_str().map(str::len), Some(64));
+    assert_eq!(lines.next(), Some("time_s,displacement_m,force_n"));
+    assert_eq!(lines.nth(20), Some("1,0.001,2"));
+    assert_eq!(phases(folder, &["inspect", "plain.csv"]), before);
+    let json: serde_json::Value = serde_json::from_slice(&fs::read(folder.join("plain.json")).unwrap()).unwrap();
+    assert_eq!(json["schema"], "palpate.record/1");
+    assert_eq!(json["force_n"].as_array().map(Vec::len), Some(161));
+    let error = refused(folder, &["convert", &record, "--out", "plain.xlsx"]);
+    assert!(error.contains("expected a file ending in .csv, .parquet or .json"), "{error}");
+}

@@ -1,0 +1,177 @@
+//! A first description of a test, from what its file says of itself.
+
+use std::fmt::Write as _;
+
+use palpate::segment::{Phase, Segmentation};
+
+use super::{ColumnUse, Quantity, RecordFile, Role, recognise};
+use crate::contents::{ColumnInfo, Contents, Part};
+
+/// What stands where the file does not tell; reading with it is an error that names the key.
+const ASK: &str = "?";
+
+/// A test description (TOML) for one part of a file, with every guess commented.
+///
+/// With `file`, the record as it was read, the description gives the same record again. Without it, because the file
+/// does not say enough, what is missing stands as `"?"`, so that nothing is read before a person has answered. What
+/// was found out about the phases is added as comments.
+#[must_use]
+pub fn describe(
+    contents: &Contents,
+    part: usize,
+    file: Option<&RecordFile>,
+    found: Option<(&RecordFile, &Segmentation)>,
+) -> String {
+    let about = &contents.parts()[part];
+    let mut out = String::new();
+    let name = contents.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let _ = writeln!(out, "# A first test description of {name}, from what the file says of itself.");
+    let _ = writeln!(out, "# Check the lines marked \"guessed\" and answer those with \"{ASK}\".\n");
+    let title = contents.path().file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let title = about.name.as_ref().map_or_else(|| title.clone(), |part| format!("{title}, {part}"));
+    let _ = writeln!(out, "[about]\ntitle = {}\n", quoted(&title));
+    write_file(&mut out, contents, about);
+    match file {
+        Some(file) => write_columns(&mut out, about, &file.columns),
+        None => write_questions(&mut out, about),
+    }
+    write_body(&mut out, about);
+    if let Some((file, segmentation)) = found {
+        write_phases(&mut out, file, segmentation);
+    }
+    out
+}
+
+/// A text as TOML writes it.
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
+fn write_file(out: &mut String, contents: &Contents, part: &Part) {
+    let several = contents.parts().len() > 1;
+    let layout = contents.layout();
+    if !several && layout.is_none() {
+        return;
+    }
+    let _ = writeln!(out, "[file]");
+    if let (true, Some(name)) = (several, &part.name) {
+        let _ = writeln!(out, "part = {}", quoted(name));
+    }
+    if let Some(layout) = layout {
+        let _ = writeln!(out, "encoding = \"{}\"    # guessed from the bytes", layout.encoding);
+        let _ = writeln!(out, "delimiter = \"{}\"    # guessed: it cuts all rows alike", layout.delimiter);
+        let _ = writeln!(out, "decimal = \"{}\"    # guessed from the numbers", layout.decimal);
+        let header = layout.header_line;
+        let why = header.map_or("no line of names was seen".to_owned(), |line| format!("line {line} looks like names"));
+        let _ = writeln!(out, "header = {}    # guessed: {why}", header.is_some());
+    }
+    out.push('\n');
+}
+
+/// How a description names a column: by its name if only one has it, else by its number.
+fn reference(part: &Part, column: &ColumnInfo) -> String {
+    let by_name = column.name.as_deref().filter(|name| {
+        let found = part.column_named(name);
+        found.is_some_and(|found| found.number == column.number)
+    });
+    by_name.map_or_else(|| column.number.to_string(), quoted)
+}
+
+fn write_columns(out: &mut String, part: &Part, columns: &[ColumnUse]) {
+    let clock = |quantity| columns.iter().find(|column| column.role == Role::ClockOf(quantity));
+    for column in columns {
+        let Role::Values(quantity) = column.role else { continue };
+        let info = &part.columns[column.number - 1];
+        let _ = writeln!(out, "[columns.{quantity}]");
+        let why = if info.name.is_some() { "guessed by its name" } else { "as described" };
+        let _ = writeln!(out, "column = {}    # {why}; starts with {}", reference(part, info), one_line(&info.sample));
+        let source = if info.unit.is_some() { "from the file" } else { "as described" };
+        let _ = writeln!(out, "unit = {}    # {source}", quoted(&column.unit));
+        if column.sign < 0.0 {
+            let _ = writeln!(out, "sign = -1");
+        }
+        if let Some(clock) = clock(quantity) {
+            let info = &part.columns[clock.number - 1];
+            let _ = writeln!(out, "clock = {{ column = {}, unit = {} }}", reference(part, info), quoted(&clock.unit));
+        }
+        out.push('\n');
+    }
+}
+
+fn write_questions(out: &mut String, part: &Part) {
+    let _ = writeln!(out, "# The columns of the file:");
+    for column in &part.columns {
+        let name = column.name.as_deref().unwrap_or("(no name)");
+        let unit = column.unit.as_deref().map_or(String::new(), |unit| format!(" in {unit}"));
+        let sample = one_line(&column.sample);
+        let _ = writeln!(out, "#   {}: {}{unit}, starts with {sample}", column.number, one_line(name));
+    }
+    out.push('\n');
+    for quantity in [Quantity::Time, Quantity::Displacement, Quantity::Force] {
+        let candidates = recognise::candidates(&part.columns, quantity);
+        let _ = writeln!(out, "[columns.{quantity}]");
+        match candidates[..] {
+            [only] => {
+                let _ = writeln!(out, "column = {}    # guessed by its name", reference(part, only));
+                match only.unit.as_deref().filter(|unit| super::unit_factor(unit, quantity.dimension()).is_some()) {
+                    Some(unit) => {
+                        let _ = writeln!(out, "unit = {}    # from the file", quoted(unit));
+                    }
+                    None => ask_unit(out, quantity),
+                }
+            }
+            [] => {
+                let optional =
+                    if quantity == Quantity::Displacement { "; remove the table if there is none" } else { "" };
+                let _ = writeln!(out, "column = \"{ASK}\"    # no name says which{optional}");
+                ask_unit(out, quantity);
+            }
+            ref several => {
+                let numbers: Vec<String> = several.iter().map(|column| column.number.to_string()).collect();
+                let _ = writeln!(out, "column = \"{ASK}\"    # {} could all hold it", numbers.join(", "));
+                ask_unit(out, quantity);
+            }
+        }
+        out.push('\n');
+    }
+}
+
+fn ask_unit(out: &mut String, quantity: Quantity) {
+    let _ = writeln!(out, "unit = \"{ASK}\"    # the file does not say; one of {}", quantity.dimension().accepted());
+}
+
+/// Line breaks in a cell would end a comment.
+fn one_line(text: &str) -> String {
+    let line: String = text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
+    line.trim().to_owned()
+}
+
+fn write_body(out: &mut String, part: &Part) {
+    let _ = writeln!(out, "# The body is needed for strains and for v in 1/s; without it forces are fitted.");
+    for entry in part.metadata.iter().filter(|entry| entry.unit.is_some()) {
+        let unit = entry.unit.as_deref().unwrap_or_default();
+        let _ = writeln!(out, "#   the file says: {} = {} {unit}", one_line(&entry.name), one_line(&entry.value));
+    }
+    let _ = writeln!(out, "# [specimen]\n# shape = \"ball\"\n# radius = \"35 mm\"\n# modulus = \"28 kPa\"\n");
+}
+
+fn write_phases(out: &mut String, file: &RecordFile, segmentation: &Segmentation) {
+    let time = file.record.time();
+    let holds: Vec<_> = segmentation.segments.iter().filter(|segment| segment.phase == Phase::Hold).collect();
+    let _ = writeln!(out, "# Holds found: {}.", holds.len());
+    for (index, hold) in holds.iter().enumerate() {
+        let (start, end) = (time[hold.start], time[hold.end - 1]);
+        let _ = writeln!(out, "#   {}: from {} s to {} s", index + 1, short(start), short(end));
+    }
+    let _ = writeln!(out, "# If that is not what you see, say what a hold is:");
+    let _ = writeln!(out, "# [phases]");
+    if segmentation.settings.from_displacement {
+        let _ = writeln!(out, "# tolerance = \"{} mm\"", short(1e3 * segmentation.settings.tolerance));
+    }
+    let _ = writeln!(out, "# minimum_hold = \"{} s\"", short(segmentation.settings.minimum_hold));
+}
+
+/// A number with five digits, for people.
+fn short(value: f64) -> f64 {
+    format!("{value:.4e}").parse().unwrap_or(value)
+}
