@@ -262,6 +262,42 @@ fn volts_without_calibration_are_asked_about() {
 }
 
 #[test]
+fn a_sensitivity_alone_gives_the_indentation() {
+    let from = "lcd-info.0.conversion-set.conversion.force.defined=true";
+    let mut members = press();
+    let text = shared().replace(from, &from.replace("true", "false")).replace("default=force", "default=distance");
+    members[1].1 = text.into_bytes();
+    let contents = opened(&packed(&members));
+    let part = &contents.parts()[0];
+    assert_eq!(names(part)[..3], ["time", "uncalibrated force", "indentation"]);
+    assert!(near(column(&contents, "indentation")[3], -(7e-5 + 5e-7)));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("curve.jpk-force");
+    std::fs::write(&path, packed(&members)).unwrap();
+    let error = read_record(&path, None, &mut |_, _| {}).expect_err("an error").to_string();
+    assert!(error.contains("column 2 (uncalibrated force): \"m\" is not a unit of force"), "{error}");
+}
+
+#[test]
+fn segments_that_recorded_nothing_are_skipped_and_their_time_goes_by() {
+    let mut members = press();
+    members.retain(|(name, _)| !name.starts_with("segments/1/channels/"));
+    let (_, bytes) = members.iter_mut().find(|(name, _)| name == PAUSE).expect("a member");
+    *bytes = segment_header("pause", 0, "2.0").into_bytes();
+    let contents = opened(&packed(&members));
+    assert_eq!(labels(&contents.parts()[0]), [("extend", 0, 4), ("retract", 4, 6)]);
+    assert_eq!(column(&contents, "time"), [0.0, 0.5, 1.0, 1.5, 4.0, 5.0]);
+    let [skipped] = contents.skipped() else {
+        panic!("{:?}", contents.skipped())
+    };
+    assert_eq!((skipped.name.as_str(), skipped.reason.as_str()), ("segment 1 (pause)", "it has no rows"));
+    // Without the duration of a segment that recorded something there is no time.
+    let contents = opened(&changed(PAUSE, "duration=2.0", "duration="));
+    assert!(contents.parts()[0].column_named("time").is_none());
+    assert!(metadata(&contents.parts()[0], "time").unwrap().starts_with("none"));
+}
+
+#[test]
 fn lying_headers_are_found_out() {
     for (name, from, to, expected) in [
         (PAUSE, "num-points=2", "num-points=3", "expected 6 bytes for 3 numbers of 2 bytes, found 4 bytes"),
