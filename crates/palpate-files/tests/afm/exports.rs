@@ -1,7 +1,10 @@
 //! JPK's text export.
 
+use std::path::Path;
+
 use palpate_files::{
     contents::Format,
+    description::parse_test,
     record_file::{ColumnError, ReadError, read_record},
 };
 
@@ -137,6 +140,17 @@ fn a_record_needs_no_description() {
     assert_eq!(file.record.len(), 9);
     let displacement = file.record.displacement().unwrap();
     assert!(displacement[5] > displacement[0], "{displacement:?}");
+}
+
+#[test]
+fn the_travel_of_the_base_can_be_chosen_instead() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("curve.txt");
+    std::fs::write(&path, written(&press())).unwrap();
+    let text = "[columns.displacement]\ncolumn = \"measuredHeight\"\nsign = -1\n";
+    let test = parse_test(text, Path::new("test.toml")).unwrap_or_else(|error| panic!("{error}"));
+    let file = read_record(&path, Some(&test), &mut |_, _| {}).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(file.record.displacement().unwrap()[..4], [-4e-6, -2e-6, 0.0, 0.0]);
 }
 
 #[test]
