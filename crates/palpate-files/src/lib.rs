@@ -5,11 +5,13 @@
 //! - [`contents`] looks into a file of any format and reads columns of the tests in it ([`contents::Contents`]).
 //! - [`text`] reads delimited text: it finds out how a file is written ([`text::detect`]) and streams chosen
 //!   columns out of it ([`text::read_columns`]).
+//! - Force curves of atomic force microscopes are read by a module of their own, through [`contents`].
 //! - [`description`] reads what people write in TOML: protocols to simulate ([`description::read_protocol`])
 //!   and tests to evaluate ([`description::read_test`]).
 //! - [`parquet_table`] writes tables of many rows as Parquet and reads them back.
 //! - [`record_file`] puts text and descriptions together: a file becomes a checked record in SI ([`record_file::read_record`]).
 
+mod afm;
 pub mod contents;
 pub mod description;
 mod error;

@@ -26,6 +26,7 @@ use counting::Counting;
 pub use foreign::Foreign;
 pub(crate) use foreign::{mostly_control, recognise as recognise_foreign};
 pub use packing::Packing;
+pub(crate) use packing::is_zip;
 
 /// Most bytes that a packed file may unpack to where its rows are streamed (64 GiB).
 pub const MOST_UNPACKED: u64 = 64 << 30;

@@ -113,3 +113,6 @@ pub(super) const OTHER: &[&str] = &[
 /// The same in Chinese and Japanese: target, set, command, strain, rate, greatest, least.
 pub(super) const OTHER_CHARACTERS: &[&str] =
     &["目标", "目標", "设定", "設定", "指令", "应变", "ひずみ", "速度", "最大", "最小"];
+
+/// Names of the cantilever's bending in force curves, which is no travel of a jaw though it is a length.
+pub(super) const BENDING: &[&str] = &["vDeflection", "hDeflection", "cantilever deflection"];

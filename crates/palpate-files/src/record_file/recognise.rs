@@ -4,7 +4,7 @@ use palpate::units::Dimension;
 
 use super::{
     Quantity,
-    header_words::{OTHER, OTHER_CHARACTERS, VOCABULARY, Vocabulary},
+    header_words::{BENDING, OTHER, OTHER_CHARACTERS, VOCABULARY, Vocabulary},
     quantity::unit_factor,
 };
 use crate::contents::{ColumnInfo, ColumnKind};
@@ -66,6 +66,9 @@ fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
     let is = |known: &[&str]| matches!(words.as_slice(), [only] if known.contains(&only.as_str()));
     let contains = |parts: &[&str]| parts.iter().any(|part| name.contains(part));
     if has(OTHER) || contains(OTHER_CHARACTERS) {
+        return None;
+    }
+    if vocabulary.quantity == Quantity::Displacement && BENDING.contains(&name.trim()) {
         return None;
     }
     // The sign for force is a part of the word for stress.
@@ -192,6 +195,13 @@ mod tests {
         assert_eq!(found(&pounds, Quantity::Force), [2]);
         assert_eq!(found(&pounds[..1], Quantity::Force), [1]);
         assert!(found(&[("Weg", Some("%"))], Quantity::Displacement).is_empty());
+    }
+
+    #[test]
+    fn the_bending_of_a_cantilever_is_no_displacement() {
+        let curve = [("force", Some("N")), ("cantilever deflection", Some("m")), ("vDeflection", Some("V"))];
+        assert!(found(&curve, Quantity::Displacement).is_empty());
+        assert_eq!(found(&[("Beam deflection", Some("mm"))], Quantity::Displacement), [1]);
     }
 
     #[test]

@@ -47,4 +47,5 @@ pub use columns::read_columns;
 pub use detect::detect;
 pub use encoding::{Encoding, UnknownEncoding};
 pub use layout::{DecimalMark, Delimiter, Layout, LayoutOptions};
+pub(crate) use lines::LineReader;
 pub(crate) use part::look_into;
