@@ -7,8 +7,8 @@
 
 use super::Columns;
 
-/// Most rows that are kept of a file (8,388,608). Of more, successive ones are averaged.
-pub const MOST_ROWS: usize = 1 << 23;
+/// Most rows that are kept of a file (16,777,216). Of more, successive ones are averaged.
+pub const MOST_ROWS: usize = 1 << 24;
 
 /// Rows that wait for the mean they become part of.
 #[derive(Debug, Clone, Default, PartialEq)]
