@@ -17,6 +17,7 @@ mod hint;
 pub mod input;
 pub mod parquet_table;
 pub mod record_file;
+mod spreadsheet;
 pub mod text;
 
 pub use error::{CellPlace, DecimalDoubt, FileError};

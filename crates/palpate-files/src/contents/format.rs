@@ -6,7 +6,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Found, ReadOptions};
-use crate::{error::FileError, input::Input, text};
+use crate::{
+    error::FileError,
+    input::Input,
+    spreadsheet::{self, Make},
+    text,
+};
 
 /// How a file is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, JsonSchema)]
@@ -14,18 +19,28 @@ use crate::{error::FileError, input::Input, text};
 pub enum Format {
     /// Delimited text.
     Text,
+    /// A workbook of Office Open XML (`.xlsx`).
+    Xlsx,
+    /// A workbook of Excel 97 to 2003 (`.xls`).
+    Xls,
 }
 
 impl Format {
     /// The format of a file; what is no other is text, which says itself if it is not.
-    pub(super) fn of(_input: &Input) -> Self {
-        Self::Text
+    pub(super) fn of(input: &Input) -> Self {
+        match spreadsheet::recognise(input) {
+            Some(Make::Xlsx) => Self::Xlsx,
+            Some(Make::Xls) => Self::Xls,
+            None => Self::Text,
+        }
     }
 
     /// Looks into a file of this format.
     pub(super) fn look_into(self, input: &Input, options: &ReadOptions) -> Result<Found, FileError> {
         match self {
             Self::Text => text::look_into(input, options),
+            Self::Xlsx => spreadsheet::look_into(input, Make::Xlsx, options),
+            Self::Xls => spreadsheet::look_into(input, Make::Xls, options),
         }
     }
 }
@@ -34,6 +49,8 @@ impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Text => "delimited text",
+            Self::Xlsx => "Excel workbook (.xlsx)",
+            Self::Xls => "Excel 97 workbook (.xls)",
         })
     }
 }

@@ -37,6 +37,7 @@ pub(super) const VOCABULARY: [Vocabulary; 4] = [
             "position",
             "pos",
             "indentation",
+            "allongement",
             "deflection",
             "course",
             "recorrido",

@@ -21,6 +21,7 @@ mod snippet;
 pub use error::{ColumnError, NamedColumn, ReadError};
 pub use quantity::Quantity;
 pub(crate) use quantity::unit_factor;
+pub(crate) use recognise::names_time;
 pub use parts::{Tests, tests};
 pub use read::{RecordFile, read_part, read_record};
 
