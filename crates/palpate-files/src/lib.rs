@@ -10,6 +10,7 @@
 //! - [`parquet_table`] writes tables of many rows as Parquet and reads them back.
 //! - [`record_file`] puts text and descriptions together: a file becomes a checked record in SI ([`record_file::read_record`]).
 
+mod arrow_file;
 pub mod contents;
 pub mod description;
 mod error;

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::{Found, ReadOptions};
 use crate::{
+    arrow_file::{self, Kind},
     error::FileError,
     input::Input,
     spreadsheet::{self, Make},
@@ -23,6 +24,10 @@ pub enum Format {
     Xlsx,
     /// A workbook of Excel 97 to 2003 (`.xls`).
     Xls,
+    /// Parquet.
+    Parquet,
+    /// Arrow IPC: a file (Feather version 2) or a stream.
+    ArrowIpc,
 }
 
 impl Format {
@@ -31,7 +36,11 @@ impl Format {
         match spreadsheet::recognise(input) {
             Some(Make::Xlsx) => Self::Xlsx,
             Some(Make::Xls) => Self::Xls,
-            None => Self::Text,
+            None => match arrow_file::recognise(input) {
+                Some(Kind::Parquet) => Self::Parquet,
+                Some(Kind::File | Kind::Stream) => Self::ArrowIpc,
+                None => Self::Text,
+            },
         }
     }
 
@@ -41,6 +50,11 @@ impl Format {
             Self::Text => text::look_into(input, options),
             Self::Xlsx => spreadsheet::look_into(input, Make::Xlsx, options),
             Self::Xls => spreadsheet::look_into(input, Make::Xls, options),
+            Self::Parquet => arrow_file::look_into(input, Kind::Parquet, options),
+            Self::ArrowIpc => {
+                let kind = arrow_file::recognise(input).unwrap_or(Kind::Stream);
+                arrow_file::look_into(input, kind, options)
+            }
         }
     }
 }
@@ -50,6 +64,8 @@ impl fmt::Display for Format {
         f.write_str(match self {
             Self::Text => "delimited text",
             Self::Xlsx => "Excel workbook (.xlsx)",
+            Self::Parquet => "Parquet",
+            Self::ArrowIpc => "Arrow IPC",
             Self::Xls => "Excel 97 workbook (.xls)",
         })
     }
