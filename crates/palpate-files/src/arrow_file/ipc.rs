@@ -63,7 +63,11 @@ impl<'a> Messages<'a> {
         let mut bytes = Vec::new();
         let read = self.bytes.by_ref().take(count).read_to_end(&mut bytes);
         read.map_err(|error| self.input.failed(error))?;
-        if bytes.len() as u64 == count { Ok(bytes) } else { Err(self.wrong(&format!("the end of the file in {what}"))) }
+        if bytes.len() as u64 == count {
+            Ok(bytes)
+        } else {
+            Err(self.wrong(&format!("the end of the file in {what}")))
+        }
     }
 
     fn wrong(&self, found: &str) -> FileError {

@@ -39,7 +39,10 @@ impl Chunks {
             Packing::None => input.clone(),
             _ => Input::from_bytes(input.name(), input.bytes()?)?,
         };
-        Ok(Self { size: input.size(), input })
+        Ok(Self {
+            size: input.size(),
+            input,
+        })
     }
 }
 
@@ -64,7 +67,11 @@ impl ChunkReader for Chunks {
         }
         let mut bytes = Vec::with_capacity(length);
         self.get_read(start)?.take(length as u64).read_to_end(&mut bytes)?;
-        if bytes.len() == length { Ok(bytes.into()) } else { Err(ParquetError::EOF("the end of the file".to_owned())) }
+        if bytes.len() == length {
+            Ok(bytes.into())
+        } else {
+            Err(ParquetError::EOF("the end of the file".to_owned()))
+        }
     }
 }
 
@@ -87,7 +94,8 @@ pub(super) fn visit(
 ) -> Result<(), FileError> {
     let chunks = Chunks::of(input)?;
     let metadata = metadata(input, &chunks)?;
-    let counts: Vec<u64> = metadata.metadata().row_groups().iter().map(|group| group.num_rows().max(0) as u64).collect();
+    let counts: Vec<u64> =
+        metadata.metadata().row_groups().iter().map(|group| group.num_rows().max(0) as u64).collect();
     let mask = ProjectionMask::roots(metadata.parquet_schema(), columns.iter().copied());
     let total = counts.iter().fold(0_u64, |sum, count| sum.saturating_add(*count));
     // The groups from the first to the last that hold a row that is wanted.

@@ -59,14 +59,20 @@ pub(crate) fn look_into(input: &Input, kind: Kind, _options: &ReadOptions) -> Re
             }
             (tests, Some(name))
         }
-        None => (vec![Test { name: None, rows: vec![0..u64::MAX] }], None),
+        None => (vec![Test::of_all()], None),
     };
     let samples = samples(&source, &columns)?;
-    let described: Vec<ColumnInfo> =
-        columns.iter().zip(samples).enumerate().map(|(place, (&(index, reading), sample))| {
-            column(place + 1, source.schema.field(index), reading, sample)
-        }).collect();
-    let passed: Vec<&str> = fields.iter().filter(|field| values::reading(field.data_type()).is_none()).map(|field| field.name().as_str()).collect();
+    let described: Vec<ColumnInfo> = columns
+        .iter()
+        .zip(samples)
+        .enumerate()
+        .map(|(place, (&(index, reading), sample))| column(place + 1, source.schema.field(index), reading, sample))
+        .collect();
+    let passed: Vec<&str> = fields
+        .iter()
+        .filter(|field| values::reading(field.data_type()).is_none())
+        .map(|field| field.name().as_str())
+        .collect();
     let part = |test: &Test| Part {
         name: test.name.clone(),
         written: written(kind, by.as_deref(), test, &passed),
@@ -104,7 +110,10 @@ fn written(kind: Kind, by: Option<&str>, test: &Test, passed: &[&str]) -> String
 }
 
 fn column(number: usize, field: &Field, reading: Reading, sample: String) -> ColumnInfo {
-    let said = ["unit", "units"].iter().find_map(|key| field.metadata().get(*key)).filter(|unit| !unit.trim().is_empty());
+    let said = ["unit", "units"]
+        .iter()
+        .find_map(|key| field.metadata().get(*key))
+        .filter(|unit| !unit.trim().is_empty());
     let (name, behind) = unit::split(field.name());
     let (name, unit) = match (reading, said) {
         (Reading::Seconds, _) => (name, Some("s".to_owned())),
@@ -131,7 +140,8 @@ fn samples(source: &Source, columns: &[(usize, Reading)]) -> Result<Vec<String>,
         for (sample, (array, (_, reading))) in samples.iter_mut().zip(batch.columns().iter().zip(columns)) {
             let first = match reading {
                 Reading::Text => values::texts(array).and_then(|all| all.into_iter().flatten().next()),
-                _ => values::numbers(array).and_then(|all| all.into_iter().flatten().next().map(|value| value.to_string())),
+                _ => values::numbers(array)
+                    .and_then(|all| all.into_iter().flatten().next().map(|value| value.to_string())),
             };
             *sample = first.map_or_else(String::new, |text| shorten(&text));
         }
@@ -141,12 +151,7 @@ fn samples(source: &Source, columns: &[(usize, Reading)]) -> Result<Vec<String>,
 }
 
 impl ReadPart for Table {
-    fn read(
-        &self,
-        part: usize,
-        columns: &[usize],
-        progress: &mut dyn FnMut(u64, u64),
-    ) -> Result<Columns, FileError> {
+    fn read(&self, part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
         let mut read = Columns::of(columns.len());
         let Some(Test { rows, .. }) = self.tests.get(part) else {
             return Ok(read);
@@ -192,7 +197,10 @@ impl ReadPart for Table {
         if read.rows() == 0 {
             return Err(FileError::NoParts {
                 path: self.source.input.name().to_owned(),
-                parts: vec![(self.tests[part].name.clone().unwrap_or_else(|| "the table".to_owned()), "no rows".to_owned())],
+                parts: vec![(
+                    self.tests[part].name.clone().unwrap_or_else(|| "the table".to_owned()),
+                    "no rows".to_owned(),
+                )],
             });
         }
         progress(size, size);
@@ -213,7 +221,8 @@ impl Table {
     }
 
     fn text_chosen(&self, fields: &[usize]) -> FileError {
-        let is_text = |field: &&usize| values::reading(self.source.schema.field(**field).data_type()) == Some(Reading::Text);
+        let is_text =
+            |field: &&usize| values::reading(self.source.schema.field(**field).data_type()) == Some(Reading::Text);
         let field = fields.iter().find(is_text).map_or("", |field| self.source.schema.field(*field).name().as_str());
         FileError::BadCell {
             path: self.source.input.name().to_owned(),

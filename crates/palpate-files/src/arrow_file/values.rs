@@ -4,11 +4,11 @@ use arrow_array::{
     Array, ArrayRef,
     cast::AsArray,
     types::{
-        ArrowDictionaryKeyType, Date32Type, Date64Type, Decimal32Type, Decimal64Type, Decimal128Type, DurationMicrosecondType,
-        DurationMillisecondType, DurationNanosecondType, DurationSecondType, Float16Type, Float32Type, Float64Type,
-        Int8Type, Int16Type, Int32Type, Int64Type, Time32MillisecondType, Time32SecondType, Time64MicrosecondType,
-        Time64NanosecondType, TimestampMicrosecondType, TimestampMillisecondType, TimestampNanosecondType,
-        TimestampSecondType, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
+        ArrowDictionaryKeyType, Date32Type, Date64Type, Decimal32Type, Decimal64Type, Decimal128Type,
+        DurationMicrosecondType, DurationMillisecondType, DurationNanosecondType, DurationSecondType, Float16Type,
+        Float32Type, Float64Type, Int8Type, Int16Type, Int32Type, Int64Type, Time32MillisecondType, Time32SecondType,
+        Time64MicrosecondType, Time64NanosecondType, TimestampMicrosecondType, TimestampMillisecondType,
+        TimestampNanosecondType, TimestampSecondType, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
     },
 };
 use arrow_schema::{DataType, TimeUnit};
@@ -29,10 +29,14 @@ pub(super) fn reading(of: &DataType) -> Option<Reading> {
     use DataType as T;
     match of {
         T::Dictionary(_, values) => reading(values).filter(|reading| *reading == Reading::Text),
-        T::Int8 | T::Int16 | T::Int32 | T::Int64 | T::UInt8 | T::UInt16 | T::UInt32 | T::UInt64 => Some(Reading::Number),
+        T::Int8 | T::Int16 | T::Int32 | T::Int64 | T::UInt8 | T::UInt16 | T::UInt32 | T::UInt64 => {
+            Some(Reading::Number)
+        }
         T::Float16 | T::Float32 | T::Float64 => Some(Reading::Number),
         T::Decimal32(..) | T::Decimal64(..) | T::Decimal128(..) => Some(Reading::Number),
-        T::Timestamp(..) | T::Duration(_) | T::Time32(_) | T::Time64(_) | T::Date32 | T::Date64 => Some(Reading::Seconds),
+        T::Timestamp(..) | T::Duration(_) | T::Time32(_) | T::Time64(_) | T::Date32 | T::Date64 => {
+            Some(Reading::Seconds)
+        }
         T::Utf8 | T::LargeUtf8 | T::Utf8View | T::Boolean => Some(Reading::Text),
         _ => None,
     }
@@ -57,7 +61,11 @@ pub(super) fn numbers(array: &ArrayRef) -> Option<Vec<Option<f64>>> {
         let per: i64 = per(unit);
         move |ticks: i64| ticks.div_euclid(per) as f64 + ticks.rem_euclid(per) as f64 / per as f64
     };
-    let scaled = |scale: i8| move |digits: f64| if scale > 0 { digits / 10_f64.powi(scale.into()) } else { digits * 10_f64.powi(-i32::from(scale)) };
+    let scaled = |scale: i8| {
+        move |digits: f64| {
+            if scale > 0 { digits / 10_f64.powi(scale.into()) } else { digits * 10_f64.powi(-i32::from(scale)) }
+        }
+    };
     use {DataType as T, TimeUnit as U};
     match array.data_type() {
         T::Int8 => all!(Int8Type, f64::from),

@@ -62,10 +62,9 @@ pub(crate) fn look_into(input: &Input, make: Make, options: &ReadOptions) -> Res
     let (mut looked, mut skipped) = (Vec::new(), Vec::new());
     for (index, sheet) in book.sheets().iter().enumerate() {
         let mut pass = |reason: &str| {
-            skipped.push(SkippedPart {
-                name: sheet.name.clone(),
-                reason: reason.to_owned(),
-            });
+            let name = sheet.name.clone();
+            let reason = reason.to_owned();
+            skipped.push((index, SkippedPart { name, reason }));
         };
         if let Some(other) = sheet.other {
             pass(other);
@@ -92,25 +91,28 @@ pub(crate) fn look_into(input: &Input, make: Make, options: &ReadOptions) -> Res
 }
 
 /// Where some tables name a time, those that name their columns and no time among them are no tests.
-fn chosen(input: Input, book: Box<dyn Book>, looked: Vec<(Place, Part)>, mut skipped: Vec<SkippedPart>) -> Found {
+fn chosen(
+    input: Input,
+    book: Box<dyn Book>,
+    looked: Vec<(Place, Part)>,
+    mut skipped: Vec<(usize, SkippedPart)>,
+) -> Found {
     let timed = looked.iter().any(|(place, _)| place.table.names_time());
     let (mut places, mut parts) = (Vec::new(), Vec::new());
     for (place, part) in looked {
         if timed && place.table.has_names() && !place.table.names_time() {
-            skipped.push(SkippedPart {
-                name: part.title().to_owned(),
-                reason: "no column of time".to_owned(),
-            });
+            let name = part.title().to_owned();
+            let reason = "no column of time".to_owned();
+            skipped.push((place.sheet, SkippedPart { name, reason }));
         } else {
             places.push(place);
             parts.push(part);
         }
     }
-    let order = |name: &str| book.sheets().iter().position(|sheet| sheet.name == name);
-    skipped.sort_by_key(|part| order(&part.name));
+    skipped.sort_by_key(|(sheet, _)| *sheet);
     Found {
         parts,
-        skipped,
+        skipped: skipped.into_iter().map(|(_, part)| part).collect(),
         reader: Box::new(Workbook { input, book, places }),
     }
 }
@@ -137,12 +139,7 @@ fn part(sheet: &str, table: &Table, several: bool, beside: usize, sample: &Sampl
 }
 
 impl ReadPart for Workbook {
-    fn read(
-        &self,
-        part: usize,
-        columns: &[usize],
-        progress: &mut dyn FnMut(u64, u64),
-    ) -> Result<Columns, FileError> {
+    fn read(&self, part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
         let Some(Place { sheet, table }) = self.places.get(part) else {
             return Ok(Columns::of(columns.len()));
         };

@@ -47,7 +47,7 @@ pub(super) fn read(
         if let Ok(place) = table.places.binary_search(&cell.column) {
             if reading.number.is_some_and(|number| number != cell.row) {
                 reading.end_row()?;
-                if reading.read.rows() % ROWS_A_REPORT == 0 {
+                if reading.read.rows().is_multiple_of(ROWS_A_REPORT) {
                     progress(done.min(total), total);
                 }
             }
@@ -161,17 +161,19 @@ impl Reading<'_> {
             Some(Value::Duration(days)) => Ok(days * 86_400.0),
             Some(Value::Moment(days)) if self.table.dated[column] => Ok((days - self.days_to_epoch) * 86_400.0),
             Some(Value::Moment(days)) => Ok(days * 86_400.0),
-            Some(Value::Text(text)) => match (&self.table.decimal, number::parse(text.trim().as_bytes(), DecimalMark::Point)) {
-                // Whole numbers are the same under both marks.
-                (Err(_), Some(number)) if !text.contains('.') => Ok(number),
-                (Err(Doubt { doubt, .. }), _) => Err(wrong(
-                    "a number with one clear decimal mark",
-                    &format!("{} ({doubt})", quoted(text)),
-                    "fix the decimal mark in a test description, or make the texts numbers",
-                )),
-                (Ok(mark), _) => number::parse(text.trim().as_bytes(), *mark)
-                    .ok_or_else(|| wrong(&format!("a number with a decimal {mark}"), &quoted(text), MEND)),
-            },
+            Some(Value::Text(text)) => {
+                match (&self.table.decimal, number::parse(text.trim().as_bytes(), DecimalMark::Point)) {
+                    // Whole numbers are the same under both marks.
+                    (Err(_), Some(number)) if !text.contains('.') => Ok(number),
+                    (Err(Doubt { doubt, .. }), _) => Err(wrong(
+                        "a number with one clear decimal mark",
+                        &format!("{} ({doubt})", quoted(text)),
+                        "fix the decimal mark in a test description, or make the texts numbers",
+                    )),
+                    (Ok(mark), _) => number::parse(text.trim().as_bytes(), *mark)
+                        .ok_or_else(|| wrong(&format!("a number with a decimal {mark}"), &quoted(text), MEND)),
+                }
+            }
             Some(Value::Fault(fault)) => Err(wrong("a number", fault, MEND)),
             Some(Value::Truth(truth)) => Err(wrong("a number", if *truth { "TRUE" } else { "FALSE" }, MEND)),
             None => Err(wrong("a number", "an empty cell", MEND)),

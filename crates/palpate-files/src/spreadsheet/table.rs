@@ -152,18 +152,9 @@ fn table(sample: &Sample, places: &[u32], options: &LayoutOptions) -> Option<Tab
         return None;
     }
     let first_value = |place: u32| data.iter().find_map(|row| row.value(place));
-    let column = |(index, (&place, (name, unit))): (usize, (&u32, &(Option<String>, Option<String>)))| {
-        let first = first_value(place);
-        let is_time = matches!(first, Some(Value::Moment(_) | Value::Duration(_)));
-        ColumnInfo {
-            number: index + 1,
-            name: name.clone(),
-            unit: if is_time { Some("s".to_owned()) } else { unit.clone() },
-            kind: block.kinds[index],
-            sample: first.map_or_else(String::new, |value| shorten(&value.text())),
-        }
-    };
-    let columns = places.iter().zip(&header.labels).enumerate().map(column).collect();
+    let labelled = places.iter().zip(&header.labels).zip(&block.kinds).enumerate();
+    let columns = labelled.map(|(index, ((&place, label), &kind))| column(index + 1, kind, label, first_value(place)));
+    let columns = columns.collect();
     let above = rows.iter().take(block.first).enumerate();
     let above = above.filter(|(index, _)| header.names_line != Some(*index) && header.units_line != Some(*index));
     Some(Table {
@@ -171,11 +162,32 @@ fn table(sample: &Sample, places: &[u32], options: &LayoutOptions) -> Option<Tab
         first_row,
         last_row,
         leading,
-        dated: places.iter().map(|&place| matches!(first_value(place), Some(Value::Moment(days)) if *days >= 1.0)).collect(),
+        dated: places
+            .iter()
+            .map(|&place| matches!(first_value(place), Some(Value::Moment(days)) if *days >= 1.0))
+            .collect(),
         decimal: decimal(&data, places, &block.kinds, options.decimal),
         metadata: above.flat_map(|(_, row)| named_values(row)).collect(),
         places: places.to_vec(),
     })
+}
+
+/// A column by its number, its name and unit in the header, and its first value.
+fn column(
+    number: usize,
+    kind: ColumnKind,
+    label: &(Option<String>, Option<String>),
+    first: Option<&Value>,
+) -> ColumnInfo {
+    let (name, unit) = label;
+    let is_time = matches!(first, Some(Value::Moment(_) | Value::Duration(_)));
+    ColumnInfo {
+        number,
+        name: name.clone(),
+        unit: if is_time { Some("s".to_owned()) } else { unit.clone() },
+        kind,
+        sample: first.map_or_else(String::new, |value| shorten(&value.text())),
+    }
 }
 
 fn named_values(row: &Row) -> Vec<Metadata> {

@@ -21,11 +21,15 @@ use palpate_files::{
 use parquet::{arrow::ArrowWriter, basic::Compression, file::properties::WriterProperties};
 
 fn batch(columns: Vec<(&str, ArrayRef)>) -> RecordBatch {
-    RecordBatch::try_from_iter_with_nullable(columns.into_iter().map(|(name, array)| (name, array, true))).expect("a batch")
+    RecordBatch::try_from_iter_with_nullable(columns.into_iter().map(|(name, array)| (name, array, true)))
+        .expect("a batch")
 }
 
 fn parquet(batches: &[RecordBatch], compression: Compression) -> Vec<u8> {
-    let options = WriterProperties::builder().set_compression(compression).set_max_row_group_row_count(Some(7)).build();
+    let options = WriterProperties::builder()
+        .set_compression(compression)
+        .set_max_row_group_row_count(Some(7))
+        .build();
     let mut writer = ArrowWriter::try_new(Vec::new(), batches[0].schema(), Some(options)).expect("a writer");
     for batch in batches {
         writer.write(batch).expect("written");
@@ -91,9 +95,15 @@ fn a_wide_table_is_one_test_in_every_format_and_packing() {
     for (format, bytes) in all(&[table.slice(0, 12), table.slice(12, 8)]) {
         let contents = open(&bytes).expect("a table");
         assert_eq!((contents.format(), contents.parts().len(), &contents.parts()[0].name), (format, 1, &None));
-        let columns: Vec<(Option<&str>, Option<&str>)> =
-            contents.parts()[0].columns.iter().map(|column| (column.name.as_deref(), column.unit.as_deref())).collect();
-        assert_eq!(columns, [(Some("time"), Some("s")), (Some("force"), Some("n")), (Some("displacement"), Some("mm"))]);
+        let columns: Vec<(Option<&str>, Option<&str>)> = contents.parts()[0]
+            .columns
+            .iter()
+            .map(|column| (column.name.as_deref(), column.unit.as_deref()))
+            .collect();
+        assert_eq!(
+            columns,
+            [(Some("time"), Some("s")), (Some("force"), Some("n")), (Some("displacement"), Some("mm"))]
+        );
         let columns = read(&contents, 0, &[3, 1, 3]).expect("columns");
         assert_eq!((columns.rows(), columns.values[0][19], columns.values[1][13]), (20, 19.0, 1.3));
         assert_eq!(columns.values[0], columns.values[2]);
@@ -114,10 +124,13 @@ fn rows_of_several_tests_may_be_mixed() {
         let table = batch(vec![(name, id), ("time_s", time.clone()), ("force_N", force.clone())]);
         for (_, bytes) in all(&[table.slice(0, 3), table.slice(3, 7)]) {
             let contents = open(&bytes).expect("tables");
-            let found: Vec<(&str, Option<u64>)> = contents.parts().iter().map(|part| (part.title(), part.rows)).collect();
+            let found: Vec<(&str, Option<u64>)> =
+                contents.parts().iter().map(|part| (part.title(), part.rows)).collect();
             let names = if name == "test" { ["1", "0", "2"] } else { ["b", "a", "c"] };
             assert_eq!(found, [(names[0], Some(3)), (names[1], Some(3)), (names[2], Some(4))]);
-            for (part, times) in [vec![0.0, 1.0, 3.0], vec![2.0, 4.0, 5.0], vec![6.0, 7.0, 8.0, 9.0]].into_iter().enumerate() {
+            for (part, times) in
+                [vec![0.0, 1.0, 3.0], vec![2.0, 4.0, 5.0], vec![6.0, 7.0, 8.0, 9.0]].into_iter().enumerate()
+            {
                 let columns = read(&contents, part, &[2, 3]).expect("columns");
                 assert_eq!(columns.values[0], times);
                 assert!(columns.values[1].iter().zip(&times).all(|(force, time)| *force == 2.0 * time));
@@ -133,7 +146,8 @@ fn types_units_and_columns_that_are_passed_over() {
     let tall = Decimal128Array::from(vec![12_345, -5]).with_precision_and_scale(10, 3).expect("a decimal");
     let list = ListArray::from_iter_primitive::<Float64Type, _, _>([Some(vec![Some(1.0)]), None]);
     let good: ArrayRef = Arc::new(BooleanArray::from(vec![true, false]));
-    let table = batch(vec![("when", Arc::new(clock)), ("list", Arc::new(list)), ("good", good), ("load", Arc::new(tall))]);
+    let table =
+        batch(vec![("when", Arc::new(clock)), ("list", Arc::new(list)), ("good", good), ("load", Arc::new(tall))]);
     let mut fields: Vec<Field> = table.schema().fields().iter().map(|field| field.as_ref().clone()).collect();
     fields[3] = fields[3].clone().with_metadata(HashMap::from([("units".to_owned(), "[mN]".to_owned())]));
     let table = RecordBatch::try_new(Arc::new(Schema::new(fields)), table.columns().to_vec()).expect("a batch");
@@ -173,7 +187,11 @@ fn a_row_without_values_is_passed_over_and_one_value_missing_is_an_error() {
 fn read_all(bytes: &[u8]) -> Result<usize, FileError> {
     let contents = open(bytes)?;
     let numbers = |part: &palpate_files::contents::Part| -> Vec<usize> {
-        part.columns.iter().filter(|column| column.kind == ColumnKind::Number).map(|column| column.number).collect()
+        part.columns
+            .iter()
+            .filter(|column| column.kind == ColumnKind::Number)
+            .map(|column| column.number)
+            .collect()
     };
     let read = |(index, part)| Ok(read(&contents, index, &numbers(part))?.rows());
     contents.parts().iter().enumerate().map(read).sum()
@@ -206,4 +224,21 @@ fn cut_off_or_overwritten_anywhere_is_no_panic() {
         }
     }
     let _ = std::panic::take_hook();
+}
+
+#[test]
+fn packed_tables_and_tables_without_rows() {
+    use std::io::Write;
+    let table = wide();
+    for (format, whole) in all(std::slice::from_ref(&table)) {
+        let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        packed.write_all(&whole).expect("bytes");
+        let contents = open(&packed.finish().expect("a file")).expect("a table");
+        assert_eq!((contents.format(), read(&contents, 0, &[1, 2]).expect("columns").rows()), (format, 20));
+    }
+    for (_, bytes) in all(&[table.slice(0, 0)]) {
+        let contents = open(&bytes).expect("a table");
+        let text = read(&contents, 0, &[1]).expect_err("no rows").to_string();
+        assert_eq!(text, "table: expected a test, found none: the table: no rows");
+    }
 }

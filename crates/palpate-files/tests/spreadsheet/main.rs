@@ -34,7 +34,10 @@ fn read_all(bytes: &[u8]) -> Result<Vec<Columns>, FileError> {
 
 fn names(part: &Part) -> Vec<(&str, &str)> {
     let name = |column: &'_ palpate_files::contents::ColumnInfo| {
-        (column.name.clone().unwrap_or_default().leak() as &str, column.unit.clone().unwrap_or_default().leak() as &str)
+        (
+            column.name.clone().unwrap_or_default().leak() as &str,
+            column.unit.clone().unwrap_or_default().leak() as &str,
+        )
     };
     part.columns.iter().map(name).collect()
 }

@@ -39,8 +39,19 @@ fn every_test_of_two_workbooks_becomes_a_record() {
             let part = &contents.parts()[index];
             let file = record_file::read_part(&contents, index, None, &mut |_, _| {});
             let file = file.unwrap_or_else(|error| panic!("{}: {error}", part.title()));
-            println!("{}: {} rows; {:?}; {}", part.title(), file.rows, file.columns.iter().map(|used| (used.number, used.unit.as_str())).collect::<Vec<_>>(), part.written);
-            let expected = [("Temps d'essai", "s"), ("Force standard", "N"), ("Allongement", "mm"), ("Ecartement entre outils", "mm")];
+            println!(
+                "{}: {} rows; {:?}; {}",
+                part.title(),
+                file.rows,
+                file.columns.iter().map(|used| (used.number, used.unit.as_str())).collect::<Vec<_>>(),
+                part.written
+            );
+            let expected = [
+                ("Temps d'essai", "s"),
+                ("Force standard", "N"),
+                ("Allongement", "mm"),
+                ("Ecartement entre outils", "mm"),
+            ];
             assert_eq!(names(part), expected);
             assert!(file.rows > 100 && file.record.displacement().is_some());
             assert_eq!(file.record.time()[0], 0.0);

@@ -1,6 +1,9 @@
 //! Finding the tables.
 
-use palpate_files::{contents::Format, record_file};
+use palpate_files::{
+    contents::{Format, Part},
+    record_file,
+};
 
 use crate::{
     message, names, open, read,
@@ -23,23 +26,39 @@ fn zwick(name: &'static str) -> Vec<Vec<C>> {
 
 #[test]
 fn every_sheet_with_a_test_is_a_part_and_the_others_are_told() {
-    let parameters = vec![vec![T("Opérateur"), E, T("S")], vec![T("HR"), T("%"), N(25.0)], vec![T("TA"), T("°C"), N(28.0)]];
+    let parameters =
+        vec![vec![T("Opérateur"), E, T("S")], vec![T("HR"), T("%"), N(25.0)], vec![T("TA"), T("°C"), N(28.0)]];
     let results = vec![
         vec![T(""), T("Fmax"), T("dL(Fmax)")],
         vec![T(""), T("N"), T("mm")],
         vec![T("one"), N(0.8), N(5.3)],
         vec![T("two"), N(0.9), N(5.4)],
     ];
-    let mut book = Book::of(&[("Paramètres", &parameters), ("Résultats", &results), ("P1", &zwick("P1")), ("Leer", &[]), ("P2", &zwick("P2"))]);
+    let mut book = Book::of(&[
+        ("Paramètres", &parameters),
+        ("Résultats", &results),
+        ("P1", &zwick("P1")),
+        ("Leer", &[]),
+        ("P2", &zwick("P2")),
+    ]);
     book.charts = vec!["Kurve"];
     let contents = open(&book.bytes()).expect("a workbook");
     assert_eq!(contents.format(), Format::Xlsx);
-    let titles: Vec<&str> = contents.parts().iter().map(|part| part.title()).collect();
+    let titles: Vec<&str> = contents.parts().iter().map(Part::title).collect();
     assert_eq!(titles, ["P1", "P2"]);
-    let skipped: Vec<(&str, &str)> = contents.skipped().iter().map(|part| (part.name.as_str(), part.reason.as_str())).collect();
-    let expected = [("Paramètres", "no table of numbers"), ("Résultats", "no column of time"), ("Leer", "empty"), ("Kurve", "a chart")];
+    let skipped: Vec<(&str, &str)> =
+        contents.skipped().iter().map(|part| (part.name.as_str(), part.reason.as_str())).collect();
+    let expected = [
+        ("Paramètres", "no table of numbers"),
+        ("Résultats", "no column of time"),
+        ("Leer", "empty"),
+        ("Kurve", "a chart"),
+    ];
     assert_eq!(skipped, expected);
-    assert_eq!(names(&contents.parts()[1]), [("Temps d'essai", "s"), ("Force standard", "N"), ("Allongement", "mm")]);
+    assert_eq!(
+        names(&contents.parts()[1]),
+        [("Temps d'essai", "s"), ("Force standard", "N"), ("Allongement", "mm")]
+    );
     let columns = read(&contents, 1, &[2, 1]).expect("columns");
     assert_eq!((columns.rows(), columns.values[0][2], columns.values[1][19]), (20, 3.0, 1.9));
     assert_eq!(columns.line_of(0), Some(4));
@@ -64,7 +83,10 @@ fn named_values_above_and_remarks_below_and_beside() {
     assert_eq!(part.columns.len(), 2);
     assert_eq!(part.written, "sheet one, columns A–B, rows 4 to 7, 1 cell beside passed over");
     let value = &part.metadata[0];
-    assert_eq!((value.name.as_str(), value.value.as_str(), value.unit.as_deref()), ("Probe radius", "5", Some("mm")));
+    assert_eq!(
+        (value.name.as_str(), value.value.as_str(), value.unit.as_deref()),
+        ("Probe radius", "5", Some("mm"))
+    );
     let columns = read(&contents, 0, &[1, 2]).expect("columns");
     assert_eq!(columns.values, [vec![0.0, 1.0, 2.0], vec![1.0, 2.0, 3.0]]);
     assert_eq!(columns.ignored.blank, 1);
@@ -78,7 +100,7 @@ fn tables_side_by_side_are_parts_where_each_has_a_time() {
     table.extend((0..9).map(|row| vec![N(f64::from(row)), N(2.0), E, N(f64::from(row)), N(5.0)]));
     table.extend((9..40).map(|row| vec![N(f64::from(row)), N(2.0)]));
     let contents = open(&Book::of(&[("both", &table)]).bytes()).expect("a workbook");
-    let titles: Vec<&str> = contents.parts().iter().map(|part| part.title()).collect();
+    let titles: Vec<&str> = contents.parts().iter().map(Part::title).collect();
     assert_eq!(titles, ["both, columns A–B", "both, columns D–E"]);
     assert_eq!(names(&contents.parts()[1])[1], ("Force", "mN"));
     assert_eq!(read(&contents, 0, &[1]).expect("first").rows(), 40);
@@ -129,7 +151,8 @@ fn shared_texts_prefixes_and_cells_without_a_place() {
         vec![N(1.5), cell("<c r=\"PLACE\" t=\"n\"><v>+3</v></c>")],
     ];
     let mut book = Book::of(&[("one &amp; two", &table)]);
-    book.strings = "<si><t>Ti</t><rPh><t>no</t></rPh></si><si><r><t>Force </t></r><r><t>(&#78;)</t></r></si>".to_owned();
+    book.strings =
+        "<si><t>Ti</t><rPh><t>no</t></rPh></si><si><r><t>Force </t></r><r><t>(&#78;)</t></r></si>".to_owned();
     let contents = open(&book.bytes()).expect("a workbook");
     assert_eq!(contents.parts()[0].title(), "one & two");
     assert_eq!(names(&contents.parts()[0]), [("Ti", ""), ("Force", "N")]);

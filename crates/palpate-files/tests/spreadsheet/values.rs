@@ -31,7 +31,10 @@ fn a_faulty_cell_is_an_error_that_names_it() {
     ] {
         let contents = open(&of_column(&[N(1.0), N(2.0), cell, N(4.0)]).bytes()).expect("a workbook");
         let error = read(&contents, 0, &[1, 2]).expect_err("a faulty cell");
-        assert_eq!(error.to_string(), format!("book: sheet Foo, cell B4: expected {found}").replace("book: ", "book, "));
+        assert_eq!(
+            error.to_string(),
+            format!("book: sheet Foo, cell B4: expected {found}").replace("book: ", "book, ")
+        );
         assert!(error.hint().is_some());
         // A column that is not asked for may hold anything.
         assert_eq!(read(&contents, 0, &[1, 3]).expect("other columns").rows(), 4);
@@ -47,7 +50,10 @@ fn numbers_kept_as_texts() {
 
     let doubtful = of_column(&[T("1,500"), T("2,250"), N(4.0)]).bytes();
     let text = message(read(&open(&doubtful).expect("a workbook"), 0, &[2]));
-    assert!(text.starts_with("book, sheet Foo, cell B2: expected a number with one clear decimal mark, found `1,500`"), "{text}");
+    assert!(
+        text.starts_with("book, sheet Foo, cell B2: expected a number with one clear decimal mark, found `1,500`"),
+        "{text}"
+    );
     let options = ReadOptions {
         layout: LayoutOptions {
             decimal: Some(DecimalMark::Comma),

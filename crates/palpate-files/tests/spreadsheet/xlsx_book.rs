@@ -70,12 +70,17 @@ impl Book {
         put("[Content_Types].xml", "<Types/>");
         put(
             "_rels/.rels",
-            &format!("<Relationships><Relationship Id=\"a\" Type=\"{office}/officeDocument\" Target=\"xl/workbook.xml\"/></Relationships>"),
+            &format!(
+                "<Relationships><Relationship Id=\"a\" Type=\"{office}/officeDocument\" Target=\"xl/workbook.xml\"/></Relationships>"
+            ),
         );
         let (mut list, mut related) = (String::new(), String::new());
         for (index, (name, xml)) in self.sheets.iter().enumerate() {
             list.push_str(&format!("<sheet name=\"{name}\" sheetId=\"{0}\" r:id=\"s{0}\"/>", index + 1));
-            related.push_str(&format!("<Relationship Id=\"s{0}\" Type=\"{office}/worksheet\" Target=\"worksheets/sheet{0}.xml\"/>", index + 1));
+            related.push_str(&format!(
+                "<Relationship Id=\"s{0}\" Type=\"{office}/worksheet\" Target=\"worksheets/sheet{0}.xml\"/>",
+                index + 1
+            ));
             // A dimension that lies: it must not be believed.
             put(
                 &format!("xl/worksheets/sheet{}.xml", index + 1),
@@ -84,23 +89,34 @@ impl Book {
         }
         for (index, name) in self.charts.iter().enumerate() {
             list.push_str(&format!("<sheet name=\"{name}\" sheetId=\"{0}\" r:id=\"c{0}\"/>", index + 90));
-            related.push_str(&format!("<Relationship Id=\"c{0}\" Type=\"{office}/chartsheet\" Target=\"chartsheets/sheet1.xml\"/>", index + 90));
+            related.push_str(&format!(
+                "<Relationship Id=\"c{0}\" Type=\"{office}/chartsheet\" Target=\"chartsheets/sheet1.xml\"/>",
+                index + 90
+            ));
         }
-        related.push_str(&format!("<Relationship Id=\"t\" Type=\"{office}/sharedStrings\" Target=\"/xl/sharedStrings.xml\"/>"));
+        related.push_str(&format!(
+            "<Relationship Id=\"t\" Type=\"{office}/sharedStrings\" Target=\"/xl/sharedStrings.xml\"/>"
+        ));
         related.push_str(&format!("<Relationship Id=\"f\" Type=\"{office}/styles\" Target=\"styles.xml\"/>"));
         put(
             "xl/workbook.xml",
-            &format!("<workbook><workbookPr date1904=\"{}\"/><sheets>{list}</sheets></workbook>", u8::from(self.from_1904)),
+            &format!(
+                "<workbook><workbookPr date1904=\"{}\"/><sheets>{list}</sheets></workbook>",
+                u8::from(self.from_1904)
+            ),
         );
         put("xl/_rels/workbook.xml.rels", &format!("<Relationships>{related}</Relationships>"));
         put("xl/sharedStrings.xml", &format!("<sst uniqueCount=\"18446744073709551615\">{}</sst>", self.strings));
-        let format = |(index, code): (usize, &&str)| format!("<numFmt numFmtId=\"{}\" formatCode=\"{code}\"/>", 164 + index);
+        let format =
+            |(index, code): (usize, &&str)| format!("<numFmt numFmtId=\"{}\" formatCode=\"{code}\"/>", 164 + index);
         let formats: String = self.formats.iter().enumerate().map(format).collect();
         let style = |index: usize| format!("<xf numFmtId=\"{}\"/>", 164 + index);
         let styles: String = (0..self.formats.len()).map(style).collect();
         put(
             "xl/styles.xml",
-            &format!("<styleSheet><numFmts>{formats}</numFmts><cellXfs><xf numFmtId=\"0\"/>{styles}</cellXfs></styleSheet>"),
+            &format!(
+                "<styleSheet><numFmts>{formats}</numFmts><cellXfs><xf numFmtId=\"0\"/>{styles}</cellXfs></styleSheet>"
+            ),
         );
         zip.finish().expect("an archive").into_inner()
     }

@@ -36,8 +36,8 @@ impl Xls {
             found: found.to_owned(),
         };
         let bytes = input.bytes()?;
-        let compound =
-            Compound::of(&bytes).ok_or_else(|| damaged("compound file", "a chain of sectors", "one that breaks off"))?;
+        let compound = Compound::of(&bytes)
+            .ok_or_else(|| damaged("compound file", "a chain of sectors", "one that breaks off"))?;
         if compound.has("EncryptedPackage") {
             return Err(encrypted(input));
         }
@@ -74,17 +74,17 @@ impl Book for Xls {
     }
 
     fn visit(&self, sheet: usize, each: &mut Visitor<'_>) -> Result<(), FileError> {
-        let (Some(&start), Some(Sheet { name, .. })) =
-            (self.globals.starts.get(sheet), self.globals.sheets.get(sheet))
+        let (Some(&start), Some(Sheet { name, .. })) = (self.globals.starts.get(sheet), self.globals.sheets.get(sheet))
         else {
             return Ok(());
         };
-        let cells = cells::read(&self.stream, start, &self.globals).map_err(|(record, expected)| FileError::Damaged {
-            path: self.input.name().to_owned(),
-            place: format!("sheet {name}, record {record}"),
-            expected: expected.to_owned(),
-            found: "other bytes, or their end".to_owned(),
-        })?;
+        let cells =
+            cells::read(&self.stream, start, &self.globals).map_err(|(record, expected)| FileError::Damaged {
+                path: self.input.name().to_owned(),
+                place: format!("sheet {name}, record {record}"),
+                expected: expected.to_owned(),
+                found: "other bytes, or their end".to_owned(),
+            })?;
         let total = cells.len() as u64;
         for (done, cell) in cells.into_iter().enumerate() {
             if each(cell, done as u64 + 1, total)? == ControlFlow::Break(()) {

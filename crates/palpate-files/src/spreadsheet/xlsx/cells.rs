@@ -147,7 +147,8 @@ impl State {
             "str" | "inlineStr" => Value::Text(text.to_owned()),
             "b" => Value::Truth(matches!(text.trim(), "1" | "true")),
             "e" => Value::Fault(text.to_owned()),
-            "d" => moment::of_iso(text).map_or_else(|| Value::Text(text.to_owned()), |days| Value::Moment(days + known.days_to_epoch)),
+            "d" => moment::of_iso(text)
+                .map_or_else(|| Value::Text(text.to_owned()), |days| Value::Moment(days + known.days_to_epoch)),
             _ => match text.trim().parse::<f64>() {
                 Ok(number) if number.is_finite() => Value::formatted(number, self.style),
                 _ => return Err(wrong("a number", text)),

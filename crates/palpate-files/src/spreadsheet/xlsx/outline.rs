@@ -27,6 +27,9 @@ pub(super) fn read(package: &Package) -> Result<Outline, FileError> {
     let root = relations(package, "")?;
     let workbook = root.values().find(|(kind, _)| kind == "officeDocument");
     let workbook = workbook.map_or_else(|| "xl/workbook.xml".to_owned(), |(_, path)| path.clone());
+    if workbook.ends_with(".bin") {
+        return Err(package.damaged("zip archive", "a workbook of XML parts (.xlsx)", "one of binary parts (.xlsb)"));
+    }
     let related = relations(package, &workbook)?;
     let of_kind = |wanted: &str| {
         let mut found = related.values().filter(|(kind, path)| kind == wanted && package.has(path));
@@ -46,13 +49,17 @@ pub(super) fn read(package: &Package) -> Result<Outline, FileError> {
                 let relation = attribute(element, "id").and_then(|id| related.get(&id));
                 let (kind, path) = relation.map_or(("", ""), |(kind, path)| (kind.as_str(), path.as_str()));
                 outline.parts.push(path.to_owned());
-                outline.sheets.push(Sheet { name, other: other(kind) });
+                outline.sheets.push(Sheet {
+                    name,
+                    other: other(kind),
+                });
             }
             Step::Begin(element) if element.local_name().as_ref() == "workbookPr" => {
                 let said = attribute(element, "date1904");
                 outline.from_1904 = said.is_some_and(|said| matches!(said.as_str(), "1" | "true" | "on"));
             }
-            Step::End("workbook") => return Ok(false),
+            // Of another document, as of a text, no sheet comes from this either.
+            Step::End("workbook" | "document" | "presentation") => return Ok(false),
             _ => {}
         }
         if outline.sheets.len() > MOST_SHEETS {
@@ -60,6 +67,9 @@ pub(super) fn read(package: &Package) -> Result<Outline, FileError> {
         }
         Ok(true)
     })?;
+    if outline.sheets.is_empty() {
+        return Err(package.damaged("zip archive", "a workbook with sheets", &workbook));
+    }
     Ok(outline)
 }
 

@@ -167,7 +167,10 @@ mod tests {
             Ok(!matches!(step, Step::End("a")))
         };
         let most = package.read("/A.xml", 1_100_000, &mut count);
-        assert_eq!(most.map_err(|error| error.to_string()), Err("book: a part of the workbook has more than 1 MiB, which is the most that is read".to_owned()));
+        assert_eq!(
+            most.map_err(|error| error.to_string()),
+            Err("book: a part of the workbook has more than 1 MiB, which is the most that is read".to_owned())
+        );
         assert!((90_000..100_001).contains(&texts), "{texts}");
         assert!(package.read("a.xml", 1_100_007, &mut |step, _, _| Ok(!matches!(step, Step::End("a")))).is_ok());
     }
