@@ -20,7 +20,7 @@ pub(super) const VOCABULARY: [Vocabulary; 4] = [
     Vocabulary {
         quantity: Quantity::Time,
         plain: &["time", "zeit", "temps", "tiempo"],
-        loose: &["elapsed", "timestamp", "epoch", "durée", "duree"],
+        loose: &["elapsed", "seconds", "secondes", "sekunden", "timestamp", "epoch", "durée", "duree"],
         endings: &["zeit"],
         characters: &["时间", "時間"],
         letter: Some("t"),

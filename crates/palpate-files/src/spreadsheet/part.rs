@@ -90,23 +90,44 @@ pub(crate) fn look_into(input: &Input, make: Make, options: &ReadOptions) -> Res
     Ok(chosen(input, book, looked, skipped))
 }
 
-/// Where some tables name a time, those that name their columns and no time among them are no tests.
+/// Words in the name of a sheet that holds the mean of the tests beside it.
+const MEANS: [&str; 8] = ["moyenne", "moyen", "mean", "average", "mittelwert", "mittelwertkurve", "media", "promedio"];
+
+fn names_mean(sheet: &str) -> bool {
+    let lower = sheet.to_lowercase();
+    lower.split(|letter: char| !letter.is_alphabetic()).any(|word| MEANS.contains(&word))
+}
+
+/// Why a table is no test, given that others name a time.
+fn no_test(sheet: &str, table: &Table) -> Option<&'static str> {
+    match table.names_time() {
+        false if table.has_names() => Some("no column of time"),
+        _ if names_mean(sheet) => Some("a mean of tests, by its name"),
+        _ => None,
+    }
+}
+
+/// Where some tables name a time, those that name their columns and no time among them are no tests, nor are means.
 fn chosen(
     input: Input,
     book: Box<dyn Book>,
     looked: Vec<(Place, Part)>,
     mut skipped: Vec<(usize, SkippedPart)>,
 ) -> Found {
-    let timed = looked.iter().any(|(place, _)| place.table.names_time());
+    let name = |place: &Place| book.sheets().get(place.sheet).map_or("", |sheet| sheet.name.as_str());
+    let timed = looked.iter().any(|(place, _)| place.table.names_time() && !names_mean(name(place)));
     let (mut places, mut parts) = (Vec::new(), Vec::new());
     for (place, part) in looked {
-        if timed && place.table.has_names() && !place.table.names_time() {
-            let name = part.title().to_owned();
-            let reason = "no column of time".to_owned();
-            skipped.push((place.sheet, SkippedPart { name, reason }));
-        } else {
-            places.push(place);
-            parts.push(part);
+        match no_test(name(&place), &place.table).filter(|_| timed) {
+            Some(reason) => {
+                let name = part.title().to_owned();
+                let reason = reason.to_owned();
+                skipped.push((place.sheet, SkippedPart { name, reason }));
+            }
+            None => {
+                places.push(place);
+                parts.push(part);
+            }
         }
     }
     skipped.sort_by_key(|(sheet, _)| *sheet);

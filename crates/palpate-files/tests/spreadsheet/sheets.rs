@@ -158,3 +158,22 @@ fn shared_texts_prefixes_and_cells_without_a_place() {
     assert_eq!(names(&contents.parts()[0]), [("Ti", ""), ("Force", "N")]);
     assert_eq!(read(&contents, 0, &[1, 2]).expect("columns").values, [vec![0.5, 1.5], vec![2.0, 3.0]]);
 }
+
+#[test]
+fn a_mean_beside_tests_is_none_and_alone_is_one() {
+    let mut table = vec![
+        vec![T("Eprouvette 1"), T("Eprouvette 1"), T("Eprouvette 1")],
+        vec![T("seconds"), T("Force normale"), T("Allongement")],
+        vec![T("s"), T("N"), T("mm")],
+    ];
+    table.extend((0..5).map(|row| vec![N(f64::from(row)), N(f64::from(row)), N(2.0 * f64::from(row))]));
+    let both = Book::of(&[("Eprouvette moyenne", &table), ("Eprouvette 1", &table)]).bytes();
+    let contents = open(&both).expect("a workbook");
+    assert_eq!((contents.parts().len(), contents.parts()[0].title()), (1, "Eprouvette 1"));
+    assert_eq!(contents.skipped()[0].reason, "a mean of tests, by its name");
+    assert_eq!(read(&contents, 0, &[1]).expect("columns").values, [[0.0, 1.0, 2.0, 3.0, 4.0]]);
+    let file = record_file::read_part(&contents, 0, None, &mut |_, _| {}).expect("a record");
+    assert_eq!((file.rows, file.columns.len()), (5, 3));
+    let alone = open(&Book::of(&[("Eprouvette moyenne", &table)]).bytes()).expect("a workbook");
+    assert_eq!(alone.parts().len(), 1);
+}
