@@ -116,6 +116,26 @@ pub enum FileError {
         /// What is there.
         found: String,
     },
+    /// A cell does not hold the number that was asked for, in a format where cells have names.
+    #[error("{}, {place}: expected {expected}, found {found}", path.display())]
+    BadCell {
+        /// The file.
+        path: PathBuf,
+        /// The cell, in words.
+        place: String,
+        /// What should be there.
+        expected: String,
+        /// What is there.
+        found: String,
+        /// What would help.
+        hint: &'static str,
+    },
+    /// The file can be read with a password only.
+    #[error("{}: expected a file without a password, found an encrypted one", path.display())]
+    Encrypted {
+        /// The file.
+        path: PathBuf,
+    },
     /// More than is read of any file.
     #[error("{}: {what} has more than {}, which is the most that is read", path.display(), bytes(*most_bytes))]
     TooLarge {

@@ -12,6 +12,7 @@
 //! - [`record_file`] puts text and descriptions together: a file becomes a checked record in SI ([`record_file::read_record`]).
 
 mod afm;
+mod arrow_file;
 pub mod contents;
 pub mod description;
 mod error;
@@ -19,6 +20,7 @@ mod hint;
 pub mod input;
 pub mod parquet_table;
 pub mod record_file;
+mod spreadsheet;
 pub mod text;
 
 pub use error::{CellPlace, DecimalDoubt, FileError};

@@ -8,8 +8,10 @@ use serde::Serialize;
 use super::{Found, ReadOptions};
 use crate::{
     afm::{jpk_force, jpk_text, tab},
+    arrow_file::{self, Kind},
     error::FileError,
     input::Input,
+    spreadsheet::{self, Make},
     text,
 };
 
@@ -25,6 +27,14 @@ pub enum Format {
     AfmTab,
     /// Delimited text.
     Text,
+    /// A workbook of Office Open XML (`.xlsx`).
+    Xlsx,
+    /// A workbook of Excel 97 to 2003 (`.xls`).
+    Xls,
+    /// Parquet.
+    Parquet,
+    /// Arrow IPC: a file (Feather version 2) or a stream.
+    ArrowIpc,
 }
 
 impl Format {
@@ -33,13 +43,23 @@ impl Format {
         if jpk_force::recognise(input) {
             return Self::JpkForce;
         }
+        match spreadsheet::recognise(input) {
+            Some(Make::Xlsx) => return Self::Xlsx,
+            Some(Make::Xls) => return Self::Xls,
+            None => {}
+        }
+        match arrow_file::recognise(input) {
+            Some(Kind::Parquet) => return Self::Parquet,
+            Some(Kind::File | Kind::Stream) => return Self::ArrowIpc,
+            None => {}
+        }
         if jpk_text::recognise(input) {
-            return Self::JpkText;
+            Self::JpkText
+        } else if tab::recognise(input) {
+            Self::AfmTab
+        } else {
+            Self::Text
         }
-        if tab::recognise(input) {
-            return Self::AfmTab;
-        }
-        Self::Text
     }
 
     /// Looks into a file of this format.
@@ -49,6 +69,13 @@ impl Format {
             Self::JpkText => jpk_text::look_into(input, options),
             Self::AfmTab => tab::look_into(input, options),
             Self::Text => text::look_into(input, options),
+            Self::Xlsx => spreadsheet::look_into(input, Make::Xlsx, options),
+            Self::Xls => spreadsheet::look_into(input, Make::Xls, options),
+            Self::Parquet => arrow_file::look_into(input, Kind::Parquet, options),
+            Self::ArrowIpc => {
+                let kind = arrow_file::recognise(input).unwrap_or(Kind::Stream);
+                arrow_file::look_into(input, kind, options)
+            }
         }
     }
 }
@@ -60,6 +87,10 @@ impl fmt::Display for Format {
             Self::JpkText => "JPK text export",
             Self::AfmTab => "text of afmformats",
             Self::Text => "delimited text",
+            Self::Xlsx => "Excel workbook (.xlsx)",
+            Self::Parquet => "Parquet",
+            Self::ArrowIpc => "Arrow IPC",
+            Self::Xls => "Excel 97 workbook (.xls)",
         })
     }
 }

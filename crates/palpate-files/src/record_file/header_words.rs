@@ -20,7 +20,7 @@ pub(super) const VOCABULARY: [Vocabulary; 4] = [
     Vocabulary {
         quantity: Quantity::Time,
         plain: &["time", "zeit", "temps", "tiempo"],
-        loose: &["elapsed", "timestamp", "epoch", "durée", "duree"],
+        loose: &["elapsed", "seconds", "secondes", "sekunden", "timestamp", "epoch", "durée", "duree"],
         endings: &["zeit"],
         characters: &["时间", "時間"],
         letter: Some("t"),
@@ -37,6 +37,7 @@ pub(super) const VOCABULARY: [Vocabulary; 4] = [
             "position",
             "pos",
             "indentation",
+            "allongement",
             "deflection",
             "course",
             "recorrido",

@@ -18,6 +18,11 @@ pub(super) fn candidates(columns: &[ColumnInfo], quantity: Quantity) -> Vec<&Col
     tied.map(|(_, column)| column).collect()
 }
 
+/// Whether one of the columns is named as a time.
+pub(crate) fn names_time(columns: &[ColumnInfo]) -> bool {
+    !candidates(columns, Quantity::Time).is_empty()
+}
+
 /// How well a column names a quantity; 0 is best.
 fn rank(column: &ColumnInfo, quantity: Quantity) -> Option<u8> {
     if column.kind != ColumnKind::Number {

@@ -46,18 +46,27 @@ pub(crate) fn find(lines: &[&str], skip: usize, delimiters: &[Delimiter]) -> Opt
             continue;
         };
         if best.as_ref().is_none_or(|(score, _)| run.score > *score) {
-            let kinds = kinds(&cells[run.first..=run.last], run.width);
-            let first = start(&cells, run.first, &kinds);
-            let block = Block {
-                delimiter,
-                first,
-                kinds,
-                cells,
-            };
-            best = Some((run.score, block));
+            best = Some((run.score, of_run(run, cells, delimiter)));
         }
     }
     best.map(|(_, block)| block)
+}
+
+/// The block of data in rows of cells that are split already, as those of a sheet are.
+pub(crate) fn of_rows(cells: Vec<Vec<Cell>>) -> Option<Block> {
+    let run = longest_run(&cells)?;
+    Some(of_run(run, cells, Delimiter::Tab))
+}
+
+fn of_run(run: Run, cells: Vec<Vec<Cell>>, delimiter: Delimiter) -> Block {
+    let kinds = kinds(&cells[run.first..=run.last], run.width);
+    let first = start(&cells, run.first, &kinds);
+    Block {
+        delimiter,
+        first,
+        kinds,
+        cells,
+    }
 }
 
 fn classify(lines: &[&str], skip: usize, delimiter: Delimiter) -> Vec<Vec<Cell>> {

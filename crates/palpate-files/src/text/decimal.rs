@@ -35,23 +35,28 @@ pub(crate) fn decide(lines: &[&str], block: &Block, fixed: Option<DecimalMark>) 
 }
 
 fn weigh(lines: &[&str], block: &Block) -> Result<DecimalMark, Doubt> {
-    let points = places(block, Cell::Point);
-    let commas = places(block, Cell::Comma);
-    let doubt = |place: (usize, usize), doubt| Doubt {
-        line: place.0,
-        found: text_at(lines, block, place).to_owned(),
+    let texts = |wanted| -> Vec<(usize, &str)> {
+        places(block, wanted).into_iter().map(|place| (place.0, text_at(lines, block, place))).collect()
+    };
+    weigh_texts(&texts(Cell::Point), &texts(Cell::Comma))
+}
+
+/// The decimal mark of numbers with a point and numbers with a comma, each with the index of its line.
+pub(crate) fn weigh_texts(points: &[(usize, &str)], commas: &[(usize, &str)]) -> Result<DecimalMark, Doubt> {
+    let doubt = |(line, found): (usize, &str), doubt| Doubt {
+        line,
+        found: found.to_owned(),
         doubt,
     };
     // A few odd cells are for the reading of the columns to report, one by one.
-    let rare = |few: &[_], many: &[_]| few.len() * 50 <= many.len();
+    let rare = |few: &[(usize, &str)], many: &[(usize, &str)]| few.len() * 50 <= many.len();
     match (points.first(), commas.first()) {
         (_, None) => Ok(DecimalMark::Point),
-        (Some(_), Some(_)) if rare(&commas, &points) => Ok(DecimalMark::Point),
-        (Some(_), Some(_)) if rare(&points, &commas) => Ok(DecimalMark::Comma),
-        (Some(&point), Some(&comma)) => Err(doubt(point.max(comma), DecimalDoubt::Mixed)),
+        (Some(_), Some(_)) if rare(commas, points) => Ok(DecimalMark::Point),
+        (Some(_), Some(_)) if rare(points, commas) => Ok(DecimalMark::Comma),
+        (Some(&point), Some(&comma)) => Err(doubt(if comma.0 >= point.0 { comma } else { point }, DecimalDoubt::Mixed)),
         (None, Some(&comma)) => {
-            let thousands = |&place: &_| looks_like_thousands(text_at(lines, block, place));
-            if commas.iter().all(thousands) {
+            if commas.iter().all(|(_, text)| looks_like_thousands(text)) {
                 Err(doubt(comma, DecimalDoubt::Thousands))
             } else {
                 Ok(DecimalMark::Comma)

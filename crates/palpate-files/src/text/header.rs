@@ -22,11 +22,19 @@ pub(crate) struct Header {
 /// `wanted` says that there are names for certain (the nearest line is taken, if need be the first one of the
 /// block, which then starts one line later) or that there are none.
 pub(crate) fn find(lines: &[&str], skip: usize, block: &mut Block, wanted: Option<bool>) -> Header {
+    find_in_rows(&|index, block| split(lines[index], block), skip, block, wanted)
+}
+
+/// The cells of a line or row of which the index is given.
+type Rows<'a> = dyn Fn(usize, &Block) -> Vec<String> + 'a;
+
+/// As [`find`], in rows that are split already.
+pub(crate) fn find_in_rows(rows: &Rows<'_>, skip: usize, block: &mut Block, wanted: Option<bool>) -> Header {
     if wanted == Some(false) {
-        return label(None, None, block, lines);
+        return label(None, None, block, rows);
     }
-    let above = candidates(lines, skip, block);
-    let row = |index: usize| split(lines[index], block);
+    let above = candidates(rows, skip, block);
+    let row = |index: usize| rows(index, block);
     let (names_line, units_line) = match above[..] {
         [near, far, ..] if is_units(&row(near)) && is_names(&row(far), block) => (Some(far), Some(near)),
         [near, ..] if is_bracketed_units(&row(near)) && !has_names_too(&row(near)) => (None, Some(near)),
@@ -35,7 +43,7 @@ pub(crate) fn find(lines: &[&str], skip: usize, block: &mut Block, wanted: Optio
         _ if wanted == Some(true) => (Some(take_first(block)), None),
         _ => (None, None),
     };
-    label(names_line, units_line, block, lines)
+    label(names_line, units_line, block, rows)
 }
 
 /// Makes the first line of the block a line of names.
@@ -47,10 +55,10 @@ fn take_first(block: &mut Block) -> usize {
 }
 
 /// The nearest lines above the block that hold anything.
-fn candidates(lines: &[&str], skip: usize, block: &Block) -> Vec<usize> {
+fn candidates(rows: &Rows<'_>, skip: usize, block: &Block) -> Vec<usize> {
     (skip..block.first)
         .rev()
-        .filter(|&index| split(lines[index], block).iter().any(|cell| !cell.is_empty()))
+        .filter(|&index| rows(index, block).iter().any(|cell| !cell.is_empty()))
         .take(2)
         .collect()
 }
@@ -123,12 +131,12 @@ fn is_names(row: &[String], block: &Block) -> bool {
     row.len() + 1 >= width && !surplus && count >= 2.min(width) && filled(row).all(|cell| kind(cell) == Cell::Text)
 }
 
-fn label(names_line: Option<usize>, units_line: Option<usize>, block: &Block, lines: &[&str]) -> Header {
+fn label(names_line: Option<usize>, units_line: Option<usize>, block: &Block, rows: &Rows<'_>) -> Header {
     let width = block.kinds.len();
-    let row = |index: Option<usize>| index.map_or_else(Vec::new, |index| split(lines[index], block));
+    let row = |index: Option<usize>| index.map_or_else(Vec::new, |index| rows(index, block));
     let (names, units) = (row(names_line), row(units_line));
     // Tables with row labels, as R writes them, leave out the name of the labels.
-    let shift = usize::from(names.len() + 1 == width && labels_rows(block, lines));
+    let shift = usize::from(names.len() + 1 == width && labels_rows(block, rows));
     let entry = |column: usize| {
         let name = column.checked_sub(shift).and_then(|place| names.get(place));
         let cell = name.map_or("", String::as_str);
@@ -145,8 +153,8 @@ fn label(names_line: Option<usize>, units_line: Option<usize>, block: &Block, li
 }
 
 /// Whether the first column labels rows: texts, or whole numbers that count them.
-fn labels_rows(block: &Block, lines: &[&str]) -> bool {
-    let first = |(line, _): (usize, &[Cell])| cells(lines[line], block.delimiter)[0].to_owned();
+fn labels_rows(block: &Block, rows: &Rows<'_>) -> bool {
+    let first = |(line, _): (usize, &[Cell])| rows(line, block).into_iter().next().unwrap_or_default();
     let labels: Vec<String> = block.rows().take(3).map(first).collect();
     let counts = |pair: &[String]| match (pair[0].parse::<i64>(), pair[1].parse::<i64>()) {
         (Ok(here), Ok(next)) => next == here + 1,

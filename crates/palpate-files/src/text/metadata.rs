@@ -18,11 +18,16 @@ pub(crate) fn in_line(text: &str, delimiter: Delimiter) -> Vec<Metadata> {
         other => cells(text, other),
     };
     let row: Vec<&str> = row.into_iter().filter(|cell| !cell.is_empty()).collect();
-    if let Some(pairs) = equations(&row) {
+    in_cells(&row)
+}
+
+/// The named values in the cells of a line or row, those that are empty left out.
+pub(crate) fn in_cells(row: &[&str]) -> Vec<Metadata> {
+    if let Some(pairs) = equations(row) {
         let entry = |(name, value)| entry(name, value, None);
         return pairs.into_iter().filter_map(entry).collect();
     }
-    let found = match row[..] {
+    let found = match *row {
         [name, value] => entry(name, value, None),
         [name, value, unit] => entry(name, value, Some(unit)),
         [single] => single.split_once(':').and_then(|(name, value)| entry(name, value, None)),

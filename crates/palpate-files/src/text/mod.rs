@@ -26,22 +26,22 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod block;
+pub(crate) mod block;
 mod columns;
-mod decimal;
+pub(crate) mod decimal;
 mod detect;
 mod encoding;
 mod feed;
 mod fields;
-mod header;
+pub(crate) mod header;
 mod layout;
 mod lines;
-mod metadata;
+pub(crate) mod metadata;
 pub(crate) mod number;
 mod part;
 mod row;
 mod sample;
-mod unit;
+pub(crate) mod unit;
 
 pub use columns::read_columns;
 pub use detect::detect;

@@ -1,0 +1,22 @@
+//! Parquet and Arrow (IPC files, streams, Feather version 2): tables of typed columns.
+//!
+//! A file holds one test, or several one below the other where a column such as `test_id` tells them apart.
+//!
+//! | file | what |
+//! |---|---|
+//! | `part.rs` | a file as one test or several, and reading their columns |
+//! | `tests.rs` | which rows belong to which test |
+//! | `source.rs` | batches of rows, whatever the format |
+//! | `parquet.rs` | batches of a Parquet file |
+//! | `ipc.rs` | batches of an Arrow file or stream |
+//! | `values.rs` | columns of a type as numbers or texts |
+
+mod ipc;
+mod parquet;
+mod part;
+mod source;
+mod tests;
+mod values;
+
+pub(crate) use part::{look_into, recognise};
+pub(crate) use source::Kind;

@@ -1,0 +1,128 @@
+//! Batches of a Parquet file.
+
+use std::{
+    io::{BufReader, Read, Seek, SeekFrom},
+    ops::{ControlFlow, Range},
+};
+
+use arrow_array::RecordBatchReader;
+use arrow_schema::SchemaRef;
+use bytes::Bytes;
+use parquet::{
+    arrow::{
+        ProjectionMask,
+        arrow_reader::{ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReaderBuilder},
+    },
+    errors::ParquetError,
+    file::reader::{ChunkReader, Length},
+};
+
+use super::source::{Visitor, damaged};
+use crate::{
+    error::FileError,
+    input::{Input, Packing, Seekable},
+};
+
+/// Rows of a batch.
+const BATCH: usize = 8192;
+
+/// The bytes of an input; no more of them are made room for than there are.
+struct Chunks {
+    input: Input,
+    size: u64,
+}
+
+impl Chunks {
+    fn of(input: &Input) -> Result<Self, FileError> {
+        // What is packed is unpacked once, not for every chunk.
+        let input = match input.packing() {
+            Packing::None => input.clone(),
+            _ => Input::from_bytes(input.name(), input.bytes()?)?,
+        };
+        Ok(Self {
+            size: input.size(),
+            input,
+        })
+    }
+}
+
+impl Length for Chunks {
+    fn len(&self) -> u64 {
+        self.size
+    }
+}
+
+impl ChunkReader for Chunks {
+    type T = BufReader<Box<dyn Seekable>>;
+
+    fn get_read(&self, start: u64) -> Result<Self::T, ParquetError> {
+        let mut bytes = self.input.seekable().map_err(|error| ParquetError::External(Box::new(error)))?;
+        bytes.seek(SeekFrom::Start(start))?;
+        Ok(BufReader::new(bytes))
+    }
+
+    fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes, ParquetError> {
+        if start.checked_add(length as u64).is_none_or(|end| end > self.size) {
+            return Err(ParquetError::EOF(format!("{length} bytes at {start} of a file of {}", self.size)));
+        }
+        let mut bytes = Vec::with_capacity(length);
+        self.get_read(start)?.take(length as u64).read_to_end(&mut bytes)?;
+        if bytes.len() == length {
+            Ok(bytes.into())
+        } else {
+            Err(ParquetError::EOF("the end of the file".to_owned()))
+        }
+    }
+}
+
+fn metadata(input: &Input, chunks: &Chunks) -> Result<ArrowReaderMetadata, FileError> {
+    let metadata = ArrowReaderMetadata::load(chunks, ArrowReaderOptions::new());
+    metadata.map_err(|error| damaged(input, "footer", &error.to_string()))
+}
+
+pub(super) fn outline(input: &Input) -> Result<(SchemaRef, Option<u64>), FileError> {
+    let metadata = metadata(input, &Chunks::of(input)?)?;
+    let rows = metadata.metadata().file_metadata().num_rows();
+    Ok((metadata.schema().clone(), u64::try_from(rows).ok()))
+}
+
+pub(super) fn visit(
+    input: &Input,
+    columns: &[usize],
+    rows: &Range<u64>,
+    each: &mut Visitor<'_>,
+) -> Result<(), FileError> {
+    let chunks = Chunks::of(input)?;
+    let metadata = metadata(input, &chunks)?;
+    let counts: Vec<u64> =
+        metadata.metadata().row_groups().iter().map(|group| group.num_rows().max(0) as u64).collect();
+    let mask = ProjectionMask::roots(metadata.parquet_schema(), columns.iter().copied());
+    let total = counts.iter().fold(0_u64, |sum, count| sum.saturating_add(*count));
+    // The groups from the first to the last that hold a row that is wanted.
+    let mut start = 0_u64;
+    let (mut groups, mut first) = (Vec::new(), None);
+    for (group, &count) in counts.iter().enumerate() {
+        let end = start.saturating_add(count);
+        if start < rows.end && end > rows.start {
+            first.get_or_insert(start);
+            groups.push(group);
+        }
+        start = end;
+    }
+    let builder = ParquetRecordBatchReaderBuilder::new_with_metadata(chunks, metadata)
+        .with_projection(mask)
+        .with_row_groups(groups)
+        .with_batch_size(BATCH);
+    let reader = builder.build().map_err(|error| damaged(input, "rows", &error.to_string()))?;
+    let mut row = first.unwrap_or(0);
+    debug_assert!(reader.schema().fields().len() <= columns.len());
+    for batch in reader {
+        let batch = batch.map_err(|error| damaged(input, &format!("rows from {}", row + 1), &error.to_string()))?;
+        let count = batch.num_rows() as u64;
+        if each(row, &batch, (row.saturating_add(count), total))? == ControlFlow::Break(()) {
+            break;
+        }
+        row = row.saturating_add(count);
+    }
+    Ok(())
+}

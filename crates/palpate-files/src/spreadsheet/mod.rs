@@ -1,0 +1,26 @@
+//! Workbooks of spreadsheet programs: `.xlsx` and `.xls`, one test a sheet, or several side by side.
+//!
+//! | file | what |
+//! |---|---|
+//! | `part.rs` | a workbook as a file that holds several tests |
+//! | `book.rs` | what a workbook of any make can do |
+//! | `cell.rs`, `moment.rs` | cells, their places, number formats, dates |
+//! | `strings.rs` | texts that all sheets share |
+//! | `sample.rs` | the beginning of a sheet |
+//! | `table.rs` | finding the tables in it |
+//! | `read.rs` | reading chosen columns of a table |
+//! | `xlsx/` | workbooks of Office Open XML |
+//! | `xls/` | workbooks of Excel 97 to 2003 |
+
+mod book;
+mod cell;
+mod moment;
+mod part;
+mod read;
+mod sample;
+mod strings;
+mod table;
+mod xls;
+mod xlsx;
+
+pub(crate) use part::{Make, look_into, recognise};

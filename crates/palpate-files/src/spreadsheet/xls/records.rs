@@ -1,0 +1,84 @@
+//! Records of a stream, and numbers and texts in them.
+
+/// A record: its type and its bytes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Record<'a> {
+    pub(super) kind: u16,
+    pub(super) bytes: &'a [u8],
+}
+
+/// The records of a stream from a place on; ends where the stream ends or breaks off.
+#[derive(Debug, Clone)]
+pub(super) struct Records<'a> {
+    stream: &'a [u8],
+    place: usize,
+}
+
+impl<'a> Records<'a> {
+    pub(super) fn from(stream: &'a [u8], place: usize) -> Self {
+        Self { stream, place }
+    }
+
+    /// The records that go on with the one before, which was too long for one.
+    pub(super) fn continued(&mut self) -> Vec<&'a [u8]> {
+        let mut pieces = Vec::new();
+        loop {
+            let before = self.place;
+            match self.next() {
+                Some(Record { kind: CONTINUE, bytes }) => pieces.push(bytes),
+                _ => {
+                    self.place = before;
+                    return pieces;
+                }
+            }
+        }
+    }
+}
+
+const CONTINUE: u16 = 0x003C;
+
+impl<'a> Iterator for Records<'a> {
+    type Item = Record<'a>;
+
+    fn next(&mut self) -> Option<Record<'a>> {
+        let kind = u16_at(self.stream, self.place)?;
+        let length = usize::from(u16_at(self.stream, self.place + 2)?);
+        let start = self.place + 4;
+        let bytes = self.stream.get(start..start + length)?;
+        self.place = start + length;
+        Some(Record { kind, bytes })
+    }
+}
+
+pub(super) fn u16_at(bytes: &[u8], place: usize) -> Option<u16> {
+    let two = bytes.get(place..)?.first_chunk::<2>()?;
+    Some(u16::from_le_bytes(*two))
+}
+
+pub(super) fn u32_at(bytes: &[u8], place: usize) -> Option<u32> {
+    let four = bytes.get(place..)?.first_chunk::<4>()?;
+    Some(u32::from_le_bytes(*four))
+}
+
+pub(super) fn f64_at(bytes: &[u8], place: usize) -> Option<f64> {
+    let eight = bytes.get(place..)?.first_chunk::<8>()?;
+    Some(f64::from_le_bytes(*eight))
+}
+
+/// Letters of one byte each (the lower half of UTF-16), or of two.
+pub(super) fn letters(bytes: &[u8], wide: bool) -> String {
+    if wide {
+        let units = bytes.chunks_exact(2).filter_map(|two| u16_at(two, 0));
+        char::decode_utf16(units).map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
+    } else {
+        bytes.iter().map(|byte| char::from(*byte)).collect()
+    }
+}
+
+/// The text whose flags stand at `place`, of `length` letters; of one that goes on in another record, what is here.
+pub(super) fn text_at(bytes: &[u8], place: usize, length: usize) -> Option<String> {
+    let wide = bytes.get(place)? & 1 == 1;
+    let held = bytes.get(place + 1..)?;
+    let length = if wide { 2 * length } else { length };
+    Some(letters(&held[..length.min(held.len())], wide))
+}

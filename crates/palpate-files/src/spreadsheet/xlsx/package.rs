@@ -1,0 +1,177 @@
+//! The parts of the archive, and reading their XML.
+
+use std::{
+    borrow::Cow,
+    collections::BTreeMap,
+    io::{BufReader, Read},
+};
+
+use quick_xml::{
+    Reader, XmlVersion,
+    events::{BytesStart, Event},
+};
+use zip::ZipArchive;
+
+use crate::{
+    error::FileError,
+    input::{Input, MOST_IN_MEMORY},
+};
+
+/// Most bytes that a part which is kept in memory may unpack to (256 MiB): texts, styles, names of sheets.
+pub(super) const MOST_KEPT: u64 = 256 << 20;
+/// Most bytes that a sheet may unpack to: they are streamed, and one cell can hold all of them.
+pub(super) const MOST_OF_SHEET: u64 = MOST_IN_MEMORY;
+
+/// A zip archive of parts that are known by their paths.
+#[derive(Debug)]
+pub(super) struct Package {
+    pub(super) input: Input,
+    /// Names in the archive by their paths in lower case and with `/` between folders.
+    names: BTreeMap<String, String>,
+}
+
+/// Whether the archive has a part of this path.
+pub(in crate::spreadsheet) fn has_part(input: &Input, path: &str) -> bool {
+    let archive = input.seekable().ok().and_then(|bytes| ZipArchive::new(bytes).ok());
+    archive.is_some_and(|archive| archive.file_names().flatten().any(|name| same_path(&name) == path))
+}
+
+fn same_path(name: &str) -> String {
+    name.replace('\\', "/").trim_start_matches('/').to_lowercase()
+}
+
+impl Package {
+    pub(super) fn open(input: &Input) -> Result<Self, FileError> {
+        let archive = ZipArchive::new(input.seekable()?).map_err(|error| broken(input, "zip archive", &error))?;
+        let names = archive.file_names().flatten().map(|name| (same_path(&name), name.into_owned())).collect();
+        Ok(Self {
+            input: input.clone(),
+            names,
+        })
+    }
+
+    pub(super) fn has(&self, path: &str) -> bool {
+        self.names.contains_key(&same_path(path))
+    }
+
+    /// Goes through the XML of a part of at most `most` bytes. `step` is told the element that begins, text, or the
+    /// element that ends, with the bytes done and in all, and says whether to go on.
+    pub(super) fn read(
+        &self,
+        path: &str,
+        most: u64,
+        step: &mut dyn FnMut(Step<'_>, u64, u64) -> Result<bool, FileError>,
+    ) -> Result<(), FileError> {
+        let Some(name) = self.names.get(&same_path(path)) else {
+            return Err(self.damaged(path, "a part of the archive", "none of that name"));
+        };
+        let stored = BufReader::with_capacity(1 << 16, self.input.seekable()?);
+        let mut archive = ZipArchive::new(stored).map_err(|error| broken(&self.input, "zip archive", &error))?;
+        let member = archive.by_name(name).map_err(|error| broken(&self.input, path, &error))?;
+        let size = member.size();
+        // One byte more tells whether there is more.
+        let mut xml = Reader::from_reader(BufReader::with_capacity(1 << 16, member.take(most + 1)));
+        xml.config_mut().check_end_names = false;
+        xml.config_mut().expand_empty_elements = true;
+        let mut buffer = Vec::new();
+        loop {
+            buffer.clear();
+            let event = xml.read_event_into(&mut buffer);
+            let done = xml.buffer_position();
+            if xml.get_ref().get_ref().limit() == 0 {
+                return Err(self.input.too_large("a part of the workbook", most));
+            }
+            let event = event.map_err(|error| self.damaged(path, "XML", &error.to_string()))?;
+            let goes_on = match &event {
+                Event::Start(element) => step(Step::Begin(element), done, size)?,
+                Event::End(element) => step(Step::End(element.local_name().as_ref()), done, size)?,
+                Event::Text(text) => step(Step::Text(&text.xml10_content()), done, size)?,
+                Event::CData(text) => step(Step::Text(&text.xml10_content()), done, size)?,
+                Event::GeneralRef(entity) => {
+                    let letter = entity.resolve_char_ref().ok().flatten().map(String::from);
+                    let known = || quick_xml::escape::resolve_xml_entity(entity.as_ref()).map(str::to_owned);
+                    let Some(text) = letter.or_else(known) else {
+                        return Err(self.damaged(path, "XML", &format!("&{};", entity.as_ref())));
+                    };
+                    step(Step::Text(&text), done, size)?
+                }
+                Event::Eof => return Err(self.damaged(path, "its end", "the end of the file before it")),
+                _ => true,
+            };
+            if !goes_on {
+                return Ok(());
+            }
+        }
+    }
+
+    pub(super) fn damaged(&self, place: &str, expected: &str, found: &str) -> FileError {
+        FileError::Damaged {
+            path: self.input.name().to_owned(),
+            place: place.to_owned(),
+            expected: expected.to_owned(),
+            found: crate::error::shorten(found),
+        }
+    }
+}
+
+/// What comes next in the XML of a part.
+#[derive(Debug)]
+pub(super) enum Step<'a> {
+    Begin(&'a BytesStart<'a>),
+    Text(&'a str),
+    End(&'a str),
+}
+
+/// The attribute of an element, its name less any prefix.
+pub(super) fn attribute(element: &BytesStart<'_>, name: &str) -> Option<String> {
+    let mut all = element.attributes();
+    for attribute in all.with_checks(false).flatten() {
+        if attribute.key.local_name().as_ref() == name {
+            let value = attribute.normalized_value(XmlVersion::Implicit1_0);
+            return Some(value.map_or_else(|_| attribute.value.clone().into_owned(), Cow::into_owned));
+        }
+    }
+    None
+}
+
+fn broken(input: &Input, place: &str, error: &zip::result::ZipError) -> FileError {
+    FileError::Damaged {
+        path: input.name().to_owned(),
+        place: place.to_owned(),
+        expected: "a part that can be unpacked".to_owned(),
+        found: error.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Cursor, Write};
+
+    use super::*;
+
+    #[test]
+    fn a_part_that_unpacks_to_more_than_its_limit_is_refused_whatever_it_says() {
+        let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        for path in ["[Content_Types].xml", "a.xml"] {
+            zip.start_file(path, zip::write::SimpleFileOptions::default()).expect("a member");
+            zip.write_all(b"<a>").expect("bytes");
+            zip.write_all(&b"<b>text</b>".repeat(100_000)).expect("bytes");
+            zip.write_all(b"</a>").expect("bytes");
+        }
+        let bytes = zip.finish().expect("an archive").into_inner();
+        assert!(bytes.len() < 20_000);
+        let package = Package::open(&Input::from_bytes("book", bytes).expect("bytes")).expect("a package");
+        let mut texts = 0;
+        let mut count = |step: Step<'_>, _, _| {
+            texts += usize::from(matches!(step, Step::Text(_)));
+            Ok(!matches!(step, Step::End("a")))
+        };
+        let most = package.read("/A.xml", 1_100_000, &mut count);
+        assert_eq!(
+            most.map_err(|error| error.to_string()),
+            Err("book: a part of the workbook has more than 1 MiB, which is the most that is read".to_owned())
+        );
+        assert!((90_000..100_001).contains(&texts), "{texts}");
+        assert!(package.read("a.xml", 1_100_007, &mut |step, _, _| Ok(!matches!(step, Step::End("a")))).is_ok());
+    }
+}

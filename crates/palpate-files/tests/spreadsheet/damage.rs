@@ -1,0 +1,131 @@
+//! Files that are cut off, overwritten, encrypted, or swell.
+
+use palpate_files::contents::{Format, Part};
+
+use crate::{
+    message, open, read, read_all,
+    xls_book::{self, compound, stream},
+    xlsx_book::{
+        Book,
+        C::{N, S, T},
+    },
+};
+
+fn small() -> Vec<u8> {
+    let table = [vec![T("Time (s)"), T("Force (N)")], vec![S(0.0, 1), N(1.0)], vec![S(0.5, 1), N(2.0)]];
+    let mut book = Book::of(&[("one", &table)]);
+    book.formats = vec!["hh:mm:ss"];
+    book.strings = "<si><t>x</t></si>".to_owned();
+    book.bytes()
+}
+
+#[test]
+fn an_old_workbook_is_read() {
+    let contents = open(&xls_book::example()).expect("a workbook");
+    assert_eq!(contents.format(), Format::Xls);
+    let titles: Vec<&str> = contents.parts().iter().map(Part::title).collect();
+    assert_eq!(titles, ["good", "bad", "clock"]);
+    assert_eq!(contents.skipped()[0].reason, "no table of numbers");
+    assert_eq!(contents.parts()[0].columns[1].unit.as_deref(), Some("N"));
+    let columns = read(&contents, 0, &[1, 2, 3]).expect("columns");
+    assert_eq!(columns.values, [vec![0.1, 0.2, 0.3, 0.4], vec![1.5, 3.0, 4.5, 7.5], vec![-0.25, -0.25, -0.25, 0.5]]);
+    assert_eq!(message(read(&contents, 1, &[1, 2])), "book, sheet bad, cell B5: expected a number, found #N/A");
+    let clock = read(&contents, 2, &[1]).expect("columns");
+    assert!(clock.values[0].iter().zip([0.0, 1.0, 2.0]).all(|(found, wanted)| (found - wanted).abs() < 1e-9));
+}
+
+#[test]
+fn cut_off_at_any_byte() {
+    for whole in [small(), xls_book::example()] {
+        assert!(open(&whole).is_ok());
+        for length in 0..whole.len() {
+            let _ = read_all(&whole[..length]);
+        }
+    }
+    let whole = small();
+    assert!((0..whole.len()).all(|length| open(&whole[..length]).is_err()));
+}
+
+#[test]
+fn any_byte_changed() {
+    for whole in [small(), xls_book::example()] {
+        for place in (0..whole.len()).step_by(5) {
+            for change in [0xFF, 0x01] {
+                let mut bytes = whole.clone();
+                bytes[place] ^= change;
+                let _ = read_all(&bytes);
+            }
+        }
+    }
+}
+
+#[test]
+fn encrypted_workbooks_say_so() {
+    let expected = "book: expected a file without a password, found an encrypted one";
+    assert_eq!(message(open(&compound("EncryptedPackage", &[7; 5000]))), expected);
+    let protected = stream(&["a", "b"], &[("one", Vec::new())], true);
+    assert_eq!(message(open(&compound("Workbook", &protected))), expected);
+    let text = message(open(&compound("Book", &[0; 600])));
+    assert!(text.ends_with("expected a workbook of Excel 97 or later, found one of Excel 95 or older"), "{text}");
+    let text = message(open(&compound("WordDocument", &[0; 600])));
+    assert!(text.ends_with("found none"), "{text}");
+}
+
+#[test]
+fn cells_out_of_order_and_outside_of_any_sheet() {
+    let sheet = |xml: &str| Book {
+        sheets: vec![("one".to_owned(), xml.to_owned())],
+        ..Book::default()
+    };
+    for (xml, found) in [
+        (
+            "<row r=\"2\"><c r=\"A2\"><v>1</v></c><c r=\"A1\"><v>1</v></c></row>",
+            "cell A1: expected cells row by row inside of a sheet",
+        ),
+        ("<row r=\"0\"></row>", "expected the number of a row, found 0"),
+        ("<row><c r=\"XFE1\"><v>1</v></c></row>", "expected the place of a cell, found XFE1"),
+        ("<row><c r=\"A99999999999999999999\"><v>1</v></c></row>", "expected the place of a cell"),
+        ("<row><c t=\"s\"><v>9</v></c></row>", "cell A1: expected the number of a shared text, found 9"),
+        ("<row><c><v>1e999</v></c></row>", "cell A1: expected a number, found 1e999"),
+        ("<row><c><v>&bomb;</v></c></row>", "expected XML, found &bomb;"),
+    ] {
+        let text = message(open(&sheet(xml).bytes()));
+        assert!(text.contains(found), "{text}");
+    }
+}
+
+#[test]
+fn packed_workbooks_are_read() {
+    use std::io::Write;
+    for whole in [small(), xls_book::example()] {
+        let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        packed.write_all(&whole).expect("bytes");
+        let packed = packed.finish().expect("a file");
+        let (packed, plain) = (open(&packed).expect("a workbook"), open(&whole).expect("a workbook"));
+        assert_eq!((packed.format(), packed.parts()), (plain.format(), plain.parts()));
+        assert_eq!(
+            read(&packed, 0, &[1, 2]).expect("columns").values,
+            read(&plain, 0, &[1, 2]).expect("columns").values
+        );
+    }
+}
+
+#[test]
+fn other_documents_in_archives_are_told_from_workbooks() {
+    use std::io::Write;
+    for (part, xml, found) in [
+        ("word/document.xml", "<document/>", "expected a workbook with sheets, found word/document.xml"),
+        ("xl/workbook.bin", "", "expected a workbook of XML parts (.xlsx), found one of binary parts (.xlsb)"),
+    ] {
+        let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+        let relations = format!(
+            "<Relationships><Relationship Id=\"a\" Type=\"x/officeDocument\" Target=\"{part}\"/></Relationships>"
+        );
+        for (path, xml) in [("[Content_Types].xml", ""), ("_rels/.rels", relations.as_str()), (part, xml)] {
+            zip.start_file(path, zip::write::SimpleFileOptions::default()).expect("a member");
+            zip.write_all(xml.as_bytes()).expect("bytes");
+        }
+        let bytes = zip.finish().expect("an archive").into_inner();
+        assert_eq!(message(open(&bytes)), format!("book: zip archive: {found}"));
+    }
+}
