@@ -5,6 +5,7 @@
 //! - [`contents`] looks into a file of any format and reads columns of the tests in it ([`contents::Contents`]).
 //! - [`text`] reads delimited text: it finds out how a file is written ([`text::detect`]) and streams chosen
 //!   columns out of it ([`text::read_columns`]).
+//! - `robot_log` reads logs of robots (MCAP), whose topics have clocks of their own.
 //! - [`description`] reads what people write in TOML: protocols to simulate ([`description::read_protocol`])
 //!   and tests to evaluate ([`description::read_test`]).
 //! - [`parquet_table`] writes tables of many rows as Parquet and reads them back.
@@ -17,6 +18,7 @@ mod hint;
 pub mod input;
 pub mod parquet_table;
 pub mod record_file;
+mod robot_log;
 pub mod text;
 
 pub use error::{CellPlace, DecimalDoubt, FileError};

@@ -18,6 +18,19 @@ pub struct Part {
     pub metadata: Vec<Metadata>,
     /// Stretches of rows that the file itself labels, such as the pause of a force curve; in order.
     pub labels: Vec<Label>,
+    /// Where not all columns belong to one clock: which belong to which. None: every row is one instant.
+    pub clocks: Vec<Clock>,
+}
+
+/// Columns whose rows are stamped by one of them, in a file of several rates: a topic of a robot's log.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Clock {
+    /// Number of the column that holds the time stamps, from 1.
+    pub column: usize,
+    /// Number of the first column that they stamp.
+    pub first: usize,
+    /// Number of the last column that they stamp.
+    pub last: usize,
 }
 
 /// A stretch of rows under one label.
@@ -32,7 +45,8 @@ pub struct Label {
 }
 
 impl Part {
-    /// The column called `name`, if exactly one is. An exact match goes before one that differs in case.
+    /// The column called `name`, if exactly one is. An exact match goes before one that differs in case; in a log of a
+    /// robot, the name of a field may go without its topic (`wrench.force.z`).
     #[must_use]
     pub fn column_named(&self, name: &str) -> Option<&ColumnInfo> {
         let only = |same: &dyn Fn(&str) -> bool| {
@@ -40,6 +54,13 @@ impl Part {
             hits.next().filter(|_| hits.next().is_none())
         };
         only(&|own| own == name).or_else(|| only(&|own| own.to_lowercase() == name.to_lowercase()))
+            .or_else(|| only(&|own| topic_and_field(own).is_some_and(|(_, field)| field == name)))
+    }
+
+    /// The clock that stamps the column with this number, where the file has several clocks.
+    #[must_use]
+    pub fn clock_of(&self, number: usize) -> Option<&Clock> {
+        self.clocks.iter().find(|clock| (clock.first..=clock.last).contains(&number))
     }
 
     /// What messages call it.
@@ -47,6 +68,11 @@ impl Part {
     pub fn title(&self) -> &str {
         self.name.as_deref().unwrap_or("the file")
     }
+}
+
+/// The topic and the field in the name of a column of a robot's log, such as `/gripper/ft.wrench.force.z`.
+pub(crate) fn topic_and_field(name: &str) -> Option<(&str, &str)> {
+    name.split_once('.').filter(|(topic, _)| topic.starts_with('/'))
 }
 
 /// A part of a file that is no test.
