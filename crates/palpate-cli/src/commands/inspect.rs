@@ -71,6 +71,7 @@ fn columns_table(layout: &Layout, file: Option<&RecordFile>) -> Table {
             let sign = if used.sign < 0.0 { ", sign turned" } else { "" };
             let what = match used.role {
                 Role::Values(quantity) => quantity.to_string(),
+                Role::Added(quantity) => format!("added to {quantity}"),
                 Role::ClockOf(quantity) => format!("time of {quantity}"),
             };
             format!("{what} in {}{sign}", used.unit)

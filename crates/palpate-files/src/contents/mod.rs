@@ -45,12 +45,7 @@ pub(crate) trait ReadPart: fmt::Debug + Send + Sync {
     /// Reads the columns with these numbers (from 1, in any order, perhaps one twice) of the part with this index.
     ///
     /// Both the index and the numbers are those of [`Contents::parts`]. Columns of one clock have the same length.
-    fn read(
-        &self,
-        part: usize,
-        columns: &[usize],
-        progress: &mut dyn FnMut(u64, u64),
-    ) -> Result<Columns, FileError>;
+    fn read(&self, part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError>;
 }
 
 /// A file that was looked into.

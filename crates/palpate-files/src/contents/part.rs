@@ -53,7 +53,8 @@ impl Part {
             let mut hits = self.columns.iter().filter(|column| column.name.as_deref().is_some_and(same));
             hits.next().filter(|_| hits.next().is_none())
         };
-        only(&|own| own == name).or_else(|| only(&|own| own.to_lowercase() == name.to_lowercase()))
+        only(&|own| own == name)
+            .or_else(|| only(&|own| own.to_lowercase() == name.to_lowercase()))
             .or_else(|| only(&|own| topic_and_field(own).is_some_and(|(_, field)| field == name)))
     }
 

@@ -7,7 +7,7 @@ use super::{
     header_words::{OTHER, OTHER_CHARACTERS, VOCABULARY, Vocabulary},
     quantity::unit_factor,
 };
-use crate::contents::{ColumnInfo, ColumnKind};
+use crate::contents::{ColumnInfo, ColumnKind, topic_and_field};
 
 /// The columns that name `quantity` best: one if it is clear, several if it is not, none if none does.
 pub(super) fn candidates(columns: &[ColumnInfo], quantity: Quantity) -> Vec<&ColumnInfo> {
@@ -61,6 +61,7 @@ fn measures_another(unit: &str, quantity: Quantity) -> bool {
 }
 
 fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
+    let name = measured(name);
     let words = words(name);
     let has = |known: &[&str]| words.iter().any(|word| known.contains(&word.as_str()));
     let is = |known: &[&str]| matches!(words.as_slice(), [only] if known.contains(&only.as_str()));
@@ -89,6 +90,17 @@ fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
         Some(4)
     } else {
         None
+    }
+}
+
+/// The part of a name that says what is measured. Of a log of a robot that is the field less the names of joints, since
+/// topics are named after devices and commands (`/gripper_cmd/feedback`); where the field is called `data`, as in
+/// `std_msgs/Float64`, the topic alone can say it.
+fn measured(name: &str) -> &str {
+    match topic_and_field(name) {
+        Some((topic, "data")) => topic,
+        Some((_, field)) => field.split('[').next().unwrap_or(field),
+        None => name,
     }
 }
 
@@ -192,6 +204,22 @@ mod tests {
         assert_eq!(found(&pounds, Quantity::Force), [2]);
         assert_eq!(found(&pounds[..1], Quantity::Force), [1]);
         assert!(found(&[("Weg", Some("%"))], Quantity::Displacement).is_empty());
+    }
+
+    #[test]
+    fn fields_of_topics_tell_and_topics_do_not() {
+        let log = [
+            ("/gripper_cmd/feedback.feedback.position", None),
+            ("/gripper_cmd/feedback.feedback.reached_goal", None),
+            ("/force_torque.wrench.torque.z", None),
+            ("/load.data", None),
+            ("/load_target.data", None),
+        ];
+        assert_eq!(found(&log, Quantity::Displacement), [1]);
+        assert_eq!(found(&log, Quantity::Force), [4]);
+        let joints = [("/joint_states.position[force_joint]", None), ("/joint_states.velocity[force_joint]", None)];
+        assert!(found(&joints, Quantity::Force).is_empty());
+        assert_eq!(found(&joints, Quantity::Displacement), [1]);
     }
 
     #[test]

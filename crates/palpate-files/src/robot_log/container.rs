@@ -149,7 +149,9 @@ impl Log<'_> {
         }
         let record = mcap::parse_record(opcode, data).map_err(|error| self.failed(&error))?;
         match &record {
-            Record::Header(header) => visit(Entry::Header { profile: &header.profile }),
+            Record::Header(header) => visit(Entry::Header {
+                profile: &header.profile,
+            }),
             Record::Schema { header, data } => visit(Entry::Schema {
                 id: header.id,
                 name: &header.name,
@@ -211,7 +213,11 @@ impl Log<'_> {
     fn damaged(&self, expected: String, found: String) -> FileError {
         FileError::Damaged {
             path: self.input.name().to_owned(),
-            place: format!("record at byte {}, behind {} messages", mcap::MAGIC.len() as u64 + self.offset, self.messages),
+            place: format!(
+                "record at byte {}, behind {} messages",
+                mcap::MAGIC.len() as u64 + self.offset,
+                self.messages
+            ),
             expected,
             found,
         }

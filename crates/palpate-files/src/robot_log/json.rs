@@ -37,7 +37,13 @@ fn time(value: &Value) -> Option<(i64, i64)> {
     Some((whole(["sec", "secs", "seconds"])?, whole(["nanosec", "nsec", "nsecs"])?))
 }
 
-fn field(object: &Map<String, Value>, name: &str, value: &Value, above: &str, fields: &mut Fields) -> Result<(), Fault> {
+fn field(
+    object: &Map<String, Value>,
+    name: &str,
+    value: &Value,
+    above: &str,
+    fields: &mut Fields,
+) -> Result<(), Fault> {
     let path = if above.is_empty() { name.to_owned() } else { format!("{above}.{name}") };
     match value {
         Value::Array(values) if values.len() <= MOST_ELEMENTS => {
@@ -59,12 +65,11 @@ fn element(path: &str, value: &Value, fields: &mut Fields) -> Result<(), Fault> 
         Value::Bool(truth) => fields.push(path, f64::from(u8::from(*truth))),
         Value::Null => fields.push(path, f64::NAN),
         Value::Object(_) if time(value).is_some() => Ok(()),
-        Value::Object(inner) => {
-            inner.iter().try_for_each(|(name, value)| field(inner, name, value, path, fields))
-        }
-        Value::Array(values) if values.len() <= MOST_ELEMENTS => {
-            values.iter().enumerate().try_for_each(|(index, value)| element(&format!("{path}[{index}]"), value, fields))
-        }
+        Value::Object(inner) => inner.iter().try_for_each(|(name, value)| field(inner, name, value, path, fields)),
+        Value::Array(values) if values.len() <= MOST_ELEMENTS => values
+            .iter()
+            .enumerate()
+            .try_for_each(|(index, value)| element(&format!("{path}[{index}]"), value, fields)),
         Value::Array(_) | Value::String(_) => Ok(()),
     }
 }

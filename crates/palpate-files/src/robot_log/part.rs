@@ -92,12 +92,7 @@ impl Log {
 }
 
 impl ReadPart for Log {
-    fn read(
-        &self,
-        _part: usize,
-        columns: &[usize],
-        progress: &mut dyn FnMut(u64, u64),
-    ) -> Result<Columns, FileError> {
+    fn read(&self, _part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
         let chosen: Vec<(usize, Source)> = columns.iter().map(|number| self.sources[number - 1]).collect();
         let of_series = |series: usize| -> Vec<Source> {
             chosen.iter().filter(|(of, _)| *of == series).map(|(_, source)| *source).collect()

@@ -208,7 +208,9 @@ fn depth(types: &[Vec<Field>], index: usize, known: &mut [Option<usize>], above:
         return Ok(depth);
     }
     if above > DEEPEST {
-        return Err(format!("its definition has types that contain themselves, or more than {DEEPEST} inside one another"));
+        return Err(format!(
+            "its definition has types that contain themselves, or more than {DEEPEST} inside one another"
+        ));
     }
     let mut deepest = 0;
     for field in &types[index] {

@@ -10,11 +10,7 @@ use super::{
     container::{self, Entry},
     fields::Fields,
 };
-use crate::{
-    contents::SkippedPart,
-    error::FileError,
-    input::Input,
-};
+use crate::{contents::SkippedPart, error::FileError, input::Input};
 
 /// Most different sets of fields, and orders of them, that the messages of a topic may have.
 const MOST_SERIES: usize = 16;
@@ -244,7 +240,8 @@ fn place(all: &mut Vec<Series>, channel: &Channel, fields: &Fields) -> Belongs {
         }
         names.iter().map(|name| series.fields.iter().position(|field| field.name == *name)).collect()
     };
-    if let Some((series, places)) = all.iter().enumerate().find_map(|(index, series)| Some((index, places_in(series)?))) {
+    if let Some((series, places)) = all.iter().enumerate().find_map(|(index, series)| Some((index, places_in(series)?)))
+    {
         return Belongs { series, places };
     }
     all.push(Series {

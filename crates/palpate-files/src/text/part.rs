@@ -37,12 +37,7 @@ pub(crate) fn look_into(input: &Input, options: &ReadOptions) -> Result<Found, F
 }
 
 impl ReadPart for TextFile {
-    fn read(
-        &self,
-        _part: usize,
-        columns: &[usize],
-        progress: &mut dyn FnMut(u64, u64),
-    ) -> Result<Columns, FileError> {
+    fn read(&self, _part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
         read_columns(&self.input, &self.layout, columns, progress)
     }
 }
