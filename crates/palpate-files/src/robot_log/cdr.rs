@@ -22,7 +22,7 @@ pub(super) fn read(schema: &Schema, message: &[u8], named: bool) -> Result<Field
         path: String::new(),
         named,
     };
-    walk.structure(0, true, Header::Message)?;
+    walk.structure(0, true, Place::Message)?;
     let left = walk.bytes.data.len() - walk.bytes.at;
     if left > MOST_LEFT {
         return Err(walk.bytes.fault("the end of the message".to_owned(), format!("{left} bytes more")));
@@ -130,7 +130,7 @@ impl<'a> Bytes<'a> {
 
 /// Where a structure stands, as far as the time stamp is concerned.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Header {
+enum Place {
     /// It is the message.
     Message,
     /// It is the header of the message.
@@ -149,7 +149,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn structure(&mut self, index: usize, told: bool, place: Header) -> Result<(), Fault> {
+    fn structure(&mut self, index: usize, told: bool, place: Place) -> Result<(), Fault> {
         let schema = self.schema;
         let mut labels: Option<Vec<String>> = None;
         for field in &schema.types[index] {
@@ -160,14 +160,14 @@ impl Walk<'_> {
                 }
                 self.path.push_str(&field.name);
             }
-            let inner = if place == Header::Message && field.name == "header" { Header::Header } else { Header::Part };
-            let is_stamp = place != Header::Part && field.name == "stamp" && field.kind == Kind::Time;
+            let inner = if place == Place::Message && field.name == "header" { Place::Header } else { Place::Part };
+            let is_stamp = place != Place::Part && field.name == "stamp" && field.kind == Kind::Time;
             match field.count {
                 Count::One if is_stamp => {
                     let (seconds, nanoseconds) = (self.bytes.whole()?, self.bytes.whole()?);
                     self.fields.stamped(i64::from(seconds as i32), i64::from(nanoseconds));
                 }
-                Count::One => self.element(field.kind, told && place != Header::Header, inner)?,
+                Count::One => self.element(field.kind, told && place != Place::Header, inner)?,
                 Count::Array(count) => self.elements(field, count, told, &mut labels)?,
                 Count::Sequence => {
                     let count = self.bytes.whole()? as usize;
@@ -183,7 +183,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    fn element(&mut self, kind: Kind, told: bool, place: Header) -> Result<(), Fault> {
+    fn element(&mut self, kind: Kind, told: bool, place: Place) -> Result<(), Fault> {
         match kind {
             Kind::Number(number) => {
                 let value = self.bytes.number(number)?;
@@ -234,7 +234,7 @@ impl Walk<'_> {
                     None => self.path.push_str(&format!("[{index}]")),
                 }
             }
-            self.element(field.kind, told, Header::Part)?;
+            self.element(field.kind, told, Place::Part)?;
             self.path.truncate(start);
         }
         Ok(())

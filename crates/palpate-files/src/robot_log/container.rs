@@ -54,7 +54,7 @@ pub(super) enum Entry<'a> {
 }
 
 /// Told every entry, in the order of the file.
-pub(super) type Visit<'v> = dyn FnMut(Entry<'_>) -> Result<(), FileError> + 'v;
+pub(super) type Visit<'v> = dyn FnMut(&Entry<'_>) -> Result<(), FileError> + 'v;
 
 /// Goes through the data section of the log; what stands behind it only repeats and indexes.
 pub(super) fn walk(input: &Input, progress: &mut dyn FnMut(u64, u64), visit: &mut Visit<'_>) -> Result<(), FileError> {
@@ -149,16 +149,16 @@ impl Log<'_> {
         }
         let record = mcap::parse_record(opcode, data).map_err(|error| self.failed(&error))?;
         match &record {
-            Record::Header(header) => visit(Entry::Header {
+            Record::Header(header) => visit(&Entry::Header {
                 profile: &header.profile,
             }),
-            Record::Schema { header, data } => visit(Entry::Schema {
+            Record::Schema { header, data } => visit(&Entry::Schema {
                 id: header.id,
                 name: &header.name,
                 encoding: &header.encoding,
                 text: data,
             }),
-            Record::Channel(channel) => visit(Entry::Channel {
+            Record::Channel(channel) => visit(&Entry::Channel {
                 id: channel.id,
                 schema: channel.schema_id,
                 topic: &channel.topic,
@@ -166,7 +166,7 @@ impl Log<'_> {
             }),
             Record::Message { header, data } => {
                 self.messages += 1;
-                visit(Entry::Message {
+                visit(&Entry::Message {
                     channel: header.channel_id,
                     log_time: header.log_time,
                     data,

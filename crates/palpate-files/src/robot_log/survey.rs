@@ -85,9 +85,9 @@ struct Surveyor<'a> {
 }
 
 impl Surveyor<'_> {
-    fn entry(&mut self, entry: Entry<'_>) -> Result<(), FileError> {
+    fn entry(&mut self, entry: &Entry<'_>) -> Result<(), FileError> {
         match entry {
-            Entry::Header { profile } => profile.clone_into(&mut self.survey.profile),
+            Entry::Header { profile } => (*profile).clone_into(&mut self.survey.profile),
             Entry::Schema {
                 id,
                 name,
@@ -95,11 +95,11 @@ impl Surveyor<'_> {
                 text,
             } => {
                 let definition = Definition {
-                    name: name.to_owned(),
-                    encoding: encoding.to_owned(),
-                    text: text.to_owned(),
+                    name: (*name).to_owned(),
+                    encoding: (*encoding).to_owned(),
+                    text: text.to_vec(),
                 };
-                let known = self.definitions.entry(id).or_insert_with(|| definition.clone());
+                let known = self.definitions.entry(*id).or_insert_with(|| definition.clone());
                 if *known != definition {
                     return Err(self.damaged(format!("schema {id}"), "one definition", "two that differ"));
                 }
@@ -109,12 +109,12 @@ impl Surveyor<'_> {
                 schema,
                 topic,
                 encoding,
-            } => self.channel(id, schema, topic, encoding)?,
+            } => self.channel(*id, *schema, topic, encoding)?,
             Entry::Message {
                 channel,
                 log_time,
                 data,
-            } => self.message(channel, log_time, data)?,
+            } => self.message(*channel, *log_time, data)?,
         }
         Ok(())
     }

@@ -10,7 +10,7 @@ const MS: u64 = 1_000_000;
 /// Travel since the first sample, mm.
 fn travel(log: &[u8], test: &str) -> Vec<f64> {
     let file = record(log, test).unwrap_or_else(|error| panic!("{error}"));
-    let travel = file.record.displacement().unwrap();
+    let travel = file.record.displacement().expect("a record with displacement");
     travel.iter().map(|value| ((value - travel[0]) * 1e6).round() / 1e3).collect()
 }
 
@@ -63,7 +63,7 @@ fn feedback_of_an_action_holds_gap_and_force() {
     let kind = "control_msgs/action/GripperCommand_FeedbackMessage";
     let mut log = Log::packed(None).topic(topic, "cdr", (kind, "ros2msg", schema));
     for step in 0..4_u64 {
-        let identified = (0..16).fold(Cdr::new(true), |message, byte| message.u8(byte));
+        let identified = (0..16).fold(Cdr::new(true), Cdr::u8);
         let message = identified.f64(0.05 - 0.002 * step as f64).f64(3.0 + step as f64).u8(0).u8(u8::from(step == 3));
         log.say(topic, START + step * 20 * MS, &message.bytes());
     }

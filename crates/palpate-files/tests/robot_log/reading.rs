@@ -250,6 +250,26 @@ fn a_number_that_is_none_is_refused_where_it_is_used() {
 }
 
 #[test]
+fn what_is_missing_is_answered_with_lines_that_help() {
+    let mut log = Log::packed(None).topic("/a", "cdr", ("x/msg/Two", "ros2msg", "float32 gap\nfloat32 grip\n"));
+    for step in 0..9 {
+        log.say("/a", START + step, &Cdr::new(true).f32(step as f32).f32(step as f32 + 0.5).bytes());
+    }
+    let log = log.finish();
+    let error = record(&log, "").unwrap_err();
+    assert!(matches!(&error, ReadError::Column(ColumnError::Missing { .. })), "{error}");
+    let hint = error.hint().unwrap();
+    let lines: Vec<&str> = hint.lines().skip(1).collect();
+    assert!(lines[0] == "[columns]" && lines.len() == 3, "{hint}");
+    assert!(
+        lines[1].starts_with("displacement = { column = 2") && lines[2].starts_with("force = { column = 3"),
+        "{hint}"
+    );
+    // What is proposed works as it stands.
+    assert_eq!(record(&log, &lines.join("\n")).unwrap().record.len(), 9);
+}
+
+#[test]
 fn columns_of_two_clocks_do_not_add_up() {
     let test = r#"
         columns.displacement = { column = "position[finger]", also = "wrench.force.x", unit = "m" }

@@ -108,7 +108,7 @@ pub(crate) struct Log {
 
 impl Log {
     pub(crate) fn new(options: WriteOptions) -> Self {
-        let writer = options.profile("ros2").create(Cursor::new(Vec::new())).unwrap();
+        let writer = options.profile("ros2").create(Cursor::new(Vec::new())).expect("a log in memory");
         Self {
             writer,
             topics: BTreeMap::new(),
@@ -123,8 +123,8 @@ impl Log {
     /// A topic with the definition of its messages.
     pub(crate) fn topic(mut self, topic: &str, encoding: &str, schema: (&str, &str, &str)) -> Self {
         let (name, kind, text) = schema;
-        let schema = self.writer.add_schema(name, kind, text.as_bytes()).unwrap();
-        let channel = self.writer.add_channel(schema, topic, encoding, &BTreeMap::new()).unwrap();
+        let schema = self.writer.add_schema(name, kind, text.as_bytes()).expect("a log in memory");
+        let channel = self.writer.add_channel(schema, topic, encoding, &BTreeMap::new()).expect("a log in memory");
         self.topics.insert(topic.to_owned(), channel);
         self
     }
@@ -144,11 +144,11 @@ impl Log {
             log_time,
             publish_time: log_time,
         };
-        self.writer.write_to_known_channel(&header, data).unwrap();
+        self.writer.write_to_known_channel(&header, data).expect("a log in memory");
     }
 
     pub(crate) fn finish(mut self) -> Vec<u8> {
-        self.writer.finish().unwrap();
+        self.writer.finish().expect("a log in memory");
         self.writer.into_inner().into_inner()
     }
 }
