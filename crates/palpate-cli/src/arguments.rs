@@ -23,6 +23,7 @@ Examples:
   palpate inspect test.csv                       what is in a file, and which phases it has
   palpate analyze test.csv --out study           phases, laws, tables, figures, report.html
   palpate analyze test.csv --test ball.toml      the same with geometry: strains and v in 1/s
+  palpate batch curves --out holds.parquet       thousands of records, one table
   palpate compare test.csv                       which law of relaxation to use, and how sure that is
   palpate simulate squeeze.toml --out force.csv  force of a squeeze protocol
   palpate sweep sweep.toml --figure peak.svg     the same for many numbers at once
@@ -36,6 +37,7 @@ pub(crate) enum Command {
     Sweep(SweepArguments),
     Inspect(InspectArguments),
     Analyze(AnalyzeArguments),
+    Batch(BatchArguments),
     Compare(CompareArguments),
     Schema(SchemaArguments),
     Completions(CompletionsArguments),
@@ -159,12 +161,15 @@ pub(crate) enum DriveName {
 /// Show what is in a record: columns, units, sampling, phases. Changes nothing.
 #[derive(Debug, Args)]
 pub(crate) struct InspectArguments {
-    /// Record: delimited text with time, force and, if possible, displacement
+    /// Record with time, force and, if possible, displacement, in any format that is known
     #[arg(value_name = "RECORD")]
     pub(crate) record: PathBuf,
     /// Test description (TOML): columns, units, geometry
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
+    #[arg(long, value_name = "NAME")]
+    pub(crate) part: Option<String>,
 }
 
 /// Analyse records: phases, strains, laws, tables, figures, report.
@@ -177,12 +182,15 @@ Examples:
   palpate analyze *.csv --test strip.toml --out studies   one folder a record
   palpate analyze press.csv --format json | jq '.holds[].fits[0]'")]
 pub(crate) struct AnalyzeArguments {
-    /// Records: delimited text with time, force and, if possible, displacement
+    /// Records with time, force and, if possible, displacement: files, folders, or patterns in quotes
     #[arg(value_name = "RECORD", required = true)]
     pub(crate) records: Vec<PathBuf>,
     /// Test description (TOML): columns, units, geometry, options
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
+    #[arg(long, value_name = "NAME")]
+    pub(crate) part: Option<String>,
     /// Folder for report.html, analysis.json, tables and figures
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -218,6 +226,44 @@ pub(crate) struct AnalyzeArguments {
     pub(crate) no_compare: bool,
 }
 
+/// Analyse thousands of records into one table, a row per hold and law.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A batch that was killed, or that finds new files in its folder, goes on where it stopped: what is done
+stands in the folder TABLE.journal. A file counts as done while its bytes, the description, the options and palpate
+stay the same. A record that fails does not stop the others; failures are listed at the end (exit code 1).
+
+Examples:
+  palpate batch curves --out holds.parquet --test cell.toml        a folder and all below it
+  palpate batch \"run-*/**/*.csv\" --out holds.csv                 a pattern
+  palpate batch curves --out laws.parquet --laws latency,prony:2   other laws besides")]
+pub(crate) struct BatchArguments {
+    /// Records: files, folders, or patterns in quotes
+    #[arg(value_name = "RECORD", required = true)]
+    pub(crate) records: Vec<PathBuf>,
+    /// File for the table (.parquet or .csv)
+    #[arg(long, value_name = "TABLE")]
+    pub(crate) out: PathBuf,
+    /// Test description (TOML): columns, units, geometry, options; for all records
+    #[arg(long, value_name = "TEST.toml")]
+    pub(crate) test: Option<PathBuf>,
+    /// Laws to fit besides the latency law
+    #[arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = law)]
+    pub(crate) laws: Option<Vec<Law>>,
+    /// Fit only this long from the start of each hold
+    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
+    pub(crate) fit_until: Option<f64>,
+    /// From where in a hold to fit: peak, settled, or "peak + 0.5 s"
+    #[arg(long, value_name = "WHERE", value_parser = hold_start)]
+    pub(crate) hold_start: Option<HoldStart>,
+    /// How many records at once; all processors if not given. The table is the same for any number
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<std::num::NonZeroUsize>,
+    /// Analyse all records again, whatever was done before
+    #[arg(long)]
+    pub(crate) restart: bool,
+}
+
 /// Compare laws: which one foretells a hold, how sure that is, and what another would cost.
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -238,6 +284,9 @@ pub(crate) struct CompareArguments {
     /// Test description (TOML): columns, units, geometry, options; for all records
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
+    /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
+    #[arg(long, value_name = "NAME")]
+    pub(crate) part: Option<String>,
     /// Laws to compare; all that suit if not given
     #[arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = law)]
     pub(crate) laws: Option<Vec<Law>>,

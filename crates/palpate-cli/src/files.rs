@@ -1,6 +1,6 @@
 //! Output that appears whole or not at all.
 
-use std::fs;
+use std::fs::{self, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -131,6 +131,22 @@ fn open_to_all(_: &Path) -> io::Result<()> {
     Ok(())
 }
 
+/// A file that only one `work` can hold at a time.
+pub(crate) fn lock_file(path: &Path, work: &str) -> Result<fs::File, Failure> {
+    let file = fs::File::create(path).map_err(|error| failure(path, &error))?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => Err(Failure::of_file(
+            path,
+            format!("expected no other {work} at work here, found one"),
+            Some("wait for it, or name another table with --out".to_owned()),
+        )),
+        // A file system without locks: better without than not at all.
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(file),
+        Err(TryLockError::Error(error)) => Err(failure(path, &error)),
+    }
+}
+
 /// SHA-256 of a file, hexadecimal.
 pub(crate) fn sha256(path: &Path) -> Result<String, Failure> {
     use sha2::{Digest, Sha256};
@@ -150,21 +166,29 @@ pub(crate) fn sha256(path: &Path) -> Result<String, Failure> {
     hash().map_err(|error| Failure::of_file(path, error, None))
 }
 
+/// A name of a test as the name of a file: what no system allows there becomes a hyphen.
+pub(crate) fn file_name(name: &str) -> String {
+    let allowed = |letter: char| !letter.is_control() && !"/\\:*?\"<>|".contains(letter);
+    let name: String = name.chars().map(|letter| if allowed(letter) { letter } else { '-' }).collect();
+    let name = name.trim().trim_matches('.').trim();
+    if name.is_empty() { "test".to_owned() } else { name.to_owned() }
+}
+
 /// Folders for the results of several records: the file names, with a number where two are alike.
 pub(crate) fn folders(out: &Path, records: &[PathBuf]) -> Vec<PathBuf> {
     if records.len() == 1 {
         return vec![out.to_owned()];
     }
-    let mut taken: Vec<PathBuf> = Vec::new();
-    for record in records {
-        let stem = record.file_stem().unwrap_or(record.as_os_str()).to_string_lossy().into_owned();
-        let mut folder = out.join(&stem);
-        let mut number = 2;
-        while taken.contains(&folder) {
-            folder = out.join(format!("{stem}-{number}"));
-            number += 1;
-        }
-        taken.push(folder);
-    }
-    taken
+    let mut taken = Vec::new();
+    let stem = |record: &PathBuf| record.file_stem().unwrap_or(record.as_os_str()).to_string_lossy().into_owned();
+    records.iter().map(|record| folder_in(out, &stem(record), &mut taken)).collect()
+}
+
+/// A folder by its name in another one, with a number where that is taken.
+pub(crate) fn folder_in(out: &Path, name: &str, taken: &mut Vec<PathBuf>) -> PathBuf {
+    let numbered = (2..).map(|number| out.join(format!("{name}-{number}")));
+    let mut names = std::iter::once(out.join(name)).chain(numbered);
+    let folder = names.find(|folder| !taken.contains(folder)).unwrap_or_else(|| out.join(name));
+    taken.push(folder.clone());
+    folder
 }

@@ -7,38 +7,62 @@ use palpate_files::description::TestDescription;
 use palpate_report::document::{AnalysisDocument, Input};
 use palpate_report::study::{Pictures, analysis_bundle, analysis_text};
 
-use super::record::{description, input, record};
+use super::inputs::records_of;
+use super::record::{Opened, called, description, input, record};
 use crate::arguments::{AnalyzeArguments, Format};
 use crate::failure::{Failure, Outcome};
-use crate::files::{folders, write_bundle};
+use crate::files::{file_name, folder_in, folders, write_bundle};
 use crate::progress::Working;
 use crate::terminal::{note, print};
 
 pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Outcome, Failure> {
-    let test = description(arguments.test.as_deref())?;
+    let test = description(arguments.test.as_deref(), arguments.part.as_deref())?;
     let options = options(arguments, test.as_ref());
+    let paths = records_of(&arguments.records)?;
     let folders: Vec<Option<PathBuf>> = match &arguments.out {
-        Some(out) => folders(out, &arguments.records).into_iter().map(Some).collect(),
-        None => vec![None; arguments.records.len()],
+        Some(out) => folders(out, &paths).into_iter().map(Some).collect(),
+        None => vec![None; paths.len()],
     };
-    let mut failed = None;
-    for (path, folder) in arguments.records.iter().zip(folders) {
-        let result = one(path, folder.as_deref(), arguments, test.as_ref(), &options);
-        match result {
-            Ok(()) => {}
-            Err(failure) if arguments.records.len() == 1 => return Err(failure),
-            // One bad record of many does not keep the others from being analysed.
+    let (mut tests, mut failed) = (0, 0);
+    for (path, folder) in paths.iter().zip(folders) {
+        // One bad record of many does not keep the others from being analysed.
+        let opened = match Opened::open(path, test.as_ref()) {
+            Ok(opened) => opened,
+            Err(failure) if paths.len() == 1 => return Err(failure),
             Err(failure) => {
                 failure.tell();
-                *failed.get_or_insert(0) += 1;
+                (tests, failed) = (tests + 1, failed + 1);
+                continue;
+            }
+        };
+        tell_skipped(&opened);
+        tests += opened.parts().len();
+        let mut taken = Vec::new();
+        for part in opened.parts() {
+            let folder = folder.as_ref().map(|folder| match opened.name(*part) {
+                Some(name) => folder_in(folder, &file_name(name), &mut taken),
+                None => folder.clone(),
+            });
+            match one(&opened, *part, folder.as_deref(), arguments, &options) {
+                Ok(()) => {}
+                Err(failure) if paths.len() == 1 && opened.parts().len() == 1 => return Err(failure),
+                Err(failure) => {
+                    failure.tell();
+                    failed += 1;
+                }
             }
         }
     }
     match failed {
-        Some(count) => {
-            Err(Failure::new(format!("{count} of {} records could not be analysed", arguments.records.len()), None))
-        }
-        None => Ok(Outcome::Done),
+        0 => Ok(Outcome::Done),
+        count => Err(Failure::new(format!("{count} of {tests} records could not be analysed"), None)),
+    }
+}
+
+/// Names what a file holds besides tests.
+fn tell_skipped(opened: &Opened<'_>) {
+    for part in opened.skipped() {
+        note(&format!("{}: skipped {} ({})", opened.contents().path().display(), part.name, part.reason));
     }
 }
 
@@ -62,23 +86,25 @@ fn options(arguments: &AnalyzeArguments, test: Option<&TestDescription>) -> Anal
 }
 
 fn one(
-    path: &Path,
+    opened: &Opened<'_>,
+    part: usize,
     folder: Option<&Path>,
     arguments: &AnalyzeArguments,
-    test: Option<&TestDescription>,
     options: &AnalysisOptions,
 ) -> Result<(), Failure> {
-    let file = record(path, test)?;
-    let mut measured = file.record;
+    let test = opened.test();
+    let file = opened.read(part)?;
+    let path = file.path.as_path();
+    let input = input(&file, opened.name(part), arguments.test.as_deref(), test)?;
+    let mut measured = file.record.clone();
     if let Some(air) = &arguments.air_run {
         let air = record(air, test)?;
         measured = measured
             .without_air_run(&air.record)
             .map_err(|error| Failure::of_file(path, &error, Some(error.hint().to_owned())))?;
     }
-    let working = Working::new(format!("fitting {}", path.display()));
+    let working = Working::new(format!("fitting {}", called(path, opened.name(part))));
     let analysis = analyze(&measured, options).map_err(|error| Failure::of_file(path, &error, Some(error.hint())))?;
-    let input = input(path, file.rows, arguments.test.as_deref(), test)?;
     if let Some(folder) = folder {
         let pictures = Pictures { png: arguments.png };
         let bundle = analysis_bundle(&analysis, input.clone(), pictures).map_err(|error| Failure::new(error, None))?;

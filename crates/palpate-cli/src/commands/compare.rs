@@ -1,7 +1,6 @@
 //! `palpate compare`: which law to use.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use palpate::analysis::{AnalysisOptions, analyze, creep_holds};
 use palpate::choose::{CompareOptions, RampChoice};
@@ -12,7 +11,8 @@ use palpate_report::compared::{ComparedRecord, LeftOut};
 use palpate_report::document::{ComparisonDocument, ComparisonSettingsDocument};
 use palpate_report::study::{Pictures, comparison_bundle, comparison_markdown, comparison_text};
 
-use super::record::{description, input, record};
+use super::inputs::records_of;
+use super::record::{Opened, called, description, input};
 use crate::arguments::{CompareArguments, LossName, RampName, TableFormat};
 use crate::failure::{Failure, Outcome};
 use crate::files::write_bundle;
@@ -20,21 +20,32 @@ use crate::progress::Working;
 use crate::terminal::{note, print};
 
 pub(crate) fn run(arguments: &CompareArguments) -> Result<Outcome, Failure> {
-    let test = description(arguments.test.as_deref())?;
+    let test = description(arguments.test.as_deref(), arguments.part.as_deref())?;
     let options = options(arguments, test.as_ref())?;
     let paths = records_of(&arguments.records)?;
     let alone = paths.len() == 1 && arguments.records == paths;
     let (mut compared, mut left_out) = (Vec::new(), Vec::new());
     for path in paths {
-        match one(&path, arguments, test.as_ref(), &options) {
-            Ok(record) if record.has_verdict() => compared.push(record),
-            Ok(_) => left_out.push(LeftOut {
-                path: path.display().to_string(),
-                reason: "no law could be fitted to any hold".to_owned(),
-                hint: None,
-            }),
+        let opened = match Opened::open(&path, test.as_ref()) {
+            Ok(opened) => opened,
             Err(failure) if alone => return Err(failure),
-            Err(failure) => left_out.push(without(&path, failure)),
+            Err(failure) => {
+                left_out.push(without(&path, None, failure));
+                continue;
+            }
+        };
+        for part in opened.parts() {
+            let name = opened.name(*part);
+            match one(&opened, *part, arguments, &options) {
+                Ok(record) if record.has_verdict() => compared.push(record),
+                Ok(_) => left_out.push(LeftOut {
+                    path: called(&path, name),
+                    reason: "no law could be fitted to any hold".to_owned(),
+                    hint: None,
+                }),
+                Err(failure) if alone && opened.parts().len() == 1 => return Err(failure),
+                Err(failure) => left_out.push(without(&path, name, failure)),
+            }
         }
     }
     if let Some(folder) = &arguments.out {
@@ -105,55 +116,15 @@ fn settings(options: &Options) -> ComparisonSettingsDocument {
     ComparisonSettingsDocument::new(&options.compared, options.analysis.segment.hold_start, options.analysis.fit_until)
 }
 
-/// The files that were named, and those below the folders that were named, in order.
-fn records_of(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
-    let mut paths = Vec::new();
-    for path in named {
-        if !path.is_dir() {
-            paths.push(path.clone());
-            continue;
-        }
-        let before = paths.len();
-        below(path, &mut paths)?;
-        if paths.len() == before {
-            return Err(Failure::of_file(
-                path,
-                "expected a folder with records, found none in it or below",
-                Some("name a file, or a folder that holds some (TOML and hidden files are passed over)".to_owned()),
-            ));
-        }
-    }
-    Ok(paths)
-}
-
-/// All files below a folder but hidden ones and descriptions, sorted by path.
-fn below(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<(), Failure> {
-    let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-    let mut entries: Vec<PathBuf> = entries
-        .map_err(|error| Failure::of_file(folder, error, None))?
-        .into_iter()
-        .filter(|entry| !entry.file_name().to_string_lossy().starts_with('.'))
-        .map(|entry| entry.path())
-        .collect();
-    entries.sort();
-    for path in entries {
-        if path.is_dir() && !path.is_symlink() {
-            below(&path, paths)?;
-        } else if path.is_file() && path.extension().is_none_or(|extension| extension != "toml") {
-            paths.push(path);
-        }
-    }
-    Ok(())
-}
-
 fn one(
-    path: &Path,
+    opened: &Opened<'_>,
+    part: usize,
     arguments: &CompareArguments,
-    test: Option<&TestDescription>,
     options: &Options,
 ) -> Result<ComparedRecord, Failure> {
-    let file = record(path, test)?;
-    let input = input(path, file.rows, arguments.test.as_deref(), test)?;
+    let file = opened.read(part)?;
+    let path = file.path.as_path();
+    let input = input(&file, opened.name(part), arguments.test.as_deref(), opened.test())?;
     let _working = Working::new(format!("comparing laws on {}", path.display()));
     let asked = &options.analysis;
     if arguments.creep {
@@ -166,15 +137,15 @@ fn one(
 }
 
 /// A file that was left out, with the reason without its own name.
-fn without(path: &Path, failure: Failure) -> LeftOut {
+fn without(path: &Path, part: Option<&str>, failure: Failure) -> LeftOut {
     let (message, hint) = failure.into_parts();
-    let path = path.display().to_string();
+    let own = path.display().to_string();
     let reason = message
-        .strip_prefix(&path)
+        .strip_prefix(&own)
         .map_or(message.as_str(), |rest| rest.trim_start_matches([':', ',', ' ']));
     LeftOut {
         reason: reason.to_owned(),
-        path,
+        path: called(path, part),
         hint,
     }
 }

@@ -1,8 +1,10 @@
 //! One file a command.
 
 pub(crate) mod analyze;
+pub(crate) mod batch;
 pub(crate) mod compare;
 pub(crate) mod completions;
+mod inputs;
 pub(crate) mod inspect;
 mod picture;
 mod record;

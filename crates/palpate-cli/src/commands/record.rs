@@ -1,9 +1,10 @@
-//! Reading a record and its description, for the commands that take one.
+//! Reading records and their description, for the commands that take some.
 
 use std::path::Path;
 
+use palpate_files::contents::{Contents, SkippedPart};
 use palpate_files::description::{TestDescription, read_test};
-use palpate_files::record_file::{RecordFile, read_record};
+use palpate_files::record_file::{ReadError, RecordFile, Tests, read_part, tests};
 
 use palpate_report::document::Input;
 
@@ -11,43 +12,120 @@ use crate::failure::Failure;
 use crate::files::sha256;
 use crate::progress::Reading;
 
-/// The test description, or the one of which nothing is said.
-pub(super) fn description(path: Option<&Path>) -> Result<Option<TestDescription>, Failure> {
+/// The test description, if there is one, with the part of the file that was chosen on the command line.
+pub(super) fn description(path: Option<&Path>, part: Option<&str>) -> Result<Option<TestDescription>, Failure> {
     let read = |path| {
         read_test(path).map_err(|error| {
             let hint = error.hint();
             Failure::new(error, hint)
         })
     };
-    path.map(read).transpose()
+    let mut test = path.map(read).transpose()?;
+    if let Some(part) = part {
+        test.get_or_insert_default().reading.part = Some(part.to_owned());
+    }
+    Ok(test)
 }
 
-/// The record of a file, with progress.
+/// A file of records that was looked into.
+pub(super) struct Opened<'t> {
+    contents: Contents,
+    tests: Tests,
+    test: Option<&'t TestDescription>,
+}
+
+impl<'t> Opened<'t> {
+    /// Looks into the file at `path`.
+    pub(super) fn open(path: &Path, test: Option<&'t TestDescription>) -> Result<Self, Failure> {
+        let usual = TestDescription::default();
+        let said = test.unwrap_or(&usual);
+        let contents = Contents::open(path, &said.reading).map_err(ReadError::File).map_err(refused)?;
+        let tests = tests(&contents, said).map_err(refused)?;
+        Ok(Self { contents, tests, test })
+    }
+
+    /// What is in the file.
+    pub(super) fn contents(&self) -> &Contents {
+        &self.contents
+    }
+
+    /// Indices of its tests among its parts.
+    pub(super) fn parts(&self) -> &[usize] {
+        &self.tests.parts
+    }
+
+    /// What is said about all tests in the file.
+    pub(super) fn test(&self) -> Option<&'t TestDescription> {
+        self.test
+    }
+
+    /// What was passed over.
+    pub(super) fn skipped(&self) -> &[SkippedPart] {
+        &self.tests.skipped
+    }
+
+    /// What to call a part, where the file holds several tests.
+    pub(super) fn name(&self, part: usize) -> Option<&str> {
+        let several = self.tests.parts.len() > 1;
+        self.contents.parts()[part].name.as_deref().filter(|_| several)
+    }
+
+    /// The record in a part.
+    pub(super) fn read_quietly(&self, part: usize) -> Result<RecordFile, Failure> {
+        read_part(&self.contents, part, self.test, &mut |_, _| {}).map_err(refused)
+    }
+
+    /// The record in a part, with progress.
+    pub(super) fn read(&self, part: usize) -> Result<RecordFile, Failure> {
+        let path = self.contents.path();
+        let name = path
+            .file_name()
+            .map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
+        let mut reading = Reading::new(name);
+        read_part(&self.contents, part, self.test, &mut |done, total| reading.update(done, total)).map_err(refused)
+    }
+}
+
+/// A record by its file, and its part where the file holds several.
+pub(super) fn called(path: &Path, part: Option<&str>) -> String {
+    part.map_or_else(|| path.display().to_string(), |part| format!("{}, {part}", path.display()))
+}
+
+/// The one record of a file.
 pub(super) fn record(path: &Path, test: Option<&TestDescription>) -> Result<RecordFile, Failure> {
-    let name = path
-        .file_name()
-        .map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
-    let mut reading = Reading::new(name);
-    read_record(path, test, &mut |done, total| reading.update(done, total)).map_err(|error| {
-        let hint = error.hint();
-        Failure::new(error, hint)
-    })
+    let opened = Opened::open(path, test)?;
+    match opened.parts() {
+        [only] => opened.read(*only),
+        several => Err(refused(ReadError::SeveralParts {
+            path: path.to_owned(),
+            parts: several.iter().map(|part| opened.contents.parts()[*part].title().to_owned()).collect(),
+        })),
+    }
+}
+
+fn refused(error: ReadError) -> Failure {
+    let hint = error.hint();
+    Failure::new(error, hint)
 }
 
 /// What a result says of the record that it comes from.
 pub(super) fn input(
-    path: &Path,
-    rows: usize,
+    file: &RecordFile,
+    part: Option<&str>,
     described_by: Option<&Path>,
     test: Option<&TestDescription>,
 ) -> Result<Input, Failure> {
+    let path = file.path.as_path();
+    let title = test
+        .and_then(|test| test.about.title.clone())
+        .unwrap_or_else(|| path.file_stem().unwrap_or_default().to_string_lossy().into_owned());
     Ok(Input {
         path: path.display().to_string(),
+        part: file.part.name.clone(),
         sha256: sha256(path)?,
-        rows,
+        rows: file.rows,
+        rows_averaged: file.averaged,
         test: described_by.map(|test| test.display().to_string()),
-        title: test
-            .and_then(|test| test.about.title.clone())
-            .unwrap_or_else(|| path.file_stem().unwrap_or_default().to_string_lossy().into_owned()),
+        title: part.map_or_else(|| title.clone(), |part| format!("{title} · {part}")),
     })
 }

@@ -158,7 +158,7 @@ fn stepped(arguments: &SimulateArguments) -> Result<Scene, Failure> {
 /// The body of the protocol, driven by a record from its first row on.
 fn driven(arguments: &SimulateArguments, path: &Path) -> Result<Scene, Failure> {
     let (title, model) = read_scene(&arguments.protocol).map_err(described)?;
-    let test = super::record::description(arguments.test.as_deref())?;
+    let test = super::record::description(arguments.test.as_deref(), None)?;
     let record = super::record::record(path, test.as_ref())?.record;
     let times = record.time().to_vec();
     let sampling = Sampling::Times(times.clone());

@@ -15,6 +15,8 @@ pub struct Columns {
     pub bytes: u64,
     rows: usize,
     runs: Vec<Run>,
+    /// Most rows that are kept.
+    most: usize,
     pub(super) waiting: Waiting,
 }
 
@@ -56,6 +58,7 @@ impl Columns {
         Self {
             values: vec![Vec::new(); count],
             averaged: 1,
+            most: MOST_ROWS,
             ..Self::default()
         }
     }
@@ -99,7 +102,7 @@ impl Columns {
                 values.push(value);
             }
         }
-        if self.values.first().is_some_and(|values| values.len() >= MOST_ROWS) {
+        if self.values.first().is_some_and(|values| values.len() >= self.most) {
             self.halve();
         }
     }
@@ -124,7 +127,7 @@ impl Columns {
         let rows = self.rows;
         let left = total.saturating_sub(done) as f64;
         let more = rows as f64 * left / done.max(1) as f64 * 1.02;
-        let more = (more as usize).min(MOST_ROWS.saturating_sub(rows));
+        let more = (more as usize).min(self.most.saturating_sub(rows));
         for values in &mut self.values {
             values.reserve(more);
         }
@@ -145,8 +148,9 @@ mod tests {
 
     #[test]
     fn rows_beyond_the_most_become_means_and_keep_their_lines() {
-        let mut columns = Columns::of(2);
-        let rows = 5 * MOST_ROWS / 2 + 3;
+        let most = 1 << 10;
+        let mut columns = Columns { most, ..Columns::of(2) };
+        let rows = 5 * most / 2 + 3;
         for row in 0..rows {
             columns.push(&[row as f64, 2.0], row + 10);
         }

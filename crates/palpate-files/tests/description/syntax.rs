@@ -48,7 +48,7 @@ fn unknown_keys_name_the_accepted_ones() {
     says(
         test("[file]\ndelimeter = \"comma\""),
         "file.delimeter",
-        "accepted: delimiter, decimal, encoding, skip_lines, header",
+        "accepted: part, delimiter, decimal, encoding, skip_lines, header",
         "did you mean delimiter?",
     );
 }

@@ -105,16 +105,3 @@ fn rheometers_measure_stress() {
     let text = refused(&folder.join("creep/creep_perihepatic_data.csv")).to_string();
     assert!(text.contains("expected a column of force"), "{text}");
 }
-
-#[test]
-fn spreadsheets_and_archives_are_refused() {
-    let Some(folder) = folder() else { return };
-    let kinds = ["zwick-indentation", "afm-jpk"];
-    for kind in kinds {
-        let entries = std::fs::read_dir(folder.join(kind)).unwrap();
-        for entry in entries {
-            let error = refused(&entry.unwrap().path());
-            assert!(matches!(error, ReadError::File(_)) && error.hint().is_some(), "{error}");
-        }
-    }
-}

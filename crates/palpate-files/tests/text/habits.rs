@@ -1,6 +1,8 @@
 //! The many ways in which machines write the same table.
 
-use palpate_files::text::{ColumnKind, DecimalMark, Delimiter, Encoding, LayoutOptions, read_columns};
+use palpate_files::contents::ColumnKind;
+use palpate_files::input::Input;
+use palpate_files::text::{DecimalMark, Delimiter, Encoding, LayoutOptions, read_columns};
 
 use super::{layout, layout_with, names, read, units, written};
 
@@ -92,7 +94,6 @@ fn named_values_above_the_names() {
     assert_eq!(diameter.name, "Properties : Diameter");
     assert_eq!(diameter.value, "0.399");
     assert_eq!(diameter.unit.as_deref(), Some("mm"));
-    assert_eq!(diameter.line, 2);
 }
 
 #[test]
@@ -101,8 +102,6 @@ fn units_in_the_names() {
     let layout = layout(text);
     assert_eq!(names(&layout), ["Force", "displacement", "Force", "Time", "Kraft", "Displacement"]);
     assert_eq!(units(&layout), ["N", "mm", "N", "S", "N", "mm"]);
-    assert_eq!(layout.column_named("kraft").map(|column| column.number), Some(5));
-    assert_eq!(layout.column_named("Force"), None);
 }
 
 #[test]
@@ -237,7 +236,8 @@ fn progress_reaches_the_end() {
     let file = written(&rows);
     let layout = layout(&rows);
     let mut told = Vec::new();
-    let columns = read_columns(&file.path, &layout, &[1, 2], &mut |done, total| {
+    let input = Input::open(&file.path).expect("a file");
+    let columns = read_columns(&input, &layout, &[1, 2], &mut |done, total| {
         told.push((done, total));
     })
     .expect("columns");

@@ -6,7 +6,10 @@ mod records;
 
 use std::path::PathBuf;
 
-use palpate_files::text::{Columns, FileError, Layout, LayoutOptions, detect, read_columns};
+use palpate_files::FileError;
+use palpate_files::contents::Columns;
+use palpate_files::input::Input;
+use palpate_files::text::{Layout, LayoutOptions, detect, read_columns};
 
 /// A file on disk for as long as this lives.
 struct Written {
@@ -22,7 +25,7 @@ fn written(bytes: impl AsRef<[u8]>) -> Written {
 }
 
 fn layout_with(bytes: impl AsRef<[u8]>, options: LayoutOptions) -> Result<Layout, FileError> {
-    detect(&written(bytes).path, &options)
+    detect(&Input::open(&written(bytes).path)?, &options)
 }
 
 fn layout(bytes: impl AsRef<[u8]>) -> Layout {
@@ -31,8 +34,9 @@ fn layout(bytes: impl AsRef<[u8]>) -> Layout {
 
 fn read(bytes: impl AsRef<[u8]>, columns: &[usize]) -> Result<Columns, FileError> {
     let file = written(bytes);
-    let layout = detect(&file.path, &LayoutOptions::default())?;
-    read_columns(&file.path, &layout, columns, &mut |_, _| {})
+    let input = Input::open(&file.path)?;
+    let layout = detect(&input, &LayoutOptions::default())?;
+    read_columns(&input, &layout, columns, &mut |_, _| {})
 }
 
 /// Names of the columns, `-` for none.

@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use palpate_files::text::{Columns, DecimalMark, Delimiter, Encoding, Layout, LayoutOptions, detect, read_columns};
+use palpate_files::contents::Columns;
+use palpate_files::input::Input;
+use palpate_files::text::{DecimalMark, Delimiter, Encoding, Layout, LayoutOptions, detect, read_columns};
 
 use super::{names, units};
 
@@ -19,8 +21,9 @@ fn folder() -> Option<PathBuf> {
 
 fn open(folder: &Path, name: &str, columns: &[usize]) -> (Layout, Columns) {
     let path = folder.join(name);
-    let layout = detect(&path, &LayoutOptions::default()).unwrap_or_else(|error| panic!("{error}"));
-    let read = read_columns(&path, &layout, columns, &mut |_, _| {});
+    let input = Input::open(&path).unwrap_or_else(|error| panic!("{error}"));
+    let layout = detect(&input, &LayoutOptions::default()).unwrap_or_else(|error| panic!("{error}"));
+    let read = read_columns(&input, &layout, columns, &mut |_, _| {});
     (layout, read.unwrap_or_else(|error| panic!("{error}")))
 }
 

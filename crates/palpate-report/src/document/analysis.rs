@@ -13,10 +13,14 @@ use super::{FitDocument, HoldComparisonDocument, SettingsDocument, Software};
 pub struct Input {
     /// Path as given.
     pub path: String,
+    /// The part of the file that is this record (a sheet, a curve, a `test_id`), where the file names it.
+    pub part: Option<String>,
     /// SHA-256 of its bytes, hexadecimal.
     pub sha256: String,
     /// Rows of data.
     pub rows: usize,
+    /// How many successive rows each sample is the mean of; 1 unless the file is very long.
+    pub rows_averaged: usize,
     /// Path of the test description, if one was given.
     pub test: Option<String>,
     /// What the description says of the record (its title, or the file name).

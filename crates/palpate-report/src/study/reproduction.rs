@@ -268,6 +268,8 @@ fn summary(study: &Reproduction) -> ReproductionDocument {
         let input = Input {
             path: String::new(),
             sha256: String::new(),
+            part: None,
+            rows_averaged: 1,
             rows: 0,
             test: None,
             title: String::new(),

@@ -4,7 +4,7 @@
 //! is computed again. What the parts belong to stands in a manifest, which is written before the first of them.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use palpate_files::parquet_table::{Field, Rows, TableError, TableReader, TableWriter};
 
 use crate::failure::Failure;
-use crate::files::{failure, sha256, write_file};
+use crate::files::{failure, lock_file, sha256, write_file};
 
 const MANIFEST: &str = "sweep.txt";
 const LOCK: &str = "lock";
@@ -41,7 +41,8 @@ impl Parts {
         let folder = folder_of(out);
         let refused = |error: io::Error| failure(&folder, &error);
         fs::create_dir_all(&folder).map_err(refused)?;
-        let lock = lock(&folder)?;
+        // Two sweeps into one folder would take each other's parts away.
+        let lock = lock_file(&folder.join(LOCK), "sweep")?;
         let manifest = folder.join(MANIFEST);
         match fs::read_to_string(&manifest) {
             Ok(found) if found.trim() == digest => {}
@@ -185,23 +186,6 @@ pub(super) fn table_failure(path: &Path, error: &TableError) -> Failure {
     match error {
         TableError::Io(error) => failure(path, error),
         error => Failure::of_file(path, error, Some("compute all runs again with --restart".to_owned())),
-    }
-}
-
-/// Two sweeps into one folder would take each other's parts away.
-fn lock(folder: &Path) -> Result<File, Failure> {
-    let path = folder.join(LOCK);
-    let file = File::create(&path).map_err(|error| failure(&path, &error))?;
-    match file.try_lock() {
-        Ok(()) => Ok(file),
-        Err(TryLockError::WouldBlock) => Err(Failure::of_file(
-            folder,
-            "expected no other sweep at work here, found one",
-            Some("wait for it, or name another table with --out".to_owned()),
-        )),
-        // A file system without locks: better without than not at all.
-        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(file),
-        Err(TryLockError::Error(error)) => Err(failure(&path, &error)),
     }
 }
 

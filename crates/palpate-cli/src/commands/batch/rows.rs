@@ -1,0 +1,207 @@
+//! An analysed record as rows of the table: one a hold and law.
+
+use palpate_files::parquet_table::{Field, Kind, Rows, Values};
+use palpate_report::document::{AnalysisDocument, FitDocument, HoldDocument, LawDocument};
+use serde_json::Value;
+
+/// What a row is made of.
+struct Line<'a> {
+    document: &'a AnalysisDocument,
+    hold: &'a HoldDocument,
+    law: LawRow<'a>,
+}
+
+/// A law on a hold.
+enum LawRow<'a> {
+    /// The latency law, with n given or free.
+    Latency { fit: &'a FitDocument, preferred: bool },
+    /// Another law of the comparison.
+    Other { law: &'a LawDocument, chosen: bool },
+}
+
+/// A column: its name, which ends in its unit, what it holds, and where that stands.
+struct Column {
+    name: &'static str,
+    kind: Kind,
+    value: fn(&Line<'_>) -> Value,
+}
+
+const fn count(name: &'static str, value: fn(&Line<'_>) -> Value) -> Column {
+    let kind = Kind::Count;
+    Column { name, kind, value }
+}
+
+const fn number(name: &'static str, value: fn(&Line<'_>) -> Value) -> Column {
+    let kind = Kind::Number;
+    Column { name, kind, value }
+}
+
+const fn text(name: &'static str, value: fn(&Line<'_>) -> Value) -> Column {
+    let kind = Kind::Text;
+    Column { name, kind, value }
+}
+
+/// Columns that say which hold of which record it is, and how the force went.
+const HOLD: [Column; 18] = [
+    text("record", |line| line.document.input.path.clone().into()),
+    text("part", |line| line.document.input.part.clone().into()),
+    text("record_sha256", |line| line.document.input.sha256.clone().into()),
+    count("rows", |line| line.document.input.rows.into()),
+    count("rows_averaged", |line| line.document.input.rows_averaged.into()),
+    count("hold", |line| line.hold.index.into()),
+    number("start_s", |line| line.hold.start_s.into()),
+    number("end_s", |line| line.hold.end_s.into()),
+    number("fit_start_s", |line| line.hold.fit_start_s.into()),
+    number("displacement_m", |line| line.hold.displacement_m.into()),
+    text("after", |line| line.hold.after.clone().into()),
+    text("relaxation", |line| line.hold.relaxation.clone().into()),
+    number("relaxation_p_value", |line| line.hold.p_value.into()),
+    number("force_start_n", |line| line.hold.force_start_n.into()),
+    number("force_end_n", |line| line.hold.force_end_n.into()),
+    number("force_change_n", |line| line.hold.force_change_n.into()),
+    text("signal", |line| line.hold.signal.clone().into()),
+    text("findings", |line| codes(line).into()),
+];
+
+/// Columns of the law, whichever it is.
+const LAW: [Column; 7] = [
+    text("law", |line| line.name().into()),
+    count("preferred", |line| i64::from(line.preferred()).into()),
+    number("rmse", |line| match &line.law {
+        LawRow::Latency { fit, .. } => fit.rmse.into(),
+        LawRow::Other { .. } => Value::Null,
+    }),
+    number("relative_rmse", |line| match &line.law {
+        LawRow::Latency { fit, .. } => relative(fit).into(),
+        LawRow::Other { law, .. } => law.rmse.into(),
+    }),
+    number("delta_bic", |line| match &line.law {
+        LawRow::Latency { fit, .. } => fit.delta_bic.into(),
+        LawRow::Other { law, .. } => law.delta_bic.into(),
+    }),
+    text("termination", |line| match &line.law {
+        LawRow::Latency { fit, .. } => fit.termination.clone().into(),
+        LawRow::Other { law, .. } => law.termination.clone().or_else(|| law.error.clone()).into(),
+    }),
+    text("numbers", |line| match &line.law {
+        LawRow::Latency { .. } => Value::Null,
+        LawRow::Other { law, .. } => serde_json::to_string(&law.numbers).ok().into(),
+    }),
+];
+
+/// A number of the latency law, by its name.
+type LatencyNumber = (&'static str, fn(&FitDocument) -> Value);
+
+/// Columns of the latency law alone, each with its uncertainty.
+const LATENCY: [LatencyNumber; 7] = [
+    ("exponent", |fit| fit.exponent.into()),
+    ("equilibrium_force_n", |fit| fit.equilibrium_force_n.into()),
+    ("equilibrium_strain", |fit| fit.equilibrium_strain.into()),
+    ("excess_force_n", |fit| fit.excess_force_n.into()),
+    ("excess_strain", |fit| fit.excess_strain.into()),
+    ("relative_rate_per_s", |fit| fit.relative_rate_per_s.into()),
+    ("rate_coefficient_per_s", |fit| fit.rate_coefficient_per_s.into()),
+];
+
+/// Columns that say what the rows depend on besides the record.
+const ORIGIN: [Column; 1] = [text("software", |line| {
+    let software = &line.document.software;
+    format!("{} {}", software.name, software.version).into()
+})];
+
+/// The columns of the table, in order.
+pub(super) fn fields() -> Vec<Field> {
+    let plain = |columns: &'static [Column]| columns.iter().map(|column| Field::new(column.name, column.kind));
+    let uncertain = LATENCY.iter().flat_map(|(name, _)| {
+        ["", "_standard_error", "_low", "_high"].map(|end| Field::new(format!("{name}{end}"), Kind::Number))
+    });
+    let last = [Field::new("samples", Kind::Number), Field::new("residual_correlation", Kind::Number)];
+    plain(&HOLD).chain(plain(&LAW)).chain(uncertain).chain(last).chain(plain(&ORIGIN)).collect()
+}
+
+/// The rows of a record, in the order of its holds; of each the latency law first, n given before free.
+pub(super) fn rows(document: &AnalysisDocument) -> Vec<Vec<Value>> {
+    document.holds.iter().flat_map(|hold| of_hold(document, hold)).collect()
+}
+
+fn of_hold<'a>(document: &'a AnalysisDocument, hold: &'a HoldDocument) -> impl Iterator<Item = Vec<Value>> {
+    let in_time = hold.fits.iter().enumerate().filter(|(_, fit)| fit.domain == "time");
+    let latency = in_time.map(|(index, fit)| LawRow::Latency {
+        fit,
+        preferred: hold.preferred == Some(index),
+    });
+    let chosen = hold.comparison.as_ref().and_then(|found| found.verdict.as_ref()).map(|verdict| &verdict.law);
+    let others = hold.comparison.iter().flat_map(|found| &found.laws).filter(|law| !law.law.starts_with("latency"));
+    let others = others.map(move |law| LawRow::Other {
+        law,
+        chosen: chosen == Some(&law.law),
+    });
+    latency.chain(others).map(move |law| row(&Line { document, hold, law }))
+}
+
+fn row(line: &Line<'_>) -> Vec<Value> {
+    let plain = |columns: &'static [Column]| columns.iter().map(|column| (column.value)(line));
+    let uncertain = LATENCY.iter().flat_map(|(name, value)| match &line.law {
+        LawRow::Latency { fit, .. } => {
+            let interval = fit.confidence_interval.get(*name);
+            let error = fit.standard_error.get(*name).copied();
+            let [low, high] = [0, 1].map(|end| interval.map(|interval| interval[end]));
+            [value(fit), error.into(), low.into(), high.into()]
+        }
+        LawRow::Other { .. } => [const { Value::Null }; 4],
+    });
+    let last: [Value; 2] = match &line.law {
+        LawRow::Latency { fit, .. } => [fit.samples.into(), fit.residual_correlation.into()],
+        LawRow::Other { .. } => [const { Value::Null }; 2],
+    };
+    plain(&HOLD).chain(plain(&LAW)).chain(uncertain).chain(last).chain(plain(&ORIGIN)).collect()
+}
+
+impl Line<'_> {
+    /// The name of the law as `--laws` takes it.
+    fn name(&self) -> String {
+        match &self.law {
+            LawRow::Latency { fit, .. } if fit.exponent_fixed => format!("latency:{}", fit.exponent),
+            LawRow::Latency { .. } => "latency".to_owned(),
+            LawRow::Other { law, .. } => law.law.clone(),
+        }
+    }
+
+    fn preferred(&self) -> bool {
+        match self.law {
+            LawRow::Latency { preferred, .. } => preferred,
+            LawRow::Other { chosen, .. } => chosen,
+        }
+    }
+}
+
+/// Codes of the findings about the record and the hold.
+fn codes(line: &Line<'_>) -> String {
+    let all = line.document.findings.iter().chain(&line.hold.findings);
+    let codes: Vec<&str> = all.map(|finding| finding.code.as_str()).collect();
+    codes.join(" ")
+}
+
+/// The residual as a share of the change of the signal.
+fn relative(fit: &FitDocument) -> Option<f64> {
+    let amplitude = fit.excess_strain.unwrap_or(fit.excess_force_n).abs();
+    (amplitude > 0.0).then(|| fit.rmse / amplitude)
+}
+
+/// Rows as columns of a table with these fields; `None` where they belong to another one.
+pub(super) fn table_rows(fields: &[Field], lines: &[Vec<Value>]) -> Option<Rows> {
+    let column = |index: usize| lines.iter().map(move |line| line.get(index));
+    let columns = fields.iter().enumerate().map(|(index, field)| {
+        Some(match field.kind {
+            Kind::Count => Values::Count(column(index).map(|value| value?.as_i64()).collect::<Option<_>>()?),
+            Kind::Number => Values::Number(column(index).map(|value| Some(value?.as_f64())).collect::<Option<_>>()?),
+            Kind::Text => {
+                let text = |value: Option<&Value>| Some(value?.as_str().map(str::to_owned));
+                Values::Text(column(index).map(text).collect::<Option<_>>()?)
+            }
+        })
+    });
+    Some(Rows {
+        columns: columns.collect::<Option<_>>()?,
+    })
+}
