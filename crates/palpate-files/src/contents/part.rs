@@ -102,7 +102,9 @@ pub struct Metadata {
 pub enum ColumnKind {
     /// Numbers.
     Number,
-    /// Anything that is not a number.
+    /// Dates with times of day, such as `2024-08-24T21:09:40.123Z`; they are read as seconds since 1970.
+    DateTime,
+    /// Anything else that is not a number.
     Text,
     /// Nothing.
     Empty,

@@ -11,7 +11,7 @@ use super::{
     recognise,
 };
 use crate::{
-    contents::{ColumnInfo, Part},
+    contents::{ColumnInfo, ColumnKind, Part},
     description::{ClockChoice, ColumnChoice, ColumnRef, TestDescription},
 };
 
@@ -288,6 +288,10 @@ impl<'a> Chooser<'a> {
         }
         if found.role.measured() != Quantity::Time {
             return Ok(None);
+        }
+        if found.column.kind == ColumnKind::DateTime {
+            let date = found.used("date and time".to_owned(), 1.0);
+            return Ok(Some(ColumnUse { epoch: true, ..date }));
         }
         let is_said = found.unit.is_some_and(|unit| unit.trim().eq_ignore_ascii_case(epoch::WORD));
         let is_named = found.unit.or(found.column.unit.as_deref()).is_none() && epoch::is_named(found.column);

@@ -18,13 +18,23 @@ pub(super) fn candidates(columns: &[ColumnInfo], quantity: Quantity) -> Vec<&Col
     tied.map(|(_, column)| column).collect()
 }
 
+/// Names of columns that hold dates with times of day, beside the words for time.
+const DATES: [&str; 3] = ["date", "datetime", "datum"];
+
 /// How well a column names a quantity; 0 is best.
 fn rank(column: &ColumnInfo, quantity: Quantity) -> Option<u8> {
-    if column.kind != ColumnKind::Number {
+    let is_date = column.kind == ColumnKind::DateTime && quantity == Quantity::Time;
+    if column.kind != ColumnKind::Number && !is_date {
         return None;
     }
     let vocabulary = VOCABULARY.iter().find(|words| words.quantity == quantity)?;
-    let by_name = rank_of_name(column.name.as_deref()?, vocabulary)?;
+    let name = column.name.as_deref()?;
+    if is_date {
+        // The clock on the wall serves where no column of numbers does.
+        let called_so = || words(name).iter().any(|word| DATES.contains(&word.as_str()));
+        return Some(20 + rank_of_name(name, vocabulary).or_else(|| called_so().then_some(5))?);
+    }
+    let by_name = rank_of_name(name, vocabulary)?;
     match column.unit.as_deref() {
         None => Some(by_name),
         Some(unit) if unit_factor(unit, quantity.dimension()).is_some() => Some(by_name),

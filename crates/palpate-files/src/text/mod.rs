@@ -28,6 +28,7 @@
 
 mod block;
 mod columns;
+mod date;
 mod decimal;
 mod detect;
 mod encoding;

@@ -94,6 +94,62 @@ fn other_times_stay_as_they_are() {
 }
 
 #[test]
+fn dates_with_times_of_day_are_times() {
+    for (header, cells) in [
+        (
+            "Time",
+            [
+                "2024-08-24T13:09:05.5Z",
+                "2024-08-24T13:09:05.511Z",
+                "2024-08-24T13:09:05.522Z",
+                "2024-08-24T13:09:06.5Z",
+            ],
+        ),
+        (
+            "timestamp",
+            [
+                "2024-08-24 13:09:05.5",
+                "2024-08-24 13:09:05.511",
+                "2024-08-24 13:09:05.522",
+                "2024-08-24 13:09:06.5",
+            ],
+        ),
+        (
+            "datetime",
+            [
+                "\"2024-08-24 15:09:05,5+02:00\"",
+                "\"2024-08-24 15:09:05,511+02:00\"",
+                "\"2024-08-24 15:09:05,522+02:00\"",
+                "\"2024-08-24 15:09:06,5+02:00\"",
+            ],
+        ),
+    ] {
+        let file = record(&rows(header, cells), "").unwrap_or_else(|error| panic!("{header}: {error}"));
+        assert_eq!((file.start, file.columns[0].unit.as_str()), (Some(1_724_504_945.5), "date and time"), "{header}");
+        let off = file.record.time().iter().zip([0.0, 0.011, 0.022, 1.0]).map(|(time, told)| (time - told).abs());
+        assert!(off.fold(0.0, f64::max) < 3e-7, "{header}: {:?}", file.record.time());
+    }
+    // A column of numbers goes before the clock on the wall.
+    let both = "Time,Elapsed (s),Pos (mm),Force (N)\n2024-08-24 13:09:05,0.5,1,2\n2024-08-24 13:09:06,1.5,2,3\n2024-08-24 13:09:07,2.5,2,2\n";
+    let file = record(both, "").unwrap();
+    assert_eq!((file.columns[0].number, file.record.time()[0]), (2, 0.5));
+    let file = record(both, "columns.time.column = 1").unwrap();
+    assert_eq!((file.columns[0].number, file.record.time()), (1, [0.0, 1.0, 2.0].as_slice()));
+}
+
+#[test]
+fn a_date_that_is_none_is_named_with_its_line() {
+    let mut text = "Time,Pos (mm),Force (N)\n".to_owned();
+    for row in 0..5000 {
+        let second = if row == 4500 { "99".to_owned() } else { format!("{:02}.{:03}", row / 1000 % 60, row % 1000) };
+        text.push_str(&format!("2024-08-24 13:09:{second},{row},{}\n", row % 7));
+    }
+    let error = record(&text, "").unwrap_err().to_string();
+    assert!(error.starts_with("log.csv: line 4502, column 1: expected a date and time such as"), "{error}");
+    assert!(error.ends_with("found `2024-08-24 13:09:99`"), "{error}");
+}
+
+#[test]
 fn two_clocks_count_from_the_same_instant() {
     let mut text = "t1,Pos (mm),t2 (ms),Force (N)\n".to_owned();
     for step in 0..20 {
