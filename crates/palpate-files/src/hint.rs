@@ -59,6 +59,7 @@ impl FileError {
 fn foreign(looks_like: Foreign) -> &'static str {
     match looks_like {
         Foreign::Markup => "open it in a spreadsheet program and save the sheet as CSV",
+        Foreign::Sqlite => "export the record as delimited text; `ros2 bag convert` turns a bag of ROS 2 into MCAP",
         Foreign::Zip | Foreign::Compressed => "unpack it first, or export the record as text",
         Foreign::Picture | Foreign::Pdf => "a record of numbers is needed, not a document",
         Foreign::Binary => "export the record as text, or fix its encoding if it is text",

@@ -6,6 +6,7 @@
 //! - [`text`] reads delimited text: it finds out how a file is written ([`text::detect`]) and streams chosen
 //!   columns out of it ([`text::read_columns`]).
 //! - Force curves of atomic force microscopes are read by a module of their own, through [`contents`].
+//! - `robot_log` reads logs of robots (MCAP), whose topics have clocks of their own.
 //! - [`description`] reads what people write in TOML: protocols to simulate ([`description::read_protocol`])
 //!   and tests to evaluate ([`description::read_test`]).
 //! - [`parquet_table`] writes tables of many rows as Parquet and reads them back.
@@ -21,6 +22,7 @@ pub mod input;
 pub mod parquet_table;
 pub mod record_file;
 mod spreadsheet;
+mod robot_log;
 pub mod text;
 
 pub use error::{CellPlace, DecimalDoubt, FileError};

@@ -123,6 +123,7 @@ pub(super) fn assemble(drafts: Vec<Draft>, mut about: About) -> (Option<Curve>, 
         columns: columns.iter().enumerate().map(info).collect(),
         metadata: about.metadata,
         labels: in_rows(&kept),
+        clocks: Vec::new(),
     };
     let segment = |(place, draft): (usize, &&Draft)| Segment {
         number: draft.number,

@@ -80,6 +80,7 @@ pub(crate) fn look_into(input: &Input, kind: Kind, _options: &ReadOptions) -> Re
         columns: described.clone(),
         metadata: Vec::new(),
         labels: Vec::new(),
+        clocks: Vec::new(),
     };
     let parts = if columns.is_empty() { Vec::new() } else { tests.iter().map(part).collect() };
     if parts.is_empty() {

@@ -5,7 +5,7 @@ use super::averaging::{MOST_ROWS, Waiting};
 /// Columns of numbers read from a file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Columns {
-    /// One vector a chosen column, in the order chosen; all have the same length. From text every value is finite.
+    /// One vector a chosen column, in the order chosen; all of one clock have the same length. From text every value is finite.
     pub values: Vec<Vec<f64>>,
     /// How many successive rows of the file each value is the mean of; 1 up to [`MOST_ROWS`].
     pub averaged: usize,
@@ -63,7 +63,7 @@ impl Columns {
         }
     }
 
-    /// Number of rows of the file that were read; [`values`](Self::values) has fewer where they are averaged.
+    /// Number of rows of the file that were read, of the clock that has most; [`values`](Self::values) has fewer where they are averaged.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.rows
@@ -104,6 +104,20 @@ impl Columns {
         }
         if self.values.first().is_some_and(|values| values.len() >= self.most) {
             self.halve();
+        }
+    }
+
+    /// The columns of several clocks as one: for each column in the order chosen, the clock that it is the next of.
+    pub(crate) fn of_clocks(mut clocks: Vec<Self>, order: &[usize]) -> Self {
+        clocks.iter_mut().for_each(Self::finish);
+        let rows = clocks.iter().map(|clock| clock.rows).max().unwrap_or(0);
+        let averaged = clocks.iter().map(|clock| clock.averaged).max().unwrap_or(1);
+        let mut values: Vec<_> = clocks.into_iter().map(|clock| clock.values.into_iter()).collect();
+        Self {
+            values: order.iter().filter_map(|clock| values.get_mut(*clock)?.next()).collect(),
+            averaged,
+            rows,
+            ..Self::default()
         }
     }
 

@@ -11,6 +11,7 @@ use crate::{
     arrow_file::{self, Kind},
     error::FileError,
     input::Input,
+    robot_log,
     spreadsheet::{self, Make},
     text,
 };
@@ -35,11 +36,16 @@ pub enum Format {
     Parquet,
     /// Arrow IPC: a file (Feather version 2) or a stream.
     ArrowIpc,
+    /// A log of a robot: MCAP, as ROS 2 writes it.
+    RobotLog,
 }
 
 impl Format {
     /// The format of a file; what is no other is text, which says itself if it is not.
     pub(super) fn of(input: &Input) -> Self {
+        if robot_log::recognise(input.beginning()) {
+            return Self::RobotLog;
+        }
         if jpk_force::recognise(input) {
             return Self::JpkForce;
         }
@@ -76,6 +82,7 @@ impl Format {
                 let kind = arrow_file::recognise(input).unwrap_or(Kind::Stream);
                 arrow_file::look_into(input, kind, options)
             }
+            Self::RobotLog => robot_log::look_into(input, options),
         }
     }
 }
@@ -91,6 +98,7 @@ impl fmt::Display for Format {
             Self::Parquet => "Parquet",
             Self::ArrowIpc => "Arrow IPC",
             Self::Xls => "Excel 97 workbook (.xls)",
+            Self::RobotLog => "robot log (MCAP)",
         })
     }
 }

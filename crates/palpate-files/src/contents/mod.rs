@@ -22,7 +22,8 @@ use std::{fmt, path::Path};
 pub use averaging::MOST_ROWS;
 pub use columns::{Columns, Footer, IgnoredLines};
 pub use format::Format;
-pub use part::{ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart};
+pub(crate) use part::topic_and_field;
+pub use part::{Clock, ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart};
 
 use crate::{
     error::FileError,
@@ -43,7 +44,7 @@ pub struct ReadOptions {
 pub(crate) trait ReadPart: fmt::Debug + Send + Sync {
     /// Reads the columns with these numbers (from 1, in any order, perhaps one twice) of the part with this index.
     ///
-    /// Both the index and the numbers are those of [`Contents::parts`].
+    /// Both the index and the numbers are those of [`Contents::parts`]. Columns of one clock have the same length.
     fn read(&self, part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError>;
 
     /// How delimited text is written; `None` in other formats.
@@ -152,6 +153,7 @@ impl Contents {
 
     /// Reads columns (numbers from 1, in any order) of the part with index `part`, as they are written.
     ///
+    /// Where the part has several [clocks](Part::clocks), only columns of the same clock have the same length.
     /// `progress` is told the bytes done and the bytes there are.
     ///
     /// # Errors

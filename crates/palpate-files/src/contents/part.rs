@@ -18,6 +18,19 @@ pub struct Part {
     pub metadata: Vec<Metadata>,
     /// Stretches of rows that the file itself labels, such as the pause of a force curve; in order.
     pub labels: Vec<Label>,
+    /// Where not all columns belong to one clock: which belong to which. None: every row is one instant.
+    pub clocks: Vec<Clock>,
+}
+
+/// Columns whose rows are stamped by one of them, in a file of several rates: a topic of a robot's log.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Clock {
+    /// Number of the column that holds the time stamps, from 1.
+    pub column: usize,
+    /// Number of the first column that they stamp.
+    pub first: usize,
+    /// Number of the last column that they stamp.
+    pub last: usize,
 }
 
 /// A stretch of rows under one label.
@@ -32,14 +45,23 @@ pub struct Label {
 }
 
 impl Part {
-    /// The column called `name`, if exactly one is. An exact match goes before one that differs in case.
+    /// The column called `name`, if exactly one is. An exact match goes before one that differs in case; in a log of a
+    /// robot, the name of a field may go without its topic (`wrench.force.z`).
     #[must_use]
     pub fn column_named(&self, name: &str) -> Option<&ColumnInfo> {
         let only = |same: &dyn Fn(&str) -> bool| {
             let mut hits = self.columns.iter().filter(|column| column.name.as_deref().is_some_and(same));
             hits.next().filter(|_| hits.next().is_none())
         };
-        only(&|own| own == name).or_else(|| only(&|own| own.to_lowercase() == name.to_lowercase()))
+        only(&|own| own == name)
+            .or_else(|| only(&|own| own.to_lowercase() == name.to_lowercase()))
+            .or_else(|| only(&|own| topic_and_field(own).is_some_and(|(_, field)| field == name)))
+    }
+
+    /// The clock that stamps the column with this number, where the file has several clocks.
+    #[must_use]
+    pub fn clock_of(&self, number: usize) -> Option<&Clock> {
+        self.clocks.iter().find(|clock| (clock.first..=clock.last).contains(&number))
     }
 
     /// What messages call it.
@@ -47,6 +69,11 @@ impl Part {
     pub fn title(&self) -> &str {
         self.name.as_deref().unwrap_or("the file")
     }
+}
+
+/// The topic and the field in the name of a column of a robot's log, such as `/gripper/ft.wrench.force.z`.
+pub(crate) fn topic_and_field(name: &str) -> Option<(&str, &str)> {
+    name.split_once('.').filter(|(topic, _)| topic.starts_with('/'))
 }
 
 /// A part of a file that is no test.
@@ -75,7 +102,9 @@ pub struct Metadata {
 pub enum ColumnKind {
     /// Numbers.
     Number,
-    /// Anything that is not a number.
+    /// Dates with times of day, such as `2024-08-24T21:09:40.123Z`; they are read as seconds since 1970.
+    DateTime,
+    /// Anything else that is not a number.
     Text,
     /// Nothing.
     Empty,

@@ -9,8 +9,8 @@ use serde::{
     de::{Error, Visitor},
 };
 
-use super::{error::DescriptionError, source::Source};
-use crate::record_file::Quantity;
+use super::{error::DescriptionError, quantity::QuantityText, source::Source};
+use crate::record_file::{EPOCH, Quantity};
 
 /// A column of a record: its number, counted from 1 at the left, or its name.
 #[derive(Debug, Clone, PartialEq, Eq, JsonSchema)]
@@ -67,6 +67,12 @@ pub struct ColumnChoice {
     pub unit: Option<String>,
     /// 1, or −1 where the file counts the other way round.
     pub sign: f64,
+    /// A column that is added to it, where each finger of a gripper has its own.
+    pub also: Option<ColumnRef>,
+    /// The column holds the travel of one of two fingers: the travel is twice as long.
+    pub doubled: bool,
+    /// Travel in m while the column rises by one, where it does not count a length.
+    pub travel_per_unit: Option<f64>,
     /// A clock of its own.
     pub clock: Option<ClockChoice>,
 }
@@ -101,7 +107,7 @@ pub(super) struct ColumnsTable {
     /// Time. Not needed where displacement and force have clocks of their own.
     time: Option<TimeTable>,
     /// Travel of the jaw. A record without it is cut into phases by its force.
-    displacement: Option<ColumnTable>,
+    displacement: Option<DisplacementTable>,
     /// Force.
     force: Option<ColumnTable>,
     /// Stress instead of force; the section of the specimen turns it into force.
@@ -135,6 +141,28 @@ struct ColumnTable {
     clock: Option<ClockTable>,
 }
 
+/// The column of the travel of the jaw.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "DisplacementColumn", extend("not" = { "required": ["unit", "travel_per_unit"] }))]
+struct DisplacementTable {
+    /// Number of the column, from 1, or its name.
+    column: Option<ColumnRef>,
+    /// Unit, such as "mm"; not needed where the header gives it.
+    unit: Option<String>,
+    /// -1 where the file counts loading as negative, such as the opening of a gripper; 1 otherwise.
+    #[schemars(extend("enum" = [1, -1]))]
+    sign: Option<f64>,
+    /// A column that is added to it, where each finger of a gripper has its own.
+    also: Option<ColumnRef>,
+    /// true: the column holds the travel of one of two fingers that move alike.
+    doubled: Option<bool>,
+    /// Instead of a unit: travel while the column rises by one, where it counts an angle or a share of the stroke.
+    travel_per_unit: Option<QuantityText>,
+    /// Time stamps of this quantity alone, where it has its own.
+    clock: Option<ClockTable>,
+}
+
 /// The time stamps of one quantity alone.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -159,14 +187,42 @@ impl ColumnsTable {
                 column: table.column,
                 unit: table.unit,
                 sign: 1.0,
+                also: None,
+                doubled: false,
+                travel_per_unit: None,
                 clock: None,
             })
         });
         Ok(ColumnChoices {
             time: time.transpose()?,
-            displacement: measured(self.displacement, Quantity::Displacement)?,
+            displacement: self.displacement.map(|table| table.checked(source)).transpose()?,
             force: measured(self.force, Quantity::Force)?,
             stress: measured(self.stress, Quantity::Stress)?,
+        })
+    }
+}
+
+impl DisplacementTable {
+    fn checked(self, source: &Source<'_>) -> Result<ColumnChoice, DescriptionError> {
+        let key = "columns.displacement.travel_per_unit";
+        if self.unit.is_some() && self.travel_per_unit.is_some() {
+            return Err(source.both(key, "columns.displacement.unit"));
+        }
+        if self.also.is_some() && self.doubled == Some(true) {
+            return Err(source.both("columns.displacement.doubled", "columns.displacement.also"));
+        }
+        let travel = self.travel_per_unit.map(|travel| source.positive(key, &travel, Dimension::Length)).transpose()?;
+        let plain = ColumnTable {
+            column: self.column,
+            unit: self.unit,
+            sign: self.sign,
+            clock: self.clock,
+        };
+        Ok(ColumnChoice {
+            also: self.also,
+            doubled: self.doubled.unwrap_or(false),
+            travel_per_unit: travel,
+            ..plain.checked(source, Quantity::Displacement)?
         })
     }
 }
@@ -185,6 +241,9 @@ impl ColumnTable {
             column: self.column,
             unit: self.unit,
             sign,
+            also: None,
+            doubled: false,
+            travel_per_unit: None,
             clock: self.clock.map(|clock| ClockChoice {
                 column: clock.column,
                 unit: clock.unit,
@@ -200,6 +259,7 @@ fn check_unit(
     dimension: Dimension,
 ) -> Result<(), DescriptionError> {
     match unit {
+        Some(unit) if dimension == Dimension::Time && unit.trim().eq_ignore_ascii_case(EPOCH) => Ok(()),
         Some(unit) if crate::record_file::unit_factor(unit, dimension).is_none() => Err(DescriptionError::Quantity {
             place: source.place(key),
             found: format!("\"{unit}\""),

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `protocol.rs` | a protocol: body, law and steps of the jaw ([`Protocol`]) |
 //! | `test.rs`, `test_tables.rs`, `settings.rs` | a test: its record, its body, how to evaluate it ([`TestDescription`]) |
+//! | `machine.rs`, `machines/` | grippers and machines whose conventions are known ([`machines`]) |
 //! | `law.rs` | the law of a protocol, with its body a [`Model`] |
 //! | `specimen.rs`, `contact.rs`, `columns.rs` | tables that they are made of |
 //! | `choices.rs` | choices that a command line offers too |
@@ -23,6 +24,7 @@ mod contact;
 mod error;
 mod file;
 mod law;
+mod machine;
 mod numbers;
 mod places;
 mod protocol;
@@ -40,6 +42,7 @@ pub use choices::{ChoiceError, parse_hold_start, parse_touch};
 pub use columns::{ClockChoice, ColumnChoice, ColumnChoices, ColumnRef};
 pub use error::{DescriptionError, KeyPlace};
 pub use law::Model;
+pub use machine::{Machine, machines};
 pub use protocol::{Protocol, parse_protocol, read_protocol, read_scene};
 pub use schema::{schema_protocol, schema_test};
 pub use sweep::{Plan, Spacing, Sweep, SweptNumber, parse_sweep, read_sweep};

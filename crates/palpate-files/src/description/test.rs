@@ -14,7 +14,7 @@ use super::{
     columns::ColumnChoices,
     contact,
     error::DescriptionError,
-    settings,
+    machine, settings,
     source::{self, Source},
     specimen,
     test_tables::{ContactTable, TestTables},
@@ -129,7 +129,7 @@ pub fn read_test(path: &Path) -> Result<TestDescription, DescriptionError> {
 /// As for [`read_test`], less those of the file.
 pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, DescriptionError> {
     let source = Source { path, text };
-    let tables: TestTables = source.tables()?;
+    let tables = machine::over_preset(&source, source.tables()?)?;
     let geometry = geometry(&source, &tables)?;
     let columns = tables.columns.checked(&source)?;
     let grows = geometry.as_ref().is_some_and(|body| !matches!(body.shape, Shape::Prism { .. }));

@@ -15,6 +15,7 @@ use super::{
 pub(super) struct TestTables {
     #[serde(default)]
     pub(super) about: AboutTable,
+    pub(super) machine: Option<MachineTable>,
     #[serde(default)]
     pub(super) file: FileTable,
     #[serde(default)]
@@ -39,6 +40,15 @@ pub(super) struct AboutTable {
     pub(super) source: Option<String>,
     /// Anything else.
     pub(super) note: Option<String>,
+}
+
+/// The gripper or machine that the record comes from.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Machine")]
+pub(super) struct MachineTable {
+    /// Name of a gripper or machine whose conventions are known; what is said elsewhere in the description goes before.
+    pub(super) preset: String,
 }
 
 /// How the jaw meets the body.

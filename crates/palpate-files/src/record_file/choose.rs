@@ -5,13 +5,13 @@ use std::path::Path;
 use palpate::contact::Shape;
 
 use super::{
-    ColumnUse, Quantity, Role,
+    ColumnUse, Quantity, Role, epoch,
     error::{ColumnError, NamedColumn},
     quantity::unit_factor,
     recognise,
 };
 use crate::{
-    contents::{ColumnInfo, Part},
+    contents::{ColumnInfo, ColumnKind, Part},
     description::{ClockChoice, ColumnChoice, ColumnRef, TestDescription},
 };
 
@@ -31,15 +31,30 @@ struct Found<'a> {
     role: Role,
     column: &'a ColumnInfo,
     unit: Option<&'a str>,
-    sign: f64,
+    choice: Option<&'a ColumnChoice>,
 }
 
 impl Found<'_> {
     /// The key of a description that says its unit.
     fn key(&self) -> String {
         match self.role {
-            Role::Values(quantity) => format!("columns.{quantity}.unit"),
+            Role::Values(quantity) | Role::Added(quantity) => format!("columns.{quantity}.unit"),
             Role::ClockOf(quantity) => format!("columns.{quantity}.clock.unit"),
+        }
+    }
+}
+
+impl Found<'_> {
+    fn used(&self, unit: String, factor: f64) -> ColumnUse {
+        let doubled = self.choice.is_some_and(|choice| choice.doubled);
+        ColumnUse {
+            role: self.role,
+            number: self.column.number,
+            name: self.column.name.clone(),
+            unit,
+            sign: self.choice.map_or(1.0, |choice| choice.sign),
+            factor: if doubled { 2.0 * factor } else { factor },
+            epoch: self.role.measured() == Quantity::Time && epoch::counts(self.column, factor),
         }
     }
 }
@@ -62,23 +77,27 @@ pub(super) fn choose(path: &Path, part: &Part, test: &TestDescription) -> Result
     let (load, load_said) = chooser.force_or_stress(test)?;
     let displacement = chooser.find(Quantity::Displacement, said.displacement.as_ref())?;
     let clocks = [
-        (Quantity::Displacement, said.displacement.as_ref(), displacement.is_some()),
-        (load_quantity(&load), load_said, true),
+        (Quantity::Displacement, said.displacement.as_ref(), displacement.as_ref()),
+        (load_quantity(&load), load_said, Some(&load)),
     ];
+    let one_time = said.time.as_ref().is_some_and(|time| time.column.is_some());
     let mut found = Vec::new();
-    for (quantity, choice, _) in clocks {
-        if let Some(clock) = choice.and_then(|choice| choice.clock.as_ref()) {
-            found.push(chooser.clock(quantity, clock)?);
+    let mut needs_time = false;
+    for (quantity, choice, values) in clocks {
+        let own = values.filter(|_| !one_time).and_then(|values| chooser.own_clock(quantity, values));
+        match (choice.and_then(|choice| choice.clock.as_ref()), own) {
+            (Some(clock), _) => found.push(chooser.clock(quantity, clock)?),
+            (None, Some(own)) => found.push(own),
+            (None, None) => needs_time |= values.is_some(),
         }
     }
-    let has_clock =
-        |(_, choice, _): &(_, Option<&ColumnChoice>, _)| choice.is_some_and(|choice| choice.clock.is_some());
-    let needs_time = clocks.iter().any(|clock| clock.2 && !has_clock(clock));
+    let added = displacement.as_ref().map(|displacement| chooser.added(displacement)).transpose()?.flatten();
     if needs_time {
         let time = chooser.find(Quantity::Time, said.time.as_ref())?;
         found.push(time.ok_or_else(|| chooser.missing(Quantity::Time))?);
     }
     found.extend(displacement);
+    found.extend(added);
     found.push(load);
     chooser.refuse_twice(&found)?;
     let (section, per_unit_area) = chooser.section(test, &found)?;
@@ -91,7 +110,7 @@ pub(super) fn choose(path: &Path, part: &Part, test: &TestDescription) -> Result
 
 fn load_quantity(load: &Found<'_>) -> Quantity {
     match load.role {
-        Role::Values(quantity) | Role::ClockOf(quantity) => quantity,
+        Role::Values(quantity) | Role::Added(quantity) | Role::ClockOf(quantity) => quantity,
     }
 }
 
@@ -139,7 +158,45 @@ impl<'a> Chooser<'a> {
             role: Role::Values(quantity),
             column,
             unit: choice.and_then(|choice| choice.unit.as_deref()),
-            sign: choice.map_or(1.0, |choice| choice.sign),
+            choice,
+        }))
+    }
+
+    /// The clock that the file itself gives the column of a quantity.
+    fn own_clock(&self, quantity: Quantity, values: &Found<'a>) -> Option<Found<'a>> {
+        let clock = self.part.clock_of(values.column.number)?;
+        Some(Found {
+            role: Role::ClockOf(quantity),
+            column: self.columns.get(clock.column.wrapping_sub(1))?,
+            unit: None,
+            choice: None,
+        })
+    }
+
+    /// The column that is added to one, which must have the same clock.
+    fn added(&self, values: &Found<'a>) -> Result<Option<Found<'a>>, ColumnError> {
+        let Some(also) = values.choice.and_then(|choice| choice.also.as_ref()) else {
+            return Ok(None);
+        };
+        let quantity = values.role.measured();
+        let column = self.named(&format!("columns.{quantity}.also"), also)?;
+        if self.part.clock_of(column.number) != self.part.clock_of(values.column.number) {
+            return Err(ColumnError::ClocksDiffer {
+                path: self.path.to_owned(),
+                columns: (values.column.into(), column.into()),
+            });
+        }
+        if column.number == values.column.number {
+            return Err(ColumnError::Twice {
+                path: self.path.to_owned(),
+                column: column.into(),
+                quantities: (quantity, quantity),
+            });
+        }
+        Ok(Some(Found {
+            role: Role::Added(quantity),
+            column,
+            ..*values
         }))
     }
 
@@ -149,7 +206,7 @@ impl<'a> Chooser<'a> {
             role: Role::ClockOf(quantity),
             column: self.named(&key, &clock.column)?,
             unit: clock.unit.as_deref(),
-            sign: 1.0,
+            choice: None,
         })
     }
 
@@ -181,7 +238,7 @@ impl<'a> Chooser<'a> {
     /// Two clocks may be one column, two measured quantities may not.
     fn refuse_twice(&self, found: &[Found<'_>]) -> Result<(), ColumnError> {
         let values = |found: &Found<'_>| match found.role {
-            Role::Values(quantity) => Some((quantity, found.column.number)),
+            Role::Values(quantity) | Role::Added(quantity) => Some((quantity, found.column.number)),
             Role::ClockOf(_) => None,
         };
         let values: Vec<(Quantity, usize)> = found.iter().filter_map(values).collect();
@@ -224,31 +281,57 @@ impl<'a> Chooser<'a> {
         }
     }
 
+    /// A column whose unit is none that a header could give: a travel said for each unit of it, or a time since 1970.
+    fn without_plain_unit(&self, found: &Found<'_>) -> Result<Option<ColumnUse>, ColumnError> {
+        if let Some(travel) = found.choice.and_then(|choice| choice.travel_per_unit) {
+            return Ok(Some(found.used(format!("{} mm each", travel * 1e3), travel)));
+        }
+        if found.role.measured() != Quantity::Time {
+            return Ok(None);
+        }
+        if found.column.kind == ColumnKind::DateTime {
+            let date = found.used("date and time".to_owned(), 1.0);
+            return Ok(Some(ColumnUse { epoch: true, ..date }));
+        }
+        let is_said = found.unit.is_some_and(|unit| unit.trim().eq_ignore_ascii_case(epoch::WORD));
+        let is_named = found.unit.or(found.column.unit.as_deref()).is_none() && epoch::is_named(found.column);
+        match epoch::unit(found.column) {
+            Some((unit, factor)) if is_said || is_named => Ok(Some(found.used(format!("{unit} since 1970"), factor))),
+            None if is_said => Err(ColumnError::NoEpoch {
+                path: self.path.to_owned(),
+                column: found.column.into(),
+                found: found.column.sample.clone(),
+            }),
+            _ => Ok(None),
+        }
+    }
+
     /// Units from the description, else from the header.
     fn with_units(&self, found: &[Found<'_>]) -> Result<Vec<ColumnUse>, ColumnError> {
         let mut used = Vec::new();
         let mut without = Vec::new();
         for found in found {
             let quantity = found.role.measured();
+            if let Some(used_as) = self.without_plain_unit(found)? {
+                used.push(used_as);
+                continue;
+            }
             let Some(unit) = found.unit.or(found.column.unit.as_deref()) else {
                 without.push((found.key(), quantity.usual_unit(), found.column.into()));
                 continue;
             };
             let factor = unit_factor(unit, quantity.dimension());
-            used.push(ColumnUse {
-                role: found.role,
-                number: found.column.number,
-                name: found.column.name.clone(),
-                unit: unit.to_owned(),
-                sign: found.sign,
-                factor: factor.ok_or_else(|| self.unknown_unit(found.column, quantity, found.key(), unit))?,
-            });
+            let factor = factor.ok_or_else(|| self.unknown_unit(found.column, quantity, found.key(), unit))?;
+            used.push(found.used(unit.to_owned(), factor));
         }
         if without.is_empty() {
             return Ok(used);
         }
         // What stands in brackets behind the one name without a unit was meant as one.
-        let bare = |found: &&Found<'_>| found.unit.or(found.column.unit.as_deref()).is_none();
+        let bare = |found: &&Found<'_>| {
+            let given = found.unit.or(found.column.unit.as_deref());
+            given.is_none() && matches!(self.without_plain_unit(found), Ok(None))
+        };
         if let ([_], Some(found)) = (&without[..], found.iter().find(bare))
             && let Some(unit) = found.column.name.as_deref().and_then(in_brackets)
         {

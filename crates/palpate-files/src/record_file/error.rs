@@ -102,6 +102,24 @@ pub enum ColumnError {
         /// What it is said to hold.
         quantities: (Quantity, Quantity),
     },
+    /// A column is to be added to one that was stamped by another clock.
+    #[error("{}: expected two columns of one clock to add up, found {} and {}", path.display(), columns.0, columns.1)]
+    ClocksDiffer {
+        /// The record.
+        path: PathBuf,
+        /// The columns.
+        columns: (NamedColumn, NamedColumn),
+    },
+    /// The description says that a time counts from 1970, but in no unit does it lie in our days.
+    #[error("{}: {column}: expected a time since 1970 (of 2000 to 2100, in s, ms, us or ns), found {found}", path.display())]
+    NoEpoch {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// Its first value.
+        found: String,
+    },
     /// Stress on a ball, which has no section that would turn it into force.
     #[error("{}: {column}: expected force for a ball, whose contact area changes, found stress", path.display())]
     NoSection {
@@ -143,6 +161,8 @@ impl ColumnError {
             Self::Twice { quantities, .. } => {
                 format!("correct columns.{} or columns.{}", quantities.0, quantities.1)
             }
+            Self::ClocksDiffer { .. } => "name two columns of one topic".to_owned(),
+            Self::NoEpoch { .. } => "give the unit that the time has, such as \"s\"".to_owned(),
             Self::NoSection { .. } => {
                 "choose a column of force, or describe the body as a strip, cylinder or block".to_owned()
             }
@@ -180,7 +200,7 @@ pub enum ReadError {
     #[error(transparent)]
     Column(#[from] ColumnError),
     /// The numbers make no record.
-    #[error("{}{}{}: {}", path.display(), in_part(part.as_deref()), at_line(*line), without_row(source))]
+    #[error("{}{}{}: {}", path.display(), in_part(part.as_deref()), at_line(*line), said(source, *line))]
     Record {
         /// The file.
         path: PathBuf,
@@ -248,9 +268,12 @@ fn first(parts: &[String]) -> String {
     format!("{}{more}", named.join(", "))
 }
 
-/// The message of a record error less its row: the line of the file says more.
-fn without_row(error: &RecordError) -> String {
+/// The message of a record error; less its row where a line of the file is known, which says more.
+fn said(error: &RecordError, line: Option<usize>) -> String {
     let message = error.to_string();
+    if line.is_none() {
+        return message;
+    }
     let row = error.row().map(|row| format!(" in row {row}"));
     let short = row.and_then(|row| message.strip_suffix(&row).map(str::to_owned));
     short.unwrap_or(message)

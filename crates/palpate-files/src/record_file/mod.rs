@@ -8,10 +8,12 @@
 //! | `recognise.rs`, `header_words.rs` | tells columns by their names |
 //! | `describe.rs` | a first description of a test ([`describe`]) |
 //! | `quantity.rs` | what a column can hold, and its units |
+//! | `epoch.rs` | times counted from 1970 |
 //! | `error.rs`, `snippet.rs` | what is not clear, and the lines of a description that would clear it up |
 
 mod choose;
 mod describe;
+mod epoch;
 mod error;
 mod header_words;
 mod parts;
@@ -21,6 +23,7 @@ mod recognise;
 mod snippet;
 
 pub use describe::describe;
+pub(crate) use epoch::WORD as EPOCH;
 pub use error::{ColumnError, NamedColumn, ReadError};
 pub use parts::{Tests, tests};
 pub use quantity::Quantity;
@@ -36,6 +39,8 @@ use serde::Serialize;
 pub enum Role {
     /// Its values are a quantity.
     Values(Quantity),
+    /// Its values are added to those of the column of a quantity: the second finger of a gripper.
+    Added(Quantity),
     /// Its values are the time stamps of one quantity alone.
     ClockOf(Quantity),
 }
@@ -45,7 +50,7 @@ impl Role {
     #[must_use]
     pub fn measured(self) -> Quantity {
         match self {
-            Self::Values(quantity) => quantity,
+            Self::Values(quantity) | Self::Added(quantity) => quantity,
             Self::ClockOf(_) => Quantity::Time,
         }
     }
@@ -66,4 +71,6 @@ pub struct ColumnUse {
     pub sign: f64,
     /// What turns the unit into SI.
     pub factor: f64,
+    /// It is a time counted from 1970, to be counted from the first row on.
+    pub epoch: bool,
 }

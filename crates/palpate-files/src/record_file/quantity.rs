@@ -85,6 +85,10 @@ pub(crate) fn unit_factor(unit: &str, dimension: Dimension) -> Option<f64> {
     let unit = unit.trim();
     units::factor(unit, dimension).or_else(|| {
         let word = unit.to_lowercase();
+        // Clocks of computers count them; no description does.
+        if dimension == Dimension::Time && matches!(word.as_str(), "ns" | "nsec" | "nanosecond" | "nanoseconds") {
+            return Some(1e-9);
+        }
         let same = |(of, _, words): &&(Dimension, &str, &[&str])| *of == dimension && words.contains(&word.as_str());
         let (_, symbol, _) = SYNONYMS.iter().find(same)?;
         units::factor(symbol, dimension)
@@ -101,6 +105,7 @@ mod tests {
             ("S", Dimension::Time, 1.0),
             ("seconds", Dimension::Time, 1.0),
             ("毫秒", Dimension::Time, 1e-3),
+            ("ns", Dimension::Time, 1e-9),
             ("MM", Dimension::Length, 1e-3),
             ("\u{3bc}m", Dimension::Length, 1e-6),
             (" Newton ", Dimension::Force, 1.0),

@@ -29,6 +29,8 @@ pub struct RecordFile {
     pub packing: Packing,
     /// The part of the file that is this test.
     pub part: Part,
+    /// When the time of the record is zero, in s since 1970, where the file counts from there.
+    pub start: Option<f64>,
     /// Rows of the test. Where displacement and force have clocks of their own, the record can have fewer.
     pub rows: usize,
     /// How many successive rows each sample of the record is the mean of; 1 unless the file is very long.
@@ -99,7 +101,8 @@ pub fn read_part(
     let plan = choose::choose(path, about, test)?;
     let numbers: Vec<usize> = plan.columns.iter().map(|column| column.number).collect();
     let mut read = contents.read(part, &numbers, progress)?;
-    let values = std::mem::take(&mut read.values);
+    let mut values = std::mem::take(&mut read.values);
+    let start = count_from_start(&plan.columns, &mut values);
     let series = plan.columns.iter().zip(values).map(|(column, mut values)| {
         let section = if column.role.measured() == Quantity::Stress { plan.section } else { 1.0 };
         to_si(&mut values, column, section);
@@ -115,6 +118,7 @@ pub fn read_part(
         path: path.to_owned(),
         record,
         columns: plan.columns,
+        start,
         format: contents.format(),
         packing: contents.packing().clone(),
         part: about.clone(),
@@ -124,6 +128,18 @@ pub fn read_part(
         per_unit_area: plan.per_unit_area,
         bytes: read.bytes,
     })
+}
+
+/// Makes times counted from 1970 relative to the first of them, which comes back in s.
+fn count_from_start(columns: &[ColumnUse], values: &mut [Vec<f64>]) -> Option<f64> {
+    let firsts = columns.iter().zip(&*values).filter(|(column, _)| column.epoch);
+    let firsts = firsts.filter_map(|(column, values)| Some((*values.first()?, column.factor)));
+    let (first, factor) = firsts.min_by(|one, other| (one.0 * one.1).total_cmp(&(other.0 * other.1)))?;
+    for (column, values) in columns.iter().zip(values).filter(|(column, _)| column.epoch) {
+        let origin = if column.factor == factor { first } else { first * factor / column.factor };
+        values.iter_mut().for_each(|value| *value -= origin);
+    }
+    Some(first * factor)
 }
 
 fn to_si(values: &mut [f64], column: &ColumnUse, section: f64) {
@@ -144,7 +160,11 @@ fn assemble(mut series: Vec<(Role, Vec<f64>)>) -> Result<Record, RecordError> {
     };
     let is_load = |quantity| matches!(quantity, Quantity::Force | Quantity::Stress);
     let time = take(&|role| role == Role::Values(Quantity::Time));
-    let displacement = take(&|role| role == Role::Values(Quantity::Displacement));
+    let mut displacement = take(&|role| role == Role::Values(Quantity::Displacement));
+    let added = take(&|role| role == Role::Added(Quantity::Displacement));
+    for (value, more) in displacement.iter_mut().flatten().zip(added.iter().flatten()) {
+        *value += more;
+    }
     let load = take(&|role| matches!(role, Role::Values(quantity) if is_load(quantity)));
     let displacement_clock = take(&|role| role == Role::ClockOf(Quantity::Displacement));
     let load_clock = take(&|role| matches!(role, Role::ClockOf(quantity) if is_load(quantity)));

@@ -7,7 +7,7 @@ use super::{
     header_words::{BENDING, OTHER, OTHER_CHARACTERS, VOCABULARY, Vocabulary},
     quantity::unit_factor,
 };
-use crate::contents::{ColumnInfo, ColumnKind};
+use crate::contents::{ColumnInfo, ColumnKind, topic_and_field};
 
 /// The columns that name `quantity` best: one if it is clear, several if it is not, none if none does.
 pub(super) fn candidates(columns: &[ColumnInfo], quantity: Quantity) -> Vec<&ColumnInfo> {
@@ -23,13 +23,23 @@ pub(crate) fn names_time(columns: &[ColumnInfo]) -> bool {
     !candidates(columns, Quantity::Time).is_empty()
 }
 
+/// Names of columns that hold dates with times of day, beside the words for time.
+const DATES: [&str; 3] = ["date", "datetime", "datum"];
+
 /// How well a column names a quantity; 0 is best.
 fn rank(column: &ColumnInfo, quantity: Quantity) -> Option<u8> {
-    if column.kind != ColumnKind::Number {
+    let is_date = column.kind == ColumnKind::DateTime && quantity == Quantity::Time;
+    if column.kind != ColumnKind::Number && !is_date {
         return None;
     }
     let vocabulary = VOCABULARY.iter().find(|words| words.quantity == quantity)?;
-    let by_name = rank_of_name(column.name.as_deref()?, vocabulary)?;
+    let name = column.name.as_deref()?;
+    if is_date {
+        // The clock on the wall serves where no column of numbers does.
+        let called_so = || words(name).iter().any(|word| DATES.contains(&word.as_str()));
+        return Some(20 + rank_of_name(name, vocabulary).or_else(|| called_so().then_some(5))?);
+    }
+    let by_name = rank_of_name(name, vocabulary)?;
     match column.unit.as_deref() {
         None => Some(by_name),
         Some(unit) if unit_factor(unit, quantity.dimension()).is_some() => Some(by_name),
@@ -66,6 +76,7 @@ fn measures_another(unit: &str, quantity: Quantity) -> bool {
 }
 
 fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
+    let name = measured(name);
     let words = words(name);
     let has = |known: &[&str]| words.iter().any(|word| known.contains(&word.as_str()));
     let is = |known: &[&str]| matches!(words.as_slice(), [only] if known.contains(&only.as_str()));
@@ -97,6 +108,17 @@ fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
         Some(4)
     } else {
         None
+    }
+}
+
+/// The part of a name that says what is measured. Of a log of a robot that is the field less the names of joints, since
+/// topics are named after devices and commands (`/gripper_cmd/feedback`); where the field is called `data`, as in
+/// `std_msgs/Float64`, the topic alone can say it.
+fn measured(name: &str) -> &str {
+    match topic_and_field(name) {
+        Some((topic, "data")) => topic,
+        Some((_, field)) => field.split('[').next().unwrap_or(field),
+        None => name,
     }
 }
 
@@ -207,6 +229,22 @@ mod tests {
         let curve = [("force", Some("N")), ("cantilever deflection", Some("m")), ("vDeflection", Some("V"))];
         assert!(found(&curve, Quantity::Displacement).is_empty());
         assert_eq!(found(&[("Beam deflection", Some("mm"))], Quantity::Displacement), [1]);
+    }
+
+    #[test]
+    fn fields_of_topics_tell_and_topics_do_not() {
+        let log = [
+            ("/gripper_cmd/feedback.feedback.position", None),
+            ("/gripper_cmd/feedback.feedback.reached_goal", None),
+            ("/force_torque.wrench.torque.z", None),
+            ("/load.data", None),
+            ("/load_target.data", None),
+        ];
+        assert_eq!(found(&log, Quantity::Displacement), [1]);
+        assert_eq!(found(&log, Quantity::Force), [4]);
+        let joints = [("/joint_states.position[force_joint]", None), ("/joint_states.velocity[force_joint]", None)];
+        assert!(found(&joints, Quantity::Force).is_empty());
+        assert_eq!(found(&joints, Quantity::Displacement), [1]);
     }
 
     #[test]

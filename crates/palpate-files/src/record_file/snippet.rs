@@ -1,7 +1,7 @@
 //! Lines to paste into a test description.
 
 use super::{Quantity, error::NamedColumn, recognise};
-use crate::contents::{ColumnInfo, ColumnKind};
+use crate::contents::{ColumnInfo, ColumnKind, topic_and_field};
 
 /// Most columns that a message shows.
 const MOST: usize = 8;
@@ -40,17 +40,21 @@ pub(super) fn choices(columns: &[ColumnInfo]) -> String {
 /// The table `[columns]` for a file; where the header does not tell, columns of numbers in their order.
 pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
     let wanted = [Quantity::Time, Quantity::Displacement, Quantity::Force];
+    // The topics of a log have clocks of their own.
+    let in_topic = |column: &ColumnInfo| column.name.as_deref().and_then(topic_and_field).is_some();
+    let is_log = columns.iter().any(in_topic);
     let known = wanted.map(|quantity| match recognise::candidates(columns, quantity)[..] {
         [only] => Some(only),
         _ => None,
     });
     let free = |column: &&ColumnInfo| {
         let taken = known.iter().flatten().any(|known| known.number == column.number);
-        column.kind == ColumnKind::Number && !taken
+        column.kind == ColumnKind::Number && !taken && (!is_log || in_topic(column))
     };
     let mut rest = columns.iter().filter(free);
     let mut lines = vec!["[columns]".to_owned()];
-    for (quantity, known) in wanted.into_iter().zip(known) {
+    let needed = wanted.into_iter().zip(known).filter(|(quantity, _)| !is_log || *quantity != Quantity::Time);
+    for (quantity, known) in needed {
         let Some(column) = known.or_else(|| rest.next()) else {
             continue;
         };

@@ -156,6 +156,7 @@ fn part(sheet: &str, table: &Table, several: bool, beside: usize, sample: &Sampl
         columns: table.columns.clone(),
         metadata: table.metadata.clone(),
         labels: Vec::new(),
+        clocks: Vec::new(),
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{
     block::{self, Block},
-    decimal,
+    date, decimal,
     fields::cells,
     header::{self, Header},
     layout::{Delimiter, Layout, LayoutOptions},
@@ -101,7 +101,11 @@ fn columns(lines: &[&str], block: &Block, header: &Header) -> Vec<ColumnInfo> {
             number: index + 1,
             name: name.clone(),
             unit: unit.clone(),
-            kind,
+            kind: if kind == ColumnKind::Text && holds_dates(lines, block, index) {
+                ColumnKind::DateTime
+            } else {
+                kind
+            },
             sample: first_filled(lines, block, index),
         })
         .collect();
@@ -110,6 +114,15 @@ fn columns(lines: &[&str], block: &Block, header: &Header) -> Vec<ColumnInfo> {
         columns.pop();
     }
     columns
+}
+
+/// Whether every cell of a column of text is a date with a time of day.
+fn holds_dates(lines: &[&str], block: &Block, column: usize) -> bool {
+    let is_date = |(line, _): (usize, _)| {
+        let line: &str = lines[line];
+        cells(line, block.delimiter).get(column).is_some_and(|cell| date::parse(cell.as_bytes()).is_some())
+    };
+    block.rows().all(is_date)
 }
 
 fn first_filled(lines: &[&str], block: &Block, column: usize) -> String {

@@ -28,6 +28,7 @@
 
 pub(crate) mod block;
 mod columns;
+mod date;
 pub(crate) mod decimal;
 mod detect;
 mod encoding;

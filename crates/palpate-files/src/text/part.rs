@@ -24,6 +24,7 @@ pub(crate) fn look_into(input: &Input, options: &ReadOptions) -> Result<Found, F
         columns: layout.columns.clone(),
         metadata: layout.metadata.clone(),
         labels: Vec::new(),
+        clocks: Vec::new(),
     };
     Ok(Found {
         parts: vec![part],

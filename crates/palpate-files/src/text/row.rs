@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{
-    block,
+    block, date,
     fields::Fields,
     layout::Layout,
     number::{self, Cell},
@@ -34,6 +34,8 @@ enum Task {
     Check,
     /// Read it into this place of the output.
     Read(usize),
+    /// Read a date with its time of day into this place.
+    ReadDate(usize),
 }
 
 /// What is wrong with a row.
@@ -65,7 +67,8 @@ impl<'a> RowPlan<'a> {
                     columns: kinds.len(),
                 });
             };
-            *task = Task::Read(place);
+            let is_date = kinds.get(column - 1) == Some(&ColumnKind::DateTime);
+            *task = if is_date { Task::ReadDate(place) } else { Task::Read(place) };
         }
         // Remarks at the end of a row may be left out; numbers may not.
         let last_number = kinds.iter().rposition(|&kind| kind == ColumnKind::Number);
@@ -86,6 +89,10 @@ impl<'a> RowPlan<'a> {
         for cell in Fields::of(line, self.layout.delimiter) {
             match self.tasks.get(count) {
                 Some(&Task::Read(place)) => match number::parse(cell, self.layout.decimal) {
+                    Some(value) => row[place] = value,
+                    None => return Err(Fault::Cell(count)),
+                },
+                Some(&Task::ReadDate(place)) => match date::parse(cell) {
                     Some(value) => row[place] = value,
                     None => return Err(Fault::Cell(count)),
                 },
@@ -145,6 +152,15 @@ impl<'a> RowPlan<'a> {
         let cell = Fields::of(line, self.layout.delimiter).nth(index);
         let cell = cell.unwrap_or_default();
         let found = self.text(cell);
+        let kind = self.layout.columns.get(index).map(|column| column.kind);
+        if kind == Some(ColumnKind::DateTime) && !cell.is_empty() {
+            return FileError::Damaged {
+                path: self.path.to_owned(),
+                place: format!("line {number}, column {}", index + 1),
+                expected: "a date and time such as 2024-08-24T21:09:40.123".to_owned(),
+                found: format!("`{found}`"),
+            };
+        }
         match number::classify(cell) {
             Cell::Empty => FileError::EmptyCell { place },
             Cell::NotFinite => FileError::NotFinite { place, found },

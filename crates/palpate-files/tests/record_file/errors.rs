@@ -193,5 +193,5 @@ fn many_columns_are_not_all_shown() {
     let row = vec!["1"; 30].join(",");
     let table = format!("{}\n{row}\n{row}\n{row}\n", names.join(","));
     let error = says(&table, "", &["in 30 columns", "column 8 (c8)", "… and 22 more"], &[]);
-    assert!(!error.to_string().contains("c9"));
+    assert!(!error.to_string().contains("(c9)"));
 }

@@ -89,7 +89,7 @@ fn grippers_and_muscle_are_asked_for_units() {
         described("[columns]\ntime = { unit = \"s\" }\ndisplacement = { unit = \"mm\" }\nforce = { unit = \"N\" }");
     let file = open(&path, Some(&units));
     assert_eq!((file.rows, numbers(&file)), (3552, vec![2, 5, 3]));
-    assert_eq!(file.record.time()[0], 1_724_504_945.198_464_4);
+    assert_eq!((file.start, file.record.time()[0]), (Some(1_724_504_945.198_464_4), 0.0));
     let text = refused(&folder.join("titin-ramps/AvgRelaxed_1s.csv")).to_string();
     assert!(text.contains("expected a unit for column 1 (Time), column 3 (F)"), "{text}");
 }

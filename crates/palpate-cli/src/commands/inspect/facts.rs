@@ -40,6 +40,7 @@ pub(super) fn columns_table(part: &Part, file: Option<&RecordFile>) -> Table {
             let sign = if used.sign < 0.0 { ", sign turned" } else { "" };
             let what = match used.role {
                 Role::Values(quantity) => quantity.to_string(),
+                Role::Added(quantity) => format!("added to {quantity}"),
                 Role::ClockOf(quantity) => format!("time of {quantity}"),
             };
             format!("{what} in {}{sign}", used.unit)
@@ -72,6 +73,9 @@ pub(super) fn signal_facts(file: &RecordFile) -> String {
         significant(low, 3),
         significant(high, 3)
     );
+    if let Some(start) = file.start {
+        let _ = writeln!(out, "time 0 is {start} s since 1970");
+    }
     if file.averaged > 1 {
         let _ = writeln!(out, "every sample is the mean of {} successive rows", file.averaged);
     }

@@ -1,0 +1,248 @@
+//! The records of an MCAP file in order, chunks unpacked.
+//!
+//! The file is streamed: memory is one record or one unpacked chunk, and neither beyond a stated limit. Checksums that
+//! the file has are checked.
+
+use std::io::{self, Read};
+
+use mcap::{
+    McapError,
+    records::{ChunkHeader, Record, op},
+    sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions},
+};
+
+use crate::{
+    error::FileError,
+    input::{Input, InputReader},
+};
+
+/// Most bytes of one record, such as a packed chunk, and of one unpacked chunk (256 MiB).
+const MOST_RECORD: usize = 256 << 20;
+
+/// Most bytes asked of the file at once, so that a length that lies costs no memory.
+const PIECE: usize = 1 << 20;
+
+/// Bytes in front of the content of every record: its kind and its length.
+const LEAD: usize = 1 + 8;
+
+/// What stands in a log, as far as it is of use here.
+#[derive(Debug)]
+pub(super) enum Entry<'a> {
+    /// How the file was made.
+    Header { profile: &'a str },
+    /// How the messages of a channel are laid out.
+    Schema {
+        id: u16,
+        name: &'a str,
+        encoding: &'a str,
+        text: &'a [u8],
+    },
+    /// A topic.
+    Channel {
+        id: u16,
+        schema: u16,
+        topic: &'a str,
+        encoding: &'a str,
+    },
+    /// A message.
+    Message {
+        channel: u16,
+        /// When it was written down, ns.
+        log_time: u64,
+        data: &'a [u8],
+    },
+}
+
+/// Told every entry, in the order of the file.
+pub(super) type Visit<'v> = dyn FnMut(&Entry<'_>) -> Result<(), FileError> + 'v;
+
+/// Goes through the data section of the log; what stands behind it only repeats and indexes.
+pub(super) fn walk(input: &Input, progress: &mut dyn FnMut(u64, u64), visit: &mut Visit<'_>) -> Result<(), FileError> {
+    let mut log = Log {
+        input,
+        bytes: input.reader()?,
+        offset: 0,
+        messages: 0,
+    };
+    let options = LinearReaderOptions::default()
+        .with_emit_chunks(true)
+        .with_validate_data_section_crc(true)
+        .with_validate_summary_section_crc(true)
+        .with_record_length_limit(MOST_RECORD);
+    let mut reader = LinearReader::new_with_options(options);
+    let mut in_data = true;
+    while let Some(event) = reader.next_event() {
+        match event {
+            Ok(LinearReadEvent::ReadRequest(wanted)) => {
+                let got = log.read(reader.insert(wanted.min(PIECE)))?;
+                reader.notify_read(got);
+                let (done, total) = log.bytes.progress();
+                progress(done, total);
+            }
+            Ok(LinearReadEvent::Record { data, opcode }) => {
+                in_data = in_data && opcode != op::DATA_END;
+                if in_data {
+                    log.record(opcode, data, visit)?;
+                }
+                log.offset += (LEAD + data.len()) as u64;
+            }
+            Err(error) => return Err(log.failed(&error)),
+        }
+    }
+    Ok(())
+}
+
+struct Log<'a> {
+    input: &'a Input,
+    bytes: InputReader,
+    /// Bytes of the records gone through.
+    offset: u64,
+    messages: u64,
+}
+
+impl Log<'_> {
+    fn read(&mut self, into: &mut [u8]) -> Result<usize, FileError> {
+        loop {
+            match self.bytes.read(into) {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                read => return read.map_err(|error| self.input.failed(error)),
+            }
+        }
+    }
+
+    /// One record of the file.
+    fn record(&mut self, opcode: u8, data: &[u8], visit: &mut Visit<'_>) -> Result<(), FileError> {
+        if opcode != op::CHUNK {
+            return self.entry(opcode, data, visit);
+        }
+        match mcap::parse_record(opcode, data).map_err(|error| self.failed(&error))? {
+            Record::Chunk { header, data } => {
+                let content = self.unpacked(&header, &data)?;
+                self.chunk(&content, visit)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The records of an unpacked chunk.
+    fn chunk(&mut self, mut content: &[u8], visit: &mut Visit<'_>) -> Result<(), FileError> {
+        while let Some((lead, rest)) = content.split_at_checked(LEAD) {
+            let (opcode, length) = (lead[0], lead[1..].iter().rev().fold(0, |sum, byte| sum << 8 | u64::from(*byte)));
+            let record = usize::try_from(length).ok().and_then(|length| rest.split_at_checked(length));
+            let Some((data, behind)) = record else {
+                let expected = format!("a record of {length} bytes inside a chunk");
+                return Err(self.damaged(expected, format!("{} bytes", rest.len())));
+            };
+            self.entry(opcode, data, visit)?;
+            content = behind;
+        }
+        if content.is_empty() {
+            return Ok(());
+        }
+        Err(self.damaged("the end of a chunk".to_owned(), format!("{} bytes more", content.len())))
+    }
+
+    /// One record that is no chunk.
+    fn entry(&mut self, opcode: u8, data: &[u8], visit: &mut Visit<'_>) -> Result<(), FileError> {
+        if !matches!(opcode, op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE) {
+            return Ok(());
+        }
+        let record = mcap::parse_record(opcode, data).map_err(|error| self.failed(&error))?;
+        match &record {
+            Record::Header(header) => visit(&Entry::Header {
+                profile: &header.profile,
+            }),
+            Record::Schema { header, data } => visit(&Entry::Schema {
+                id: header.id,
+                name: &header.name,
+                encoding: &header.encoding,
+                text: data,
+            }),
+            Record::Channel(channel) => visit(&Entry::Channel {
+                id: channel.id,
+                schema: channel.schema_id,
+                topic: &channel.topic,
+                encoding: &channel.message_encoding,
+            }),
+            Record::Message { header, data } => {
+                self.messages += 1;
+                visit(&Entry::Message {
+                    channel: header.channel_id,
+                    log_time: header.log_time,
+                    data,
+                })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The content of a chunk, which must have the length and the checksum that its header says.
+    fn unpacked(&self, header: &ChunkHeader, packed: &[u8]) -> Result<Vec<u8>, FileError> {
+        let length = header.uncompressed_size;
+        if length > MOST_RECORD as u64 {
+            return Err(self.input.too_large("a chunk of the log", MOST_RECORD as u64));
+        }
+        let mut content = Vec::new();
+        let most = length + 1;
+        let result = match header.compression.as_str() {
+            "" => packed.take(most).read_to_end(&mut content),
+            "zstd" => unzstd(packed, most, &mut content),
+            "lz4" => lz4_flex::frame::FrameDecoder::new(packed).take(most).read_to_end(&mut content),
+            other => {
+                let expected = "chunks that are not compressed, or by zstd or lz4".to_owned();
+                return Err(self.damaged(expected, format!("compression \"{other}\"")));
+            }
+        };
+        if let Err(error) = result {
+            let expected = format!("a chunk compressed by {}", header.compression);
+            return Err(self.damaged(expected, error.to_string()));
+        }
+        if content.len() as u64 != length {
+            let found = if content.len() as u64 > length { "more".to_owned() } else { content.len().to_string() };
+            return Err(self.damaged(format!("a chunk of {length} bytes"), found));
+        }
+        let mut sum = flate2::Crc::new();
+        sum.update(&content);
+        if header.uncompressed_crc != 0 && sum.sum() != header.uncompressed_crc {
+            let expected = format!("a chunk with checksum {:08x}", header.uncompressed_crc);
+            return Err(self.damaged(expected, format!("{:08x}", sum.sum())));
+        }
+        Ok(content)
+    }
+
+    fn damaged(&self, expected: String, found: String) -> FileError {
+        FileError::Damaged {
+            path: self.input.name().to_owned(),
+            place: format!(
+                "record at byte {}, behind {} messages",
+                mcap::MAGIC.len() as u64 + self.offset,
+                self.messages
+            ),
+            expected,
+            found,
+        }
+    }
+
+    /// What the reader of the container says.
+    fn failed(&self, error: &McapError) -> FileError {
+        match error {
+            McapError::UnexpectedEof => {
+                self.damaged("a whole log with its closing record".to_owned(), "the end of the file".to_owned())
+            }
+            McapError::RecordTooLarge { .. } | McapError::ChunkTooLarge(_) => {
+                self.input.too_large("a record of the log", MOST_RECORD as u64)
+            }
+            other => self.damaged("an MCAP record".to_owned(), other.to_string()),
+        }
+    }
+}
+
+/// Unpacks every frame, up to `most` bytes.
+fn unzstd(mut packed: &[u8], most: u64, content: &mut Vec<u8>) -> io::Result<usize> {
+    while !packed.is_empty() && (content.len() as u64) < most {
+        let frame = ruzstd::decoding::StreamingDecoder::new(&mut packed).map_err(io::Error::other)?;
+        let left = most - content.len() as u64;
+        frame.take(left).read_to_end(content)?;
+    }
+    Ok(content.len())
+}

@@ -1,0 +1,111 @@
+//! The numbers in a message written as JSON.
+
+use serde_json::{Map, Value};
+
+use super::fields::{Fault, Fields, MOST_ELEMENTS, distinct, names_elements};
+
+/// Reads the numbers of a message. `null` is how JSON writes a number that is none.
+pub(super) fn read(message: &[u8]) -> Result<Fields, Fault> {
+    let value: Value = serde_json::from_slice(message).map_err(|error| Fault {
+        at: None,
+        expected: "a message in JSON".to_owned(),
+        found: error.to_string(),
+    })?;
+    let mut fields = Fields::none(true);
+    let Value::Object(object) = &value else {
+        return Err(Fault {
+            at: None,
+            expected: "a JSON object".to_owned(),
+            found: "another value".to_owned(),
+        });
+    };
+    let stamp = object.get("header").and_then(|header| header.get("stamp")).or_else(|| object.get("stamp"));
+    if let Some((seconds, nanoseconds)) = stamp.and_then(time) {
+        fields.stamped(seconds, nanoseconds);
+    }
+    for (name, value) in object.iter().filter(|(name, _)| *name != "header" && *name != "stamp") {
+        field(object, name, value, "", &mut fields)?;
+    }
+    let names = fields.names.as_deref().unwrap_or_default();
+    fields.signature = names.join("\n").into_bytes();
+    Ok(fields)
+}
+
+/// A time as ROS 2 and Foxglove (`sec`, `nsec`, `nanosec`) and ROS 1 (`secs`, `nsecs`) write it.
+fn time(value: &Value) -> Option<(i64, i64)> {
+    let whole = |names: [&str; 3]| names.iter().find_map(|name| value.get(name)).and_then(Value::as_i64);
+    Some((whole(["sec", "secs", "seconds"])?, whole(["nanosec", "nsec", "nsecs"])?))
+}
+
+fn field(
+    object: &Map<String, Value>,
+    name: &str,
+    value: &Value,
+    above: &str,
+    fields: &mut Fields,
+) -> Result<(), Fault> {
+    let path = if above.is_empty() { name.to_owned() } else { format!("{above}.{name}") };
+    match value {
+        Value::Array(values) if values.len() <= MOST_ELEMENTS => {
+            let labels = labels(object, values.len());
+            for (index, value) in values.iter().enumerate() {
+                let label = labels.as_ref().map_or_else(|| index.to_string(), |labels| labels[index].clone());
+                element(&format!("{path}[{label}]"), value, fields)?;
+            }
+            Ok(())
+        }
+        Value::Array(_) => Ok(()),
+        other => element(&path, other, fields),
+    }
+}
+
+fn element(path: &str, value: &Value, fields: &mut Fields) -> Result<(), Fault> {
+    match value {
+        Value::Number(number) => fields.push(path, number.as_f64().unwrap_or(f64::NAN)),
+        Value::Bool(truth) => fields.push(path, f64::from(u8::from(*truth))),
+        Value::Null => fields.push(path, f64::NAN),
+        Value::Object(_) if time(value).is_some() => Ok(()),
+        Value::Object(inner) => inner.iter().try_for_each(|(name, value)| field(inner, name, value, path, fields)),
+        Value::Array(values) if values.len() <= MOST_ELEMENTS => values
+            .iter()
+            .enumerate()
+            .try_for_each(|(index, value)| element(&format!("{path}[{index}]"), value, fields)),
+        Value::Array(_) | Value::String(_) => Ok(()),
+    }
+}
+
+/// The names that stand beside arrays of `count` elements.
+fn labels(object: &Map<String, Value>, count: usize) -> Option<Vec<String>> {
+    let arrays = object.iter().filter(|(name, _)| names_elements(name));
+    arrays.into_iter().find_map(|(_, value)| {
+        let names = value.as_array().filter(|names| names.len() == count)?;
+        let names: Option<Vec<String>> = names.iter().map(|name| Some(name.as_str()?.to_owned())).collect();
+        names.filter(|names| distinct(names))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn joints_by_name() {
+        let text = br#"{"header":{"stamp":{"sec":5,"nanosec":7},"frame_id":"a"},"name":["l","r"],"position":[1,2.5],
+            "effort":[null,3],"ok":true,"deep":{"x":[{"y":4}]},"age":{"sec":1,"nanosec":2}}"#;
+        let read = read(text).unwrap();
+        assert_eq!(read.stamp, Some(5_000_000_007));
+        let names = ["deep.x[0].y", "effort[l]", "effort[r]", "ok", "position[l]", "position[r]"];
+        assert_eq!(read.names.unwrap(), names);
+        assert!(read.values[1].is_nan());
+        assert_eq!((read.values[0], &read.values[2..]), (4.0, &[3.0, 1.0, 1.0, 2.5][..]));
+    }
+
+    #[test]
+    fn what_is_no_object_is_a_fault() {
+        for text in [&b"[1]"[..], b"{", b"", b"{\"a\":1e", b"\xFF"] {
+            assert!(super::read(text).is_err());
+        }
+        let deep = "[".repeat(10_000);
+        assert!(super::read(deep.as_bytes()).is_err());
+    }
+}

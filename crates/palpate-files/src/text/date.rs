@@ -1,0 +1,133 @@
+//! Dates with times of day, as ISO 8601 and the logs of programs write them.
+//!
+//! `2024-08-24T21:09:40.123Z`, `2024-08-24 21:09:40,123`, `2024-08-24 21:09:40+02:00`: year first, seconds and all. Without
+//! a zone, times are taken as they stand: differences are right unless clocks were changed in between.
+
+/// Seconds since 1970 of a date with its time of day; a leap second counts as the one behind it.
+pub(crate) fn parse(cell: &[u8]) -> Option<f64> {
+    let (year, rest) = digits(cell, 4)?;
+    let (month, rest) = digits(behind(rest, b"-/")?, 2)?;
+    let (day, rest) = digits(behind(rest, b"-/")?, 2)?;
+    let (hour, rest) = digits(behind(rest, b"T t")?, 2)?;
+    let (minute, rest) = digits(behind(rest, b":")?, 2)?;
+    let (second, rest) = digits(behind(rest, b":")?, 2)?;
+    let (fraction, rest) = match behind(rest, b".,") {
+        Some(rest) => fraction(rest)?,
+        None => (0.0, rest),
+    };
+    let sound = (1..=12).contains(&month)
+        && (1..=days_of(year, month)).contains(&day)
+        && hour < 24
+        && minute < 60
+        && second <= 60;
+    if !sound {
+        return None;
+    }
+    let of_day = hour * 3600 + minute * 60 + second;
+    Some((days_since_1970(year, month, day) * 86_400 + of_day - zone(rest)?) as f64 + fraction)
+}
+
+/// The number in exactly `count` digits, and what stands behind.
+fn digits(text: &[u8], count: usize) -> Option<(i64, &[u8])> {
+    let (digits, rest) = text.split_at_checked(count)?;
+    let number = digits
+        .iter()
+        .try_fold(0, |number, byte| byte.is_ascii_digit().then(|| number * 10 + i64::from(byte - b'0')));
+    Some((number?, rest))
+}
+
+/// What stands behind one of `marks`.
+fn behind<'t>(text: &'t [u8], marks: &[u8]) -> Option<&'t [u8]> {
+    text.split_first().filter(|(first, _)| marks.contains(first)).map(|(_, rest)| rest)
+}
+
+/// The digits behind a decimal mark, up to 12.
+fn fraction(text: &[u8]) -> Option<(f64, &[u8])> {
+    let count = text.iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let (number, rest) = digits(text, count)?;
+    (1..=12).contains(&count).then(|| (number as f64 / 10_f64.powi(count as i32), rest))
+}
+
+/// How many seconds a zone is ahead: nothing, `Z`, `+02:00`, `+0200` or `+02`.
+fn zone(text: &[u8]) -> Option<i64> {
+    let (sign, rest) = match text.trim_ascii_start() {
+        [] | b"Z" | b"z" | b"UTC" => return Some(0),
+        [b'+', rest @ ..] => (1, rest),
+        [b'-', rest @ ..] => (-1, rest),
+        _ => return None,
+    };
+    let (hours, rest) = digits(rest, 2)?;
+    let (minutes, rest) = match behind(rest, b":").unwrap_or(rest) {
+        [] => (0, &[][..]),
+        rest => digits(rest, 2)?,
+    };
+    (rest.is_empty() && hours <= 14 && minutes < 60).then_some(sign * (hours * 3600 + minutes * 60))
+}
+
+fn is_leap(year: i64) -> bool {
+    year % 4 == 0 && (year % 100 != 0 || year % 400 == 0)
+}
+
+fn days_of(year: i64, month: i64) -> i64 {
+    match month {
+        2 if is_leap(year) => 29,
+        2 => 28,
+        4 | 6 | 9 | 11 => 30,
+        _ => 31,
+    }
+}
+
+/// Days from 1 January 1970 to a date of the Gregorian calendar.
+fn days_since_1970(year: i64, month: i64, day: i64) -> i64 {
+    let leap_years_to = |year: i64| year / 4 - year / 100 + year / 400;
+    // Leap days before the year, and this year's months before the month.
+    let years = (year - 1970) * 365 + leap_years_to(year - 1) - leap_years_to(1969);
+    let months: i64 = (1..month).map(|month| days_of(year, month)).sum();
+    years + months + day - 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dates_of_known_seconds() {
+        for (text, seconds) in [
+            ("1970-01-01T00:00:00Z", 0.0),
+            ("2000-03-01T00:00:00Z", 951_868_800.0),
+            ("2024-02-29 12:00:00", 1_709_208_000.0),
+            ("2024-08-24T13:09:05.198Z", 1_724_504_945.198),
+            ("2024-08-24 13:09:05,198", 1_724_504_945.198),
+            ("2024/08/24 15:09:05.198 +02:00", 1_724_504_945.198),
+            ("2024-08-24T10:39:05-0230", 1_724_504_945.0),
+            ("2024-08-24T15:09:05+02", 1_724_504_945.0),
+            ("1969-12-31T23:59:59Z", -1.0),
+            ("2001-09-09T01:46:40Z", 1e9),
+            ("2033-05-18T03:33:20Z", 2e9),
+        ] {
+            assert_eq!(parse(text.as_bytes()), Some(seconds), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_date_with_a_time() {
+        for text in [
+            "",
+            "2024-08-24",
+            "21:09:40",
+            "24.08.2024 21:09:40",
+            "2023-02-29T00:00:00",
+            "2024-13-01T00:00:00",
+            "2024-00-10T00:00:00",
+            "2024-08-24T24:00:00",
+            "2024-08-24T21:09:61",
+            "2024-08-24T21:09:40.",
+            "2024-08-24T21:09:40 PM",
+            "2024-08-24T21:09:40+2",
+            "2024-08-24T21:09:40.1234567890123",
+            "1724504945",
+        ] {
+            assert_eq!(parse(text.as_bytes()), None, "{text}");
+        }
+    }
+}
