@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use palpate::record::Record;
+use palpate::analysis::corrected_record;
+use palpate::record::{Record, Stamps, Values};
 use palpate::segment::{SegmentOptions, find_contact_of, find_phases};
 use palpate_files::record_file::{RecordFile, Role};
 use palpate_files::text::{self, Layout, LayoutOptions};
@@ -107,6 +108,17 @@ fn signal_facts(file: &RecordFile) -> String {
         let _ = writeln!(out, "displacement {} mm", range(displacement, 1e3));
     }
     let _ = writeln!(out, "force {} N", range(record.force(), 1.0));
+    stamp_facts(&mut out, &file.signals.stamps, "");
+    if let Some(stamps) = &file.signals.force_stamps {
+        stamp_facts(&mut out, stamps, " of the force");
+    }
+    if let Some(displacement) = &file.signals.displacement {
+        value_facts(&mut out, "displacement", displacement, (1e3, "mm"));
+    }
+    value_facts(&mut out, "force", &file.signals.force, (1.0, "N"));
+    for done in record.corrections() {
+        let _ = writeln!(out, "done: {done}");
+    }
     if let Some(footer) = &file.ignored.footer {
         let _ =
             writeln!(out, "{} lines after the data were passed over, from line {}", footer.lines, footer.first_line);
@@ -115,12 +127,55 @@ fn signal_facts(file: &RecordFile) -> String {
     out
 }
 
+/// What is wrong with time stamps; nothing where all is well.
+fn stamp_facts(out: &mut String, stamps: &Stamps, of: &str) {
+    if let Some(interval) = stamps.interval.filter(|interval| interval.irregular) {
+        let (low, high) = (significant(interval.p5, 3), significant(interval.p95, 3));
+        let _ = writeln!(out, "irregular time stamps{of}: nine in ten intervals last {low} to {high} s");
+    }
+    if let Some(from) = stamps.gaps.from {
+        let (count, longest) = (stamps.gaps.count, significant(stamps.gaps.longest, 3));
+        let _ = writeln!(
+            out,
+            "{count} gaps in the time stamps{of}, the longest {longest} s from {} s",
+            significant(from, 5)
+        );
+    }
+    if stamps.repeated > 0 {
+        let _ = writeln!(out, "{} time stamps{of} repeat the one before", stamps.repeated);
+    }
+    if stamps.reversals.count > 0 {
+        let largest = significant(stamps.reversals.largest, 3);
+        let _ = writeln!(out, "{} time stamps{of} step back, by up to {largest} s", stamps.reversals.count);
+    }
+}
+
+/// Rounding, saturation and strays of a column.
+fn value_facts(out: &mut String, name: &str, values: &Values, (scale, unit): (f64, &str)) {
+    if let Some(step) = values.step {
+        let _ = writeln!(out, "{name} in steps of {} {unit}", significant(scale * step, 3));
+    }
+    if let Some(saturation) = values.saturation.filter(|saturation| saturation.clipped) {
+        let level = significant(scale * saturation.level, 4);
+        let _ = writeln!(out, "{name} clipped at {level} {unit} in {} rows", saturation.rows);
+    }
+    if values.strays.count > 0 {
+        let zeros = values.strays.zeros;
+        let _ = writeln!(out, "{} rows of the {name} stray alone, {zeros} of them to zero", values.strays.count);
+    }
+}
+
 fn phases(
     record: &Record,
     options: &SegmentOptions,
     test: Option<&palpate_files::description::TestDescription>,
 ) -> String {
-    let (record, dropouts) = record.repaired();
+    let asked = test.map(|test| test.corrections.clone()).unwrap_or_default();
+    let before = record.corrections().len();
+    let record = match corrected_record(record, options, &asked) {
+        Ok(record) => record,
+        Err(error) => return format!("Corrections: {error}\n"),
+    };
     let segmentation = match find_phases(&record, options) {
         Ok(segmentation) => segmentation,
         Err(error) => return format!("Phases: {error}\n"),
@@ -147,8 +202,11 @@ fn phases(
         ]);
     }
     let mut out = table.to_plain_text();
-    if dropouts > 0 {
-        let _ = writeln!(out, "\n{dropouts} rows of the displacement stray alone (dropouts)");
+    if record.corrections().len() > before {
+        out.push('\n');
+    }
+    for done in &record.corrections()[before..] {
+        let _ = writeln!(out, "done: {done}");
     }
     let body = test.and_then(|test| test.geometry.as_ref()).map(|geometry| (&geometry.shape, geometry.sides));
     let choice = test.map(|test| test.touch).unwrap_or_default();
@@ -160,6 +218,16 @@ fn phases(
             significant(1e3 * contact.tare.displacement, 4),
             significant(1e3 * contact.air_travel, 3),
             significant(contact.tare.force, 3)
+        );
+    }
+    if let Some(spread) = contact.spread {
+        let rules = contact.estimates.iter();
+        let rules = rules.map(|rule| format!("{} {} mm", rule.method.name(), significant(1e3 * rule.displacement, 4)));
+        let _ = writeln!(
+            out,
+            "rules for first touch differ by {} mm: {}",
+            significant(1e3 * spread, 2),
+            rules.collect::<Vec<_>>().join(", ")
         );
     }
     out

@@ -9,7 +9,7 @@
 //! | `protocol.rs` | a protocol: body, law and steps of the jaw ([`Protocol`]) |
 //! | `test.rs`, `test_tables.rs`, `settings.rs` | a test: its record, its body, how to evaluate it ([`TestDescription`]) |
 //! | `law.rs` | the law of a protocol, with its body a [`Model`] |
-//! | `specimen.rs`, `contact.rs`, `columns.rs` | tables that they are made of |
+//! | `specimen.rs`, `contact.rs`, `columns.rs`, `corrections.rs` | tables that they are made of |
 //! | `choices.rs` | choices that a command line offers too |
 //! | `sweep/` | numbers of a protocol replaced by many ([`Sweep`]) |
 //! | `numbers.rs` | the numbers of a protocol that can be replaced |
@@ -20,6 +20,7 @@
 mod choices;
 mod columns;
 mod contact;
+mod corrections;
 mod error;
 mod law;
 mod numbers;

@@ -3,7 +3,13 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{columns::ColumnsTable, contact::SidesName, quantity::QuantityText, specimen::SpecimenTable};
+use super::{
+    columns::ColumnsTable,
+    contact::SidesName,
+    corrections::{ClocksTable, ForceTable, MachineTable},
+    quantity::QuantityText,
+    specimen::SpecimenTable,
+};
 use crate::text::LayoutOptions;
 
 /// A squeeze-and-hold test: what its record holds, what was tested, and how to evaluate it. Every table may be
@@ -19,6 +25,12 @@ pub(super) struct TestTables {
     pub(super) file: LayoutOptions,
     #[serde(default)]
     pub(super) columns: ColumnsTable,
+    #[serde(default)]
+    pub(super) clock: ClocksTable,
+    #[serde(default)]
+    pub(super) force: ForceTable,
+    #[serde(default)]
+    pub(super) machine: MachineTable,
     pub(super) specimen: Option<SpecimenTable>,
     #[serde(default)]
     pub(super) contact: ContactTable,
@@ -55,9 +67,9 @@ pub(super) struct ContactTable {
     pub(super) layers: Option<f64>,
     /// Thickness of one layer, instead of their number.
     pub(super) layer_thickness: Option<QuantityText>,
-    /// First touch: "auto" (found from the force), "as recorded" (displacement and force start at zero), or a
-    /// displacement such as "2.5 mm". "auto" for a ball, "as recorded" for other shapes, unless said otherwise.
-    #[schemars(extend("examples" = ["auto", "as recorded", "2.5 mm"]))]
+    /// First touch: "auto" (found from the force), "as recorded" (displacement and force start at zero), one rule
+    /// ("loading curve", "threshold", "two lines", "hertz", "ratio of variances"), or a displacement such as "2.5 mm". "auto" for a ball, "as recorded" for other shapes, unless said otherwise.
+    #[schemars(extend("examples" = ["auto", "as recorded", "threshold", "2.5 mm"]))]
     pub(super) touch: Option<String>,
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use palpate::contact::Shape;
+use palpate::{contact::Shape, units::Dimension};
 
 use super::{
     ColumnUse, Quantity, Role,
@@ -32,6 +32,8 @@ struct Found<'a> {
     column: &'a ColumnInfo,
     unit: Option<&'a str>,
     sign: f64,
+    scale: Option<f64>,
+    offset: f64,
 }
 
 impl Found<'_> {
@@ -140,6 +142,8 @@ impl<'a> Chooser<'a> {
             column,
             unit: choice.and_then(|choice| choice.unit.as_deref()),
             sign: choice.map_or(1.0, |choice| choice.sign),
+            scale: choice.and_then(|choice| choice.scale),
+            offset: choice.map_or(0.0, |choice| choice.offset),
         }))
     }
 
@@ -150,6 +154,8 @@ impl<'a> Chooser<'a> {
             column: self.named(&key, &clock.column)?,
             unit: clock.unit.as_deref(),
             sign: 1.0,
+            scale: None,
+            offset: 0.0,
         })
     }
 
@@ -234,13 +240,17 @@ impl<'a> Chooser<'a> {
                 without.push((found.key(), quantity.usual_unit(), found.column.into()));
                 continue;
             };
-            let factor = unit_factor(unit, quantity.dimension());
+            let factor = match found.scale {
+                Some(scale) => unit_factor(unit, Dimension::Voltage).map(|volts| volts * scale),
+                None => unit_factor(unit, quantity.dimension()),
+            };
             used.push(ColumnUse {
                 role: found.role,
                 number: found.column.number,
                 name: found.column.name.clone(),
                 unit: unit.to_owned(),
                 sign: found.sign,
+                offset: found.offset,
                 factor: factor.ok_or_else(|| self.unknown_unit(found.column, quantity, found.key(), unit))?,
             });
         }

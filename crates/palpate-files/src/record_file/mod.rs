@@ -18,7 +18,7 @@ mod snippet;
 
 pub use error::{ColumnError, NamedColumn, ReadError};
 pub use quantity::Quantity;
-pub(crate) use quantity::unit_factor;
+pub(crate) use quantity::{unit_factor, volts_are};
 pub use read::{RecordFile, read_record};
 
 use serde::Serialize;
@@ -59,4 +59,6 @@ pub struct ColumnUse {
     pub sign: f64,
     /// What turns the unit into SI.
     pub factor: f64,
+    /// What is then added, in SI, before the sign.
+    pub offset: f64,
 }
