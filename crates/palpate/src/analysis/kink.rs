@@ -69,11 +69,9 @@ fn fitted(times: &[f64], values: &[f64], at: f64, scale: f64, columns: usize) ->
     let mut normal = [[0.0; COLUMNS + 1]; COLUMNS];
     for (time, value) in times.iter().zip(values) {
         let row = row(*time);
-        for i in 0..columns {
-            for j in 0..columns {
-                normal[i][j] += row[i] * row[j];
-            }
-            normal[i][COLUMNS] += row[i] * (value - middle);
+        for (own, equation) in row.iter().zip(&mut normal).take(columns) {
+            equation.iter_mut().zip(row).take(columns).for_each(|(entry, other)| *entry += own * other);
+            equation[COLUMNS] += own * (value - middle);
         }
     }
     let solution = solved(normal, columns)?;

@@ -49,7 +49,7 @@ pub fn clock_skew(record: &Record, segmentation: &Segmentation) -> Option<ClockS
         let pairs = segmentation.segments.windows(2);
         pairs.filter_map(|pair| edge(record, displacement, (&pair[0], &pair[1]), share)).collect()
     };
-    let (whole, half) = (combined(edges(2))?, combined(edges(4)));
+    let (whole, half) = (combined(&edges(2))?, combined(&edges(4)));
     let systematic = half.map_or(0.0, |half| (half.skew - whole.skew).abs());
     Some(ClockSkew {
         standard_error: whole.standard_error.hypot(systematic),
@@ -90,7 +90,7 @@ fn edge(record: &Record, displacement: &[f64], (before, after): (&Segment, &Segm
 }
 
 /// The weighted mean of the edges that agree, with an error that their scatter may widen.
-fn combined(edges: Vec<Edge>) -> Option<ClockSkew> {
+fn combined(edges: &[Edge]) -> Option<ClockSkew> {
     if edges.len() < FEWEST {
         return None;
     }

@@ -27,7 +27,7 @@ impl Record {
         let (start, end) = (self.time[0], self.time[self.len() - 1]);
         // A last sample that rounding puts just beyond the end still counts.
         let intervals = ((end - start) * rate * (1.0 + 1e-12)).floor();
-        if !(rate > 0.0 && intervals >= 1.0 && intervals < MOST) {
+        if !(rate > 0.0 && (1.0..MOST).contains(&intervals)) {
             return Err(RecordError::Rate {
                 rate,
                 duration: end - start,

@@ -193,9 +193,9 @@ fn fitted(travel: &[f64], force: &[f64], columns: &dyn Fn(f64) -> [f64; 3]) -> O
     let mut right = [0.0; 3];
     for (x, y) in travel.iter().zip(force) {
         let row = columns(*x);
-        for i in 0..3 {
-            right[i] += row[i] * y;
-            (0..3).for_each(|j| normal[i][j] += row[i] * row[j]);
+        for ((own, equation), sum) in row.iter().zip(&mut normal).zip(&mut right) {
+            equation.iter_mut().zip(row).for_each(|(entry, other)| *entry += own * other);
+            *sum += own * y;
         }
     }
     if normal[2][2] == 0.0 {
