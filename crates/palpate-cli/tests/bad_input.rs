@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{file, palpate, ramp_and_hold, refused};
+use common::{done, file, palpate, ramp_and_hold, refused};
 use tempfile::tempdir;
 
 /// Expects `analyze` to refuse a record with all of `words` in the message.
@@ -43,8 +43,15 @@ fn cells_that_are_no_numbers() {
 #[test]
 fn time_that_does_not_rise() {
     let good = ramp_and_hold(5.0, 20.0);
-    refuses(good.replacen("\n2.0000,", "\n1.9500,", 1), &["line 42", "rise", "1.95"]);
-    refuses(good.replacen("\n2.0000,", "\n0.5000,", 1), &["line 42", "rise"]);
+    refuses(good.replacen("\n2.0000,", "\n0.5000,", 1), &["line 42", "rise", "0.5 s after 1.95 s"]);
+    // Two rows of one stamp are one, and that is said.
+    let folder = tempdir().unwrap();
+    let name = file(folder.path(), "record.csv", good.replacen("\n2.0000,", "\n1.9500,", 1));
+    let text = done(folder.path(), &["analyze", &name]);
+    assert!(text.contains("stamps_merged") && text.contains("1 of 121 rows"), "{text}");
+    let text = done(folder.path(), &["inspect", &name]);
+    assert!(text.contains("1 time stamps repeat the one before"), "{text}");
+    assert!(text.contains("done: time stamps: 1 of 121 rows merged"), "{text}");
 }
 
 #[test]

@@ -35,6 +35,10 @@ pub enum Dimension {
     Frequency,
     /// Rate of a force in N/s.
     ForceRate,
+    /// Way per force in m/N.
+    Compliance,
+    /// Voltage of a sensor in V.
+    Voltage,
 }
 
 impl Dimension {
@@ -51,6 +55,8 @@ impl Dimension {
             Self::Rate => "rate",
             Self::Frequency => "frequency",
             Self::ForceRate => "rate of force",
+            Self::Compliance => "compliance",
+            Self::Voltage => "voltage",
         }
     }
 
@@ -67,6 +73,8 @@ impl Dimension {
             Self::Rate => RATE,
             Self::Frequency => FREQUENCY,
             Self::ForceRate => FORCE_RATE,
+            Self::Compliance => COMPLIANCE,
+            Self::Voltage => VOLTAGE,
         }
     }
 
@@ -146,6 +154,23 @@ const FORCE_RATE: &[(&str, f64)] = &[
     ("nN/s", 1e-9),
     ("lbf/s", POUND_FORCE),
 ];
+const COMPLIANCE: &[(&str, f64)] = &[
+    ("m/N", 1.0),
+    ("mm/N", 1e-3),
+    ("µm/N", 1e-6),
+    ("um/N", 1e-6),
+    ("nm/N", 1e-9),
+    ("mm/kN", 1e-6),
+    ("µm/kN", 1e-9),
+    ("um/kN", 1e-9),
+    ("µm/mN", 1e-3),
+    ("um/mN", 1e-3),
+    ("nm/mN", 1e-6),
+    ("nm/nN", 1.0),
+    ("nm/pN", 1e3),
+    ("in/lbf", INCH / POUND_FORCE),
+];
+const VOLTAGE: &[(&str, f64)] = &[("V", 1.0), ("mV", 1e-3), ("µV", 1e-6), ("uV", 1e-6)];
 const FREQUENCY: &[(&str, f64)] = &[("Hz", 1.0), ("kHz", 1e3), ("/s", 1.0), ("1/s", 1.0)];
 
 /// Why a quantity could not be read.
@@ -196,6 +221,8 @@ fn example(dimension: Dimension) -> &'static str {
         Dimension::Rate => "2e4 /s",
         Dimension::Frequency => "100 Hz",
         Dimension::ForceRate => "10 N/s",
+        Dimension::Compliance => "0.5 um/N",
+        Dimension::Voltage => "2.5 V",
     }
 }
 
@@ -284,10 +311,16 @@ mod tests {
             ("-1.5 N", Dimension::Force, -1.5),
             ("1 lbf", Dimension::Force, 4.448_221_615_260_5),
             ("100 Hz", Dimension::Frequency, 100.0),
+            ("1 gf", Dimension::Force, 9.806_65e-3),
+            ("1 kgf", Dimension::Force, 9.806_65),
+            ("1 in", Dimension::Length, 0.0254),
+            ("0.5 um/N", Dimension::Compliance, 0.5e-6),
+            ("20 nm/nN", Dimension::Compliance, 20.0),
+            ("3 mV", Dimension::Voltage, 3e-3),
         ] {
             assert_eq!(parse(text, dimension), Ok(si), "{text}");
         }
-        assert!((parse("1 psi", Dimension::Pressure).unwrap_or(0.0) - 6_894.757_293).abs() < 1e-5);
+        assert!((parse("1 psi", Dimension::Pressure).unwrap_or(0.0) - 6_894.757_293_168_361).abs() < 1e-11);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use palpate::analysis::{AnalysisOptions, analyze, creep_holds};
+use palpate::analysis::{AnalysisOptions, analyze, corrected_record, creep_holds};
 use palpate::choose::{CompareOptions, RampChoice};
 use palpate::identify::Loss;
 use palpate::laws::Response;
@@ -128,7 +128,9 @@ fn one(
     let _working = Working::new(format!("comparing laws on {}", path.display()));
     let asked = &options.analysis;
     if arguments.creep {
-        let holds = creep_holds(&file.record, &asked.segment, &options.compared, asked.fit_until)
+        let corrected = corrected_record(&file.record, &asked.segment, &asked.corrections)
+            .map_err(|error| Failure::of_file(path, &error, Some(error.hint())))?;
+        let holds = creep_holds(&corrected, &asked.segment, &options.compared, asked.fit_until)
             .map_err(|error| Failure::of_file(path, &error, Some(error.hint().to_owned())))?;
         return Ok(ComparedRecord::of_creep(holds, input));
     }

@@ -1,7 +1,7 @@
 //! Choices that are written the same in a description and on a command line.
 
 use palpate::{
-    segment::{ContactChoice, HoldStart},
+    segment::{ContactChoice, HoldStart, TouchMethod},
     units::{self, Dimension, UnitError},
 };
 
@@ -29,7 +29,14 @@ impl ChoiceError {
 }
 
 const HOLD_START: &str = "\"peak\", \"settled\" or a time after the peak such as \"peak + 0.5 s\"";
-const TOUCH: &str = "\"auto\", \"as recorded\" or a displacement such as \"2.5 mm\"";
+const TOUCH: &str = "\"auto\", \"as recorded\", a rule (\"loading curve\", \"threshold\", \"two lines\", \"hertz\", \"ratio of variances\") or a displacement such as \"2.5 mm\"";
+const RULES: [TouchMethod; 5] = [
+    TouchMethod::LoadingCurve,
+    TouchMethod::Threshold,
+    TouchMethod::TwoLines,
+    TouchMethod::Hertz,
+    TouchMethod::VarianceRatio,
+];
 
 /// From where in a hold laws are fitted: `peak`, `settled`, or `peak + 0.5 s`.
 ///
@@ -64,7 +71,7 @@ pub fn parse_hold_start(text: &str) -> Result<HoldStart, ChoiceError> {
     }
 }
 
-/// How first touch is found: `auto`, `as recorded`, or at a displacement such as `2.5 mm`.
+/// How first touch is found: `auto`, `as recorded`, by one rule such as `threshold`, or at a displacement such as `2.5 mm`.
 ///
 /// # Errors
 /// [`ChoiceError`] for any other text.
@@ -80,15 +87,21 @@ pub fn parse_touch(text: &str) -> Result<ContactChoice, ChoiceError> {
     match text.trim() {
         "auto" => Ok(ContactChoice::Auto),
         "as recorded" | "as-recorded" => Ok(ContactChoice::AsRecorded),
-        other => match units::parse(other, Dimension::Length) {
-            Ok(metres) => Ok(ContactChoice::Displacement(metres)),
-            Err(source) => Err(ChoiceError {
+        other => match (rule(other), units::parse(other, Dimension::Length)) {
+            (Some(rule), _) => Ok(ContactChoice::By(rule)),
+            (None, Ok(metres)) => Ok(ContactChoice::Displacement(metres)),
+            (None, Err(source)) => Err(ChoiceError {
                 expected: TOUCH,
                 found: text.to_owned(),
                 source: Some(source).filter(|source| !matches!(source, UnitError::NotANumber { .. })),
             }),
         },
     }
+}
+
+/// A rule by its name, whose words may be joined by hyphens.
+fn rule(name: &str) -> Option<TouchMethod> {
+    RULES.into_iter().find(|rule| rule.name() == name.replace('-', " "))
 }
 
 #[cfg(test)]

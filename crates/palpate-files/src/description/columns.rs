@@ -65,6 +65,10 @@ pub struct ColumnChoice {
     pub column: Option<ColumnRef>,
     /// Its unit, one that its quantity takes.
     pub unit: Option<String>,
+    /// What a volt stands for, in SI, where the column holds volts.
+    pub scale: Option<f64>,
+    /// What is added to the scaled values, in SI, before the sign.
+    pub offset: f64,
     /// 1, or −1 where the file counts the other way round.
     pub sign: f64,
     /// A column that is added to it, where each finger of a gripper has its own.
@@ -134,6 +138,10 @@ struct ColumnTable {
     column: Option<ColumnRef>,
     /// Unit, such as "mm" or "N"; not needed where the header gives it.
     unit: Option<String>,
+    /// What a volt stands for, such as "12.5 N/V"; the unit is then "V" or "mV".
+    scale: Option<String>,
+    /// What is added to the values, such as "0.2 N": value × scale + offset, then the sign.
+    offset: Option<QuantityText>,
     /// -1 where the file counts loading as negative; 1 otherwise.
     #[schemars(extend("enum" = [1, -1]))]
     sign: Option<f64>,
@@ -150,6 +158,10 @@ struct DisplacementTable {
     column: Option<ColumnRef>,
     /// Unit, such as "mm"; not needed where the header gives it.
     unit: Option<String>,
+    /// What a volt stands for, such as "12.5 mm/V"; the unit is then "V" or "mV".
+    scale: Option<String>,
+    /// What is added to the values, such as "0.2 mm": value × scale + offset, then the sign.
+    offset: Option<QuantityText>,
     /// -1 where the file counts loading as negative, such as the opening of a gripper; 1 otherwise.
     #[schemars(extend("enum" = [1, -1]))]
     sign: Option<f64>,
@@ -186,6 +198,8 @@ impl ColumnsTable {
             Ok(ColumnChoice {
                 column: table.column,
                 unit: table.unit,
+                scale: None,
+                offset: 0.0,
                 sign: 1.0,
                 also: None,
                 doubled: false,
@@ -215,6 +229,8 @@ impl DisplacementTable {
         let plain = ColumnTable {
             column: self.column,
             unit: self.unit,
+            scale: self.scale,
+            offset: self.offset,
             sign: self.sign,
             clock: self.clock,
         };
@@ -230,7 +246,11 @@ impl DisplacementTable {
 impl ColumnTable {
     fn checked(self, source: &Source<'_>, quantity: Quantity) -> Result<ColumnChoice, DescriptionError> {
         let key = |rest: &str| format!("columns.{quantity}.{rest}");
-        check_unit(source, &key("unit"), self.unit.as_deref(), quantity.dimension())?;
+        let scale = self.scale.as_deref().map(|scale| checked_scale(source, &key("scale"), scale, quantity));
+        let scale = scale.transpose()?;
+        let measured = if scale.is_some() { Dimension::Voltage } else { quantity.dimension() };
+        check_unit(source, &key("unit"), self.unit.as_deref(), measured)?;
+        let offset = self.offset.as_ref().map(|offset| source.si(&key("offset"), offset, quantity.dimension()));
         let sign = self.sign.unwrap_or(1.0);
         let sign = source.number(&key("sign"), sign, "1 or -1", |sign| sign.abs() == 1.0)?;
         if let Some(clock) = &self.clock {
@@ -240,6 +260,8 @@ impl ColumnTable {
         Ok(ColumnChoice {
             column: self.column,
             unit: self.unit,
+            scale,
+            offset: offset.transpose()?.unwrap_or(0.0),
             sign,
             also: None,
             doubled: false,
@@ -250,6 +272,14 @@ impl ColumnTable {
             }),
         })
     }
+}
+
+fn checked_scale(source: &Source<'_>, key: &str, scale: &str, quantity: Quantity) -> Result<f64, DescriptionError> {
+    crate::record_file::volts_are(scale, quantity.dimension()).ok_or_else(|| {
+        let symbol = quantity.dimension().units()[0].0;
+        let expected = format!("a {quantity} per volt other than 0, such as \"12.5 {symbol}/V\"");
+        source.value(key, expected, &format!("\"{scale}\""))
+    })
 }
 
 fn check_unit(

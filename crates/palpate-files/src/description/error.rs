@@ -291,6 +291,8 @@ fn usual_unit(dimension: Dimension) -> &'static str {
         Dimension::Rate => "/s",
         Dimension::Frequency => "Hz",
         Dimension::ForceRate => "N/s",
+        Dimension::Compliance => "um/N",
+        Dimension::Voltage => "V",
     }
 }
 

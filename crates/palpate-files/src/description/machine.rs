@@ -72,7 +72,7 @@ const EXCLUSIVE: [(&str, &str); 3] = [
 /// The tables of a test laid over those of its machine, if it names one.
 pub(super) fn over_preset(source: &Source<'_>, own: TestTables) -> Result<TestTables, DescriptionError> {
     const KEY: &str = "machine.preset";
-    let Some(name) = own.machine.as_ref().map(|machine| machine.preset.as_str()) else {
+    let Some(name) = own.machine.preset.as_deref() else {
         return Ok(own);
     };
     let Some(machine) = MACHINES.iter().find(|machine| machine.name == name) else {

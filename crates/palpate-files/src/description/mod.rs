@@ -10,7 +10,7 @@
 //! | `test.rs`, `test_tables.rs`, `settings.rs` | a test: its record, its body, how to evaluate it ([`TestDescription`]) |
 //! | `machine.rs`, `machines/` | grippers and machines whose conventions are known ([`machines`]) |
 //! | `law.rs` | the law of a protocol, with its body a [`Model`] |
-//! | `specimen.rs`, `contact.rs`, `columns.rs` | tables that they are made of |
+//! | `specimen.rs`, `contact.rs`, `columns.rs`, `corrections.rs` | tables that they are made of |
 //! | `choices.rs` | choices that a command line offers too |
 //! | `sweep/` | numbers of a protocol replaced by many ([`Sweep`]) |
 //! | `numbers.rs` | the numbers of a protocol that can be replaced |
@@ -21,6 +21,7 @@
 mod choices;
 mod columns;
 mod contact;
+mod corrections;
 mod error;
 mod file;
 mod law;

@@ -6,13 +6,14 @@ use palpate::{
     analysis::{AnalysisOptions, Geometry, LayersChoice},
     contact::{Shape, Sides},
     identify::FitOptions,
+    record::CorrectionOptions,
     segment::{ContactChoice, SegmentOptions},
     simulate::Separation,
 };
 
 use super::{
     columns::ColumnChoices,
-    contact,
+    contact, corrections,
     error::DescriptionError,
     machine, settings,
     source::{self, Source},
@@ -49,6 +50,8 @@ pub struct TestDescription {
     pub separation: Separation,
     /// Into how many layers to cut the body in a simulation of the test, if it is said.
     pub layers: Option<LayersChoice>,
+    /// Corrections of the record that are asked for.
+    pub corrections: CorrectionOptions,
     /// How to find first touch.
     pub touch: ContactChoice,
     /// How to find the phases.
@@ -72,6 +75,7 @@ impl Default for TestDescription {
             geometry: None,
             separation: Separation::Bonded,
             layers: None,
+            corrections: CorrectionOptions::default(),
             touch: ContactChoice::AsRecorded,
             segment: SegmentOptions::default(),
             fit: FitOptions::default(),
@@ -89,6 +93,7 @@ impl TestDescription {
         AnalysisOptions {
             geometry: self.geometry.clone(),
             segment: self.segment,
+            corrections: self.corrections.clone(),
             touch: self.touch,
             separation: self.separation,
             layers: self.layers,
@@ -156,6 +161,7 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
         geometry,
         separation: contact::separation(contact.separation.unwrap_or(grows)),
         layers,
+        corrections: corrections::checked(&source, &tables.clock, &tables.force, &tables.machine)?,
         touch,
         segment: settings::segment(&source, &tables.phases)?,
         fit,

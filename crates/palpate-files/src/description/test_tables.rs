@@ -4,7 +4,12 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
-    columns::ColumnsTable, contact::SidesName, file::FileTable, quantity::QuantityText, specimen::SpecimenTable,
+    columns::ColumnsTable,
+    contact::SidesName,
+    corrections::{ClocksTable, ForceTable, MachineTable},
+    file::FileTable,
+    quantity::QuantityText,
+    specimen::SpecimenTable,
 };
 
 /// A squeeze-and-hold test: what its record holds, what was tested, and how to evaluate it. Every table may be
@@ -15,11 +20,16 @@ use super::{
 pub(super) struct TestTables {
     #[serde(default)]
     pub(super) about: AboutTable,
-    pub(super) machine: Option<MachineTable>,
     #[serde(default)]
     pub(super) file: FileTable,
     #[serde(default)]
     pub(super) columns: ColumnsTable,
+    #[serde(default)]
+    pub(super) clock: ClocksTable,
+    #[serde(default)]
+    pub(super) force: ForceTable,
+    #[serde(default)]
+    pub(super) machine: MachineTable,
     pub(super) specimen: Option<SpecimenTable>,
     #[serde(default)]
     pub(super) contact: ContactTable,
@@ -42,15 +52,6 @@ pub(super) struct AboutTable {
     pub(super) note: Option<String>,
 }
 
-/// The gripper or machine that the record comes from.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Machine")]
-pub(super) struct MachineTable {
-    /// Name of a gripper or machine whose conventions are known; what is said elsewhere in the description goes before.
-    pub(super) preset: String,
-}
-
 /// How the jaw meets the body.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -65,9 +66,9 @@ pub(super) struct ContactTable {
     pub(super) layers: Option<f64>,
     /// Thickness of one layer, instead of their number.
     pub(super) layer_thickness: Option<QuantityText>,
-    /// First touch: "auto" (found from the force), "as recorded" (displacement and force start at zero), or a
-    /// displacement such as "2.5 mm". "auto" for a ball, "as recorded" for other shapes, unless said otherwise.
-    #[schemars(extend("examples" = ["auto", "as recorded", "2.5 mm"]))]
+    /// First touch: "auto" (found from the force), "as recorded" (displacement and force start at zero), one rule
+    /// ("loading curve", "threshold", "two lines", "hertz", "ratio of variances"), or a displacement such as "2.5 mm". "auto" for a ball, "as recorded" for other shapes, unless said otherwise.
+    #[schemars(extend("examples" = ["auto", "as recorded", "threshold", "2.5 mm"]))]
     pub(super) touch: Option<String>,
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use palpate::contact::Shape;
+use palpate::{contact::Shape, units::Dimension};
 
 use super::{
     ColumnUse, Quantity, Role, epoch,
@@ -53,6 +53,11 @@ impl Found<'_> {
             name: self.column.name.clone(),
             unit,
             sign: self.choice.map_or(1.0, |choice| choice.sign),
+            // Of two columns that are added the sum is shifted, not each.
+            offset: match self.role {
+                Role::Added(_) => 0.0,
+                _ => self.choice.map_or(0.0, |choice| choice.offset),
+            },
             factor: if doubled { 2.0 * factor } else { factor },
             epoch: self.role.measured() == Quantity::Time && epoch::counts(self.column, factor),
         }
@@ -320,7 +325,11 @@ impl<'a> Chooser<'a> {
                 without.push((found.key(), quantity.usual_unit(), found.column.into()));
                 continue;
             };
-            let factor = unit_factor(unit, quantity.dimension());
+            let volts = found.choice.and_then(|choice| choice.scale);
+            let factor = match volts {
+                Some(scale) => unit_factor(unit, Dimension::Voltage).map(|volts| volts * scale),
+                None => unit_factor(unit, quantity.dimension()),
+            };
             let factor = factor.ok_or_else(|| self.unknown_unit(found.column, quantity, found.key(), unit))?;
             used.push(found.used(unit.to_owned(), factor));
         }

@@ -2,9 +2,9 @@
 
 use std::{fmt, path::PathBuf};
 
-use palpate::record::RecordError;
+use palpate::{record::RecordError, units::Dimension};
 
-use super::{Quantity, snippet};
+use super::{Quantity, quantity::unit_factor, snippet};
 use crate::{contents::ColumnInfo, description::ColumnRef, error::FileError};
 
 /// A column as messages name it: `column 3 (Force)`.
@@ -149,6 +149,13 @@ impl ColumnError {
                 let lines: Vec<String> = lines.collect();
                 format!("say it in a test description:\n{}", lines.join("\n"))
             }
+            Self::UnknownUnit {
+                quantity, column, unit, ..
+            } if unit_factor(unit, Dimension::Voltage).is_some() => format!(
+                "say what a volt stands for in a test description:\n[columns.{quantity}]\nunit = \"{unit}\"\nscale = \"1 {}/V\"\ncolumn = {}",
+                quantity.usual_unit(),
+                column.number
+            ),
             Self::UnknownUnit {
                 key, quantity, column, ..
             } => format!(

@@ -27,7 +27,7 @@ pub(crate) use epoch::WORD as EPOCH;
 pub use error::{ColumnError, NamedColumn, ReadError};
 pub use parts::{Tests, tests};
 pub use quantity::Quantity;
-pub(crate) use quantity::unit_factor;
+pub(crate) use quantity::{unit_factor, volts_are};
 pub(crate) use recognise::names_time;
 pub use read::{RecordFile, read_part, read_record};
 
@@ -73,4 +73,6 @@ pub struct ColumnUse {
     pub factor: f64,
     /// It is a time counted from 1970, to be counted from the first row on.
     pub epoch: bool,
+    /// What is then added, in SI, before the sign.
+    pub offset: f64,
 }

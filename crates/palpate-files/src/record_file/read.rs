@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use palpate::{
-    record::{Record, RecordError},
+    record::{RawColumns, Record, SignalReport},
     units,
 };
 
@@ -21,6 +21,8 @@ pub struct RecordFile {
     pub path: PathBuf,
     /// The record, in SI, loading positive.
     pub record: Record,
+    /// What its columns were like before anything was done to them; [`Record::corrections`] says what was.
+    pub signals: SignalReport,
     /// Which columns it was made of.
     pub columns: Vec<ColumnUse>,
     /// How the file is written.
@@ -108,7 +110,9 @@ pub fn read_part(
         to_si(&mut values, column, section);
         (column.role, values)
     });
-    let record = assemble(series.collect()).map_err(|source| ReadError::Record {
+    let raw = assemble(series.collect());
+    let signals = raw.report();
+    let record = raw.into_record().map_err(|source| ReadError::Record {
         path: path.to_owned(),
         part: about.name.clone(),
         line: source.row().and_then(|row| read.line_of(row)),
@@ -117,6 +121,7 @@ pub fn read_part(
     Ok(RecordFile {
         path: path.to_owned(),
         record,
+        signals,
         columns: plan.columns,
         start,
         format: contents.format(),
@@ -144,7 +149,12 @@ fn count_from_start(columns: &[ColumnUse], values: &mut [Vec<f64>]) -> Option<f6
 
 fn to_si(values: &mut [f64], column: &ColumnUse, section: f64) {
     for value in values {
-        *value = units::scale(*value, column.factor) * section;
+        *value = units::scale(*value, column.factor);
+        // Not always: 0 + -0 is 0.
+        if column.offset != 0.0 {
+            *value += column.offset;
+        }
+        *value *= section;
         // Not by a product with the sign, which makes -0 of 0.
         if column.sign < 0.0 && *value != 0.0 {
             *value = -*value;
@@ -152,8 +162,8 @@ fn to_si(values: &mut [f64], column: &ColumnUse, section: f64) {
     }
 }
 
-/// Makes a record of columns in SI.
-fn assemble(mut series: Vec<(Role, Vec<f64>)>) -> Result<Record, RecordError> {
+/// Tells columns in SI by their roles.
+fn assemble(mut series: Vec<(Role, Vec<f64>)>) -> RawColumns {
     let mut take = |wanted: &dyn Fn(Role) -> bool| {
         let index = series.iter().position(|(role, _)| wanted(*role))?;
         Some(series.swap_remove(index).1)
@@ -168,18 +178,18 @@ fn assemble(mut series: Vec<(Role, Vec<f64>)>) -> Result<Record, RecordError> {
     let load = take(&|role| matches!(role, Role::Values(quantity) if is_load(quantity)));
     let displacement_clock = take(&|role| role == Role::ClockOf(Quantity::Displacement));
     let load_clock = take(&|role| matches!(role, Role::ClockOf(quantity) if is_load(quantity)));
-    let load = load.unwrap_or_default();
-    let Some(displacement) = displacement else {
-        return Record::new(load_clock.or(time).unwrap_or_default(), None, load);
-    };
-    match (displacement_clock, load_clock, time) {
-        (None, None, time) => Record::new(time.unwrap_or_default(), Some(displacement), load),
+    let (time, force_time) = match (displacement_clock, load_clock, time) {
+        (_, load_clock, time) if displacement.is_none() => (load_clock.or(time), None),
         (Some(own), Some(other), _) | (Some(own), None, Some(other)) | (None, Some(other), Some(own)) => {
-            if own == other {
-                return Record::new(own, Some(displacement), load);
-            }
-            Record::from_two_clocks(&own, &displacement, &other, &load)
+            let differs = own != other;
+            (Some(own), differs.then_some(other))
         }
-        (Some(clock), None, None) | (None, Some(clock), None) => Record::new(clock, Some(displacement), load),
+        (own, other, time) => (own.or(other).or(time), None),
+    };
+    RawColumns {
+        time: time.unwrap_or_default(),
+        displacement,
+        force: load.unwrap_or_default(),
+        force_time,
     }
 }

@@ -1,5 +1,6 @@
 //! Descriptions in TOML: what they give, and what their errors say.
 
+mod corrections;
 mod examples;
 mod protocol;
 mod schema;

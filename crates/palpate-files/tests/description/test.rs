@@ -155,7 +155,7 @@ fn wrong_values_name_their_keys() {
         (
             "contact.touch = \"first\"",
             "contact.touch",
-            "\"auto\", \"as recorded\" or a displacement such as \"2.5 mm\", found \"first\"",
+            "\"ratio of variances\") or a displacement such as \"2.5 mm\", found \"first\"",
         ),
         ("contact.touch = \"2.5\"", "contact.touch", "expected a unit after the number"),
         ("contact.touch = 2.5", "contact.touch", "text in quotes, found 2.5"),

@@ -1,5 +1,6 @@
 //! Columns from a header or a description, and what is made of them.
 
+use palpate::record::{Clock, Correction};
 use palpate_files::record_file::{Quantity, Role};
 
 use crate::read;
@@ -67,6 +68,69 @@ fn clocks_of_their_own() {
     assert_eq!(same.record.len(), 4);
     let one = format!("{test}[columns.time]\ncolumn = 3\nunit = \"s\"");
     assert_eq!(read(table, &one).unwrap().record.time(), [0.5, 1.5, 2.5]);
+}
+
+#[test]
+fn what_was_wrong_with_the_stamps_is_mended_and_told() {
+    let mut table = String::from("Time (s),Displacement (mm),Force (N)\n");
+    let rows: Vec<u32> = (0..100)
+        .map(|i| {
+            if i == 60 {
+                61
+            } else if i == 61 {
+                60
+            } else {
+                i
+            }
+        })
+        .collect();
+    for row in rows {
+        table.push_str(&format!("{:.1},{},{}\n", 0.1 * f64::from(row), row.min(50), 100 - row));
+    }
+    table.push_str("9.9,50,3\n");
+    let file = read(&table, "").unwrap();
+    assert_eq!((file.rows, file.record.len(), file.record.force()[99]), (101, 100, 2.0));
+    assert!(file.record.time().windows(2).all(|pair| pair[1] > pair[0]));
+    let stamps = &file.signals.stamps;
+    assert_eq!((stamps.repeated, stamps.reversals.count, stamps.reversals.late_rows), (1, 1, 1));
+    let done = file.record.corrections();
+    assert!(
+        matches!(
+            done[0],
+            Correction::StampsSorted {
+                rows: 1,
+                clock: Clock::Common,
+                ..
+            }
+        ),
+        "{done:?}"
+    );
+    assert!(
+        matches!(
+            done[1],
+            Correction::StampsMerged {
+                rows: 101,
+                merged: 1,
+                identical: 0,
+                ..
+            }
+        ),
+        "{done:?}"
+    );
+    assert_eq!(read(PRESS, "").unwrap().record.corrections(), []);
+}
+
+#[test]
+fn volts_are_scaled_and_shifted() {
+    let table = "Time (s),Displacement (mm),Force (V)\n0,0,0.5\n1,5,-1\n2,5,2\n";
+    let test = "columns.force = { scale = \"12.5 N/V\", offset = \"0.25 N\", sign = -1 }";
+    let file = read(table, test).unwrap();
+    assert_eq!(file.record.force(), [-6.5, 12.25, -25.25]);
+    assert_eq!((file.columns[2].unit.as_str(), file.columns[2].factor, file.columns[2].offset), ("V", 12.5, 0.25));
+    let error = read(table, "").unwrap_err();
+    assert!(error.hint().unwrap().contains("[columns.force]\nunit = \"V\"\nscale = \"1 N/V\""), "{error}");
+    let offset = read(PRESS, "columns.force.offset = \"1 kN\"").unwrap();
+    assert_eq!(offset.record.force(), [1000.0, 1012.0, 1009.0]);
 }
 
 #[test]

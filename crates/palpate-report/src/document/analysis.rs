@@ -6,7 +6,9 @@ use palpate::segment::{After, Phase, RelaxationType};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{FitDocument, HoldComparisonDocument, SettingsDocument, Software};
+use super::{
+    CorrectionDocument, FitDocument, HoldComparisonDocument, SettingsDocument, SignalsDocument, Software, TouchDocument,
+};
 
 /// Where a record came from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
@@ -220,6 +222,12 @@ pub struct AnalysisDocument {
     pub input: Input,
     /// What the analysis ran with.
     pub settings: SettingsDocument,
+    /// What the columns are like.
+    pub signals: SignalsDocument,
+    /// What was done to the measured columns, in order.
+    pub corrections: Vec<CorrectionDocument>,
+    /// First touch.
+    pub first_touch: TouchDocument,
     /// All phases.
     pub segments: Vec<SegmentDocument>,
     /// All holds.
@@ -244,6 +252,9 @@ impl AnalysisDocument {
             schema: "palpate.analysis/1".to_owned(),
             input,
             settings: SettingsDocument::new(analysis),
+            signals: SignalsDocument::new(analysis),
+            corrections: analysis.record.corrections().iter().map(CorrectionDocument::from).collect(),
+            first_touch: TouchDocument::new(analysis),
             segments: segments(analysis),
             holds: analysis.holds.iter().map(hold).collect(),
             tables: tables(analysis),

@@ -5,6 +5,7 @@
 //! | `analysis.rs` | `palpate.analysis/1`, one analysed record |
 //! | `fit.rs` | one fit inside it |
 //! | `settings.rs` | the resolved settings |
+//! | `signals.rs` | the columns of a record, what was done to them, first touch |
 //! | `comparison.rs` | `palpate.comparison/1`, laws compared on the holds of records |
 //! | `reproduction.rs` | `palpate.reproduction/1`, the summary of the reproduced study |
 
@@ -13,6 +14,7 @@ mod comparison;
 mod fit;
 mod reproduction;
 mod settings;
+mod signals;
 
 pub(crate) use analysis::after_word;
 pub use analysis::{AnalysisDocument, FindingDocument, HoldDocument, Input, TableRow};
@@ -25,6 +27,9 @@ pub use fit::FitDocument;
 pub(crate) use fit::termination;
 pub use reproduction::{CheckDocument, ReproductionDocument};
 pub use settings::SettingsDocument;
+pub use signals::{
+    CorrectionDocument, SignalsDocument, SkewDocument, TouchDocument, TouchEstimateDocument, ValuesDocument,
+};
 
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -45,7 +45,7 @@ pub struct SettingsDocument {
     pub minimum_samples: usize,
     /// `peak`, `settled` or `peak + … s`.
     pub hold_start: String,
-    /// `auto`, `as recorded` or a displacement.
+    /// `auto`, `as recorded`, a rule or a displacement.
     pub touch: String,
     /// Force subtracted, N.
     pub force_zero_n: f64,
@@ -121,6 +121,7 @@ impl SettingsDocument {
                 ContactChoice::Auto => "auto".to_owned(),
                 ContactChoice::AsRecorded => "as recorded".to_owned(),
                 ContactChoice::Displacement(at) => format!("{at} m"),
+                ContactChoice::By(method) => method.name().to_owned(),
             },
             force_zero_n: analysis.contact.tare.force,
             displacement_zero_m: analysis.contact.tare.displacement,

@@ -1,6 +1,7 @@
 //! How an analysis was made: the settings that a page tells.
 
 use palpate::analysis::Analysis;
+use palpate::record::Correction;
 use palpate::segment::{ContactChoice, HoldStart};
 
 use crate::number::significant;
@@ -42,13 +43,22 @@ fn touch(analysis: &Analysis) -> Pairs {
         ContactChoice::Auto => "found from the force".to_owned(),
         ContactChoice::AsRecorded => "as recorded: force and displacement are counted from there".to_owned(),
         ContactChoice::Displacement(at) => format!("given, at {} mm", significant(1e3 * at, 4)),
+        ContactChoice::By(method) => format!("by the rule \"{}\"", method.name()),
     };
     let tare = &analysis.contact.tare;
-    vec![
+    let mut pairs = vec![
         ("First touch", chosen),
         ("Force zero", format!("{} N", number(tare.force))),
         ("Displacement zero", format!("{} mm", number(1e3 * tare.displacement))),
-    ]
+    ];
+    if let Some(spread) = analysis.contact.spread {
+        let rules = analysis.contact.estimates.len();
+        pairs.push(("Rules for first touch", format!("{rules}, which differ by {} mm", significant(1e3 * spread, 2))));
+    }
+    // The zeros stand above already.
+    let done = analysis.record.corrections().iter().filter(|done| !matches!(done, Correction::Tared(_)));
+    pairs.extend(done.map(|done| ("Correction", done.to_string())));
+    pairs
 }
 
 fn fits(analysis: &Analysis) -> Pairs {

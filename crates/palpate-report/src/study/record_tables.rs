@@ -2,6 +2,7 @@
 
 use palpate::analysis::{Analysis, HoldAnalysis, JointHolds, Signal};
 use palpate::identify::{Domain, Estimate, ExponentChoice, LatencyFit, Termination, TrendVerdict};
+use palpate::record::Correction;
 use palpate::segment::{After, RelaxationType};
 
 use super::{comparison_tables, findings};
@@ -59,6 +60,18 @@ fn free_exponent(fit: &LatencyFit) -> Cell {
         Termination::ExponentAtBound => Cell::missing(AT_EDGE),
         _ => estimate(fit.exponent),
     }
+}
+
+/// A correction in words, if neither a finding nor first touch tells of it.
+fn untold(done: &Correction) -> Option<String> {
+    let told = matches!(
+        done,
+        Correction::Tared(_)
+            | Correction::StampsSorted { .. }
+            | Correction::StampsMerged { .. }
+            | Correction::DropoutsReplaced { .. }
+    );
+    (!told).then(|| done.to_string())
 }
 
 /// One row a hold: where it lies, what the force does.
@@ -395,6 +408,10 @@ pub fn analysis_text(analysis: &Analysis, input: &Input) -> String {
     }
     if analysis.options.compare.is_some() {
         text.push_str(&comparison_tables::verdict_text(&ComparedRecord::of_analysis(analysis, input.clone())));
+    }
+    let asked: Vec<String> = analysis.record.corrections().iter().filter_map(untold).collect();
+    if !asked.is_empty() {
+        text.push_str(&format!("Corrections\n  {}\n\n", asked.join("\n  ")));
     }
     let findings = findings::plain(analysis);
     if !findings.is_empty() {

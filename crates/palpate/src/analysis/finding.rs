@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::TrendVerdict;
 use crate::laws::Law;
+use crate::record::Column;
+use crate::segment::TouchMethod;
 
 /// How much a finding matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -113,10 +115,51 @@ pub enum Finding {
         /// One in this many is fitted.
         every: usize,
     },
-    /// Dropouts of a single row in the displacement.
+    /// Dropouts of a single row.
     DropoutsRepaired {
+        /// Of which column.
+        column: Column,
         /// How many.
         count: usize,
+    },
+    /// Rows with one time stamp.
+    StampsMerged {
+        /// Rows before.
+        rows: usize,
+        /// Rows that went.
+        merged: usize,
+    },
+    /// Rows that were written too late.
+    StampsSorted {
+        /// How many.
+        rows: usize,
+        /// Largest step back of the time, s.
+        largest: f64,
+    },
+    /// Stretches without samples.
+    Gaps {
+        /// How many.
+        count: usize,
+        /// The longest, s.
+        longest: f64,
+        /// When it begins, s.
+        from: f64,
+    },
+    /// A column stands at its extreme value while the other goes on, or loses its noise there.
+    Saturated {
+        /// Which.
+        column: Column,
+        /// The value, m or N.
+        level: f64,
+        /// Rows at it.
+        rows: usize,
+    },
+    /// A column has few levels, and its noise does not smooth them.
+    Quantised {
+        /// Which.
+        column: Column,
+        /// Step between the levels, m or N.
+        step: f64,
     },
     /// No displacement column: phases come from the force.
     PhasesFromForce,
@@ -149,6 +192,25 @@ pub enum Finding {
         shift: f64,
         /// Half the interval of that equilibrium strain, as a share of it.
         interval: f64,
+    },
+    /// The rules for first touch disagree.
+    TouchSpread {
+        /// Robust standard deviation of what they say, m.
+        spread: f64,
+        /// Largest displacement since first touch, m.
+        squeeze: f64,
+    },
+    /// The rule that was asked for finds no first touch.
+    TouchNotFound {
+        /// The rule.
+        method: TouchMethod,
+    },
+    /// The force is stamped later than the displacement, or earlier.
+    ClocksSkewed {
+        /// How much later, s.
+        skew: f64,
+        /// Its standard error, s.
+        standard_error: f64,
     },
     /// A column seems to count the other way round.
     SignSuspicious {
@@ -203,11 +265,19 @@ impl Finding {
             Self::NoContactArea => "no_contact_area",
             Self::Thinned { .. } => "thinned",
             Self::DropoutsRepaired { .. } => "dropouts_repaired",
+            Self::StampsMerged { .. } => "stamps_merged",
+            Self::StampsSorted { .. } => "stamps_sorted",
+            Self::Gaps { .. } => "gaps",
+            Self::Saturated { .. } => "saturated",
+            Self::Quantised { .. } => "quantised",
             Self::PhasesFromForce => "phases_from_force",
             Self::AirTravel { .. } => "air_travel",
             Self::ModulusEstimated { .. } => "modulus_estimated",
             Self::ModulusMismatch { .. } => "modulus_mismatch",
             Self::TouchUncertain { .. } => "touch_uncertain",
+            Self::TouchSpread { .. } => "touch_spread",
+            Self::TouchNotFound { .. } => "touch_not_found",
+            Self::ClocksSkewed { .. } => "clocks_skewed",
             Self::SignSuspicious { .. } => "sign_suspicious",
             Self::RateCoefficientTrend { .. } => "rate_coefficient_trend",
             Self::OverlayPoor { .. } => "overlay_poor",
@@ -219,6 +289,8 @@ impl Finding {
     #[must_use]
     pub fn severity(&self) -> Severity {
         match self {
+            // Where most rows went the column of the time is likely not that of the samples.
+            Self::StampsMerged { rows, merged } if 2 * merged > *rows => Severity::Warning,
             Self::RateCoefficientTrend {
                 verdict: TrendVerdict::Undecided,
                 ..
@@ -241,14 +313,23 @@ impl Finding {
             | Self::SampledTooSlowly { .. }
             | Self::ContactOpen { .. }
             | Self::DropoutsRepaired { .. }
+            | Self::StampsMerged { .. }
+            | Self::StampsSorted { .. }
+            | Self::Gaps { .. }
+            | Self::Quantised { .. }
             | Self::ModulusMismatch { .. }
             | Self::TouchUncertain { .. }
+            | Self::TouchSpread { .. }
+            | Self::TouchNotFound { .. }
+            | Self::ClocksSkewed { .. }
             | Self::SignSuspicious { .. }
             | Self::RateCoefficientTrend { .. }
             | Self::OverlayPoor { .. } => Severity::Caution,
-            Self::RateAtBound { .. } | Self::TooFewSamples { .. } | Self::NoContactArea | Self::NoOverlay { .. } => {
-                Severity::Warning
-            }
+            Self::RateAtBound { .. }
+            | Self::TooFewSamples { .. }
+            | Self::NoContactArea
+            | Self::Saturated { .. }
+            | Self::NoOverlay { .. } => Severity::Warning,
         }
     }
 
@@ -314,8 +395,32 @@ impl Finding {
             Self::ContactOpen { until } => format!("there is no force until {until:.2} s"),
             Self::NoContactArea => "the contact has no area at this displacement".to_owned(),
             Self::Thinned { every } => format!("one sample in {every} is fitted"),
-            Self::DropoutsRepaired { count: 1 } => "one row of the displacement strays alone".to_owned(),
-            Self::DropoutsRepaired { count } => format!("{count} rows of the displacement stray alone"),
+            Self::DropoutsRepaired { column, count: 1 } => format!("one row of the {} strays alone", column.name()),
+            Self::DropoutsRepaired { column, count } => format!("{count} rows of the {} stray alone", column.name()),
+            Self::StampsMerged { rows, merged } => {
+                format!("{merged} of {rows} rows have the time stamp of the row before")
+            }
+            Self::StampsSorted { rows, largest } => {
+                format!("{rows} rows are stamped earlier than rows before them, by up to {largest:.4} s")
+            }
+            Self::Gaps {
+                count: 1,
+                longest,
+                from,
+            } => {
+                format!("there is no sample for {longest:.3} s from {from:.3} s on")
+            }
+            Self::Gaps { count, longest, from } => {
+                format!(
+                    "in {count} places samples are missing, the longest time for {longest:.3} s from {from:.3} s on"
+                )
+            }
+            Self::Saturated { column, level, rows } => {
+                format!("the {} stands at its extreme, {}, in {rows} rows", column.name(), measured(*column, *level))
+            }
+            Self::Quantised { column, step } => {
+                format!("the {} moves in steps of {}", column.name(), measured(*column, *step))
+            }
             Self::PhasesFromForce => "the record has no displacement".to_owned(),
             Self::AirTravel { travel } => format!("the jaw travels {:.3} mm before the force rises", 1e3 * travel),
             Self::ModulusEstimated {
@@ -340,6 +445,17 @@ impl Finding {
                 1e3 * error,
                 100.0 * shift,
                 100.0 * interval
+            ),
+            Self::TouchSpread { spread, squeeze } => format!(
+                "rules for first touch differ by {:.3} mm (robust standard deviation), the largest squeeze is {:.3} mm",
+                1e3 * spread,
+                1e3 * squeeze
+            ),
+            Self::TouchNotFound { method } => format!("the rule \"{}\" finds no first touch", method.name()),
+            Self::ClocksSkewed { skew, standard_error } => format!(
+                "where ramps start and end the force bends {} ms {} than the displacement",
+                with_error(1e3 * skew.abs(), Some(1e3 * standard_error)),
+                if *skew > 0.0 { "later" } else { "earlier" }
             ),
             Self::SignSuspicious { column, fall } if column == "force" => {
                 format!("the force falls by {fall:.3} N in the first ramp")
@@ -408,6 +524,17 @@ impl Finding {
             Self::DropoutsRepaired { .. } => {
                 "the encoder or the logger lost a value; the mean of the neighbours stands in its place"
             }
+            Self::StampsMerged { .. } => {
+                "the clock is coarser than the sampling, or rows were written twice; the mean of such rows stands in their place"
+            }
+            Self::StampsSorted { .. } => "a buffer of the logger came late; rows stand where their stamps say",
+            Self::Gaps { .. } => "the logger paused: a ramp inside a gap is a straight line, and a peak in it is lost",
+            Self::Saturated { .. } => {
+                "the sensor was at the end of its range: the true value went on, and peaks, fits and moduli that rest on it are wrong"
+            }
+            Self::Quantised { .. } => {
+                "changes of less than a step are not seen; late in a hold the relaxation is a staircase, whose errors are not those of noise"
+            }
             Self::PhasesFromForce => {
                 "phases come from the force; the edges of holds are less sure, and there are no strains"
             }
@@ -418,6 +545,13 @@ impl Finding {
             }
             Self::TouchUncertain { .. } => {
                 "intervals of strains take first touch as exact; between records these strains differ by more than they say"
+            }
+            Self::TouchSpread { .. } => {
+                "where the body begins hangs on the rule; strains, areas and a modulus from this record share that error"
+            }
+            Self::TouchNotFound { .. } => "first touch was found as with \"auto\" instead",
+            Self::ClocksSkewed { .. } => {
+                "two clocks or a filter: fits of holds do not mind, but forces in ramps stand at the wrong displacement"
             }
             Self::SignSuspicious { .. } => {
                 "palpate counts compression, or stretch of a strip, as positive in displacement and force; loading is taken for unloading otherwise"
@@ -471,7 +605,12 @@ impl Finding {
             Self::ContactOpen { .. } => "unload more slowly, or in smaller steps",
             Self::NoContactArea => "check first touch (touch = \"...\" in the test description)",
             Self::Thinned { .. } => "nothing",
-            Self::DropoutsRepaired { .. } => "check the logger",
+            Self::DropoutsRepaired { .. } | Self::StampsSorted { .. } | Self::Gaps { .. } => "check the logger",
+            Self::StampsMerged { .. } => {
+                "write the time with more digits; if most rows share stamps, check that this is the column of the time"
+            }
+            Self::Saturated { .. } => "repeat the test with a larger range, and do not use holds at that value",
+            Self::Quantised { .. } => "use a sensor with a smaller range, or write more digits",
             Self::PhasesFromForce => "record the displacement, or give the hold's limits",
             Self::AirTravel { .. } => "set touch in the test description if this is not where they met",
             Self::ModulusEstimated { .. } => "give the modulus in the test description if it is known",
@@ -481,6 +620,11 @@ impl Finding {
             Self::TouchUncertain { .. } => {
                 "sample the first ramp faster, or measure first touch and set touch in the test description"
             }
+            Self::TouchSpread { .. } => {
+                "sample the approach faster and start it in air, or set touch in the test description to a rule or a displacement"
+            }
+            Self::TouchNotFound { .. } => "choose another rule, or give the displacement of first touch",
+            Self::ClocksSkewed { .. } => "set skew = \"auto\" in [clock] of the test description to take it away",
             Self::SignSuspicious { .. } => {
                 "if the file counts the other way round, set sign = -1 for that column in the test description"
             }
@@ -494,6 +638,14 @@ impl Finding {
             }
             Self::NoOverlay { .. } => "check geometry, first touch and units",
         }
+    }
+}
+
+/// A value with its unit: mm or N.
+fn measured(column: Column, value: f64) -> String {
+    match column {
+        Column::Displacement => format!("{:.4} mm", 1e3 * value),
+        Column::Force => format!("{value:.4} N"),
     }
 }
 

@@ -12,21 +12,29 @@
 //! | `across.rs` | several holds: common exponent, trend of v, agreement of equilibrium strains |
 //! | `modulus.rs` | the modulus that the relaxed forces imply |
 //! | `overlay.rs` | the same displacement simulated with the fitted numbers |
+//! | `corrected.rs` | the corrections that were asked for, in order |
+//! | `skew.rs`, `kink.rs` | how much later the force is stamped than the displacement |
+//! | `signals.rs` | what the columns, and what was done to them, give cause to say |
 //! | `finding.rs` | what the user should know, in plain words |
 
 mod across;
 mod behaviour;
+mod corrected;
 mod creep;
 mod finding;
 mod hold;
 mod joint;
+mod kink;
 mod modulus;
 mod options;
 mod overlay;
 mod pipeline;
 mod rate_bias;
+mod signals;
+mod skew;
 
 pub use across::{Across, LevelAgreement, Trend};
+pub use corrected::corrected_record;
 pub use creep::{CreepError, CreepHold, creep_holds};
 pub use finding::{Finding, Severity};
 use hold::comparison_findings;
@@ -37,3 +45,4 @@ pub use options::{AnalysisOptions, Geometry, LayersChoice};
 pub use overlay::Overlay;
 pub use pipeline::{Analysis, AnalysisError, analyze};
 pub use rate_bias::RateBias;
+pub use skew::{ClockSkew, clock_skew};

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::choose::CompareOptions;
 use crate::contact::{Layers, LayersError, Shape, Sides};
 use crate::identify::FitOptions;
+use crate::record::CorrectionOptions;
 use crate::segment::{ContactChoice, SegmentOptions};
 use crate::simulate::Separation;
 use crate::strain::RateWindow;
@@ -51,6 +52,8 @@ pub struct AnalysisOptions {
     pub geometry: Option<Geometry>,
     /// How phases are found.
     pub segment: SegmentOptions,
+    /// Corrections of the record that nobody makes unasked.
+    pub corrections: CorrectionOptions,
     /// How first touch is found; as recorded unless asked otherwise, since a strip in grips has no first touch.
     pub touch: ContactChoice,
     /// Whether the jaw can pull (for the overlay).
@@ -78,6 +81,7 @@ impl Default for AnalysisOptions {
         Self {
             geometry: None,
             segment: SegmentOptions::default(),
+            corrections: CorrectionOptions::default(),
             touch: ContactChoice::AsRecorded,
             separation: Separation::default(),
             layers: None,

@@ -1,22 +1,29 @@
 //! The order of the steps.
 
 use super::across::{Across, across};
+use super::corrected::{Corrected, corrected};
 use super::hold::{HoldAnalysis, analyze_hold};
 use super::joint::changing_rate;
 use super::modulus::{ModulusSource, implied_modulus};
 use super::overlay::{Overlay, overlay};
+use super::signals::{correction_findings, signal_findings, skew_finding, touch_findings};
+use super::skew::ClockSkew;
 use super::{AnalysisOptions, Finding};
 use crate::contact::{Shape, Specimen, SpecimenError};
-use crate::record::Record;
-use crate::segment::{ContactPoint, Phase, Segment, SegmentError, Segmentation, find_contact_of, find_phases};
+use crate::record::{Record, RecordError, SignalReport};
+use crate::segment::{ContactPoint, Phase, Segment, SegmentError, Segmentation, find_contact_of};
 use crate::simulate::Separation;
 use crate::statistics::noise;
 
 /// The study of one record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Analysis {
-    /// The record after repair and tare.
+    /// The record after repair and tare; it knows what was done to it.
     pub record: Record,
+    /// What its columns were like before.
+    pub signals: SignalReport,
+    /// How much later its force was stamped than its displacement, where the ramps tell.
+    pub skew: Option<ClockSkew>,
     /// What was asked.
     pub options: AnalysisOptions,
     /// Phases and the thresholds that found them.
@@ -43,6 +50,9 @@ pub enum AnalysisError {
     /// No phases.
     #[error(transparent)]
     Segment(#[from] SegmentError),
+    /// A correction that cannot be made.
+    #[error(transparent)]
+    Correction(#[from] RecordError),
     /// Numbers that make no specimen.
     #[error(transparent)]
     Specimen(#[from] SpecimenError),
@@ -80,6 +90,7 @@ impl AnalysisError {
     pub fn hint(&self) -> String {
         match self {
             Self::Segment(error) => error.hint().to_owned(),
+            Self::Correction(error) => error.hint().to_owned(),
             Self::Specimen(_) => "check the geometry in the test description and its units".to_owned(),
             Self::BeyondBody { .. } => {
                 "check the unit of the displacement, the size of the body and squeezed_from; a strip pulled in grips needs separation = false"
@@ -96,15 +107,20 @@ const POOR: f64 = 0.05;
 /// Analyses a record: phases, first touch, strains, laws per hold and over holds, overlay.
 ///
 /// # Errors
-/// [`AnalysisError`] when the record has no hold, the geometry makes no specimen or is smaller than the travel of the jaw,
+/// [`AnalysisError`] when the record has no hold, a correction that was asked for cannot be made, the geometry makes no specimen or is smaller than the travel of the jaw,
 /// or no hold has anything to fit.
 pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, AnalysisError> {
-    let mut findings = Vec::new();
-    let (record, dropouts) = record.repaired();
-    if dropouts > 0 {
-        findings.push(Finding::DropoutsRepaired { count: dropouts });
-    }
-    let segmentation = find_phases(&record, &options.segment)?;
+    let signals = record.signals();
+    let (record, _) = record.repaired();
+    let Corrected {
+        record,
+        segmentation,
+        skew,
+    } = corrected(record, &options.segment, &options.corrections)?;
+    let segmentation = segmentation?;
+    let mut findings = correction_findings(&record);
+    findings.extend(signal_findings(&signals));
+    findings.extend(skew_finding(&record, skew.as_ref()));
     if !segmentation.settings.from_displacement {
         findings.push(Finding::PhasesFromForce);
     }
@@ -117,6 +133,7 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
         });
     }
     let record = record.tared(contact.tare);
+    findings.extend(touch_findings(&record, &contact, options.touch));
     beyond_body(&record, options)?;
     let (specimen, modulus_source) = specimen(&record, &segmentation, options, &mut findings)?;
     let holds: Vec<HoldAnalysis> = segmentation
@@ -140,6 +157,8 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
     }
     Ok(Analysis {
         record,
+        signals,
+        skew,
         options: options.clone(),
         segmentation,
         contact,

@@ -41,6 +41,52 @@ pub enum RecordError {
         /// Time found, s.
         found: f64,
     },
+    /// More than a slip of a buffer: nothing says which stamps are right.
+    #[error(
+        "time must rise from row to row, found a clock that goes back by up to {largest} s ({late} of {rows} rows are stamped earlier than one before them), first to {found} s after {before} s in row {row}"
+    )]
+    ClockGoesBack {
+        /// First row that is stamped earlier than one before it.
+        row: usize,
+        /// Time of the row before, s.
+        before: f64,
+        /// Time found, s.
+        found: f64,
+        /// Rows that are stamped earlier than a row before them.
+        late: usize,
+        /// All rows.
+        rows: usize,
+        /// The longest way back, s.
+        largest: f64,
+    },
+    /// A rate that makes too few rows, or too many.
+    #[error("{rate} samples a second of {duration} s make no record: expected 2 to 100000000 rows")]
+    Rate {
+        /// Samples a second, Hz.
+        rate: f64,
+        /// Length of the record, s.
+        duration: f64,
+    },
+    /// A force that the table of a machine's compliance does not reach.
+    #[error("the force must lie in the table of compliance, {low} to {high} N, found {found} N in row {row}")]
+    OutsideTable {
+        /// Which row.
+        row: usize,
+        /// The force, N.
+        found: f64,
+        /// Least force of the table, N.
+        low: f64,
+        /// Largest force of the table, N.
+        high: f64,
+    },
+    /// Nothing shows the force without contact.
+    #[error("a baseline needs {needed} samples without contact or more, found {found}")]
+    NoBaseline {
+        /// Least number.
+        needed: usize,
+        /// Samples found.
+        found: usize,
+    },
     /// A force that never changes says nothing about relaxation.
     #[error("the force is {found} N in all {rows} rows: nothing relaxes")]
     ConstantForce {
@@ -71,6 +117,7 @@ impl RecordError {
     pub fn row(&self) -> Option<usize> {
         match self {
             Self::NotFinite { row, .. } | Self::TimeNotRising { row, .. } => Some(*row),
+            Self::ClockGoesBack { row, .. } | Self::OutsideTable { row, .. } => Some(*row),
             _ => None,
         }
     }
@@ -85,6 +132,16 @@ impl RecordError {
             Self::TimeNotRising { .. } => {
                 "sort the rows by time and drop repeated stamps, or check that the time column is the right one"
             }
+            Self::ClockGoesBack { .. } => {
+                "where the clock starts again, several runs stand in one file: split it there; else check that the time column is the right one"
+            }
+            Self::Rate { .. } => "resample at a rate between that of the record and one sample a second or so",
+            Self::OutsideTable { .. } => {
+                "measure the compliance over all forces of the test, take the zero off the force, or give one number for it"
+            }
+            Self::NoBaseline { .. } => {
+                "say from when to when there is no contact (baseline_window), or leave the baseline out"
+            }
             Self::ConstantForce { .. } => {
                 "check that the force column is the right one and that the load cell was connected"
             }
@@ -96,19 +153,18 @@ impl RecordError {
 pub(super) fn lengths(time: &[f64], displacement: Option<&[f64]>, force: &[f64]) -> Result<(), RecordError> {
     let others = [("displacement", displacement.map_or(time.len(), <[f64]>::len)), ("force", force.len())];
     for (column, other) in others {
-        if other != time.len() {
-            return Err(RecordError::Lengths {
-                time: time.len(),
-                column,
-                other,
-            });
-        }
+        same_length(time.len(), column, other)?;
     }
-    if time.len() < 2 {
-        return Err(RecordError::TooShort {
-            needed: 2,
-            found: time.len(),
-        });
+    long_enough(time.len())
+}
+
+pub(super) fn same_length(time: usize, column: &'static str, other: usize) -> Result<(), RecordError> {
+    if other == time { Ok(()) } else { Err(RecordError::Lengths { time, column, other }) }
+}
+
+pub(super) fn long_enough(rows: usize) -> Result<(), RecordError> {
+    if rows < 2 {
+        return Err(RecordError::TooShort { needed: 2, found: rows });
     }
     Ok(())
 }

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::clocks::interpolated;
-use super::{Record, RecordError};
+use super::signals::{stray_rows, zero_rows};
+use super::{Column, Correction, Record, RecordError};
 
 /// What was subtracted from a record.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -19,11 +20,16 @@ impl Record {
     #[must_use]
     pub fn tared(&self, tare: Tare) -> Self {
         let shifted = |values: &[f64], zero: f64| values.iter().map(|value| value - zero).collect();
-        Self {
+        let record = Self {
             time: self.time.clone(),
             displacement: self.displacement().map(|values| shifted(values, tare.displacement)),
             force: shifted(&self.force, tare.force),
+            corrections: self.corrections.clone(),
+        };
+        if tare.force == 0.0 && (tare.displacement == 0.0 || self.displacement.is_none()) {
+            return record;
         }
+        record.followed_by(Correction::Tared(tare))
     }
 
     /// The record less an air run: the same motion without a body, which leaves the inertia of the fixture.
@@ -39,40 +45,65 @@ impl Record {
         let times: Vec<f64> = self.time.iter().map(|t| (t - start + air_start).min(air_end)).collect();
         let inertia = interpolated(&air.time, &air.force, &times);
         let force = self.force.iter().zip(inertia).map(|(force, inertia)| force - inertia).collect();
-        Self::new(self.time.clone(), self.displacement.clone(), force)
+        self.with_force(force, Correction::AirRunSubtracted)
     }
 
-    /// The record with single-row dropouts of the displacement replaced by the mean of their neighbours, and how many there were.
+    /// The record with another force and the correction that made it.
+    pub(super) fn with_force(&self, force: Vec<f64>, done: Correction) -> Result<Self, RecordError> {
+        let record = Self::new(self.time.clone(), self.displacement.clone(), force)?;
+        Ok(record.preceded_by(self.corrections.iter().cloned()).followed_by(done))
+    }
+
+    /// The record with another displacement and the correction that made it.
+    pub(super) fn with_displacement(&self, displacement: Vec<f64>, done: Correction) -> Result<Self, RecordError> {
+        let record = Self::new(self.time.clone(), Some(displacement), self.force.clone())?;
+        Ok(record.preceded_by(self.corrections.iter().cloned()).followed_by(done))
+    }
+
+    /// The record with single-row dropouts replaced by the mean of their neighbours, and how many there were.
+    ///
+    /// In the displacement these are rows that stray alone. In the force they must be zero exactly as well: a force may
+    /// jump by itself, and a peak of one row is no dropout.
     #[must_use]
     pub fn repaired(&self) -> (Self, usize) {
-        let Some(displacement) = self.displacement() else {
-            return (self.clone(), 0);
-        };
-        let (repaired, count) = without_dropouts(displacement);
-        let record = Self {
-            time: self.time.clone(),
-            displacement: Some(repaired),
-            force: self.force.clone(),
-        };
-        (record, count)
+        let mut record = self.clone();
+        let mut total = 0;
+        if let Some(displacement) = self.displacement() {
+            let (repaired, count) = without_dropouts(displacement);
+            if count > 0 {
+                record.displacement = Some(repaired);
+                record = record.followed_by(Correction::DropoutsReplaced {
+                    column: Column::Displacement,
+                    count,
+                });
+            }
+            total += count;
+        }
+        let zeros = zero_rows(&self.force);
+        if !zeros.is_empty() {
+            record.force = replaced(&self.force, &zeros);
+            record = record.followed_by(Correction::DropoutsReplaced {
+                column: Column::Force,
+                count: zeros.len(),
+            });
+        }
+        (record, total + zeros.len())
     }
 }
 
-/// A single row that leaves and comes back is a dropout if it strays over 5 % of the range while its neighbours
-/// differ from each other by less than a tenth of that stray.
+/// The values with rows that stray alone replaced by the mean of their neighbours, and how many there were.
 pub(super) fn without_dropouts(values: &[f64]) -> (Vec<f64>, usize) {
+    let rows = stray_rows(values);
+    (replaced(values, &rows), rows.len())
+}
+
+/// Values whose `rows` (rising, none at an end) are the mean of their neighbours.
+fn replaced(values: &[f64], rows: &[usize]) -> Vec<f64> {
     let mut repaired = values.to_vec();
-    let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
-    let mut count = 0;
-    for i in 1..values.len().saturating_sub(1) {
-        let (before, here, after) = (repaired[i - 1], values[i], values[i + 1]);
-        let stray = (here - before).abs().min((here - after).abs());
-        if stray > 0.05 * (high - low) && (after - before).abs() < 0.1 * stray {
-            repaired[i] = 0.5 * (before + after);
-            count += 1;
-        }
+    for &row in rows {
+        repaired[row] = 0.5 * (repaired[row - 1] + repaired[row + 1]);
     }
-    (repaired, count)
+    repaired
 }
 
 #[cfg(test)]
@@ -87,6 +118,40 @@ mod tests {
         assert_eq!(repaired, vec![0.0, 2.0, 4.0, 4.0, 4.0, 4.0, 4.0, 4.0]);
         let ramp: Vec<f64> = (0..20).map(f64::from).collect();
         assert_eq!(without_dropouts(&ramp).1, 0);
+    }
+
+    #[test]
+    fn a_force_of_one_row_is_a_dropout_only_if_it_is_zero() {
+        let time: Vec<f64> = (0..9).map(f64::from).collect();
+        let record = |force: [f64; 9]| Record::new(time.clone(), None, force.to_vec()).unwrap();
+        let (repaired, count) = record([0.0, 2.0, 4.0, 3.9, 0.0, 3.7, 3.6, 3.5, 3.5]).repaired();
+        assert_eq!((count, repaired.force()[4]), (1, 3.8));
+        let done = Correction::DropoutsReplaced {
+            column: Column::Force,
+            count: 1,
+        };
+        assert_eq!(repaired.corrections(), [done]);
+        let peak = record([0.0, 1.0, 1.0, 3.0, 1.05, 1.0, 1.0, 1.0, 1.0]);
+        assert_eq!(peak.repaired(), (peak.clone(), 0));
+    }
+
+    #[test]
+    fn a_record_carries_what_was_done_to_it() {
+        let record = Record::new(vec![0.0, 1.0, 2.0], Some(vec![1.0, 2.0, 2.0]), vec![0.1, 1.3, 0.9]).unwrap();
+        let tare = Tare {
+            force: 0.1,
+            displacement: 1.0,
+        };
+        let tared = record.tared(tare);
+        assert_eq!((record.corrections(), tared.corrections()), ([].as_slice(), [Correction::Tared(tare)].as_slice()));
+        let air = Record::new(vec![0.0, 1.0, 2.0], None, vec![0.0, 0.1, 0.0]).unwrap();
+        let net = tared.without_air_run(&air).unwrap();
+        assert_eq!(net.corrections(), [Correction::Tared(tare), Correction::AirRunSubtracted]);
+        let nothing = Tare {
+            force: 0.0,
+            displacement: 0.0,
+        };
+        assert!(record.tared(nothing).corrections().is_empty());
     }
 
     #[test]

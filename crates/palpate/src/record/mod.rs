@@ -2,16 +2,38 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `raw.rs` | columns as a file holds them, before anything is checked |
+//! | `signals/` | what such columns are like: stamps, gaps, strays, saturation, rounding |
+//! | `mend.rs` | time stamps that repeat or step back |
 //! | `checks.rs` | what every record must be: finite, of equal lengths, time rising |
 //! | `clocks.rs` | force and displacement stamped by different clocks brought onto one |
 //! | `corrections.rs` | tare, air-run subtraction, repair of single-row dropouts |
+//! | `resample.rs` | other sample times |
+//! | `baseline.rs` | the force without contact |
+//! | `compliance.rs` | what the machine gives way, the deflection of a cantilever |
+//! | `asked.rs` | corrections that somebody may ask for |
+//! | `correction.rs` | what was done, as a list that goes with the record |
 
+mod asked;
+mod baseline;
 mod checks;
 mod clocks;
+mod compliance;
+mod correction;
 mod corrections;
+mod mend;
+mod raw;
+mod resample;
+mod signals;
 
+pub use asked::{CorrectionOptions, SkewChoice};
+pub use baseline::Baseline;
 pub use checks::RecordError;
+pub use compliance::{Compliance, ComplianceError, ComplianceTable};
+pub use correction::{Clock, Column, Correction};
 pub use corrections::Tare;
+pub use raw::RawColumns;
+pub use signals::{Gaps, Reversals, SampleInterval, Saturation, SignalReport, Stamps, Strays, Values, rounding_step};
 
 /// A force record of a squeeze-and-hold test; SI units, the direction of loading is positive.
 ///
@@ -22,6 +44,7 @@ pub struct Record {
     time: Vec<f64>,
     displacement: Option<Vec<f64>>,
     force: Vec<f64>,
+    corrections: Vec<Correction>,
 }
 
 impl Record {
@@ -51,7 +74,32 @@ impl Record {
             time,
             displacement,
             force,
+            corrections: Vec::new(),
         })
+    }
+
+    /// What was done to the measured columns, in order. Empty for a record that is as it was measured.
+    #[must_use]
+    pub fn corrections(&self) -> &[Correction] {
+        &self.corrections
+    }
+
+    /// What the columns are like now; [`RawColumns::report`] says what they were like before.
+    #[must_use]
+    pub fn signals(&self) -> SignalReport {
+        SignalReport::of(&self.time, self.displacement(), &self.force)
+    }
+
+    /// The record with corrections that were made before those it knows of.
+    fn preceded_by(mut self, earlier: impl IntoIterator<Item = Correction>) -> Self {
+        self.corrections.splice(0..0, earlier);
+        self
+    }
+
+    /// The record after one more correction.
+    fn followed_by(mut self, done: Correction) -> Self {
+        self.corrections.push(done);
+        self
     }
 
     /// Number of samples.

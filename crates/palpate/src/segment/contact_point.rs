@@ -1,5 +1,9 @@
 //! First touch: where displacement and force begin to count.
 
+mod estimators;
+
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use super::loading_curve::{LoadingCurve, Touch};
@@ -7,6 +11,9 @@ use super::{Phase, Segment, Segmentation};
 use crate::contact::{Shape, Sides};
 use crate::record::{Record, Tare};
 use crate::statistics::{mean, median, noise};
+
+use estimators::Approach;
+pub use estimators::{TouchEstimate, TouchMethod};
 
 /// How to find first touch.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -20,10 +27,12 @@ pub enum ContactChoice {
     AsRecorded,
     /// At this displacement, m.
     Displacement(f64),
+    /// Where this rule finds it; as [`Auto`](Self::Auto) where the rule finds nothing.
+    By(TouchMethod),
 }
 
 /// First touch.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ContactPoint {
     /// Sample of first touch, if it lies in the record.
     pub sample: Option<usize>,
@@ -33,6 +42,12 @@ pub struct ContactPoint {
     pub displacement_error: Option<f64>,
     /// Travel through air before it, m.
     pub air_travel: f64,
+    /// The rule that found it; `None` where it was given, or is the foot of the ramp.
+    pub method: Option<TouchMethod>,
+    /// What every rule says that finds something; empty where first touch was given.
+    pub estimates: Vec<TouchEstimate>,
+    /// Robust standard deviation of the estimates, m, if there are three or more: how much first touch hangs on the rule.
+    pub spread: Option<f64>,
 }
 
 impl ContactPoint {
@@ -46,8 +61,32 @@ impl ContactPoint {
             },
             displacement_error: None,
             air_travel: 0.0,
+            method: None,
+            estimates: Vec::new(),
+            spread: None,
         }
     }
+
+    /// The same with what the rules say.
+    fn with_estimates(self, estimates: Vec<TouchEstimate>) -> Self {
+        let spread = spread(&estimates);
+        Self {
+            estimates,
+            spread,
+            ..self
+        }
+    }
+}
+
+/// 1.4826 times the median distance from the median; `None` for fewer than three.
+fn spread(estimates: &[TouchEstimate]) -> Option<f64> {
+    if estimates.len() < 3 {
+        return None;
+    }
+    let mut places: Vec<f64> = estimates.iter().map(|estimate| estimate.displacement).collect();
+    let middle = median(&mut places);
+    places.iter_mut().for_each(|place| *place = (*place - middle).abs());
+    Some(1.482_6 * median(&mut places))
 }
 
 /// Share of the first ramp's travel below which a late force is no travel through air.
@@ -87,9 +126,35 @@ pub fn find_contact_of(
         (ContactChoice::AsRecorded, _) | (_, None) => as_recorded,
         (ContactChoice::Displacement(displacement), _) => ContactPoint::at(record, displacement),
         (ContactChoice::Auto, Some(displacement)) => {
-            automatic(record, displacement, segmentation, body).unwrap_or(as_recorded)
+            automatic(record, displacement, segmentation, body, None).unwrap_or(as_recorded)
+        }
+        (ContactChoice::By(method), Some(displacement)) => {
+            automatic(record, displacement, segmentation, body, Some(method)).unwrap_or(as_recorded)
         }
     }
+}
+
+/// Samples without contact: those before the force leaves its baseline in the first ramp, and, if the jaw travelled through
+/// air before that, those at the end of the record in which it is back there. Empty where no ramp lifts the force.
+#[must_use]
+pub fn free_samples(record: &Record, segmentation: &Segmentation) -> Vec<Range<usize>> {
+    let Some((ramp, _)) = first_rise(record, segmentation) else {
+        return Vec::new();
+    };
+    let foot = ramp.start.saturating_sub(1);
+    let displacement = record.displacement().unwrap_or_else(|| record.time());
+    let approach = Approach::of(displacement, record.force(), 0..foot, foot..ramp.end);
+    let touch = approach.and_then(|approach| approach.estimate(TouchMethod::Threshold));
+    let (Some(touch), Some(displacement)) = (touch, record.displacement()) else {
+        return std::iter::once(0..foot + 1).collect();
+    };
+    // Half the way there is surely free; a threshold is passed only after touch.
+    let (from, travel) = (displacement[foot], touch.displacement - displacement[foot]);
+    let level = from + 0.5 * travel;
+    let before = first_beyond(displacement, foot, ramp, level).max(foot + 1);
+    let after = displacement.iter().rposition(|d| *d > level).map_or(record.len(), |last| last + 1);
+    let left = travel > AIR * (displacement[ramp.end - 1] - from) && after > ramp.end && after < record.len();
+    [Some(0..before), left.then_some(after..record.len())].into_iter().flatten().collect()
 }
 
 /// The first loading ramp in which the force rises, and the hold right behind it.
@@ -112,6 +177,7 @@ fn automatic(
     displacement: &[f64],
     segmentation: &Segmentation,
     body: Option<(&Shape, Sides)>,
+    asked: Option<TouchMethod>,
 ) -> Option<ContactPoint> {
     let (ramp, hold) = first_rise(record, segmentation)?;
     let force = record.force();
@@ -125,33 +191,86 @@ fn automatic(
     if travel <= 0.0 {
         return None;
     }
-    let touch = hold
+    let curve = hold
         .and_then(|hold| LoadingCurve::of(record, displacement, ramp, hold, body))
         .and_then(|curve| curve.touch(from, travel))
+        .filter(|touch| (from..displacement[ramp.end - 1]).contains(&touch.displacement));
+    let estimates = estimates(record, displacement, foot, ramp, curve.as_ref());
+    let by_rule = estimates.iter().find(|estimate| Some(estimate.method) == asked).copied();
+    if let Some(estimate) = by_rule {
+        let point = behind_air(record, displacement, (foot, ramp), from, estimate.displacement, None);
+        let found = ContactPoint {
+            method: Some(estimate.method),
+            ..point
+        };
+        let found = found.with_estimates(estimates);
+        return Some(ContactPoint {
+            displacement_error: found.spread,
+            ..found
+        });
+    }
+    let touch = curve
         .filter(|touch| touch.displacement - from > (SURE * touch.error).max(AIR * travel))
-        .filter(|touch| touch.displacement < displacement[ramp.end - 1])
         .filter(|touch| is_flat(force, displacement, foot, touch, ramp));
     let Some(touch) = touch else {
-        return Some(ContactPoint {
+        let point = ContactPoint {
             sample: Some(foot),
             tare: Tare {
                 force: if has_rest { median(&mut force[..=foot].to_vec()) } else { 0.0 },
                 displacement: from,
             },
-            displacement_error: None,
-            air_travel: 0.0,
-        });
+            ..ContactPoint::at(record, from)
+        };
+        return Some(point.with_estimates(estimates));
     };
-    let clear = first_beyond(displacement, foot, ramp, 0.5 * (from + touch.displacement));
-    Some(ContactPoint {
-        sample: Some(first_beyond(displacement, foot, ramp, touch.displacement)),
-        tare: Tare {
-            force: if clear >= BASELINE { median(&mut force[..clear].to_vec()) } else { touch.base },
-            displacement: touch.displacement,
-        },
+    let point = ContactPoint {
         displacement_error: Some(touch.error),
-        air_travel: touch.displacement - from,
-    })
+        method: Some(TouchMethod::LoadingCurve),
+        ..behind_air(record, displacement, (foot, ramp), from, touch.displacement, Some(touch.base))
+    };
+    Some(point.with_estimates(estimates))
+}
+
+/// First touch at `touch` after travel from `from`; the zero of the force is its median over half the way, or `base`.
+fn behind_air(
+    record: &Record,
+    displacement: &[f64],
+    (foot, ramp): (usize, &Segment),
+    from: f64,
+    touch: f64,
+    base: Option<f64>,
+) -> ContactPoint {
+    let force = record.force();
+    let clear = first_beyond(displacement, foot, ramp, 0.5 * (from + touch)).max(foot);
+    let before = median(&mut force[..clear.max(1)].to_vec());
+    ContactPoint {
+        sample: Some(first_beyond(displacement, foot, ramp, touch)),
+        tare: Tare {
+            force: if clear >= BASELINE { before } else { base.unwrap_or(before) },
+            displacement: touch,
+        },
+        air_travel: (touch - from).max(0.0),
+        ..ContactPoint::at(record, touch)
+    }
+}
+
+/// What every rule says that finds something.
+fn estimates(
+    record: &Record,
+    displacement: &[f64],
+    foot: usize,
+    ramp: &Segment,
+    curve: Option<&Touch>,
+) -> Vec<TouchEstimate> {
+    const RULES: [TouchMethod; 4] =
+        [TouchMethod::Threshold, TouchMethod::TwoLines, TouchMethod::Hertz, TouchMethod::VarianceRatio];
+    let curve = curve.map(|touch| TouchEstimate {
+        method: TouchMethod::LoadingCurve,
+        displacement: touch.displacement,
+    });
+    let approach = Approach::of(displacement, record.force(), 0..foot, foot..ramp.end);
+    let rules = approach.iter().flat_map(|approach| RULES.into_iter().filter_map(|rule| approach.estimate(rule)));
+    curve.into_iter().chain(rules).collect()
 }
 
 fn first_beyond(displacement: &[f64], foot: usize, ramp: &Segment, level: f64) -> usize {

@@ -351,7 +351,7 @@ impl ExcessCurve {
 }
 
 /// The solution of three linear equations with a symmetric matrix; `None` if it is singular.
-fn solved(matrix: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
+pub(super) fn solved(matrix: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
     // Scaled to a unit diagonal: the parameters have different units.
     let scale = [0, 1, 2].map(|i: usize| matrix[i][i].sqrt());
     if scale.iter().any(|s| !(s.is_finite() && *s > 0.0)) {

@@ -10,6 +10,7 @@
 //! | `ramps.rs` | what lies between the holds: loading and unloading |
 //! | `relaxation.rs` | Type I or Type II, and how sure |
 //! | `contact_point.rs` | first touch and the zero of the force |
+//! | `contact_point/estimators.rs` | first touch by rules that know no law |
 //! | `loading_curve.rs` | the force of a first ramp under the law, and where it begins |
 
 mod contact_point;
@@ -22,7 +23,9 @@ mod ramps;
 mod relaxation;
 mod slope;
 
-pub use contact_point::{ContactChoice, ContactPoint, find_contact, find_contact_of};
+pub use contact_point::{
+    ContactChoice, ContactPoint, TouchEstimate, TouchMethod, find_contact, find_contact_of, free_samples,
+};
 pub use options::{HoldStart, SegmentOptions, SegmentSettings};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
 

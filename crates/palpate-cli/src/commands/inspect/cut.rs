@@ -2,8 +2,11 @@
 
 use std::fmt::Write as _;
 
-use palpate::record::Record;
-use palpate::segment::{Phase, SegmentError, SegmentOptions, Segmentation, find_contact_of, find_phases};
+use palpate::analysis::corrected_record;
+use palpate::record::{Record, RecordError};
+use palpate::segment::{
+    Phase, SegmentError, SegmentOptions, Segmentation, TouchEstimate, find_contact_of, find_phases,
+};
 use palpate_files::description::TestDescription;
 use palpate_report::figure::Figure;
 use palpate_report::number::significant;
@@ -14,23 +17,23 @@ use palpate_report::table::{Cell, Table, TableColumn};
 /// Characters of a sparkline: what fits into a narrow terminal beside its label.
 const WIDTH: usize = 64;
 
-/// A record and its phases, or why there are none.
+/// A corrected record and its phases, or why there are none.
 pub(super) struct Cut {
     record: Record,
-    dropouts: usize,
+    /// How many corrections were made before.
+    before: usize,
     found: Result<Segmentation, SegmentError>,
 }
 
 impl Cut {
-    pub(super) fn of(record: &Record, test: Option<&TestDescription>) -> Self {
-        let (record, dropouts) = record.repaired();
+    /// Corrects a record as the description asks and cuts it.
+    pub(super) fn of(record: &Record, test: Option<&TestDescription>) -> Result<Self, RecordError> {
         let options = test.map_or_else(SegmentOptions::default, |test| test.segment);
+        let asked = test.map(|test| test.corrections.clone()).unwrap_or_default();
+        let before = record.corrections().len();
+        let record = corrected_record(record, &options, &asked)?;
         let found = find_phases(&record, &options);
-        Self {
-            record,
-            dropouts,
-            found,
-        }
+        Ok(Self { record, before, found })
     }
 
     /// The phases, if there are any.
@@ -115,8 +118,12 @@ impl Cut {
             ]);
         }
         let mut out = table.to_plain_text();
-        if self.dropouts > 0 {
-            let _ = writeln!(out, "\n{} rows of the displacement stray alone (dropouts)", self.dropouts);
+        let done = &record.corrections()[self.before..];
+        if !done.is_empty() {
+            out.push('\n');
+        }
+        for done in done {
+            let _ = writeln!(out, "done: {done}");
         }
         out
     }
@@ -126,14 +133,28 @@ impl Cut {
         let body = test.and_then(|test| test.geometry.as_ref()).map(|geometry| (&geometry.shape, geometry.sides));
         let choice = test.map(|test| test.touch).unwrap_or_default();
         let contact = find_contact_of(&self.record, segmentation, body, choice);
-        if contact.air_travel <= 0.0 {
-            return String::new();
+        let mut out = String::new();
+        if contact.air_travel > 0.0 {
+            let _ = writeln!(
+                out,
+                "\nfirst touch at {} mm, after {} mm through air; force zero {} N",
+                significant(1e3 * contact.tare.displacement, 4),
+                significant(1e3 * contact.air_travel, 3),
+                significant(contact.tare.force, 3)
+            );
         }
-        format!(
-            "\nfirst touch at {} mm, after {} mm through air; force zero {} N\n",
-            significant(1e3 * contact.tare.displacement, 4),
-            significant(1e3 * contact.air_travel, 3),
-            significant(contact.tare.force, 3)
-        )
+        if let Some(spread) = contact.spread {
+            let rule = |rule: &TouchEstimate| {
+                format!("{} {} mm", rule.method.name(), significant(1e3 * rule.displacement, 4))
+            };
+            let rules: Vec<String> = contact.estimates.iter().map(rule).collect();
+            let _ = writeln!(
+                out,
+                "rules for first touch differ by {} mm: {}",
+                significant(1e3 * spread, 2),
+                rules.join(", ")
+            );
+        }
+        out
     }
 }

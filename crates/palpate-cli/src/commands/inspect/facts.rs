@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use palpate::record::{Stamps, Values};
 use palpate_files::contents::Part;
 use palpate_files::record_file::{RecordFile, Role};
 use palpate_report::number::significant;
@@ -83,10 +84,59 @@ pub(super) fn signal_facts(file: &RecordFile) -> String {
         let _ = writeln!(out, "displacement {} mm", range(displacement, 1e3));
     }
     let _ = writeln!(out, "force {} N", range(record.force(), 1.0));
+    stamp_facts(&mut out, &file.signals.stamps, "");
+    if let Some(stamps) = &file.signals.force_stamps {
+        stamp_facts(&mut out, stamps, " of the force");
+    }
+    if let Some(displacement) = &file.signals.displacement {
+        value_facts(&mut out, "displacement", displacement, (1e3, "mm"));
+    }
+    value_facts(&mut out, "force", &file.signals.force, (1.0, "N"));
+    for done in record.corrections() {
+        let _ = writeln!(out, "done: {done}");
+    }
     if let Some(footer) = &file.ignored.footer {
         let _ =
             writeln!(out, "{} lines after the data were passed over, from line {}", footer.lines, footer.first_line);
     }
     out.push('\n');
     out
+}
+
+/// What is wrong with time stamps; nothing where all is well.
+fn stamp_facts(out: &mut String, stamps: &Stamps, of: &str) {
+    if let Some(interval) = stamps.interval.filter(|interval| interval.irregular) {
+        let (low, high) = (significant(interval.p5, 3), significant(interval.p95, 3));
+        let _ = writeln!(out, "irregular time stamps{of}: nine in ten intervals last {low} to {high} s");
+    }
+    if let Some(from) = stamps.gaps.from {
+        let (count, longest) = (stamps.gaps.count, significant(stamps.gaps.longest, 3));
+        let _ = writeln!(
+            out,
+            "{count} gaps in the time stamps{of}, the longest {longest} s from {} s",
+            significant(from, 5)
+        );
+    }
+    if stamps.repeated > 0 {
+        let _ = writeln!(out, "{} time stamps{of} repeat the one before", stamps.repeated);
+    }
+    if stamps.reversals.count > 0 {
+        let largest = significant(stamps.reversals.largest, 3);
+        let _ = writeln!(out, "{} time stamps{of} step back, by up to {largest} s", stamps.reversals.count);
+    }
+}
+
+/// Rounding, saturation and strays of a column.
+fn value_facts(out: &mut String, name: &str, values: &Values, (scale, unit): (f64, &str)) {
+    if let Some(step) = values.step {
+        let _ = writeln!(out, "{name} in steps of {} {unit}", significant(scale * step, 3));
+    }
+    if let Some(saturation) = values.saturation.filter(|saturation| saturation.clipped) {
+        let level = significant(scale * saturation.level, 4);
+        let _ = writeln!(out, "{name} clipped at {level} {unit} in {} rows", saturation.rows);
+    }
+    if values.strays.count > 0 {
+        let zeros = values.strays.zeros;
+        let _ = writeln!(out, "{} rows of the {name} stray alone, {zeros} of them to zero", values.strays.count);
+    }
 }

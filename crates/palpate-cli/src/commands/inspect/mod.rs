@@ -93,7 +93,8 @@ fn one_test(opened: &Opened<'_>, part: usize, arguments: &InspectArguments, out:
     out.push_str(&columns_table(about, Some(&file)).to_plain_text());
     out.push('\n');
     out.push_str(&signal_facts(&file));
-    let cut = Cut::of(&file.record, test);
+    let cut = Cut::of(&file.record, test)
+        .map_err(|error| Failure::of_file(&file.path, &error, Some(error.hint().to_owned())))?;
     out.push_str(&cut.told(test));
     if let Some(path) = &arguments.write_test {
         let found = cut.found().map(|segmentation| (&file, segmentation));

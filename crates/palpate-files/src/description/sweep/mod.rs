@@ -125,6 +125,8 @@ fn suffix(dimension: Option<Dimension>) -> &'static str {
         Some(Dimension::Rate) => "_per_s",
         Some(Dimension::Frequency) => "_hz",
         Some(Dimension::ForceRate) => "_n_per_s",
+        Some(Dimension::Compliance) => "_m_per_n",
+        Some(Dimension::Voltage) => "_v",
     }
 }
 

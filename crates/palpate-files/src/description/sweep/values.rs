@@ -149,6 +149,8 @@ fn forms(dimension: Option<Dimension>) -> String {
         Some(Dimension::Rate) => ("1e3..1e6 /s", "1e3, 1e4, 1e5 /s"),
         Some(Dimension::Frequency) => ("10..1000 Hz", "10, 100, 1000 Hz"),
         Some(Dimension::ForceRate) => ("1..20 N/s", "1, 5, 20 N/s"),
+        Some(Dimension::Compliance) => ("0.1..10 um/N", "0.1, 1, 10 um/N"),
+        Some(Dimension::Voltage) => ("1..10 V", "1, 5, 10 V"),
     };
     format!("values such as \"linear {ends}, 9\", \"log {ends}, 50\" or \"{list}\"")
 }

@@ -1,0 +1,70 @@
+//! The corrections that were asked for, in order.
+
+use super::AnalysisError;
+use super::skew::{ClockSkew, clock_skew};
+use crate::record::{CorrectionOptions, Record, SkewChoice};
+use crate::segment::{SegmentError, SegmentOptions, Segmentation, find_phases, free_samples};
+
+/// A record with its phases, ready for first touch.
+pub(super) struct Corrected {
+    pub(super) record: Record,
+    /// Why there are none is for those to say who need them: a record of creep has none that come from its displacement.
+    pub(super) segmentation: Result<Segmentation, SegmentError>,
+    /// What the clocks of the record as it came seem to differ by.
+    pub(super) skew: Option<ClockSkew>,
+}
+
+/// Skew, sample times, baseline, compliance: in this order, since each needs those before it.
+///
+/// Edges are sought where they were measured; a baseline is the force where nothing touches; and a table of compliance
+/// counts forces from zero.
+pub(super) fn corrected(
+    record: Record,
+    segment: &SegmentOptions,
+    asked: &CorrectionOptions,
+) -> Result<Corrected, AnalysisError> {
+    let segmentation = find_phases(&record, segment);
+    let skew = segmentation.as_ref().ok().and_then(|segmentation| clock_skew(&record, segmentation));
+    let mut next = record;
+    let before = next.corrections().len();
+    match (asked.skew, skew.filter(ClockSkew::is_seen)) {
+        (SkewChoice::Given(given), _) => next = next.without_skew(given, None)?,
+        (SkewChoice::Auto, Some(seen)) => next = next.without_skew(seen.skew, Some(seen.standard_error))?,
+        (SkewChoice::Auto, None) | (SkewChoice::Report, _) => {}
+    }
+    if let Some(rate) = asked.resample {
+        next = next.resampled(rate)?;
+    }
+    if let Some(baseline) = asked.baseline {
+        let free = match asked.baseline_window {
+            Some((from, until)) => {
+                let index = |at: f64| next.time().partition_point(|time| *time < at);
+                std::iter::once(index(from)..index(until)).collect()
+            }
+            None => free_samples(&next, &find_phases(&next, segment)?),
+        };
+        next = next.without_baseline(baseline, &free)?;
+    }
+    if let Some(compliance) = &asked.compliance {
+        next = next.without_compliance(compliance)?;
+    }
+    let segmentation = if next.corrections().len() == before { segmentation } else { find_phases(&next, segment) };
+    Ok(Corrected {
+        record: next,
+        segmentation,
+        skew,
+    })
+}
+
+/// The record with single-row dropouts repaired and the corrections made that are asked for, as [`analyze`](super::analyze)
+/// makes them; for those who need the record alone.
+///
+/// # Errors
+/// [`AnalysisError`] for a correction that cannot be made, and where a baseline is to be found but the phases are not.
+pub fn corrected_record(
+    record: &Record,
+    segment: &SegmentOptions,
+    asked: &CorrectionOptions,
+) -> Result<Record, AnalysisError> {
+    Ok(corrected(record.repaired().0, segment, asked)?.record)
+}

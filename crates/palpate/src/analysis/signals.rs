@@ -1,0 +1,86 @@
+//! What the columns of a record, and what was done to them, give cause to say.
+
+use super::{ClockSkew, Finding};
+use crate::record::{Column, Correction, Record, SignalReport, Values};
+use crate::segment::{ContactChoice, ContactPoint};
+
+/// Levels between the smallest and the largest value below which rounding is worth a word.
+const FEW_LEVELS: f64 = 200.0;
+/// Share of rows that repeat the row before above which noise does not smooth the rounding.
+const REPEATING: f64 = 0.5;
+
+/// Findings on the columns as they are.
+pub(super) fn signal_findings(signals: &SignalReport) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let gaps = signals.stamps.gaps;
+    if let Some(from) = gaps.from {
+        findings.push(Finding::Gaps {
+            count: gaps.count,
+            longest: gaps.longest,
+            from,
+        });
+    }
+    let displacement = signals.displacement.as_ref().map(|values| (Column::Displacement, values));
+    for (column, values) in displacement.into_iter().chain([(Column::Force, &signals.force)]) {
+        findings.extend(clipped(column, values));
+        findings.extend(rounded(column, values));
+    }
+    findings
+}
+
+fn clipped(column: Column, values: &Values) -> Option<Finding> {
+    let saturation = values.saturation.filter(|saturation| saturation.clipped)?;
+    Some(Finding::Saturated {
+        column,
+        level: saturation.level,
+        rows: saturation.rows,
+    })
+}
+
+/// A jaw stands still in a hold; only a force that repeats itself is rounded too coarsely.
+fn rounded(column: Column, values: &Values) -> Option<Finding> {
+    let step = values.step.filter(|step| values.range < FEW_LEVELS * step)?;
+    (column == Column::Force && values.repeating > REPEATING).then_some(Finding::Quantised { column, step })
+}
+
+/// Findings on what was done to a record before its analysis and in it.
+pub(super) fn correction_findings(record: &Record) -> Vec<Finding> {
+    let finding = |done: &Correction| match *done {
+        Correction::StampsSorted { rows, largest, .. } => Some(Finding::StampsSorted { rows, largest }),
+        Correction::StampsMerged { rows, merged, .. } => Some(Finding::StampsMerged { rows, merged }),
+        Correction::DropoutsReplaced { column, count } => Some(Finding::DropoutsRepaired { column, count }),
+        _ => None,
+    };
+    record.corrections().iter().filter_map(finding).collect()
+}
+
+/// A finding if the clocks differ by more than their error and a tenth of a sample interval, and nothing was done about it.
+pub(super) fn skew_finding(record: &Record, skew: Option<&ClockSkew>) -> Option<Finding> {
+    let skew = skew.filter(|skew| skew.is_seen() && skew.skew.abs() > 0.1 * record.sample_interval())?;
+    let removed = |done: &Correction| matches!(done, Correction::SkewRemoved { .. });
+    if record.corrections().iter().any(removed) {
+        return None;
+    }
+    Some(Finding::ClocksSkewed {
+        skew: skew.skew,
+        standard_error: skew.standard_error,
+    })
+}
+
+/// Share of the largest squeeze by which the rules for first touch may differ.
+const SPREAD: f64 = 0.05;
+
+/// Findings on first touch in a record that counts from it.
+pub(super) fn touch_findings(record: &Record, contact: &ContactPoint, asked: ContactChoice) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let squeeze = record.displacement().into_iter().flatten().fold(0.0f64, |most, d| most.max(*d));
+    if let Some(spread) = contact.spread.filter(|spread| *spread > SPREAD * squeeze) {
+        findings.push(Finding::TouchSpread { spread, squeeze });
+    }
+    if let ContactChoice::By(method) = asked
+        && contact.method != Some(method)
+    {
+        findings.push(Finding::TouchNotFound { method });
+    }
+    findings
+}

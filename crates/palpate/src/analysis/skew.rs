@@ -1,0 +1,117 @@
+//! How much later the force is stamped than the displacement, from the edges of the ramps.
+
+use serde::{Deserialize, Serialize};
+
+use super::kink::{Kink, kink};
+use crate::record::Record;
+use crate::segment::{Phase, Segment, Segmentation};
+use crate::statistics::median;
+
+/// By how much the stamps of the force lag behind those of the displacement.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ClockSkew {
+    /// Time that the force is stamped too late, s; negative where it is too early.
+    pub skew: f64,
+    /// Its standard error, s: scatter between the edges, and what half the stretch around each edge would say instead.
+    pub standard_error: f64,
+    /// Starts and ends of ramps that it rests on.
+    pub edges: usize,
+}
+
+impl ClockSkew {
+    /// Whether it stands out from its error.
+    #[must_use]
+    pub fn is_seen(&self) -> bool {
+        self.skew.abs() > SEEN * self.standard_error
+    }
+}
+
+/// Standard errors from which on a skew is believed.
+const SEEN: f64 = 3.0;
+/// Fewest edges whose scatter says anything.
+const FEWEST: usize = 3;
+/// Samples on each side of an edge: fewest and most.
+const SAMPLES: (usize, usize) = (5, 50);
+
+/// How much later the force is stamped than the displacement. `None` where fewer than three edges of ramps show in both, or
+/// where they disagree by more than the stretches around them are long.
+///
+/// Where a ramp starts or ends the displacement bends, and the force of any body bends in the same moment, however it
+/// relaxes before and after. Both kinks are found by least squares between samples: straight pieces for the displacement;
+/// for the force a straight piece and a parabola, over half a ramp at most. The mean of their differences is weighted by
+/// their errors; edges far from the median are left out (first touch is no kink of the force at the start of its ramp).
+/// A relaxation much faster than half a ramp pulls the kink to earlier times; the difference to the same over half the
+/// stretch tells how far, and is part of the error.
+#[must_use]
+pub fn clock_skew(record: &Record, segmentation: &Segmentation) -> Option<ClockSkew> {
+    let displacement = record.displacement()?;
+    let edges = |share: usize| -> Vec<Edge> {
+        let pairs = segmentation.segments.windows(2);
+        pairs.filter_map(|pair| edge(record, displacement, (&pair[0], &pair[1]), share)).collect()
+    };
+    let (whole, half) = (combined(&edges(2))?, combined(&edges(4)));
+    let systematic = half.map_or(0.0, |half| (half.skew - whole.skew).abs());
+    Some(ClockSkew {
+        standard_error: whole.standard_error.hypot(systematic),
+        ..whole
+    })
+}
+
+/// Force less displacement at one edge.
+struct Edge {
+    difference: f64,
+    error: f64,
+    /// Length of the stretch on one side, s.
+    stretch: f64,
+}
+
+/// The kinks at the border of two segments, one of which moves; over a share of 1/`part` of the shorter one.
+fn edge(record: &Record, displacement: &[f64], (before, after): (&Segment, &Segment), part: usize) -> Option<Edge> {
+    let moves = |segment: &Segment| matches!(segment.phase, Phase::Loading | Phase::Unloading);
+    if moves(before) == moves(after) {
+        return None;
+    }
+    let side = (before.len().min(after.len()) / part).min(SAMPLES.1);
+    if side < SAMPLES.0 {
+        return None;
+    }
+    let range = after.start - side..after.start + side;
+    let times = &record.time()[range.clone()];
+    let border = record.time()[after.start];
+    let stretch = 0.5 * (times[times.len() - 1] - times[0]);
+    let jaw = kink(times, &displacement[range.clone()], border, 0.6 * stretch, false)?;
+    let force = kink(times, &record.force()[range], border, 0.6 * stretch, true)?;
+    let stands_out = |kink: &Kink| kink.bend.abs() * stretch > 4.0 * kink.noise;
+    (stands_out(&jaw) && stands_out(&force)).then_some(Edge {
+        difference: force.time - jaw.time,
+        error: force.error.hypot(jaw.error),
+        stretch,
+    })
+}
+
+/// The weighted mean of the edges that agree, with an error that their scatter may widen.
+fn combined(edges: &[Edge]) -> Option<ClockSkew> {
+    if edges.len() < FEWEST {
+        return None;
+    }
+    let middle = median(&mut edges.iter().map(|edge| edge.difference).collect::<Vec<_>>());
+    let away = |edge: &Edge| (edge.difference - middle).abs();
+    let deviation = 1.482_6 * median(&mut edges.iter().map(away).collect::<Vec<_>>());
+    let stretch = median(&mut edges.iter().map(|edge| edge.stretch).collect::<Vec<_>>());
+    let kept: Vec<&Edge> = edges.iter().filter(|edge| away(edge) <= 3.5 * deviation.max(edge.error)).collect();
+    if kept.len() < FEWEST || deviation > stretch {
+        return None;
+    }
+    // No edge may count for more than its like: what formal errors leave out is common to all.
+    let typical = median(&mut kept.iter().map(|edge| edge.error).collect::<Vec<_>>());
+    let weight = |edge: &Edge| 1.0 / edge.error.max(0.5 * typical).max(f64::MIN_POSITIVE.sqrt()).powi(2);
+    let sum: f64 = kept.iter().map(|edge| weight(edge)).sum();
+    let skew = kept.iter().map(|edge| weight(edge) * edge.difference).sum::<f64>() / sum;
+    let scatter = kept.iter().map(|edge| weight(edge) * (edge.difference - skew).powi(2)).sum::<f64>();
+    let reduced = scatter / (kept.len() - 1) as f64;
+    Some(ClockSkew {
+        skew,
+        standard_error: (reduced.max(1.0) / sum).sqrt(),
+        edges: kept.len(),
+    })
+}

@@ -1,0 +1,34 @@
+//! Corrections that somebody may ask for.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Baseline, Compliance};
+
+/// What to do about a force that is stamped later than the displacement.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SkewChoice {
+    /// Say how much it seems to be.
+    #[default]
+    Report,
+    /// Take away what it seems to be, if that stands out from its error.
+    Auto,
+    /// The force is stamped this much too late, s.
+    Given(f64),
+}
+
+/// Corrections of a record that nobody makes unasked; they are made in this order.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct CorrectionOptions {
+    /// Stamps of the force.
+    pub skew: SkewChoice,
+    /// Samples a second, Hz.
+    pub resample: Option<f64>,
+    /// The force without contact.
+    pub baseline: Option<Baseline>,
+    /// From when to when there is no contact, s as in the record; found where it is not given.
+    pub baseline_window: Option<(f64, f64)>,
+    /// What the machine gives way.
+    pub compliance: Option<Compliance>,
+}

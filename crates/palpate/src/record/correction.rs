@@ -1,0 +1,181 @@
+//! What was done to a record, as a list that goes with it.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Baseline, Tare};
+
+/// Which time stamps are meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Clock {
+    /// Those of all columns.
+    Common,
+    /// Those of the displacement alone.
+    Displacement,
+    /// Those of the force alone.
+    Force,
+}
+
+/// A measured column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Column {
+    /// Displacement.
+    Displacement,
+    /// Force.
+    Force,
+}
+
+impl Column {
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Displacement => "displacement",
+            Self::Force => "force",
+        }
+    }
+}
+
+/// Something that was done to a record; SI units. A record carries all of them in the order in which they were done.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "correction", rename_all = "snake_case")]
+pub enum Correction {
+    /// Rows that were stamped earlier than a row before them were put where their stamps say.
+    StampsSorted {
+        /// Whose stamps.
+        clock: Clock,
+        /// Rows that were moved.
+        rows: usize,
+        /// Largest step back, s.
+        largest: f64,
+    },
+    /// Rows with equal stamps were merged into one with the means of their values.
+    StampsMerged {
+        /// Whose stamps.
+        clock: Clock,
+        /// Rows before.
+        rows: usize,
+        /// Rows that went.
+        merged: usize,
+        /// Those among them that repeated a row in all their values.
+        identical: usize,
+    },
+    /// Displacement and force with clocks of their own were brought onto the times of the force.
+    ClocksJoined {
+        /// Samples of the force outside the times of the displacement, left out.
+        left_out: usize,
+    },
+    /// Single rows that had strayed were replaced by the mean of their neighbours.
+    DropoutsReplaced {
+        /// Of which column.
+        column: Column,
+        /// How many.
+        count: usize,
+    },
+    /// Force and displacement are counted from first touch.
+    Tared(Tare),
+    /// The force of the same motion without a body was subtracted.
+    AirRunSubtracted,
+    /// The force was stamped later than the displacement; its values were moved to where they belong.
+    SkewRemoved {
+        /// How much later, s.
+        skew: f64,
+        /// Standard error, s, where it was estimated.
+        standard_error: Option<f64>,
+        /// Rows at the ends for which no force is left.
+        left_out: usize,
+    },
+    /// Sample times were made even.
+    Resampled {
+        /// Samples a second, Hz.
+        rate: f64,
+        /// Median time between samples before, s.
+        interval: f64,
+        /// Whether values were averaged (else interpolated).
+        averaged: bool,
+    },
+    /// What the machine gave way was taken off the displacement.
+    ComplianceRemoved {
+        /// The largest deflection, m.
+        largest: f64,
+    },
+    /// The recorded deflection of the sensor was taken off the displacement.
+    DeflectionRemoved {
+        /// The largest deflection, m.
+        largest: f64,
+    },
+    /// The force without contact was taken off.
+    BaselineRemoved {
+        /// Of which kind.
+        baseline: Baseline,
+        /// Force at the first sample, N.
+        level: f64,
+        /// Its slope, N/s.
+        slope: f64,
+        /// Samples that it rests on.
+        samples: usize,
+    },
+}
+
+impl fmt::Display for Clock {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Common => "time stamps",
+            Self::Displacement => "time stamps of the displacement",
+            Self::Force => "time stamps of the force",
+        })
+    }
+}
+
+impl fmt::Display for Correction {
+    /// In words, with lengths in mm and µm.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::StampsSorted { clock, rows, largest } => {
+                write!(f, "{clock}: {rows} rows that came up to {largest:.4} s late put into order")
+            }
+            Self::StampsMerged {
+                clock,
+                rows,
+                merged,
+                identical,
+            } => write!(
+                f,
+                "{clock}: {merged} of {rows} rows merged with the row of the same stamp ({identical} identical)"
+            ),
+            Self::ClocksJoined { left_out } => {
+                write!(f, "displacement interpolated at the times of the force, {left_out} rows of the force left out")
+            }
+            Self::DropoutsReplaced { column, count } => {
+                write!(f, "{count} single rows of the {} replaced by the mean of their neighbours", column.name())
+            }
+            Self::Tared(tare) => {
+                write!(f, "counted from first touch at {:.4} mm and {:.4} N", 1e3 * tare.displacement, tare.force)
+            }
+            Self::AirRunSubtracted => f.write_str("force of the air run subtracted"),
+            Self::SkewRemoved { skew, left_out, .. } => {
+                write!(f, "force moved by {:.2} ms towards earlier times, {left_out} rows left out", 1e3 * skew)
+            }
+            Self::Resampled {
+                rate,
+                interval,
+                averaged,
+            } => {
+                let how = if *averaged { "means" } else { "straight lines" };
+                write!(f, "resampled to {rate} Hz by {how}, from a sample every {interval:.4e} s")
+            }
+            Self::ComplianceRemoved { largest } => {
+                write!(f, "up to {:.3} µm of the machine taken off the displacement", 1e6 * largest)
+            }
+            Self::DeflectionRemoved { largest } => {
+                write!(f, "up to {:.3} µm of deflection taken off the displacement", 1e6 * largest)
+            }
+            Self::BaselineRemoved {
+                level, slope, samples, ..
+            } => write!(f, "baseline of {level:.4e} N and {slope:.2e} N/s taken off the force ({samples} samples)"),
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! What the columns of a record are like before anything is done to them.
+//!
+//! | file | what |
+//! |---|---|
+//! | `stamps.rs` | time stamps: interval, gaps, repeated and reversed ones |
+//! | `values.rs` | measured columns: rows that stray alone, saturation, rounding |
+//! | `rounding.rs` | the step that values were rounded to |
+
+mod rounding;
+mod stamps;
+mod values;
+
+pub use rounding::rounding_step;
+pub use stamps::{Gaps, Reversals, SampleInterval, Stamps};
+pub use values::{Saturation, Strays, Values};
+pub(super) use values::{stray_rows, zero_rows};
+
+use serde::{Deserialize, Serialize};
+
+/// What the columns of a record are like; SI units.
+///
+/// An examination looks and says; it changes nothing. It takes columns that would make no record, too: values that are
+/// not finite are counted and passed over.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SignalReport {
+    /// Time stamps: of all columns, or of the displacement where the force has its own.
+    pub stamps: Stamps,
+    /// Time stamps of the force alone, where it has its own.
+    pub force_stamps: Option<Stamps>,
+    /// The displacement, m.
+    pub displacement: Option<Values>,
+    /// The force, N.
+    pub force: Values,
+}
+
+impl SignalReport {
+    /// Examines columns with one clock: time in s, displacement in m, force in N.
+    ///
+    /// Costs O(n log n) for n rows.
+    ///
+    /// ```
+    /// use palpate::record::SignalReport;
+    /// let time: Vec<f64> = [0, 1, 2, 3, 3, 9, 10, 11].map(f64::from).to_vec();
+    /// let report = SignalReport::of(&time, None, &[0.0, 0.0, 2.0, 4.0, 4.0, 3.0, 2.5, 2.0]);
+    /// assert_eq!((report.stamps.repeated, report.stamps.gaps.count), (1, 1));
+    /// assert_eq!(report.stamps.gaps.longest, 6.0);
+    /// ```
+    #[must_use]
+    pub fn of(time: &[f64], displacement: Option<&[f64]>, force: &[f64]) -> Self {
+        // Columns of different lengths, or in another order than that of time, cannot judge each other.
+        let together = displacement.filter(|values| values.len() == force.len());
+        Self {
+            stamps: Stamps::of(time),
+            force_stamps: None,
+            displacement: displacement.map(|values| Values::of(values, together.map(|_| force))),
+            force: Values::of(force, together),
+        }
+    }
+
+    /// Examines a displacement and a force that have clocks of their own.
+    #[must_use]
+    pub fn of_two_clocks(displacement_time: &[f64], displacement: &[f64], force_time: &[f64], force: &[f64]) -> Self {
+        Self {
+            stamps: Stamps::of(displacement_time),
+            force_stamps: Some(Stamps::of(force_time)),
+            displacement: Some(Values::of(displacement, None)),
+            force: Values::of(force, None),
+        }
+    }
+}

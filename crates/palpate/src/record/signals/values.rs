@@ -1,0 +1,251 @@
+//! Measured columns: rows that stray alone, saturation, rounding.
+
+use serde::{Deserialize, Serialize};
+
+use super::rounding::rounding_step;
+use crate::statistics::noise;
+
+/// What a measured column is like; its unit is that of the column.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Values {
+    /// Values that are no finite number.
+    pub not_finite: usize,
+    /// Single rows that leave and come back.
+    pub strays: Strays,
+    /// Rows stuck at the largest or smallest value, where there are any.
+    pub saturation: Option<Saturation>,
+    /// The step that the values were rounded to; `None` where no rounding shows.
+    pub step: Option<f64>,
+    /// Share of the rows that repeat the row before exactly.
+    pub repeating: f64,
+    /// Largest less smallest value.
+    pub range: f64,
+}
+
+/// Single rows that leave their neighbours and come back.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Strays {
+    /// How many.
+    pub count: usize,
+    /// How many of them are zero exactly, where their neighbours are not.
+    pub zeros: usize,
+    /// The first of them, from 0; at most twenty.
+    pub rows: Vec<usize>,
+}
+
+/// A run of rows at one end of the range of a column.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Saturation {
+    /// The value.
+    pub level: f64,
+    /// Rows at that value in runs of five or more.
+    pub rows: usize,
+    /// Rows of the longest run.
+    pub longest: usize,
+    /// First row of the longest run, from 0.
+    pub first_row: usize,
+    /// Whether the column was clipped there: the other column went on as before while this one stood still, or its noise
+    /// vanished. Otherwise the value was held, as a displacement is in a hold.
+    pub clipped: bool,
+}
+
+/// Fewest rows of a run.
+const RUN: usize = 5;
+/// Most rows that are listed.
+const LISTED: usize = 20;
+
+impl Values {
+    /// Examines a column; `other` was measured in the same rows.
+    pub(super) fn of(values: &[f64], other: Option<&[f64]>) -> Self {
+        let not_finite = values.iter().filter(|value| !value.is_finite()).count();
+        let kept: Vec<f64>;
+        // What is not finite would spoil every range; the rows of what is left count on.
+        let (values, other) = if not_finite == 0 {
+            (values, other)
+        } else {
+            kept = values.iter().copied().filter(|value| value.is_finite()).collect();
+            (kept.as_slice(), None)
+        };
+        let (low, high) = range(values);
+        let rows = stray_rows(values);
+        let repeats = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
+        Self {
+            not_finite,
+            strays: Strays {
+                count: rows.len(),
+                zeros: rows.iter().filter(|row| values[**row] == 0.0).count(),
+                rows: rows.into_iter().take(LISTED).collect(),
+            },
+            saturation: saturation(values, other),
+            step: rounding_step(values),
+            repeating: repeats as f64 / values.len().saturating_sub(1).max(1) as f64,
+            range: if high >= low { high - low } else { 0.0 },
+        }
+    }
+}
+
+fn range(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)))
+}
+
+/// Rows that stray alone: over 5 % of the range away from both neighbours, which differ from each other by less than a
+/// tenth of that; and beyond what noise does, where there are rows enough to know it.
+pub(in crate::record) fn stray_rows(values: &[f64]) -> Vec<usize> {
+    const ENOUGH: usize = 50;
+    let (low, high) = range(values);
+    let noise = if values.len() < ENOUGH { 0.0 } else { noise(values) };
+    let least = (0.05 * (high - low)).max(8.0 * noise);
+    let mut rows: Vec<usize> = Vec::new();
+    let mut before = values.first().copied().unwrap_or_default();
+    for i in 1..values.len().saturating_sub(1) {
+        let (here, after) = (values[i], values[i + 1]);
+        let stray = (here - before).abs().min((here - after).abs());
+        let alone = stray > least && (after - before).abs() < 0.1 * stray;
+        if alone {
+            rows.push(i);
+        }
+        before = if alone { 0.5 * (before + after) } else { here };
+    }
+    rows
+}
+
+/// Those of the rows that stray alone which are zero exactly: a logger's word for a value that it did not get.
+pub(in crate::record) fn zero_rows(values: &[f64]) -> Vec<usize> {
+    stray_rows(values).into_iter().filter(|row| values[*row] == 0.0).collect()
+}
+
+/// Runs at the end of the range that is farther from where the column begins.
+fn saturation(values: &[f64], other: Option<&[f64]>) -> Option<Saturation> {
+    let (low, high) = range(values);
+    if values.len() < 2 * RUN || high <= low {
+        return None;
+    }
+    let level = if high - values[0] >= values[0] - low { high } else { low };
+    let runs: Vec<(usize, usize)> =
+        runs(values).filter(|(start, length)| values[*start] == level && *length >= RUN).collect();
+    let (first_row, longest) = *runs.iter().max_by_key(|(start, length)| (*length, usize::MAX - start))?;
+    let clipped = runs.iter().any(|run| goes_on(values, other, *run)) || noise_vanishes(values, level, longest);
+    Some(Saturation {
+        level,
+        rows: runs.iter().map(|(_, length)| length).sum(),
+        longest,
+        first_row,
+        clipped,
+    })
+}
+
+/// First row and length of every run of equal values.
+fn runs(values: &[f64]) -> impl Iterator<Item = (usize, usize)> + '_ {
+    let mut next = 0;
+    std::iter::from_fn(move || {
+        let start = next;
+        let value = values.get(start)?;
+        next += values[start..].iter().take_while(|other| *other == value).count().max(1);
+        Some((start, next - start))
+    })
+}
+
+/// Whether the other column goes on as before where this one begins to stand still: it then stopped measuring.
+///
+/// A jaw that stops, or a force that is held, stops the other column too, or turns it. Where values are rounded, one that
+/// rises slowly repeats itself as well: the run must be five times as long as the three before it.
+fn goes_on(values: &[f64], other: Option<&[f64]>, (start, length): (usize, usize)) -> bool {
+    let Some(other) = other else { return false };
+    let mut longest = 1;
+    let mut at = start;
+    for _ in 0..3 {
+        let Some(value) = at.checked_sub(1).map(|row| values[row]) else {
+            break;
+        };
+        let run = values[..at].iter().rev().take_while(|v| **v == value).count();
+        longest = longest.max(run);
+        at -= run;
+    }
+    let window = RUN * longest;
+    if length < window || start < window || start + window >= other.len() {
+        return false;
+    }
+    let (low, high) = range(other);
+    let before = other[start] - other[start - window];
+    let after = other[start + window] - other[start];
+    before.abs() > (0.01 * (high - low)).max(5.0 * noise(other)) && after / before > 0.5
+}
+
+/// Whether so long a run cannot come from a column that repeats itself as seldom as this one does elsewhere.
+fn noise_vanishes(values: &[f64], level: f64, longest: usize) -> bool {
+    let (low, high) = range(values);
+    let rest: Vec<f64> = values.iter().copied().filter(|value| *value != level).collect();
+    if rest.len() < values.len() / 4 || noise(&rest) < 1e-4 * (high - low) {
+        return false;
+    }
+    let repeats = rest.windows(2).filter(|pair| pair[0] == pair[1]).count() as f64;
+    let share = (repeats + 1.0) / rest.len() as f64;
+    // Values at the very end of a range of noise are rarer still than others.
+    share.powf((longest - 1) as f64) * (values.len() as f64) < 1e-6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Noise;
+
+    /// A ramp and a relaxing hold.
+    fn squeeze() -> (Vec<f64>, Vec<f64>) {
+        let displacement = |i: u32| f64::from(i.min(100)) * 1e-4;
+        let relaxation = |i: u32| 0.7 + 0.3 * (-0.02 * (f64::from(i) - 100.0).max(0.0)).exp();
+        let force = |i: u32| 1000.0 * displacement(i) * relaxation(i);
+        ((0..400).map(displacement).collect(), (0..400).map(force).collect())
+    }
+
+    #[test]
+    fn a_clipped_force_is_told_from_a_held_displacement() {
+        let (displacement, force) = squeeze();
+        let clipped: Vec<f64> = force.iter().map(|f| f.min(8.0)).collect();
+        let found = Values::of(&clipped, Some(&displacement)).saturation.unwrap();
+        assert!(found.clipped && found.level == 8.0 && found.first_row == 80, "{found:?}");
+        let held = Values::of(&displacement, Some(&force)).saturation.unwrap();
+        assert!(!held.clipped && held.longest == 300, "{held:?}");
+        assert_eq!(Values::of(&force, Some(&displacement)).saturation, None);
+    }
+
+    #[test]
+    fn rounding_of_a_slow_force_is_no_clipping() {
+        let (displacement, force) = squeeze();
+        let rounded: Vec<f64> = force.iter().map(|f| f.round()).collect();
+        let found = Values::of(&rounded, Some(&displacement));
+        assert!(found.saturation.is_none_or(|found| !found.clipped), "{found:?}");
+        assert!((found.step.unwrap() - 1.0).abs() < 1e-12 && found.repeating > 0.8);
+    }
+
+    #[test]
+    fn without_a_displacement_vanished_noise_tells() {
+        let (_, force) = squeeze();
+        let mut random = Noise::new(5);
+        let noisy: Vec<f64> = force.iter().map(|f| f + 0.05 * random.normal()).collect();
+        assert_eq!(Values::of(&noisy, None).saturation, None);
+        let clipped: Vec<f64> = noisy.iter().map(|f| f.min(8.0)).collect();
+        assert!(Values::of(&clipped, None).saturation.unwrap().clipped);
+    }
+
+    #[test]
+    fn strays_are_found_beyond_noise_alone() {
+        let (displacement, _) = squeeze();
+        assert_eq!(Values::of(&displacement, None).strays.count, 0);
+        let mut broken = displacement;
+        broken[150] = 0.0;
+        broken[200] = 0.03;
+        let strays = Values::of(&broken, None).strays;
+        assert_eq!((strays.count, strays.zeros, strays.rows), (2, 1, vec![150, 200]));
+        let mut random = Noise::new(7);
+        let noise: Vec<f64> = (0..3000).map(|_| random.normal()).collect();
+        assert_eq!(Values::of(&noise, None).strays.count, 0);
+    }
+
+    #[test]
+    fn columns_that_hold_nothing_do_no_harm() {
+        for values in [&[][..], &[1.0], &[f64::NAN, f64::INFINITY], &[2.0; 40]] {
+            let found = Values::of(values, Some(values));
+            assert!(found.range == 0.0 && found.saturation.is_none() && found.step.is_none());
+        }
+    }
+}
