@@ -1,159 +1,141 @@
-//! Where exactly a hold begins and ends.
+//! Where exactly a hold begins and ends: where the line through the ramp meets the line through the hold.
 
-use crate::statistics::median;
-
-/// A hold with its level.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Level {
-    pub(super) start: usize,
-    pub(super) end: usize,
-    pub(super) value: f64,
-}
+use super::pieces::{Line, Piece};
+use super::standstill::Standstill;
 
 /// Share of a sample interval by which an edge may be off: the rounding of a time column, far below a sample.
 const SLACK: f64 = 0.05;
+/// Ramps of fewer samples have no line of their own.
+const FEWEST: usize = 4;
+/// How often samples are dealt out anew.
+const ROUNDS: usize = 3;
 
-/// Grows a standstill to all neighbouring samples that keep to its level.
+/// Moves the edges of standstills to where ramps and levels meet.
 ///
-/// The level is the median of the standstill, measured in its first and last quarter apart, since a "constant" height
-/// may drift.
-pub(super) fn grown(values: &[f64], run: (usize, usize), tolerance: f64) -> Level {
-    let (first, last) = ends(values, run);
-    let mut start = run.0;
-    while start < run.1 - 1 && (values[start] - first).abs() > tolerance {
-        start += 1;
-    }
-    while start > 0 && (values[start - 1] - first).abs() <= tolerance {
-        start -= 1;
-    }
-    let mut end = run.1;
-    while end > start + 1 && (values[end - 1] - last).abs() > tolerance {
-        end -= 1;
-    }
-    while end < values.len() && (values[end] - last).abs() <= tolerance {
-        end += 1;
-    }
-    let value = median(&mut values[start..end].to_vec());
-    Level { start, end, value }
-}
-
-/// Median of the first and of the last quarter of a standstill.
-fn ends(values: &[f64], run: (usize, usize)) -> (f64, f64) {
-    let quarter = ((run.1 - run.0) / 4).max(1);
-    let level = |from: usize, until: usize| median(&mut values[from..until].to_vec());
-    (level(run.0, run.0 + quarter), level(run.1 - quarter, run.1))
-}
-
-/// Where a hold ends and the next begins, of which the ramp between them is part.
-pub(super) struct Neighbours {
-    /// Sample after the last of the hold before.
-    pub(super) before: usize,
-    /// First sample of the hold after.
-    pub(super) after: usize,
-}
-
-/// Cuts off a grown level what belongs to the ramps.
-///
-/// A ramp that runs straight into the hold passes the tolerance before it reaches the level; the sample at which the
-/// straight line through the ramp meets the level is the edge.
-pub(super) fn trimmed(
+/// Where a ramp has no line, samples no farther than `near` from the level belong to the hold. Elsewhere all samples of the straight piece of either side count, so that the error of an edge comes near the limit that noise
+/// sets. What is a sample of the ramp and what of the hold follows from the edge, so it is done three times.
+pub(super) fn sharpened(
     time: &[f64],
     values: &[f64],
-    level: Level,
-    run: (usize, usize),
-    between: &Neighbours,
-    limits: Limits,
-) -> Level {
-    let (first, last) = ends(values, run);
-    let Level {
-        mut start,
-        mut end,
-        value,
-    } = level;
-    let (grown_start, grown_end) = (start, end);
-    if grown_start > 0 {
-        let outside = (between.before.min(grown_start)..grown_start).rev();
-        let points = on_ramp(values, outside, grown_start, grown_start - 1, first, limits);
-        if let Some(meeting) = meeting(time, values, &points, first, limits) {
-            let slack = SLACK * (time[grown_start] - time[grown_start - 1]);
-            start = time.partition_point(|t| *t < meeting - slack).clamp(grown_start, grown_end - 1);
+    pieces: &[Piece],
+    near: f64,
+    found: &mut [Standstill],
+) {
+    let count = values.len();
+    for _ in 0..ROUNDS {
+        for index in 0..found.len() {
+            let hold = found[index];
+            let before = index.checked_sub(1).map_or(0, |i| found[i].end);
+            let after = found.get(index + 1).map_or(count, |next| next.start);
+            if hold.start > 0 {
+                let ramp = before..hold.start;
+                found[index].start = start_of(time, values, pieces, near, ramp, hold);
+            }
+            let hold = found[index];
+            if hold.end < count {
+                found[index].end = end_of(time, values, pieces, near, hold.end..after, hold);
+            }
         }
     }
-    if grown_end < values.len() {
-        let outside = grown_end..between.after.max(grown_end);
-        let points = on_ramp(values, outside, grown_end - 1, grown_end, last, limits);
-        if let Some(meeting) = meeting(time, values, &points, last, limits) {
-            let slack = SLACK * (time[grown_end] - time[grown_end - 1]);
-            end = time.partition_point(|t| *t <= meeting + slack).clamp(start + 1, grown_end);
-        }
+}
+
+/// The piece that holds a sample.
+fn piece_of(pieces: &[Piece], sample: usize) -> &Piece {
+    &pieces[pieces.partition_point(|piece| piece.end <= sample).min(pieces.len() - 1)]
+}
+
+/// Samples of the hold, from its start on, that are straight.
+fn first_of(pieces: &[Piece], hold: Standstill) -> std::ops::Range<usize> {
+    // The piece at the edge itself may be a scrap that the cut left.
+    let mut end = piece_of(pieces, hold.start).end;
+    while end < hold.end && end - hold.start < 2 * FEWEST {
+        end = piece_of(pieces, end).end;
     }
-    Level { start, end, value }
+    hold.start..end.clamp(hold.start + 1, hold.end)
 }
 
-/// What tells a ramp from a standstill.
-#[derive(Clone, Copy)]
-pub(super) struct Limits {
-    pub(super) tolerance: f64,
-    /// Speed under which the jaw stands still.
-    pub(super) still: f64,
+fn last_of(pieces: &[Piece], hold: Standstill) -> std::ops::Range<usize> {
+    let mut start = piece_of(pieces, hold.end - 1).start;
+    while start > hold.start && hold.end - start < 2 * FEWEST {
+        start = piece_of(pieces, start - 1).start;
+    }
+    start.clamp(hold.start, hold.end - 1)..hold.end
 }
 
-/// The samples of a ramp next to a level, nearest first: eight of them, more of a slow ramp.
-///
-/// A ramp of fewer than two samples is known by the edges of the levels on its sides: `own` and, if need be, `other`.
-fn on_ramp(
+fn start_of(
+    time: &[f64],
     values: &[f64],
-    outside: impl Iterator<Item = usize>,
-    own: usize,
-    other: usize,
-    level: f64,
-    limits: Limits,
-) -> Vec<usize> {
-    const MOST: usize = 8;
-    let direction = (values[other] - level).signum();
-    let away = |index: usize| direction * (values[index] - level) / limits.tolerance;
-    let mut ramp: Vec<usize> = outside
-        .enumerate()
-        .take_while(|(rank, index)| {
-            let away = away(*index);
-            away > 1.0 && (*rank < 2 || (away < 50.0 && (*rank < MOST || away < 6.0)))
-        })
-        .map(|(_, index)| index)
-        .collect();
-    if ramp.len() < 2 {
-        ramp.insert(0, own);
+    pieces: &[Piece],
+    near: f64,
+    ramp: std::ops::Range<usize>,
+    hold: Standstill,
+) -> usize {
+    let own = first_of(pieces, hold);
+    let level = Line::through(time, values, own.clone());
+    let keeps = |i: usize| (values[i] - level.at(time[i])).abs() <= near;
+    let mut start = hold.start;
+    if ramp.len() >= FEWEST {
+        let mut from = piece_of(pieces, start - 1).start.max(ramp.start);
+        while from > ramp.start && start - from < FEWEST {
+            from = piece_of(pieces, from - 1).start.max(ramp.start);
+        }
+        let line = Line::through(time, values, from..start);
+        if let Some(meeting) = meeting(&line, &level) {
+            let slack = SLACK * (time[start] - time[start - 1]);
+            let at = time.partition_point(|t| *t < meeting - slack);
+            if at > from && at < own.end {
+                return at;
+            }
+        }
     }
-    if ramp.len() < 2 {
-        ramp.push(other);
+    while start < hold.end - 1 && !keeps(start) {
+        start += 1;
     }
-    ramp
+    while start > ramp.start && keeps(start - 1) {
+        start -= 1;
+    }
+    start
 }
 
-/// The time at which the line through the end of a ramp meets `level`; `None` if there is no straight ramp to speak of.
-///
-/// A servo that overshoots comes back in a curve, not along a line: then the tolerance decides alone. So it does where
-/// the line is as flat as a standstill, or meets the level farther off than a ramp of its slope could.
-fn meeting(time: &[f64], values: &[f64], ramp: &[usize], level: f64, limits: Limits) -> Option<f64> {
-    let count = ramp.len() as f64;
-    let t0 = time[ramp[0]];
-    let (mean_t, mean_v) = (
-        ramp.iter().map(|i| time[*i] - t0).sum::<f64>() / count,
-        ramp.iter().map(|i| values[*i]).sum::<f64>() / count,
-    );
-    let (mut tt, mut tv) = (0.0, 0.0);
-    for i in ramp {
-        let t = time[*i] - t0 - mean_t;
-        tt += t * t;
-        tv += t * (values[*i] - mean_v);
+fn end_of(
+    time: &[f64],
+    values: &[f64],
+    pieces: &[Piece],
+    near: f64,
+    ramp: std::ops::Range<usize>,
+    hold: Standstill,
+) -> usize {
+    let own = last_of(pieces, hold);
+    let level = Line::through(time, values, own.clone());
+    let keeps = |i: usize| (values[i] - level.at(time[i])).abs() <= near;
+    let mut end = hold.end;
+    if ramp.len() >= FEWEST {
+        let mut until = piece_of(pieces, end).end.min(ramp.end);
+        while until < ramp.end && until - end < FEWEST {
+            until = piece_of(pieces, until).end.min(ramp.end);
+        }
+        let line = Line::through(time, values, end..until);
+        if let Some(meeting) = meeting(&line, &level) {
+            let slack = SLACK * (time[end] - time[end - 1]);
+            let at = time.partition_point(|t| *t <= meeting + slack);
+            if at > own.start && at < until {
+                return at;
+            }
+        }
     }
-    let slope = tv / tt;
-    let straight = ramp
-        .iter()
-        .all(|i| (values[*i] - mean_v - slope * (time[*i] - t0 - mean_t)).abs() <= limits.tolerance);
-    let span = (time[ramp[ramp.len() - 1]] - t0).abs();
-    let interval = span / (count - 1.0);
-    let steep = slope.abs() > limits.still && slope.abs() * span > 1.5 * limits.tolerance;
-    let meeting = mean_t + (level - mean_v) / slope;
-    let near = meeting.abs() <= 2.0 * interval + 1.5 * limits.tolerance / slope.abs();
-    (straight && steep && near).then_some(t0 + meeting)
+    while end > hold.start + 1 && !keeps(end - 1) {
+        end -= 1;
+    }
+    while end < ramp.end && keeps(end) {
+        end += 1;
+    }
+    end
+}
+
+/// When two lines meet; `None` if they are as good as parallel.
+fn meeting(ramp: &Line, level: &Line) -> Option<f64> {
+    let slopes = ramp.slope() - level.slope();
+    let origin = level.middle();
+    let meeting = origin + (level.at(origin) - ramp.at(origin)) / slopes;
+    (slopes.abs() > 1e-3 * level.slope().abs() && meeting.is_finite()).then_some(meeting)
 }

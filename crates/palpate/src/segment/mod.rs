@@ -18,9 +18,13 @@ mod from_displacement;
 mod from_force;
 mod loading_curve;
 mod options;
+mod pieces;
 mod ramps;
 mod relaxation;
 mod slope;
+mod smooth;
+mod standstill;
+mod turning;
 
 pub use contact_point::{ContactChoice, ContactPoint, find_contact, find_contact_of};
 pub use options::{HoldStart, SegmentOptions, SegmentSettings};

@@ -1,7 +1,14 @@
 //! What lies between the holds.
 
-use super::edges::Level;
 use super::{After, Phase, Segment};
+
+/// A hold with its level.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Level {
+    pub(super) start: usize,
+    pub(super) end: usize,
+    pub(super) value: f64,
+}
 
 /// Turns holds and the gaps between them into segments that cover the record.
 ///
