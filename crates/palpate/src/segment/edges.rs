@@ -22,114 +22,104 @@ pub(super) fn sharpened(
     found: &mut [Standstill],
 ) {
     let count = values.len();
+    let cut = found.to_vec();
     for _ in 0..ROUNDS {
         for index in 0..found.len() {
-            let hold = found[index];
             let before = index.checked_sub(1).map_or(0, |i| found[i].end);
             let after = found.get(index + 1).map_or(count, |next| next.start);
-            if hold.start > 0 {
-                let ramp = before..hold.start;
-                found[index].start = start_of(time, values, pieces, near, ramp, hold);
+            let column = Column { time, values, pieces, near };
+            if found[index].start > 0 {
+                found[index].start = column.start_of(before, cut[index].start, found[index]);
             }
-            let hold = found[index];
-            if hold.end < count {
-                found[index].end = end_of(time, values, pieces, near, hold.end..after, hold);
+            if found[index].end < count {
+                found[index].end = column.end_of(after, cut[index].end, found[index]);
             }
         }
     }
 }
 
-/// The piece that holds a sample.
-fn piece_of(pieces: &[Piece], sample: usize) -> &Piece {
-    &pieces[pieces.partition_point(|piece| piece.end <= sample).min(pieces.len() - 1)]
-}
-
-/// Samples of the hold, from its start on, that are straight.
-fn first_of(pieces: &[Piece], hold: Standstill) -> std::ops::Range<usize> {
-    // The piece at the edge itself may be a scrap that the cut left.
-    let mut end = piece_of(pieces, hold.start).end;
-    while end < hold.end && end - hold.start < 2 * FEWEST {
-        end = piece_of(pieces, end).end;
-    }
-    hold.start..end.clamp(hold.start + 1, hold.end)
-}
-
-fn last_of(pieces: &[Piece], hold: Standstill) -> std::ops::Range<usize> {
-    let mut start = piece_of(pieces, hold.end - 1).start;
-    while start > hold.start && hold.end - start < 2 * FEWEST {
-        start = piece_of(pieces, start - 1).start;
-    }
-    start.clamp(hold.start, hold.end - 1)..hold.end
-}
-
-fn start_of(
-    time: &[f64],
-    values: &[f64],
-    pieces: &[Piece],
+/// A column with its polygon.
+struct Column<'a> {
+    time: &'a [f64],
+    values: &'a [f64],
+    pieces: &'a [Piece],
     near: f64,
-    ramp: std::ops::Range<usize>,
-    hold: Standstill,
-) -> usize {
-    let own = first_of(pieces, hold);
-    let level = Line::through(time, values, own.clone());
-    let keeps = |i: usize| (values[i] - level.at(time[i])).abs() <= near;
-    let mut start = hold.start;
-    if ramp.len() >= FEWEST {
-        let mut from = piece_of(pieces, start - 1).start.max(ramp.start);
-        while from > ramp.start && start - from < FEWEST {
-            from = piece_of(pieces, from - 1).start.max(ramp.start);
+}
+
+impl Column<'_> {
+    /// The piece that holds a sample.
+    fn piece_of(&self, sample: usize) -> &Piece {
+        &self.pieces[self.pieces.partition_point(|piece| piece.end <= sample).min(self.pieces.len() - 1)]
+    }
+
+    fn line(&self, range: std::ops::Range<usize>) -> Line {
+        Line::through(self.time, self.values, range)
+    }
+
+    /// First sample of a hold that was cut off its ramp at `cut`; the ramp begins at `before` or later.
+    fn start_of(&self, before: usize, cut: usize, hold: Standstill) -> usize {
+        // The pieces at the cut may be scraps.
+        let mut until = self.piece_of(cut).end;
+        while until < hold.end && until < hold.start + 2 * FEWEST {
+            until = self.piece_of(until).end;
         }
-        let line = Line::through(time, values, from..start);
-        if let Some(meeting) = meeting(&line, &level) {
-            let slack = SLACK * (time[start] - time[start - 1]);
-            let at = time.partition_point(|t| *t < meeting - slack);
-            if at > from && at < own.end {
+        let until = until.clamp(hold.start + 1, hold.end);
+        let level = self.line(hold.start..until);
+        let mut from = self.piece_of(cut - 1).start.max(before);
+        while from > before && hold.start < from + FEWEST {
+            from = self.piece_of(from - 1).start.max(before);
+        }
+        if hold.start >= from + FEWEST
+            && let Some(meeting) = meeting(&self.line(from..hold.start), &level)
+        {
+            let slack = SLACK * (self.time[hold.start] - self.time[hold.start - 1]);
+            let at = self.time.partition_point(|t| *t < meeting - slack);
+            if at > from && at < until {
                 return at;
             }
         }
-    }
-    while start < hold.end - 1 && !keeps(start) {
-        start += 1;
-    }
-    while start > ramp.start && keeps(start - 1) {
-        start -= 1;
-    }
-    start
-}
-
-fn end_of(
-    time: &[f64],
-    values: &[f64],
-    pieces: &[Piece],
-    near: f64,
-    ramp: std::ops::Range<usize>,
-    hold: Standstill,
-) -> usize {
-    let own = last_of(pieces, hold);
-    let level = Line::through(time, values, own.clone());
-    let keeps = |i: usize| (values[i] - level.at(time[i])).abs() <= near;
-    let mut end = hold.end;
-    if ramp.len() >= FEWEST {
-        let mut until = piece_of(pieces, end).end.min(ramp.end);
-        while until < ramp.end && until - end < FEWEST {
-            until = piece_of(pieces, until).end.min(ramp.end);
+        let keeps = |i: usize| (self.values[i] - level.at(self.time[i])).abs() <= self.near;
+        let mut start = hold.start;
+        while start < hold.end - 1 && !keeps(start) {
+            start += 1;
         }
-        let line = Line::through(time, values, end..until);
-        if let Some(meeting) = meeting(&line, &level) {
-            let slack = SLACK * (time[end] - time[end - 1]);
-            let at = time.partition_point(|t| *t <= meeting + slack);
-            if at > own.start && at < until {
+        while start > before && keeps(start - 1) {
+            start -= 1;
+        }
+        start
+    }
+
+    /// Sample after the last of a hold that was cut off its ramp at `cut`; the ramp ends at `after` or before.
+    fn end_of(&self, after: usize, cut: usize, hold: Standstill) -> usize {
+        let mut from = self.piece_of(cut - 1).start;
+        while from > hold.start && from + 2 * FEWEST > hold.end {
+            from = self.piece_of(from - 1).start;
+        }
+        let from = from.clamp(hold.start, hold.end - 1);
+        let level = self.line(from..hold.end);
+        let mut until = self.piece_of(cut).end.min(after);
+        while until < after && until < hold.end + FEWEST {
+            until = self.piece_of(until).end.min(after);
+        }
+        if until >= hold.end + FEWEST
+            && let Some(meeting) = meeting(&self.line(hold.end..until), &level)
+        {
+            let slack = SLACK * (self.time[hold.end] - self.time[hold.end - 1]);
+            let at = self.time.partition_point(|t| *t <= meeting + slack);
+            if at > from && at < until {
                 return at;
             }
         }
+        let keeps = |i: usize| (self.values[i] - level.at(self.time[i])).abs() <= self.near;
+        let mut end = hold.end;
+        while end > hold.start + 1 && !keeps(end - 1) {
+            end -= 1;
+        }
+        while end < after && keeps(end) {
+            end += 1;
+        }
+        end
     }
-    while end > hold.start + 1 && !keeps(end - 1) {
-        end -= 1;
-    }
-    while end < ramp.end && keeps(end) {
-        end += 1;
-    }
-    end
 }
 
 /// When two lines meet; `None` if they are as good as parallel.

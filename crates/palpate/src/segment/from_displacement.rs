@@ -19,7 +19,7 @@ const MINIMUM_SAMPLES: usize = 8;
 /// A standstill that drifts by more than this share of the range is a slow ramp.
 const DRIFT: f64 = 0.05;
 /// How far the column would have gone on in a hold, in standard deviations of the noise, on its faster and slower side.
-const GOES_ON: [f64; 2] = [8.0, 5.0];
+const GOES_ON: [f64; 2] = [6.0, 3.5];
 /// The same in units of the tolerance.
 const GOES_ON_TOLERANCES: [f64; 2] = [3.0, 1.5];
 
@@ -42,8 +42,10 @@ pub(super) fn phases(
     }
     // Without noise a machine still wanders by a little.
     let floor = options.tolerance.unwrap_or(0.002 * range);
-    let tolerance = (2.5 * noise).max(floor).max(quantum(&values));
-    let pieces = pieces(time, &values, Roughness { noise, stray: 0.25 * floor });
+    let step = rounding(displacement);
+    let tolerance = (2.5 * noise).max(floor).max(1.5 * step);
+    let stray = (0.25 * floor).max(0.35 * step);
+    let pieces = pieces(time, &values, Roughness { noise, stray });
     let stillness = Stillness {
         noise,
         band: tolerance,
@@ -119,6 +121,18 @@ fn ramp_speed(time: &[f64], pieces: &[Piece], found: &[Standstill]) -> f64 {
         }
     }
     0.0
+}
+
+/// Step of a column that was rounded. Repaired rows are means of two others and lie half a step off; few of them do not
+/// make the step half as wide.
+fn rounding(values: &[f64]) -> f64 {
+    let step = quantum(values);
+    if step == 0.0 {
+        return 0.0;
+    }
+    let steps = || values.windows(2).map(|pair| ((pair[1] - pair[0]) / step).round() as i64).filter(|steps| *steps != 0);
+    let odd = steps().filter(|steps| steps % 2 != 0).count();
+    if 20 * odd < steps().count() { 2.0 * step } else { step }
 }
 
 /// The column without spikes of one row: a sample far off both neighbours, which agree, becomes their mean.

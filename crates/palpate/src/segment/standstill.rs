@@ -57,6 +57,9 @@ impl Move {
 /// Overshoot of a servo, or the way it still creeps after a ramp, as a share of the ramp.
 const SETTLING: f64 = 0.025;
 
+/// Most pieces of that way.
+const MOST_SETTLING: usize = 16;
+
 /// A standstill: samples, and which pieces of the polygon it consists of.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Standstill {
@@ -102,8 +105,10 @@ pub(super) fn standstills(
         if taken[seed] {
             continue;
         }
-        let (first, last) = grown(&moves, &taken, seed, stillness);
-        match evidence(time, values, &moves, (first, last), stillness) {
+        let (core, last) = grown(&moves, &taken, seed, stillness);
+        let first = settling(&moves, &taken, core, last, stillness.band);
+        let drift = (moves[last].ends[1] - moves[core].ends[0]).abs();
+        match evidence(time, values, &moves, (first, last), drift, stillness) {
             Some(gain) => {
                 taken[first..=last].fill(true);
                 found.push((first, last, gain));
@@ -166,7 +171,7 @@ fn moves(time: &[f64], pieces: &[Piece], band: f64) -> Vec<Move> {
     moves
 }
 
-/// Grows a piece to all neighbours that keep to its level, and to what a servo does before it settles.
+/// Grows a piece to all neighbours that keep to its level.
 fn grown(moves: &[Move], taken: &[bool], seed: usize, stillness: &Stillness) -> (usize, usize) {
     let (mut first, mut last) = (seed, seed);
     let most = (2.0 * stillness.band).max(1.5 * moves[seed].travel().abs() + stillness.band);
@@ -182,18 +187,44 @@ fn grown(moves: &[Move], taken: &[bool], seed: usize, stillness: &Stillness) -> 
     };
     loop {
         let (was_first, was_last) = (first, last);
-        if last + 1 < moves.len() && !taken[last + 1] && keeps(&moves[last + 1], moves[last].ends[1], &mut low, &mut high)
-        {
-            last += 1;
+        let later = beyond(moves, last, |from| from.checked_add(1).filter(|next| *next < moves.len()));
+        for next in later.into_iter().take_while(|next| !taken[*next]) {
+            if keeps(&moves[next], moves[last].ends[1], &mut low, &mut high) {
+                last = next;
+                break;
+            }
         }
-        if first > 0 && !taken[first - 1] && keeps(&moves[first - 1], moves[first].ends[0], &mut low, &mut high) {
-            first -= 1;
+        let earlier = beyond(moves, first, |from| from.checked_sub(1));
+        for next in earlier.into_iter().take_while(|next| !taken[*next]) {
+            if keeps(&moves[next], moves[first].ends[0], &mut low, &mut high) {
+                first = next;
+                break;
+            }
         }
         if (first, last) == (was_first, was_last) {
             break;
         }
     }
-    (settling(moves, taken, first, last, stillness.band), last)
+    (first, last)
+}
+
+/// Samples that may stray together and yet not end a standstill.
+const STRAY: usize = 3;
+
+/// The next move, and those after scraps of a few samples: what strays for so short a time and comes back is noise.
+fn beyond(moves: &[Move], from: usize, step: impl Fn(usize) -> Option<usize>) -> Vec<usize> {
+    let (mut next, mut samples, mut found) = (step(from), 0, Vec::new());
+    while let Some(index) = next {
+        if samples == 0 || moves[index].end - moves[index].start > samples {
+            found.push(index);
+        }
+        samples += moves[index].end - moves[index].start;
+        if samples > STRAY {
+            break;
+        }
+        next = step(index);
+    }
+    found
 }
 
 fn bounds(part: &Move) -> (f64, f64) {
@@ -206,7 +237,7 @@ fn settling(moves: &[Move], taken: &[bool], first: usize, last: usize, band: f64
     let level = moves[first].ends[0];
     let (begin, duration) = (moves[first].times[0], moves[last].times[1] - moves[first].times[0]);
     let (mut settled, mut strays) = (first, 0.0f64);
-    for next in (1..first).rev() {
+    for next in (1..first).rev().take(MOST_SETTLING) {
         let (low, high) = bounds(&moves[next]);
         strays = strays.max((low - level).abs()).max((high - level).abs());
         if taken[next] || begin - moves[next].times[0] > duration {
@@ -214,10 +245,7 @@ fn settling(moves: &[Move], taken: &[bool], first: usize, last: usize, band: f64
         }
         let outer = &moves[next - 1];
         let travel = ramp_travel(moves, taken, next - 1);
-        if strays > SETTLING * travel {
-            break;
-        }
-        if travel > 8.0 * band && outer.speed().abs() > 2.0 * moves[next].speed().abs() {
+        if moves[next].end > moves[next].start && strays <= SETTLING * travel && travel > 8.0 * band && outer.speed().abs() > 2.0 * moves[next].speed().abs() {
             settled = next;
         }
     }
@@ -238,6 +266,7 @@ fn evidence(
     values: &[f64],
     moves: &[Move],
     (first, last): (usize, usize),
+    drift: f64,
     stillness: &Stillness,
 ) -> Option<f64> {
     let (start, end) = (moves[first].start, moves[last].end);
@@ -245,7 +274,6 @@ fn evidence(
     if end - start < stillness.samples || stillness.duration.is_some_and(|least| duration < least) {
         return None;
     }
-    let drift = (moves[last].ends[1] - moves[first].ends[0]).abs();
     // Noise tilts a short level.
     let tilt = 2.5 * stillness.noise * (12.0 / (end - start) as f64).sqrt();
     if drift > stillness.drift + tilt {
