@@ -4,7 +4,13 @@
 //! |---|---|
 //! | `options.rs` | every threshold as an option, and the value it took |
 //! | `slope.rs` | local slopes of a noisy column |
-//! | `from_displacement.rs` | phases where the displacement was recorded |
+//! | `from_both.rs` | phases where displacement and force were recorded |
+//! | `levels.rs` | where a column stands still |
+//! | `pieces.rs` | a column as a polygon |
+//! | `standstill.rs` | which parts of the polygon are standstills |
+//! | `smooth.rs` | a standstill has corners, a turning point has none |
+//! | `mode.rs` | what is held: the displacement, the force, or neither |
+//! | `turning.rs` | turning points of a force |
 //! | `from_force.rs` | phases where only the force was |
 //! | `edges.rs` | where exactly a hold begins and ends |
 //! | `ramps.rs` | what lies between the holds: loading and unloading |
@@ -14,9 +20,11 @@
 
 mod contact_point;
 mod edges;
-mod from_displacement;
+mod from_both;
 mod from_force;
+mod levels;
 mod loading_curve;
+mod mode;
 mod options;
 mod pieces;
 mod ramps;
@@ -27,6 +35,8 @@ mod standstill;
 mod turning;
 
 pub use contact_point::{ContactChoice, ContactPoint, find_contact, find_contact_of};
+pub use mode::HoldMode;
+pub(crate) use mode::{Change, change};
 pub use options::{HoldStart, SegmentOptions, SegmentSettings};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
 
@@ -42,7 +52,7 @@ pub enum Phase {
     Rest,
     /// The displacement grows.
     Loading,
-    /// The displacement stays.
+    /// The displacement stays, or the force.
     Hold,
     /// The displacement falls.
     Unloading,
@@ -69,6 +79,8 @@ pub struct Segment {
     pub end: usize,
     /// For a hold: what came before it.
     pub after: Option<After>,
+    /// For a hold: what is held in it.
+    pub mode: Option<HoldMode>,
     /// For a hold: the sample from which laws are fitted, see [`HoldStart`]. It lies before `start` where the force peaked
     /// while the jaw was still settling.
     pub fit_start: usize,
@@ -188,12 +200,17 @@ fn told(value: f64, unit: &str) -> String {
     format!("{text} {unit}")
 }
 
-/// Finds the phases of a record: from its displacement, or from its force where the displacement is missing.
+/// Fewest samples in which phases can be seen.
+const NEEDED: usize = 8;
+
+/// Finds the phases of a record: from its displacement and its force, or from its force alone where the displacement is missing.
+///
+/// Every hold says what is held in it ([`HoldMode`]). Where the machine holds the force, the hold lasts as long as the force
+/// stays, however far the jaw creeps.
 ///
 /// # Errors
 /// [`SegmentError`] when nothing moves, or when no standstill after a ramp is long enough to be a hold.
 pub fn find_phases(record: &Record, options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
-    const NEEDED: usize = 8;
     if record.len() < NEEDED {
         return Err(SegmentError::TooShort {
             needed: NEEDED,
@@ -201,11 +218,25 @@ pub fn find_phases(record: &Record, options: &SegmentOptions) -> Result<Segmenta
         });
     }
     let mut segmentation = match record.displacement() {
-        Some(displacement) => from_displacement::phases(record.time(), displacement, options)?,
+        Some(displacement) => from_both::phases(record, displacement, options)?,
         None => from_force::phases(record.time(), record.force(), options)?,
     };
-    for index in 0..segmentation.segments.len() {
-        segmentation.segments[index].fit_start = options.hold_start.sample(record, &segmentation.segments, index);
-    }
+    place_fits(record, options, &mut segmentation.segments);
     Ok(segmentation)
+}
+
+/// Sets from where laws are fitted to each hold.
+fn place_fits(record: &Record, options: &SegmentOptions, segments: &mut [Segment]) {
+    // A hold of constant force is fitted from where the displacement peaks.
+    let exchanged = record.displacement().and_then(|displacement| {
+        let columns = (record.time().to_vec(), record.force().to_vec(), displacement.to_vec());
+        Record::new(columns.0, Some(columns.1), columns.2).ok()
+    });
+    for index in 0..segments.len() {
+        let answers = match (&exchanged, segments[index].mode) {
+            (Some(exchanged), Some(HoldMode::ForceHeld)) => exchanged,
+            _ => record,
+        };
+        segments[index].fit_start = options.hold_start.sample(answers, segments, index);
+    }
 }

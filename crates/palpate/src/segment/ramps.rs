@@ -1,6 +1,6 @@
 //! What lies between the holds.
 
-use super::{After, Phase, Segment};
+use super::{After, HoldMode, Phase, Segment};
 
 /// A hold with its level.
 #[derive(Debug, Clone, Copy)]
@@ -28,6 +28,7 @@ pub(super) fn fill_gaps(values: &[f64], levels: &[Level], hysteresis: f64) -> Ve
             start: level.start,
             end: level.end,
             after,
+            mode: after.map(|_| HoldMode::DisplacementHeld),
             fit_start: level.start,
         });
         (from, before) = (level.end, Some(level.value));
@@ -50,6 +51,7 @@ fn ramps(values: &[f64], from: usize, until: usize, hysteresis: f64, segments: &
             start,
             end,
             after: None,
+            mode: None,
             fit_start: start,
         });
     };

@@ -11,6 +11,11 @@ use palpate::simulate::{ContactModel, ForceHistory, Sampling, Separation, simula
 use crate::record::{Machine, TrueHold, kink_limit, log_uniform};
 use crate::suite::{Kind, Labelled};
 
+/// How a controller hunts about the set force, step by step, as a share of the largest.
+const HUNTED: f64 = 0.002;
+/// What that leaves unsure: ten samples go together.
+const HUNTING: f64 = 0.02;
+
 /// Force ramped and held by a controller that falls short at first and hunts; the displacement creeps.
 pub fn press(noise: f64, random: &mut Noise) -> Labelled {
     let machine = Machine { dropouts: 0.0, skew: 0.0, ..Machine::drawn(noise, random) };
@@ -23,7 +28,8 @@ pub fn press(noise: f64, random: &mut Noise) -> Labelled {
         let to = if index % 2 == 0 { 0.5 + 0.5 * random.uniform() } else { 0.05 + 0.25 * random.uniform() };
         let length = hold * (0.5 + random.uniform());
         let ramp = log_uniform(2.0, 0.3 * length, random);
-        let short = 0.05 * (to - at) * random.uniform();
+        // Who falls farther short than that has not arrived: that part counts as ramp.
+        let short = 0.025 * (to - at) * random.uniform();
         now += ramp;
         knots.push((now, to - short));
         let lag = (0.03 * length * random.uniform()).max(1.0);
@@ -31,7 +37,7 @@ pub fn press(noise: f64, random: &mut Noise) -> Labelled {
             let z = 0.4 * f64::from(k);
             knots.push((now + lag * z, to - short * (-z).exp()));
         }
-        let limit = kink_limit(to - at, ramp, length, machine.noise);
+        let limit = kink_limit(to - at, ramp, length, machine.noise.hypot(HUNTING));
         holds.push(TrueHold {
             start: now * interval,
             end: (now + length) * interval,
@@ -64,7 +70,7 @@ pub fn press(noise: f64, random: &mut Noise) -> Labelled {
     // What a controller leaves: slow hunting about the set force.
     let mut hunting = 0.0;
     let mut hunt = |force: &f64| {
-        hunting = 0.9 * hunting + 0.002 * largest * random.normal();
+        hunting = 0.9 * hunting + HUNTED * largest * random.normal();
         force + hunting
     };
     let force = moved.force.iter().map(&mut hunt).collect();

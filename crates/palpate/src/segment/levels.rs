@@ -1,4 +1,4 @@
-//! Phases from the column that the machine holds: the displacement of the jaw, or the force.
+//! Levels of the column that the machine holds: the displacement of the jaw, or the force.
 //!
 //! 1. Single rows that stray are passed over.
 //! 2. The column is cut into straight pieces, as fine as its noise allows.
@@ -7,9 +7,9 @@
 
 use super::edges::sharpened;
 use super::pieces::{Piece, Roughness, pieces};
-use super::ramps::{Level, fill_gaps};
+use super::ramps::Level;
 use super::standstill::{Refused, Standstill, Stillness, standstills};
-use super::{Phase, SegmentError, SegmentOptions, SegmentSettings, Segmentation};
+use super::{SegmentError, SegmentOptions, SegmentSettings};
 use crate::statistics::{median, noise_in_time, quantum};
 
 /// Drift of a standstill as a share of the way at the speed of the slower ramp beside it.
@@ -23,40 +23,65 @@ const GOES_ON: [f64; 2] = [6.0, 3.5];
 /// The same in units of the tolerance.
 const GOES_ON_TOLERANCES: [f64; 2] = [3.0, 1.5];
 
-pub(super) fn phases(
-    time: &[f64],
-    displacement: &[f64],
-    options: &SegmentOptions,
-) -> Result<Segmentation, SegmentError> {
-    let noise = noise_in_time(time, displacement);
-    let values = without_spikes(displacement, noise);
-    let (low, high) = bounds(&values);
-    let range = high - low;
+/// A column that a machine may hold, and what is known of it beforehand.
+pub(super) struct Held<'a> {
+    /// Its name and unit.
+    pub(super) name: (&'static str, &'static str),
+    /// Its values.
+    pub(super) values: &'a [f64],
+    /// How far a machine wanders about what it holds, where noise is less.
+    pub(super) wander: f64,
+}
+
+/// The levels of a column, and the thresholds that found them.
+pub(super) struct Levels {
+    /// The column without spikes.
+    pub(super) values: Vec<f64>,
+    pub(super) levels: Vec<Level>,
+    pub(super) settings: SegmentSettings,
+    pub(super) refused: Refused,
+}
+
+impl Levels {
+    /// Why there is no hold.
+    pub(super) fn none(&self) -> SegmentError {
+        SegmentError::NoHold {
+            longest: self.refused.duration,
+            samples: self.refused.samples,
+            minimum_hold: self.settings.minimum_hold,
+            minimum_samples: self.settings.minimum_samples,
+        }
+    }
+}
+
+/// Finds the levels of a column.
+pub(super) fn levels(time: &[f64], held: &Held<'_>, options: &SegmentOptions) -> Result<Levels, SegmentError> {
+    let noise = noise_in_time(time, held.values);
+    let values = without_spikes(held.values, noise);
+    let range = range(&values);
     if range == 0.0 || range < 8.0 * noise {
         return Err(SegmentError::NoMotion {
-            column: "displacement",
+            column: held.name.0,
             range,
             noise,
-            unit: "m",
+            unit: held.name.1,
         });
     }
-    // Without noise a machine still wanders by a little.
-    let floor = options.tolerance.unwrap_or(0.002 * range);
-    let step = rounding(displacement);
-    let tolerance = (2.5 * noise).max(floor).max(1.5 * step);
-    let stray = (0.25 * floor).max(0.35 * step);
+    let step = rounding(held.values);
+    let tolerance = (2.5 * noise).max(held.wander).max(1.5 * step);
+    let stray = (0.25 * held.wander).max(0.35 * step);
     let pieces = pieces(time, &values, Roughness { noise, stray });
     let stillness = Stillness {
         noise,
         band: tolerance,
         share: options.still_below.unwrap_or(STILL_BELOW),
         drift: DRIFT * range,
-        goes_on: [0, 1].map(|side| (GOES_ON[side] * noise).max(GOES_ON_TOLERANCES[side] * floor)),
+        goes_on: [0, 1].map(|side| (GOES_ON[side] * noise).max(GOES_ON_TOLERANCES[side] * held.wander)),
         samples: if options.minimum_hold.is_some() { 3 } else { MINIMUM_SAMPLES },
         duration: options.minimum_hold,
     };
     let (mut found, refused) = standstills(time, &values, &pieces, &stillness);
-    sharpened(time, &values, &pieces, (3.0 * noise).max(0.5 * floor), &mut found);
+    sharpened(time, &values, &pieces, (3.0 * noise).max(0.5 * held.wander), &mut found);
     let ramp_speed = ramp_speed(time, &pieces, &found);
     let settings = SegmentSettings {
         from_displacement: true,
@@ -68,18 +93,13 @@ pub(super) fn phases(
         minimum_hold: options.minimum_hold.unwrap_or(stillness.goes_on[0] / ramp_speed),
         minimum_samples: stillness.samples,
     };
-    let levels: Vec<Level> = found.iter().map(|found| level(&values, *found)).collect();
-    let segments = fill_gaps(&values, &levels, 2.0 * tolerance);
-    if !segments.iter().any(|segment| segment.phase == Phase::Hold) {
-        let Refused { duration, samples } = refused;
-        return Err(SegmentError::NoHold {
-            longest: duration,
-            samples,
-            minimum_hold: settings.minimum_hold,
-            minimum_samples: settings.minimum_samples,
-        });
-    }
-    Ok(Segmentation { segments, settings })
+    let levels = found.iter().map(|found| level(&values, *found)).collect();
+    Ok(Levels {
+        values,
+        levels,
+        settings,
+        refused,
+    })
 }
 
 fn level(values: &[f64], found: Standstill) -> Level {
@@ -148,6 +168,8 @@ pub(super) fn without_spikes(values: &[f64], noise: f64) -> Vec<f64> {
     clean
 }
 
-fn bounds(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)))
+/// From the least to the greatest value.
+pub(super) fn range(values: &[f64]) -> f64 {
+    let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
+    high - low
 }
