@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use palpate::record::Record;
-use palpate::segment::{SegmentOptions, find_contact_of, find_phases};
+use palpate::segment::{SegmentOptions, find_contact_of, phases_with};
 use palpate_files::record_file::{RecordFile, Role};
 use palpate_files::text::{self, Layout, LayoutOptions};
 use palpate_report::number::significant;
@@ -121,7 +121,8 @@ fn phases(
     test: Option<&palpate_files::description::TestDescription>,
 ) -> String {
     let (record, dropouts) = record.repaired();
-    let segmentation = match find_phases(&record, options) {
+    let given = test.map_or(&[][..], |test| &test.given_holds);
+    let segmentation = match phases_with(&record, options, given) {
         Ok(segmentation) => segmentation,
         Err(error) => return format!("Phases: {error}\n"),
     };

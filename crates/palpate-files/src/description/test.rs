@@ -6,7 +6,7 @@ use palpate::{
     analysis::{AnalysisOptions, Geometry, LayersChoice},
     contact::{Shape, Sides},
     identify::FitOptions,
-    segment::{ContactChoice, SegmentOptions},
+    segment::{ContactChoice, GivenHold, SegmentOptions},
     simulate::Separation,
 };
 
@@ -53,6 +53,8 @@ pub struct TestDescription {
     pub touch: ContactChoice,
     /// How to find the phases.
     pub segment: SegmentOptions,
+    /// Holds with given limits; where there are any, no others are sought.
+    pub given_holds: Vec<GivenHold>,
     /// How to fit.
     pub fit: FitOptions,
     /// The exponents to compare.
@@ -74,6 +76,7 @@ impl Default for TestDescription {
             layers: None,
             touch: ContactChoice::AsRecorded,
             segment: SegmentOptions::default(),
+            given_holds: Vec::new(),
             fit: FitOptions::default(),
             exponents: settings::USUAL_EXPONENTS.to_vec(),
             free_exponent: true,
@@ -89,6 +92,7 @@ impl TestDescription {
         AnalysisOptions {
             geometry: self.geometry.clone(),
             segment: self.segment,
+            given_holds: self.given_holds.clone(),
             touch: self.touch,
             separation: self.separation,
             layers: self.layers,
@@ -158,6 +162,7 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
         layers,
         touch,
         segment: settings::segment(&source, &tables.phases)?,
+        given_holds: settings::given_holds(&source, &tables.phases)?,
         fit,
         exponents,
         free_exponent: tables.fit.free_exponent.unwrap_or(true),

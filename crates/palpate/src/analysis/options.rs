@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::choose::CompareOptions;
 use crate::contact::{Layers, LayersError, Shape, Sides};
 use crate::identify::FitOptions;
-use crate::segment::{ContactChoice, SegmentOptions};
+use crate::segment::{ContactChoice, GivenHold, SegmentOptions};
 use crate::simulate::Separation;
 use crate::strain::RateWindow;
 
@@ -51,6 +51,8 @@ pub struct AnalysisOptions {
     pub geometry: Option<Geometry>,
     /// How phases are found.
     pub segment: SegmentOptions,
+    /// Holds with given limits; where there are any, no others are sought.
+    pub given_holds: Vec<GivenHold>,
     /// How first touch is found; as recorded unless asked otherwise, since a strip in grips has no first touch.
     pub touch: ContactChoice,
     /// Whether the jaw can pull (for the overlay).
@@ -78,6 +80,7 @@ impl Default for AnalysisOptions {
         Self {
             geometry: None,
             segment: SegmentOptions::default(),
+            given_holds: Vec::new(),
             touch: ContactChoice::AsRecorded,
             separation: Separation::default(),
             layers: None,

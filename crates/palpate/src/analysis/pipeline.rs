@@ -8,7 +8,7 @@ use super::overlay::{Overlay, overlay};
 use super::{AnalysisOptions, Finding};
 use crate::contact::{Shape, Specimen, SpecimenError};
 use crate::record::Record;
-use crate::segment::{ContactPoint, Phase, Segment, SegmentError, Segmentation, find_contact_of, find_phases};
+use crate::segment::{ContactPoint, Phase, Segment, SegmentError, Segmentation, find_contact_of, phases_with};
 use crate::simulate::Separation;
 use crate::statistics::noise;
 
@@ -104,7 +104,7 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
     if dropouts > 0 {
         findings.push(Finding::DropoutsRepaired { count: dropouts });
     }
-    let segmentation = find_phases(&record, &options.segment)?;
+    let segmentation = phases_with(&record, &options.segment, &options.given_holds)?;
     if !segmentation.settings.from_displacement {
         findings.push(Finding::PhasesFromForce);
     }
@@ -295,6 +295,9 @@ fn nothing_to_fit(holds: &[HoldAnalysis]) -> Result<(), AnalysisError> {
             format!("the fit starts {from:.3} s into a hold and leaves {left} of its {} samples", hold.segment.len()),
             "start the fit earlier: hold_start = \"settled\", or a shorter time after the peak",
         )
+    } else if let Some((_, held)) = with("feedback_controlled") {
+        let hint = "fit the displacement as creep: palpate compare --creep (analysis::creep_holds)";
+        (format!("the machine held the force; {}", held.seen()), hint)
     } else if let Some((hold, few)) = with("too_few_samples") {
         let needed = if let Finding::TooFewSamples { needed, .. } = few { *needed } else { 0 };
         let seen = few.seen();

@@ -14,20 +14,19 @@ const ROUNDS: usize = 3;
 ///
 /// Where a ramp has no line, samples no farther than `near` from the level belong to the hold. Elsewhere all samples of the straight piece of either side count, so that the error of an edge comes near the limit that noise
 /// sets. What is a sample of the ramp and what of the hold follows from the edge, so it is done three times.
-pub(super) fn sharpened(
-    time: &[f64],
-    values: &[f64],
-    pieces: &[Piece],
-    near: f64,
-    found: &mut [Standstill],
-) {
+pub(super) fn sharpened(time: &[f64], values: &[f64], pieces: &[Piece], near: f64, found: &mut [Standstill]) {
     let count = values.len();
     let cut = found.to_vec();
     for _ in 0..ROUNDS {
         for index in 0..found.len() {
             let before = index.checked_sub(1).map_or(0, |i| found[i].end);
             let after = found.get(index + 1).map_or(count, |next| next.start);
-            let column = Column { time, values, pieces, near };
+            let column = Column {
+                time,
+                values,
+                pieces,
+                near,
+            };
             if found[index].start > 0 {
                 found[index].start = column.start_of(before, cut[index].start, found[index]);
             }

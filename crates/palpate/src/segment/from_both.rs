@@ -55,17 +55,20 @@ fn force_held(record: &Record, still: &[Level], options: &SegmentOptions) -> Vec
     let creeps = |level: &Level| {
         mode(record, level.start, level.end) == HoldMode::ForceHeld
             && slows_down(record, level)
+            && arrives(record, level)
             && still.iter().all(|still| rests_late(still, level))
     };
     found.into_iter().filter(creeps).collect()
 }
 
 /// Share of a creep that its first half must see: of a ramp that goes on while the force happens to stay, it is one half.
-const FIRST_HALF: f64 = 0.53;
+const FIRST_HALF: f64 = 0.51;
 
 /// Whether the jaw goes more slowly the longer the force is held.
 fn slows_down(record: &Record, level: &Level) -> bool {
-    let Some(displacement) = record.displacement() else { return false };
+    let Some(displacement) = record.displacement() else {
+        return false;
+    };
     let time = record.time();
     let middle = 0.5 * (time[level.start] + time[level.end - 1]);
     let half = time.partition_point(|t| *t < middle);
@@ -73,6 +76,25 @@ fn slows_down(record: &Record, level: &Level) -> bool {
     let at = |from: usize| median(&mut displacement[from..from + few].to_vec());
     let (first, middle, last) = (at(level.start), at(half.min(level.end - few)), at(level.end - few));
     (middle - first) / (last - first) > FIRST_HALF
+}
+
+/// How many times faster than in the hold the jaw comes to it.
+const FASTER: f64 = 2.0;
+
+/// Whether the jaw was faster before the force was held than it is on average since: the middle of a ramp has nothing of that.
+fn arrives(record: &Record, level: &Level) -> bool {
+    let Some(displacement) = record.displacement() else {
+        return false;
+    };
+    let time = record.time();
+    let speed =
+        |from: usize, until: usize| (displacement[until] - displacement[from]).abs() / (time[until] - time[from]);
+    let inside = speed(level.start, level.end - 1);
+    let length = level.end - level.start;
+    let before = [4, 16, 64].map(|part| (length / part).max(3));
+    before
+        .into_iter()
+        .any(|samples| level.start > 0 && speed(level.start.saturating_sub(samples), level.start) > FASTER * inside)
 }
 
 /// Whether a standstill of the jaw lies outside a level of the force, or is the end of its creep.

@@ -150,7 +150,12 @@ fn rounding(values: &[f64]) -> f64 {
     if step == 0.0 {
         return 0.0;
     }
-    let steps = || values.windows(2).map(|pair| ((pair[1] - pair[0]) / step).round() as i64).filter(|steps| *steps != 0);
+    let steps = || {
+        values
+            .windows(2)
+            .map(|pair| ((pair[1] - pair[0]) / step).round() as i64)
+            .filter(|steps| *steps != 0)
+    };
     let odd = steps().filter(|steps| steps % 2 != 0).count();
     if 20 * odd < steps().count() { 2.0 * step } else { step }
 }

@@ -12,6 +12,7 @@
 //! | `mode.rs` | what is held: the displacement, the force, or neither |
 //! | `turning.rs` | turning points of a force |
 //! | `from_force.rs` | phases where only the force was |
+//! | `given.rs` | holds whose limits someone gives |
 //! | `edges.rs` | where exactly a hold begins and ends |
 //! | `ramps.rs` | what lies between the holds: loading and unloading |
 //! | `relaxation.rs` | Type I or Type II, and how sure |
@@ -22,6 +23,7 @@ mod contact_point;
 mod edges;
 mod from_both;
 mod from_force;
+mod given;
 mod levels;
 mod loading_curve;
 mod mode;
@@ -35,8 +37,9 @@ mod standstill;
 mod turning;
 
 pub use contact_point::{ContactChoice, ContactPoint, find_contact, find_contact_of};
+pub use given::{GivenHold, phases_with};
 pub use mode::HoldMode;
-pub(crate) use mode::{Change, change};
+pub(crate) use mode::change;
 pub use options::{HoldStart, SegmentOptions, SegmentSettings};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
 
@@ -159,6 +162,42 @@ pub enum SegmentError {
         /// Least number of samples of a hold.
         minimum_samples: usize,
     },
+    /// A given hold that the record does not contain.
+    #[error("given hold {number} lasts from {from} s to {to} s, the record from {begin} s to {last} s")]
+    GivenOutside {
+        /// Which, from 1.
+        number: usize,
+        /// Its start, s.
+        from: f64,
+        /// Its end, s.
+        to: f64,
+        /// First time of the record, s.
+        begin: f64,
+        /// Last time of the record, s.
+        last: f64,
+    },
+    /// A given hold with hardly a sample.
+    #[error("given hold {number}, from {from} s to {to} s, has {samples} samples, a hold needs {needed}")]
+    GivenShort {
+        /// Which, from 1.
+        number: usize,
+        /// Its start, s.
+        from: f64,
+        /// Its end, s.
+        to: f64,
+        /// Its samples.
+        samples: usize,
+        /// Fewest samples.
+        needed: usize,
+    },
+    /// Two given holds that share samples.
+    #[error("given holds {first} and {second} overlap")]
+    GivenOverlap {
+        /// One, from 1.
+        first: usize,
+        /// The other.
+        second: usize,
+    },
 }
 
 impl SegmentError {
@@ -166,6 +205,11 @@ impl SegmentError {
     #[must_use]
     pub fn hint(&self) -> &'static str {
         match self {
+            Self::GivenOutside { .. } => {
+                "times count as in the record, which need not begin at 0; `palpate inspect` shows them"
+            }
+            Self::GivenShort { .. } => "give an end that is later than the start by some samples",
+            Self::GivenOverlap { .. } => "end the earlier hold before the later one begins",
             Self::TooShort { .. } => "check that the whole test was exported",
             Self::NoMotion { .. } => {
                 "check the displacement column and its unit; a record without motion has no relaxation to fit"

@@ -138,7 +138,13 @@ pub(super) fn pieces(time: &[f64], values: &[f64], roughness: Roughness) -> Vec<
             end: right + 1,
         })
         .collect();
-    while let Some(Proposal { cost: price, left, right, end }) = proposals.pop() {
+    while let Some(Proposal {
+        cost: price,
+        left,
+        right,
+        end,
+    }) = proposals.pop()
+    {
         // Out of date: one of the two has grown or gone since.
         if ends[left] != right || ends[right] != end {
             continue;
@@ -151,11 +157,21 @@ pub(super) fn pieces(time: &[f64], values: &[f64], roughness: Roughness) -> Vec<
         if end < count {
             before[end] = left;
             let price = cost(&lines[left], &lines[end]);
-            proposals.push(Proposal { cost: price, left, right: end, end: ends[end] });
+            proposals.push(Proposal {
+                cost: price,
+                left,
+                right: end,
+                end: ends[end],
+            });
         }
         if left > 0 {
             let first = before[left];
-            proposals.push(Proposal { cost: cost(&lines[first], &lines[left]), left: first, right: left, end });
+            proposals.push(Proposal {
+                cost: cost(&lines[first], &lines[left]),
+                left: first,
+                right: left,
+                end,
+            });
         }
     }
     let mut pieces = Vec::new();
@@ -217,7 +233,13 @@ mod tests {
     fn lines_without_noise_are_cut_at_their_kinks() {
         let value = |i: i32| f64::from(i.min(100)) - 2.0 * f64::from((i - 250).max(0));
         let values: Vec<f64> = (0..400).map(value).collect();
-        let ends = cut(&values, Roughness { noise: 0.0, stray: 1e-3 });
+        let ends = cut(
+            &values,
+            Roughness {
+                noise: 0.0,
+                stray: 1e-3,
+            },
+        );
         assert_eq!(ends.len(), 3, "{ends:?}");
         assert!(ends[0].abs_diff(100) <= 1 && ends[1].abs_diff(250) <= 1, "{ends:?}");
     }

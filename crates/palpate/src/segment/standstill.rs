@@ -245,7 +245,11 @@ fn settling(moves: &[Move], taken: &[bool], first: usize, last: usize, band: f64
         }
         let outer = &moves[next - 1];
         let travel = ramp_travel(moves, taken, next - 1);
-        if moves[next].end > moves[next].start && strays <= SETTLING * travel && travel > 8.0 * band && outer.speed().abs() > 2.0 * moves[next].speed().abs() {
+        if moves[next].end > moves[next].start
+            && strays <= SETTLING * travel
+            && travel > 8.0 * band
+            && outer.speed().abs() > 2.0 * moves[next].speed().abs()
+        {
             settled = next;
         }
     }
@@ -288,11 +292,26 @@ fn evidence(
     if stillness.duration.is_none() && (faster < stillness.goes_on[0] || slower < stillness.goes_on[1]) {
         return None;
     }
-    let before = time.partition_point(|t| *t < moves[first].times[0] - duration).max(ramp_before(moves, first));
-    let after = time.partition_point(|t| *t <= moves[last].times[1] + duration).min(ramp_after(moves, last));
-    // A ramp of hardly a sample is a corner.
-    if (first > 0 && start - before < RAMP) || (last + 1 < moves.len() && after - end < RAMP) {
-        return Some(f64::INFINITY);
+    let widest = [
+        time.partition_point(|t| *t < moves[first].times[0] - duration),
+        time.partition_point(|t| *t <= moves[last].times[1] + duration),
+    ];
+    let mut before = widest[0].max(ramp_before(moves, first));
+    let mut after = widest[1].min(ramp_after(moves, last));
+    // A ramp of hardly a sample is a corner, if it goes far; else it is a scrap of noise.
+    let least = stillness.goes_on[1].max(SCRAP * stillness.noise);
+    let goes_far = |range: std::ops::Range<usize>, level: f64| values[range].iter().any(|v| (v - level).abs() > least);
+    if first > 0 && start - before < RAMP {
+        if goes_far(start.saturating_sub(RAMP)..start, moves[first].ends[0]) {
+            return Some(f64::INFINITY);
+        }
+        before = widest[0];
+    }
+    if last + 1 < moves.len() && after - end < RAMP {
+        if goes_far(end..(end + RAMP).min(values.len()), moves[last].ends[1]) {
+            return Some(f64::INFINITY);
+        }
+        after = widest[1];
     }
     let (gain, samples) = gain_of_corners(time, values, (before, start, end, after));
     let stray = 0.1 * stillness.band;
@@ -300,6 +319,8 @@ fn evidence(
     Some(gain / unit)
 }
 
+/// How far noise takes a few samples, in its standard deviations.
+const SCRAP: f64 = 4.5;
 /// Fewest samples of a ramp that could be the side of a smooth turning point.
 const RAMP: usize = 3;
 /// Share of its greatest speed under which a ramp has ended.

@@ -18,7 +18,11 @@ const HUNTING: f64 = 0.02;
 
 /// Force ramped and held by a controller that falls short at first and hunts; the displacement creeps.
 pub fn press(noise: f64, random: &mut Noise) -> Labelled {
-    let machine = Machine { dropouts: 0.0, skew: 0.0, ..Machine::drawn(noise, random) };
+    let machine = Machine {
+        dropouts: 0.0,
+        skew: 0.0,
+        ..Machine::drawn(noise, random)
+    };
     let interval = log_uniform(1e-3, 0.2, random);
     let count = log_uniform(2.0, 12.9, random) as usize;
     let hold = log_uniform(60.0, 1500.0, random);
@@ -65,8 +69,8 @@ pub fn press(noise: f64, random: &mut Noise) -> Labelled {
         shares.iter().map(|share| share * largest).collect(),
     );
     let time = machine.times(interval, now * interval, random);
-    let moved =
-        simulate(&history.expect("knots in order"), &model, &Sampling::Times(time.clone())).expect("a body that bears it");
+    let moved = simulate(&history.expect("knots in order"), &model, &Sampling::Times(time.clone()))
+        .expect("a body that bears it");
     // What a controller leaves: slow hunting about the set force.
     let mut hunting = 0.0;
     let mut hunt = |force: &f64| {
@@ -113,7 +117,11 @@ pub fn none(kind: Kind, noise: f64, random: &mut Noise) -> Labelled {
         kind,
         noise,
         record: if kind == Kind::Still && noise == 0.0 {
-            Machine { noise: 1e-3, ..Machine::perfect() }.measured(time, [displacement, force], random)
+            Machine {
+                noise: 1e-3,
+                ..Machine::perfect()
+            }
+            .measured(time, [displacement, force], random)
         } else {
             machine.measured(time, [displacement, force], random)
         },

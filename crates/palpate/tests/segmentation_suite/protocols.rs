@@ -4,8 +4,8 @@
 //!
 //! A hold is demanded where the data can show it, by one rule on every ramp beside it. With σ what noise and rounding leave
 //! unsure of the displacement, a ramp travels 6 σ or more (and 1 % of the range), and at its speed the jaw would have gone on by
-//! 12 σ or more (and 1 % of the range) had it not stopped: about three σ off the straight line through ramp, hold and ramp. A hold has ten samples or
-//! more, at least.
+//! 12 σ or more (and 1 % of the range) had it not stopped: about three σ off the straight line through ramp, hold and ramp. A hold
+//! has ten samples or more; in fewer than 24 noise hides more, and 12 σ grow as one over the root of their number.
 
 use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
@@ -22,6 +22,8 @@ pub const FEWEST: f64 = 10.0;
 pub const TRAVEL: f64 = 6.0;
 /// Least way the jaw would have gone on in a hold, in σ.
 pub const STANDS: f64 = 12.0;
+/// Samples in which that is seen; of fewer it must be farther, as the root of their number.
+pub const ENOUGH: f64 = 24.0;
 /// The same as a share of the range: less is not seen by eye.
 pub const STANDS_SHARE: f64 = 0.01;
 
@@ -76,10 +78,8 @@ pub fn squeeze(kind: Kind, noise: f64, random: &mut Noise) -> Labelled {
         knots.push((now, 0.05));
     }
     let (times, shares): (Vec<f64>, Vec<f64>) = knots.into_iter().unzip();
-    let motion = Motion::new(
-        times.iter().map(|t| t * interval).collect(),
-        shares.iter().map(|share| share * depth).collect(),
-    );
+    let motion =
+        Motion::new(times.iter().map(|t| t * interval).collect(), shares.iter().map(|share| share * depth).collect());
     let motion = motion.expect("knots in order");
     let time = machine.times(interval, motion.end(), random);
     let displacement = time.iter().map(|t| motion.displacement_at(*t)).collect();
@@ -163,8 +163,13 @@ fn steps(kind: Kind, levels: &[f64], unsure: f64, random: &mut Noise) -> Vec<Ste
         };
         // Slow enough ramps are no ramps any more, for either hold beside them.
         let shorter = if index > 0 { hold.min(holds[index - 1]) } else { *hold };
-        let longest = rise * shorter / (STANDS * unsure).max(STANDS_SHARE);
-        steps.push(Step { to: *to, ramp: ramp.min(longest), hold: *hold });
+        let stands = STANDS * (ENOUGH / shorter).sqrt().max(1.0);
+        let longest = rise * shorter / (stands * unsure).max(STANDS_SHARE);
+        steps.push(Step {
+            to: *to,
+            ramp: ramp.min(longest),
+            hold: *hold,
+        });
         at = *to;
     }
     steps
@@ -189,9 +194,20 @@ fn settle(knots: &mut Vec<(f64, f64)>, start: f64, rise: f64, step: &Step, unsur
 fn body(steps: &[Step], interval: f64, random: &mut Noise) -> ContactModel {
     let is_ball = random.uniform() < 0.5;
     let (shape, sides) = if is_ball {
-        (Shape::Ball { radius: 0.02 + 0.03 * random.uniform() }, Sides::Two)
+        (
+            Shape::Ball {
+                radius: 0.02 + 0.03 * random.uniform(),
+            },
+            Sides::Two,
+        )
     } else {
-        (Shape::Prism { area: 1e-4, length: 0.03 + 0.05 * random.uniform() }, Sides::One)
+        (
+            Shape::Prism {
+                area: 1e-4,
+                length: 0.03 + 0.05 * random.uniform(),
+            },
+            Sides::One,
+        )
     };
     let exponent = [1.0, 2.0, 3.0, 5.0][(4.0 * random.uniform()) as usize];
     let hold = steps.iter().map(|step| step.hold).sum::<f64>() / steps.len() as f64 * interval;

@@ -55,7 +55,14 @@ impl Machine {
 
     /// A machine without fault.
     pub fn perfect() -> Self {
-        Self { noise: 0.0, quanta: [0.0; 2], drifts: [0.0; 2], dropouts: 0.0, skew: 0.0, jitter: 0.0 }
+        Self {
+            noise: 0.0,
+            quanta: [0.0; 2],
+            drifts: [0.0; 2],
+            dropouts: 0.0,
+            skew: 0.0,
+            jitter: 0.0,
+        }
     }
 
     /// What noise and rounding leave unsure of the displacement, as a share of its range.

@@ -88,7 +88,11 @@ pub fn scored(labelled: &Labelled, force_only: bool) -> Scored {
 /// Pairs true and found holds that share more than half of both.
 fn score(time: &[f64], holds: &[TrueHold], found: &[Segment]) -> Score {
     let interval = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-    let mut score = Score { records: 1, holds: holds.len(), ..Score::default() };
+    let mut score = Score {
+        records: 1,
+        holds: holds.len(),
+        ..Score::default()
+    };
     for hold in holds {
         let rounding = 1e-6 * interval;
         let start = time.partition_point(|t| *t < hold.start - rounding);
@@ -97,7 +101,9 @@ fn score(time: &[f64], holds: &[TrueHold], found: &[Segment]) -> Score {
             let both = segment.end.min(end).saturating_sub(segment.start.max(start));
             2 * both > end - start && 2 * both > segment.len()
         };
-        let Some(segment) = found.iter().find(shares) else { continue };
+        let Some(segment) = found.iter().find(shares) else {
+            continue;
+        };
         score.found += 1;
         score.turned += usize::from(segment.after != Some(hold.after));
         for (index, (at, truth)) in [(segment.start, start), (segment.end, end)].into_iter().enumerate() {
@@ -119,7 +125,8 @@ pub fn table(rows: &[(String, Score)]) -> String {
         "| records | number | holds | found | missed | extra | wrong direction | start: median | 95 % | most | end: median | 95 % | most | blunt edges | 95 %, limits |\n\
          |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
-    let told = |value: Option<f64>, digits: usize| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"));
+    let told =
+        |value: Option<f64>, digits: usize| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"));
     for (name, score) in rows {
         let _ = write!(
             out,
