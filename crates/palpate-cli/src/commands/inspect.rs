@@ -121,7 +121,7 @@ fn phases(
     test: Option<&palpate_files::description::TestDescription>,
 ) -> String {
     let (record, dropouts) = record.repaired();
-    let given = test.map_or(&[][..], |test| &test.given_holds);
+    let given = test.map_or_else(Default::default, |test| test.given_holds.as_slice());
     let segmentation = match phases_with(&record, options, given) {
         Ok(segmentation) => segmentation,
         Err(error) => return format!("Phases: {error}\n"),
