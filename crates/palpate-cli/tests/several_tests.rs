@@ -90,7 +90,9 @@ fn where_one_record_is_needed_one_is_asked_for() {
 
 #[test]
 fn a_workbook_of_tests_names_what_it_skips() {
-    let Some(book) = data("zwick-indentation/230403_C_Indentation_relaxation_500N_force.xlsx") else { return };
+    let Some(book) = data("zwick-indentation/230403_C_Indentation_relaxation_500N_force.xlsx") else {
+        return;
+    };
     let folder = tempfile::tempdir().unwrap();
     let told = done(folder.path(), &["inspect", book.to_str().unwrap()]);
     assert!(told.lines().filter(|line| line.starts_with("skipped ")).count() >= 3, "{told}");

@@ -21,8 +21,8 @@ mod hint;
 pub mod input;
 pub mod parquet_table;
 pub mod record_file;
-mod spreadsheet;
 mod robot_log;
+mod spreadsheet;
 pub mod text;
 
 pub use error::{CellPlace, DecimalDoubt, FileError};

@@ -128,7 +128,7 @@ fn one(
     let _working = Working::new(format!("comparing laws on {}", path.display()));
     let asked = &options.analysis;
     if arguments.creep {
-        let corrected = corrected_record(&file.record, &asked.segment, &asked.corrections)
+        let corrected = corrected_record(&file.record, asked)
             .map_err(|error| Failure::of_file(path, &error, Some(error.hint())))?;
         let holds = creep_holds(&corrected, &asked.segment, &options.compared, asked.fit_until)
             .map_err(|error| Failure::of_file(path, &error, Some(error.hint().to_owned())))?;

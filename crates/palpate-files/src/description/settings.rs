@@ -2,7 +2,7 @@
 
 use palpate::{
     identify::FitOptions,
-    segment::{ContactChoice, SegmentOptions},
+    segment::{ContactChoice, GivenHold, HoldMode, SegmentOptions},
     units::Dimension,
 };
 
@@ -11,7 +11,7 @@ use super::{
     error::DescriptionError,
     quantity::QuantityText,
     source::Source,
-    test_tables::{FitTable, PhasesTable},
+    test_tables::{FitTable, HoldModeName, PhasesTable},
 };
 
 /// The exponents compared where nothing is said.
@@ -47,6 +47,32 @@ pub(super) fn segment(source: &Source<'_>, phases: &PhasesTable) -> Result<Segme
         still_below: still_below.transpose()?,
         hold_start: hold_start.transpose()?.unwrap_or(usual.hold_start),
     })
+}
+
+/// The holds whose limits are given, each after itself; whether a record has them is seen when they meet.
+pub(super) fn given_holds(source: &Source<'_>, phases: &PhasesTable) -> Result<Vec<GivenHold>, DescriptionError> {
+    let mut holds: Vec<GivenHold> = Vec::with_capacity(phases.hold.len());
+    for (index, hold) in phases.hold.iter().enumerate() {
+        let key = |name: &str| format!("phases.hold[{}].{name}", index + 1);
+        let from = source.si(&key("from"), &hold.from, Dimension::Time)?;
+        let to = source.si(&key("to"), &hold.to, Dimension::Time)?;
+        if to <= from {
+            let expected = format!("a time after its start (from = \"{}\")", hold.from.text);
+            return Err(source.value(key("to"), expected, &format!("\"{}\"", hold.to.text)));
+        }
+        if let Some(other) = holds.iter().position(|other| from < other.to && other.from < to) {
+            let expected = format!("a hold that does not overlap hold {}", other + 1);
+            let found = format!("\"{}\" to \"{}\"", hold.from.text, hold.to.text);
+            return Err(source.value(key("from"), expected, &found));
+        }
+        let mode = hold.mode.map(|mode| match mode {
+            HoldModeName::Displacement => HoldMode::DisplacementHeld,
+            HoldModeName::Force => HoldMode::ForceHeld,
+            HoldModeName::Neither => HoldMode::Neither,
+        });
+        holds.push(GivenHold { from, to, mode });
+    }
+    Ok(holds)
 }
 
 pub(super) fn fit(source: &Source<'_>, fit: &FitTable) -> Result<(FitOptions, Vec<f64>), DescriptionError> {

@@ -7,7 +7,7 @@ use palpate::{
     contact::{Shape, Sides},
     identify::FitOptions,
     record::CorrectionOptions,
-    segment::{ContactChoice, SegmentOptions},
+    segment::{ContactChoice, GivenHold, SegmentOptions},
     simulate::Separation,
 };
 
@@ -56,6 +56,8 @@ pub struct TestDescription {
     pub touch: ContactChoice,
     /// How to find the phases.
     pub segment: SegmentOptions,
+    /// Holds with given limits; where there are any, no others are sought.
+    pub given_holds: Vec<GivenHold>,
     /// How to fit.
     pub fit: FitOptions,
     /// The exponents to compare.
@@ -78,6 +80,7 @@ impl Default for TestDescription {
             corrections: CorrectionOptions::default(),
             touch: ContactChoice::AsRecorded,
             segment: SegmentOptions::default(),
+            given_holds: Vec::new(),
             fit: FitOptions::default(),
             exponents: settings::USUAL_EXPONENTS.to_vec(),
             free_exponent: true,
@@ -94,6 +97,7 @@ impl TestDescription {
             geometry: self.geometry.clone(),
             segment: self.segment,
             corrections: self.corrections.clone(),
+            given_holds: self.given_holds.clone(),
             touch: self.touch,
             separation: self.separation,
             layers: self.layers,
@@ -164,6 +168,7 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
         corrections: corrections::checked(&source, &tables.clock, &tables.force, &tables.machine)?,
         touch,
         segment: settings::segment(&source, &tables.phases)?,
+        given_holds: settings::given_holds(&source, &tables.phases)?,
         fit,
         exponents,
         free_exponent: tables.fit.free_exponent.unwrap_or(true),

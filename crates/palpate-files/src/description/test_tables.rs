@@ -88,6 +88,35 @@ pub(super) struct PhasesTable {
     /// peak such as "peak + 0.5 s".
     #[schemars(extend("examples" = ["peak", "settled", "peak + 0.5 s"]))]
     pub(super) hold_start: Option<String>,
+    /// Holds with given limits. Where there are any, no others are sought.
+    #[serde(default)]
+    pub(super) hold: Vec<HoldTable>,
+}
+
+/// A hold whose limits are given.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Hold")]
+pub(super) struct HoldTable {
+    /// Its first moment, as the record counts time.
+    pub(super) from: QuantityText,
+    /// Its last moment.
+    pub(super) to: QuantityText,
+    /// What the machine holds; seen from the record if left out.
+    pub(super) mode: Option<HoldModeName>,
+}
+
+/// What a machine holds.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+#[schemars(rename = "HoldMode")]
+pub(super) enum HoldModeName {
+    /// The displacement: the force relaxes.
+    Displacement,
+    /// The force: the displacement creeps.
+    Force,
+    /// Both move.
+    Neither,
 }
 
 /// How to fit the law.

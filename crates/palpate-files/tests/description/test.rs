@@ -3,7 +3,7 @@
 use palpate::{
     analysis::LayersChoice,
     contact::{Shape, Sides},
-    segment::{ContactChoice, HoldStart},
+    segment::{ContactChoice, GivenHold, HoldMode, HoldStart},
     simulate::Separation,
 };
 use palpate_files::{
@@ -173,6 +173,18 @@ fn wrong_values_name_their_keys() {
         ("phases.tolerance = 0.05", "phases.tolerance", "expected a unit"),
         ("phases.minimum_hold = \"-2 s\"", "phases.minimum_hold", "a time above 0 s"),
         ("phases.still_below = 1", "phases.still_below", "between 0 and 1, found 1"),
+        (
+            "[[phases.hold]]\nfrom = \"9 s\"\nto = \"4 s\"",
+            "phases.hold[1].to",
+            "a time after its start (from = \"9 s\"), found \"4 s\"",
+        ),
+        (
+            "[[phases.hold]]\nfrom = \"1 s\"\nto = \"4 s\"\n[[phases.hold]]\nfrom = \"3 s\"\nto = \"6 s\"",
+            "phases.hold[2].from",
+            "does not overlap hold 1",
+        ),
+        ("[[phases.hold]]\nfrom = \"1 mm\"\nto = \"4 s\"", "phases.hold[1].from", "mm"),
+        ("[[phases.hold]]\nfrom = \"1 s\"\nto = \"4 s\"\nmode = \"jaw\"", "mode", "displacement"),
         ("fit.exponents = [1, 0]", "fit.exponents[2]", "a number above 0, found 0"),
         ("fit.exponents = []\nfit.free_exponent = false", "fit.exponents", "one exponent or more"),
         ("fit.exponents = 5", "fit.exponents", "a list in square brackets, found 5"),
@@ -215,4 +227,13 @@ fn likely_slips_have_a_hint() {
         assert!(found.contains(help), "{radius}, {modulus}: {found}");
     }
     assert!(hint("specimen = { shape = \"potato\" }").contains("\"block\""));
+}
+
+#[test]
+fn holds_can_be_given() {
+    let text = "[[phases.hold]]\nfrom = \"500 ms\"\nto = \"2 s\"\n\n[[phases.hold]]\nfrom = \"1 min\"\nto = \"62 s\"\nmode = \"force\"";
+    let test = test(text).unwrap();
+    let hold = |from, to, mode| GivenHold { from, to, mode };
+    assert_eq!(test.given_holds, [hold(0.5, 2.0, None), hold(60.0, 62.0, Some(HoldMode::ForceHeld))]);
+    assert_eq!(test.analysis_options().given_holds, test.given_holds);
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use palpate::segment::find_phases;
+use palpate::segment::{After, HoldMode, SegmentError, SegmentOptions, Segmentation, find_phases};
 use palpate_files::{
     description::{TestDescription, read_test},
     record_file::{ReadError, RecordFile, read_record},
@@ -55,6 +55,127 @@ fn silicone_has_two_clocks() {
     assert_eq!(phases.holds().count(), 24);
     let text = refused(&path).to_string();
     assert!(text.contains("no names of columns in 7 columns"), "{text}");
+}
+
+/// The phases of a record after repair, as an analysis sees them.
+fn phases(file: &RecordFile, options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
+    find_phases(&file.record.repaired().0, options)
+}
+
+/// Start and end of every hold, s; what came before; what is held.
+fn holds(file: &RecordFile, options: &SegmentOptions) -> Vec<(f64, f64, Option<After>, HoldMode)> {
+    let time = file.record.time();
+    let found = phases(file, options).unwrap();
+    let holds = found.holds().map(|hold| (time[hold.start], time[hold.end - 1], hold.after, hold.mode.unwrap()));
+    holds.collect()
+}
+
+#[test]
+fn the_foams_hold_is_the_one_its_cycle_column_labels() {
+    let Some(folder) = folder() else { return };
+    let path = folder.join("foam/XtraSoft.csv");
+    let labels = std::fs::read_to_string(&path).unwrap();
+    let hold: Vec<f64> = labels
+        .lines()
+        .filter(|line| line.contains("1-Hold"))
+        .map(|line| line.split(',').nth(2).unwrap().parse().unwrap())
+        .collect();
+    let found = holds(&open(&path, None), &SegmentOptions::default());
+    println!("{found:?}, labelled {} to {}", hold[0], hold[hold.len() - 1]);
+    let (start, end, after, mode) = found[0];
+    // Two samples of 0.2 s.
+    assert!((start - hold[0]).abs() < 0.41 && (end - hold[hold.len() - 1]).abs() < 0.41);
+    assert_eq!((after, mode), (Some(After::Loading), HoldMode::DisplacementHeld));
+}
+
+#[test]
+fn the_tendons_hold_lasts_as_long_as_its_header_says() {
+    let Some(folder) = folder() else { return };
+    let found = holds(&open(&folder.join("tendon/fresh_1.csv"), None), &SegmentOptions::default());
+    println!("{found:?}");
+    let [(start, end, after, mode)] = found[..] else {
+        panic!("{found:?}")
+    };
+    assert!((end - start - 180.0).abs() < 0.5, "{start} {end}");
+    assert_eq!((after, mode), (Some(After::Loading), HoldMode::DisplacementHeld));
+}
+
+#[test]
+fn muscle_is_held_after_ramps_of_known_times() {
+    let Some(folder) = folder() else { return };
+    let units = "[columns]\ntime = { unit = \"s\" }\ndisplacement = { column = \"L\", unit = \"mm\" }\n\
+                 force = { column = \"F\", unit = \"N\" }";
+    for (ramp, name) in [(0.1, "0.1"), (1.0, "1"), (10.0, "10"), (100.0, "100")] {
+        let file = open(&folder.join(format!("titin-ramps/AvgRelaxed_{name}s.csv")), Some(&described(units)));
+        let found = holds(&file, &SegmentOptions::default());
+        println!("{ramp} s: {found:?}");
+        let [(start, _, after, mode)] = found[..] else {
+            panic!("{found:?}")
+        };
+        let time = file.record.time();
+        let interval = time.windows(2).find(|pair| pair[1] > 2.0 + ramp).map_or(0.0, |pair| pair[1] - pair[0]);
+        assert!((start - 2.0 - ramp).abs() <= 2.0 * interval, "{ramp} s: {start}, every {interval} s");
+        assert_eq!((after, mode), (Some(After::Loading), HoldMode::DisplacementHeld));
+    }
+}
+
+#[test]
+fn silicone_is_held_up_and_down() {
+    let Some(folder) = folder() else { return };
+    let test = example("silicone-steps.toml");
+    for (name, count) in [("1_7-5_Epin_20mm_v1.csv", 24), ("2_7-5_E2pin_20mm_capac_relax.csv", 9)] {
+        let found = holds(&open(&folder.join("silicone-steps").join(name), Some(&test)), &test.segment);
+        println!("{name}: {found:?}");
+        assert_eq!(found.len(), count, "{name}");
+        let up = found.iter().filter(|hold| hold.2 == Some(After::Loading)).count();
+        assert_eq!(up, count.div_ceil(2), "{name}");
+        assert!(found.iter().all(|hold| hold.3 == HoldMode::DisplacementHeld), "{name}");
+    }
+}
+
+#[test]
+fn a_tape_is_held_once_and_not_in_a_triangle() {
+    let Some(folder) = folder() else { return };
+    for name in ["relax_2d5.csv", "relax_3d0.csv"] {
+        let found = holds(&open(&folder.join("vhb4910").join(name), None), &SegmentOptions::default());
+        println!("{name}: {found:?}");
+        assert_eq!(found.len(), 1, "{name}: {found:?}");
+        assert!(found[0].1 - found[0].0 > 1700.0 && found[0].3 == HoldMode::DisplacementHeld);
+    }
+    let cyclic = open(&folder.join("vhb4910/cyc_0d05_2d5_2.csv"), None);
+    let found = phases(&cyclic, &SegmentOptions::default());
+    assert!(matches!(found, Err(SegmentError::NoHold { .. })), "{found:?}");
+    let test = example("silicone-steps.toml");
+    let still = open(&folder.join("silicone-steps/1_10_E4pin_20mm_v7.csv"), Some(&test));
+    let found = phases(&still, &test.segment);
+    assert!(found.is_err(), "{found:?}");
+}
+
+#[test]
+fn a_gripper_holds_the_force() {
+    let Some(folder) = folder() else { return };
+    let test = example("gripper.toml");
+    let path = folder.join("gripper-fruit/banana_ForceData_20240824_210940_refined.csv");
+    let file = open(&path, Some(&test));
+    let found = holds(&file, &test.segment);
+    let begin = file.record.time()[0];
+    for (start, end, after, mode) in &found {
+        println!("banana {:.2} to {:.2} {after:?} {mode:?}", start - begin, end - begin);
+    }
+    // The grasp at 6 N creeps; at 0.8 N the controller is slower than the fruit.
+    assert_eq!((found[0].2, found[0].3), (Some(After::Loading), HoldMode::ForceHeld), "{found:?}");
+    assert_eq!(found[1].2, Some(After::Unloading), "{found:?}");
+    let kiwi = described(
+        "[columns]\ntime = { column = \"time\", unit = \"s\" }\ndisplacement = { column = \"now_pos\", unit = \"mm\" }\n\
+         force = { column = \"now_force\", unit = \"N\" }\n[phases]\nminimum_hold = \"2 s\"",
+    );
+    let path = std::fs::read_dir(folder.join("gripper-fruit")).unwrap().map(|entry| entry.unwrap().path());
+    let path = path.into_iter().find(|path| path.to_string_lossy().contains("kiwi")).unwrap();
+    let file = open(&path, Some(&kiwi));
+    let found = phases(&file, &kiwi.segment);
+    println!("kiwi {found:?}");
+    let relaxes = |hold: &palpate::segment::Segment| hold.mode == Some(HoldMode::DisplacementHeld);
+    assert!(!found.is_ok_and(|found| found.holds().any(relaxes)));
 }
 
 #[test]

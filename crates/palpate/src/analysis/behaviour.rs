@@ -2,7 +2,7 @@
 
 use super::Finding;
 use crate::record::Record;
-use crate::segment::{After, Segment};
+use crate::segment::{After, HoldMode, Segment, change};
 use crate::statistics::{mean, noise};
 
 /// Parts into which a hold is cut to see where it goes.
@@ -13,12 +13,24 @@ const SEEN: f64 = 6.0;
 
 /// What shows that a hold is not one of constant displacement with a force that relaxes.
 pub(super) fn not_a_hold(record: &Record, segment: &Segment) -> Option<Finding> {
-    let force = &record.force()[segment.fit_start..segment.end];
-    if force.len() < 3 * PARTS {
-        return None;
+    let moved = change(record, segment.start, segment.end);
+    match (segment.mode, moved) {
+        (Some(HoldMode::ForceHeld), moved) => {
+            return Some(Finding::FeedbackControlled {
+                travel: moved.map_or(0.0, |moved| moved.travel),
+                change: moved.map_or(0.0, |moved| moved.force),
+            });
+        }
+        (Some(HoldMode::Neither), Some(moved)) => {
+            return Some(Finding::NothingHeld {
+                travel: moved.travel,
+                change: moved.force,
+            });
+        }
+        _ => {}
     }
-    let displacement = record.displacement().map(|all| &all[segment.fit_start..segment.end]);
-    feedback(record, force, displacement).or_else(|| drift(record, segment, force))
+    let force = &record.force()[segment.fit_start..segment.end];
+    if force.len() < 3 * PARTS { None } else { drift(record, segment, force) }
 }
 
 /// Means of ten equal parts.
@@ -35,22 +47,6 @@ fn error_of_mean(values: &[f64]) -> f64 {
 fn range(values: &[f64]) -> f64 {
     let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
     high - low
-}
-
-/// The jaw creeps on while the force stands still: as a share of what each does in the whole record, the jaw moves more.
-fn feedback(record: &Record, force: &[f64], displacement: Option<&[f64]>) -> Option<Finding> {
-    /// Movement in the hold over that in the record, from which on it counts.
-    const LEAST_SHARE: f64 = 2e-3;
-    let displacement = displacement?;
-    let moved = |values: &[f64]| {
-        let parts = means(values);
-        parts[PARTS - 1] - parts[0]
-    };
-    let (travel, change) = (moved(displacement), moved(force));
-    let travelled = travel.abs() / range(record.displacement()?);
-    let changed = change.abs().max(SEEN * error_of_mean(force)) / range(record.force());
-    let seen = travel.abs() > SEEN * error_of_mean(displacement) && travelled > LEAST_SHARE;
-    (seen && travelled > 2.0 * changed).then_some(Finding::FeedbackControlled { travel, change })
 }
 
 /// The force rises in a hold after loading: at once, or again after it has fallen.

@@ -1,9 +1,9 @@
 //! The corrections that were asked for, in order.
 
-use super::AnalysisError;
 use super::skew::{ClockSkew, clock_skew};
-use crate::record::{CorrectionOptions, Record, SkewChoice};
-use crate::segment::{SegmentError, SegmentOptions, Segmentation, find_phases, free_samples};
+use super::{AnalysisError, AnalysisOptions};
+use crate::record::{Record, SkewChoice};
+use crate::segment::{SegmentError, Segmentation, free_samples, phases_with};
 
 /// A record with its phases, ready for first touch.
 pub(super) struct Corrected {
@@ -18,12 +18,10 @@ pub(super) struct Corrected {
 ///
 /// Edges are sought where they were measured; a baseline is the force where nothing touches; and a table of compliance
 /// counts forces from zero.
-pub(super) fn corrected(
-    record: Record,
-    segment: &SegmentOptions,
-    asked: &CorrectionOptions,
-) -> Result<Corrected, AnalysisError> {
-    let segmentation = find_phases(&record, segment);
+pub(super) fn corrected(record: Record, options: &AnalysisOptions) -> Result<Corrected, AnalysisError> {
+    let asked = &options.corrections;
+    let phases = |record: &Record| phases_with(record, &options.segment, &options.given_holds);
+    let segmentation = phases(&record);
     let skew = segmentation.as_ref().ok().and_then(|segmentation| clock_skew(&record, segmentation));
     let mut next = record;
     let before = next.corrections().len();
@@ -41,14 +39,14 @@ pub(super) fn corrected(
                 let index = |at: f64| next.time().partition_point(|time| *time < at);
                 std::iter::once(index(from)..index(until)).collect()
             }
-            None => free_samples(&next, &find_phases(&next, segment)?),
+            None => free_samples(&next, &phases(&next)?),
         };
         next = next.without_baseline(baseline, &free)?;
     }
     if let Some(compliance) = &asked.compliance {
         next = next.without_compliance(compliance)?;
     }
-    let segmentation = if next.corrections().len() == before { segmentation } else { find_phases(&next, segment) };
+    let segmentation = if next.corrections().len() == before { segmentation } else { phases(&next) };
     Ok(Corrected {
         record: next,
         segmentation,
@@ -61,10 +59,6 @@ pub(super) fn corrected(
 ///
 /// # Errors
 /// [`AnalysisError`] for a correction that cannot be made, and where a baseline is to be found but the phases are not.
-pub fn corrected_record(
-    record: &Record,
-    segment: &SegmentOptions,
-    asked: &CorrectionOptions,
-) -> Result<Record, AnalysisError> {
-    Ok(corrected(record.repaired().0, segment, asked)?.record)
+pub fn corrected_record(record: &Record, options: &AnalysisOptions) -> Result<Record, AnalysisError> {
+    Ok(corrected(record.repaired().0, options)?.record)
 }

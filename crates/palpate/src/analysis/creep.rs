@@ -5,7 +5,7 @@ use crate::choose::{CompareOptions, Comparison, compare_laws};
 use crate::identify::Samples;
 use crate::laws::Response;
 use crate::record::{Record, RecordError};
-use crate::segment::{After, SegmentError, SegmentOptions, find_phases};
+use crate::segment::{After, HoldMode, Segment, SegmentError, SegmentOptions, find_phases};
 use crate::statistics::median;
 
 /// One hold of constant force, with the laws of creep compared on it.
@@ -76,10 +76,28 @@ fn of_force(error: SegmentError) -> CreepError {
     })
 }
 
+/// Holds of constant force: those over which the jaw is seen to creep, or else all in which the force stays.
+fn force_held(record: &Record, exchanged: &Record, segment: &SegmentOptions) -> Result<Vec<Segment>, CreepError> {
+    let held = |segment: &&Segment| segment.mode == Some(HoldMode::ForceHeld);
+    let seen: Vec<Segment> =
+        find_phases(record, segment).map_or_else(|_| Vec::new(), |found| found.holds().filter(held).copied().collect());
+    if !seen.is_empty() {
+        return Ok(seen);
+    }
+    // The tolerance of a test is a length; a controller that rings about its set force still holds it.
+    let (low, high) = record.force().iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
+    let segment = SegmentOptions {
+        tolerance: Some(RINGING * (high - low)),
+        ..*segment
+    };
+    let found = find_phases(exchanged, &segment).map_err(of_force)?;
+    Ok(found.holds().copied().collect())
+}
+
 /// Finds the holds of constant force in a record and compares laws of creep on the displacement of each.
 ///
-/// Phases are found as for a squeeze, with force and displacement exchanged: the force is what the machine holds, to a fiftieth
-/// of its range, whatever tolerance `segment` has. `until` (s) limits how much of each hold is fitted.
+/// They are those whose mode is [`HoldMode::ForceHeld`]. Where there is none, phases are found as for a squeeze, with force and
+/// displacement exchanged: the force is what the machine holds, to a fiftieth of its range, whatever tolerance `segment` has. `until` (s) limits how much of each hold is fitted.
 ///
 /// ```
 /// use palpate::analysis::creep_holds;
@@ -111,17 +129,11 @@ pub fn creep_holds(
     let moved = record.displacement().ok_or(CreepError::NoDisplacement)?.to_vec();
     let exchanged =
         Record::new(record.time().to_vec(), Some(record.force().to_vec()), moved).map_err(CreepError::Still)?;
-    // The tolerance of a test is a length; a controller that rings about its set force still holds it.
-    let (low, high) = record.force().iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
-    let segment = SegmentOptions {
-        tolerance: Some(RINGING * (high - low)),
-        ..*segment
-    };
-    let segmentation = find_phases(&exchanged, &segment).map_err(of_force)?;
+    let held = force_held(&record, &exchanged, segment)?;
     let mut compare = compare.clone();
     compare.fit.response = Response::Creep;
     let time = exchanged.time();
-    let holds = segmentation.holds().enumerate().map(|(index, hold)| {
+    let holds = held.iter().enumerate().map(|(index, hold)| {
         let from = hold.fit_start;
         let times: Vec<f64> = time[from..hold.end].iter().map(|t| t - time[from]).collect();
         let displacement = exchanged.force()[from..hold.end].to_vec();

@@ -77,6 +77,13 @@ pub enum Finding {
         /// How much the force changes, N.
         change: f64,
     },
+    /// Jaw and force both move in the hold.
+    NothingHeld {
+        /// How far the jaw moves, m.
+        travel: f64,
+        /// How much the force changes, N.
+        change: f64,
+    },
     /// Residuals of neighbouring samples go together.
     ResidualsCorrelated {
         /// Their correlation.
@@ -257,6 +264,7 @@ impl Finding {
             Self::LawsIndistinguishable { .. } => "laws_indistinguishable",
             Self::DriftInsteadOfRelaxation { .. } => "drift_instead_of_relaxation",
             Self::FeedbackControlled { .. } => "feedback_controlled",
+            Self::NothingHeld { .. } => "nothing_held",
             Self::ResidualsCorrelated { .. } => "residuals_correlated",
             Self::NoRelaxation { .. } => "no_relaxation",
             Self::TooFewSamples { .. } => "too_few_samples",
@@ -309,6 +317,7 @@ impl Finding {
             | Self::ExponentConfounded { .. }
             | Self::DriftInsteadOfRelaxation { .. }
             | Self::FeedbackControlled { .. }
+            | Self::NothingHeld { .. }
             | Self::ResidualsCorrelated { .. }
             | Self::SampledTooSlowly { .. }
             | Self::ContactOpen { .. }
@@ -379,6 +388,9 @@ impl Finding {
                 "the jaw moves by {:.3} mm in the hold while the force changes by {change:.3} N only",
                 1e3 * travel
             ),
+            Self::NothingHeld { travel, change } => {
+                format!("the jaw moves by {:.3} mm in the hold and the force changes by {change:.3} N", 1e3 * travel)
+            }
             Self::ResidualsCorrelated {
                 correlation,
                 independent,
@@ -503,6 +515,9 @@ impl Finding {
             Self::FeedbackControlled { .. } => {
                 "the machine held the force, not the displacement: the body creeps, and a law of relaxation does not apply"
             }
+            Self::NothingHeld { .. } => {
+                "the machine held neither: part of what the force does is due to the motion, which the laws leave out"
+            }
             Self::RateAtBound { .. } => {
                 "over this hold the law is a straight line, a pure power or a step: its rate and amplitude cannot be told apart"
             }
@@ -595,6 +610,9 @@ impl Finding {
             }
             Self::FeedbackControlled { .. } => {
                 "fit the displacement as creep (palpate compare --creep), or hold the displacement"
+            }
+            Self::NothingHeld { .. } => {
+                "let the fit begin when the jaw has settled (hold_start), end it earlier (until), or hold the jaw better"
             }
             Self::ResidualsCorrelated { .. } => {
                 "look at the residuals in the report; try a free exponent or a later start of the hold"

@@ -13,7 +13,7 @@ use crate::identify::{
 };
 use crate::laws::{Law, Loading};
 use crate::record::Record;
-use crate::segment::{After, Relaxation, RelaxationType, Segment, classify_relaxation};
+use crate::segment::{After, HoldMode, Relaxation, RelaxationType, Segment, classify_relaxation};
 use crate::simulate::Separation;
 use crate::statistics::{mean, median, noise};
 use crate::strain::{StrainRates, contact_strain, strain_rates};
@@ -153,13 +153,18 @@ pub(super) fn analyze_hold(
     if reopened.is_some() {
         hold.findings.push(Finding::ContactOpen { until: hold.fit_start });
     }
-    if hold.relaxation.kind == RelaxationType::None {
+    let force_held = segment.mode == Some(HoldMode::ForceHeld);
+    if force_held {
+        // A force that a controller brings back to where it was does not relax.
+        hold.relaxation.kind = RelaxationType::None;
+    } else if hold.relaxation.kind == RelaxationType::None {
         hold.findings.push(Finding::NoRelaxation {
             change: hold.relaxation.change,
             standard_error: hold.relaxation.standard_error,
         });
     }
-    if take_signal(&mut hold, record, specimen, options) && hold.relaxation.kind != RelaxationType::None {
+    let has_signal = take_signal(&mut hold, record, if force_held { None } else { specimen }, options);
+    if has_signal && hold.relaxation.kind != RelaxationType::None {
         fit_all(&mut hold, options);
         hold.comparison = compare(&hold, loading(record, ramp, &segment), options);
         hold.rate_bias = hold.preferred().and_then(|fit| rate_bias(&hold, fit, &options.rate_window, &options.fit));

@@ -6,7 +6,7 @@ use crate::choose::CompareOptions;
 use crate::contact::{Layers, LayersError, Shape, Sides};
 use crate::identify::FitOptions;
 use crate::record::CorrectionOptions;
-use crate::segment::{ContactChoice, SegmentOptions};
+use crate::segment::{ContactChoice, GivenHold, SegmentOptions};
 use crate::simulate::Separation;
 use crate::strain::RateWindow;
 
@@ -54,6 +54,8 @@ pub struct AnalysisOptions {
     pub segment: SegmentOptions,
     /// Corrections of the record that nobody makes unasked.
     pub corrections: CorrectionOptions,
+    /// Holds with given limits; where there are any, no others are sought.
+    pub given_holds: Vec<GivenHold>,
     /// How first touch is found; as recorded unless asked otherwise, since a strip in grips has no first touch.
     pub touch: ContactChoice,
     /// Whether the jaw can pull (for the overlay).
@@ -82,6 +84,7 @@ impl Default for AnalysisOptions {
             geometry: None,
             segment: SegmentOptions::default(),
             corrections: CorrectionOptions::default(),
+            given_holds: Vec::new(),
             touch: ContactChoice::AsRecorded,
             separation: Separation::default(),
             layers: None,

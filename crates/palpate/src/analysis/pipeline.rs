@@ -116,7 +116,7 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
         record,
         segmentation,
         skew,
-    } = corrected(record, &options.segment, &options.corrections)?;
+    } = corrected(record, options)?;
     let segmentation = segmentation?;
     let mut findings = correction_findings(&record);
     findings.extend(signal_findings(&signals));
@@ -314,6 +314,9 @@ fn nothing_to_fit(holds: &[HoldAnalysis]) -> Result<(), AnalysisError> {
             format!("the fit starts {from:.3} s into a hold and leaves {left} of its {} samples", hold.segment.len()),
             "start the fit earlier: hold_start = \"settled\", or a shorter time after the peak",
         )
+    } else if let Some((_, held)) = with("feedback_controlled") {
+        let hint = "fit the displacement as creep: palpate compare --creep (analysis::creep_holds)";
+        (format!("the machine held the force; {}", held.seen()), hint)
     } else if let Some((hold, few)) = with("too_few_samples") {
         let needed = if let Finding::TooFewSamples { needed, .. } = few { *needed } else { 0 };
         let seen = few.seen();

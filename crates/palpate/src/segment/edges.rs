@@ -1,159 +1,130 @@
-//! Where exactly a hold begins and ends.
+//! Where exactly a hold begins and ends: where the line through the ramp meets the line through the hold.
 
-use crate::statistics::median;
-
-/// A hold with its level.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Level {
-    pub(super) start: usize,
-    pub(super) end: usize,
-    pub(super) value: f64,
-}
+use super::pieces::{Line, Piece};
+use super::standstill::Standstill;
 
 /// Share of a sample interval by which an edge may be off: the rounding of a time column, far below a sample.
 const SLACK: f64 = 0.05;
+/// Ramps of fewer samples have no line of their own.
+const FEWEST: usize = 4;
+/// How often samples are dealt out anew.
+const ROUNDS: usize = 3;
 
-/// Grows a standstill to all neighbouring samples that keep to its level.
+/// Moves the edges of standstills to where ramps and levels meet.
 ///
-/// The level is the median of the standstill, measured in its first and last quarter apart, since a "constant" height
-/// may drift.
-pub(super) fn grown(values: &[f64], run: (usize, usize), tolerance: f64) -> Level {
-    let (first, last) = ends(values, run);
-    let mut start = run.0;
-    while start < run.1 - 1 && (values[start] - first).abs() > tolerance {
-        start += 1;
-    }
-    while start > 0 && (values[start - 1] - first).abs() <= tolerance {
-        start -= 1;
-    }
-    let mut end = run.1;
-    while end > start + 1 && (values[end - 1] - last).abs() > tolerance {
-        end -= 1;
-    }
-    while end < values.len() && (values[end] - last).abs() <= tolerance {
-        end += 1;
-    }
-    let value = median(&mut values[start..end].to_vec());
-    Level { start, end, value }
-}
-
-/// Median of the first and of the last quarter of a standstill.
-fn ends(values: &[f64], run: (usize, usize)) -> (f64, f64) {
-    let quarter = ((run.1 - run.0) / 4).max(1);
-    let level = |from: usize, until: usize| median(&mut values[from..until].to_vec());
-    (level(run.0, run.0 + quarter), level(run.1 - quarter, run.1))
-}
-
-/// Where a hold ends and the next begins, of which the ramp between them is part.
-pub(super) struct Neighbours {
-    /// Sample after the last of the hold before.
-    pub(super) before: usize,
-    /// First sample of the hold after.
-    pub(super) after: usize,
-}
-
-/// Cuts off a grown level what belongs to the ramps.
-///
-/// A ramp that runs straight into the hold passes the tolerance before it reaches the level; the sample at which the
-/// straight line through the ramp meets the level is the edge.
-pub(super) fn trimmed(
-    time: &[f64],
-    values: &[f64],
-    level: Level,
-    run: (usize, usize),
-    between: &Neighbours,
-    limits: Limits,
-) -> Level {
-    let (first, last) = ends(values, run);
-    let Level {
-        mut start,
-        mut end,
-        value,
-    } = level;
-    let (grown_start, grown_end) = (start, end);
-    if grown_start > 0 {
-        let outside = (between.before.min(grown_start)..grown_start).rev();
-        let points = on_ramp(values, outside, grown_start, grown_start - 1, first, limits);
-        if let Some(meeting) = meeting(time, values, &points, first, limits) {
-            let slack = SLACK * (time[grown_start] - time[grown_start - 1]);
-            start = time.partition_point(|t| *t < meeting - slack).clamp(grown_start, grown_end - 1);
+/// Where a ramp has no line, samples no farther than `near` from the level belong to the hold. Elsewhere all samples of the straight piece of either side count, so that the error of an edge comes near the limit that noise
+/// sets. What is a sample of the ramp and what of the hold follows from the edge, so it is done three times.
+pub(super) fn sharpened(time: &[f64], values: &[f64], pieces: &[Piece], near: f64, found: &mut [Standstill]) {
+    let count = values.len();
+    let cut = found.to_vec();
+    for _ in 0..ROUNDS {
+        for index in 0..found.len() {
+            let before = index.checked_sub(1).map_or(0, |i| found[i].end);
+            let after = found.get(index + 1).map_or(count, |next| next.start);
+            let column = Column {
+                time,
+                values,
+                pieces,
+                near,
+            };
+            if found[index].start > 0 {
+                found[index].start = column.start_of(before, cut[index].start, found[index]);
+            }
+            if found[index].end < count {
+                found[index].end = column.end_of(after, cut[index].end, found[index]);
+            }
         }
     }
-    if grown_end < values.len() {
-        let outside = grown_end..between.after.max(grown_end);
-        let points = on_ramp(values, outside, grown_end - 1, grown_end, last, limits);
-        if let Some(meeting) = meeting(time, values, &points, last, limits) {
-            let slack = SLACK * (time[grown_end] - time[grown_end - 1]);
-            end = time.partition_point(|t| *t <= meeting + slack).clamp(start + 1, grown_end);
+}
+
+/// A column with its polygon.
+struct Column<'a> {
+    time: &'a [f64],
+    values: &'a [f64],
+    pieces: &'a [Piece],
+    near: f64,
+}
+
+impl Column<'_> {
+    /// The piece that holds a sample.
+    fn piece_of(&self, sample: usize) -> &Piece {
+        &self.pieces[self.pieces.partition_point(|piece| piece.end <= sample).min(self.pieces.len() - 1)]
+    }
+
+    fn line(&self, range: std::ops::Range<usize>) -> Line {
+        Line::through(self.time, self.values, range)
+    }
+
+    /// First sample of a hold that was cut off its ramp at `cut`; the ramp begins at `before` or later.
+    fn start_of(&self, before: usize, cut: usize, hold: Standstill) -> usize {
+        // The pieces at the cut may be scraps.
+        let mut until = self.piece_of(cut).end;
+        while until < hold.end && until < hold.start + 2 * FEWEST {
+            until = self.piece_of(until).end;
         }
+        let until = until.clamp(hold.start + 1, hold.end);
+        let level = self.line(hold.start..until);
+        let mut from = self.piece_of(cut - 1).start.max(before);
+        while from > before && hold.start < from + FEWEST {
+            from = self.piece_of(from - 1).start.max(before);
+        }
+        if hold.start >= from + FEWEST
+            && let Some(meeting) = meeting(&self.line(from..hold.start), &level)
+        {
+            let slack = SLACK * (self.time[hold.start] - self.time[hold.start - 1]);
+            let at = self.time.partition_point(|t| *t < meeting - slack);
+            if at > from && at < until {
+                return at;
+            }
+        }
+        let keeps = |i: usize| (self.values[i] - level.at(self.time[i])).abs() <= self.near;
+        let mut start = hold.start;
+        while start < hold.end - 1 && !keeps(start) {
+            start += 1;
+        }
+        while start > before && keeps(start - 1) {
+            start -= 1;
+        }
+        start
     }
-    Level { start, end, value }
+
+    /// Sample after the last of a hold that was cut off its ramp at `cut`; the ramp ends at `after` or before.
+    fn end_of(&self, after: usize, cut: usize, hold: Standstill) -> usize {
+        let mut from = self.piece_of(cut - 1).start;
+        while from > hold.start && from + 2 * FEWEST > hold.end {
+            from = self.piece_of(from - 1).start;
+        }
+        let from = from.clamp(hold.start, hold.end - 1);
+        let level = self.line(from..hold.end);
+        let mut until = self.piece_of(cut).end.min(after);
+        while until < after && until < hold.end + FEWEST {
+            until = self.piece_of(until).end.min(after);
+        }
+        if until >= hold.end + FEWEST
+            && let Some(meeting) = meeting(&self.line(hold.end..until), &level)
+        {
+            let slack = SLACK * (self.time[hold.end] - self.time[hold.end - 1]);
+            let at = self.time.partition_point(|t| *t <= meeting + slack);
+            if at > from && at < until {
+                return at;
+            }
+        }
+        let keeps = |i: usize| (self.values[i] - level.at(self.time[i])).abs() <= self.near;
+        let mut end = hold.end;
+        while end > hold.start + 1 && !keeps(end - 1) {
+            end -= 1;
+        }
+        while end < after && keeps(end) {
+            end += 1;
+        }
+        end
+    }
 }
 
-/// What tells a ramp from a standstill.
-#[derive(Clone, Copy)]
-pub(super) struct Limits {
-    pub(super) tolerance: f64,
-    /// Speed under which the jaw stands still.
-    pub(super) still: f64,
-}
-
-/// The samples of a ramp next to a level, nearest first: eight of them, more of a slow ramp.
-///
-/// A ramp of fewer than two samples is known by the edges of the levels on its sides: `own` and, if need be, `other`.
-fn on_ramp(
-    values: &[f64],
-    outside: impl Iterator<Item = usize>,
-    own: usize,
-    other: usize,
-    level: f64,
-    limits: Limits,
-) -> Vec<usize> {
-    const MOST: usize = 8;
-    let direction = (values[other] - level).signum();
-    let away = |index: usize| direction * (values[index] - level) / limits.tolerance;
-    let mut ramp: Vec<usize> = outside
-        .enumerate()
-        .take_while(|(rank, index)| {
-            let away = away(*index);
-            away > 1.0 && (*rank < 2 || (away < 50.0 && (*rank < MOST || away < 6.0)))
-        })
-        .map(|(_, index)| index)
-        .collect();
-    if ramp.len() < 2 {
-        ramp.insert(0, own);
-    }
-    if ramp.len() < 2 {
-        ramp.push(other);
-    }
-    ramp
-}
-
-/// The time at which the line through the end of a ramp meets `level`; `None` if there is no straight ramp to speak of.
-///
-/// A servo that overshoots comes back in a curve, not along a line: then the tolerance decides alone. So it does where
-/// the line is as flat as a standstill, or meets the level farther off than a ramp of its slope could.
-fn meeting(time: &[f64], values: &[f64], ramp: &[usize], level: f64, limits: Limits) -> Option<f64> {
-    let count = ramp.len() as f64;
-    let t0 = time[ramp[0]];
-    let (mean_t, mean_v) = (
-        ramp.iter().map(|i| time[*i] - t0).sum::<f64>() / count,
-        ramp.iter().map(|i| values[*i]).sum::<f64>() / count,
-    );
-    let (mut tt, mut tv) = (0.0, 0.0);
-    for i in ramp {
-        let t = time[*i] - t0 - mean_t;
-        tt += t * t;
-        tv += t * (values[*i] - mean_v);
-    }
-    let slope = tv / tt;
-    let straight = ramp
-        .iter()
-        .all(|i| (values[*i] - mean_v - slope * (time[*i] - t0 - mean_t)).abs() <= limits.tolerance);
-    let span = (time[ramp[ramp.len() - 1]] - t0).abs();
-    let interval = span / (count - 1.0);
-    let steep = slope.abs() > limits.still && slope.abs() * span > 1.5 * limits.tolerance;
-    let meeting = mean_t + (level - mean_v) / slope;
-    let near = meeting.abs() <= 2.0 * interval + 1.5 * limits.tolerance / slope.abs();
-    (straight && steep && near).then_some(t0 + meeting)
+/// When two lines meet; `None` if they are as good as parallel.
+fn meeting(ramp: &Line, level: &Line) -> Option<f64> {
+    let slopes = ramp.slope() - level.slope();
+    let origin = level.middle();
+    let meeting = origin + (level.at(origin) - ramp.at(origin)) / slopes;
+    (slopes.abs() > 1e-3 * level.slope().abs() && meeting.is_finite()).then_some(meeting)
 }

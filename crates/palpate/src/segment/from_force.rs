@@ -4,10 +4,9 @@
 //! going back from there, the last turning point of the force is where the ramp ended and relaxation began. A hold that
 //! goes on in the direction of its ramp has no such point and begins at its core.
 
-use super::edges::Level;
-use super::from_displacement::turns;
-use super::ramps::fill_gaps;
+use super::ramps::{Level, fill_gaps};
 use super::slope::{slopes, travel_median};
+use super::turning::turns;
 use super::{Phase, Segment, SegmentError, SegmentOptions, SegmentSettings, Segmentation};
 use crate::statistics::{median, noise_in_time};
 

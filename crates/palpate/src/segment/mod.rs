@@ -4,8 +4,15 @@
 //! |---|---|
 //! | `options.rs` | every threshold as an option, and the value it took |
 //! | `slope.rs` | local slopes of a noisy column |
-//! | `from_displacement.rs` | phases where the displacement was recorded |
+//! | `from_both.rs` | phases where displacement and force were recorded |
+//! | `levels.rs` | where a column stands still |
+//! | `pieces.rs` | a column as a polygon |
+//! | `standstill.rs` | which parts of the polygon are standstills |
+//! | `smooth.rs` | a standstill has corners, a turning point has none |
+//! | `mode.rs` | what is held: the displacement, the force, or neither |
+//! | `turning.rs` | turning points of a force |
 //! | `from_force.rs` | phases where only the force was |
+//! | `given.rs` | holds whose limits someone gives |
 //! | `edges.rs` | where exactly a hold begins and ends |
 //! | `ramps.rs` | what lies between the holds: loading and unloading |
 //! | `relaxation.rs` | Type I or Type II, and how sure |
@@ -15,17 +22,27 @@
 
 mod contact_point;
 mod edges;
-mod from_displacement;
+mod from_both;
 mod from_force;
+mod given;
+mod levels;
 mod loading_curve;
+mod mode;
 mod options;
+mod pieces;
 mod ramps;
 mod relaxation;
 mod slope;
+mod smooth;
+mod standstill;
+mod turning;
 
 pub use contact_point::{
     ContactChoice, ContactPoint, TouchEstimate, TouchMethod, find_contact, find_contact_of, free_samples,
 };
+pub use given::{GivenHold, phases_with};
+pub use mode::HoldMode;
+pub(crate) use mode::change;
 pub use options::{HoldStart, SegmentOptions, SegmentSettings};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
 
@@ -41,7 +58,7 @@ pub enum Phase {
     Rest,
     /// The displacement grows.
     Loading,
-    /// The displacement stays.
+    /// The displacement stays, or the force.
     Hold,
     /// The displacement falls.
     Unloading,
@@ -68,6 +85,8 @@ pub struct Segment {
     pub end: usize,
     /// For a hold: what came before it.
     pub after: Option<After>,
+    /// For a hold: what is held in it.
+    pub mode: Option<HoldMode>,
     /// For a hold: the sample from which laws are fitted, see [`HoldStart`]. It lies before `start` where the force peaked
     /// while the jaw was still settling.
     pub fit_start: usize,
@@ -146,6 +165,42 @@ pub enum SegmentError {
         /// Least number of samples of a hold.
         minimum_samples: usize,
     },
+    /// A given hold that the record does not contain.
+    #[error("given hold {number} lasts from {from} s to {to} s, the record from {begin} s to {last} s")]
+    GivenOutside {
+        /// Which, from 1.
+        number: usize,
+        /// Its start, s.
+        from: f64,
+        /// Its end, s.
+        to: f64,
+        /// First time of the record, s.
+        begin: f64,
+        /// Last time of the record, s.
+        last: f64,
+    },
+    /// A given hold with hardly a sample.
+    #[error("given hold {number}, from {from} s to {to} s, has {samples} samples, a hold needs {needed}")]
+    GivenShort {
+        /// Which, from 1.
+        number: usize,
+        /// Its start, s.
+        from: f64,
+        /// Its end, s.
+        to: f64,
+        /// Its samples.
+        samples: usize,
+        /// Fewest samples.
+        needed: usize,
+    },
+    /// Two given holds that share samples.
+    #[error("given holds {first} and {second} overlap")]
+    GivenOverlap {
+        /// One, from 1.
+        first: usize,
+        /// The other.
+        second: usize,
+    },
 }
 
 impl SegmentError {
@@ -153,6 +208,11 @@ impl SegmentError {
     #[must_use]
     pub fn hint(&self) -> &'static str {
         match self {
+            Self::GivenOutside { .. } => {
+                "times count as in the record, which need not begin at 0; `palpate inspect` shows them"
+            }
+            Self::GivenShort { .. } => "give an end that is later than the start by some samples",
+            Self::GivenOverlap { .. } => "end the earlier hold before the later one begins",
             Self::TooShort { .. } => "check that the whole test was exported",
             Self::NoMotion { .. } => {
                 "check the displacement column and its unit; a record without motion has no relaxation to fit"
@@ -187,12 +247,17 @@ fn told(value: f64, unit: &str) -> String {
     format!("{text} {unit}")
 }
 
-/// Finds the phases of a record: from its displacement, or from its force where the displacement is missing.
+/// Fewest samples in which phases can be seen.
+const NEEDED: usize = 8;
+
+/// Finds the phases of a record: from its displacement and its force, or from its force alone where the displacement is missing.
+///
+/// Every hold says what is held in it ([`HoldMode`]). Where the machine holds the force, the hold lasts as long as the force
+/// stays, however far the jaw creeps.
 ///
 /// # Errors
 /// [`SegmentError`] when nothing moves, or when no standstill after a ramp is long enough to be a hold.
 pub fn find_phases(record: &Record, options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
-    const NEEDED: usize = 8;
     if record.len() < NEEDED {
         return Err(SegmentError::TooShort {
             needed: NEEDED,
@@ -200,11 +265,25 @@ pub fn find_phases(record: &Record, options: &SegmentOptions) -> Result<Segmenta
         });
     }
     let mut segmentation = match record.displacement() {
-        Some(displacement) => from_displacement::phases(record.time(), displacement, options)?,
+        Some(displacement) => from_both::phases(record, displacement, options)?,
         None => from_force::phases(record.time(), record.force(), options)?,
     };
-    for index in 0..segmentation.segments.len() {
-        segmentation.segments[index].fit_start = options.hold_start.sample(record, &segmentation.segments, index);
-    }
+    place_fits(record, options, &mut segmentation.segments);
     Ok(segmentation)
+}
+
+/// Sets from where laws are fitted to each hold.
+fn place_fits(record: &Record, options: &SegmentOptions, segments: &mut [Segment]) {
+    // A hold of constant force is fitted from where the displacement peaks.
+    let exchanged = record.displacement().and_then(|displacement| {
+        let columns = (record.time().to_vec(), record.force().to_vec(), displacement.to_vec());
+        Record::new(columns.0, Some(columns.1), columns.2).ok()
+    });
+    for index in 0..segments.len() {
+        let answers = match (&exchanged, segments[index].mode) {
+            (Some(exchanged), Some(HoldMode::ForceHeld)) => exchanged,
+            _ => record,
+        };
+        segments[index].fit_start = options.hold_start.sample(answers, segments, index);
+    }
 }

@@ -1,7 +1,14 @@
 //! What lies between the holds.
 
-use super::edges::Level;
-use super::{After, Phase, Segment};
+use super::{After, HoldMode, Phase, Segment};
+
+/// A hold with its level.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Level {
+    pub(super) start: usize,
+    pub(super) end: usize,
+    pub(super) value: f64,
+}
 
 /// Turns holds and the gaps between them into segments that cover the record.
 ///
@@ -21,6 +28,7 @@ pub(super) fn fill_gaps(values: &[f64], levels: &[Level], hysteresis: f64) -> Ve
             start: level.start,
             end: level.end,
             after,
+            mode: after.map(|_| HoldMode::DisplacementHeld),
             fit_start: level.start,
         });
         (from, before) = (level.end, Some(level.value));
@@ -43,6 +51,7 @@ fn ramps(values: &[f64], from: usize, until: usize, hysteresis: f64, segments: &
             start,
             end,
             after: None,
+            mode: None,
             fit_start: start,
         });
     };

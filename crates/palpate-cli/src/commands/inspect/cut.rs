@@ -2,11 +2,9 @@
 
 use std::fmt::Write as _;
 
-use palpate::analysis::corrected_record;
-use palpate::record::{Record, RecordError};
-use palpate::segment::{
-    Phase, SegmentError, SegmentOptions, Segmentation, TouchEstimate, find_contact_of, find_phases,
-};
+use palpate::analysis::{AnalysisError, AnalysisOptions, corrected_record};
+use palpate::record::Record;
+use palpate::segment::{Phase, SegmentError, Segmentation, TouchEstimate, find_contact_of, phases_with};
 use palpate_files::description::TestDescription;
 use palpate_report::figure::Figure;
 use palpate_report::number::significant;
@@ -27,12 +25,11 @@ pub(super) struct Cut {
 
 impl Cut {
     /// Corrects a record as the description asks and cuts it.
-    pub(super) fn of(record: &Record, test: Option<&TestDescription>) -> Result<Self, RecordError> {
-        let options = test.map_or_else(SegmentOptions::default, |test| test.segment);
-        let asked = test.map(|test| test.corrections.clone()).unwrap_or_default();
+    pub(super) fn of(record: &Record, test: Option<&TestDescription>) -> Result<Self, AnalysisError> {
+        let options = test.map_or_else(AnalysisOptions::default, TestDescription::analysis_options);
         let before = record.corrections().len();
-        let record = corrected_record(record, &options, &asked)?;
-        let found = find_phases(&record, &options);
+        let record = corrected_record(record, &options)?;
+        let found = phases_with(&record, &options.segment, &options.given_holds);
         Ok(Self { record, before, found })
     }
 
@@ -144,9 +141,8 @@ impl Cut {
             );
         }
         if let Some(spread) = contact.spread {
-            let rule = |rule: &TouchEstimate| {
-                format!("{} {} mm", rule.method.name(), significant(1e3 * rule.displacement, 4))
-            };
+            let rule =
+                |rule: &TouchEstimate| format!("{} {} mm", rule.method.name(), significant(1e3 * rule.displacement, 4));
             let rules: Vec<String> = contact.estimates.iter().map(rule).collect();
             let _ = writeln!(
                 out,

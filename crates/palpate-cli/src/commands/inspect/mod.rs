@@ -11,7 +11,6 @@ mod facts;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use palpate::segment::{SegmentOptions, find_phases};
 use palpate_files::contents::Contents;
 use palpate_files::description::TestDescription;
 use palpate_files::input::Packing;
@@ -93,8 +92,7 @@ fn one_test(opened: &Opened<'_>, part: usize, arguments: &InspectArguments, out:
     out.push_str(&columns_table(about, Some(&file)).to_plain_text());
     out.push('\n');
     out.push_str(&signal_facts(&file));
-    let cut = Cut::of(&file.record, test)
-        .map_err(|error| Failure::of_file(&file.path, &error, Some(error.hint().to_owned())))?;
+    let cut = Cut::of(&file.record, test).map_err(|error| Failure::of_file(&file.path, &error, Some(error.hint())))?;
     out.push_str(&cut.told(test));
     if let Some(path) = &arguments.write_test {
         let found = cut.found().map(|segmentation| (&file, segmentation));
@@ -122,20 +120,20 @@ fn many_tests(opened: &Opened<'_>, parts: &[usize], test: Option<&TestDescriptio
         .column(TableColumn::new("Largest force", "force_max_n", "N"))
         .column(TableColumn::new("Holds", "holds", ""))
         .note("palpate inspect FILE --part NAME shows one of them");
-    let segment = test.map_or_else(SegmentOptions::default, |test| test.segment);
     for part in parts {
         let name = opened.contents().parts()[*part].title();
         table = table.row(match opened.read(*part) {
             Ok(file) => {
                 let record = &file.record;
                 let time = record.time();
-                let holds = find_phases(&record.repaired().0, &segment).map(|found| found.holds().count());
+                let cut = Cut::of(record, test).ok();
+                let holds = cut.as_ref().and_then(Cut::found).map(|found| found.holds().count());
                 vec![
                     Cell::text(name),
                     Cell::Integer(file.rows as i64),
                     Cell::number(time[time.len() - 1] - time[0], 5),
                     Cell::number(record.force().iter().fold(0.0, |most: f64, force| most.max(force.abs())), 4),
-                    holds.map_or_else(|_| Cell::text("none"), |count| Cell::Integer(count as i64)),
+                    holds.map_or_else(|| Cell::text("none"), |count| Cell::Integer(count as i64)),
                 ]
             }
             Err(failure) => {

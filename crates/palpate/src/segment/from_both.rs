@@ -1,0 +1,131 @@
+//! Phases of a record with displacement and force: what stands still, and which of the two is held.
+
+use super::levels::{Held, Levels, levels, range};
+use super::mode::{HoldMode, mode};
+use super::ramps::{Level, fill_gaps};
+use super::{After, Phase, Segment, SegmentError, SegmentOptions, Segmentation};
+use crate::record::Record;
+use crate::statistics::median;
+
+/// Share of its range by which a jaw wanders about what it holds.
+const SERVO: f64 = 0.002;
+/// Share of its range by which a force wanders that a controller holds.
+const CONTROLLER: f64 = 0.02;
+
+pub(super) fn phases(
+    record: &Record,
+    displacement: &[f64],
+    options: &SegmentOptions,
+) -> Result<Segmentation, SegmentError> {
+    let held = Held {
+        name: ("displacement", "m"),
+        values: displacement,
+        wander: options.tolerance.unwrap_or(SERVO * range(displacement)),
+    };
+    let found = levels(record.time(), &held, options)?;
+    let pressed = force_held(record, &found.levels, options);
+    let together = together(record, &found.levels, &pressed);
+    let mut segments = fill_gaps(&found.values, &together, 2.0 * found.settings.tolerance);
+    if !segments.iter().any(|segment| segment.phase == Phase::Hold) {
+        return Err(found.none());
+    }
+    for index in 0..segments.len() {
+        if segments[index].phase != Phase::Hold {
+            continue;
+        }
+        let Segment { start, end, .. } = segments[index];
+        let is_pressed = pressed.iter().any(|level| level.start == start && level.end == end);
+        segments[index].mode = Some(if is_pressed { HoldMode::ForceHeld } else { mode(record, start, end) });
+        if is_pressed {
+            segments[index].after = direction(record.force(), &segments, index).or(segments[index].after);
+        }
+    }
+    let Levels { settings, .. } = found;
+    Ok(Segmentation { segments, settings })
+}
+
+/// Levels of the force over which the displacement creeps.
+fn force_held(record: &Record, still: &[Level], options: &SegmentOptions) -> Vec<Level> {
+    let held = Held {
+        name: ("force", "N"),
+        values: record.force(),
+        wander: CONTROLLER * range(record.force()),
+    };
+    let found = levels(record.time(), &held, options).map_or_else(|_| Vec::new(), |found| found.levels);
+    let creeps = |level: &Level| {
+        mode(record, level.start, level.end) == HoldMode::ForceHeld
+            && slows_down(record, level)
+            && arrives(record, level)
+            && still.iter().all(|still| rests_late(still, level))
+    };
+    found.into_iter().filter(creeps).collect()
+}
+
+/// Share of a creep that its first half must see: of a ramp that goes on while the force happens to stay, it is one half.
+const FIRST_HALF: f64 = 0.51;
+
+/// Whether the jaw goes more slowly the longer the force is held.
+fn slows_down(record: &Record, level: &Level) -> bool {
+    let Some(displacement) = record.displacement() else {
+        return false;
+    };
+    let time = record.time();
+    let middle = 0.5 * (time[level.start] + time[level.end - 1]);
+    let half = time.partition_point(|t| *t < middle);
+    let few = ((level.end - level.start) / 20).max(1);
+    let at = |from: usize| median(&mut displacement[from..from + few].to_vec());
+    let (first, middle, last) = (at(level.start), at(half.min(level.end - few)), at(level.end - few));
+    (middle - first) / (last - first) > FIRST_HALF
+}
+
+/// How many times faster than in the hold the jaw comes to it.
+const FASTER: f64 = 2.0;
+
+/// Whether the jaw was faster before the force was held than it is on average since: the middle of a ramp has nothing of that.
+fn arrives(record: &Record, level: &Level) -> bool {
+    let Some(displacement) = record.displacement() else {
+        return false;
+    };
+    let time = record.time();
+    let speed =
+        |from: usize, until: usize| (displacement[until] - displacement[from]).abs() / (time[until] - time[from]);
+    let inside = speed(level.start, level.end - 1);
+    let length = level.end - level.start;
+    let before = [4, 16, 64].map(|part| (length / part).max(3));
+    before
+        .into_iter()
+        .any(|samples| level.start > 0 && speed(level.start.saturating_sub(samples), level.start) > FASTER * inside)
+}
+
+/// Whether a standstill of the jaw lies outside a level of the force, or is the end of its creep.
+fn rests_late(still: &Level, level: &Level) -> bool {
+    let outside = still.end <= level.start || still.start >= level.end;
+    let late = still.end + (level.end - level.start) / 20 >= level.end;
+    outside || late
+}
+
+/// Both kinds of levels in order. Where they overlap the force is held: the displacement comes to rest late in a creep, as the
+/// force does late in a relaxation, and the longer of the two is the hold.
+fn together(record: &Record, still: &[Level], pressed: &[Level]) -> Vec<Level> {
+    let overlap = |a: &Level, b: &Level| a.start < b.end && b.start < a.end;
+    let time = record.time();
+    let length = |level: &Level| time[level.end - 1] - time[level.start];
+    let stays = |level: &&Level| {
+        // The rest before anything moved stays what it is.
+        level.start == 0 || !pressed.iter().any(|press| overlap(level, press) && length(level) <= length(press))
+    };
+    let mut levels: Vec<Level> = still.iter().filter(stays).copied().collect();
+    let still = levels.clone();
+    levels.extend(pressed.iter().filter(|press| !still.iter().any(|level| overlap(level, press))));
+    levels.sort_by_key(|level| level.start);
+    levels
+}
+
+/// Whether the force had grown or fallen before a hold: against the hold before it, or the start of the record.
+fn direction(force: &[f64], segments: &[Segment], index: usize) -> Option<After> {
+    let typical = |segment: &Segment| median(&mut force[segment.start..segment.end].to_vec());
+    let standing = |segment: &&Segment| matches!(segment.phase, Phase::Hold | Phase::Rest);
+    let before = segments[..index].iter().rev().find(standing).map_or(force[0], typical);
+    let rise = typical(&segments[index]) - before;
+    (rise != 0.0).then_some(if rise > 0.0 { After::Loading } else { After::Unloading })
+}

@@ -1,0 +1,258 @@
+//! A noisy column as a polygon: straight pieces, joined from the bottom up.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Moments of some samples about their mean, from which the straight line through them follows.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Line {
+    count: f64,
+    time: f64,
+    value: f64,
+    tt: f64,
+    tv: f64,
+    vv: f64,
+}
+
+impl Line {
+    fn of_sample(time: f64, value: f64) -> Self {
+        Self {
+            count: 1.0,
+            time,
+            value,
+            ..Self::default()
+        }
+    }
+
+    /// The line through the samples of a range.
+    pub(super) fn through(time: &[f64], values: &[f64], range: std::ops::Range<usize>) -> Self {
+        range.fold(Self::default(), |line, i| line.joined(&Self::of_sample(time[i], values[i])))
+    }
+
+    /// The line through the samples of both.
+    fn joined(&self, other: &Self) -> Self {
+        let count = self.count + other.count;
+        let (share, apart) = (other.count / count, (other.time - self.time, other.value - self.value));
+        let weight = self.count * share;
+        Self {
+            count,
+            time: self.time + share * apart.0,
+            value: self.value + share * apart.1,
+            tt: self.tt + other.tt + weight * apart.0 * apart.0,
+            tv: self.tv + other.tv + weight * apart.0 * apart.1,
+            vv: self.vv + other.vv + weight * apart.1 * apart.1,
+        }
+    }
+
+    /// Slope; 0 for a single sample.
+    pub(super) fn slope(&self) -> f64 {
+        if self.tt > 0.0 { self.tv / self.tt } else { 0.0 }
+    }
+
+    /// Mean time of the samples.
+    pub(super) fn middle(&self) -> f64 {
+        self.time
+    }
+
+    /// Value of the line at a time.
+    pub(super) fn at(&self, time: f64) -> f64 {
+        self.value + self.slope() * (time - self.time)
+    }
+
+    /// Sum of the squares that the line leaves.
+    fn left(&self) -> f64 {
+        if self.tt > 0.0 { (self.vv - self.tv * self.tv / self.tt).max(0.0) } else { self.vv }
+    }
+}
+
+/// Samples `start..end` and the line through them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Piece {
+    pub(super) start: usize,
+    pub(super) end: usize,
+    pub(super) line: Line,
+}
+
+/// What a polygon may leave of a column.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Roughness {
+    /// Standard deviation of the noise.
+    pub(super) noise: f64,
+    /// Root mean square by which samples may leave a line for other reasons than noise.
+    pub(super) stray: f64,
+}
+
+/// Square deviation, in units of the noise's, that two pieces must explain better than one: 5 σ.
+const KEPT_APART: f64 = 25.0;
+
+/// A proposal to join the piece that begins at `left` with the one that begins at `right`.
+struct Proposal {
+    cost: f64,
+    left: usize,
+    right: usize,
+    end: usize,
+}
+
+impl PartialEq for Proposal {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Proposal {}
+
+impl PartialOrd for Proposal {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Proposal {
+    /// The cheapest is the greatest, since a heap gives the greatest first; of equals the earliest.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.cost.total_cmp(&self.cost).then(other.left.cmp(&self.left))
+    }
+}
+
+/// Cuts a column into straight pieces.
+///
+/// At first every sample is a piece. The two neighbours whose union a straight line explains best are joined, again and again,
+/// until every union would leave more than noise (and the stray allowed) explains. Cost: N log N.
+pub(super) fn pieces(time: &[f64], values: &[f64], roughness: Roughness) -> Vec<Piece> {
+    let count = values.len();
+    // Piece i begins at sample i; `end` 0 stands for a piece that was joined to another.
+    let mut lines: Vec<Line> = time.iter().zip(values).map(|(t, v)| Line::of_sample(*t, *v)).collect();
+    let mut ends: Vec<usize> = (1..=count).collect();
+    let mut before: Vec<usize> = (0..count).map(|i| i.saturating_sub(1)).collect();
+    let cost = |a: &Line, b: &Line| {
+        let more = a.joined(b).left() - a.left() - b.left();
+        let allowed =
+            KEPT_APART * roughness.noise * roughness.noise + a.count.min(b.count) * roughness.stray * roughness.stray;
+        more / allowed
+    };
+    let mut proposals: BinaryHeap<Proposal> = (1..count)
+        .map(|right| Proposal {
+            cost: 0.0,
+            left: right - 1,
+            right,
+            end: right + 1,
+        })
+        .collect();
+    while let Some(Proposal {
+        cost: price,
+        left,
+        right,
+        end,
+    }) = proposals.pop()
+    {
+        // Out of date: one of the two has grown or gone since.
+        if ends[left] != right || ends[right] != end {
+            continue;
+        }
+        if price.is_nan() || price > 1.0 {
+            continue;
+        }
+        lines[left] = lines[left].joined(&lines[right]);
+        (ends[left], ends[right]) = (end, 0);
+        if end < count {
+            before[end] = left;
+            let price = cost(&lines[left], &lines[end]);
+            proposals.push(Proposal {
+                cost: price,
+                left,
+                right: end,
+                end: ends[end],
+            });
+        }
+        if left > 0 {
+            let first = before[left];
+            proposals.push(Proposal {
+                cost: cost(&lines[first], &lines[left]),
+                left: first,
+                right: left,
+                end,
+            });
+        }
+    }
+    let mut pieces = Vec::new();
+    let mut start = 0;
+    while start < count {
+        pieces.push(Piece {
+            start,
+            end: ends[start],
+            line: lines[start],
+        });
+        start = ends[start];
+    }
+    for _ in 0..POLISHED {
+        for right in 1..pieces.len() {
+            let (left, rest) = pieces.split_at_mut(right);
+            split(time, values, &mut left[right - 1], &mut rest[0]);
+        }
+    }
+    pieces
+}
+
+/// How often all cuts are moved to where they are best.
+const POLISHED: usize = 2;
+
+/// Moves the cut between two pieces to where their lines leave least.
+fn split(time: &[f64], values: &[f64], left: &mut Piece, right: &mut Piece) {
+    let range = left.start..right.end;
+    let backwards = range.clone().rev().scan(Line::default(), |line, i| {
+        *line = Line::of_sample(time[i], values[i]).joined(line);
+        Some(*line)
+    });
+    let mut after: Vec<Line> = backwards.collect();
+    after.reverse();
+    let mut before = Line::default();
+    let mut best = (left.line.left() + right.line.left(), left.end, left.line, right.line);
+    for cut in range.start + 1..range.end {
+        before = before.joined(&Line::of_sample(time[cut - 1], values[cut - 1]));
+        let rest = &after[cut - range.start];
+        let sum = before.left() + rest.left();
+        if sum < best.0 {
+            best = (sum, cut, before, *rest);
+        }
+    }
+    (left.end, right.start) = (best.1, best.1);
+    (left.line, right.line) = (best.2, best.3);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Noise;
+
+    fn cut(values: &[f64], roughness: Roughness) -> Vec<usize> {
+        let time: Vec<f64> = (0..values.len()).map(|i| i as f64).collect();
+        pieces(&time, values, roughness).iter().map(|piece| piece.end).collect()
+    }
+
+    #[test]
+    fn lines_without_noise_are_cut_at_their_kinks() {
+        let value = |i: i32| f64::from(i.min(100)) - 2.0 * f64::from((i - 250).max(0));
+        let values: Vec<f64> = (0..400).map(value).collect();
+        let ends = cut(
+            &values,
+            Roughness {
+                noise: 0.0,
+                stray: 1e-3,
+            },
+        );
+        assert_eq!(ends.len(), 3, "{ends:?}");
+        assert!(ends[0].abs_diff(100) <= 1 && ends[1].abs_diff(250) <= 1, "{ends:?}");
+    }
+
+    /// A kink of slope change s with n samples on either side is seen where s² n³/24 exceeds 25 σ².
+    #[test]
+    fn noise_alone_is_hardly_ever_cut() {
+        let mut random = Noise::new(3);
+        let values: Vec<f64> = (0..20_000).map(|_| random.normal()).collect();
+        let ends = cut(&values, Roughness { noise: 1.0, stray: 0.0 });
+        assert!(ends.len() <= 3, "{ends:?}");
+        let bent: Vec<f64> = values.iter().zip(0..).map(|(v, i)| v + 1e-3 * f64::from((i - 10_000).max(0))).collect();
+        let ends = cut(&bent, Roughness { noise: 1.0, stray: 0.0 });
+        assert!((2..=4).contains(&ends.len()) && ends.iter().any(|end| end.abs_diff(10_000) < 800), "{ends:?}");
+    }
+}

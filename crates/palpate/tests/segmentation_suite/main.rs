@@ -1,0 +1,57 @@
+//! Holds in records whose truth is known. By default the first hundred are searched, `PALPATE_SUITE=1000` asks for more, and
+//! `cargo run --release -p palpate --example segmentation_suite` prints the tables of `validation/results/segmentation.md`.
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+#![allow(unreachable_pub, dead_code, reason = "the example uses the rest of these modules")]
+
+mod others;
+mod protocols;
+mod record;
+mod score;
+mod suite;
+
+use score::{Score, quantile, scored};
+use suite::Kind;
+
+fn records() -> u64 {
+    std::env::var("PALPATE_SUITE").ok().and_then(|text| text.parse().ok()).unwrap_or(100)
+}
+
+/// The scores of records of some kinds, added.
+fn sum(keep: impl Fn(Kind, f64) -> bool) -> Score {
+    let mut sum = Score::default();
+    for number in 0..records() {
+        let labelled = suite::labelled(number);
+        if keep(labelled.kind, labelled.noise) {
+            sum.add(&scored(&labelled, false).score);
+        }
+    }
+    sum
+}
+
+fn told(score: &Score) -> String {
+    format!("{} of {} holds, {} extra, {} turned", score.found, score.holds, score.extra, score.turned)
+}
+
+#[test]
+fn holds_of_constant_displacement_are_found() {
+    let score = sum(|kind, _| kind != Kind::ForceHeld);
+    println!("{}", told(&score));
+    assert!(score.found_share() >= 0.99, "{}", told(&score));
+    // One in five hundred holds found is none.
+    assert!(500 * score.extra <= score.found, "{}", told(&score));
+}
+
+#[test]
+fn edges_are_within_two_samples_at_one_per_cent_of_noise() {
+    let score = sum(|kind, noise| kind != Kind::ForceHeld && noise == 1e-2);
+    for errors in &score.sharp {
+        assert!(quantile(errors, 0.95).unwrap() <= 2.0, "{}", told(&score));
+    }
+    assert!(quantile(&score.blunt, 0.95).unwrap() <= 6.0, "{}", told(&score));
+}
+
+#[test]
+fn holds_of_constant_force_are_found() {
+    let score = sum(|kind, _| kind == Kind::ForceHeld);
+    assert!(score.found_share() >= 0.9, "{}", told(&score));
+}
