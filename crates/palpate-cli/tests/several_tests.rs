@@ -41,7 +41,7 @@ fn inspect_lists_them_and_shows_one() {
     assert!(!told.contains("Used as"), "{told}");
     for part in ["right", "2"] {
         let told = done(folder, &["inspect", file, "--part", part]);
-        assert!(told.contains("phases        /") && told.contains("over 9 s"), "{told}");
+        assert!(told.contains("phases        /") && told.contains("over 9.0000 s"), "{told}");
     }
     let error = refused(folder, &["inspect", file, "--part", "middle"]);
     assert!(error.contains("expected one of \"left / 1\", \"right\", found \"middle\""), "{error}");

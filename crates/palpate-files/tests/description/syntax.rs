@@ -30,7 +30,7 @@ fn unknown_keys_name_the_accepted_ones() {
     says(
         test("[colums.time]\ncolumn = 1"),
         "colums",
-        "accepted: about, machine, file, columns,",
+        "accepted: about, file, columns, clock, force, machine,",
         "did you mean columns?",
     );
     says(

@@ -184,7 +184,11 @@ fn wrong_values_name_their_keys() {
             "does not overlap hold 1",
         ),
         ("[[phases.hold]]\nfrom = \"1 mm\"\nto = \"4 s\"", "phases.hold[1].from", "mm"),
-        ("[[phases.hold]]\nfrom = \"1 s\"\nto = \"4 s\"\nmode = \"jaw\"", "mode", "displacement"),
+        (
+            "[[phases.hold]]\nfrom = \"1 s\"\nto = \"4 s\"\nmode = \"jaw\"",
+            "phases.hold[1].mode",
+            "displacement",
+        ),
         ("fit.exponents = [1, 0]", "fit.exponents[2]", "a number above 0, found 0"),
         ("fit.exponents = []\nfit.free_exponent = false", "fit.exponents", "one exponent or more"),
         ("fit.exponents = 5", "fit.exponents", "a list in square brackets, found 5"),

@@ -65,8 +65,9 @@ fn phases(file: &RecordFile, options: &SegmentOptions) -> Result<Segmentation, S
 /// Start and end of every hold, s; what came before; what is held.
 fn holds(file: &RecordFile, options: &SegmentOptions) -> Vec<(f64, f64, Option<After>, HoldMode)> {
     let time = file.record.time();
-    let found = phases(file, options).unwrap();
-    let holds = found.holds().map(|hold| (time[hold.start], time[hold.end - 1], hold.after, hold.mode.unwrap()));
+    let found = phases(file, options).unwrap_or_else(|error| panic!("{error}"));
+    let mode = |mode: Option<HoldMode>| mode.unwrap_or_else(|| panic!("a hold that holds nothing"));
+    let holds = found.holds().map(|hold| (time[hold.start], time[hold.end - 1], hold.after, mode(hold.mode)));
     holds.collect()
 }
 
@@ -166,8 +167,8 @@ fn a_gripper_holds_the_force() {
     assert_eq!((found[0].2, found[0].3), (Some(After::Loading), HoldMode::ForceHeld), "{found:?}");
     assert_eq!(found[1].2, Some(After::Unloading), "{found:?}");
     let kiwi = described(
-        "[columns]\ntime = { column = \"time\", unit = \"s\" }\ndisplacement = { column = \"now_pos\", unit = \"mm\" }\n\
-         force = { column = \"now_force\", unit = \"N\" }\n[phases]\nminimum_hold = \"2 s\"",
+        "[columns]\ntime = { column = \"Time\", unit = \"s\" }\ndisplacement = { column = \"Pos\", unit = \"mm\" }\n\
+         force = { column = \"Force\", unit = \"N\" }\n[phases]\nminimum_hold = \"2 s\"",
     );
     let path = std::fs::read_dir(folder.join("gripper-fruit")).unwrap().map(|entry| entry.unwrap().path());
     let path = path.into_iter().find(|path| path.to_string_lossy().contains("kiwi")).unwrap();

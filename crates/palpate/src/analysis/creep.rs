@@ -5,7 +5,7 @@ use crate::choose::{CompareOptions, Comparison, compare_laws};
 use crate::identify::Samples;
 use crate::laws::Response;
 use crate::record::{Record, RecordError};
-use crate::segment::{After, HoldMode, Segment, SegmentError, SegmentOptions, find_phases};
+use crate::segment::{After, HoldMode, Segment, SegmentError, SegmentOptions, find_phases, held_in};
 use crate::statistics::median;
 
 /// One hold of constant force, with the laws of creep compared on it.
@@ -42,6 +42,9 @@ pub enum CreepError {
     /// A displacement that never changes.
     #[error("the displacement cannot creep: {0}")]
     Still(RecordError),
+    /// Where the force stays, the displacement stays, too.
+    #[error("the displacement is held wherever the force stays: nothing creeps")]
+    DisplacementHeld,
     /// No hold of constant force.
     #[error("of the force: {0}")]
     Segment(SegmentError),
@@ -53,7 +56,7 @@ impl CreepError {
     pub fn hint(&self) -> &'static str {
         match self {
             Self::NoDisplacement | Self::Still(_) => "name the displacement under columns.displacement",
-            Self::Segment(_) => {
+            Self::DisplacementHeld | Self::Segment(_) => {
                 "a hold of constant force is needed; without --creep holds of constant displacement are sought"
             }
         }
@@ -91,7 +94,9 @@ fn force_held(record: &Record, exchanged: &Record, segment: &SegmentOptions) -> 
         ..*segment
     };
     let found = find_phases(exchanged, &segment).map_err(of_force)?;
-    Ok(found.holds().copied().collect())
+    let moves = |hold: &&Segment| held_in(record, hold.start, hold.end) != HoldMode::DisplacementHeld;
+    let creeping: Vec<Segment> = found.holds().filter(moves).copied().collect();
+    if creeping.is_empty() { Err(CreepError::DisplacementHeld) } else { Ok(creeping) }
 }
 
 /// Finds the holds of constant force in a record and compares laws of creep on the displacement of each.

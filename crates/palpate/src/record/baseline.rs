@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn a_constant_is_a_median() {
-        let net = drifting().without_baseline(Baseline::Constant, &[0..9]).unwrap();
+        let net = drifting().without_baseline(Baseline::Constant, std::slice::from_ref(&(0..9))).unwrap();
         let [
             Correction::BaselineRemoved {
                 level,
@@ -124,8 +124,8 @@ mod tests {
 
     #[test]
     fn too_little_free_force_is_an_error() {
-        let error = drifting().without_baseline(Baseline::Constant, &[0..3]).unwrap_err();
+        let error = drifting().without_baseline(Baseline::Constant, std::slice::from_ref(&(0..3))).unwrap_err();
         assert_eq!(error.to_string(), "a baseline needs 5 samples without contact or more, found 3");
-        assert!(drifting().without_baseline(Baseline::Sloped, &[899..5000]).is_err());
+        assert!(drifting().without_baseline(Baseline::Sloped, std::slice::from_ref(&(899..5000))).is_err());
     }
 }

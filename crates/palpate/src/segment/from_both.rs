@@ -51,14 +51,27 @@ fn force_held(record: &Record, still: &[Level], options: &SegmentOptions) -> Vec
         values: record.force(),
         wander: CONTROLLER * range(record.force()),
     };
-    let found = levels(record.time(), &held, options).map_or_else(|_| Vec::new(), |found| found.levels);
+    let Ok(found) = levels(record.time(), &held, options) else {
+        return Vec::new();
+    };
+    let (low, range) = (least(record.force()), range(record.force()));
+    // A contact that is open shows no force, and nobody holds that.
+    let open = |level: &Level| level.value.abs().min(level.value - low) <= OPEN * range + 3.0 * found.settings.noise;
     let creeps = |level: &Level| {
-        mode(record, level.start, level.end) == HoldMode::ForceHeld
+        !open(level)
+            && mode(record, level.start, level.end) == HoldMode::ForceHeld
             && slows_down(record, level)
             && arrives(record, level)
             && still.iter().all(|still| rests_late(still, level))
     };
-    found.into_iter().filter(creeps).collect()
+    found.levels.iter().filter(|level| creeps(level)).copied().collect()
+}
+
+/// Share of its range up to which a force may be that of an open contact.
+const OPEN: f64 = 0.02;
+
+fn least(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::MAX, f64::min)
 }
 
 /// Share of a creep that its first half must see: of a ramp that goes on while the force happens to stay, it is one half.

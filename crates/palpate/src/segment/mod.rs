@@ -42,7 +42,7 @@ pub use contact_point::{
 };
 pub use given::{GivenHold, phases_with};
 pub use mode::HoldMode;
-pub(crate) use mode::change;
+pub(crate) use mode::{change, mode as held_in};
 pub use options::{HoldStart, SegmentOptions, SegmentSettings};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
 

@@ -68,7 +68,7 @@ pub(crate) fn change(record: &Record, from: usize, until: usize) -> Option<Chang
 const DRIFTS: f64 = 0.01;
 
 /// What is held in samples `from..until`; too short a hold, or one without displacement, counts as one of the displacement.
-pub(super) fn mode(record: &Record, from: usize, until: usize) -> HoldMode {
+pub(crate) fn mode(record: &Record, from: usize, until: usize) -> HoldMode {
     change(record, from, until).map_or(HoldMode::DisplacementHeld, |change| change.mode)
 }
 

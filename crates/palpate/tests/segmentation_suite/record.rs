@@ -93,13 +93,14 @@ impl Machine {
             }
         }
         let mut row = 1;
-        while self.dropouts > 0.0 {
-            row += 3 + (-random.uniform().ln() / self.dropouts) as usize;
-            if row + 2 >= time.len() {
-                break;
-            }
-            for column in &mut columns {
-                column[row] = 0.0;
+        let mut next = || 3 + (-random.uniform().ln() / self.dropouts) as usize;
+        if self.dropouts > 0.0 {
+            row += next();
+            while row + 2 < time.len() {
+                for column in &mut columns {
+                    column[row] = 0.0;
+                }
+                row += next();
             }
         }
         let [displacement, force] = columns;
