@@ -1,5 +1,6 @@
 //! Cells of a sheet and what they hold.
 
+use super::moment;
 use crate::text::number;
 
 /// What a cell holds. A formula holds the value it had when the workbook was saved.
@@ -17,6 +18,26 @@ pub(super) enum Value {
 }
 
 impl Value {
+    /// What `calamine` has read; `None` where this is nothing, or only white space.
+    pub(super) fn of(data: calamine::Data, days_to_epoch: f64) -> Option<Self> {
+        use calamine::Data;
+        Some(match data {
+            Data::Empty => return None,
+            Data::Int(number) => Self::Number(number as f64),
+            Data::Float(number) => Self::Number(number),
+            Data::DateTime(moment) if moment.is_duration() => Self::Duration(moment.as_f64()),
+            Data::DateTime(moment) => Self::Moment(moment.as_f64()),
+            Data::DateTimeIso(text) => match moment::of_iso(&text) {
+                Some(days) => Self::Moment(days + days_to_epoch),
+                None => Self::Text(text),
+            },
+            Data::String(text) | Data::DurationIso(text) if text.trim().is_empty() => return None,
+            Data::String(text) | Data::DurationIso(text) => Self::Text(text),
+            Data::Bool(truth) => Self::Truth(truth),
+            Data::Error(fault) => Self::Fault(fault.to_string()),
+        })
+    }
+
     /// A number under a number format.
     pub(super) fn formatted(number: f64, format: NumberFormat) -> Self {
         match format {

@@ -87,11 +87,36 @@ fn cells_out_of_order_and_outside_of_any_sheet() {
         ("<row><c r=\"A99999999999999999999\"><v>1</v></c></row>", "expected the place of a cell"),
         ("<row><c t=\"s\"><v>9</v></c></row>", "cell A1: expected the number of a shared text, found 9"),
         ("<row><c><v>1e999</v></c></row>", "cell A1: expected a number, found 1e999"),
+        ("<row><c r=\"A4294967297\"><v>1</v></c></row>", "expected the place of a cell, found A4294967297"),
+        ("<row><c t=\"s\"><v>0x1</v></c></row>", "cell A1: expected the number of a shared text, found 0x1"),
+        ("<row><c><v>1&#46;5</v></c></row>", "cell A1: expected plain text, found an entity"),
+        ("<row><c><v>1<!-- -->5</v></c></row>", "cell A1: expected plain text, found something else"),
+        ("<row><c><v><![CDATA[15]]></v></c></row>", "cell A1: expected plain text, found something else"),
+        ("<row><c><v>1</v><f>1</f></c></row>", "cell A1: expected one plain value, found f"),
+        ("<row><c t=\"e\"><v>Err:502</v></c></row>", "cell A1: expected an error that Excel has, found Err:502"),
         ("<row><c><v>&bomb;</v></c></row>", "expected XML, found &bomb;"),
     ] {
         let text = message(open(&sheet(xml).bytes()));
         assert!(text.contains(found), "{text}");
     }
+}
+
+#[test]
+fn counts_that_lie_take_no_memory() {
+    for said in [10_000_000, u64::MAX] {
+        let book = Book {
+            strings_said: said,
+            ..Book::of(&[("one", &[])])
+        };
+        let text = message(open(&book.bytes()));
+        assert!(text.ends_with(&format!("expected as many shared texts as there are bytes for, found {said}")), "{text}");
+    }
+    let book = Book {
+        strings: "<si/>".repeat((2 << 20) + 1),
+        ..Book::of(&[("one", &[])])
+    };
+    let text = message(open(&book.bytes()));
+    assert!(text.ends_with("expected at most 2097152 shared texts, found 2097153"), "{text}");
 }
 
 #[test]

@@ -9,6 +9,8 @@ use zip::{ZipWriter, write::SimpleFileOptions};
 pub(crate) struct Book {
     pub(crate) sheets: Vec<(String, String)>,
     pub(crate) strings: String,
+    /// How many shared texts it says there are.
+    pub(crate) strings_said: u64,
     pub(crate) formats: Vec<&'static str>,
     pub(crate) from_1904: bool,
     pub(crate) charts: Vec<&'static str>,
@@ -106,7 +108,7 @@ impl Book {
             ),
         );
         put("xl/_rels/workbook.xml.rels", &format!("<Relationships>{related}</Relationships>"));
-        put("xl/sharedStrings.xml", &format!("<sst uniqueCount=\"18446744073709551615\">{}</sst>", self.strings));
+        put("xl/sharedStrings.xml", &format!("<sst uniqueCount=\"{}\">{}</sst>", self.strings_said, self.strings));
         let format =
             |(index, code): (usize, &&str)| format!("<numFmt numFmtId=\"{}\" formatCode=\"{code}\"/>", 164 + index);
         let formats: String = self.formats.iter().enumerate().map(format).collect();
