@@ -25,8 +25,8 @@ pub use error::{ColumnError, NamedColumn, ReadError};
 pub use parts::{Tests, tests};
 pub use quantity::Quantity;
 pub(crate) use quantity::unit_factor;
-pub(crate) use recognise::names_time;
 pub use read::{RecordFile, read_part, read_record};
+pub(crate) use recognise::names_time;
 
 use serde::Serialize;
 

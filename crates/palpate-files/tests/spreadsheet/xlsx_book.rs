@@ -108,7 +108,10 @@ impl Book {
             ),
         );
         put("xl/_rels/workbook.xml.rels", &format!("<Relationships>{related}</Relationships>"));
-        put("xl/sharedStrings.xml", &format!("<sst uniqueCount=\"{}\">{}</sst>", self.strings_said, self.strings));
+        put(
+            "xl/sharedStrings.xml",
+            &format!("<sst uniqueCount=\"{}\">{}</sst>", self.strings_said, self.strings),
+        );
         let format =
             |(index, code): (usize, &&str)| format!("<numFmt numFmtId=\"{}\" formatCode=\"{code}\"/>", 164 + index);
         let formats: String = self.formats.iter().enumerate().map(format).collect();

@@ -128,7 +128,8 @@ impl Checked<'_> {
             "sst" => {
                 for said in self.attributes(element)? {
                     if said.key.local_name().as_ref() == "uniqueCount" {
-                        self.tally.texts_said = self.tally.texts_said.max(said.value.trim().parse().unwrap_or(u64::MAX));
+                        self.tally.texts_said =
+                            self.tally.texts_said.max(said.value.trim().parse().unwrap_or(u64::MAX));
                     }
                 }
             }
