@@ -115,7 +115,7 @@ impl Checked<'_> {
             }
             Step::End(name) => self.end_in_rows(name),
             Step::Text(text) => self.text_in_rows(text),
-            Step::Entity => self.in_value(|cell| cell.is_text(), "an entity"),
+            Step::Entity => self.in_value(OpenCell::is_text, "an entity"),
             Step::Aside => self.in_value(|cell| cell.kind == "inlineStr", "something else"),
             Step::Eof => self.finish(done),
         }
