@@ -233,6 +233,10 @@ fn what_old_workbooks_hold_too_much_of_or_lack_is_told() {
         text.contains("sheet one: expected a text of every cell, found shared texts that are missing"),
         "{text}"
     );
+    // A number in 32 bits that is none.
+    let none = xls_book::record(0x027E, &[4, 0, 1, 0, 0, 0, 0, 0, 0xF8, 0x7F]);
+    let contents = open(&old(&[xls_book::number(4, 0, 4.0), none])).expect("a workbook");
+    assert_eq!(message(read(&contents, 0, &[1, 2])), "book, sheet one, cell B5: expected a number, found NaN");
     let twice = [("one", vec![xls_book::number(0, 0, 1.0)]), ("one", vec![xls_book::number(0, 0, 1.0)])];
     let text = message(open(&compound("Workbook", &stream(&["a", "b"], &twice, false))));
     assert!(text.contains("expected sheets of different names, found one"), "{text}");

@@ -44,75 +44,28 @@ pub(super) type Wrong = (String, &'static str);
 /// Sifts the records of a workbook.
 pub(super) fn sift(stream: &[u8]) -> Result<Sifted, Wrong> {
     let mut sifted = Sifted::default();
-    // Where every sheet begins, and where this is written.
-    let mut starts: Vec<(usize, usize)> = Vec::new();
-    let wrong = |expected| (String::from("workbook"), expected);
-    let mut records = Records::from(stream, 0);
-    let first = records.next().filter(|record| record.kind == BEGIN && u16_at(record.bytes, 0) == Some(0x0600));
-    sifted.put(BEGIN, first.ok_or_else(|| wrong("a workbook of Excel 97 or later"))?.bytes);
-    loop {
-        let Record { kind, bytes } = records.next().ok_or_else(|| wrong("the end of the globals"))?;
-        match kind {
-            END => break,
-            0x002F => {
-                sifted.encrypted = true;
-                return Ok(sifted);
-            }
-            SHEET => {
-                let sheet = sheet(bytes).ok_or_else(|| wrong("the name of a sheet"))?;
-                let start = u32_at(bytes, 0).ok_or_else(|| wrong("the beginning of a sheet"))? as usize;
-                starts.push((start, sifted.stream.len() + 4));
-                sifted.put(SHEET, bytes);
-                // Of all kinds that hold no cells, one is enough to know.
-                if sheet.other.is_some() {
-                    let kind = sifted.stream.len() - bytes.len() + 5;
-                    sifted.stream[kind] = 2;
-                }
-                sifted.sheets.push(sheet);
-                if starts.len() > MOST_SHEETS {
-                    return Err(wrong("at most 4096 sheets"));
-                }
-            }
-            TEXTS => {
-                let continued = records.continued();
-                let size = continued.iter().map(|piece| piece.len()).sum::<usize>() + bytes.len();
-                if size > MOST_OF_TEXTS || continued.len() > MOST_CONTINUED {
-                    return Err(wrong("shared texts of at most 32 MiB in 16384 records"));
-                }
-                sifted.put(TEXTS, bytes);
-                for piece in continued {
-                    sifted.put(CONTINUE, piece);
-                }
-            }
-            // How days are counted; number formats; styles of cells.
-            0x0022 | 0x041E | 0x00E0 if bytes.len() >= 2 => sifted.put(kind, bytes),
-            _ => {}
-        }
-    }
-    sifted.put(END, &[]);
-    let mut room = MOST_CELLS;
-    let mut gone_over = 0;
+    let starts = sifted.globals(stream).map_err(|expected| (String::from("workbook"), expected))?;
+    let (mut room, mut gone_over) = (MOST_CELLS, 0);
     for (index, (start, written)) in starts.into_iter().enumerate() {
-        let place = u32::try_from(sifted.stream.len()).map_err(|_| wrong("at most 4 GiB"))?;
-        sifted.stream[written..written + 4].copy_from_slice(&place.to_le_bytes());
+        let place = format!("sheet {}", sifted.sheets[index].name);
+        let Ok(begins) = u32::try_from(sifted.stream.len()) else {
+            return Err((place, "at most 4 GiB"));
+        };
+        sifted.stream[written..written + 4].copy_from_slice(&begins.to_le_bytes());
         sifted.put(BEGIN, &[0x00, 0x06, 0x10, 0x00]);
-        let (mut held, name) = (0, sifted.sheets[index].name.clone());
+        let mut cells = Cells::default();
         if sifted.sheets[index].other.is_none() {
-            let mut cells = Cells::default();
-            gone_over += cells
-                .take_all(stream, start, &mut sifted)
-                .map_err(|(record, expected)| (format!("sheet {name}, record {record}"), expected))?;
-            let span = cells.span();
-            if span > room {
-                return Err((format!("sheet {name}"), "at most 8388608 cells from first to last of all sheets"));
-            }
+            let size = cells.take_all(stream, start, &mut sifted);
+            gone_over += size.map_err(|(record, expected)| (format!("{place}, record {record}"), expected))?;
             if gone_over > stream.len() {
-                return Err((format!("sheet {name}"), "sheets that do not overlap"));
+                return Err((place, "sheets that do not overlap"));
             }
-            room -= span;
-            held = cells.held();
+            let Some(left) = room.checked_sub(cells.span()) else {
+                return Err((place, "at most 8388608 cells from first to last of all sheets"));
+            };
+            room = left;
         }
-        sifted.held.push(held);
+        sifted.held.push(cells.held());
         sifted.put(END, &[]);
     }
     Ok(sifted)
@@ -133,6 +86,55 @@ fn sheet(bytes: &[u8]) -> Option<Sheet> {
 }
 
 impl Sifted {
+    /// Takes what stands before the sheets: where every sheet begins, and where this is written. Else what was expected.
+    fn globals(&mut self, stream: &[u8]) -> Result<Vec<(usize, usize)>, &'static str> {
+        let mut starts = Vec::new();
+        let mut records = Records::from(stream, 0);
+        let first = records.next().filter(|record| record.kind == BEGIN && u16_at(record.bytes, 0) == Some(0x0600));
+        self.put(BEGIN, first.ok_or("a workbook of Excel 97 or later")?.bytes);
+        loop {
+            let Record { kind, bytes } = records.next().ok_or("the end of the globals")?;
+            match kind {
+                END => break,
+                0x002F => {
+                    self.encrypted = true;
+                    return Ok(Vec::new());
+                }
+                SHEET => {
+                    let sheet = sheet(bytes).ok_or("the name of a sheet")?;
+                    let start = u32_at(bytes, 0).ok_or("the beginning of a sheet")? as usize;
+                    self.put(SHEET, bytes);
+                    let written = self.stream.len() - bytes.len();
+                    // Of all kinds that hold no cells, one is enough to know.
+                    if sheet.other.is_some() {
+                        self.stream[written + 5] = 2;
+                    }
+                    starts.push((start, written));
+                    self.sheets.push(sheet);
+                    if starts.len() > MOST_SHEETS {
+                        return Err("at most 4096 sheets");
+                    }
+                }
+                TEXTS => {
+                    let continued = records.continued();
+                    let size = continued.iter().map(|piece| piece.len()).sum::<usize>() + bytes.len();
+                    if size > MOST_OF_TEXTS || continued.len() > MOST_CONTINUED {
+                        return Err("shared texts of at most 32 MiB in 16384 records");
+                    }
+                    self.put(TEXTS, bytes);
+                    for piece in continued {
+                        self.put(CONTINUE, piece);
+                    }
+                }
+                // How days are counted; number formats; styles of cells.
+                0x0022 | 0x041E | 0x00E0 if bytes.len() >= 2 => self.put(kind, bytes),
+                _ => {}
+            }
+        }
+        self.put(END, &[]);
+        Ok(starts)
+    }
+
     /// Writes a record, whose bytes come from one.
     fn put(&mut self, kind: u16, bytes: &[u8]) {
         self.stream.extend(kind.to_le_bytes());
