@@ -137,6 +137,14 @@ fn counts_that_lie_take_no_memory() {
 }
 
 #[test]
+fn styles_that_would_not_be_found_are_told() {
+    let mut book = small_book();
+    book.styles = "formats/styles.xml";
+    let text = message(open(&book.bytes()));
+    assert!(text.ends_with("expected the usual path of a part, found formats/styles.xml"), "{text}");
+}
+
+#[test]
 fn any_letter_of_the_rows_changed() {
     let book = small_book();
     let rows = book.sheets[0].1.clone();
@@ -176,6 +184,11 @@ fn other_documents_in_archives_are_told_from_workbooks() {
     use std::io::Write;
     for (part, xml, found) in [
         ("word/document.xml", "<document/>", "expected a workbook with sheets, found word/document.xml"),
+        (
+            "xl/workbook.xml",
+            "<workbook><sheets><sheet name=\"one\" r:id=\"a\"/></sheets></workbook>",
+            "expected a workbook with sheets, found Relationship not found",
+        ),
         ("xl/workbook.bin", "", "expected a workbook of XML parts (.xlsx), found one of binary parts (.xlsb)"),
     ] {
         let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));

@@ -12,6 +12,8 @@ pub(crate) struct Book {
     /// How many shared texts it says there are.
     pub(crate) strings_said: u64,
     pub(crate) formats: Vec<&'static str>,
+    /// Where its styles are said to be, if not where they are.
+    pub(crate) styles: &'static str,
     pub(crate) from_1904: bool,
     pub(crate) charts: Vec<&'static str>,
 }
@@ -99,7 +101,8 @@ impl Book {
         related.push_str(&format!(
             "<Relationship Id=\"t\" Type=\"{office}/sharedStrings\" Target=\"/xl/sharedStrings.xml\"/>"
         ));
-        related.push_str(&format!("<Relationship Id=\"f\" Type=\"{office}/styles\" Target=\"styles.xml\"/>"));
+        let styles = if self.styles.is_empty() { "styles.xml" } else { self.styles };
+        related.push_str(&format!("<Relationship Id=\"f\" Type=\"{office}/styles\" Target=\"{styles}\"/>"));
         put(
             "xl/workbook.xml",
             &format!(

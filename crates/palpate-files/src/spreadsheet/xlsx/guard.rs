@@ -173,8 +173,18 @@ impl Checked<'_> {
             "officeDocument" if self.path == "_rels/.rels" => target.clone_into(&mut self.found.document),
             _ => {}
         }
-        if matches!(kind.as_str(), "officeDocument" | "worksheet") && !lower.ends_with(".xml") {
-            return Err(self.package.damaged(self.path, "the path of a part of XML", &target));
+        // Texts and styles are looked for under one name only, and sheets without them would show other values.
+        let document = self.found.document.to_lowercase();
+        let folder = document.trim_start_matches('/').rsplit_once('/').map_or("", |(folder, _)| folder);
+        let only = |name: &str| lower == name || lower.trim_start_matches('/') == format!("{folder}/{name}");
+        let fits = match kind.as_str() {
+            "officeDocument" | "worksheet" => lower.ends_with(".xml"),
+            "styles" => only("styles.xml"),
+            "sharedStrings" => only("sharedstrings.xml"),
+            _ => true,
+        };
+        if !fits {
+            return Err(self.package.damaged(self.path, "the usual path of a part", &target));
         }
         Ok(())
     }

@@ -54,11 +54,11 @@ impl Package {
         })
     }
 
-    /// Paths of the parts that hold XML, the texts that all sheets share first.
+    /// Paths of the parts that hold XML: first the texts that all sheets share, then what says which part is which.
     pub(super) fn parts(&self) -> Vec<&str> {
         let xml = |path: &&str| path.ends_with(".xml") || path.ends_with(".rels");
         let mut paths: Vec<&str> = self.names.keys().map(String::as_str).filter(xml).collect();
-        paths.sort_by_key(|path| !path.ends_with("sharedstrings.xml"));
+        paths.sort_by_key(|path| (!path.ends_with("sharedstrings.xml"), *path != "_rels/.rels"));
         paths
     }
 
