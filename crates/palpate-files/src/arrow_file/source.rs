@@ -1,15 +1,15 @@
 //! Batches of rows, whatever the format.
 
-use std::{
-    ops::{ControlFlow, Range},
-    panic::{AssertUnwindSafe, catch_unwind},
-};
+use std::ops::{ControlFlow, Range};
 
 use arrow_array::RecordBatch;
 use arrow_schema::SchemaRef;
 
 use super::{ipc, parquet};
-use crate::{error::FileError, input::Input};
+use crate::{
+    error::FileError,
+    input::{Input, contained},
+};
 
 /// How a file of typed columns is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,11 +56,6 @@ impl Source {
             Kind::File | Kind::Stream => ipc::visit(&self.input, self.kind, columns, &rows, each),
         })
     }
-}
-
-/// The readers of these formats take some counts in a file at their word and then panic. Such a file is damaged.
-fn contained<T>(input: &Input, read: impl FnOnce() -> Result<T, FileError>) -> Result<T, FileError> {
-    catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| Err(damaged(input, "the file", "numbers out of bounds")))
 }
 
 pub(super) fn damaged(input: &Input, place: &str, found: &str) -> FileError {

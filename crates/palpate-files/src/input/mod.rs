@@ -6,9 +6,11 @@
 //! | file | what |
 //! |---|---|
 //! | `packing.rs` | telling packed files by their content, and unpacking them |
+//! | `contained.rs` | readers of other crates that panic on damaged files |
 //! | `counting.rs` | how far a reader has got |
 //! | `foreign.rs` | files that hold no record in any format known here |
 
+mod contained;
 mod counting;
 mod foreign;
 mod packing;
@@ -22,6 +24,7 @@ use std::{
 };
 
 use crate::error::FileError;
+pub(crate) use contained::contained;
 use counting::Counting;
 pub use foreign::Foreign;
 pub(crate) use foreign::{mostly_control, recognise as recognise_foreign};

@@ -1,5 +1,6 @@
 //! Cells of a sheet and what they hold.
 
+use super::moment;
 use crate::text::number;
 
 /// What a cell holds. A formula holds the value it had when the workbook was saved.
@@ -17,13 +18,27 @@ pub(super) enum Value {
 }
 
 impl Value {
-    /// A number under a number format.
-    pub(super) fn formatted(number: f64, format: NumberFormat) -> Self {
-        match format {
-            NumberFormat::Plain => Self::Number(number),
-            NumberFormat::Moment => Self::Moment(number),
-            NumberFormat::Duration => Self::Duration(number),
-        }
+    /// What `calamine` has read; `None` where this is nothing, or only white space.
+    pub(super) fn of(data: calamine::Data, days_to_epoch: f64) -> Option<Self> {
+        use calamine::Data;
+        Some(match data {
+            Data::Empty => return None,
+            // A number that is none: nobody can write one, but a damaged file can have it.
+            Data::Float(number) if !number.is_finite() => Self::Fault(number.to_string()),
+            Data::DateTime(moment) if !moment.as_f64().is_finite() => Self::Fault(moment.as_f64().to_string()),
+            Data::Int(number) => Self::Number(number as f64),
+            Data::Float(number) => Self::Number(number),
+            Data::DateTime(moment) if moment.is_duration() => Self::Duration(moment.as_f64()),
+            Data::DateTime(moment) => Self::Moment(moment.as_f64()),
+            Data::DateTimeIso(text) => match moment::of_iso(&text) {
+                Some(days) => Self::Moment(days + days_to_epoch),
+                None => Self::Text(text),
+            },
+            Data::String(text) | Data::DurationIso(text) if text.trim().is_empty() => return None,
+            Data::String(text) | Data::DurationIso(text) => Self::Text(text),
+            Data::Bool(truth) => Self::Truth(truth),
+            Data::Error(fault) => Self::Fault(fault.to_string()),
+        })
     }
 
     /// What it is to somebody who looks for columns of numbers.
@@ -62,53 +77,6 @@ pub(super) struct Cell {
 pub(super) const MOST_ROWS: u32 = 1 << 20;
 /// See [`MOST_ROWS`].
 pub(super) const MOST_COLUMNS: u32 = 1 << 14;
-
-/// What a number format makes of numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) enum NumberFormat {
-    #[default]
-    Plain,
-    Moment,
-    Duration,
-}
-
-impl NumberFormat {
-    /// The format that every workbook has under this number, if it is one of those that show times.
-    pub(super) fn built_in(number: u32) -> Self {
-        match number {
-            14..=22 | 27..=36 | 45 | 47 | 50..=58 => Self::Moment,
-            46 => Self::Duration,
-            _ => Self::Plain,
-        }
-    }
-
-    /// The format of a code such as `yyyy-mm-dd hh:mm:ss.000`, `[h]:mm:ss` or `0.00" s"`; its first section counts.
-    pub(super) fn of_code(code: &str) -> Self {
-        let mut letters = code.chars();
-        let mut found = Self::Plain;
-        while let Some(letter) = letters.next() {
-            match letter {
-                ';' => break,
-                '\\' | '_' | '*' => {
-                    letters.next();
-                }
-                '"' => {
-                    letters.by_ref().find(|next| *next == '"');
-                }
-                '[' => {
-                    let inside: String = letters.by_ref().take_while(|next| *next != ']').collect();
-                    let clock = |of: char| inside.chars().all(|next| next.eq_ignore_ascii_case(&of));
-                    if !inside.is_empty() && ['h', 'm', 's'].into_iter().any(clock) {
-                        return Self::Duration;
-                    }
-                }
-                _ if "dmyhsDMYHS".contains(letter) => found = Self::Moment,
-                _ => {}
-            }
-        }
-        found
-    }
-}
 
 /// The letters of a column, from 0: A, B, … Z, AA.
 pub(super) fn letters(column: u32) -> String {
@@ -151,24 +119,6 @@ mod tests {
         }
         for column in [0, 25, 26, 701, 702, MOST_COLUMNS - 1] {
             assert_eq!(reference(&format!("{}7", letters(column))), Some((6, column)));
-        }
-    }
-
-    #[test]
-    fn number_formats() {
-        for (code, format) in [
-            ("General", NumberFormat::Plain),
-            ("0.00\" s\"", NumberFormat::Plain),
-            ("0.00E+00", NumberFormat::Plain),
-            ("[Red]0.0", NumberFormat::Plain),
-            ("0\\m", NumberFormat::Plain),
-            ("0;yyyy", NumberFormat::Plain),
-            ("yyyy-mm-dd hh:mm:ss.000", NumberFormat::Moment),
-            ("[$-409]h:mm AM/PM", NumberFormat::Moment),
-            ("[h]:mm:ss", NumberFormat::Duration),
-            ("[ss].00", NumberFormat::Duration),
-        ] {
-            assert_eq!(NumberFormat::of_code(code), format, "{code}");
         }
     }
 }

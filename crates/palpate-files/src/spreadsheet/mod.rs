@@ -1,11 +1,12 @@
 //! Workbooks of spreadsheet programs: `.xlsx` and `.xls`, one test a sheet, or several side by side.
 //!
+//! They are read by `calamine`, which believes what a file says of itself. What it may not believe is checked before.
+//!
 //! | file | what |
 //! |---|---|
 //! | `part.rs` | a workbook as a file that holds several tests |
 //! | `book.rs` | what a workbook of any make can do |
-//! | `cell.rs`, `moment.rs` | cells, their places, number formats, dates |
-//! | `strings.rs` | texts that all sheets share |
+//! | `cell.rs`, `moment.rs` | cells, their places, dates |
 //! | `sample.rs` | the beginning of a sheet |
 //! | `table.rs` | finding the tables in it |
 //! | `read.rs` | reading chosen columns of a table |
@@ -18,7 +19,6 @@ mod moment;
 mod part;
 mod read;
 mod sample;
-mod strings;
 mod table;
 mod xls;
 mod xlsx;

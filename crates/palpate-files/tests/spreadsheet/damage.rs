@@ -11,12 +11,16 @@ use crate::{
     },
 };
 
-fn small() -> Vec<u8> {
+fn small_book() -> Book {
     let table = [vec![T("Time (s)"), T("Force (N)")], vec![S(0.0, 1), N(1.0)], vec![S(0.5, 1), N(2.0)]];
     let mut book = Book::of(&[("one", &table)]);
     book.formats = vec!["hh:mm:ss"];
     book.strings = "<si><t>x</t></si>".to_owned();
-    book.bytes()
+    book
+}
+
+fn small() -> Vec<u8> {
+    small_book().bytes()
 }
 
 #[test]
@@ -87,11 +91,76 @@ fn cells_out_of_order_and_outside_of_any_sheet() {
         ("<row><c r=\"A99999999999999999999\"><v>1</v></c></row>", "expected the place of a cell"),
         ("<row><c t=\"s\"><v>9</v></c></row>", "cell A1: expected the number of a shared text, found 9"),
         ("<row><c><v>1e999</v></c></row>", "cell A1: expected a number, found 1e999"),
+        ("<row><c r=\"A4294967297\"><v>1</v></c></row>", "expected the place of a cell, found A4294967297"),
+        ("<row><c t=\"s\"><v>0x1</v></c></row>", "cell A1: expected the number of a shared text, found 0x1"),
+        ("<row><c><v>1&#46;5</v></c></row>", "cell A1: expected plain text, found an entity"),
+        ("<row><c><v>1<!-- -->5</v></c></row>", "cell A1: expected plain text, found something else"),
+        ("<row><c><v><![CDATA[15]]></v></c></row>", "cell A1: expected plain text, found something else"),
+        ("<row><c><v>1</v><f>1</f></c></row>", "cell A1: expected one plain value, found f"),
+        (
+            "<row><c t=\"e\"><v>Err:502</v></c></row>",
+            "cell A1: expected an error that Excel has, found Err:502",
+        ),
         ("<row><c><v>&bomb;</v></c></row>", "expected XML, found &bomb;"),
     ] {
         let text = message(open(&sheet(xml).bytes()));
         assert!(text.contains(found), "{text}");
     }
+}
+
+#[test]
+fn counts_that_lie_take_no_memory() {
+    for said in [10_000_000, u64::MAX] {
+        let book = Book {
+            strings_said: said,
+            ..Book::of(&[("one", &[])])
+        };
+        let text = message(open(&book.bytes()));
+        assert!(
+            text.ends_with(&format!("expected as many shared texts as there are bytes for, found {said}")),
+            "{text}"
+        );
+    }
+    let book = Book {
+        strings: "<si/>".repeat((2 << 20) + 1),
+        ..Book::of(&[("one", &[])])
+    };
+    let text = message(open(&book.bytes()));
+    assert!(text.ends_with("expected at most 2097152 shared texts, found 2097153"), "{text}");
+    // Every style would hold the text of a number format.
+    let mut book = small_book();
+    book.formats = vec!["0"; 3000];
+    assert!(open(&book.bytes()).is_ok());
+    book.formats[0] = "0".repeat(60_000).leak();
+    let text = message(open(&book.bytes()));
+    assert!(text.ends_with("expected styles of at most 128 MiB, found 3001"), "{text}");
+}
+
+#[test]
+fn styles_that_would_not_be_found_are_told() {
+    let mut book = small_book();
+    book.styles = "formats/styles.xml";
+    let text = message(open(&book.bytes()));
+    assert!(text.ends_with("expected the usual path of a part, found formats/styles.xml"), "{text}");
+}
+
+#[test]
+fn any_letter_of_the_rows_changed() {
+    let book = small_book();
+    let rows = book.sheets[0].1.clone();
+    let sound = read_all(&book.bytes()).expect("columns")[0].values.clone();
+    let (mut read, mut same) = (0, 0);
+    for place in 0..rows.len() {
+        for letter in ["<", "&", "\"", "/", "9", "r"] {
+            let mut changed = book.clone();
+            changed.sheets[0].1.replace_range(place..=place, letter);
+            if let Ok(columns) = read_all(&changed.bytes()) {
+                read += 1;
+                same += usize::from(columns.iter().any(|columns| columns.values == sound));
+            }
+        }
+    }
+    assert!(read > same && same > 100, "{read} read, {same} the same");
 }
 
 #[test]
@@ -115,6 +184,11 @@ fn other_documents_in_archives_are_told_from_workbooks() {
     use std::io::Write;
     for (part, xml, found) in [
         ("word/document.xml", "<document/>", "expected a workbook with sheets, found word/document.xml"),
+        (
+            "xl/workbook.xml",
+            "<workbook><sheets><sheet name=\"one\" r:id=\"a\"/></sheets></workbook>",
+            "expected a workbook with sheets, found Relationship not found",
+        ),
         ("xl/workbook.bin", "", "expected a workbook of XML parts (.xlsx), found one of binary parts (.xlsb)"),
     ] {
         let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
@@ -128,4 +202,65 @@ fn other_documents_in_archives_are_told_from_workbooks() {
         let bytes = zip.finish().expect("an archive").into_inner();
         assert_eq!(message(open(&bytes)), format!("book: zip archive: {found}"));
     }
+}
+
+/// An old workbook of one sheet with a table, and records that say more than they hold.
+fn old(more: &[Vec<u8>]) -> Vec<u8> {
+    let mut cells = vec![xls_book::shared(0, 0, 0), xls_book::shared(0, 1, 1)];
+    cells.extend((1..4).flat_map(|row| [xls_book::number(row, 0, f64::from(row)), xls_book::number(row, 1, 2.0)]));
+    cells.extend_from_slice(more);
+    compound("Workbook", &stream(&["Zeit (s)", "Kraft (N)"], &[("one", cells)], false))
+}
+
+#[test]
+fn records_of_old_workbooks_that_lie_take_neither_memory_nor_time() {
+    use xls_book::record;
+    // 4,294,967,295 rows of 256 cells; 65,535 letters of which none is there; a formula that would be 255 letters for
+    // every four bytes, each put in front of all others.
+    let size = record(0x0200, &[&[0, 0, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0, 1][..], &[0; 2]].concat());
+    let letters = |row: u16| record(0x0204, &[&row.to_le_bytes()[..], &[9, 0, 0, 0, 0xFF, 0xFF, 0]].concat());
+    let mut tokens = [&[0x1E, 1, 0][..], &[0x19, 0x40, 0, 255].repeat(6000)].concat();
+    tokens.splice(0..0, (tokens.len() as u16).to_le_bytes());
+    let spelled = record(0x0006, &[&[4, 0, 0, 0, 0, 0][..], &8.0_f64.to_le_bytes(), &[0; 6], &tokens].concat());
+    let value = record(0x0006, &[&[4, 0, 1, 0, 0, 0][..], &9.0_f64.to_le_bytes(), &[0; 6]].concat());
+    let page = record(0x0042, &1252_u16.to_le_bytes());
+    let mut more = vec![size, spelled, value, page];
+    more.extend((0..1500).map(letters));
+    let contents = open(&old(&more)).expect("a workbook");
+    assert_eq!(contents.parts()[0].columns[1].name.as_deref(), Some("Kraft"));
+    assert_eq!(read(&contents, 0, &[1, 2]).expect("columns").values, [[1.0, 2.0, 3.0, 8.0], [2.0, 2.0, 2.0, 9.0]]);
+}
+
+#[test]
+fn what_old_workbooks_hold_too_much_of_or_lack_is_told() {
+    let corner = [xls_book::number(65_535, 255, 1.0)];
+    let text = message(open(&old(&corner)));
+    assert!(
+        text.contains("sheet one: expected at most 8388608 cells from first to last of all sheets"),
+        "{text}"
+    );
+    let text = message(open(&old(&[xls_book::number(5, 256, 1.0)])));
+    assert!(text.starts_with("book: sheet one, record 10: expected a cell"), "{text}");
+    let text = message(open(&old(&[xls_book::shared(5, 0, 2)])));
+    assert!(
+        text.contains("sheet one: expected a text of every cell, found shared texts that are missing"),
+        "{text}"
+    );
+    // A number in 32 bits that is none.
+    let none = xls_book::record(0x027E, &[4, 0, 1, 0, 0, 0, 0, 0, 0xF8, 0x7F]);
+    let contents = open(&old(&[xls_book::number(4, 0, 4.0), none])).expect("a workbook");
+    assert_eq!(message(read(&contents, 0, &[1, 2])), "book, sheet one, cell B5: expected a number, found NaN");
+    let twice = [("one", vec![xls_book::number(0, 0, 1.0)]), ("one", vec![xls_book::number(0, 0, 1.0)])];
+    let text = message(open(&compound("Workbook", &stream(&["a", "b"], &twice, false))));
+    assert!(text.contains("expected sheets of different names, found one"), "{text}");
+
+    // The second sheet begins where the first does.
+    let long: Vec<Vec<u8>> = (0..200).map(|row| xls_book::number(row, 0, 1.0)).collect();
+    let mut bytes = stream(&["a", "b"], &[("one", long), ("two", vec![xls_book::number(0, 0, 1.0)])], false);
+    let names: Vec<usize> =
+        (0..bytes.len() - 4).filter(|&place| bytes[place..].starts_with(&[0x85, 0, 11, 0])).collect();
+    let start: Vec<u8> = bytes[names[0] + 4..names[0] + 8].to_vec();
+    bytes[names[1] + 4..names[1] + 8].copy_from_slice(&start);
+    let text = message(open(&compound("Workbook", &bytes)));
+    assert!(text.contains("sheet two: expected sheets that do not overlap"), "{text}");
 }

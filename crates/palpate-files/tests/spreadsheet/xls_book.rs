@@ -2,7 +2,7 @@
 
 const SECTOR: usize = 512;
 
-fn record(kind: u16, bytes: &[u8]) -> Vec<u8> {
+pub(crate) fn record(kind: u16, bytes: &[u8]) -> Vec<u8> {
     let length = u16::try_from(bytes.len()).expect("a short record");
     [&kind.to_le_bytes()[..], &length.to_le_bytes(), bytes].concat()
 }

@@ -9,7 +9,11 @@ use zip::{ZipWriter, write::SimpleFileOptions};
 pub(crate) struct Book {
     pub(crate) sheets: Vec<(String, String)>,
     pub(crate) strings: String,
+    /// How many shared texts it says there are.
+    pub(crate) strings_said: u64,
     pub(crate) formats: Vec<&'static str>,
+    /// Where its styles are said to be, if not where they are.
+    pub(crate) styles: &'static str,
     pub(crate) from_1904: bool,
     pub(crate) charts: Vec<&'static str>,
 }
@@ -97,7 +101,8 @@ impl Book {
         related.push_str(&format!(
             "<Relationship Id=\"t\" Type=\"{office}/sharedStrings\" Target=\"/xl/sharedStrings.xml\"/>"
         ));
-        related.push_str(&format!("<Relationship Id=\"f\" Type=\"{office}/styles\" Target=\"styles.xml\"/>"));
+        let styles = if self.styles.is_empty() { "styles.xml" } else { self.styles };
+        related.push_str(&format!("<Relationship Id=\"f\" Type=\"{office}/styles\" Target=\"{styles}\"/>"));
         put(
             "xl/workbook.xml",
             &format!(
@@ -106,7 +111,10 @@ impl Book {
             ),
         );
         put("xl/_rels/workbook.xml.rels", &format!("<Relationships>{related}</Relationships>"));
-        put("xl/sharedStrings.xml", &format!("<sst uniqueCount=\"18446744073709551615\">{}</sst>", self.strings));
+        put(
+            "xl/sharedStrings.xml",
+            &format!("<sst uniqueCount=\"{}\">{}</sst>", self.strings_said, self.strings),
+        );
         let format =
             |(index, code): (usize, &&str)| format!("<numFmt numFmtId=\"{}\" formatCode=\"{code}\"/>", 164 + index);
         let formats: String = self.formats.iter().enumerate().map(format).collect();

@@ -1,93 +1,139 @@
-//! Workbooks of Excel 97 to 2003 (`.xls`, BIFF8): records in one stream of a compound file.
+//! Workbooks of Excel 97 to 2003 (`.xls`, BIFF8): records in one stream of a compound file, read by `calamine`.
 //!
 //! | file | what |
 //! |---|---|
 //! | `compound.rs` | streams of a compound file |
-//! | `records.rs` | records of a stream, and numbers and texts in them |
-//! | `globals.rs` | sheets, texts and number formats, which stand before the sheets |
-//! | `cells.rs` | the cells of one sheet |
+//! | `records.rs` | records of a stream |
+//! | `sift.rs` | the records that `calamine` is given, bounded by the bytes that are there |
+//! | `container.rs` | a compound file around them |
 
-mod cells;
 mod compound;
-mod globals;
+mod container;
 mod records;
+mod sift;
 
-use std::{fmt, ops::ControlFlow};
+use std::{collections::BTreeSet, fmt, io::Cursor, ops::ControlFlow};
 
-use super::book::{Book, DAYS_FROM_1900, DAYS_FROM_1904, Sheet, Visitor};
-use crate::{error::FileError, input::Input};
+use calamine::{Data, Range, Reader, XlsOptions};
+
+use super::{
+    book::{Book, DAYS_FROM_1900, DAYS_FROM_1904, Sheet, Visitor},
+    cell::{Cell, Value},
+};
+use crate::{
+    error::FileError,
+    input::{Input, contained},
+};
 use compound::Compound;
 pub(super) use compound::SIGNATURE;
-use globals::Globals;
+use sift::Sifted;
 
-/// A workbook whose stream is in memory and whose globals have been read.
+/// The code page of UTF-16: texts of this format are in no other, whatever it says.
+const UTF_16: u16 = 1200;
+
+/// A workbook whose cells are in memory.
 pub(super) struct Xls {
-    input: Input,
-    stream: Vec<u8>,
-    globals: Globals,
+    sheets: Vec<Sheet>,
+    /// The cells of every sheet, from its first to its last.
+    cells: Vec<Range<Data>>,
+    from_1904: bool,
 }
 
 impl Xls {
     pub(super) fn open(input: &Input) -> Result<Self, FileError> {
-        let damaged = |place: &str, expected: &str, found: &str| FileError::Damaged {
-            path: input.name().to_owned(),
-            place: place.to_owned(),
-            expected: expected.to_owned(),
-            found: found.to_owned(),
-        };
-        let bytes = input.bytes()?;
-        let compound = Compound::of(&bytes)
-            .ok_or_else(|| damaged("compound file", "a chain of sectors", "one that breaks off"))?;
-        if compound.has("EncryptedPackage") {
-            return Err(encrypted(input));
-        }
-        let Some(stream) = compound.stream("Workbook") else {
-            let found = if compound.has("Book") { "one of Excel 95 or older" } else { "none" };
-            return Err(damaged("compound file", "a workbook of Excel 97 or later", found));
-        };
-        let globals = match globals::read(&stream) {
-            Ok(globals) if globals.encrypted => return Err(encrypted(input)),
-            Ok(globals) => globals,
-            Err(wrong) => return Err(damaged("workbook", wrong, "other bytes, or their end")),
-        };
-        Ok(Self {
-            input: input.clone(),
-            stream,
-            globals,
+        let sifted = sifted(input)?;
+        let damaged = |place: &str, expected: &str, found: &str| damaged(input, place, expected, found);
+        contained(input, || {
+            let mut options = XlsOptions::default();
+            options.force_codepage = Some(UTF_16);
+            let file = Cursor::new(container::around("Workbook", &sifted.stream));
+            let wrong = |error: calamine::XlsError| damaged("workbook", "sheets of cells", &error.to_string());
+            let mut reading = calamine::Xls::new_with_options(file, options).map_err(wrong)?;
+            let (mut cells, mut names) = (Vec::new(), BTreeSet::new());
+            for name in reading.sheet_names() {
+                let range = reading.worksheet_range(&name).map_err(wrong)?;
+                // A cell whose shared text is none is passed over in silence.
+                let held = range.used_cells().count();
+                if sifted.held.get(cells.len()) != Some(&held) {
+                    return Err(damaged(
+                        &format!("sheet {name}"),
+                        "a text of every cell",
+                        "shared texts that are missing",
+                    ));
+                }
+                cells.push(range);
+                if !names.insert(name.clone()) {
+                    return Err(damaged("workbook", "sheets of different names", &name));
+                }
+            }
+            Ok(Self {
+                sheets: sifted.sheets,
+                cells,
+                from_1904: reading.has_1904_epoch(),
+            })
         })
     }
 }
 
-fn encrypted(input: &Input) -> FileError {
-    FileError::Encrypted {
+/// The records of a workbook that `calamine` may see.
+fn sifted(input: &Input) -> Result<Sifted, FileError> {
+    let damaged = |place: &str, expected: &str, found: &str| damaged(input, place, expected, found);
+    let encrypted = || FileError::Encrypted {
         path: input.name().to_owned(),
+    };
+    let bytes = input.bytes()?;
+    let compound =
+        Compound::of(&bytes).ok_or_else(|| damaged("compound file", "a chain of sectors", "one that breaks off"))?;
+    if compound.has("EncryptedPackage") {
+        return Err(encrypted());
+    }
+    let Some(stream) = compound.stream("Workbook") else {
+        let found = if compound.has("Book") { "one of Excel 95 or older" } else { "none" };
+        return Err(damaged("compound file", "a workbook of Excel 97 or later", found));
+    };
+    let sifted =
+        sift::sift(&stream).map_err(|(place, expected)| damaged(&place, expected, "other bytes, or their end"))?;
+    if sifted.encrypted {
+        return Err(encrypted());
+    }
+    if sifted.stream.len() > container::MOST_OF_STREAM {
+        return Err(input.too_large("the cells of a workbook", container::MOST_OF_STREAM as u64));
+    }
+    Ok(sifted)
+}
+
+fn damaged(input: &Input, place: &str, expected: &str, found: &str) -> FileError {
+    FileError::Damaged {
+        path: input.name().to_owned(),
+        place: place.to_owned(),
+        expected: expected.to_owned(),
+        found: found.to_owned(),
     }
 }
 
 impl Book for Xls {
     fn sheets(&self) -> &[Sheet] {
-        &self.globals.sheets
+        &self.sheets
     }
 
     fn days_to_epoch(&self) -> f64 {
-        if self.globals.from_1904 { DAYS_FROM_1904 } else { DAYS_FROM_1900 }
+        if self.from_1904 { DAYS_FROM_1904 } else { DAYS_FROM_1900 }
     }
 
     fn visit(&self, sheet: usize, each: &mut Visitor<'_>) -> Result<(), FileError> {
-        let (Some(&start), Some(Sheet { name, .. })) = (self.globals.starts.get(sheet), self.globals.sheets.get(sheet))
-        else {
+        let Some(cells) = self.cells.get(sheet) else {
             return Ok(());
         };
-        let cells =
-            cells::read(&self.stream, start, &self.globals).map_err(|(record, expected)| FileError::Damaged {
-                path: self.input.name().to_owned(),
-                place: format!("sheet {name}, record {record}"),
-                expected: expected.to_owned(),
-                found: "other bytes, or their end".to_owned(),
-            })?;
-        let total = cells.len() as u64;
-        for (done, cell) in cells.into_iter().enumerate() {
-            if each(cell, done as u64 + 1, total)? == ControlFlow::Break(()) {
+        let (first_row, first_column) = cells.start().unwrap_or_default();
+        let rows = cells.height() as u64;
+        for (row, column, data) in cells.used_cells() {
+            let done = row as u64 + 1;
+            // A sheet of this format has 65,536 rows at most.
+            let (row, column) = (first_row + row as u32, first_column + column as u32);
+            let Some(value) = Value::of(data.clone(), self.days_to_epoch()) else {
+                continue;
+            };
+            if each(Cell { row, column, value }, done, rows)? == ControlFlow::Break(()) {
                 break;
             }
         }
@@ -97,6 +143,6 @@ impl Book for Xls {
 
 impl fmt::Debug for Xls {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Xls").field("sheets", &self.globals.sheets).finish_non_exhaustive()
+        f.debug_struct("Xls").field("sheets", &self.sheets).finish_non_exhaustive()
     }
 }

@@ -35,7 +35,8 @@ impl<'a> Records<'a> {
     }
 }
 
-const CONTINUE: u16 = 0x003C;
+/// The kind of records that go on with the one before.
+pub(super) const CONTINUE: u16 = 0x003C;
 
 impl<'a> Iterator for Records<'a> {
     type Item = Record<'a>;
@@ -60,11 +61,6 @@ pub(super) fn u32_at(bytes: &[u8], place: usize) -> Option<u32> {
     Some(u32::from_le_bytes(*four))
 }
 
-pub(super) fn f64_at(bytes: &[u8], place: usize) -> Option<f64> {
-    let eight = bytes.get(place..)?.first_chunk::<8>()?;
-    Some(f64::from_le_bytes(*eight))
-}
-
 /// Letters of one byte each (the lower half of UTF-16), or of two.
 pub(super) fn letters(bytes: &[u8], wide: bool) -> String {
     if wide {
@@ -73,12 +69,4 @@ pub(super) fn letters(bytes: &[u8], wide: bool) -> String {
     } else {
         bytes.iter().map(|byte| char::from(*byte)).collect()
     }
-}
-
-/// The text whose flags stand at `place`, of `length` letters; of one that goes on in another record, what is here.
-pub(super) fn text_at(bytes: &[u8], place: usize, length: usize) -> Option<String> {
-    let wide = bytes.get(place)? & 1 == 1;
-    let held = bytes.get(place + 1..)?;
-    let length = if wide { 2 * length } else { length };
-    Some(letters(&held[..length.min(held.len())], wide))
 }

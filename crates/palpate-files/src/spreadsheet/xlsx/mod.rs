@@ -1,83 +1,121 @@
-//! Workbooks of Office Open XML (`.xlsx`, `.xlsm`): XML parts in a zip archive.
-//!
-//! Every part is streamed through a limit, so that a small archive cannot fill a memory, and no count or dimension
-//! that a part states is believed.
+//! Workbooks of Office Open XML (`.xlsx`, `.xlsm`): XML parts in a zip archive, read by `calamine`.
 //!
 //! | file | what |
 //! |---|---|
-//! | `package.rs` | the parts of the archive, and reading their XML |
-//! | `outline.rs` | the sheets by name, and where their parts are |
-//! | `strings.rs` | the texts that all sheets share |
-//! | `styles.rs` | which styles show numbers as times |
-//! | `cells.rs` | the cells of one sheet |
+//! | `package.rs` | the parts of the archive, and going through their XML up to a limit |
+//! | `guard.rs` | what is gone over before `calamine` takes it at its word |
 
-mod cells;
-mod outline;
+mod guard;
 mod package;
-mod strings;
-mod styles;
 
-use std::fmt;
+use std::{
+    collections::BTreeSet,
+    fmt,
+    io::BufReader,
+    ops::ControlFlow,
+    sync::{Mutex, PoisonError},
+};
+
+use calamine::{Reader, SheetType};
 
 use super::{
     book::{Book, DAYS_FROM_1900, DAYS_FROM_1904, Sheet, Visitor},
-    cell::NumberFormat,
-    strings::Strings,
+    cell::{Cell, Value},
 };
-use crate::{error::FileError, input::Input};
-use outline::Outline;
-use package::Package;
+use crate::{
+    error::FileError,
+    input::{Input, Seekable, contained},
+};
+use package::{Package, damaged};
 
 pub(super) use package::has_part;
 
-/// A workbook whose outline, texts and styles have been read.
+type Reading = calamine::Xlsx<BufReader<Box<dyn Seekable>>>;
+
+/// A workbook that has been gone over, and whose sheets, texts and styles have been read.
 pub(super) struct Xlsx {
-    package: Package,
-    outline: Outline,
-    strings: Strings,
-    styles: Vec<NumberFormat>,
+    input: Input,
+    reading: Mutex<Reading>,
+    sheets: Vec<Sheet>,
+    from_1904: bool,
 }
 
 impl Xlsx {
     pub(super) fn open(input: &Input) -> Result<Self, FileError> {
-        let package = Package::open(input)?;
-        let outline = outline::read(&package)?;
-        let strings = strings::read(&package, outline.strings.as_deref())?;
-        let styles = styles::read(&package, outline.styles.as_deref())?;
+        let found = guard::check(&Package::open(input)?)?;
+        if !found.has_sheets {
+            return Err(damaged(input, "zip archive", "a workbook with sheets", &found.document));
+        }
+        let reading: Reading = contained(input, || {
+            let stored = BufReader::with_capacity(1 << 16, input.seekable()?);
+            Reading::new(stored)
+                .map_err(|error| damaged(input, "zip archive", "a workbook with sheets", &error.to_string()))
+        })?;
+        let sheet = |sheet: &calamine::Sheet| Sheet {
+            name: sheet.name.clone(),
+            other: other(sheet.typ),
+        };
+        let sheets: Vec<Sheet> = reading.sheets_metadata().iter().map(sheet).collect();
+        let mut names = BTreeSet::new();
+        if let Some(twin) = sheets.iter().find(|sheet| !names.insert(&sheet.name)) {
+            return Err(damaged(input, "zip archive", "sheets of different names", &twin.name));
+        }
         Ok(Self {
-            package,
-            outline,
-            strings,
-            styles,
+            input: input.clone(),
+            from_1904: reading.has_1904_epoch(),
+            reading: Mutex::new(reading),
+            sheets,
         })
+    }
+}
+
+fn other(kind: SheetType) -> Option<&'static str> {
+    match kind {
+        SheetType::WorkSheet => None,
+        SheetType::ChartSheet => Some("a chart"),
+        SheetType::DialogSheet => Some("a dialogue"),
+        SheetType::MacroSheet => Some("a macro"),
+        SheetType::Vba => Some("no table of numbers"),
     }
 }
 
 impl Book for Xlsx {
     fn sheets(&self) -> &[Sheet] {
-        &self.outline.sheets
+        &self.sheets
     }
 
     fn days_to_epoch(&self) -> f64 {
-        if self.outline.from_1904 { DAYS_FROM_1904 } else { DAYS_FROM_1900 }
+        if self.from_1904 { DAYS_FROM_1904 } else { DAYS_FROM_1900 }
     }
 
     fn visit(&self, sheet: usize, each: &mut Visitor<'_>) -> Result<(), FileError> {
-        let (Some(part), Some(Sheet { name, .. })) = (self.outline.parts.get(sheet), self.outline.sheets.get(sheet))
-        else {
+        let Some(Sheet { name, .. }) = self.sheets.get(sheet) else {
             return Ok(());
         };
-        let known = cells::Known {
-            strings: &self.strings,
-            styles: &self.styles,
-            days_to_epoch: self.days_to_epoch(),
+        let wrong = |error: calamine::XlsxError| {
+            damaged(&self.input, &format!("sheet {name}"), "rows of cells", &error.to_string())
         };
-        cells::visit(&self.package, name, part, &known, each)
+        contained(&self.input, || {
+            let mut reading = self.reading.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut cells = reading.worksheet_cells_reader(name).map_err(wrong)?;
+            // The sheet says how many it has; this is only for those who wait.
+            let rows = u64::from(cells.dimensions().end.0) + 1;
+            while let Some(found) = cells.next_cell().map_err(wrong)? {
+                let (row, column) = found.get_position();
+                let Some(value) = Value::of(found.get_value().clone().into(), self.days_to_epoch()) else {
+                    continue;
+                };
+                if each(Cell { row, column, value }, u64::from(row) + 1, rows)? == ControlFlow::Break(()) {
+                    break;
+                }
+            }
+            Ok(())
+        })
     }
 }
 
 impl fmt::Debug for Xlsx {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Xlsx").field("outline", &self.outline).finish_non_exhaustive()
+        f.debug_struct("Xlsx").field("sheets", &self.sheets).finish_non_exhaustive()
     }
 }

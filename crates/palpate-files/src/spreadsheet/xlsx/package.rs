@@ -1,13 +1,12 @@
 //! The parts of the archive, and reading their XML.
 
 use std::{
-    borrow::Cow,
     collections::BTreeMap,
     io::{BufReader, Read},
 };
 
 use quick_xml::{
-    Reader, XmlVersion,
+    Reader,
     events::{BytesStart, Event},
 };
 use zip::ZipArchive;
@@ -43,24 +42,33 @@ fn same_path(name: &str) -> String {
 impl Package {
     pub(super) fn open(input: &Input) -> Result<Self, FileError> {
         let archive = ZipArchive::new(input.seekable()?).map_err(|error| broken(input, "zip archive", &error))?;
-        let names = archive.file_names().flatten().map(|name| (same_path(&name), name.into_owned())).collect();
+        let mut names = BTreeMap::new();
+        for name in archive.file_names().flatten() {
+            if let Some(twin) = names.insert(same_path(&name), name.into_owned()) {
+                return Err(damaged(input, "zip archive", "parts of different names", &twin));
+            }
+        }
         Ok(Self {
             input: input.clone(),
             names,
         })
     }
 
-    pub(super) fn has(&self, path: &str) -> bool {
-        self.names.contains_key(&same_path(path))
+    /// Paths of the parts that hold XML: first the texts that all sheets share, then what says which part is which.
+    pub(super) fn parts(&self) -> Vec<&str> {
+        let xml = |path: &&str| path.ends_with(".xml") || path.ends_with(".rels");
+        let mut paths: Vec<&str> = self.names.keys().map(String::as_str).filter(xml).collect();
+        paths.sort_by_key(|path| (!path.ends_with("sharedstrings.xml"), *path != "_rels/.rels"));
+        paths
     }
 
     /// Goes through the XML of a part of at most `most` bytes. `step` is told the element that begins, text, or the
-    /// element that ends, with the bytes done and in all, and says whether to go on.
+    /// element that ends, with the bytes done, and says whether to go on.
     pub(super) fn read(
         &self,
         path: &str,
         most: u64,
-        step: &mut dyn FnMut(Step<'_>, u64, u64) -> Result<bool, FileError>,
+        step: &mut dyn FnMut(Step<'_>, u64) -> Result<bool, FileError>,
     ) -> Result<(), FileError> {
         let Some(name) = self.names.get(&same_path(path)) else {
             return Err(self.damaged(path, "a part of the archive", "none of that name"));
@@ -68,7 +76,6 @@ impl Package {
         let stored = BufReader::with_capacity(1 << 16, self.input.seekable()?);
         let mut archive = ZipArchive::new(stored).map_err(|error| broken(&self.input, "zip archive", &error))?;
         let member = archive.by_name(name).map_err(|error| broken(&self.input, path, &error))?;
-        let size = member.size();
         // One byte more tells whether there is more.
         let mut xml = Reader::from_reader(BufReader::with_capacity(1 << 16, member.take(most + 1)));
         xml.config_mut().check_end_names = false;
@@ -83,20 +90,22 @@ impl Package {
             }
             let event = event.map_err(|error| self.damaged(path, "XML", &error.to_string()))?;
             let goes_on = match &event {
-                Event::Start(element) => step(Step::Begin(element), done, size)?,
-                Event::End(element) => step(Step::End(element.local_name().as_ref()), done, size)?,
-                Event::Text(text) => step(Step::Text(&text.xml10_content()), done, size)?,
-                Event::CData(text) => step(Step::Text(&text.xml10_content()), done, size)?,
+                Event::Start(element) => step(Step::Begin(element), done)?,
+                Event::End(element) => step(Step::End(element.local_name().as_ref()), done)?,
+                Event::Text(text) => step(Step::Text(&text.xml10_content()), done)?,
                 Event::GeneralRef(entity) => {
                     let letter = entity.resolve_char_ref().ok().flatten().map(String::from);
                     let known = || quick_xml::escape::resolve_xml_entity(entity.as_ref()).map(str::to_owned);
-                    let Some(text) = letter.or_else(known) else {
+                    if letter.or_else(known).is_none() {
                         return Err(self.damaged(path, "XML", &format!("&{};", entity.as_ref())));
-                    };
-                    step(Step::Text(&text), done, size)?
+                    }
+                    step(Step::Entity, done)?
                 }
-                Event::Eof => return Err(self.damaged(path, "its end", "the end of the file before it")),
-                _ => true,
+                Event::Eof => {
+                    step(Step::Eof, done)?;
+                    return Ok(());
+                }
+                _ => step(Step::Aside, done)?,
             };
             if !goes_on {
                 return Ok(());
@@ -105,12 +114,7 @@ impl Package {
     }
 
     pub(super) fn damaged(&self, place: &str, expected: &str, found: &str) -> FileError {
-        FileError::Damaged {
-            path: self.input.name().to_owned(),
-            place: place.to_owned(),
-            expected: expected.to_owned(),
-            found: crate::error::shorten(found),
-        }
+        damaged(&self.input, place, expected, found)
     }
 }
 
@@ -119,28 +123,26 @@ impl Package {
 pub(super) enum Step<'a> {
     Begin(&'a BytesStart<'a>),
     Text(&'a str),
+    /// A letter by its name or number.
+    Entity,
+    /// What is neither element nor text: a remark, an instruction, a section of raw text.
+    Aside,
     End(&'a str),
+    /// The end of the part.
+    Eof,
 }
 
-/// The attribute of an element, its name less any prefix.
-pub(super) fn attribute(element: &BytesStart<'_>, name: &str) -> Option<String> {
-    let mut all = element.attributes();
-    for attribute in all.with_checks(false).flatten() {
-        if attribute.key.local_name().as_ref() == name {
-            let value = attribute.normalized_value(XmlVersion::Implicit1_0);
-            return Some(value.map_or_else(|_| attribute.value.clone().into_owned(), Cow::into_owned));
-        }
-    }
-    None
-}
-
-fn broken(input: &Input, place: &str, error: &zip::result::ZipError) -> FileError {
+pub(super) fn damaged(input: &Input, place: &str, expected: &str, found: &str) -> FileError {
     FileError::Damaged {
         path: input.name().to_owned(),
         place: place.to_owned(),
-        expected: "a part that can be unpacked".to_owned(),
-        found: error.to_string(),
+        expected: expected.to_owned(),
+        found: crate::error::shorten(found),
     }
+}
+
+fn broken(input: &Input, place: &str, error: &zip::result::ZipError) -> FileError {
+    damaged(input, place, "a part that can be unpacked", &error.to_string())
 }
 
 #[cfg(test)]
@@ -162,7 +164,7 @@ mod tests {
         assert!(bytes.len() < 20_000);
         let package = Package::open(&Input::from_bytes("book", bytes).expect("bytes")).expect("a package");
         let mut texts = 0;
-        let mut count = |step: Step<'_>, _, _| {
+        let mut count = |step: Step<'_>, _| {
             texts += usize::from(matches!(step, Step::Text(_)));
             Ok(!matches!(step, Step::End("a")))
         };
@@ -172,6 +174,6 @@ mod tests {
             Err("book: a part of the workbook has more than 1 MiB, which is the most that is read".to_owned())
         );
         assert!((90_000..100_001).contains(&texts), "{texts}");
-        assert!(package.read("a.xml", 1_100_007, &mut |step, _, _| Ok(!matches!(step, Step::End("a")))).is_ok());
+        assert!(package.read("a.xml", 1_100_007, &mut |step, _| Ok(!matches!(step, Step::End("a")))).is_ok());
     }
 }
