@@ -71,13 +71,14 @@ pub fn quantile(errors: &[f64], share: f64) -> Option<f64> {
 /// Searches a record and scores what is found; without its displacement where only the force counts.
 pub fn scored(labelled: &Labelled, force_only: bool) -> Scored {
     let (record, _) = labelled.record.repaired();
-    let record = if force_only {
-        Record::new(record.time().to_vec(), None, record.force().to_vec()).expect("the same record")
+    let found = if force_only {
+        // A force that is rounded to one value makes no record, and has no holds.
+        let force = Record::new(record.time().to_vec(), None, record.force().to_vec());
+        force.ok().and_then(|force| find_phases(&force, &SegmentOptions::default()).ok())
     } else {
-        record
+        find_phases(&record, &SegmentOptions::default()).ok()
     };
-    let found = find_phases(&record, &SegmentOptions::default());
-    let found: Vec<Segment> = found.map_or_else(|_| Vec::new(), |found| found.holds().copied().collect());
+    let found: Vec<Segment> = found.map_or_else(Vec::new, |found| found.holds().copied().collect());
     Scored {
         kind: labelled.kind,
         noise: labelled.noise,
