@@ -11,6 +11,7 @@ use palpate_report::document::Input;
 use crate::failure::Failure;
 use crate::files::sha256;
 use crate::progress::Reading;
+use crate::terminal::note;
 
 /// The test description, if there is one, with the part of the file that was chosen on the command line.
 pub(super) fn description(path: Option<&Path>, part: Option<&str>) -> Result<Option<TestDescription>, Failure> {
@@ -82,7 +83,19 @@ impl<'t> Opened<'t> {
             .file_name()
             .map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
         let mut reading = Reading::new(name);
-        read_part(&self.contents, part, self.test, &mut |done, total| reading.update(done, total)).map_err(refused)
+        let file = read_part(&self.contents, part, self.test, &mut |done, total| reading.update(done, total));
+        drop(reading);
+        let file = file.map_err(refused)?;
+        if file.averaged > 1 {
+            let kept = file.rows.div_ceil(file.averaged);
+            note(&format!(
+                "{}: {} rows are more than are kept; every {} successive ones became their mean ({kept} samples)",
+                path.display(),
+                file.rows,
+                file.averaged
+            ));
+        }
+        Ok(file)
     }
 }
 
