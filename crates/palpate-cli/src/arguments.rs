@@ -188,9 +188,9 @@ pub(crate) struct InspectArguments {
 /// Write a record of any format as a plain table in SI, with where it comes from.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Columns: time_s, displacement_m (if recorded), force_n; loading is positive. Inside the file stands what it was
-made from: the record's path and SHA-256, the columns and units taken, the test description, the version of palpate
-(in a CSV as a first line that begins with #).
+Columns: time_s, displacement_m (if recorded), force_n; loading is positive. Inside the file stands
+what it was made from: the record's path and SHA-256, the columns and units taken, the test
+description, the version of palpate (in a CSV as a first line that begins with #).
 
 Examples:
   palpate convert press.xlsx --part \"Specimen 3\" --out press-3.csv
@@ -267,9 +267,10 @@ pub(crate) struct AnalyzeArguments {
 /// Analyse thousands of records into one table, a row per hold and law.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-A batch that was killed, or that finds new files in its folder, goes on where it stopped: what is done
-stands in the folder TABLE.journal. A file counts as done while its bytes, the description, the options and palpate
-stay the same. A record that fails does not stop the others; failures are listed at the end (exit code 1).
+A batch that was killed, or that finds new files in its folder, goes on where it stopped: what is
+done stands in the folder TABLE.journal. A file counts as done while its bytes, the description, the
+options and palpate stay the same. A record that fails does not stop the others; failures are listed
+at the end (exit code 1).
 
 Examples:
   palpate batch curves --out holds.parquet --test cell.toml        a folder and all below it

@@ -37,11 +37,11 @@ pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Outcome, Failure> {
         };
         tell_skipped(&opened);
         tests += opened.parts().len();
-        let mut taken = Vec::new();
+        let (several, mut taken) = (opened.parts().len() > 1, Vec::new());
         for part in opened.parts() {
             let folder = folder.as_ref().map(|folder| match opened.name(*part) {
-                Some(name) => folder_in(folder, &file_name(name), &mut taken),
-                None => folder.clone(),
+                Some(name) if several => folder_in(folder, &file_name(name), &mut taken),
+                _ => folder.clone(),
             });
             match one(&opened, *part, folder.as_deref(), arguments, &options) {
                 Ok(()) => {}

@@ -67,7 +67,7 @@ impl<'t> Opened<'t> {
 
     /// What to call a part, where the file holds several tests.
     pub(super) fn name(&self, part: usize) -> Option<&str> {
-        let several = self.tests.parts.len() > 1;
+        let several = self.contents.parts().len() > 1;
         self.contents.parts()[part].name.as_deref().filter(|_| several)
     }
 
