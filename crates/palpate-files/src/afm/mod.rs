@@ -31,7 +31,46 @@ pub(crate) mod jpk_force;
 pub(crate) mod jpk_text;
 pub(crate) mod tab;
 
-use crate::{contents::Metadata, error::FileError, input::Input};
+use crate::{
+    contents::{ColumnInfo, Metadata},
+    error::{CellPlace, FileError},
+    input::Input,
+};
+
+/// A number that is infinite once it is scaled; `column` counts from 1.
+fn not_finite(input: &Input, columns: &[ColumnInfo], line: usize, column: usize) -> FileError {
+    FileError::NotFinite {
+        place: CellPlace {
+            path: input.name().to_owned(),
+            line,
+            column,
+            name: columns.get(column.wrapping_sub(1)).and_then(|column| column.name.clone()),
+        },
+        found: "an infinite value".to_owned(),
+    }
+}
+
+/// Whether a row has as many cells as there are columns.
+fn one_cell_a_column(input: &Input, line: usize, expected: usize, found: usize) -> Result<(), FileError> {
+    let path = input.name().to_owned();
+    if found < expected {
+        return Err(FileError::TooFewCells {
+            path,
+            line,
+            expected,
+            found,
+        });
+    }
+    if found > expected {
+        return Err(FileError::TooManyCells {
+            path,
+            line,
+            expected,
+            found,
+        });
+    }
+    Ok(())
+}
 
 /// What is wrong with a part of a file.
 fn damaged(

@@ -14,7 +14,7 @@ mod segment;
 use super::{
     assemble::{About, assemble},
     curve::Segment,
-    metadata,
+    metadata, not_finite, one_cell_a_column,
 };
 use crate::{
     contents::{ColumnInfo, Columns, Found, Metadata, Part, ReadOptions, ReadPart},
@@ -108,7 +108,9 @@ impl ReadPart for JpkText {
                     continue;
                 }
                 plan.read(line, number)?;
-                chosen.fill(done, &plan.stored, &mut row).map_err(|place| self.not_finite(number, columns[place]))?;
+                chosen
+                    .fill(done, &plan.stored, &mut row)
+                    .map_err(|place| not_finite(&self.input, &self.columns, number, columns[place]))?;
                 read.push(&row, number);
                 done += 1;
             }
@@ -117,20 +119,6 @@ impl ReadPart for JpkText {
         }
         read.finish();
         Ok(read)
-    }
-}
-
-impl JpkText {
-    fn not_finite(&self, line: usize, column: usize) -> FileError {
-        FileError::NotFinite {
-            place: CellPlace {
-                path: self.input.name().to_owned(),
-                line,
-                column,
-                name: self.columns.get(column.wrapping_sub(1)).and_then(|column| column.name.clone()),
-            },
-            found: "an infinite value".to_owned(),
-        }
     }
 }
 
@@ -154,22 +142,7 @@ impl Plan<'_> {
                 self.stored[index] = value.ok_or_else(|| self.no_number(cell, number, index))?;
             }
         }
-        let (path, expected) = (self.input.name().to_owned(), self.block.columns.len());
-        match found {
-            _ if found < expected => Err(FileError::TooFewCells {
-                path,
-                line: number,
-                expected,
-                found,
-            }),
-            _ if found > expected => Err(FileError::TooManyCells {
-                path,
-                line: number,
-                expected,
-                found,
-            }),
-            _ => Ok(()),
-        }
+        one_cell_a_column(self.input, number, self.block.columns.len(), found)
     }
 
     fn no_number(&self, cell: &[u8], line: usize, index: usize) -> FileError {

@@ -16,11 +16,11 @@ use serde_json::Value;
 use super::{
     assemble::{About, Channel, Draft, Load, assemble},
     curve::{Formula, Line, Segment},
-    metadata,
+    metadata, not_finite,
 };
 use crate::{
     contents::{ColumnInfo, Columns, Found, Label, Part, ReadOptions, ReadPart},
-    error::{CellPlace, FileError},
+    error::FileError,
     input::Input,
 };
 use header::{BEGIN, Header};
@@ -146,7 +146,9 @@ impl ReadPart for Tab {
             let mut index = 0;
             while let Some((line, number)) = rows.next()? {
                 row(&self.input, &self.header, &line, number, &channels, &mut stored)?;
-                chosen.fill(index, &stored, &mut values).map_err(|place| self.not_finite(number, columns[place]))?;
+                chosen
+                    .fill(index, &stored, &mut values)
+                    .map_err(|place| not_finite(&self.input, &self.columns, number, columns[place]))?;
                 read.push(&values, number);
                 index += 1;
                 let (done, total) = rows.lines.progress();
@@ -158,19 +160,5 @@ impl ReadPart for Tab {
         }
         read.finish();
         Ok(read)
-    }
-}
-
-impl Tab {
-    fn not_finite(&self, line: usize, column: usize) -> FileError {
-        FileError::NotFinite {
-            place: CellPlace {
-                path: self.input.name().to_owned(),
-                line,
-                column,
-                name: self.columns.get(column.wrapping_sub(1)).and_then(|column| column.name.clone()),
-            },
-            found: "an infinite value".to_owned(),
-        }
     }
 }

@@ -1,6 +1,6 @@
 //! The rows below the header, and the segments they belong to.
 
-use super::header::Header;
+use super::{super::one_cell_a_column, header::Header};
 use crate::{
     error::{CellPlace, FileError, shorten},
     input::Input,
@@ -79,7 +79,6 @@ pub(super) fn row(
     stored: &mut [f64],
 ) -> Result<(), FileError> {
     let mut wanted = wanted.iter().copied().peekable();
-    let (path, expected) = (input.name().to_owned(), header.columns.len());
     let mut found = 0;
     for (index, cell) in line.split(|byte| *byte == header.delimiter).enumerate() {
         found += 1;
@@ -87,21 +86,7 @@ pub(super) fn row(
             stored[index] = cell_number(input, header, cell.trim_ascii(), (number, index))?;
         }
     }
-    match found {
-        _ if found < expected => Err(FileError::TooFewCells {
-            path,
-            line: number,
-            expected,
-            found,
-        }),
-        _ if found > expected => Err(FileError::TooManyCells {
-            path,
-            line: number,
-            expected,
-            found,
-        }),
-        _ => Ok(()),
-    }
+    one_cell_a_column(input, number, header.columns.len(), found)
 }
 
 fn cell_number(input: &Input, header: &Header, cell: &[u8], at: (usize, usize)) -> Result<f64, FileError> {
