@@ -51,6 +51,12 @@ impl Column<'_> {
         &self.pieces[self.pieces.partition_point(|piece| piece.end <= sample).min(self.pieces.len() - 1)]
     }
 
+    /// How far an edge may lie from where the polygon was cut beside a piece of ramp.
+    fn reach(&self, sample: usize) -> usize {
+        let ramp = self.piece_of(sample);
+        ramp.end - ramp.start + 2 * FEWEST
+    }
+
     fn line(&self, range: std::ops::Range<usize>) -> Line {
         Line::through(self.time, self.values, range)
     }
@@ -73,7 +79,7 @@ impl Column<'_> {
         {
             let slack = SLACK * (self.time[hold.start] - self.time[hold.start - 1]);
             let at = self.time.partition_point(|t| *t < meeting - slack);
-            if at > from && at < until {
+            if at > from && at < until && at.abs_diff(cut) <= self.reach(cut - 1) {
                 return at;
             }
         }
@@ -105,7 +111,7 @@ impl Column<'_> {
         {
             let slack = SLACK * (self.time[hold.end] - self.time[hold.end - 1]);
             let at = self.time.partition_point(|t| *t <= meeting + slack);
-            if at > from && at < until {
+            if at > from && at < until && at.abs_diff(cut) <= self.reach(cut) {
                 return at;
             }
         }

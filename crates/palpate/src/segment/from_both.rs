@@ -21,9 +21,10 @@ pub(super) fn phases(
         name: ("displacement", "m"),
         values: displacement,
         wander: options.tolerance.unwrap_or(SERVO * range(displacement)),
+        hunts: false,
     };
     let found = levels(record.time(), &held, options)?;
-    let pressed = force_held(record, &found.levels, options);
+    let pressed = force_held(record, &found, options);
     let together = together(record, &found.levels, &pressed);
     let mut segments = fill_gaps(&found.values, &together, 2.0 * found.settings.tolerance);
     if !segments.iter().any(|segment| segment.phase == Phase::Hold) {
@@ -45,11 +46,13 @@ pub(super) fn phases(
 }
 
 /// Levels of the force over which the displacement creeps.
-fn force_held(record: &Record, still: &[Level], options: &SegmentOptions) -> Vec<Level> {
+fn force_held(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Level> {
+    let still = &jaw.levels;
     let held = Held {
         name: ("force", "N"),
         values: record.force(),
         wander: CONTROLLER * range(record.force()),
+        hunts: true,
     };
     let Ok(found) = levels(record.time(), &held, options) else {
         return Vec::new();
@@ -58,11 +61,17 @@ fn force_held(record: &Record, still: &[Level], options: &SegmentOptions) -> Vec
     // A contact that is open shows no force, and nobody holds that.
     let open = |level: &Level| level.value.abs().min(level.value - low) <= OPEN * range + 3.0 * found.settings.noise;
     let creeps = |level: &Level| {
-        !open(level)
-            && mode(record, level.start, level.end) == HoldMode::ForceHeld
-            && slows_down(record, level)
-            && arrives(record, level)
-            && still.iter().all(|still| rests_late(still, level))
+        let inside: Vec<&Level> =
+            still.iter().filter(|still| still.start < level.end && level.start < still.end).collect();
+        let is_held = match mode(record, level.start, level.end) {
+            HoldMode::ForceHeld => {
+                slows_down(record, level, FIRST_HALF) && inside.iter().all(|still| rests_late(record, still, level))
+            }
+            // Whoever holds a force on a jaw that is not seen to move, holds it.
+            HoldMode::DisplacementHeld => inside.is_empty(),
+            HoldMode::Neither => false,
+        };
+        !open(level) && arrives(record, level, jaw.settings.noise) && (is_held || turns_back(record, &inside, level))
     };
     found.levels.iter().filter(|level| creeps(level)).copied().collect()
 }
@@ -77,8 +86,11 @@ fn least(values: &[f64]) -> f64 {
 /// Share of a creep that its first half must see: of a ramp that goes on while the force happens to stay, it is one half.
 const FIRST_HALF: f64 = 0.51;
 
-/// Whether the jaw goes more slowly the longer the force is held.
-fn slows_down(record: &Record, level: &Level) -> bool {
+/// The same of a creep that ends before the force is let go.
+const FIRST_HALF_TO_REST: f64 = 0.6;
+
+/// Whether the jaw goes more slowly the longer the force is held: its first half sees more than a share of the way.
+fn slows_down(record: &Record, level: &Level, share: f64) -> bool {
     let Some(displacement) = record.displacement() else {
         return false;
     };
@@ -88,33 +100,51 @@ fn slows_down(record: &Record, level: &Level) -> bool {
     let few = ((level.end - level.start) / 20).max(1);
     let at = |from: usize| median(&mut displacement[from..from + few].to_vec());
     let (first, middle, last) = (at(level.start), at(half.min(level.end - few)), at(level.end - few));
-    (middle - first) / (last - first) > FIRST_HALF
+    (middle - first) / (last - first) > share
 }
 
+/// How far the jaw comes, in standard deviations of its noise.
+const SEEN: f64 = 4.0;
 /// How many times faster than in the hold the jaw comes to it.
 const FASTER: f64 = 2.0;
 
 /// Whether the jaw was faster before the force was held than it is on average since: the middle of a ramp has nothing of that.
-fn arrives(record: &Record, level: &Level) -> bool {
+fn arrives(record: &Record, level: &Level, noise: f64) -> bool {
     let Some(displacement) = record.displacement() else {
         return false;
     };
     let time = record.time();
-    let speed =
-        |from: usize, until: usize| (displacement[until] - displacement[from]).abs() / (time[until] - time[from]);
+    let way = |from: usize, until: usize| (displacement[until] - displacement[from]).abs();
+    let speed = |from: usize, until: usize| way(from, until) / (time[until] - time[from]);
     let inside = speed(level.start, level.end - 1);
     let length = level.end - level.start;
-    let before = [4, 16, 64].map(|part| (length / part).max(3));
-    before
-        .into_iter()
-        .any(|samples| level.start > 0 && speed(level.start.saturating_sub(samples), level.start) > FASTER * inside)
+    let before = [1, 4, 16, 64].map(|part| level.start.saturating_sub((length / part).max(3)));
+    let faster = |from: usize| way(from, level.start) > SEEN * noise && speed(from, level.start) > FASTER * inside;
+    level.start > 0 && before.into_iter().any(faster)
 }
 
 /// Whether a standstill of the jaw lies outside a level of the force, or is the end of its creep.
-fn rests_late(still: &Level, level: &Level) -> bool {
+fn rests_late(record: &Record, still: &Level, level: &Level) -> bool {
     let outside = still.end <= level.start || still.start >= level.end;
     let late = still.end + (level.end - level.start) / 20 >= level.end;
-    outside || late
+    // A ramp that is slow enough keeps the force, too, but it does not slow down before it stops.
+    let creep = Level {
+        end: still.start,
+        ..*level
+    };
+    let before = still.start <= level.start + 8 || slows_down(record, &creep, FIRST_HALF_TO_REST);
+    outside || (late && before)
+}
+
+/// Whether the only standstill in a level of the force is where the jaw turns: it recovers one way, then creeps the other, while
+/// the force stays.
+fn turns_back(record: &Record, inside: &[&Level], level: &Level) -> bool {
+    let [still] = inside else {
+        return false;
+    };
+    let slack = (level.end - level.start) / 20;
+    let at_first = still.start.abs_diff(level.start) <= slack;
+    at_first && still.end + 2 * slack < level.end && mode(record, still.end, level.end) == HoldMode::ForceHeld
 }
 
 /// Both kinds of levels in order. Where they overlap the force is held: the displacement comes to rest late in a creep, as the

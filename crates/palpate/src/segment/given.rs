@@ -122,6 +122,7 @@ fn searched(record: &Record, values: &[f64], options: &SegmentOptions) -> (Vec<f
         name: ("displacement", "m"),
         values,
         wander,
+        hunts: false,
     };
     let from_displacement = record.displacement().is_some();
     if let Ok(found) = levels(record.time(), &held, options) {

@@ -23,6 +23,9 @@ const GOES_ON: [f64; 2] = [6.0, 3.5];
 /// The same in units of the tolerance.
 const GOES_ON_TOLERANCES: [f64; 2] = [3.0, 1.5];
 
+/// Steps of a rounded column that are no motion.
+const STEPS: f64 = 5.5;
+
 /// A column that a machine may hold, and what is known of it beforehand.
 pub(super) struct Held<'a> {
     /// Its name and unit.
@@ -31,6 +34,8 @@ pub(super) struct Held<'a> {
     pub(super) values: &'a [f64],
     /// How far a machine wanders about what it holds, where noise is less.
     pub(super) wander: f64,
+    /// Whether it wanders slowly.
+    pub(super) hunts: bool,
 }
 
 /// The levels of a column, and the thresholds that found them.
@@ -59,7 +64,8 @@ pub(super) fn levels(time: &[f64], held: &Held<'_>, options: &SegmentOptions) ->
     let noise = noise_in_time(time, held.values);
     let values = without_spikes(held.values, noise);
     let range = range(&values);
-    if range == 0.0 || range < 8.0 * noise {
+    let step = rounding(held.values);
+    if range == 0.0 || range < (8.0 * noise).max(STEPS * step) {
         return Err(SegmentError::NoMotion {
             column: held.name.0,
             range,
@@ -67,10 +73,17 @@ pub(super) fn levels(time: &[f64], held: &Held<'_>, options: &SegmentOptions) ->
             unit: held.name.1,
         });
     }
-    let step = rounding(held.values);
     let tolerance = (2.5 * noise).max(held.wander).max(1.5 * step);
     let stray = (0.25 * held.wander).max(0.35 * step);
-    let pieces = pieces(time, &values, Roughness { noise, stray });
+    let pieces = pieces(
+        time,
+        &values,
+        Roughness {
+            noise,
+            stray,
+            hunts: held.hunts,
+        },
+    );
     let stillness = Stillness {
         noise,
         band: tolerance,
@@ -82,6 +95,8 @@ pub(super) fn levels(time: &[f64], held: &Held<'_>, options: &SegmentOptions) ->
     };
     let (mut found, refused) = standstills(time, &values, &pieces, &stillness);
     sharpened(time, &values, &pieces, (3.0 * noise).max(0.5 * held.wander), &mut found);
+    // What is left of a standstill between its ramps may be too little for one.
+    found.retain(|found| found.end - found.start >= stillness.samples);
     let ramp_speed = ramp_speed(time, &pieces, &found);
     let settings = SegmentSettings {
         from_displacement: true,

@@ -7,7 +7,9 @@
 //! | `from_both.rs` | phases where displacement and force were recorded |
 //! | `levels.rs` | where a column stands still |
 //! | `pieces.rs` | a column as a polygon |
+//! | `moves.rs` | the polygon as what the column does |
 //! | `standstill.rs` | which parts of the polygon are standstills |
+//! | `evidence.rs` | what speaks for a standstill |
 //! | `smooth.rs` | a standstill has corners, a turning point has none |
 //! | `mode.rs` | what is held: the displacement, the force, or neither |
 //! | `turning.rs` | turning points of a force |
@@ -22,12 +24,14 @@
 
 mod contact_point;
 mod edges;
+mod evidence;
 mod from_both;
 mod from_force;
 mod given;
 mod levels;
 mod loading_curve;
 mod mode;
+mod moves;
 mod options;
 mod pieces;
 mod ramps;

@@ -59,8 +59,13 @@ impl Line {
         self.value + self.slope() * (time - self.time)
     }
 
+    /// Sum of the squares about the mean.
+    pub(super) fn scatter(&self) -> f64 {
+        self.vv
+    }
+
     /// Sum of the squares that the line leaves.
-    fn left(&self) -> f64 {
+    pub(super) fn left(&self) -> f64 {
         if self.tt > 0.0 { (self.vv - self.tv * self.tv / self.tt).max(0.0) } else { self.vv }
     }
 }
@@ -80,10 +85,17 @@ pub(super) struct Roughness {
     pub(super) noise: f64,
     /// Root mean square by which samples may leave a line for other reasons than noise.
     pub(super) stray: f64,
+    /// Whether what strays does so slowly, for many samples together.
+    pub(super) hunts: bool,
 }
 
-/// Square deviation, in units of the noise's, that two pieces must explain better than one: 5 σ.
-const KEPT_APART: f64 = 25.0;
+/// Price of a piece, in units of the noise's square, in a column of one sample; a column of e times as many samples has as many
+/// more places where noise looks like a corner, and asks for one unit more.
+const PRICE: f64 = 8.0;
+/// By how much less than a piece costs two pieces of the finer polygon must explain better than one.
+const FINER: f64 = 7.0;
+/// The least of that.
+const LEAST_KEPT_APART: f64 = 10.0;
 
 /// A proposal to join the piece that begins at `left` with the one that begins at `right`.
 struct Proposal {
@@ -116,18 +128,31 @@ impl Ord for Proposal {
 
 /// Cuts a column into straight pieces.
 ///
-/// At first every sample is a piece. The two neighbours whose union a straight line explains best are joined, again and again,
-/// until every union would leave more than noise (and the stray allowed) explains. Cost: N log N.
+/// 1. At first every sample is a piece. The two neighbours whose union a straight line explains best are joined, again and
+///    again, until every union would leave more than noise (and the stray allowed) explains. Cost: N log N.
+/// 2. Among all polygons that have corners of this one, the one of least cost is taken.
+/// 3. Every corner moves to where its two lines leave least.
 pub(super) fn pieces(time: &[f64], values: &[f64], roughness: Roughness) -> Vec<Piece> {
+    let price = PRICE + (values.len() as f64).ln();
+    let mut fine = joined(time, values, roughness, price);
+    polish(time, values, &mut fine);
+    let mut pieces = fewest(&fine, roughness, price);
+    polish(time, values, &mut pieces);
+    pieces
+}
+
+/// Neighbours joined to pieces until no union is explained by a line.
+fn joined(time: &[f64], values: &[f64], roughness: Roughness, price: f64) -> Vec<Piece> {
     let count = values.len();
     // Piece i begins at sample i; `end` 0 stands for a piece that was joined to another.
     let mut lines: Vec<Line> = time.iter().zip(values).map(|(t, v)| Line::of_sample(*t, *v)).collect();
     let mut ends: Vec<usize> = (1..=count).collect();
     let mut before: Vec<usize> = (0..count).map(|i| i.saturating_sub(1)).collect();
+    let kept_apart = (price - FINER).max(LEAST_KEPT_APART);
     let cost = |a: &Line, b: &Line| {
         let more = a.joined(b).left() - a.left() - b.left();
         let allowed =
-            KEPT_APART * roughness.noise * roughness.noise + a.count.min(b.count) * roughness.stray * roughness.stray;
+            kept_apart * roughness.noise * roughness.noise + a.count.min(b.count) * roughness.stray * roughness.stray;
         more / allowed
     };
     let mut proposals: BinaryHeap<Proposal> = (1..count)
@@ -184,13 +209,60 @@ pub(super) fn pieces(time: &[f64], values: &[f64], roughness: Roughness) -> Vec<
         });
         start = ends[start];
     }
+    pieces
+}
+
+/// The polygon of least cost among those whose corners are corners of a finer one: what it leaves, in units of the noise's
+/// square, and a price for every piece.
+///
+/// What the finer pieces leave, all of them leave; it does not count. What strays slowly strays for a finer piece together, so
+/// that its mean square grows with their length.
+fn fewest(fine: &[Piece], roughness: Roughness, price: f64) -> Vec<Piece> {
+    let noise = roughness.noise.powi(2);
+    let stray = roughness.stray.powi(2) / if roughness.hunts { 1.0 } else { price };
+    // Cost of the best polygon through the first pieces, where its last piece begins, and the line through that.
+    let mut best: Vec<(f64, usize, Line)> = vec![(0.0, 0, Line::default())];
+    for end in 1..=fine.len() {
+        let (mut line, mut own) = (Line::default(), 0.0);
+        let mut chosen = (f64::MAX, 0, Line::default());
+        for start in (end.saturating_sub(MOST_JOINED)..end).rev() {
+            line = fine[start].line.joined(&line);
+            own += fine[start].line.left();
+            let allowed = noise + line.count / (end - start) as f64 * stray;
+            let more = (line.left() - own).max(0.0) / allowed.max(f64::MIN_POSITIVE);
+            let cost = best[start].0 + price + more;
+            if cost < chosen.0 {
+                chosen = (cost, start, line);
+            }
+        }
+        best.push(chosen);
+    }
+    let mut pieces = Vec::new();
+    let mut end = fine.len();
+    while end > 0 {
+        let (_, start, line) = best[end];
+        pieces.push(Piece {
+            start: fine[start].start,
+            end: fine[end - 1].end,
+            line,
+        });
+        end = start;
+    }
+    pieces.reverse();
+    pieces
+}
+
+/// Most pieces that are joined to one.
+const MOST_JOINED: usize = 2000;
+
+/// Moves all corners to where they are best.
+fn polish(time: &[f64], values: &[f64], pieces: &mut [Piece]) {
     for _ in 0..POLISHED {
         for right in 1..pieces.len() {
             let (left, rest) = pieces.split_at_mut(right);
             split(time, values, &mut left[right - 1], &mut rest[0]);
         }
     }
-    pieces
 }
 
 /// How often all cuts are moved to where they are best.
@@ -238,6 +310,7 @@ mod tests {
             Roughness {
                 noise: 0.0,
                 stray: 1e-3,
+                hunts: false,
             },
         );
         assert_eq!(ends.len(), 3, "{ends:?}");
@@ -249,10 +322,24 @@ mod tests {
     fn noise_alone_is_hardly_ever_cut() {
         let mut random = Noise::new(3);
         let values: Vec<f64> = (0..20_000).map(|_| random.normal()).collect();
-        let ends = cut(&values, Roughness { noise: 1.0, stray: 0.0 });
+        let ends = cut(
+            &values,
+            Roughness {
+                noise: 1.0,
+                stray: 0.0,
+                hunts: false,
+            },
+        );
         assert!(ends.len() <= 3, "{ends:?}");
         let bent: Vec<f64> = values.iter().zip(0..).map(|(v, i)| v + 1e-3 * f64::from((i - 10_000).max(0))).collect();
-        let ends = cut(&bent, Roughness { noise: 1.0, stray: 0.0 });
+        let ends = cut(
+            &bent,
+            Roughness {
+                noise: 1.0,
+                stray: 0.0,
+                hunts: false,
+            },
+        );
         assert!((2..=4).contains(&ends.len()) && ends.iter().any(|end| end.abs_diff(10_000) < 800), "{ends:?}");
     }
 }

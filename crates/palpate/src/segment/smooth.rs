@@ -3,11 +3,14 @@
 /// How much better corners explain samples start..end, with those from `before` and until `after` around them, than anything
 /// without a standstill: a polynomial of the fourth degree, or two lines that meet. In square deviations.
 ///
-/// The standstill itself is a line with a corner at either end, near the ends of the samples.
+/// The standstill itself is a line with a corner at either end, near the ends of the samples; or what the polygon draws there,
+/// given by what it leaves of each sample, at the price of its further pieces.
 pub(super) fn gain_of_corners(
     time: &[f64],
     values: &[f64],
     (before, start, end, after): (usize, usize, usize, usize),
+    polygon: impl Fn(usize) -> f64,
+    price: f64,
 ) -> (f64, usize) {
     // A few hundred samples tell; more only cost.
     let every = (after - before).div_ceil(MOST);
@@ -43,7 +46,8 @@ pub(super) fn gain_of_corners(
     // At an end of the record one corner is all there is.
     let both = before < start && end < after;
     let smooth = if both { left(&seen, &powers).min(one_corner) } else { left(&seen, &powers) };
-    (smooth - cornered, samples.len())
+    let drawn = samples.iter().map(|i| polygon(*i).powi(2)).sum::<f64>() + price;
+    (smooth - cornered.min(drawn), samples.len())
 }
 
 /// Most samples that are looked at.
