@@ -166,11 +166,15 @@ Examples:
   palpate inspect press.csv                            columns, units, the cut into phases
   palpate inspect press.csv --figure cut.svg           the cut as a figure
   palpate inspect book.xlsx --part \"Specimen 3\"       one sheet of a workbook
-  palpate inspect press.csv --write-test press.toml    a first test description, every guess commented")]
+  palpate inspect press.csv --write-test press.toml    a first test description, every guess commented
+  palpate inspect --machines                           machines and grippers whose files are known")]
 pub(crate) struct InspectArguments {
     /// Record with time, force and, if possible, displacement, in any format that is known
-    #[arg(value_name = "RECORD")]
-    pub(crate) record: PathBuf,
+    #[arg(value_name = "RECORD", required_unless_present = "machines")]
+    pub(crate) record: Option<PathBuf>,
+    /// List the machines and grippers that a test description can name, and nothing else
+    #[arg(long, conflicts_with_all = ["record", "test", "part", "figure", "write_test"])]
+    pub(crate) machines: bool,
     /// Test description (TOML): columns, units, geometry
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,

@@ -142,3 +142,29 @@ fn a_record_as_a_plain_table_is_the_same_record() {
     let error = refused(folder, &["convert", &record, "--out", "plain.xlsx"]);
     assert!(error.contains("expected a file ending in .csv, .parquet or .json"), "{error}");
 }
+
+#[test]
+fn machines_are_listed_and_suggested_but_never_taken() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let listed = done(folder, &["inspect", "--machines"]);
+    let line = listed
+        .lines()
+        .find(|line| line.starts_with("instron-bluehill "))
+        .unwrap_or_else(|| panic!("{listed}"));
+    assert!(line.ends_with("`Extension` and `Load` fall in compression"), "{line}");
+    assert!(listed.lines().all(|line| line.chars().count() <= 120), "{listed}");
+    assert!(refused(folder, &["inspect"]).contains("<RECORD>"));
+    refused(folder, &["inspect", "press.csv", "--machines"]);
+
+    let text = ramp_and_hold(7.0, 20.0).replace("time_s,displacement_mm,force_n", "Time (s),Extension (mm),Load (N)");
+    let record = file(folder, "press.csv", text);
+    let before = phases(folder, &["inspect", &record, "--write-test", "t.toml"]);
+    let written = fs::read_to_string(folder.join("t.toml")).unwrap();
+    for machine in ["instron-bluehill", "instron-bluehill-tension"] {
+        assert!(written.contains(&format!("# preset = \"{machine}\"    # Instron")), "{written}");
+    }
+    assert_eq!(phases(folder, &["inspect", &record, "--test", "t.toml"]), before);
+    file(folder, "machine.toml", "machine.preset = \"instron-bluehill-tension\"\n");
+    assert_eq!(phases(folder, &["inspect", &record, "--test", "machine.toml"]), before);
+}

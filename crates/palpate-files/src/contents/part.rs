@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::description::ColumnRef;
+
 /// A part of a file that holds one test: all of a text, one sheet of a workbook, one curve, one value of `test_id`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Part {
@@ -56,6 +58,15 @@ impl Part {
         only(&|own| own == name)
             .or_else(|| only(&|own| own.to_lowercase() == name.to_lowercase()))
             .or_else(|| only(&|own| topic_and_field(own).is_some_and(|(_, field)| field == name)))
+    }
+
+    /// The column with this number or name.
+    #[must_use]
+    pub fn column_of(&self, column: &ColumnRef) -> Option<&ColumnInfo> {
+        match column {
+            ColumnRef::Number(number) => self.columns.get(number.wrapping_sub(1)),
+            ColumnRef::Name(name) => self.column_named(name),
+        }
     }
 
     /// The clock that stamps the column with this number, where the file has several clocks.

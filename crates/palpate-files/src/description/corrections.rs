@@ -52,7 +52,7 @@ enum BaselineName {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Machine", extend("not" = { "required": ["compliance", "compliance_table"] }))]
 pub(super) struct MachineTable {
-    /// A gripper or machine whose conventions are known, by name; what this description says itself goes before.
+    /// A machine or gripper whose conventions are known, by name; what this description says itself goes before.
     pub(super) preset: Option<String>,
     /// Way per force, such as "0.5 um/N". For a cantilever of spring constant k it is 1/k.
     compliance: Option<QuantityText>,

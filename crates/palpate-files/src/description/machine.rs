@@ -2,10 +2,24 @@
 //!
 //! `[machine] preset = "franka-hand"` in a test stands for the lines of that name. What the test says itself goes before.
 
+use std::path::Path;
+
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::{error::DescriptionError, source::Source, test_tables::TestTables, words};
+use super::{
+    columns::{ColumnChoice, ColumnChoices},
+    error::DescriptionError,
+    places::Places,
+    source::Source,
+    test::parse_test,
+    test_tables::TestTables,
+    words,
+};
+use crate::{
+    contents::{ColumnInfo, Part},
+    record_file::{Quantity, unit_factor},
+};
 
 /// A part of a test description that belongs to a gripper or machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,31 +38,30 @@ impl Machine {
     }
 }
 
-const MACHINES: [Machine; 6] = [
-    Machine {
-        name: "franka-hand",
-        text: include_str!("machines/franka-hand.toml"),
-    },
-    Machine {
-        name: "franka-hand-fr3",
-        text: include_str!("machines/franka-hand-fr3.toml"),
-    },
-    Machine {
-        name: "robotiq-2f85",
-        text: include_str!("machines/robotiq-2f85.toml"),
-    },
-    Machine {
-        name: "ros2-gripper-command",
-        text: include_str!("machines/ros2-gripper-command.toml"),
-    },
-    Machine {
-        name: "ros2-two-fingers",
-        text: include_str!("machines/ros2-two-fingers.toml"),
-    },
-    Machine {
-        name: "wsg-50",
-        text: include_str!("machines/wsg-50.toml"),
-    },
+/// The machines of the folder `machines/`, by name.
+macro_rules! machines {
+    ($($name:literal),* $(,)?) => {
+        &[$(Machine { name: $name, text: include_str!(concat!("machines/", $name, ".toml")) }),*]
+    };
+}
+
+const MACHINES: &[Machine] = machines![
+    "aurora-600a",
+    "franka-hand",
+    "franka-hand-fr3",
+    "instron-bluehill",
+    "instron-bluehill-compressive",
+    "instron-bluehill-tension",
+    "robotiq-2f85",
+    "ros2-gripper-command",
+    "ros2-two-fingers",
+    "shimadzu-trapezium",
+    "ta-xtplus",
+    "ta-xtplus-grams",
+    "wsg-50",
+    "zwick-testxpert",
+    "zwick-testxpert-french",
+    "zwick-testxpert-german",
 ];
 
 /// The grippers and machines whose conventions are known, by name.
@@ -59,7 +72,45 @@ const MACHINES: [Machine; 6] = [
 /// ```
 #[must_use]
 pub fn machines() -> &'static [Machine] {
-    &MACHINES
+    MACHINES
+}
+
+/// The machines that name the columns of a test as its file does, all of them, with units that do not contradict it.
+///
+/// Several can: a squeeze and a stretch are told apart by nobody but the person who made the test.
+#[must_use]
+pub fn machines_of(part: &Part) -> Vec<&'static Machine> {
+    let fits = |machine: &&Machine| {
+        let Ok(test) = parse_test(machine.text, Path::new(machine.name)) else {
+            return false;
+        };
+        let choices = test.columns.all();
+        let is_there = |(quantity, choice): &(Quantity, &ColumnChoice)| {
+            let named = choice.column.iter().chain(&choice.also);
+            let found: Option<Vec<&ColumnInfo>> = named.map(|name| part.column_of(name)).collect();
+            found.is_some_and(|found| found.iter().all(|column| !contradicts(*quantity, choice, column)))
+        };
+        choices.iter().any(|(_, choice)| choice.column.is_some()) && choices.iter().all(is_there)
+    };
+    MACHINES.iter().filter(fits).collect()
+}
+
+/// Whether the header of a column gives another unit of its quantity than is said of it.
+pub(crate) fn contradicts(quantity: Quantity, choice: &ColumnChoice, column: &ColumnInfo) -> bool {
+    let factor = |unit: Option<&str>| unit_factor(unit?, quantity.dimension());
+    let (said, written) = (factor(choice.unit.as_deref()), factor(column.unit.as_deref()));
+    said.is_some() && written.is_some() && said != written
+}
+
+/// Remembers which units of the columns the machine says and not the test itself.
+pub(super) fn mark_units(source: &Source<'_>, machine: &str, columns: &mut ColumnChoices) {
+    let places = Places::of(source.text);
+    for (quantity, choice) in columns.all_mut() {
+        let own = places.start_exactly(&format!("columns.{quantity}.unit")).is_some();
+        if choice.unit.is_some() && !own {
+            choice.unit_by = Some(machine.to_owned());
+        }
+    }
 }
 
 /// Keys that exclude each other: where the test says one, the other of the preset falls away.
@@ -130,10 +181,8 @@ fn lay_over(lower: &mut Table, upper: Table) {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
-    use crate::description::{ColumnRef, parse_test};
+    use crate::description::ColumnRef;
 
     #[test]
     fn every_preset_is_a_test_description_that_says_what_it_is() {
@@ -141,7 +190,8 @@ mod tests {
             let test = parse_test(&format!("machine.preset = \"{}\"", machine.name), Path::new("test.toml"));
             let test = test.unwrap_or_else(|error| panic!("{}: {error}", machine.name));
             assert!(test.columns.displacement.is_some(), "{}", machine.name);
-            assert!(machine.about().len() > 20, "{}", machine.name);
+            let about = machine.about();
+            assert!((20..=88).contains(&about.chars().count()) && about.ends_with('.'), "{}: {about}", machine.name);
             parse_test(machine.text, Path::new(machine.name)).unwrap_or_else(|error| panic!("{error}"));
         }
         assert!(machines().is_sorted_by_key(|machine| machine.name));
@@ -165,7 +215,7 @@ mod tests {
     fn an_unknown_name_is_answered_with_those_there_are() {
         let error = parse_test("[machine]\npreset = \"franka-hnd\"\n", Path::new("test.toml")).unwrap_err();
         let text = error.to_string();
-        assert!(text.starts_with("test.toml, line 2: machine.preset: expected \"franka-hand\""), "{text}");
+        assert!(text.starts_with("test.toml, line 2: machine.preset: expected \"aurora-600a\", \"franka-hand\", "), "{text}");
         assert_eq!(error.hint().as_deref(), Some("did you mean \"franka-hand\"?"));
     }
 }

@@ -10,7 +10,7 @@
 //! | `test.rs`, `test_tables.rs`, `settings.rs` | a test: its record, its body, how to evaluate it ([`TestDescription`]) |
 //! | `machine.rs`, `machines/` | grippers and machines whose conventions are known ([`machines`]) |
 //! | `law.rs` | the law of a protocol, with its body a [`Model`] |
-//! | `specimen.rs`, `contact.rs`, `columns.rs`, `corrections.rs` | tables that they are made of |
+//! | `specimen.rs`, `contact.rs`, `columns.rs`, `column_tables.rs`, `corrections.rs` | tables that they are made of |
 //! | `choices.rs` | choices that a command line offers too |
 //! | `sweep/` | numbers of a protocol replaced by many ([`Sweep`]) |
 //! | `numbers.rs` | the numbers of a protocol that can be replaced |
@@ -19,6 +19,7 @@
 //! | `schema.rs` | JSON Schemas for editors |
 
 mod choices;
+mod column_tables;
 mod columns;
 mod contact;
 mod corrections;
@@ -43,7 +44,8 @@ pub use choices::{ChoiceError, parse_hold_start, parse_touch};
 pub use columns::{ClockChoice, ColumnChoice, ColumnChoices, ColumnRef};
 pub use error::{DescriptionError, KeyPlace};
 pub use law::Model;
-pub use machine::{Machine, machines};
+pub(crate) use machine::contradicts;
+pub use machine::{Machine, machines, machines_of};
 pub use protocol::{Protocol, parse_protocol, read_protocol, read_scene};
 pub use schema::{schema_protocol, schema_test};
 pub use sweep::{Plan, Spacing, Sweep, SweptNumber, parse_sweep, read_sweep};

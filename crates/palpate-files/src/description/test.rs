@@ -140,7 +140,10 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
     let source = Source { path, text };
     let tables = machine::over_preset(&source, source.tables()?)?;
     let geometry = geometry(&source, &tables)?;
-    let columns = tables.columns.checked(&source)?;
+    let mut columns = tables.columns.checked(&source)?;
+    if let Some(name) = &tables.machine.preset {
+        machine::mark_units(&source, name, &mut columns);
+    }
     let grows = geometry.as_ref().is_some_and(|body| !matches!(body.shape, Shape::Prism { .. }));
     if grows && columns.stress.is_some() {
         let reason = "for a body whose contact area changes with the squeeze";

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{
-    columns::ColumnsTable,
+    column_tables::ColumnsTable,
     contact::SidesName,
     corrections::{ClocksTable, ForceTable, MachineTable},
     file::FileTable,

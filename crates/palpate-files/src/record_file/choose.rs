@@ -6,13 +6,13 @@ use palpate::{contact::Shape, units::Dimension};
 
 use super::{
     ColumnUse, Quantity, Role, epoch,
-    error::{ColumnError, NamedColumn},
+    error::{ColumnError, MachineUnit, NamedColumn},
     quantity::unit_factor,
     recognise,
 };
 use crate::{
     contents::{ColumnInfo, ColumnKind, Part},
-    description::{ClockChoice, ColumnChoice, ColumnRef, TestDescription},
+    description::{ClockChoice, ColumnChoice, ColumnRef, TestDescription, contradicts},
 };
 
 /// The columns to read and how to make a record of them.
@@ -216,11 +216,7 @@ impl<'a> Chooser<'a> {
     }
 
     fn named(&self, key: &str, named: &ColumnRef) -> Result<&'a ColumnInfo, ColumnError> {
-        let column = match named {
-            ColumnRef::Number(number) => self.columns.get(number.wrapping_sub(1)),
-            ColumnRef::Name(name) => self.part.column_named(name),
-        };
-        column.ok_or_else(|| ColumnError::NoSuchColumn {
+        self.part.column_of(named).ok_or_else(|| ColumnError::NoSuchColumn {
             path: self.path.to_owned(),
             key: key.to_owned(),
             found: named.clone(),
@@ -311,6 +307,26 @@ impl<'a> Chooser<'a> {
         }
     }
 
+    /// A unit that nobody wrote down for this file, but the conventions of a machine, gives way to none in the header.
+    fn refuse_contradiction(&self, found: &Found<'_>) -> Result<(), ColumnError> {
+        let Some(choice) = found.choice else { return Ok(()) };
+        match (&choice.unit_by, &choice.unit, &found.column.unit) {
+            (Some(machine), Some(said), Some(written)) if contradicts(found.role.measured(), choice, found.column) => {
+                Err(ColumnError::OtherUnit {
+                    path: self.path.to_owned(),
+                    column: found.column.into(),
+                    key: found.key(),
+                    units: Box::new(MachineUnit {
+                        machine: machine.clone(),
+                        said: said.clone(),
+                        written: written.clone(),
+                    }),
+                })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Units from the description, else from the header.
     fn with_units(&self, found: &[Found<'_>]) -> Result<Vec<ColumnUse>, ColumnError> {
         let mut used = Vec::new();
@@ -321,6 +337,7 @@ impl<'a> Chooser<'a> {
                 used.push(used_as);
                 continue;
             }
+            self.refuse_contradiction(found)?;
             let Some(unit) = found.unit.or(found.column.unit.as_deref()) else {
                 without.push((found.key(), quantity.usual_unit(), found.column.into()));
                 continue;

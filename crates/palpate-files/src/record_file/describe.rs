@@ -5,7 +5,10 @@ use std::fmt::Write as _;
 use palpate::segment::{Phase, Segmentation};
 
 use super::{ColumnUse, Quantity, RecordFile, Role, recognise};
-use crate::contents::{ColumnInfo, Contents, Part};
+use crate::{
+    contents::{ColumnInfo, Contents, Part},
+    description::machines_of,
+};
 
 /// What stands where the file does not tell; reading with it is an error that names the key.
 const ASK: &str = "?";
@@ -30,6 +33,7 @@ pub fn describe(
     let title = contents.path().file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let title = about.name.as_ref().map_or_else(|| title.clone(), |part| format!("{title}, {part}"));
     let _ = writeln!(out, "[about]\ntitle = {}\n", quoted(&title));
+    write_machines(&mut out, about);
     write_file(&mut out, contents, about);
     match file {
         Some(file) => write_columns(&mut out, about, &file.columns),
@@ -45,6 +49,24 @@ pub fn describe(
 /// A text as TOML writes it.
 fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
+}
+
+/// Machines that name their columns so: a person knows which it was, the file does not.
+fn write_machines(out: &mut String, part: &Part) {
+    let machines = machines_of(part);
+    if machines.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        out,
+        "# The columns are named as a machine names them that is known. If it was that one, its line can stand"
+    );
+    let _ = writeln!(out, "# in place of the tables [columns.…] below:");
+    let _ = writeln!(out, "# [machine]");
+    for machine in machines {
+        let _ = writeln!(out, "# preset = {}    # {}", quoted(machine.name), machine.about());
+    }
+    out.push('\n');
 }
 
 fn write_file(out: &mut String, contents: &Contents, part: &Part) {

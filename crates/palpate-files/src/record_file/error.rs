@@ -35,6 +35,17 @@ impl From<&ColumnInfo> for NamedColumn {
     }
 }
 
+/// A unit that the conventions of a machine say, and another in the header of a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MachineUnit {
+    /// The machine.
+    pub machine: String,
+    /// Its unit.
+    pub said: String,
+    /// The unit in the header.
+    pub written: String,
+}
+
 /// Why it is not clear which column holds what.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ColumnError {
@@ -79,6 +90,18 @@ pub enum ColumnError {
         key: String,
         /// The unit in the header.
         unit: String,
+    },
+    /// The conventions of a machine say one unit, the header another.
+    #[error("{}: {column}: expected {}, the unit of machine.preset = \"{}\", found {} in the header", path.display(), units.said, units.machine, units.written)]
+    OtherUnit {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// Key of the description that would say the unit.
+        key: String,
+        /// The two units.
+        units: Box<MachineUnit>,
     },
     /// The description names a column that the file does not have, or has more than once.
     #[error("{}: {key}: expected {}, found {found} in the description", path.display(), snippet::choices(columns))]
@@ -161,6 +184,10 @@ impl ColumnError {
             } => format!(
                 "if another unit is meant, say it in a test description:\n{}",
                 snippet::of_unit_and_column(key, quantity.usual_unit(), column)
+            ),
+            Self::OtherUnit { key, column, units, .. } => format!(
+                "choose another of `palpate inspect --machines`, or say in the test description:\n{}",
+                snippet::of_unit(key, &units.written, column)
             ),
             Self::NoSuchColumn { .. } => {
                 "columns count from 1 at the left; a name is written without its unit".to_owned()

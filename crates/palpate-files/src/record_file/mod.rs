@@ -24,7 +24,7 @@ mod snippet;
 
 pub use describe::describe;
 pub(crate) use epoch::WORD as EPOCH;
-pub use error::{ColumnError, NamedColumn, ReadError};
+pub use error::{ColumnError, MachineUnit, NamedColumn, ReadError};
 pub use parts::{Tests, tests};
 pub use quantity::Quantity;
 pub(crate) use quantity::{unit_factor, volts_are};

@@ -2,6 +2,7 @@
 
 mod choosing;
 mod errors;
+mod machines;
 mod records;
 
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! `palpate inspect`: what is in a record.
+//! `palpate inspect`: what is in a record, and which machines are known.
 //!
 //! | file | what |
 //! |---|---|
@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use palpate_files::contents::Contents;
-use palpate_files::description::TestDescription;
+use palpate_files::description::{TestDescription, machines};
 use palpate_files::input::Packing;
 use palpate_files::record_file::describe;
 use palpate_report::table::{Cell, Table, TableColumn};
@@ -27,6 +27,11 @@ use cut::Cut;
 use facts::{columns_table, part_facts, signal_facts};
 
 pub(crate) fn run(arguments: &InspectArguments) -> Result<Outcome, Failure> {
+    // Without a list of machines there is a record: the command line asks for one.
+    let Some(record) = arguments.record.as_deref().filter(|_| !arguments.machines) else {
+        print(&machines_table().to_plain_text())?;
+        return Ok(Outcome::Done);
+    };
     if let Some(figure) = &arguments.figure {
         check_picture(figure)?;
     }
@@ -34,7 +39,7 @@ pub(crate) fn run(arguments: &InspectArguments) -> Result<Outcome, Failure> {
         check_new(path)?;
     }
     let test = description(arguments.test.as_deref(), arguments.part.as_deref())?;
-    let opened = Opened::open(&arguments.record, test.as_ref())?;
+    let opened = Opened::open(record, test.as_ref())?;
     let mut out = file_facts(opened.contents());
     let wants_one = arguments.figure.is_some() || arguments.write_test.is_some();
     let told = match opened.parts() {
@@ -50,6 +55,17 @@ pub(crate) fn run(arguments: &InspectArguments) -> Result<Outcome, Failure> {
     }
     print(&out)?;
     told.map(|()| Outcome::Done)
+}
+
+/// Machines that a description can name, with what each is.
+fn machines_table() -> Table {
+    let table = Table::new("machines", "Machines")
+        .column(TableColumn::new("Name", "name", ""))
+        .column(TableColumn::new("What", "about", ""))
+        .note("in a test description: [machine] preset = \"NAME\"; what the description says itself goes before");
+    machines().iter().fold(table, |table, machine| {
+        table.row(vec![Cell::text(machine.name), Cell::text(machine.about().trim_end_matches('.'))])
+    })
 }
 
 /// A description that a person has worked on is not written over.
