@@ -1,6 +1,7 @@
 //! Which columns the segments of a curve make together.
 
 use super::{
+    UNCALIBRATED,
     curve::{Curve, Formula, Line, Segment},
     metadata,
 };
@@ -215,7 +216,7 @@ fn derived(segments: &[&Draft], about: &mut Vec<Metadata>) -> Vec<Column> {
     if !add("force", Some("N"), lines(&|draft| draft.load.force)) {
         let unit = segments.first().and_then(|draft| draft.load.raw_unit.as_deref());
         let same = segments.iter().all(|draft| draft.load.raw_unit.as_deref() == unit);
-        if add("uncalibrated force", unit.filter(|_| same), lines(&|draft| draft.load.raw)) {
+        if add(UNCALIBRATED, unit.filter(|_| same), lines(&|draft| draft.load.raw)) {
             about.push(metadata("force", "not calibrated: the file lacks a sensitivity or a spring constant"));
         }
     }

@@ -25,6 +25,8 @@ pub(super) struct ColumnsTable {
     force: Option<ColumnTable>,
     /// Stress instead of force; the section of the specimen turns it into force.
     stress: Option<ColumnTable>,
+    /// Deflection of the cantilever of an AFM: taken off the displacement, which is then that of the cantilever's base.
+    deflection: Option<DeflectionTable>,
 }
 
 /// The column of the time.
@@ -84,6 +86,22 @@ struct DisplacementTable {
     clock: Option<ClockTable>,
 }
 
+/// The column of the deflection of a cantilever.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "DeflectionColumn")]
+struct DeflectionTable {
+    /// Number of the column, from 1, or its name.
+    column: ColumnRef,
+    /// Unit, such as "nm"; not needed where the header gives it.
+    unit: Option<String>,
+    /// Sensitivity, such as "52 nm/V", where the column holds volts; the unit is then "V" or "mV".
+    scale: Option<String>,
+    /// -1 where the file counts the deflection as negative when the sample pushes; 1 otherwise.
+    #[schemars(extend("enum" = [1, -1]))]
+    sign: Option<f64>,
+}
+
 /// The time stamps of one quantity alone.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -100,8 +118,11 @@ impl ColumnsTable {
         if self.force.is_some() && self.stress.is_some() {
             return Err(source.both("columns.force", "columns.stress"));
         }
-        let measured =
-            |table: Option<ColumnTable>, quantity| table.map(|table| table.checked(source, quantity)).transpose();
+        // What a header calls a displacement may be one of which the deflection is off already.
+        let names_height = self.displacement.as_ref().is_some_and(|table| table.column.is_some());
+        let measured = |table: Option<ColumnTable>, key, quantity| {
+            table.map(|table| table.checked(source, key, quantity)).transpose()
+        };
         let time = self.time.map(|table| {
             check_unit(source, "columns.time.unit", table.unit.as_deref(), Dimension::Time)?;
             Ok(ColumnChoice {
@@ -120,9 +141,30 @@ impl ColumnsTable {
         Ok(ColumnChoices {
             time: time.transpose()?,
             displacement: self.displacement.map(|table| table.checked(source)).transpose()?,
-            force: measured(self.force, Quantity::Force)?,
-            stress: measured(self.stress, Quantity::Stress)?,
+            force: measured(self.force, "force", Quantity::Force)?,
+            stress: measured(self.stress, "stress", Quantity::Stress)?,
+            deflection: match self.deflection {
+                Some(_) if !names_height => return Err(source.missing("columns.displacement", HEIGHT)),
+                deflection => deflection.map(|table| table.checked(source)).transpose()?,
+            },
         })
+    }
+}
+
+/// What a deflection is taken off.
+const HEIGHT: &str = "the column of the height, such as { column = \"measuredHeight\", sign = -1 }";
+
+impl DeflectionTable {
+    fn checked(self, source: &Source<'_>) -> Result<ColumnChoice, DescriptionError> {
+        let plain = ColumnTable {
+            column: Some(self.column),
+            unit: self.unit,
+            scale: self.scale,
+            offset: None,
+            sign: self.sign,
+            clock: None,
+        };
+        plain.checked(source, "deflection", Quantity::Displacement)
     }
 }
 
@@ -148,14 +190,15 @@ impl DisplacementTable {
             also: self.also,
             doubled: self.doubled.unwrap_or(false),
             travel_per_unit: travel,
-            ..plain.checked(source, Quantity::Displacement)?
+            ..plain.checked(source, "displacement", Quantity::Displacement)?
         })
     }
 }
 
 impl ColumnTable {
-    fn checked(self, source: &Source<'_>, quantity: Quantity) -> Result<ColumnChoice, DescriptionError> {
-        let key = |rest: &str| format!("columns.{quantity}.{rest}");
+    /// Of the table `[columns.…]` called `name`.
+    fn checked(self, source: &Source<'_>, name: &str, quantity: Quantity) -> Result<ColumnChoice, DescriptionError> {
+        let key = |rest: &str| format!("columns.{name}.{rest}");
         let scale = self.scale.as_deref().map(|scale| checked_scale(source, &key("scale"), scale, quantity));
         let scale = scale.transpose()?;
         let measured = if scale.is_some() { Dimension::Voltage } else { quantity.dimension() };

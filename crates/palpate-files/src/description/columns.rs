@@ -101,28 +101,32 @@ pub struct ColumnChoices {
     pub force: Option<ColumnChoice>,
     /// Stress, to be turned into force by the section of the specimen.
     pub stress: Option<ColumnChoice>,
+    /// Deflection of the cantilever, to be taken off the displacement.
+    pub deflection: Option<ColumnChoice>,
 }
 
 impl ColumnChoices {
-    /// What is said about each quantity of which anything is.
+    /// What is said about each column of which anything is, and what it measures.
     pub(crate) fn all(&self) -> Vec<(Quantity, &ColumnChoice)> {
         let said = [
             (Quantity::Time, &self.time),
             (Quantity::Displacement, &self.displacement),
             (Quantity::Force, &self.force),
             (Quantity::Stress, &self.stress),
+            (Quantity::Displacement, &self.deflection),
         ];
         said.into_iter().filter_map(|(quantity, choice)| Some((quantity, choice.as_ref()?))).collect()
     }
 
-    /// The same, to be changed.
-    pub(crate) fn all_mut(&mut self) -> Vec<(Quantity, &mut ColumnChoice)> {
+    /// The same with their keys in `[columns]`, to be changed.
+    pub(crate) fn all_mut(&mut self) -> Vec<(&'static str, &mut ColumnChoice)> {
         let said = [
-            (Quantity::Time, &mut self.time),
-            (Quantity::Displacement, &mut self.displacement),
-            (Quantity::Force, &mut self.force),
-            (Quantity::Stress, &mut self.stress),
+            ("time", &mut self.time),
+            ("displacement", &mut self.displacement),
+            ("force", &mut self.force),
+            ("stress", &mut self.stress),
+            ("deflection", &mut self.deflection),
         ];
-        said.into_iter().filter_map(|(quantity, choice)| Some((quantity, choice.as_mut()?))).collect()
+        said.into_iter().filter_map(|(key, choice)| Some((key, choice.as_mut()?))).collect()
     }
 }

@@ -269,7 +269,11 @@ fn quantity(key: &str, error: &UnitError, found: &str) -> String {
         UnitError::UnknownUnit { dimension, unit } => {
             let digits = unit.strip_prefix(',').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
             let same = dimension.units().iter().find(|(symbol, _)| symbol.eq_ignore_ascii_case(unit));
+            let volts = key == "unit" && crate::record_file::unit_factor(unit, Dimension::Voltage).is_some();
             match same {
+                _ if volts => {
+                    format!("say what a volt stands for as well, such as scale = \"12.5 {}/V\"", usual_unit(*dimension))
+                }
                 _ if digits => {
                     format!("write a decimal point: {}", named(&found.trim_matches('"').replacen(',', ".", 1)))
                 }

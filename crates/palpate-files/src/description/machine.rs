@@ -52,6 +52,8 @@ const MACHINES: &[Machine] = machines![
     "instron-bluehill",
     "instron-bluehill-compressive",
     "instron-bluehill-tension",
+    "jpk-afm",
+    "jpk-afm-tip-position",
     "robotiq-2f85",
     "ros2-gripper-command",
     "ros2-two-fingers",
@@ -105,8 +107,8 @@ pub(crate) fn contradicts(quantity: Quantity, choice: &ColumnChoice, column: &Co
 /// Remembers which units of the columns the machine says and not the test itself.
 pub(super) fn mark_units(source: &Source<'_>, machine: &str, columns: &mut ColumnChoices) {
     let places = Places::of(source.text);
-    for (quantity, choice) in columns.all_mut() {
-        let own = places.start_exactly(&format!("columns.{quantity}.unit")).is_some();
+    for (key, choice) in columns.all_mut() {
+        let own = places.start_exactly(&format!("columns.{key}.unit")).is_some();
         if choice.unit.is_some() && !own {
             choice.unit_by = Some(machine.to_owned());
         }
@@ -215,7 +217,10 @@ mod tests {
     fn an_unknown_name_is_answered_with_those_there_are() {
         let error = parse_test("[machine]\npreset = \"franka-hnd\"\n", Path::new("test.toml")).unwrap_err();
         let text = error.to_string();
-        assert!(text.starts_with("test.toml, line 2: machine.preset: expected \"aurora-600a\", \"franka-hand\", "), "{text}");
+        assert!(
+            text.starts_with("test.toml, line 2: machine.preset: expected \"aurora-600a\", \"franka-hand\", "),
+            "{text}"
+        );
         assert_eq!(error.hint().as_deref(), Some("did you mean \"franka-hand\"?"));
     }
 }

@@ -2,17 +2,16 @@
 
 use std::path::Path;
 
-use palpate::{contact::Shape, units::Dimension};
+use palpate::contact::Shape;
 
 use super::{
     ColumnUse, Quantity, Role, epoch,
-    error::{ColumnError, MachineUnit, NamedColumn},
-    quantity::unit_factor,
+    error::{ColumnError, NamedColumn},
     recognise,
 };
 use crate::{
-    contents::{ColumnInfo, ColumnKind, Part},
-    description::{ClockChoice, ColumnChoice, ColumnRef, TestDescription, contradicts},
+    contents::{ColumnInfo, Part},
+    description::{ClockChoice, ColumnChoice, ColumnRef, TestDescription},
 };
 
 /// The columns to read and how to make a record of them.
@@ -27,25 +26,26 @@ pub(super) struct Plan {
 }
 
 /// A column that was found, before its unit is looked at.
-struct Found<'a> {
-    role: Role,
-    column: &'a ColumnInfo,
-    unit: Option<&'a str>,
-    choice: Option<&'a ColumnChoice>,
+pub(super) struct Found<'a> {
+    pub(super) role: Role,
+    pub(super) column: &'a ColumnInfo,
+    pub(super) unit: Option<&'a str>,
+    pub(super) choice: Option<&'a ColumnChoice>,
 }
 
 impl Found<'_> {
     /// The key of a description that says its unit.
-    fn key(&self) -> String {
+    pub(super) fn key(&self) -> String {
         match self.role {
             Role::Values(quantity) | Role::Added(quantity) => format!("columns.{quantity}.unit"),
+            Role::Deflection => "columns.deflection.unit".to_owned(),
             Role::ClockOf(quantity) => format!("columns.{quantity}.clock.unit"),
         }
     }
 }
 
 impl Found<'_> {
-    fn used(&self, unit: String, factor: f64) -> ColumnUse {
+    pub(super) fn used(&self, unit: String, factor: f64) -> ColumnUse {
         let doubled = self.choice.is_some_and(|choice| choice.doubled);
         ColumnUse {
             role: self.role,
@@ -64,9 +64,12 @@ impl Found<'_> {
     }
 }
 
+/// In names of columns of which the deflection of the cantilever is off already.
+const INDENTATIONS: [&str; 4] = ["indentation", "tip position", "tipposition", "separation"];
+
 #[derive(Clone, Copy)]
-struct Chooser<'a> {
-    path: &'a Path,
+pub(super) struct Chooser<'a> {
+    pub(super) path: &'a Path,
     columns: &'a [ColumnInfo],
     part: &'a Part,
 }
@@ -83,7 +86,7 @@ pub(super) fn choose(path: &Path, part: &Part, test: &TestDescription) -> Result
     let displacement = chooser.find(Quantity::Displacement, said.displacement.as_ref())?;
     let clocks = [
         (Quantity::Displacement, said.displacement.as_ref(), displacement.as_ref()),
-        (load_quantity(&load), load_said, Some(&load)),
+        (load.role.measured(), load_said, Some(&load)),
     ];
     let one_time = said.time.as_ref().is_some_and(|time| time.column.is_some());
     let mut found = Vec::new();
@@ -97,12 +100,17 @@ pub(super) fn choose(path: &Path, part: &Part, test: &TestDescription) -> Result
         }
     }
     let added = displacement.as_ref().map(|displacement| chooser.added(displacement)).transpose()?.flatten();
+    let deflection = match (&displacement, &said.deflection) {
+        (Some(height), Some(choice)) => Some(chooser.deflection(height, choice)?),
+        _ => None,
+    };
     if needs_time {
         let time = chooser.find(Quantity::Time, said.time.as_ref())?;
         found.push(time.ok_or_else(|| chooser.missing(Quantity::Time))?);
     }
     found.extend(displacement);
     found.extend(added);
+    found.extend(deflection);
     found.push(load);
     chooser.refuse_twice(&found)?;
     let (section, per_unit_area) = chooser.section(test, &found)?;
@@ -111,12 +119,6 @@ pub(super) fn choose(path: &Path, part: &Part, test: &TestDescription) -> Result
         section,
         per_unit_area,
     })
-}
-
-fn load_quantity(load: &Found<'_>) -> Quantity {
-    match load.role {
-        Role::Values(quantity) | Role::Added(quantity) | Role::ClockOf(quantity) => quantity,
-    }
 }
 
 impl<'a> Chooser<'a> {
@@ -205,6 +207,39 @@ impl<'a> Chooser<'a> {
         }))
     }
 
+    /// The column of the deflection of a cantilever whose base stands at `height`; both must have the same clock.
+    fn deflection(&self, height: &Found<'a>, choice: &'a ColumnChoice) -> Result<Found<'a>, ColumnError> {
+        let name = height.column.name.as_deref().unwrap_or("").to_lowercase();
+        if INDENTATIONS.iter().any(|known| name.contains(known)) {
+            return Err(ColumnError::NoHeight {
+                path: self.path.to_owned(),
+                column: height.column.into(),
+            });
+        }
+        // A description without the column is refused when it is checked.
+        let named = choice.column.as_ref().unwrap_or(&ColumnRef::Number(0));
+        let column = self.named("columns.deflection.column", named)?;
+        if self.part.clock_of(column.number) != self.part.clock_of(height.column.number) {
+            return Err(ColumnError::ClocksDiffer {
+                path: self.path.to_owned(),
+                columns: (height.column.into(), column.into()),
+            });
+        }
+        if column.number == height.column.number {
+            return Err(ColumnError::Twice {
+                path: self.path.to_owned(),
+                column: column.into(),
+                quantities: (Quantity::Displacement, Quantity::Displacement),
+            });
+        }
+        Ok(Found {
+            role: Role::Deflection,
+            column,
+            unit: choice.unit.as_deref(),
+            choice: Some(choice),
+        })
+    }
+
     fn clock(&self, quantity: Quantity, clock: &'a ClockChoice) -> Result<Found<'a>, ColumnError> {
         let key = format!("columns.{quantity}.clock.column");
         Ok(Found {
@@ -240,7 +275,8 @@ impl<'a> Chooser<'a> {
     fn refuse_twice(&self, found: &[Found<'_>]) -> Result<(), ColumnError> {
         let values = |found: &Found<'_>| match found.role {
             Role::Values(quantity) | Role::Added(quantity) => Some((quantity, found.column.number)),
-            Role::ClockOf(_) => None,
+            // The bending of a cantilever may be the force as well, by another scale.
+            Role::ClockOf(_) | Role::Deflection => None,
         };
         let values: Vec<(Quantity, usize)> = found.iter().filter_map(values).collect();
         for (index, (first, number)) in values.iter().enumerate() {
@@ -271,108 +307,4 @@ impl<'a> Chooser<'a> {
             }),
         }
     }
-
-    fn unknown_unit(&self, column: &ColumnInfo, quantity: Quantity, key: String, unit: &str) -> ColumnError {
-        ColumnError::UnknownUnit {
-            path: self.path.to_owned(),
-            column: column.into(),
-            quantity,
-            key,
-            unit: unit.to_owned(),
-        }
-    }
-
-    /// A column whose unit is none that a header could give: a travel said for each unit of it, or a time since 1970.
-    fn without_plain_unit(&self, found: &Found<'_>) -> Result<Option<ColumnUse>, ColumnError> {
-        if let Some(travel) = found.choice.and_then(|choice| choice.travel_per_unit) {
-            return Ok(Some(found.used(format!("{} mm each", travel * 1e3), travel)));
-        }
-        if found.role.measured() != Quantity::Time {
-            return Ok(None);
-        }
-        if found.column.kind == ColumnKind::DateTime {
-            let date = found.used("date and time".to_owned(), 1.0);
-            return Ok(Some(ColumnUse { epoch: true, ..date }));
-        }
-        let is_said = found.unit.is_some_and(|unit| unit.trim().eq_ignore_ascii_case(epoch::WORD));
-        let is_named = found.unit.or(found.column.unit.as_deref()).is_none() && epoch::is_named(found.column);
-        match epoch::unit(found.column) {
-            Some((unit, factor)) if is_said || is_named => Ok(Some(found.used(format!("{unit} since 1970"), factor))),
-            None if is_said => Err(ColumnError::NoEpoch {
-                path: self.path.to_owned(),
-                column: found.column.into(),
-                found: found.column.sample.clone(),
-            }),
-            _ => Ok(None),
-        }
-    }
-
-    /// A unit that nobody wrote down for this file, but the conventions of a machine, gives way to none in the header.
-    fn refuse_contradiction(&self, found: &Found<'_>) -> Result<(), ColumnError> {
-        let Some(choice) = found.choice else { return Ok(()) };
-        match (&choice.unit_by, &choice.unit, &found.column.unit) {
-            (Some(machine), Some(said), Some(written)) if contradicts(found.role.measured(), choice, found.column) => {
-                Err(ColumnError::OtherUnit {
-                    path: self.path.to_owned(),
-                    column: found.column.into(),
-                    key: found.key(),
-                    units: Box::new(MachineUnit {
-                        machine: machine.clone(),
-                        said: said.clone(),
-                        written: written.clone(),
-                    }),
-                })
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Units from the description, else from the header.
-    fn with_units(&self, found: &[Found<'_>]) -> Result<Vec<ColumnUse>, ColumnError> {
-        let mut used = Vec::new();
-        let mut without = Vec::new();
-        for found in found {
-            let quantity = found.role.measured();
-            if let Some(used_as) = self.without_plain_unit(found)? {
-                used.push(used_as);
-                continue;
-            }
-            self.refuse_contradiction(found)?;
-            let Some(unit) = found.unit.or(found.column.unit.as_deref()) else {
-                without.push((found.key(), quantity.usual_unit(), found.column.into()));
-                continue;
-            };
-            let volts = found.choice.and_then(|choice| choice.scale);
-            let factor = match volts {
-                Some(scale) => unit_factor(unit, Dimension::Voltage).map(|volts| volts * scale),
-                None => unit_factor(unit, quantity.dimension()),
-            };
-            let factor = factor.ok_or_else(|| self.unknown_unit(found.column, quantity, found.key(), unit))?;
-            used.push(found.used(unit.to_owned(), factor));
-        }
-        if without.is_empty() {
-            return Ok(used);
-        }
-        // What stands in brackets behind the one name without a unit was meant as one.
-        let bare = |found: &&Found<'_>| {
-            let given = found.unit.or(found.column.unit.as_deref());
-            given.is_none() && matches!(self.without_plain_unit(found), Ok(None))
-        };
-        if let ([_], Some(found)) = (&without[..], found.iter().find(bare))
-            && let Some(unit) = found.column.name.as_deref().and_then(in_brackets)
-        {
-            return Err(self.unknown_unit(found.column, found.role.measured(), found.key(), unit));
-        }
-        Err(ColumnError::NoUnit {
-            path: self.path.to_owned(),
-            columns: without,
-        })
-    }
-}
-
-/// The one word in brackets at the end of a name, as in `Force (furlong)`.
-fn in_brackets(name: &str) -> Option<&str> {
-    let (_, word) = name.trim_end().strip_suffix(')')?.rsplit_once('(')?;
-    let word = word.trim();
-    (!word.is_empty() && !word.contains(char::is_whitespace)).then_some(word)
 }

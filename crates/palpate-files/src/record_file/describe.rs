@@ -2,11 +2,14 @@
 
 use std::fmt::Write as _;
 
-use palpate::segment::{Phase, Segmentation};
+use palpate::{
+    segment::{Phase, Segmentation},
+    units::Dimension,
+};
 
-use super::{ColumnUse, Quantity, RecordFile, Role, recognise};
+use super::{ColumnUse, EPOCH, Quantity, RecordFile, Role, recognise, unit_factor};
 use crate::{
-    contents::{ColumnInfo, Contents, Part},
+    contents::{ColumnInfo, ColumnKind, Contents, Part},
     description::machines_of,
 };
 
@@ -102,21 +105,58 @@ fn reference(part: &Part, column: &ColumnInfo) -> String {
 fn write_columns(out: &mut String, part: &Part, columns: &[ColumnUse]) {
     let clock = |quantity| columns.iter().find(|column| column.role == Role::ClockOf(quantity));
     for column in columns {
-        let Role::Values(quantity) = column.role else { continue };
+        let quantity = column.role.measured();
+        let table = match column.role {
+            Role::Values(quantity) => quantity.to_string(),
+            Role::Deflection => "deflection".to_owned(),
+            Role::Added(_) | Role::ClockOf(_) => continue,
+        };
         let info = &part.columns[column.number - 1];
-        let _ = writeln!(out, "[columns.{quantity}]");
+        let _ = writeln!(out, "[columns.{table}]");
         let why = if info.name.is_some() { "guessed by its name" } else { "as described" };
         let _ = writeln!(out, "column = {}    # {why}; starts with {}", reference(part, info), one_line(&info.sample));
-        let source = if info.unit.is_some() { "from the file" } else { "as described" };
-        let _ = writeln!(out, "unit = {}    # {source}", quoted(&column.unit));
+        write_unit(out, column, info);
+        if column.offset != 0.0 {
+            let _ = writeln!(out, "offset = \"{} {}\"", column.offset, quantity.dimension().units()[0].0);
+        }
         if column.sign < 0.0 {
             let _ = writeln!(out, "sign = -1");
         }
-        if let Some(clock) = clock(quantity) {
+        let added = columns.iter().find(|other| other.role == Role::Added(quantity));
+        if let Some(added) = added.filter(|_| column.role == Role::Values(quantity)) {
+            let _ = writeln!(out, "also = {}", reference(part, &part.columns[added.number - 1]));
+        }
+        if let Some(clock) = clock(quantity).filter(|_| column.role == Role::Values(quantity)) {
             let info = &part.columns[clock.number - 1];
             let _ = writeln!(out, "clock = {{ column = {}, unit = {} }}", reference(part, info), quoted(&clock.unit));
         }
         out.push('\n');
+    }
+}
+
+/// What a column counts in, with what the description said beside the unit.
+fn write_unit(out: &mut String, column: &ColumnUse, info: &ColumnInfo) {
+    let (dimension, factor) = (column.role.measured().dimension(), column.factor);
+    let symbol = dimension.units()[0].0;
+    let source = if info.unit.as_ref() == Some(&column.unit) { "from the file" } else { "as described" };
+    let unit = |out: &mut String, unit: &str| {
+        let _ = writeln!(out, "unit = {}    # {source}", quoted(unit));
+    };
+    match (unit_factor(&column.unit, dimension), unit_factor(&column.unit, Dimension::Voltage)) {
+        _ if column.epoch && info.kind == ColumnKind::Number => unit(out, EPOCH),
+        _ if column.epoch => {}
+        (Some(plain), _) if factor == plain => unit(out, &column.unit),
+        (Some(_), _) => {
+            unit(out, &column.unit);
+            let _ = writeln!(out, "doubled = true");
+        }
+        (None, Some(volts)) => {
+            unit(out, &column.unit);
+            let _ = writeln!(out, "scale = \"{} {symbol}/V\"", factor / volts);
+        }
+        (None, None) => {
+            let _ = writeln!(out, "travel_per_unit = \"{factor} {symbol}\"");
+        }
     }
 }
 
@@ -135,7 +175,7 @@ fn write_questions(out: &mut String, part: &Part) {
         match candidates[..] {
             [only] => {
                 let _ = writeln!(out, "column = {}    # guessed by its name", reference(part, only));
-                match only.unit.as_deref().filter(|unit| super::unit_factor(unit, quantity.dimension()).is_some()) {
+                match only.unit.as_deref().filter(|unit| unit_factor(unit, quantity.dimension()).is_some()) {
                     Some(unit) => {
                         let _ = writeln!(out, "unit = {}    # from the file", quoted(unit));
                     }

@@ -5,7 +5,7 @@ use std::{fmt, path::PathBuf};
 use palpate::{record::RecordError, units::Dimension};
 
 use super::{Quantity, quantity::unit_factor, snippet};
-use crate::{contents::ColumnInfo, description::ColumnRef, error::FileError};
+use crate::{afm::UNCALIBRATED, contents::ColumnInfo, description::ColumnRef, error::FileError};
 
 /// A column as messages name it: `column 3 (Force)`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -143,6 +143,14 @@ pub enum ColumnError {
         /// Its first value.
         found: String,
     },
+    /// A deflection is to be taken off a column of which it is off already.
+    #[error("{}: {column}: expected the height of the cantilever's base, of which its deflection is taken off, found a column that is named as if it were off already", path.display())]
+    NoHeight {
+        /// The record.
+        path: PathBuf,
+        /// The column of the displacement.
+        column: NamedColumn,
+    },
     /// Stress on a ball, which has no section that would turn it into force.
     #[error("{}: {column}: expected force for a ball, whose contact area changes, found stress", path.display())]
     NoSection {
@@ -172,13 +180,27 @@ impl ColumnError {
                 let lines: Vec<String> = lines.collect();
                 format!("say it in a test description:\n{}", lines.join("\n"))
             }
+            Self::UnknownUnit { key, column, unit, .. }
+                if key == "columns.force.unit"
+                    && column.name.as_deref() == Some(UNCALIBRATED)
+                    && unit_factor(unit, Dimension::Voltage).is_some() =>
+            {
+                snippet::of_bending(column, unit)
+            }
             Self::UnknownUnit {
-                quantity, column, unit, ..
-            } if unit_factor(unit, Dimension::Voltage).is_some() => format!(
-                "say what a volt stands for in a test description:\n[columns.{quantity}]\nunit = \"{unit}\"\nscale = \"1 {}/V\"\ncolumn = {}",
-                quantity.usual_unit(),
-                column.number
-            ),
+                key,
+                quantity,
+                column,
+                unit,
+                ..
+            } if unit_factor(unit, Dimension::Voltage).is_some() => {
+                let table = key.rsplit_once('.').map_or("columns", |(table, _)| table);
+                format!(
+                    "say what a volt stands for in a test description:\n[{table}]\nunit = \"{unit}\"\nscale = \"1 {}/V\"\ncolumn = {}",
+                    quantity.usual_unit(),
+                    column.number
+                )
+            }
             Self::UnknownUnit {
                 key, quantity, column, ..
             } => format!(
@@ -197,6 +219,9 @@ impl ColumnError {
             }
             Self::ClocksDiffer { .. } => "name two columns of one topic".to_owned(),
             Self::NoEpoch { .. } => "give the unit that the time has, such as \"s\"".to_owned(),
+            Self::NoHeight { .. } => {
+                "remove [columns.deflection], or name the column of the height in columns.displacement".to_owned()
+            }
             Self::NoSection { .. } => {
                 "choose a column of force, or describe the body as a strip, cylinder or block".to_owned()
             }

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `parts.rs` | which parts of a file are tests ([`tests`]) |
 //! | `read.rs` | reads a record ([`read_record`]) |
-//! | `choose.rs` | chooses the columns, from a description or by the header |
+//! | `choose.rs`, `choose_units.rs` | chooses the columns and their units, from a description or by the header |
 //! | `recognise.rs`, `header_words.rs` | tells columns by their names |
 //! | `describe.rs` | a first description of a test ([`describe`]) |
 //! | `quantity.rs` | what a column can hold, and its units |
@@ -12,6 +12,7 @@
 //! | `error.rs`, `snippet.rs` | what is not clear, and the lines of a description that would clear it up |
 
 mod choose;
+mod choose_units;
 mod describe;
 mod epoch;
 mod error;
@@ -41,6 +42,8 @@ pub enum Role {
     Values(Quantity),
     /// Its values are added to those of the column of a quantity: the second finger of a gripper.
     Added(Quantity),
+    /// Its values, the deflection of a cantilever, are taken off the displacement.
+    Deflection,
     /// Its values are the time stamps of one quantity alone.
     ClockOf(Quantity),
 }
@@ -51,6 +54,7 @@ impl Role {
     pub fn measured(self) -> Quantity {
         match self {
             Self::Values(quantity) | Self::Added(quantity) => quantity,
+            Self::Deflection => Quantity::Displacement,
             Self::ClockOf(_) => Quantity::Time,
         }
     }

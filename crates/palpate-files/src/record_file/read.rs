@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use palpate::{
-    record::{RawColumns, Record, SignalReport},
+    record::{Correction, RawColumns, Record, SignalReport},
     units,
 };
 
@@ -110,9 +110,10 @@ pub fn read_part(
         to_si(&mut values, column, section);
         (column.role, values)
     });
-    let raw = assemble(series.collect());
+    let (raw, bent) = assemble(series.collect());
     let signals = raw.report();
-    let record = raw.into_record().map_err(|source| ReadError::Record {
+    let done = bent.map(|largest| Correction::DeflectionRemoved { largest });
+    let record = raw.into_record().map(|record| record.corrected_before(done)).map_err(|source| ReadError::Record {
         path: path.to_owned(),
         part: about.name.clone(),
         line: source.row().and_then(|row| read.line_of(row)),
@@ -162,8 +163,8 @@ fn to_si(values: &mut [f64], column: &ColumnUse, section: f64) {
     }
 }
 
-/// Tells columns in SI by their roles.
-fn assemble(mut series: Vec<(Role, Vec<f64>)>) -> RawColumns {
+/// Tells columns in SI by their roles; the second is the largest deflection that was taken off the displacement.
+fn assemble(mut series: Vec<(Role, Vec<f64>)>) -> (RawColumns, Option<f64>) {
     let mut take = |wanted: &dyn Fn(Role) -> bool| {
         let index = series.iter().position(|(role, _)| wanted(*role))?;
         Some(series.swap_remove(index).1)
@@ -175,6 +176,12 @@ fn assemble(mut series: Vec<(Role, Vec<f64>)>) -> RawColumns {
     for (value, more) in displacement.iter_mut().flatten().zip(added.iter().flatten()) {
         *value += more;
     }
+    let deflection = take(&|role| role == Role::Deflection);
+    for (value, deflection) in displacement.iter_mut().flatten().zip(deflection.iter().flatten()) {
+        *value -= deflection;
+    }
+    let larger = |most: f64, next: &f64| if next.abs() > most.abs() { *next } else { most };
+    let bent = deflection.map(|deflection| deflection.iter().fold(0.0, larger));
     let load = take(&|role| matches!(role, Role::Values(quantity) if is_load(quantity)));
     let displacement_clock = take(&|role| role == Role::ClockOf(Quantity::Displacement));
     let load_clock = take(&|role| matches!(role, Role::ClockOf(quantity) if is_load(quantity)));
@@ -186,10 +193,11 @@ fn assemble(mut series: Vec<(Role, Vec<f64>)>) -> RawColumns {
         }
         (own, other, time) => (own.or(other).or(time), None),
     };
-    RawColumns {
+    let raw = RawColumns {
         time: time.unwrap_or_default(),
         displacement,
         force: load.unwrap_or_default(),
         force_time,
-    }
+    };
+    (raw, bent)
 }

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use palpate::record::Correction;
 use palpate_files::{
     contents::Format,
     description::parse_test,
-    record_file::{ColumnError, ReadError, read_record},
+    record_file::{ColumnError, ReadError, RecordFile, read_record},
 };
 
 use super::{column, damage, labels, metadata, names, near, open, opened, read_all, refusal};
@@ -253,6 +254,62 @@ fn volts_without_calibration_are_asked_about() {
     let contents = opened(&written(&exports));
     let (force, deflection) = (column(&contents, "force"), column(&contents, "cantilever deflection"));
     assert!(near(deflection[2], 4e-14) && near(force[2], 2e-14), "{deflection:?} {force:?}");
+}
+
+/// The record of exports, described by `test`.
+fn record(exports: &[Export], test: &str) -> Result<RecordFile, ReadError> {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("curve.txt");
+    std::fs::write(&path, written(exports)).expect("a file written");
+    let test = parse_test(test, Path::new("test.toml")).unwrap_or_else(|error| panic!("{error}"));
+    read_record(&path, Some(&test), &mut |_, _| {})
+}
+
+#[test]
+fn the_lines_that_are_asked_for_make_volts_a_force_and_an_indentation() {
+    let mut exports = press();
+    for export in &mut exports {
+        export.units = "m V m s s";
+        export.more = "# springConstant: 0.04\r\n";
+    }
+    let error = record(&exports, "").unwrap_err();
+    let hint = error.hint().unwrap();
+    let (asked, lines) = hint.split_once('\n').unwrap();
+    assert!(asked.starts_with("the file lacks a sensitivity (m/V) or a spring constant (N/m)"), "{asked}");
+    let file = record(&exports, lines).unwrap_or_else(|error| panic!("{error}"));
+    // 1 µV is 50 fm and 2 fN; the base has gone down by 4 µm.
+    let (displacement, force) = (file.record.displacement().unwrap(), file.record.force());
+    assert!(near(force[2], 2e-15) && near(displacement[2], -5e-14), "{force:?} {displacement:?}");
+    assert!(near(displacement[0], -4e-6));
+    let done = file.record.corrections();
+    assert!(matches!(done, [Correction::DeflectionRemoved { largest }] if near(*largest, 5e-14)), "{done:?}");
+    // Without a sensitivity no deflection is made of volts.
+    let without = lines.replace("\nscale = \"50 nm/V\"", "");
+    let error = parse_test(&without, Path::new("test.toml")).unwrap_err();
+    assert_eq!(error.key(), Some("columns.deflection.unit"));
+    assert_eq!(error.hint().unwrap(), "say what a volt stands for as well, such as scale = \"12.5 mm/V\"");
+    let without = without.strip_suffix("unit = \"V\"").unwrap();
+    let error = record(&exports, without).unwrap_err();
+    assert!(error.hint().unwrap().contains("[columns.deflection]\nunit = \"V\"\nscale = "), "{:?}", error.hint());
+}
+
+#[test]
+fn a_deflection_is_taken_off_a_height_and_not_off_an_indentation() {
+    let by_itself = record(&press(), "").unwrap();
+    let deflection = "[columns.deflection]\ncolumn = \"cantilever deflection\"\n[columns.displacement]\n";
+    let said = record(&press(), &format!("{deflection}column = \"measuredHeight\"\nsign = -1")).unwrap();
+    let (one, other) = (by_itself.record.displacement().unwrap(), said.record.displacement().unwrap());
+    assert!(one.iter().zip(other).all(|(one, other)| near(*one, *other)), "{one:?} {other:?}");
+    let error = record(&press(), &format!("{deflection}column = \"indentation\"")).unwrap_err();
+    assert!(
+        error.to_string().contains("column 3 (indentation): expected the height of the cantilever's base"),
+        "{error}"
+    );
+    // Which column is the height is never guessed.
+    let error = parse_test("columns.deflection.column = 4", Path::new("test.toml")).unwrap_err().to_string();
+    assert!(error.contains("columns.displacement: missing, expected the column of the height"), "{error}");
+    let error = parse_test("[columns.deflection]\nunit = \"nm\"", Path::new("test.toml")).unwrap_err().to_string();
+    assert!(error.contains("columns.deflection.column: missing, expected the number of a column"), "{error}");
 }
 
 #[test]

@@ -17,7 +17,7 @@ struct Written {
     force: [f64; 3],
 }
 
-const FILES: [Written; 11] = [
+const FILES: [Written; 13] = [
     Written {
         machine: "aurora-600a",
         text: "*** Setup Parameters ***\nFiber Length: 1.050 mm\nInitial Sarcomere Length: 2.500 um\nDiameter: 0.080 mm\n\n\
@@ -55,6 +55,22 @@ const FILES: [Written; 11] = [
         time: [0.0, 0.1, 0.2],
         displacement: [0.0, 0.0254, 0.0254],
         force: [0.0, 8.896_443_230_521, 4.448_221_615_260_5],
+    },
+    Written {
+        machine: "jpk-afm",
+        text: "# segment: extend\n# columns: measuredHeight vDeflection seriesTime\n# units: m N s\n# springConstant: 0.5\n#\n\
+               4e-6 0 0.5\n2e-6 0 1.5\n0 1e-6 2.5\n",
+        time: [0.5, 1.5, 2.5],
+        displacement: [-4e-6, -2e-6, -2e-6],
+        force: [0.0, 0.0, 1e-6],
+    },
+    Written {
+        machine: "jpk-afm-tip-position",
+        text: "# segment: extend\n# columns: verticalTipPosition vDeflection seriesTime\n# units: m N s\n#\n\
+               4e-6 0 0.5\n2e-6 0 1.5\n1e-6 1e-6 2.5\n",
+        time: [0.5, 1.5, 2.5],
+        displacement: [-4e-6, -2e-6, -1e-6],
+        force: [0.0, 0.0, 1e-6],
     },
     Written {
         machine: "shimadzu-trapezium",
@@ -109,7 +125,11 @@ const FILES: [Written; 11] = [
 ];
 
 fn near(found: &[f64], expected: &[f64; 3]) -> bool {
-    found.len() == 3 && found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() <= 1e-12)
+    found.len() == 3
+        && found
+            .iter()
+            .zip(expected)
+            .all(|(found, expected)| (found - expected).abs() <= 1e-12 * expected.abs().max(1e-6))
 }
 
 #[test]

@@ -90,6 +90,12 @@ impl Record {
         SignalReport::of(&self.time, self.displacement(), &self.force)
     }
 
+    /// The record with corrections that were made to its columns before they became one: by the program that read them.
+    #[must_use]
+    pub fn corrected_before(self, earlier: impl IntoIterator<Item = Correction>) -> Self {
+        self.preceded_by(earlier)
+    }
+
     /// The record with corrections that were made before those it knows of.
     fn preceded_by(mut self, earlier: impl IntoIterator<Item = Correction>) -> Self {
         self.corrections.splice(0..0, earlier);

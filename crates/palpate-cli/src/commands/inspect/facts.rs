@@ -42,6 +42,7 @@ pub(super) fn columns_table(part: &Part, file: Option<&RecordFile>) -> Table {
             let what = match used.role {
                 Role::Values(quantity) => quantity.to_string(),
                 Role::Added(quantity) => format!("added to {quantity}"),
+                Role::Deflection => "deflection, off the displacement,".to_owned(),
                 Role::ClockOf(quantity) => format!("time of {quantity}"),
             };
             format!("{what} in {}{sign}", used.unit)
