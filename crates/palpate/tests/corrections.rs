@@ -103,6 +103,23 @@ fn a_skew_is_reported_and_removed_when_asked() {
 }
 
 #[test]
+fn a_record_of_averaged_rows_says_so() {
+    let averaged = Correction::RowsAveraged {
+        rows: 40_000_000,
+        averaged: 4,
+    };
+    let record = stairs(50.0, 0.001, 0.0, 1).corrected_before([averaged.clone()]);
+    assert_eq!(record.corrections(), [averaged]);
+    let analysis = analyze(&record, &AnalysisOptions::default()).unwrap();
+    let finding = analysis.findings.iter().find(|finding| finding.code() == "rows_averaged").unwrap();
+    let seen = finding.seen();
+    assert!(
+        seen.contains("40000000 rows") && seen.contains("every 4 ") && seen.contains("10000000 samples"),
+        "{seen}"
+    );
+}
+
+#[test]
 fn a_skew_that_cannot_be_told_is_not_told() {
     // One ramp and one hold have one edge.
     let record = stairs(50.0, 0.001, 0.035, 3);

@@ -112,7 +112,11 @@ pub fn read_part(
     });
     let (raw, bent) = assemble(series.collect());
     let signals = raw.report();
-    let done = bent.map(|largest| Correction::DeflectionRemoved { largest });
+    let averaged = (read.averaged > 1).then(|| Correction::RowsAveraged {
+        rows: read.rows(),
+        averaged: read.averaged,
+    });
+    let done = averaged.into_iter().chain(bent.map(|largest| Correction::DeflectionRemoved { largest }));
     let record = raw.into_record().map(|record| record.corrected_before(done)).map_err(|source| ReadError::Record {
         path: path.to_owned(),
         part: about.name.clone(),

@@ -179,6 +179,9 @@ fn parts(done: &Correction) -> (&'static str, Numbers) {
                 ("identical", (*identical).into()),
             ],
         ),
+        Correction::RowsAveraged { rows, averaged } => {
+            ("rows_averaged", vec![("rows", (*rows).into()), ("averaged", (*averaged).into())])
+        }
         Correction::ClocksJoined { left_out } => ("clocks_joined", vec![("rows_left_out", (*left_out).into())]),
         Correction::DropoutsReplaced { column: of, count } => {
             ("dropouts_replaced", vec![("column", column(of).into()), ("rows", (*count).into())])

@@ -69,6 +69,7 @@ fn untold(done: &Correction) -> Option<String> {
         Correction::Tared(_)
             | Correction::StampsSorted { .. }
             | Correction::StampsMerged { .. }
+            | Correction::RowsAveraged { .. }
             | Correction::DropoutsReplaced { .. }
     );
     (!told).then(|| done.to_string())

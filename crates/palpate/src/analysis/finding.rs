@@ -129,6 +129,13 @@ pub enum Finding {
         /// How many.
         count: usize,
     },
+    /// The file is so long that successive rows became their mean.
+    RowsAveraged {
+        /// Rows of the file.
+        rows: usize,
+        /// Of how many rows a sample is the mean.
+        averaged: usize,
+    },
     /// Rows with one time stamp.
     StampsMerged {
         /// Rows before.
@@ -273,6 +280,7 @@ impl Finding {
             Self::NoContactArea => "no_contact_area",
             Self::Thinned { .. } => "thinned",
             Self::DropoutsRepaired { .. } => "dropouts_repaired",
+            Self::RowsAveraged { .. } => "rows_averaged",
             Self::StampsMerged { .. } => "stamps_merged",
             Self::StampsSorted { .. } => "stamps_sorted",
             Self::Gaps { .. } => "gaps",
@@ -322,6 +330,7 @@ impl Finding {
             | Self::SampledTooSlowly { .. }
             | Self::ContactOpen { .. }
             | Self::DropoutsRepaired { .. }
+            | Self::RowsAveraged { .. }
             | Self::StampsMerged { .. }
             | Self::StampsSorted { .. }
             | Self::Gaps { .. }
@@ -409,6 +418,10 @@ impl Finding {
             Self::Thinned { every } => format!("one sample in {every} is fitted"),
             Self::DropoutsRepaired { column, count: 1 } => format!("one row of the {} strays alone", column.name()),
             Self::DropoutsRepaired { column, count } => format!("{count} rows of the {} stray alone", column.name()),
+            Self::RowsAveraged { rows, averaged } => format!(
+                "the file has {rows} rows, more than are kept; every {averaged} successive ones became their mean ({} samples)",
+                rows.div_ceil(*averaged)
+            ),
             Self::StampsMerged { rows, merged } => {
                 format!("{merged} of {rows} rows have the time stamp of the row before")
             }
@@ -539,6 +552,9 @@ impl Finding {
             Self::DropoutsRepaired { .. } => {
                 "the encoder or the logger lost a value; the mean of the neighbours stands in its place"
             }
+            Self::RowsAveraged { .. } => {
+                "what is shorter than that many rows is smoothed away: peaks are lower, and the first moments of a hold are coarser"
+            }
             Self::StampsMerged { .. } => {
                 "the clock is coarser than the sampling, or rows were written twice; the mean of such rows stands in their place"
             }
@@ -624,6 +640,9 @@ impl Finding {
             Self::NoContactArea => "check first touch (touch = \"...\" in the test description)",
             Self::Thinned { .. } => "nothing",
             Self::DropoutsRepaired { .. } | Self::StampsSorted { .. } | Self::Gaps { .. } => "check the logger",
+            Self::RowsAveraged { .. } => {
+                "nothing, if the test is long against that; else cut the file, or keep fewer rows a second"
+            }
             Self::StampsMerged { .. } => {
                 "write the time with more digits; if most rows share stamps, check that this is the column of the time"
             }

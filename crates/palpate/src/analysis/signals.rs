@@ -48,6 +48,7 @@ pub(super) fn correction_findings(record: &Record) -> Vec<Finding> {
     let finding = |done: &Correction| match *done {
         Correction::StampsSorted { rows, largest, .. } => Some(Finding::StampsSorted { rows, largest }),
         Correction::StampsMerged { rows, merged, .. } => Some(Finding::StampsMerged { rows, merged }),
+        Correction::RowsAveraged { rows, averaged } => Some(Finding::RowsAveraged { rows, averaged }),
         Correction::DropoutsReplaced { column, count } => Some(Finding::DropoutsRepaired { column, count }),
         _ => None,
     };

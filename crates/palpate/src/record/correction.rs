@@ -63,6 +63,13 @@ pub enum Correction {
         /// Those among them that repeated a row in all their values.
         identical: usize,
     },
+    /// The file has more rows than are kept: successive ones became their mean as they were read.
+    RowsAveraged {
+        /// Rows of the file.
+        rows: usize,
+        /// Of how many rows a sample is the mean.
+        averaged: usize,
+    },
     /// Displacement and force with clocks of their own were brought onto the times of the force.
     ClocksJoined {
         /// Samples of the force outside the times of the displacement, left out.
@@ -146,6 +153,9 @@ impl fmt::Display for Correction {
                 f,
                 "{clock}: {merged} of {rows} rows merged with the row of the same stamp ({identical} identical)"
             ),
+            Self::RowsAveraged { rows, averaged } => {
+                write!(f, "{rows} rows of the file averaged as they were read, {averaged} to a sample")
+            }
             Self::ClocksJoined { left_out } => {
                 write!(f, "displacement interpolated at the times of the force, {left_out} rows of the force left out")
             }

@@ -78,9 +78,6 @@ pub(super) fn signal_facts(file: &RecordFile) -> String {
     if let Some(start) = file.start {
         let _ = writeln!(out, "time 0 is {start} s since 1970");
     }
-    if file.averaged > 1 {
-        let _ = writeln!(out, "every sample is the mean of {} successive rows", file.averaged);
-    }
     if let Some(displacement) = record.displacement() {
         let _ = writeln!(out, "displacement {} mm", range(displacement, 1e3));
     }
