@@ -103,6 +103,19 @@ fn a_skew_is_reported_and_removed_when_asked() {
 }
 
 #[test]
+fn a_skew_of_less_than_a_sample_interval_is_no_finding() {
+    let found = |rate: f64| {
+        let record = stairs(rate, 0.001, 0.035, 1);
+        let analysis = analyze(&record, &AnalysisOptions::default()).unwrap();
+        let skew = analysis.skew.unwrap();
+        assert!(skew.is_seen() && (skew.interval - 1.0 / rate).abs() < 0.1 / rate, "{skew:?}");
+        analysis.findings.iter().any(|finding| matches!(finding, Finding::ClocksSkewed { .. }))
+    };
+    assert!(found(50.0), "two samples late");
+    assert!(!found(20.0), "less than a sample late");
+}
+
+#[test]
 fn a_record_of_averaged_rows_says_so() {
     let averaged = Correction::RowsAveraged {
         rows: 40_000_000,

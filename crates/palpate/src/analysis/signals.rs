@@ -55,9 +55,12 @@ pub(super) fn correction_findings(record: &Record) -> Vec<Finding> {
     record.corrections().iter().filter_map(finding).collect()
 }
 
-/// A finding if the clocks differ by more than their error and a tenth of a sample interval, and nothing was done about it.
+/// A finding if the clocks differ by more than their error and a sample interval, and nothing was done about it.
+///
+/// One clock that stamps both columns at the same rows can seem to be off by a part of an interval: what was held between
+/// two samples is not known.
 pub(super) fn skew_finding(record: &Record, skew: Option<&ClockSkew>) -> Option<Finding> {
-    let skew = skew.filter(|skew| skew.is_seen() && skew.skew.abs() > 0.1 * record.sample_interval())?;
+    let skew = skew.filter(|skew| skew.is_resolved(skew.interval.max(record.sample_interval())))?;
     let removed = |done: &Correction| matches!(done, Correction::SkewRemoved { .. });
     if record.corrections().iter().any(removed) {
         return None;

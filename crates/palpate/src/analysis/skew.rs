@@ -16,6 +16,8 @@ pub struct ClockSkew {
     pub standard_error: f64,
     /// Starts and ends of ramps that it rests on.
     pub edges: usize,
+    /// Time between samples around them, s.
+    pub interval: f64,
 }
 
 impl ClockSkew {
@@ -23,6 +25,13 @@ impl ClockSkew {
     #[must_use]
     pub fn is_seen(&self) -> bool {
         self.skew.abs() > SEEN * self.standard_error
+    }
+
+    /// Whether it stands out from what samples every `interval` s leave open as well: it is longer than that, and than its
+    /// error together with interval/√12, since all edges may lie alike between two samples.
+    pub(super) fn is_resolved(&self, interval: f64) -> bool {
+        let open = interval / 12f64.sqrt();
+        self.skew.abs() > interval && self.skew.abs() > SEEN * self.standard_error.hypot(open)
     }
 }
 
@@ -63,6 +72,8 @@ struct Edge {
     error: f64,
     /// Length of the stretch on one side, s.
     stretch: f64,
+    /// Time between samples on the side where they are sparser, s.
+    interval: f64,
 }
 
 /// The kinks at the border of two segments, one of which moves; over a share of 1/`part` of the shorter one.
@@ -86,6 +97,7 @@ fn edge(record: &Record, displacement: &[f64], (before, after): (&Segment, &Segm
         difference: force.time - jaw.time,
         error: force.error.hypot(jaw.error),
         stretch,
+        interval: (times[side] - times[0]).max(times[2 * side - 1] - times[side - 1]) / side as f64,
     })
 }
 
@@ -113,5 +125,6 @@ fn combined(edges: &[Edge]) -> Option<ClockSkew> {
         skew,
         standard_error: (reduced.max(1.0) / sum).sqrt(),
         edges: kept.len(),
+        interval: median(&mut kept.iter().map(|edge| edge.interval).collect::<Vec<_>>()),
     })
 }
