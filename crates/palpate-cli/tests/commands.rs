@@ -298,6 +298,21 @@ fn silicone_steps_load_holds_are_type_1_and_unload_holds_type_2() {
 }
 
 #[test]
+fn every_hold_says_what_was_held() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = file(folder.path(), "press.csv", ramp_and_hold(7.0, 20.0));
+    let document = json(folder.path(), &["analyze", &record, "--no-compare", "--format", "json"]);
+    assert_eq!(document["holds"][0]["mode"], "displacement");
+    let told = done(folder.path(), &["analyze", &record, "--no-compare"]);
+    assert!(told.contains("Held") && told.contains("displacement"), "{told}");
+    done(folder.path(), &["batch", &record, "--out", "holds.csv"]);
+    let table = std::fs::read_to_string(folder.path().join("holds.csv")).unwrap();
+    let mut lines = table.lines().skip_while(|line| line.starts_with('#'));
+    let column = lines.next().unwrap().split(',').position(|name| name == "mode").unwrap();
+    assert!(lines.all(|line| line.split(',').nth(column) == Some("displacement")), "{table}");
+}
+
+#[test]
 fn foam_hold_lies_within_a_sample_of_its_labels() {
     let Some(record) = data("foam/XtraSoft.csv") else {
         return;

@@ -156,6 +156,20 @@ fn creep_at_constant_force() {
     let sls = laws.iter().find(|law| law["law"] == "standard-linear-solid").unwrap();
     assert!((sls["numbers"]["time_s"]["value"].as_f64().unwrap() - 5.0).abs() < 1e-3);
     assert!((sls["numbers"]["amplitude_m"]["value"].as_f64().unwrap() - 3e-4).abs() < 1e-6);
+    // A hold whose limits are given is that one; one in which the displacement is said to be held does not creep.
+    let given = |mode: &str| format!("[[phases.hold]]\nfrom = \"3 s\"\nto = \"13 s\"\n{mode}");
+    file(folder.path(), "given.toml", given(""));
+    let arguments = ["compare", &record, "--creep", "--format", "json", "--test", "given.toml"];
+    let document = json(folder.path(), &arguments);
+    let holds = document["records"][0]["holds"].as_array().unwrap();
+    assert_eq!((holds.len(), &holds[0]["start_s"], &holds[0]["end_s"]), (1, &3.0.into(), &13.0.into()));
+    assert_eq!(holds[0]["comparison"]["verdict"]["law"], "standard-linear-solid");
+    file(folder.path(), "given.toml", given("mode = \"displacement\""));
+    let error = refused(folder.path(), &arguments);
+    assert!(error.contains("the displacement is held wherever the force stays"), "{error}");
+    file(folder.path(), "given.toml", given("").replace("13 s", "99 s"));
+    let error = refused(folder.path(), &arguments);
+    assert!(error.contains("99") && error.contains("21"), "{error}");
 }
 
 #[test]

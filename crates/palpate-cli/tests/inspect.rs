@@ -168,3 +168,34 @@ fn machines_are_listed_and_suggested_but_never_taken() {
     file(folder, "machine.toml", "machine.preset = \"instron-bluehill-tension\"\n");
     assert_eq!(phases(folder, &["inspect", &record, "--test", "machine.toml"]), before);
 }
+
+/// A description with these lines uncommented: the tables of holds.
+fn with_holds(text: &str) -> String {
+    let from = text.find("# [[phases.hold]]").unwrap_or_else(|| panic!("{text}"));
+    let (before, holds) = text.split_at(from);
+    format!(
+        "{before}{}",
+        holds
+            .replace("# [[", "[[")
+            .replace("# from", "from")
+            .replace("# to", "to")
+            .replace("# mode", "mode")
+    )
+}
+
+#[test]
+fn the_holds_of_a_first_description_can_be_given_and_moved() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let record = file(folder, "press.csv", ramp_and_hold(7.0, 20.0));
+    let before = phases(folder, &["inspect", &record, "--write-test", "t.toml"]);
+    let written = fs::read_to_string(folder.join("t.toml")).unwrap();
+    assert!(written.contains("# to = \"8 s\"\n# mode = \"displacement\""), "{written}");
+    file(folder, "given.toml", with_holds(&written));
+    assert_eq!(phases(folder, &["inspect", &record, "--test", "given.toml"]), before);
+    let moved = with_holds(&written).replace("to = \"8 s\"", "to = \"6 s\"");
+    file(folder, "moved.toml", moved);
+    let told = phases(folder, &["inspect", &record, "--test", "moved.toml"]);
+    let hold = told.lines().find(|line| line.starts_with("hold")).unwrap_or_else(|| panic!("{told}"));
+    assert_eq!(hold.split_whitespace().nth(2), Some("6.00000"), "{told}");
+}

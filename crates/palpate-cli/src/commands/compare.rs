@@ -130,7 +130,7 @@ fn one(
     if arguments.creep {
         let corrected = corrected_record(&file.record, asked)
             .map_err(|error| Failure::of_file(path, &error, Some(error.hint())))?;
-        let holds = creep_holds(&corrected, &asked.segment, &options.compared, asked.fit_until)
+        let holds = creep_holds(&corrected, (&asked.segment, &asked.given_holds), &options.compared, asked.fit_until)
             .map_err(|error| Failure::of_file(path, &error, Some(error.hint().to_owned())))?;
         return Ok(ComparedRecord::of_creep(holds, input));
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use palpate::{
-    segment::{Phase, Segmentation},
+    segment::{HoldMode, Phase, Segmentation},
     units::Dimension,
 };
 
@@ -218,19 +218,48 @@ fn write_body(out: &mut String, part: &Part) {
 }
 
 fn write_phases(out: &mut String, file: &RecordFile, segmentation: &Segmentation) {
-    let time = file.record.time();
-    let holds: Vec<_> = segmentation.segments.iter().filter(|segment| segment.phase == Phase::Hold).collect();
-    let _ = writeln!(out, "# Holds found: {}.", holds.len());
-    for (index, hold) in holds.iter().enumerate() {
-        let (start, end) = (time[hold.start], time[hold.end - 1]);
-        let _ = writeln!(out, "#   {}: from {} s to {} s", index + 1, short(start), short(end));
-    }
-    let _ = writeln!(out, "# If that is not what you see, say what a hold is:");
+    let _ = writeln!(out, "# If the holds below are not what you see, say what a hold is:");
     let _ = writeln!(out, "# [phases]");
     if segmentation.settings.from_displacement {
         let _ = writeln!(out, "# tolerance = \"{} mm\"", short(1e3 * segmentation.settings.tolerance));
     }
-    let _ = writeln!(out, "# minimum_hold = \"{} s\"", short(segmentation.settings.minimum_hold));
+    let _ = writeln!(out, "# minimum_hold = \"{} s\"\n", short(segmentation.settings.minimum_hold));
+    let holds: Vec<_> = segmentation.segments.iter().filter(|segment| segment.phase == Phase::Hold).collect();
+    let _ = writeln!(
+        out,
+        "# Holds found: {}. To correct a limit, uncomment the tables of all of them: where any is",
+        holds.len()
+    );
+    let _ = writeln!(out, "# given, no others are sought.");
+    let time = file.record.time();
+    let places = decimals(file.record.sample_interval());
+    for hold in holds {
+        // Outwards, so that the first and the last sample stay inside.
+        let (from, to) = (time[hold.start], time[hold.end - 1]);
+        let from = rounded(from, places, f64::floor).max(time[0]);
+        let to = rounded(to, places, f64::ceil).min(time[time.len() - 1]);
+        let _ = writeln!(out, "# [[phases.hold]]\n# from = \"{from} s\"\n# to = \"{to} s\"");
+        let held = match hold.mode {
+            Some(HoldMode::DisplacementHeld) => "displacement",
+            Some(HoldMode::ForceHeld) => "force",
+            Some(HoldMode::Neither) => "neither",
+            None => continue,
+        };
+        let _ = writeln!(out, "# mode = \"{held}\"    # seen from the record: what the machine held");
+    }
+}
+
+/// Decimal places that tell a hundredth of a time between samples.
+fn decimals(interval: f64) -> i32 {
+    (2.0 - interval.log10().floor()).clamp(0.0, 12.0) as i32
+}
+
+/// A time to some decimal places, towards one side.
+fn rounded(time: f64, places: i32, towards: fn(f64) -> f64) -> f64 {
+    let scale = 10f64.powi(places);
+    let near = (time * scale).round() / scale;
+    // A time that was written with so many places is that one.
+    if (near - time).abs() <= 1e-9 / scale { near } else { towards(time * scale) / scale }
 }
 
 /// A number with five digits, for people.

@@ -2,7 +2,7 @@
 
 use palpate::analysis::{Analysis, Finding, HoldAnalysis, JointAnalysis, JointHolds, Severity, Signal};
 use palpate::identify::{Estimate, ExponentChoice, TrendVerdict};
-use palpate::segment::{After, Phase, RelaxationType};
+use palpate::segment::{After, HoldMode, Phase, RelaxationType};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -91,6 +91,8 @@ pub struct HoldDocument {
     pub displacement_m: Option<f64>,
     /// `loading` or `unloading`.
     pub after: Option<String>,
+    /// What the machine held: `displacement`, `force` or `neither`.
+    pub mode: Option<String>,
     /// `type_1` (the force falls), `type_2` (it rises) or `none`.
     pub relaxation: String,
     /// Change of the force over the hold, N.
@@ -338,6 +340,15 @@ pub(crate) fn after_word(after: After) -> &'static str {
     }
 }
 
+/// The word for what is held, as a description writes it.
+pub(crate) fn mode_word(mode: HoldMode) -> &'static str {
+    match mode {
+        HoldMode::DisplacementHeld => "displacement",
+        HoldMode::ForceHeld => "force",
+        HoldMode::Neither => "neither",
+    }
+}
+
 fn hold(hold: &HoldAnalysis) -> HoldDocument {
     let delta = |i: usize| hold.order.as_ref().map(|order| order.candidates[i].delta_bic);
     let time = hold
@@ -353,6 +364,7 @@ fn hold(hold: &HoldAnalysis) -> HoldDocument {
         fit_start_s: hold.fit_start,
         displacement_m: hold.displacement,
         after: hold.after.map(|after| after_word(after).to_owned()),
+        mode: hold.segment.mode.map(|mode| mode_word(mode).to_owned()),
         relaxation: match hold.relaxation.kind {
             RelaxationType::TypeI => "type_1",
             RelaxationType::TypeII => "type_2",

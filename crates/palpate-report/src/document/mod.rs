@@ -16,8 +16,8 @@ mod reproduction;
 mod settings;
 mod signals;
 
-pub(crate) use analysis::after_word;
 pub use analysis::{AnalysisDocument, FindingDocument, HoldDocument, Input, TableRow};
+pub(crate) use analysis::{after_word, mode_word};
 pub(crate) use comparison::certainty_word;
 pub use comparison::{
     ComparedHoldDocument, ComparedRecordDocument, ComparisonDocument, ComparisonSettingsDocument,

@@ -7,7 +7,7 @@ use palpate::segment::{After, RelaxationType};
 
 use super::{comparison_tables, findings};
 use crate::compared::ComparedRecord;
-use crate::document::{Input, after_word, termination};
+use crate::document::{Input, after_word, mode_word, termination};
 use crate::number::significant;
 use crate::table::{Cell, Table, TableColumn};
 
@@ -80,6 +80,7 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
     let mut table = Table::new("holds", "The holds that were found.")
         .column(column("Hold", "hold", ""))
         .column(column("After", "after", ""))
+        .column(column("Held", "mode", ""))
         .column(column("From", "start_s", "s"))
         .column(column("To", "end_s", "s"))
         .column(column("Fit from", "fit_start_s", "s"))
@@ -92,6 +93,7 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
         table = table.row(vec![
             Cell::Integer(hold.number as i64),
             Cell::text(hold.after.map_or("", after_word)),
+            Cell::text(hold.segment.mode.map_or("", mode_word)),
             Cell::number(hold.start, 6),
             Cell::number(hold.end, 6),
             Cell::number(hold.fit_start, 6),
@@ -111,6 +113,7 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
         ]);
     }
     table
+        .note("Held: what the machine kept, the displacement (the force relaxes), the force (the displacement creeps) or neither.")
         .note("Type I: the force falls; Type II: it rises. The laws are fitted from the time “Fit from” on, which may lie after the start of the hold.")
         .note("Significance: probability that noise alone makes a change of the force of this size.")
 }

@@ -5,7 +5,9 @@ use crate::choose::{CompareOptions, Comparison, compare_laws};
 use crate::identify::Samples;
 use crate::laws::Response;
 use crate::record::{Record, RecordError};
-use crate::segment::{After, HoldMode, Segment, SegmentError, SegmentOptions, find_phases, held_in};
+use crate::segment::{
+    After, GivenHold, HoldMode, Segment, SegmentError, SegmentOptions, find_phases, held_in, phases_with,
+};
 use crate::statistics::median;
 
 /// One hold of constant force, with the laws of creep compared on it.
@@ -48,6 +50,9 @@ pub enum CreepError {
     /// No hold of constant force.
     #[error("of the force: {0}")]
     Segment(SegmentError),
+    /// Limits that make no hold.
+    #[error(transparent)]
+    Given(SegmentError),
 }
 
 impl CreepError {
@@ -56,6 +61,7 @@ impl CreepError {
     pub fn hint(&self) -> &'static str {
         match self {
             Self::NoDisplacement | Self::Still(_) => "name the displacement under columns.displacement",
+            Self::Given(error) => error.hint(),
             Self::DisplacementHeld | Self::Segment(_) => {
                 "a hold of constant force is needed; without --creep holds of constant displacement are sought"
             }
@@ -79,8 +85,20 @@ fn of_force(error: SegmentError) -> CreepError {
     })
 }
 
-/// Holds of constant force: those over which the jaw is seen to creep, or else all in which the force stays.
-fn force_held(record: &Record, exchanged: &Record, segment: &SegmentOptions) -> Result<Vec<Segment>, CreepError> {
+/// Holds of constant force: of given ones all but those in which the displacement is held; else those over which the jaw is
+/// seen to creep, or else all in which the force stays.
+fn force_held(
+    record: &Record,
+    exchanged: &Record,
+    segment: &SegmentOptions,
+    given: &[GivenHold],
+) -> Result<Vec<Segment>, CreepError> {
+    if !given.is_empty() {
+        let found = phases_with(record, segment, given).map_err(CreepError::Given)?;
+        let creeps = |hold: &&Segment| hold.mode != Some(HoldMode::DisplacementHeld);
+        let creeping: Vec<Segment> = found.holds().filter(creeps).copied().collect();
+        return if creeping.is_empty() { Err(CreepError::DisplacementHeld) } else { Ok(creeping) };
+    }
     let held = |segment: &&Segment| segment.mode == Some(HoldMode::ForceHeld);
     let seen: Vec<Segment> =
         find_phases(record, segment).map_or_else(|_| Vec::new(), |found| found.holds().filter(held).copied().collect());
@@ -101,7 +119,7 @@ fn force_held(record: &Record, exchanged: &Record, segment: &SegmentOptions) -> 
 
 /// Finds the holds of constant force in a record and compares laws of creep on the displacement of each.
 ///
-/// They are those whose mode is [`HoldMode::ForceHeld`]. Where there is none, phases are found as for a squeeze, with force and
+/// Where holds are `given` they are those, less any whose mode is [`HoldMode::DisplacementHeld`]. Else they are those whose mode is [`HoldMode::ForceHeld`]. Where there is none, phases are found as for a squeeze, with force and
 /// displacement exchanged: the force is what the machine holds, to a fiftieth of its range, whatever tolerance `segment` has. `until` (s) limits how much of each hold is fitted.
 ///
 /// ```
@@ -114,7 +132,7 @@ fn force_held(record: &Record, exchanged: &Record, segment: &SegmentOptions) -> 
 /// let force: Vec<f64> = time.iter().map(|t| 6.0 * t.min(1.0)).collect();
 /// let jaw: Vec<f64> = time.iter().map(|t| 1e-3 * t.min(1.0) + 3e-4 * (1.0 - (-(t - 1.0f64).max(0.0) / 5.0).exp())).collect();
 /// let record = Record::new(time, Some(jaw), force)?;
-/// let holds = creep_holds(&record, &SegmentOptions::default(), &CompareOptions::default(), None)?;
+/// let holds = creep_holds(&record, (&SegmentOptions::default(), &[]), &CompareOptions::default(), None)?;
 /// assert_eq!(holds.len(), 1);
 /// assert!((holds[0].force - 6.0).abs() < 1e-9);
 /// let best = &holds[0].comparison.as_ref().unwrap().verdict.as_ref().unwrap().law;
@@ -126,7 +144,7 @@ fn force_held(record: &Record, exchanged: &Record, segment: &SegmentOptions) -> 
 /// [`CreepError`] for a record without displacement, or without a hold of constant force.
 pub fn creep_holds(
     record: &Record,
-    segment: &SegmentOptions,
+    (segment, given): (&SegmentOptions, &[GivenHold]),
     compare: &CompareOptions,
     until: Option<f64>,
 ) -> Result<Vec<CreepHold>, CreepError> {
@@ -134,7 +152,7 @@ pub fn creep_holds(
     let moved = record.displacement().ok_or(CreepError::NoDisplacement)?.to_vec();
     let exchanged =
         Record::new(record.time().to_vec(), Some(record.force().to_vec()), moved).map_err(CreepError::Still)?;
-    let held = force_held(&record, &exchanged, segment)?;
+    let held = force_held(&record, &exchanged, segment, given)?;
     let mut compare = compare.clone();
     compare.fit.response = Response::Creep;
     let time = exchanged.time();
@@ -167,7 +185,7 @@ mod tests {
     #[test]
     fn a_record_without_displacement_says_so() {
         let record = Record::new(vec![0.0, 1.0, 2.0], None, vec![0.0, 1.0, 1.0]).unwrap();
-        let found = creep_holds(&record, &SegmentOptions::default(), &CompareOptions::default(), None);
+        let found = creep_holds(&record, (&SegmentOptions::default(), &[]), &CompareOptions::default(), None);
         assert_eq!(found, Err(CreepError::NoDisplacement));
     }
 
@@ -176,7 +194,7 @@ mod tests {
         let time: Vec<f64> = (0..100).map(f64::from).collect();
         let force: Vec<f64> = time.iter().map(|t| t.min(10.0)).collect();
         let record = Record::new(time, Some(vec![1e-3; 100]), force).unwrap();
-        let found = creep_holds(&record, &SegmentOptions::default(), &CompareOptions::default(), None);
+        let found = creep_holds(&record, (&SegmentOptions::default(), &[]), &CompareOptions::default(), None);
         assert!(matches!(found, Err(CreepError::Still(_))), "{found:?}");
     }
 }

@@ -42,7 +42,7 @@ const fn text(name: &'static str, value: fn(&Line<'_>) -> Value) -> Column {
 }
 
 /// Columns that say which hold of which record it is, and how the force went.
-const HOLD: [Column; 18] = [
+const HOLD: [Column; 19] = [
     text("record", |line| line.document.input.path.clone().into()),
     text("part", |line| line.document.input.part.clone().into()),
     text("record_sha256", |line| line.document.input.sha256.clone().into()),
@@ -54,6 +54,7 @@ const HOLD: [Column; 18] = [
     number("fit_start_s", |line| line.hold.fit_start_s.into()),
     number("displacement_m", |line| line.hold.displacement_m.into()),
     text("after", |line| line.hold.after.clone().into()),
+    text("mode", |line| line.hold.mode.clone().into()),
     text("relaxation", |line| line.hold.relaxation.clone().into()),
     number("relaxation_p_value", |line| line.hold.p_value.into()),
     number("force_start_n", |line| line.hold.force_start_n.into()),
