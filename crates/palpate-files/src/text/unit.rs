@@ -29,7 +29,16 @@ const SUFFIXES: &[&str] = &[
 ];
 
 /// Opening and closing brackets that enclose units.
-const BRACKETS: [(char, char); 5] = [('(', ')'), ('[', ']'), ('{', '}'), ('（', '）'), ('【', '】')];
+const BRACKETS: [(char, char); 8] = [
+    ('(', ')'),
+    ('[', ']'),
+    ('{', '}'),
+    ('（', '）'),
+    ('［', '］'),
+    ('｛', '｝'),
+    ('【', '】'),
+    ('〔', '〕'),
+];
 
 /// A name less its unit, and the unit, from a cell such as `Force (N)`, `Kraft [N]`, `Force_N`, `F / N` or
 /// `Force, N`. Either is `None` if it is not there.
@@ -41,14 +50,24 @@ pub(crate) fn split(cell: &str) -> (Option<String>, Option<String>) {
         .or_else(|| behind_underscore(cell))
         .unwrap_or((cell, ""));
     let owned = |text: &str| Some(text.trim().to_owned()).filter(|text| !text.is_empty());
-    (owned(name), owned(unit))
+    (owned(name), owned(&narrow(unit)))
+}
+
+/// A unit less the full width that Japanese and Chinese programs give letters: `ｍｍ`, `Ｎ／ｍｍ²`.
+fn narrow(unit: &str) -> String {
+    let narrowed = |letter: char| match letter {
+        '！'..='～' => char::from_u32(u32::from(letter) - 0xFEE0).unwrap_or(letter),
+        '\u{3000}' => ' ',
+        other => other,
+    };
+    unit.chars().map(narrowed).collect()
 }
 
 /// The unit in a cell of its own, less its brackets.
 pub(crate) fn alone(cell: &str) -> Option<String> {
     let cell = cell.trim();
     let inside = inside_brackets(cell).unwrap_or(cell).trim();
-    Some(inside.to_owned()).filter(|unit| !unit.is_empty())
+    Some(narrow(inside).trim().to_owned()).filter(|unit| !unit.is_empty())
 }
 
 /// Whether a cell is a unit in a cell of its own: anything in brackets, or a known unit.
@@ -66,6 +85,7 @@ pub(crate) fn inside_brackets(cell: &str) -> Option<&str> {
 
 /// Whether `text` is made of words that units are made of: `mm`, `N/mm²`, `mN·m`, `1/s`, `kg m^-3`.
 pub(crate) fn is_known(text: &str) -> bool {
+    let text = narrow(text);
     let mut words = text
         .split(|character: char| "/*·⋅×^-−. ()²³⁻¹".contains(character) || character.is_ascii_digit())
         .filter(|word| !word.is_empty())
@@ -136,6 +156,12 @@ mod tests {
             ("Stress (N/mm²)", "Stress", "N/mm²"),
             ("k (N/(m s))", "k", "N/(m s)"),
             ("时间（秒）", "时间", "秒"),
+            ("荷重［N］", "荷重", "N"),
+            ("変位（mm）", "変位", "mm"),
+            ("変位（ｍｍ）", "変位", "mm"),
+            ("時間【s】", "時間", "s"),
+            ("応力〔Ｎ／ｍｍ²〕", "応力", "N/mm²"),
+            ("試験力｛kN｝", "試験力", "kN"),
             ("Force, kN", "Force", "kN"),
             ("Temp (°C)", "Temp", "°C"),
             ("Weg in mm", "Weg", "mm"),
@@ -154,6 +180,7 @@ mod tests {
             "mm/s",
             "PIP count",
             "Force (filtered)",
+            "試験力（平均）",
             "_mm",
         ] {
             assert_eq!(split(cell), (Some(cell.to_owned()), None));
@@ -166,6 +193,9 @@ mod tests {
     fn units_alone() {
         assert_eq!(alone("(mm/mm)"), Some("mm/mm".to_owned()));
         assert_eq!(alone("[°C]"), Some("°C".to_owned()));
+        assert_eq!(alone("［ｓ］"), Some("s".to_owned()));
+        assert_eq!(alone("Ｎ"), Some("N".to_owned()));
+        assert!(stands_alone("〔anything〕") && stands_alone("ｍｍ"));
         assert_eq!(alone(""), None);
         assert!(stands_alone("(anything)") && stands_alone("-") && stands_alone("mN·m"));
         assert!(!stands_alone("Force") && !stands_alone(""));

@@ -139,3 +139,16 @@ fn round_numbers_stay_round() {
     assert_eq!(file.record.displacement(), Some([0.035, 0.004_375].as_slice()));
     assert_eq!(file.record.force(), [0.003, 0.007]);
 }
+
+#[test]
+fn units_in_the_brackets_of_japan() {
+    for header in [
+        "時間【s】,変位（mm）,荷重［N］",
+        "時間（秒）,ストローク［ｍｍ］,試験力〔Ｎ〕",
+        "時間,変位,荷重\n［s］,［mm］,［N］",
+    ] {
+        let file = read(format!("{header}\n0,0,0\n0.5,1,2\n1,1,1.5\n"), "").unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(file.record.displacement().unwrap()[2], 1e-3, "{header}");
+        assert_eq!((file.record.time()[1], file.record.force()[1]), (0.5, 2.0), "{header}");
+    }
+}
