@@ -1,4 +1,4 @@
-//! Workbooks of spreadsheet programs: `.xlsx` and `.xls`, one test a sheet, or several side by side.
+//! Workbooks of spreadsheet programs: `.xlsx` and `.xls`, one test a sheet, or several side by side or one below the other.
 //!
 //! They are read by `calamine`, which believes what a file says of itself. What it may not believe is checked before.
 //!
@@ -9,6 +9,7 @@
 //! | `cell.rs`, `moment.rs` | cells, their places, dates |
 //! | `sample.rs` | the beginning of a sheet |
 //! | `table.rs` | finding the tables in it |
+//! | `stacked.rs` | tables one below the other |
 //! | `read.rs` | reading chosen columns of a table |
 //! | `xlsx/` | workbooks of Office Open XML |
 //! | `xls/` | workbooks of Excel 97 to 2003 |
@@ -19,6 +20,7 @@ mod moment;
 mod part;
 mod read;
 mod sample;
+mod stacked;
 mod table;
 mod xls;
 mod xlsx;

@@ -4,7 +4,8 @@ use super::{
     book::Book,
     read,
     sample::Sample,
-    table::{self, Table},
+    stacked,
+    table::{self, FoundTables, Table},
     xls::{self, Xls},
     xlsx::{self, Xlsx},
 };
@@ -75,16 +76,24 @@ pub(crate) fn look_into(input: &Input, make: Make, options: &ReadOptions) -> Res
             pass("empty");
             continue;
         }
-        let found = table::find(&sample, &options.layout);
         let numbers = |table: &Table| table.columns.iter().filter(|column| column.kind == ColumnKind::Number).count();
-        if !found.tables.iter().any(|table| numbers(table) >= 2) {
+        let holds = |found: &FoundTables| found.tables.iter().any(|table| numbers(table) >= 2);
+        let mut stacked = stacked::find(&sample, &options.layout);
+        stacked.retain(holds);
+        let is_stack = !stacked.is_empty();
+        let all = if is_stack { stacked } else { vec![table::find(&sample, &options.layout)] };
+        if !all.iter().any(holds) {
             pass("no table of numbers");
             continue;
         }
-        let several = found.tables.len() > 1;
-        for table in found.tables {
-            let part = part(&sheet.name, &table, several, found.beside, &sample);
-            looked.push((Place { sheet: index, table }, part));
+        for (found, number) in all.into_iter().zip(1..) {
+            let several = found.tables.len() > 1;
+            let name = if is_stack { format!("{}, table {number}", sheet.name) } else { sheet.name.clone() };
+            for table in found.tables {
+                let whole = sample.whole || table.end.is_some();
+                let part = part((&sheet.name, &name), &table, several, found.beside, whole);
+                looked.push((Place { sheet: index, table }, part));
+            }
         }
     }
     Ok(chosen(input, book, looked, skipped))
@@ -138,9 +147,9 @@ fn chosen(
     }
 }
 
-fn part(sheet: &str, table: &Table, several: bool, beside: usize, sample: &Sample) -> Part {
+fn part((sheet, name): (&str, &str), table: &Table, several: bool, beside: usize, whole: bool) -> Part {
     let first = u64::from(table.first_row) + 1;
-    let rows = match sample.whole {
+    let rows = match whole {
         true => format!("rows {first} to {}", u64::from(table.last_row) + 1),
         false => format!("data from row {first}"),
     };
@@ -150,7 +159,7 @@ fn part(sheet: &str, table: &Table, several: bool, beside: usize, sample: &Sampl
         count => format!(", {count} cells beside passed over"),
     };
     Part {
-        name: Some(if several { format!("{sheet}, {}", table.range()) } else { sheet.to_owned() }),
+        name: Some(if several { format!("{name}, {}", table.range()) } else { name.to_owned() }),
         written: format!("sheet {sheet}, {}, {rows}{beside}", table.range()),
         rows: None,
         columns: table.columns.clone(),

@@ -44,6 +44,9 @@ pub(super) fn read(
         if cell.row < table.first_row {
             return Ok(ControlFlow::Continue(()));
         }
+        if table.end.is_some_and(|end| cell.row >= end) {
+            return Ok(ControlFlow::Break(()));
+        }
         if let Ok(place) = table.places.binary_search(&cell.column) {
             if reading.number.is_some_and(|number| number != cell.row) {
                 reading.end_row()?;

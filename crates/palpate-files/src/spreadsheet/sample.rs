@@ -22,7 +22,7 @@ pub(super) struct Sample {
 }
 
 /// A row of a sheet.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Row {
     /// Its number, from 0.
     pub(super) number: u32,

@@ -26,6 +26,8 @@ pub(super) struct Table {
     pub(super) first_row: u32,
     /// Last row of data in the sample, from 0.
     pub(super) last_row: u32,
+    /// Row, from 0, on which what belongs to the next table below begins.
+    pub(super) end: Option<u32>,
     /// Index in `columns` of the first one of numbers, which tells rows of data from other rows.
     pub(super) leading: usize,
     /// Columns that hold times of day without a date, or dates: what is taken off their days.
@@ -161,6 +163,7 @@ fn table(sample: &Sample, places: &[u32], options: &LayoutOptions) -> Option<Tab
         columns,
         first_row,
         last_row,
+        end: None,
         leading,
         dated: places
             .iter()

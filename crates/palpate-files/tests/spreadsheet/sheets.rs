@@ -177,3 +177,39 @@ fn a_mean_beside_tests_is_none_and_alone_is_one() {
     let alone = open(&Book::of(&[("Eprouvette moyenne", &table)]).bytes()).expect("a workbook");
     assert_eq!(alone.parts().len(), 1);
 }
+
+#[test]
+fn tables_one_below_the_other_are_tests_of_their_own() {
+    let mut sheet = zwick("P1");
+    let first = sheet.len() as u32;
+    sheet.push(vec![]);
+    sheet.push(vec![T("Second specimen")]);
+    sheet.extend(zwick("P2").into_iter().take(13));
+    sheet.push(vec![]);
+    sheet.extend(zwick("P3"));
+    sheet.push(vec![T("end of test")]);
+    let contents = open(&Book::of(&[("Press", &sheet)]).bytes()).expect("a workbook");
+    let titles: Vec<&str> = contents.parts().iter().map(Part::title).collect();
+    assert_eq!(titles, ["Press, table 1", "Press, table 2", "Press, table 3"]);
+    assert!(
+        contents.parts()[0].written.contains(&format!("rows 4 to {first}")),
+        "{}",
+        contents.parts()[0].written
+    );
+    let rows: Vec<usize> = (0..3).map(|part| read(&contents, part, &[1, 2, 3]).expect("a table").rows()).collect();
+    assert_eq!(rows, [20, 10, 20]);
+    for part in contents.parts() {
+        assert_eq!(names(part), [("Temps d'essai", "s"), ("Force standard", "N"), ("Allongement", "mm")]);
+    }
+    let second = read(&contents, 1, &[2]).expect("a table");
+    assert_eq!((second.values[0][0], second.values[0][9], second.line_of(0)), (0.0, 13.5, Some(first as usize + 6)));
+}
+
+#[test]
+fn results_above_a_test_are_no_table_of_their_own() {
+    let mut sheet = vec![vec![T("Specimen"), T("Fmax")], vec![T("one"), N(3.0)], vec![T("two"), N(4.0)], vec![]];
+    sheet.extend(zwick("P1"));
+    let contents = open(&Book::of(&[("Press", &sheet)]).bytes()).expect("a workbook");
+    let titles: Vec<&str> = contents.parts().iter().map(Part::title).collect();
+    assert_eq!(titles, ["Press"]);
+}
