@@ -237,12 +237,12 @@ impl Log<'_> {
     }
 }
 
+/// Most memory that a frame of zstd may ask for to look back in, 64 MiB, as a power of two.
+const WINDOW: u32 = 26;
+
 /// Unpacks every frame, up to `most` bytes.
-fn unzstd(mut packed: &[u8], most: u64, content: &mut Vec<u8>) -> io::Result<usize> {
-    while !packed.is_empty() && (content.len() as u64) < most {
-        let frame = ruzstd::decoding::StreamingDecoder::new(&mut packed).map_err(io::Error::other)?;
-        let left = most - content.len() as u64;
-        frame.take(left).read_to_end(content)?;
-    }
-    Ok(content.len())
+fn unzstd(packed: &[u8], most: u64, content: &mut Vec<u8>) -> io::Result<usize> {
+    let mut frames = zstd::stream::read::Decoder::with_buffer(packed)?;
+    frames.window_log_max(WINDOW)?;
+    frames.take(most).read_to_end(content)
 }
