@@ -7,6 +7,7 @@ use std::{
 
 use crate::{
     input::Foreign,
+    shown::shown,
     text::{DecimalMark, Delimiter},
 };
 
@@ -28,7 +29,7 @@ impl fmt::Display for CellPlace {
         let (path, line, column) = (self.path.display(), self.line, self.column);
         write!(f, "{path}, line {line}, column {column}")?;
         match &self.name {
-            Some(name) => write!(f, " ({name})"),
+            Some(name) => write!(f, " ({})", shown(name)),
             None => Ok(()),
         }
     }
@@ -105,7 +106,7 @@ pub enum FileError {
         members: Vec<String>,
     },
     /// A part of the file is not as its format has it: cut off, overwritten, or written by another rule.
-    #[error("{}: {place}: expected {expected}, found {found}", path.display())]
+    #[error("{}: {}: expected {}, found {}", path.display(), shown(place), shown(expected), shown(found))]
     Damaged {
         /// The file.
         path: PathBuf,
@@ -117,7 +118,7 @@ pub enum FileError {
         found: String,
     },
     /// A cell does not hold the number that was asked for, in a format where cells have names.
-    #[error("{}, {place}: expected {expected}, found {found}", path.display())]
+    #[error("{}, {}: expected {}, found {}", path.display(), shown(place), shown(expected), shown(found))]
     BadCell {
         /// The file.
         path: PathBuf,
@@ -165,7 +166,7 @@ pub enum FileError {
         limit: usize,
     },
     /// The rows of numbers do not fall into columns.
-    #[error("{}, line {line}: expected two or more columns, found one: `{found}`", path.display())]
+    #[error("{}, line {line}: expected two or more columns, found one: `{}`", path.display(), shown(found))]
     OneColumn {
         /// The file.
         path: PathBuf,
@@ -187,7 +188,7 @@ pub enum FileError {
         header_line: Option<usize>,
     },
     /// It is uncertain which character marks decimals.
-    #[error("{}, line {line}: {doubt}: `{found}`", path.display())]
+    #[error("{}, line {line}: {doubt}: `{}`", path.display(), shown(found))]
     AmbiguousDecimal {
         /// The file.
         path: PathBuf,
@@ -209,7 +210,7 @@ pub enum FileError {
         columns: usize,
     },
     /// A cell in a column of numbers holds something else.
-    #[error("{place}: expected a number with a decimal {decimal}, found `{found}`")]
+    #[error("{place}: expected a number with a decimal {decimal}, found `{}`", shown(found))]
     TextInNumbers {
         /// The cell.
         place: CellPlace,
@@ -219,7 +220,7 @@ pub enum FileError {
         decimal: DecimalMark,
     },
     /// A cell in a column of numbers holds a word for "no number" or for infinity.
-    #[error("{place}: expected a finite number, found `{found}`")]
+    #[error("{place}: expected a finite number, found `{}`", shown(found))]
     NotFinite {
         /// The cell.
         place: CellPlace,
@@ -257,7 +258,7 @@ pub enum FileError {
         found: usize,
     },
     /// Something that is no data stands between rows of data.
-    #[error("{}, line {line}: expected a row of data, found `{found}` with more data from line {resumes}", path.display())]
+    #[error("{}, line {line}: expected a row of data, found `{}` with more data from line {resumes}", path.display(), shown(found))]
     Interrupted {
         /// The file.
         path: PathBuf,
@@ -287,7 +288,7 @@ impl FileError {
 /// The first few of the files in an archive.
 fn files(members: &[String]) -> String {
     const MOST: usize = 3;
-    let named: Vec<&str> = members.iter().take(MOST).map(String::as_str).collect();
+    let named: Vec<String> = members.iter().take(MOST).map(|member| shown(member)).collect();
     match (members.len(), named.join(", ")) {
         (0, _) => "none".to_owned(),
         (count, named) if count > MOST => format!("{count}: {named}, …"),
@@ -298,7 +299,7 @@ fn files(members: &[String]) -> String {
 /// The first few of the parts of a file, with why they are no tests.
 fn skipped(parts: &[(String, String)]) -> String {
     const MOST: usize = 3;
-    let named: Vec<String> = parts.iter().take(MOST).map(|(name, reason)| format!("{name}: {reason}")).collect();
+    let named: Vec<String> = parts.iter().take(MOST).map(|(name, reason)| format!("{}: {}", shown(name), shown(reason))).collect();
     let more = if parts.len() > MOST { "; …" } else { "" };
     format!("{}{more}", named.join("; "))
 }
@@ -317,7 +318,7 @@ fn bytes(count: u64) -> String {
 pub(crate) fn reason(source: &io::Error) -> String {
     match source.kind() {
         io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
-        _ => source.to_string(),
+        _ => shown(&source.to_string()),
     }
 }
 

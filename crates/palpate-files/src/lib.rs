@@ -22,6 +22,7 @@ pub mod input;
 pub mod parquet_table;
 pub mod record_file;
 mod robot_log;
+mod shown;
 mod spreadsheet;
 pub mod text;
 

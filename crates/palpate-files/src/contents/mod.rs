@@ -92,7 +92,9 @@ impl Contents {
     /// As for [`open`](Self::open).
     pub fn of(input: Input, options: &ReadOptions) -> Result<Self, FileError> {
         let format = Format::of(&input);
-        let found = format.look_into(&input, options)?;
+        let mut found = format.look_into(&input, options)?;
+        found.parts.iter_mut().for_each(Part::make_plain);
+        found.skipped.iter_mut().for_each(SkippedPart::make_plain);
         if found.parts.is_empty() {
             let parts = found.skipped.into_iter().map(|part| (part.name, part.reason)).collect();
             return Err(FileError::NoParts {

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::description::ColumnRef;
+use crate::{description::ColumnRef, shown};
 
 /// A part of a file that holds one test: all of a text, one sheet of a workbook, one curve, one value of `test_id`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
@@ -75,10 +75,31 @@ impl Part {
         self.clocks.iter().find(|clock| (clock.first..=clock.last).contains(&number))
     }
 
+    /// Makes its words fit to be shown: a name that holds control characters is one with � in their place from here on.
+    pub(super) fn make_plain(&mut self) {
+        let columns = self.columns.iter_mut().flat_map(|column| {
+            let (name, unit) = (column.name.as_mut(), column.unit.as_mut());
+            name.into_iter().chain(unit).chain([&mut column.sample])
+        });
+        let values = self.metadata.iter_mut().flat_map(|entry| {
+            let unit = entry.unit.as_mut();
+            [&mut entry.name, &mut entry.value].into_iter().chain(unit)
+        });
+        let labels = self.labels.iter_mut().map(|label| &mut label.name);
+        let own = self.name.iter_mut().chain([&mut self.written]);
+        own.chain(columns).chain(values).chain(labels).for_each(make_plain);
+    }
+
     /// What messages call it.
     #[must_use]
     pub fn title(&self) -> &str {
         self.name.as_deref().unwrap_or("the file")
+    }
+}
+
+fn make_plain(text: &mut String) {
+    if !shown::is_plain(text) {
+        *text = shown::plain(text);
     }
 }
 
@@ -94,6 +115,14 @@ pub struct SkippedPart {
     pub name: String,
     /// Why it is none.
     pub reason: String,
+}
+
+impl SkippedPart {
+    /// As for a [`Part`].
+    pub(super) fn make_plain(&mut self) {
+        make_plain(&mut self.name);
+        make_plain(&mut self.reason);
+    }
 }
 
 /// A named value that stands beside the data, such as `Diameter,"0.399",mm`.

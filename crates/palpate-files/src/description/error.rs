@@ -4,7 +4,10 @@ use std::{fmt, io, path::PathBuf};
 
 use palpate::units::{Dimension, UnitError};
 
-use crate::error::{allowed, reason};
+use crate::{
+    error::{allowed, reason},
+    shown::{plain, shown},
+};
 
 /// Ends the words for what is accepted where a value is out of all proportion.
 pub(super) const BELIEVABLE: &str = "as bodies have it";
@@ -29,7 +32,7 @@ impl fmt::Display for KeyPlace {
         if self.key.is_empty() {
             return Ok(());
         }
-        write!(f, ": {}", self.key)
+        write!(f, ": {}", shown(&self.key))
     }
 }
 
@@ -77,7 +80,7 @@ pub enum DescriptionError {
         line: usize,
     },
     /// The text is no TOML.
-    #[error("{}, line {line}, column {column}: expected TOML, found `{text}` ({message})", path.display())]
+    #[error("{}, line {line}, column {column}: expected TOML, found `{}` ({message})", path.display(), shown(text))]
     Syntax {
         /// The file.
         path: PathBuf,
@@ -117,7 +120,7 @@ pub enum DescriptionError {
         expected: String,
     },
     /// A quantity that cannot be read.
-    #[error("{place} = {found}: {source}")]
+    #[error("{place} = {}: {}", shown(found), shown(&source.to_string()))]
     Quantity {
         /// The key.
         place: KeyPlace,
@@ -127,7 +130,7 @@ pub enum DescriptionError {
         source: UnitError,
     },
     /// A value of the wrong kind or size.
-    #[error("{place}: expected {expected}, found {found}")]
+    #[error("{place}: expected {expected}, found {}", shown(found))]
     Value {
         /// The key.
         place: KeyPlace,
@@ -155,7 +158,7 @@ pub enum DescriptionError {
         other: String,
     },
     /// Something else that the TOML reader says about a value.
-    #[error("{place}: {message}")]
+    #[error("{place}: {}", shown(message))]
     Other {
         /// The key.
         place: KeyPlace,
@@ -184,6 +187,10 @@ impl DescriptionError {
     /// What would help, if that is known.
     #[must_use]
     pub fn hint(&self) -> Option<String> {
+        self.help().map(|text| plain(&text))
+    }
+
+    fn help(&self) -> Option<String> {
         match self {
             Self::NotFound { .. } => Some("check the spelling of the path".to_owned()),
             Self::Directory { .. } => Some("name the TOML file inside it".to_owned()),

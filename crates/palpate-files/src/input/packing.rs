@@ -30,7 +30,7 @@ impl fmt::Display for Packing {
         match self {
             Self::None => f.write_str("not packed"),
             Self::Gzip => f.write_str("packed by gzip"),
-            Self::Zip { member } => write!(f, "packed in a zip archive as {member}"),
+            Self::Zip { member } => write!(f, "packed in a zip archive as {}", crate::shown::shown(member)),
         }
     }
 }

@@ -7,10 +7,11 @@ use std::io::{self, Read};
 
 use mcap::{
     McapError,
-    records::{ChunkHeader, Record, op},
+    records::op,
     sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions},
 };
 
+use super::record::{self, Chunk};
 use crate::{
     error::FileError,
     input::{Input, InputReader},
@@ -115,13 +116,9 @@ impl Log<'_> {
         if opcode != op::CHUNK {
             return self.entry(opcode, data, visit);
         }
-        match mcap::parse_record(opcode, data).map_err(|error| self.failed(&error))? {
-            Record::Chunk { header, data } => {
-                let content = self.unpacked(&header, &data)?;
-                self.chunk(&content, visit)
-            }
-            _ => Ok(()),
-        }
+        let chunk = record::chunk(data).map_err(|expected| self.other(expected))?;
+        let content = self.unpacked(&chunk)?;
+        self.chunk(&content, visit)
     }
 
     /// The records of an unpacked chunk.
@@ -144,47 +141,24 @@ impl Log<'_> {
 
     /// One record that is no chunk.
     fn entry(&mut self, opcode: u8, data: &[u8], visit: &mut Visit<'_>) -> Result<(), FileError> {
-        if !matches!(opcode, op::HEADER | op::SCHEMA | op::CHANNEL | op::MESSAGE) {
-            return Ok(());
-        }
-        let record = mcap::parse_record(opcode, data).map_err(|error| self.failed(&error))?;
-        match &record {
-            Record::Header(header) => visit(&Entry::Header {
-                profile: &header.profile,
-            }),
-            Record::Schema { header, data } => visit(&Entry::Schema {
-                id: header.id,
-                name: &header.name,
-                encoding: &header.encoding,
-                text: data,
-            }),
-            Record::Channel(channel) => visit(&Entry::Channel {
-                id: channel.id,
-                schema: channel.schema_id,
-                topic: &channel.topic,
-                encoding: &channel.message_encoding,
-            }),
-            Record::Message { header, data } => {
-                self.messages += 1;
-                visit(&Entry::Message {
-                    channel: header.channel_id,
-                    log_time: header.log_time,
-                    data,
-                })
+        match record::entry(opcode, data).map_err(|expected| self.other(expected))? {
+            Some(entry) => {
+                self.messages += u64::from(opcode == op::MESSAGE);
+                visit(&entry)
             }
-            _ => Ok(()),
+            None => Ok(()),
         }
     }
 
     /// The content of a chunk, which must have the length and the checksum that its header says.
-    fn unpacked(&self, header: &ChunkHeader, packed: &[u8]) -> Result<Vec<u8>, FileError> {
-        let length = header.uncompressed_size;
+    fn unpacked(&self, chunk: &Chunk<'_>) -> Result<Vec<u8>, FileError> {
+        let (length, packed) = (chunk.unpacked_size, chunk.packed);
         if length > MOST_RECORD as u64 {
             return Err(self.input.too_large("a chunk of the log", MOST_RECORD as u64));
         }
         let mut content = Vec::new();
         let most = length + 1;
-        let result = match header.compression.as_str() {
+        let result = match chunk.compression {
             "" => packed.take(most).read_to_end(&mut content),
             "zstd" => unzstd(packed, most, &mut content),
             "lz4" => lz4_flex::frame::FrameDecoder::new(packed).take(most).read_to_end(&mut content),
@@ -194,7 +168,7 @@ impl Log<'_> {
             }
         };
         if let Err(error) = result {
-            let expected = format!("a chunk compressed by {}", header.compression);
+            let expected = format!("a chunk compressed by {}", chunk.compression);
             return Err(self.damaged(expected, error.to_string()));
         }
         if content.len() as u64 != length {
@@ -203,8 +177,8 @@ impl Log<'_> {
         }
         let mut sum = flate2::Crc::new();
         sum.update(&content);
-        if header.uncompressed_crc != 0 && sum.sum() != header.uncompressed_crc {
-            let expected = format!("a chunk with checksum {:08x}", header.uncompressed_crc);
+        if chunk.checksum != 0 && sum.sum() != chunk.checksum {
+            let expected = format!("a chunk with checksum {:08x}", chunk.checksum);
             return Err(self.damaged(expected, format!("{:08x}", sum.sum())));
         }
         Ok(content)
@@ -221,6 +195,10 @@ impl Log<'_> {
             expected,
             found,
         }
+    }
+
+    fn other(&self, expected: &str) -> FileError {
+        self.damaged(expected.to_owned(), "other bytes, or their end".to_owned())
     }
 
     /// What the reader of the container says.

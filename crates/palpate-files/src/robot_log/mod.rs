@@ -10,6 +10,7 @@
 //! | file | what |
 //! |---|---|
 //! | `container.rs` | the records of an MCAP file in order, chunks unpacked |
+//! | `record.rs` | what a record says |
 //! | `schema.rs` | how the messages of a topic are laid out |
 //! | `channel.rs` | whose messages can be read, and how |
 //! | `cdr.rs`, `json.rs`, `fields.rs` | the numbers in one message |
@@ -23,6 +24,7 @@ mod container;
 mod fields;
 mod json;
 mod part;
+mod record;
 mod schema;
 mod survey;
 mod units;

@@ -1,0 +1,43 @@
+//! Words out of a file, fit to be shown to people.
+//!
+//! What a file holds may move the cursor of a terminal, or be as long as the file.
+
+/// Most letters of a file's own words in a message.
+const MOST: usize = 240;
+
+/// Whether every letter is one to look at.
+pub(crate) fn is_plain(text: &str) -> bool {
+    !text.chars().any(char::is_control)
+}
+
+/// `text` on one line: ends of lines and tabs as blanks, other control characters as �.
+pub(crate) fn plain(text: &str) -> String {
+    let shown = |letter: char| match letter {
+        '\t' | '\n' | '\r' => ' ',
+        letter if letter.is_control() => char::REPLACEMENT_CHARACTER,
+        letter => letter,
+    };
+    text.chars().map(shown).collect()
+}
+
+/// `text` as messages show it: on one line, and no longer than anybody reads.
+pub(crate) fn shown(text: &str) -> String {
+    let mut letters = text.trim().chars();
+    let mut short: String = letters.by_ref().take(MOST).collect();
+    if letters.next().is_some() {
+        short.push('…');
+    }
+    plain(&short)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_moves_the_cursor_or_fills_the_screen() {
+        assert_eq!(shown("a\tb\r\nc\u{1b}[2J\u{9b}x\0"), "a b  c\u{fffd}[2J\u{fffd}x\u{fffd}");
+        assert_eq!(shown(&"ä".repeat(1000)).chars().count(), MOST + 1);
+        assert!(is_plain("5 µm ≥ 力") && !is_plain("\u{7f}"));
+    }
+}

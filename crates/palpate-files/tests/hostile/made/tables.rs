@@ -1,0 +1,129 @@
+//! Parquet and Arrow: tables of columns with types.
+
+use std::sync::Arc;
+
+use arrow_array::{ArrayRef, Float64Array, Int64Array, ListArray, RecordBatch, StringArray, types::Float64Type};
+use arrow_ipc::writer::{FileWriter, StreamWriter};
+use parquet::arrow::ArrowWriter;
+
+use super::{Made, place, with};
+
+fn table(columns: Vec<(&str, ArrayRef)>) -> RecordBatch {
+    let nullable = columns.into_iter().map(|(name, column)| (name, column, true));
+    RecordBatch::try_from_iter_with_nullable(nullable).expect("a batch")
+}
+
+fn numbers(values: &[Option<f64>]) -> ArrayRef {
+    Arc::new(Float64Array::from_iter(values.iter().copied()))
+}
+
+/// Four rows of time and the force that is asked for.
+fn press(force: [Option<f64>; 4]) -> RecordBatch {
+    table(vec![("time_s", numbers(&[0.0, 0.1, 0.2, 0.3].map(Some))), ("force_N", numbers(&force))])
+}
+
+fn good() -> RecordBatch {
+    press([0.5, 4.5, 3.5, 3.0].map(Some))
+}
+
+/// Tables that are whole and hold what is no test; the format's own damage comes on top.
+fn tables() -> Vec<(&'static str, RecordBatch)> {
+    let force = numbers(&[0.5, 4.5, 3.5, 3.0].map(Some));
+    let list = ListArray::from_iter_primitive::<Float64Type, _, _>([Some([Some(1.0)]), Some([Some(2.0)])]);
+    let words = StringArray::from(vec!["0.5", "4.5", "overload", "3.0"]);
+    let ids = StringArray::from(vec!["a", "a", "b", "b"]);
+    let back = numbers(&[0.0, 0.2, 0.1, 0.3].map(Some));
+    let counts = Int64Array::from(vec![0, i64::MAX, i64::MIN, 1]);
+    vec![
+        ("good", good()),
+        (
+            "good_tests",
+            table(vec![
+                ("test_id", Arc::new(ids)),
+                ("time_s", numbers(&[0.0, 0.1, 0.0, 0.1].map(Some))),
+                ("force_N", force.clone()),
+            ]),
+        ),
+        ("no_rows", good().slice(0, 0)),
+        ("nothing_in_a_cell", press([Some(0.5), None, Some(3.5), Some(3.0)])),
+        ("nothing_at_all", press([None; 4])),
+        ("not_a_number", press([Some(0.5), Some(f64::NAN), Some(3.5), Some(3.0)])),
+        ("infinity", press([Some(0.5), Some(f64::NEG_INFINITY), Some(3.5), Some(3.0)])),
+        ("time_goes_back", table(vec![("time_s", back), ("force_N", force.clone())])),
+        ("time_of_huge_counts", table(vec![("time_s", Arc::new(counts)), ("force_N", force.clone())])),
+        ("force_of_texts", table(vec![("time_s", force.clone()), ("force_N", Arc::new(words))])),
+        ("only_lists", table(vec![("samples", Arc::new(list))])),
+        ("names_with_controls", table(vec![("time_s", force.clone()), ("fo\u{1b}[2Jrce", force)])),
+    ]
+}
+
+fn parquet_of(batch: &RecordBatch) -> Vec<u8> {
+    let mut writer = ArrowWriter::try_new(Vec::new(), batch.schema(), None).expect("a writer");
+    writer.write(batch).expect("rows");
+    writer.into_inner().expect("a file")
+}
+
+pub(super) fn parquet() -> Vec<Made> {
+    let name = |name: &str| format!("{name}.parquet").leak() as &'static str;
+    let mut files: Vec<Made> = tables().iter().map(|(own, table)| (name(own), parquet_of(table))).collect();
+    let whole = parquet_of(&good());
+    let end = whole.len();
+    let length = |length: u32| with(&whole, end - 8, &length.to_le_bytes());
+    let footer = end - 8 - u32::from_le_bytes(*whole[end - 8..].first_chunk().expect("a length")) as usize;
+    files.extend([
+        ("only_magic.parquet", b"PAR1".to_vec()),
+        ("cut_in_the_rows.parquet", whole[..60].to_vec()),
+        ("cut_in_the_footer.parquet", whole[..footer + 40].to_vec()),
+        ("cut_at_the_end.parquet", whole[..end - 3].to_vec()),
+        ("lying_length_of_the_footer.parquet", length(u32::MAX)),
+        ("footer_of_no_length.parquet", length(0)),
+        ("footer_too_short.parquet", length(40)),
+        ("encrypted_footer.parquet", with(&whole, end - 4, b"PARE")),
+        ("other_magic_at_the_end.parquet", with(&whole, end - 4, b"PAR2")),
+        ("footer_overwritten.parquet", with(&whole, footer, &[0xFF; 24])),
+        ("rows_overwritten.parquet", with(&whole, 4, &[0xFF; 40])),
+        ("footer_of_words.footer", b"this is no footer at all".to_vec()),
+        ("footer_of_a_lying_list.footer", vec![0x15, 2, 0x19, 0xFC, 0xFF, 0xFF, 0xFF, 0xFF, 0x0F, 0, 0]),
+        ("footer_of_a_lying_text.footer", vec![0x15, 2, 0x19, 0x1C, 0x48, 0xFF, 0xFF, 0xFF, 0xFF, 0x0F, b'a', 0]),
+    ]);
+    files
+}
+
+fn file_of(batch: &RecordBatch) -> Vec<u8> {
+    let mut writer = FileWriter::try_new(Vec::new(), &batch.schema()).expect("a writer");
+    writer.write(batch).expect("rows");
+    writer.into_inner().expect("a file")
+}
+
+fn stream_of(batch: &RecordBatch) -> Vec<u8> {
+    let mut writer = StreamWriter::try_new(Vec::new(), &batch.schema()).expect("a writer");
+    writer.write(batch).expect("rows");
+    writer.into_inner().expect("a stream")
+}
+
+pub(super) fn arrow() -> Vec<Made> {
+    let name = |name: &str| format!("{name}.arrows").leak() as &'static str;
+    let mut files: Vec<Made> = tables().iter().map(|(own, table)| (name(own), stream_of(table))).collect();
+    let (file, stream) = (file_of(&good()), stream_of(&good()));
+    // The second message is the batch: its mark, the length of its description, the description.
+    let mark = [0xFF; 4];
+    let batch = 4 + place(&stream[4..], &mark);
+    let said = u32::from_le_bytes(*stream[batch + 4..].first_chunk().expect("a length")) as usize;
+    files.extend([
+        ("good.arrow", file.clone()),
+        ("only_magic.arrow", b"ARROW1".to_vec()),
+        ("cut_at_the_end.arrow", file[..file.len() - 3].to_vec()),
+        ("cut_in_the_middle.arrow", file[..file.len() / 2].to_vec()),
+        ("lying_length_of_the_schema.arrow", with(&file, 12, &[0xFF, 0xFF, 0xFF, 0x7F])),
+        ("schema_cut.arrows", stream[..60].to_vec()),
+        ("schema_overwritten.arrows", with(&stream, 20, &[0xFF; 16])),
+        ("only_schema.arrows", stream[..batch].to_vec()),
+        ("cut_in_a_length.arrows", stream[..batch + 6].to_vec()),
+        ("cut_in_a_description.arrows", stream[..batch + 20].to_vec()),
+        ("cut_in_a_batch.arrows", stream[..batch + 8 + said + 20].to_vec()),
+        ("lying_length_of_a_description.arrows", with(&stream, batch + 4, &[0xFF, 0xFF, 0xFF, 0x03])),
+        ("description_overwritten.arrows", with(&stream, batch + 12, &[0xFF; 24])),
+        ("schema_in_place_of_a_batch.arrows", [&stream[..batch], &stream[..]].concat()),
+    ]);
+    files
+}
