@@ -117,6 +117,20 @@ pub enum FileError {
         /// What is there.
         found: String,
     },
+    /// The file is whole, and is not of a kind that is read.
+    #[error("{}: {}: expected {}, found {}", path.display(), shown(place), shown(expected), shown(found))]
+    Unfit {
+        /// The file.
+        path: PathBuf,
+        /// Where in the file.
+        place: String,
+        /// What is read.
+        expected: String,
+        /// What is there.
+        found: String,
+        /// What would help.
+        hint: &'static str,
+    },
     /// A cell does not hold the number that was asked for, in a format where cells have names.
     #[error("{}, {}: expected {}, found {}", path.display(), shown(place), shown(expected), shown(found))]
     BadCell {
@@ -147,8 +161,16 @@ pub enum FileError {
         /// The limit.
         most_bytes: u64,
     },
+    /// A small file that unpacks to a large one.
+    #[error("{}: expected a file that unpacks to at most {most_times} times its size, found one of more", path.display())]
+    Swells {
+        /// The file.
+        path: PathBuf,
+        /// The limit.
+        most_times: u64,
+    },
     /// No part of the file is a table of numbers.
-    #[error("{}: expected a test, found none: {}", path.display(), skipped(parts))]
+    #[error("{}: expected a test, found none{}", path.display(), skipped(parts))]
     NoParts {
         /// The file.
         path: PathBuf,
@@ -299,9 +321,14 @@ fn files(members: &[String]) -> String {
 /// The first few of the parts of a file, with why they are no tests.
 fn skipped(parts: &[(String, String)]) -> String {
     const MOST: usize = 3;
-    let named: Vec<String> = parts.iter().take(MOST).map(|(name, reason)| format!("{}: {}", shown(name), shown(reason))).collect();
+    let named: Vec<String> = parts
+        .iter()
+        .take(MOST)
+        .map(|(name, reason)| format!("{}: {}", shown(name), shown(reason)))
+        .collect();
     let more = if parts.len() > MOST { "; …" } else { "" };
-    format!("{}{more}", named.join("; "))
+    let colon = if named.is_empty() { "" } else { ": " };
+    format!("{colon}{}{more}", named.join("; "))
 }
 
 /// A number of bytes in words.

@@ -22,9 +22,12 @@ impl FileError {
             Self::Archive { members, .. } if members.is_empty() => Some("pack the record again".to_owned()),
             Self::Archive { .. } => Some("unpack it and name the files one by one, or their folder".to_owned()),
             Self::Damaged { .. } => Some("copy or export the file again; it may be cut off".to_owned()),
-            Self::BadCell { hint, .. } => Some((*hint).to_owned()),
+            Self::BadCell { hint, .. } | Self::Unfit { hint, .. } => Some((*hint).to_owned()),
             Self::Encrypted { .. } => Some("open it where it was made and save it without a password".to_owned()),
             Self::TooLarge { .. } => Some("split the file, or export less of it".to_owned()),
+            Self::Swells { .. } => {
+                Some("if you trust it, unpack it by another program and name what is inside".to_owned())
+            }
             Self::NoParts { .. } => Some("a test needs a table of numbers with time and force side by side".to_owned()),
             Self::LineTooLong { .. } => Some("check that the file has line ends and the right encoding".to_owned()),
             Self::OneColumn { delimiter, .. } => Some(match delimiter {

@@ -22,6 +22,9 @@ pub(crate) fn plain(text: &str) -> String {
 
 /// `text` as messages show it: on one line, and no longer than anybody reads.
 pub(crate) fn shown(text: &str) -> String {
+    if text.trim().is_empty() {
+        return "nothing".to_owned();
+    }
     let mut letters = text.trim().chars();
     let mut short: String = letters.by_ref().take(MOST).collect();
     if letters.next().is_some() {
@@ -38,6 +41,7 @@ mod tests {
     fn nothing_moves_the_cursor_or_fills_the_screen() {
         assert_eq!(shown("a\tb\r\nc\u{1b}[2J\u{9b}x\0"), "a b  c\u{fffd}[2J\u{fffd}x\u{fffd}");
         assert_eq!(shown(&"ä".repeat(1000)).chars().count(), MOST + 1);
+        assert_eq!(shown(" \t"), "nothing");
         assert!(is_plain("5 µm ≥ 力") && !is_plain("\u{7f}"));
     }
 }

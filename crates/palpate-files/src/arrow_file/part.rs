@@ -175,8 +175,8 @@ impl ReadPart for Table {
             while let Some(stretch) = rows.get(next).filter(|stretch| stretch.start < end) {
                 for number in stretch.start.max(first)..stretch.end.min(end) {
                     let index = (number - first) as usize;
-                    let value = |place: &usize| arrays[*place][index].filter(|value| !value.is_nan());
-                    if places.iter().all(|place| value(place).is_none()) {
+                    let value = |place: &usize| arrays[*place][index];
+                    if places.iter().all(|place| value(place).is_none_or(f64::is_nan)) {
                         read.ignored.blank += 1;
                         continue;
                     }

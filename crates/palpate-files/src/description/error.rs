@@ -195,24 +195,28 @@ impl DescriptionError {
             Self::NotFound { .. } => Some("check the spelling of the path".to_owned()),
             Self::Directory { .. } => Some("name the TOML file inside it".to_owned()),
             Self::Unreadable { source, .. } => allowed(source),
-            Self::Other { .. } => None,
+            Self::Other { place, .. } => Some(format!("change or remove {}", last_key(&place.key))),
             Self::TooLong { .. } => Some("give a description in TOML here, not the record itself".to_owned()),
             Self::NotText { .. } => Some("save the description as UTF-8".to_owned()),
             Self::Syntax { text, message, .. } => Some(syntax(text, message)),
-            Self::UnknownKey { place, accepted } => {
-                nearest(last_key(&place.key), accepted).map(|key| format!("did you mean {key}?"))
-            }
+            Self::UnknownKey { place, accepted } => Some(nearest(last_key(&place.key), accepted).map_or_else(
+                || "remove the key, or write one of those that are accepted".to_owned(),
+                |key| format!("did you mean {key}?"),
+            )),
             Self::UnknownNumber { number, accepted, .. } => Some(nearest(number, accepted).map_or_else(
                 || "a sweep replaces numbers that stand in the file: write it where it belongs first".to_owned(),
                 |number| format!("did you mean {number}?"),
             )),
             Self::Missing { place, expected } => {
-                let (_, example) = expected.split_once("such as ")?;
                 let key = last_key(&place.key);
-                Some(format!("add a line such as {key} = {example}"))
+                Some(match expected.split_once("such as ") {
+                    Some((_, example)) if example.contains(" = ") => format!("add a line such as {example}"),
+                    Some((_, example)) => format!("add a line such as {key} = {example}"),
+                    None => format!("add {expected}"),
+                })
             }
             Self::Quantity { place, source, found } => Some(quantity(last_key(&place.key), source, found)),
-            Self::Value { place, expected, found } => value(last_key(&place.key), expected, found),
+            Self::Value { place, expected, found } => Some(value(last_key(&place.key), expected, found)),
             Self::Unused { remedy, .. } => Some(remedy.clone()),
             Self::Both { place, other } => Some(format!("remove {} or {other}", last_key(&place.key))),
         }
@@ -240,23 +244,28 @@ fn syntax(line: &str, message: &str) -> String {
 }
 
 /// What helps against a value that is not accepted.
-fn value(key: &str, expected: &str, found: &str) -> Option<String> {
+fn value(key: &str, expected: &str, found: &str) -> String {
     if expected.contains(" above 0 ") {
-        return Some(format!("{key} must be above zero: check its sign and its number"));
+        return format!("{key} must be above zero: check its sign and its number");
     }
     if expected.contains(BELIEVABLE) {
-        return Some(format!("check the number and the unit of {key}"));
+        return format!("check the number and the unit of {key}");
     }
-    let names: Vec<String> = expected.split('"').skip(1).step_by(2).map(str::to_owned).collect();
+    let names = expected.split('"').skip(1).step_by(2).map(str::to_owned);
+    let names: Vec<String> =
+        names.filter(|name| !found.contains(name.as_str()) || found.trim_matches('"') == name).collect();
     if let Some(name) = nearest(found.trim_matches('"'), &names) {
-        return Some(format!("did you mean \"{name}\"?"));
+        return format!("did you mean \"{name}\"?");
     }
     match key {
         "shape" if names.iter().any(|name| name == "none") => {
-            Some("a body of constant section is a \"block\"; with \"none\" forces stay forces".to_owned())
+            "a body of constant section is a \"block\"; with \"none\" forces stay forces".to_owned()
         }
-        _ if names.len() > 1 => Some(format!("write {expected}")),
-        _ => None,
+        _ if names.len() > 1 => format!("write {expected}"),
+        _ => match expected.rsplit_once("such as ") {
+            Some((_, example)) => format!("write a value such as {example} for {key}"),
+            None => format!("change {key} to {}", expected.split(", ").next().unwrap_or(expected)),
+        },
     }
 }
 

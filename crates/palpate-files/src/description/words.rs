@@ -19,6 +19,11 @@ pub(super) fn explain(
     }
     if message.starts_with("missing field ") {
         let missing = quoted(message).into_iter().next().unwrap_or_default();
+        // A table that is missing stands in no other.
+        if needed(&missing).contains(&format!("[{missing}]")) {
+            place.key.clear();
+            place.line = None;
+        }
         into_child(&mut place, &missing);
         let expected = needed(&missing).to_owned();
         return DescriptionError::Missing { place, expected };
@@ -31,6 +36,13 @@ pub(super) fn explain(
             place,
             expected: any_of(&names),
             found: format!("\"{found}\""),
+        };
+    }
+    if message.ends_with("overflowed") {
+        return DescriptionError::Value {
+            place,
+            expected: "a number that is not beyond all others, such as 1e300".to_owned(),
+            found: "one beyond 1.8e308".to_owned(),
         };
     }
     if let Some((length, expected)) =
@@ -74,7 +86,7 @@ fn quoted(message: &str) -> Vec<String> {
 fn needed(key: &str) -> &'static str {
     match key {
         "specimen" => "a table [specimen] with the shape and size of the body",
-        "law" => "a table [law] with name and the numbers of that law, such as exponent and rate_coefficient",
+        "law" => "a table [law] with name and the numbers of that law (exponent and rate_coefficient of \"latency\")",
         "step" => "one or more [[step]] tables with to and rate",
         "shape" => "\"ball\", \"pad\", \"strip\", \"cylinder\" or \"block\"",
         "name" => "a law: \"latency\", \"standard-linear-solid\", \"prony\", \"fung\" or \"fractional-zener\"",

@@ -7,7 +7,7 @@ use std::fmt;
 pub enum Foreign {
     /// A zip archive that is none of the formats known here.
     Zip,
-    /// A file compressed in another way (bzip2, xz, zstd, 7z).
+    /// A file compressed in another way (bzip2, xz, zstd, 7z), or twice.
     Compressed,
     /// HDF5, or a MATLAB file of version 7.3.
     Hdf5,
@@ -51,7 +51,8 @@ impl fmt::Display for Foreign {
 }
 
 /// First bytes that belong to one format only.
-const SIGNATURES: [(&[u8], Foreign); 15] = [
+const SIGNATURES: [(&[u8], Foreign); 16] = [
+    (b"\x1F\x8B\x08", Foreign::Compressed),
     (b"PK\x03\x04", Foreign::Zip),
     (b"\x89HDF\r\n", Foreign::Hdf5),
     (b"MATLAB 5.0 MAT-file", Foreign::Matlab),

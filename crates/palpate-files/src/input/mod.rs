@@ -37,6 +37,12 @@ pub const MOST_UNPACKED: u64 = 64 << 30;
 /// Most bytes of a file that is held in memory as a whole: a workbook, a force curve, a packed table (2 GiB).
 pub const MOST_IN_MEMORY: u64 = 2 << 30;
 
+/// How many times the size of a packed file it may unpack to in memory, beyond [`ALWAYS_UNPACKED`].
+pub const MOST_TIMES: u64 = 256;
+
+/// What any packed file may unpack to in memory (16 MiB).
+pub const ALWAYS_UNPACKED: u64 = 16 << 20;
+
 /// How much of a file is looked at to tell its format.
 const BEGINNING: u64 = 64 * 1024;
 
@@ -161,16 +167,32 @@ impl Input {
         Ok(Box::new(Cursor::new(self.bytes()?)))
     }
 
-    /// All of its bytes, unpacked, up to [`MOST_IN_MEMORY`].
+    /// All of its bytes, unpacked, up to [`MOST_IN_MEMORY`] and to what its size warrants.
     pub(crate) fn bytes(&self) -> Result<Vec<u8>, FileError> {
         let mut bytes = Vec::new();
-        let most = MOST_IN_MEMORY;
+        let warranted = if self.packing == Packing::None { u64::MAX } else { self.warranted() };
+        let most = MOST_IN_MEMORY.min(warranted);
         let read = self.reader()?.take(most + 1).read_to_end(&mut bytes);
         read.map_err(|error| self.failed(error))?;
-        if bytes.len() as u64 > most {
-            return Err(self.too_large("the file", most));
+        match bytes.len() as u64 {
+            length if length <= most => Ok(bytes),
+            _ if most < MOST_IN_MEMORY => Err(self.swells()),
+            _ => Err(self.too_large("the file", most)),
         }
-        Ok(bytes)
+    }
+
+    /// Most bytes that what is packed here may unpack to in memory: [`MOST_TIMES`] as many as there are, and at least
+    /// [`ALWAYS_UNPACKED`].
+    pub(crate) fn warranted(&self) -> u64 {
+        self.size.saturating_mul(MOST_TIMES).max(ALWAYS_UNPACKED)
+    }
+
+    /// What is packed here unpacks to more than is [`warranted`](Self::warranted).
+    pub(crate) fn swells(&self) -> FileError {
+        FileError::Swells {
+            path: self.name.clone(),
+            most_times: MOST_TIMES,
+        }
     }
 
     /// The bytes as they lie there, packed or not.
@@ -183,7 +205,23 @@ impl Input {
 
     /// What the operating system, or an unpacker, says about this file.
     pub(crate) fn failed(&self, error: io::Error) -> FileError {
-        FileError::from_io(&self.name, error)
+        if error.kind() == io::ErrorKind::FileTooLarge {
+            return self.too_large("the unpacked file", MOST_UNPACKED);
+        }
+        if self.packing == Packing::None || error.raw_os_error().is_some() {
+            return FileError::from_io(&self.name, error);
+        }
+        let found = match error.kind() {
+            io::ErrorKind::UnexpectedEof => "their end, or others".to_owned(),
+            io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => format!("others than were packed ({error})"),
+            _ => error.to_string(),
+        };
+        FileError::Damaged {
+            path: self.name.clone(),
+            place: self.packing.to_string(),
+            expected: "bytes that can be unpacked".to_owned(),
+            found,
+        }
     }
 
     /// A limit that the file goes beyond.

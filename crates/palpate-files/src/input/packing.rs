@@ -6,7 +6,7 @@ use std::{
 };
 
 use flate2::read::MultiGzDecoder;
-use zip::ZipArchive;
+use zip::{ZipArchive, result::ZipError};
 
 use super::{Input, MOST_UNPACKED};
 use crate::error::FileError;
@@ -37,8 +37,11 @@ impl fmt::Display for Packing {
 
 /// Whether the bytes of an archive's first member can begin here.
 pub(crate) fn is_zip(beginning: &[u8]) -> bool {
-    beginning.starts_with(b"PK\x03\x04")
+    beginning.starts_with(b"PK\x03\x04") || beginning.starts_with(EMPTY)
 }
+
+/// The first bytes of an archive without members.
+const EMPTY: &[u8] = b"PK\x05\x06";
 
 /// Members by which formats that are zip archives are known.
 const FORMATS: [&str; 4] = ["[Content_Types].xml", "xl/workbook.xml", "header.properties", "mimetype"];
@@ -56,7 +59,7 @@ pub(super) fn recognise(input: &Input) -> Result<Packing, FileError> {
 }
 
 fn archive(input: &Input) -> Result<Packing, FileError> {
-    let archive = ZipArchive::new(input.stored()?).map_err(|error| damaged(input, &error))?;
+    let mut archive = ZipArchive::new(input.stored()?).map_err(|error| damaged(input, &error))?;
     let names: Vec<String> = archive.file_names().filter_map(|name| Some(name.ok()?.into_owned())).collect();
     if names.iter().any(|name| FORMATS.contains(&name.as_str())) {
         return Ok(Packing::None);
@@ -65,9 +68,17 @@ fn archive(input: &Input) -> Result<Packing, FileError> {
     let noise = |name: &str| name.ends_with('/') || name.starts_with("__MACOSX/") || name.ends_with(".DS_Store");
     let mut files: Vec<String> = names.into_iter().filter(|name| !noise(name)).collect();
     match files.len() {
-        1 => Ok(Packing::Zip {
-            member: files.remove(0),
-        }),
+        1 => {
+            let member = files.remove(0);
+            let index = archive.index_for_name(&member);
+            let encrypted = index.and_then(|index| Some(archive.by_index_raw(index).ok()?.encrypted()));
+            match encrypted {
+                Some(true) => Err(FileError::Encrypted {
+                    path: input.name().to_owned(),
+                }),
+                _ => Ok(Packing::Zip { member }),
+            }
+        }
         _ => Err(FileError::Archive {
             path: input.name().to_owned(),
             members: files,
@@ -75,12 +86,15 @@ fn archive(input: &Input) -> Result<Packing, FileError> {
     }
 }
 
-fn damaged(input: &Input, error: &zip::result::ZipError) -> FileError {
+fn damaged(input: &Input, error: &ZipError) -> FileError {
     FileError::Damaged {
         path: input.name().to_owned(),
         place: "zip archive".to_owned(),
         expected: "a whole archive".to_owned(),
-        found: error.to_string(),
+        found: match error {
+            ZipError::InvalidArchive(_) => "one that is cut off or overwritten".to_owned(),
+            other => other.to_string(),
+        },
     }
 }
 
@@ -112,10 +126,10 @@ struct Member {
 impl Member {
     fn of<R: Read + Seek + Send + 'static>(mut archive: ZipArchive<R>, name: &str) -> io::Result<Self> {
         let (start, packed, method, expected_sum) = {
-            let member = archive.by_name(name).map_err(io::Error::other)?;
-            if member.encrypted() {
-                return Err(io::Error::other("the file in the archive is encrypted"));
-            }
+            let member = archive.by_name(name).map_err(|error| match error {
+                ZipError::InvalidArchive(_) => io::ErrorKind::UnexpectedEof.into(),
+                other => io::Error::other(other),
+            })?;
             let start = member
                 .data_start()
                 .ok_or_else(|| io::Error::other("the archive does not say where its file begins"))?;
@@ -127,7 +141,7 @@ impl Member {
         let bytes: Box<dyn Read + Send> = match method {
             zip::CompressionMethod::Stored => Box::new(raw),
             zip::CompressionMethod::Deflated => Box::new(flate2::bufread::DeflateDecoder::new(raw)),
-            other => return Err(io::Error::other(format!("the archive packs by {other:?}; deflate is understood"))),
+            other => return Err(io::Error::other(format!("some packed by {other:?}; deflate is understood"))),
         };
         Ok(Self {
             bytes,
@@ -142,7 +156,7 @@ impl Read for Member {
         let got = self.bytes.read(into)?;
         self.sum.update(&into[..got]);
         if got == 0 && !into.is_empty() && self.sum.sum() != self.expected_sum {
-            return Err(io::Error::other("its bytes are not those that were packed (checksum)"));
+            return Err(io::Error::other("others than were packed (checksum)"));
         }
         Ok(got)
     }
@@ -167,8 +181,7 @@ impl<R: Read> Read for Limited<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let got = self.inner.read(into)?;
         let left = self.left.checked_sub(got as u64);
-        self.left =
-            left.ok_or_else(|| io::Error::other(format!("it unpacks to more than {} GiB", MOST_UNPACKED >> 30)))?;
+        self.left = left.ok_or(io::ErrorKind::FileTooLarge)?;
         Ok(got)
     }
 }

@@ -13,7 +13,8 @@ pub(super) fn described(columns: &[ColumnInfo]) -> String {
     let mut text = format!("{what} in {} columns", columns.len());
     for column in columns.iter().take(MOST) {
         let sample = if column.sample.is_empty() { "empty" } else { &column.sample };
-        text.push_str(&format!("\n  {}: {sample}", NamedColumn::from(column)));
+        let kind = if column.kind == ColumnKind::Text { " (text)" } else { "" };
+        text.push_str(&format!("\n  {}: {sample}{kind}", NamedColumn::from(column)));
     }
     if columns.len() > MOST {
         text.push_str(&format!("\n  … and {} more", columns.len() - MOST));

@@ -117,7 +117,15 @@ mod tests {
     fn records_that_end_early_say_what_they_lack() {
         let channel = [&[7, 0, 3, 0, 3, 0, 0, 0][..], b"/ft", &[3, 0, 0, 0], b"cdr", &[0; 4]].concat();
         let whole = entry(op::CHANNEL, &channel);
-        assert!(matches!(whole, Ok(Some(Entry::Channel { id: 7, schema: 3, topic: "/ft", encoding: "cdr" }))));
+        assert!(matches!(
+            whole,
+            Ok(Some(Entry::Channel {
+                id: 7,
+                schema: 3,
+                topic: "/ft",
+                encoding: "cdr"
+            }))
+        ));
         for length in 0..channel.len() - 4 {
             assert!(entry(op::CHANNEL, &channel[..length]).is_err(), "{length}");
         }

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use palpate_files::description::{DescriptionError, parse_protocol, parse_sweep, parse_test, read_protocol, read_sweep, read_test};
+use palpate_files::description::{
+    DescriptionError, parse_protocol, parse_sweep, parse_test, read_protocol, read_sweep, read_test,
+};
 
 use super::Complaint;
 
@@ -17,7 +19,9 @@ pub(crate) enum DescriptionKind {
 /// Reads a text as a description of this kind; a sweep up to the first and the last of its runs.
 pub(crate) fn read_description(kind: DescriptionKind, name: &str, bytes: &[u8]) -> Result<(), Complaint> {
     let path = Path::new(name);
-    let Ok(text) = std::str::from_utf8(bytes) else { return from_disk(kind, name, bytes) };
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return from_disk(kind, name, bytes);
+    };
     let complaint = |error: DescriptionError| Complaint::of(name, error.to_string(), error.hint());
     match kind {
         DescriptionKind::Test => parse_test(text, path).map(|test| drop(test.analysis_options())).map_err(complaint),

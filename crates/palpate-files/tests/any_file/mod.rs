@@ -109,7 +109,10 @@ fn check(part: &Part) {
         assert!(label.start <= label.end, "{label:?}");
     }
     for clock in &part.clocks {
-        assert!(clock.column < clock.first && clock.first <= clock.last && clock.last <= part.columns.len(), "{clock:?}");
+        assert!(
+            clock.column < clock.first && clock.first <= clock.last && clock.last <= part.columns.len(),
+            "{clock:?}"
+        );
     }
 }
 
@@ -124,11 +127,19 @@ fn choices(part: &Part) -> Vec<Vec<usize>> {
 /// What is promised of columns: as many as asked for, of one length a clock, and finite.
 fn check_columns(format: Format, part: &Part, columns: &[usize], read: &Columns) {
     assert_eq!(read.values.len(), columns.len());
-    assert!(part.rows.is_none_or(|rows| read.rows() as u64 <= rows), "{:?} rows, {} read", part.rows, read.rows());
+    assert!(
+        part.rows.is_none_or(|rows| read.rows() as u64 <= rows),
+        "{:?} rows, {} read",
+        part.rows,
+        read.rows()
+    );
     // What a column is one length with: the columns of its clock, else all of them.
     let clock_of = |column: usize| {
         let stamps = |clock: &Clock| clock.column == column || (clock.first..=clock.last).contains(&column);
-        part.clocks.iter().position(stamps).map_or(column * usize::from(!part.clocks.is_empty()) << 16, |clock| clock + 1)
+        part.clocks
+            .iter()
+            .position(stamps)
+            .map_or(column * usize::from(!part.clocks.is_empty()) << 16, |clock| clock + 1)
     };
     let mut lengths: HashMap<usize, usize> = HashMap::new();
     for (column, values) in columns.iter().zip(&read.values) {

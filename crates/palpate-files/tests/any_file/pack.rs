@@ -69,7 +69,10 @@ const WORKBOOK: [(&str, &str); 4] = [
         "_rels/.rels",
         "<Relationships><Relationship Id=\"a\" Type=\"http://schemas.openxmlformats.org/officeDocument/2006/relationships/officeDocument\" Target=\"xl/workbook.xml\"/></Relationships>",
     ),
-    ("xl/workbook.xml", "<workbook><sheets><sheet name=\"press\" sheetId=\"1\" r:id=\"s1\"/></sheets></workbook>"),
+    (
+        "xl/workbook.xml",
+        "<workbook><sheets><sheet name=\"press\" sheetId=\"1\" r:id=\"s1\"/></sheets></workbook>",
+    ),
     (
         "xl/_rels/workbook.xml.rels",
         "<Relationships><Relationship Id=\"s1\" Type=\"http://schemas.openxmlformats.org/officeDocument/2006/relationships/worksheet\" Target=\"worksheets/sheet1.xml\"/><Relationship Id=\"t\" Type=\"http://schemas.openxmlformats.org/officeDocument/2006/relationships/sharedStrings\" Target=\"sharedStrings.xml\"/><Relationship Id=\"f\" Type=\"http://schemas.openxmlformats.org/officeDocument/2006/relationships/styles\" Target=\"styles.xml\"/></Relationships>",
@@ -112,7 +115,9 @@ fn log(members: &[(String, &[u8])]) -> Vec<u8> {
         let content = parts.concat();
         [&[kind][..], &(content.len() as u64).to_le_bytes(), &content].concat()
     };
-    let Some(((about, definition), messages)) = members.split_first() else { return Vec::new() };
+    let Some(((about, definition), messages)) = members.split_first() else {
+        return Vec::new();
+    };
     let mut words = about.splitn(3, ' ');
     let mut word = || words.next().unwrap_or_default();
     let (encoding, schema_encoding, kind) = (word(), word(), word());

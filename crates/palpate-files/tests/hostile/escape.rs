@@ -7,7 +7,8 @@ use palpate_files::{contents::Format, input::Input};
 use crate::any_file::{self, Kind};
 
 /// Names that lead out of the folder that an archive lies in.
-const NAMES: [&str; 5] = ["../../escaped.csv", "/escaped.csv", "..\\..\\escaped.csv", "C:\\escaped.csv", "./../escaped.csv"];
+const NAMES: [&str; 5] =
+    ["../../escaped.csv", "/escaped.csv", "..\\..\\escaped.csv", "C:\\escaped.csv", "./../escaped.csv"];
 
 #[test]
 fn members_of_any_name_are_read_and_never_written() {

@@ -89,10 +89,24 @@ fn sifted(input: &Input) -> Result<Sifted, FileError> {
     }
     let Some(stream) = compound.stream("Workbook") else {
         let found = if compound.has("Book") { "one of Excel 95 or older" } else { "none" };
-        return Err(damaged("compound file", "a workbook of Excel 97 or later", found));
+        return Err(FileError::Unfit {
+            path: input.name().to_owned(),
+            place: "compound file".to_owned(),
+            expected: "a workbook of Excel 97 or later".to_owned(),
+            found: found.to_owned(),
+            hint: "open it where it was made and save its table as .xlsx or CSV",
+        });
     };
-    let sifted =
-        sift::sift(&stream).map_err(|(place, expected)| damaged(&place, expected, "other bytes, or their end"))?;
+    let sifted = sift::sift(&stream).map_err(|(place, expected)| match expected.starts_with("at most") {
+        true => FileError::Unfit {
+            path: input.name().to_owned(),
+            place,
+            expected: expected.to_owned(),
+            found: "more".to_owned(),
+            hint: "clear what stands far away from the table, or save the workbook as .xlsx",
+        },
+        false => damaged(&place, expected, "other bytes, or their end"),
+    })?;
     if sifted.encrypted {
         return Err(encrypted());
     }

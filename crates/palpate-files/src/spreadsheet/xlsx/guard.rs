@@ -11,7 +11,7 @@ use super::{
         book::MOST_SHEETS,
         cell::{MOST_COLUMNS, MOST_ROWS, letters, reference},
     },
-    package::{MOST_KEPT, MOST_OF_SHEET, Package, Step},
+    package::{MOST_KEPT, MOST_OF_SHEET, Package, Step, unfit},
 };
 use crate::error::FileError;
 
@@ -106,6 +106,9 @@ impl Checked<'_> {
         if !self.tally.is_sheet && done > MOST_KEPT {
             return Err(self.package.input.too_large("a part of the workbook", MOST_KEPT));
         }
+        if !self.tally.is_sheet && done > self.package.input.warranted() {
+            return Err(self.package.input.swells());
+        }
         match step {
             Step::Begin(element) if self.rows.is_some() => self.begin_in_rows(element),
             Step::Begin(element) => self.begin(element),
@@ -168,7 +171,8 @@ impl Checked<'_> {
         match kind.as_str() {
             "officeDocument" if lower.ends_with(".bin") => {
                 let (expected, found) = ("a workbook of XML parts (.xlsx)", "one of binary parts (.xlsb)");
-                return Err(self.package.damaged("zip archive", expected, found));
+                let hint = "open it where it was made and save it as .xlsx";
+                return Err(unfit(&self.package.input, expected, found, hint));
             }
             "officeDocument" if self.path == "_rels/.rels" => target.clone_into(&mut self.found.document),
             _ => {}

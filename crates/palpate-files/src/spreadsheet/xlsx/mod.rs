@@ -26,7 +26,7 @@ use crate::{
     error::FileError,
     input::{Input, Seekable, contained},
 };
-use package::{Package, damaged};
+use package::{Package, damaged, unfit};
 
 pub(super) use package::has_part;
 
@@ -44,7 +44,8 @@ impl Xlsx {
     pub(super) fn open(input: &Input) -> Result<Self, FileError> {
         let found = guard::check(&Package::open(input)?)?;
         if !found.has_sheets {
-            return Err(damaged(input, "zip archive", "a workbook with sheets", &found.document));
+            let hint = "name a workbook, or open this file where it was made and save its table as .xlsx or CSV";
+            return Err(unfit(input, "a workbook with sheets", &found.document, hint));
         }
         let reading: Reading = contained(input, || {
             let stored = BufReader::with_capacity(1 << 16, input.seekable()?);

@@ -14,6 +14,7 @@ use zip::ZipArchive;
 use crate::{
     error::FileError,
     input::{Input, MOST_IN_MEMORY},
+    shown::shown,
 };
 
 /// Most bytes that a part which is kept in memory may unpack to (256 MiB): texts, styles, names of sheets.
@@ -137,7 +138,18 @@ pub(super) fn damaged(input: &Input, place: &str, expected: &str, found: &str) -
         path: input.name().to_owned(),
         place: place.to_owned(),
         expected: expected.to_owned(),
-        found: crate::error::shorten(found),
+        found: shown(found),
+    }
+}
+
+/// A whole archive that is no workbook which is read.
+pub(super) fn unfit(input: &Input, expected: &str, found: &str, hint: &'static str) -> FileError {
+    FileError::Unfit {
+        path: input.name().to_owned(),
+        place: "zip archive".to_owned(),
+        expected: expected.to_owned(),
+        found: found.to_owned(),
+        hint,
     }
 }
 

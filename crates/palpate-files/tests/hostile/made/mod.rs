@@ -4,10 +4,10 @@
 //! messages says what they must be good for, so that another version of a library may write other bytes.
 
 mod tables;
+mod xls;
 #[allow(dead_code, reason = "other tests use the rest of it")]
 #[path = "../../spreadsheet/xls_book.rs"]
 mod xls_book;
-mod xls;
 
 /// Name of a file of the corpus, and its bytes.
 type Made = (&'static str, Vec<u8>);

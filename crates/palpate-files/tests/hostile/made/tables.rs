@@ -84,7 +84,10 @@ pub(super) fn parquet() -> Vec<Made> {
         ("rows_overwritten.parquet", with(&whole, 4, &[0xFF; 40])),
         ("footer_of_words.footer", b"this is no footer at all".to_vec()),
         ("footer_of_a_lying_list.footer", vec![0x15, 2, 0x19, 0xFC, 0xFF, 0xFF, 0xFF, 0xFF, 0x0F, 0, 0]),
-        ("footer_of_a_lying_text.footer", vec![0x15, 2, 0x19, 0x1C, 0x48, 0xFF, 0xFF, 0xFF, 0xFF, 0x0F, b'a', 0]),
+        (
+            "footer_of_a_lying_text.footer",
+            vec![0x15, 2, 0x19, 0x1C, 0x48, 0xFF, 0xFF, 0xFF, 0xFF, 0x0F, b'a', 0],
+        ),
     ]);
     files
 }

@@ -30,7 +30,10 @@ fn records() -> Vec<Made> {
     let first = place(&good, &number(1, 0, 1.0));
     vec![
         ("good.records", good.clone()),
-        ("good_formulas.records", book(&[number(5, 0, 5.0), formula(5, 1, Ok(1.5)), hundredths(6, 0, &[600, 125])])),
+        (
+            "good_formulas.records",
+            book(&[number(5, 0, 5.0), formula(5, 1, Ok(1.5)), hundredths(6, 0, &[600, 125])]),
+        ),
         ("cut_in_a_number.records", good[..first + 9].to_vec()),
         ("cut_behind_the_globals.records", good[..place(&good, &[0x0A, 0, 0, 0]) + 4].to_vec()),
         ("cut_in_the_texts.records", good[..texts + 20].to_vec()),
@@ -39,14 +42,23 @@ fn records() -> Vec<Made> {
         ("number_too_short.records", book(&[record(0x0203, &[5, 0, 0, 0, 0, 0, 1, 2])])),
         ("column_beyond_any.records", book(&[number(5, 256, 1.0)])),
         ("cells_far_apart.records", book(&[number(65_535, 255, 1.0)])),
-        ("cells_side_by_side_that_lie.records", book(&[record(0x00BD, &[5, 0, 0, 0, 0, 0, 1, 2, 3, 4, 0xFF, 0xFF])])),
+        (
+            "cells_side_by_side_that_lie.records",
+            book(&[record(0x00BD, &[5, 0, 0, 0, 0, 0, 1, 2, 3, 4, 0xFF, 0xFF])]),
+        ),
         ("text_that_is_not_there.records", book(&[shared(5, 0, 77)])),
         ("good_lying_count_of_texts.records", with(&good, texts + 4, &[0xFF; 8])),
         ("lying_length_of_a_text.records", with(&good, texts + 12, &[0xFF; 2])),
         ("not_a_number.records", book(&[number(5, 0, 5.0), number(5, 1, f64::NAN)])),
         ("infinity.records", book(&[number(5, 0, 5.0), number(5, 1, f64::INFINITY)])),
-        ("division_by_zero.records", book(&[number(5, 0, 5.0), formula(5, 1, Err(0x07)), number(6, 0, 6.0), number(6, 1, 1.0)])),
-        ("text_in_numbers.records", book(&[number(5, 0, 5.0), formula_text(5, 1, "overload"), number(6, 0, 6.0), number(6, 1, 1.0)])),
+        (
+            "division_by_zero.records",
+            book(&[number(5, 0, 5.0), formula(5, 1, Err(0x07)), number(6, 0, 6.0), number(6, 1, 1.0)]),
+        ),
+        (
+            "text_in_numbers.records",
+            book(&[number(5, 0, 5.0), formula_text(5, 1, "overload"), number(6, 0, 6.0), number(6, 1, 1.0)]),
+        ),
         ("time_goes_back.records", book(&[number(5, 0, 2.5), number(5, 1, 1.0)])),
     ]
 }
@@ -68,7 +80,8 @@ fn sheets() -> Vec<Made> {
 
 /// Compound files that are wrong.
 fn containers() -> Vec<Made> {
-    let good = compound("Workbook", &book(&[]));
+    let long: Vec<Vec<u8>> = (5..60).flat_map(|row| [number(row, 0, f64::from(row)), number(row, 1, 0.1)]).collect();
+    let good = compound("Workbook", &book(&long));
     // The second word of the table is the directory's, those from the third on are the stream's.
     let chain = |word: usize, next: u32| with(&good, 512 + 4 * word, &next.to_le_bytes());
     vec![
