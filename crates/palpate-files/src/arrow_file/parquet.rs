@@ -23,6 +23,9 @@ use crate::{
     input::{Input, Packing, Seekable},
 };
 
+/// Last bytes of a file whose footer is encrypted.
+const ENCRYPTED: &[u8] = b"PARE";
+
 /// Rows of a batch.
 const BATCH: usize = 8192;
 
@@ -76,6 +79,15 @@ impl ChunkReader for Chunks {
 }
 
 fn metadata(input: &Input, chunks: &Chunks) -> Result<ArrowReaderMetadata, FileError> {
+    let last = chunks.size.checked_sub(ENCRYPTED.len() as u64);
+    if last
+        .and_then(|start| chunks.get_bytes(start, ENCRYPTED.len()).ok())
+        .is_some_and(|end| end == ENCRYPTED)
+    {
+        return Err(FileError::Encrypted {
+            path: input.name().to_owned(),
+        });
+    }
     let metadata = ArrowReaderMetadata::load(chunks, ArrowReaderOptions::new());
     metadata.map_err(|error| damaged(input, "footer", &error.to_string()))
 }

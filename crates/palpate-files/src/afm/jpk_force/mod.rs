@@ -252,7 +252,13 @@ impl JpkForce {
             }
             chosen.fill(index, &numbers, &mut row).map_err(|place| {
                 let place = format!("segment {}, row {}, column {}", segment.number, index + 1, columns[place]);
-                damaged(&self.input, place, "a finite number", "none")
+                FileError::BadCell {
+                    path: self.input.name().to_owned(),
+                    place,
+                    expected: "a finite number".to_owned(),
+                    found: "none, or an infinite one".to_owned(),
+                    hint: "export the curve again, or choose another column",
+                }
             })?;
             read.push_values(&row);
         }
