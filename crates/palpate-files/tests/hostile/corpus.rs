@@ -2,7 +2,10 @@
 
 use std::{fs, path::PathBuf};
 
-use crate::any_file::{self, Complaint, DescriptionKind, Kind, describe_any};
+use crate::{
+    any_file::{self, Complaint, DescriptionKind, Kind, describe_any},
+    memory::bounded,
+};
 
 /// The folders of the corpus by what their files are.
 const FOLDERS: [(&str, Option<Kind>); 11] = [
@@ -60,24 +63,25 @@ impl Example {
         self.kind.map_or_else(|| self.bytes.clone(), |kind| any_file::packed(kind, &self.bytes))
     }
 
-    /// What is said of it.
+    /// What is said of it, in memory that its size warrants.
     pub(crate) fn read(&self) -> Result<(), Complaint> {
+        let file = self.file();
         if self.kind.is_some() {
-            return any_file::read_all(self.name(), &self.file()).map(drop);
+            return bounded(file.len(), || any_file::read_all(self.name(), &file).map(drop));
         }
         let kind = match self.name().split('_').next() {
             Some("test") => DescriptionKind::Test,
             Some("protocol") => DescriptionKind::Protocol,
             _ => DescriptionKind::Sweep,
         };
-        any_file::read_description(kind, self.name(), &self.bytes)
+        bounded(file.len(), || any_file::read_description(kind, self.name(), &file))
     }
 
     /// Does with it, or with other bytes in its place, what its fuzz target does.
     pub(crate) fn fuzz(&self, bytes: &[u8]) {
-        match self.kind {
+        bounded(bytes.len(), || match self.kind {
             Some(kind) => any_file::read_any(kind, bytes),
             None => describe_any(bytes),
-        }
+        });
     }
 }

@@ -1,30 +1,35 @@
 //! How much memory bad files take.
 
-use peak_alloc::PeakAlloc;
+use std::sync::{Mutex, PoisonError};
 
-use crate::{any_file, corpus};
+use peak_alloc::PeakAlloc;
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// What a reader may take whatever it is given.
+/// Held while memory is measured, which is that of all threads.
+static MEASURED: Mutex<()> = Mutex::new(());
+
+/// What a reader may take whatever it is given (64 MiB).
 const AT_LEAST: usize = 64 << 20;
 
 /// What it may take for every byte of the file.
 const A_BYTE: usize = 64;
 
-// Other tests of this binary take memory too where they run in the same process: they count, and are small.
+/// What `read` gives of a file of `size` bytes, if it takes no more memory than that warrants.
+pub(crate) fn bounded<T>(size: usize, read: impl FnOnce() -> T) -> T {
+    let _alone = MEASURED.lock().unwrap_or_else(PoisonError::into_inner);
+    let before = MEMORY.current_usage();
+    MEMORY.reset_peak_usage();
+    let result = read();
+    let taken = MEMORY.peak_usage().saturating_sub(before);
+    assert!(taken <= AT_LEAST + A_BYTE * size, "{} KiB of memory for a file of {size} bytes", taken >> 10);
+    result
+}
+
 #[test]
-fn no_file_takes_more_memory_than_its_size_warrants() {
-    for example in corpus::all() {
-        let file = example.file();
-        let before = MEMORY.current_usage();
-        MEMORY.reset_peak_usage();
-        match example.kind {
-            Some(_) => drop(any_file::read_all(example.name(), &file)),
-            None => drop(example.read()),
-        }
-        let taken = MEMORY.peak_usage().saturating_sub(before);
-        assert!(taken <= AT_LEAST + A_BYTE * file.len(), "{}: {} KiB", example.place, taken >> 10);
-    }
+#[should_panic(expected = "KiB of memory for a file of 10 bytes")]
+fn memory_is_measured() {
+    let room = bounded(10, || Vec::<u8>::with_capacity(AT_LEAST + 1024));
+    assert!(room.is_empty());
 }
