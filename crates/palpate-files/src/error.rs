@@ -7,7 +7,7 @@ use std::{
 
 use crate::{
     input::Foreign,
-    shown::shown,
+    shown::{bytes, files, shown, skipped},
     text::{DecimalMark, Delimiter},
 };
 
@@ -125,7 +125,7 @@ pub enum FileError {
         /// Where in the file.
         place: String,
         /// What is read.
-        expected: String,
+        expected: &'static str,
         /// What is there.
         found: String,
         /// What would help.
@@ -304,40 +304,6 @@ impl FileError {
             io::ErrorKind::IsADirectory => Self::Directory { path },
             _ => Self::Unreadable { path, source },
         }
-    }
-}
-
-/// The first few of the files in an archive.
-fn files(members: &[String]) -> String {
-    const MOST: usize = 3;
-    let named: Vec<String> = members.iter().take(MOST).map(|member| shown(member)).collect();
-    match (members.len(), named.join(", ")) {
-        (0, _) => "none".to_owned(),
-        (count, named) if count > MOST => format!("{count}: {named}, …"),
-        (count, named) => format!("{count}: {named}"),
-    }
-}
-
-/// The first few of the parts of a file, with why they are no tests.
-fn skipped(parts: &[(String, String)]) -> String {
-    const MOST: usize = 3;
-    let named: Vec<String> = parts
-        .iter()
-        .take(MOST)
-        .map(|(name, reason)| format!("{}: {}", shown(name), shown(reason)))
-        .collect();
-    let more = if parts.len() > MOST { "; …" } else { "" };
-    let colon = if named.is_empty() { "" } else { ": " };
-    format!("{colon}{}{more}", named.join("; "))
-}
-
-/// A number of bytes in words.
-fn bytes(count: u64) -> String {
-    match count {
-        0..1024 => format!("{count} bytes"),
-        1024..1_048_576 => format!("{} KiB", count >> 10),
-        1_048_576..1_073_741_824 => format!("{} MiB", count >> 20),
-        _ => format!("{} GiB", count >> 30),
     }
 }
 

@@ -33,6 +33,40 @@ pub(crate) fn shown(text: &str) -> String {
     plain(&short)
 }
 
+/// The first few of the files in an archive.
+pub(crate) fn files(members: &[String]) -> String {
+    const MOST: usize = 3;
+    let named: Vec<String> = members.iter().take(MOST).map(|member| shown(member)).collect();
+    match (members.len(), named.join(", ")) {
+        (0, _) => "none".to_owned(),
+        (count, named) if count > MOST => format!("{count}: {named}, …"),
+        (count, named) => format!("{count}: {named}"),
+    }
+}
+
+/// The first few of the parts of a file, with why they are no tests.
+pub(crate) fn skipped(parts: &[(String, String)]) -> String {
+    const MOST: usize = 3;
+    let named: Vec<String> = parts
+        .iter()
+        .take(MOST)
+        .map(|(name, reason)| format!("{}: {}", shown(name), shown(reason)))
+        .collect();
+    let more = if parts.len() > MOST { "; …" } else { "" };
+    let colon = if named.is_empty() { "" } else { ": " };
+    format!("{colon}{}{more}", named.join("; "))
+}
+
+/// A number of bytes in words.
+pub(crate) fn bytes(count: u64) -> String {
+    match count {
+        0..1024 => format!("{count} bytes"),
+        1024..1_048_576 => format!("{} KiB", count >> 10),
+        1_048_576..1_073_741_824 => format!("{} MiB", count >> 20),
+        _ => format!("{} GiB", count >> 30),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -249,6 +249,24 @@ fn units_of(columns: &[(String, &'static str, NamedColumn)]) -> String {
     columns.join(", ")
 }
 
+/// Where a row stands in a file, from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Counted {
+    /// A line of a text.
+    Line(usize),
+    /// A row of a sheet or a table.
+    Row(usize),
+}
+
+impl fmt::Display for Counted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Row(row) => write!(f, "row {row}"),
+        }
+    }
+}
+
 /// Why a file gives no record.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
@@ -259,14 +277,14 @@ pub enum ReadError {
     #[error(transparent)]
     Column(#[from] ColumnError),
     /// The numbers make no record.
-    #[error("{}{}{}: {}", path.display(), in_part(part.as_deref()), at_line(*line), said(source, *line))]
+    #[error("{}{}{}: {}", path.display(), in_part(part.as_deref()), at_line(*line), said(source, line.is_some()))]
     Record {
         /// The file.
         path: PathBuf,
         /// The part of the file, where it has several.
         part: Option<String>,
-        /// Line, from 1, where one line is to blame.
-        line: Option<usize>,
+        /// Where in the file, where one row is to blame.
+        line: Option<Counted>,
         /// What is wrong.
         source: RecordError,
     },
@@ -315,8 +333,8 @@ fn in_part(part: Option<&str>) -> String {
     part.map_or_else(String::new, |part| format!(", {part}"))
 }
 
-fn at_line(line: Option<usize>) -> String {
-    line.map_or_else(String::new, |line| format!(", line {line}"))
+fn at_line(line: Option<Counted>) -> String {
+    line.map_or_else(String::new, |line| format!(", {line}"))
 }
 
 /// The first few names of parts.
@@ -327,13 +345,14 @@ fn first(parts: &[String]) -> String {
     format!("{}{more}", named.join(", "))
 }
 
-/// The message of a record error; less its row where a line of the file is known, which says more.
-fn said(error: &RecordError, line: Option<usize>) -> String {
+/// The message of a record error; less its row where a line of the file is known, which says more. Records count their
+/// rows from 0, files from 1.
+fn said(error: &RecordError, placed: bool) -> String {
     let message = error.to_string();
-    if line.is_none() {
-        return message;
+    let row = error.row().and_then(|row| Some((message.strip_suffix(&format!(" in row {row}"))?, row + 1)));
+    match (row, placed) {
+        (Some((short, _)), true) => short.to_owned(),
+        (Some((short, row)), false) => format!("{short} in row {row}"),
+        (None, _) => message,
     }
-    let row = error.row().map(|row| format!(" in row {row}"));
-    let short = row.and_then(|row| message.strip_suffix(&row).map(str::to_owned));
-    short.unwrap_or(message)
 }

@@ -25,7 +25,7 @@ mod snippet;
 
 pub use describe::describe;
 pub(crate) use epoch::WORD as EPOCH;
-pub use error::{ColumnError, MachineUnit, NamedColumn, ReadError};
+pub use error::{ColumnError, Counted, MachineUnit, NamedColumn, ReadError};
 pub use parts::{Tests, tests};
 pub use quantity::Quantity;
 pub(crate) use quantity::{unit_factor, volts_are};

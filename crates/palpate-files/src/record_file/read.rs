@@ -7,7 +7,7 @@ use palpate::{
     units,
 };
 
-use super::{ColumnUse, Quantity, ReadError, Role, choose, parts};
+use super::{ColumnUse, Counted, Quantity, ReadError, Role, choose, parts};
 use crate::{
     contents::{Contents, Format, IgnoredLines, Part},
     description::TestDescription,
@@ -120,7 +120,7 @@ pub fn read_part(
     let record = raw.into_record().map(|record| record.corrected_before(done)).map_err(|source| ReadError::Record {
         path: path.to_owned(),
         part: about.name.clone(),
-        line: source.row().and_then(|row| read.line_of(row)),
+        line: source.row().and_then(|row| read.line_of(row)).map(|line| counted(contents.format(), line)),
         source,
     })?;
     Ok(RecordFile {
@@ -138,6 +138,14 @@ pub fn read_part(
         per_unit_area: plan.per_unit_area,
         bytes: read.bytes,
     })
+}
+
+/// What a format tells a row by.
+fn counted(format: Format, line: usize) -> Counted {
+    match format {
+        Format::Text | Format::JpkText | Format::AfmTab => Counted::Line(line),
+        _ => Counted::Row(line),
+    }
 }
 
 /// Makes times counted from 1970 relative to the first of them, which comes back in s.

@@ -153,10 +153,11 @@ fn check_columns(format: Format, part: &Part, columns: &[usize], read: &Columns)
     // What a column is one length with: the columns of its clock, else all of them.
     let clock_of = |column: usize| {
         let stamps = |clock: &Clock| clock.column == column || (clock.first..=clock.last).contains(&column);
-        part.clocks
-            .iter()
-            .position(stamps)
-            .map_or(column * usize::from(!part.clocks.is_empty()) << 16, |clock| clock + 1)
+        match part.clocks.iter().position(stamps) {
+            Some(clock) => clock,
+            None if part.clocks.is_empty() => 0,
+            None => part.clocks.len() + column,
+        }
     };
     let mut lengths: HashMap<usize, usize> = HashMap::new();
     for (column, values) in columns.iter().zip(&read.values) {

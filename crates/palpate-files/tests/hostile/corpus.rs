@@ -41,12 +41,12 @@ pub(crate) fn all() -> Vec<Example> {
     let mut all = Vec::new();
     for (name, kind) in FOLDERS {
         let files = fs::read_dir(folder().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let mut paths: Vec<PathBuf> = files.map(|file| file.unwrap().path()).collect();
+        let mut paths: Vec<PathBuf> = files.map(|file| file.expect("an entry").path()).collect();
         paths.sort();
         all.extend(paths.into_iter().map(|path| Example {
-            place: format!("{name}/{}", path.file_name().unwrap().to_string_lossy()),
+            place: format!("{name}/{}", path.file_name().unwrap_or_default().to_string_lossy()),
             kind,
-            bytes: fs::read(path).unwrap(),
+            bytes: fs::read(path).expect("a file"),
         }));
     }
     all

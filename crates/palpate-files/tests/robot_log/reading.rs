@@ -246,7 +246,7 @@ fn a_number_that_is_none_is_refused_where_it_is_used() {
     }
     let error = record(&log.finish(), "columns.force.column = \"wrench.force.z\"").unwrap_err();
     assert!(matches!(error, ReadError::Record { .. }), "{error}");
-    assert_eq!(error.to_string(), "log.mcap: force must be a finite number, found NaN in row 4");
+    assert_eq!(error.to_string(), "log.mcap: force must be a finite number, found NaN in row 5");
 }
 
 #[test]

@@ -92,7 +92,7 @@ fn sifted(input: &Input) -> Result<Sifted, FileError> {
         return Err(FileError::Unfit {
             path: input.name().to_owned(),
             place: "compound file".to_owned(),
-            expected: "a workbook of Excel 97 or later".to_owned(),
+            expected: "a workbook of Excel 97 or later",
             found: found.to_owned(),
             hint: "open it where it was made and save its table as .xlsx or CSV",
         });
@@ -101,7 +101,7 @@ fn sifted(input: &Input) -> Result<Sifted, FileError> {
         true => FileError::Unfit {
             path: input.name().to_owned(),
             place,
-            expected: expected.to_owned(),
+            expected,
             found: "more".to_owned(),
             hint: "clear what stands far away from the table, or save the workbook as .xlsx",
         },

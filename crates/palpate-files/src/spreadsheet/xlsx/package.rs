@@ -143,11 +143,11 @@ pub(super) fn damaged(input: &Input, place: &str, expected: &str, found: &str) -
 }
 
 /// A whole archive that is no workbook which is read.
-pub(super) fn unfit(input: &Input, expected: &str, found: &str, hint: &'static str) -> FileError {
+pub(super) fn unfit(input: &Input, expected: &'static str, found: &str, hint: &'static str) -> FileError {
     FileError::Unfit {
         path: input.name().to_owned(),
         place: "zip archive".to_owned(),
-        expected: expected.to_owned(),
+        expected,
         found: found.to_owned(),
         hint,
     }
