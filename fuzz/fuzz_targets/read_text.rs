@@ -4,6 +4,7 @@
 
 use libfuzzer_sys::fuzz_target;
 
+#[allow(dead_code, unused_imports, reason = "every target uses a part of it")]
 #[path = "../../crates/palpate-files/tests/any_file/mod.rs"]
 mod any_file;
 

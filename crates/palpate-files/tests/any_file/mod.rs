@@ -18,9 +18,7 @@ use palpate_files::{
     record_file::{ReadError, describe, read_part, tests},
 };
 
-pub(crate) use description::describe_any;
-#[allow(unused_imports, reason = "fuzz targets call what stands before it")]
-pub(crate) use description::{DescriptionKind, read_description};
+pub(crate) use description::{DescriptionKind, describe_any, read_description};
 pub(crate) use pack::{Kind, packed};
 
 /// Most parts of a file that are read.
