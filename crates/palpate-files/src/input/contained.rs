@@ -19,6 +19,18 @@ static SILENCE: Once = Once::new();
 /// What `read` gives. The readers of some formats take some counts in a file at their word and then panic: such a file
 /// is damaged.
 pub(crate) fn contained<T>(input: &Input, read: impl FnOnce() -> Result<T, FileError>) -> Result<T, FileError> {
+    caught(read).unwrap_or_else(|| {
+        Err(FileError::Damaged {
+            path: input.name().to_owned(),
+            place: "the file".to_owned(),
+            expected: "what the format has there".to_owned(),
+            found: "numbers out of bounds".to_owned(),
+        })
+    })
+}
+
+/// What `read` gives, if it does not panic.
+pub(crate) fn caught<T>(read: impl FnOnce() -> T) -> Option<T> {
     SILENCE.call_once(|| {
         let before = take_hook();
         set_hook(Box::new(move |panic| {
@@ -30,14 +42,7 @@ pub(crate) fn contained<T>(input: &Input, read: impl FnOnce() -> Result<T, FileE
     let outside = CAUGHT.replace(true);
     let result = catch_unwind(AssertUnwindSafe(read));
     CAUGHT.set(outside);
-    result.unwrap_or_else(|_| {
-        Err(FileError::Damaged {
-            path: input.name().to_owned(),
-            place: "the file".to_owned(),
-            expected: "what the format has there".to_owned(),
-            found: "numbers out of bounds".to_owned(),
-        })
-    })
+    result.ok()
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ use std::{
 };
 
 use crate::error::FileError;
-pub(crate) use contained::contained;
+pub(crate) use contained::{caught, contained};
 use counting::Counting;
 pub use foreign::Foreign;
 pub(crate) use foreign::{mostly_control, recognise as recognise_foreign};

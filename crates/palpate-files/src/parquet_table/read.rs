@@ -11,6 +11,7 @@ use parquet::{
 };
 
 use super::{Field, Kind, Rows, TableError, Values};
+use crate::input::caught;
 
 /// A table that [`TableWriter`](super::TableWriter) wrote.
 pub struct TableReader {
@@ -24,6 +25,10 @@ impl TableReader {
     /// # Errors
     /// [`TableError`] where the file is no Parquet, is cut off, or has columns of other kinds.
     pub fn new(file: File) -> Result<Self, TableError> {
+        caught(|| Self::of(file)).unwrap_or_else(|| Err(out_of_bounds()))
+    }
+
+    fn of(file: File) -> Result<Self, TableError> {
         let reader = SerializedFileReader::new(file)?;
         let columns = reader.metadata().file_metadata().schema_descr().columns();
         let fields = columns.iter().map(|column| {
@@ -87,12 +92,23 @@ impl TableReader {
                 message: format!("no row group {group} with a column {column}"),
             });
         }
+        caught(|| self.decoded(group, column)).unwrap_or_else(|| Err(out_of_bounds()))
+    }
+
+    fn decoded(&self, group: usize, column: usize) -> Result<Values, TableError> {
         let group = self.reader.get_row_group(group)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
         let found = read_column(group.get_column_reader(column)?, rows)?;
         found.ok_or_else(|| TableError::Foreign {
             column: self.fields[column].name.clone(),
         })
+    }
+}
+
+/// The reader of the format takes some places in a file at their word and then panics.
+fn out_of_bounds() -> TableError {
+    TableError::Parquet {
+        message: "places in the file that are out of bounds".to_owned(),
     }
 }
 

@@ -61,6 +61,13 @@ fn changed(bytes: &[u8], other: &[u8], chance: &mut Chance) -> Vec<u8> {
 }
 
 #[test]
+fn what_fuzzing_found_does_no_harm_any_more() {
+    for example in corpus::all() {
+        example.fuzz(&example.bytes);
+    }
+}
+
+#[test]
 fn files_changed_at_random_do_no_harm() {
     let all: Vec<_> = corpus::all().into_iter().filter(|example| example.bytes.len() <= LONGEST).collect();
     let (mut chance, mut harm) = (Chance(7), Vec::new());
