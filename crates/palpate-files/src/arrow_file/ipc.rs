@@ -136,6 +136,9 @@ impl<'a> Messages<'a> {
         if sum > MOST_IN_MEMORY {
             return Err(self.input.too_large("a batch of rows", MOST_IN_MEMORY));
         }
+        if sum > self.input.warranted() {
+            return Err(self.input.swells());
+        }
         Ok(())
     }
 }

@@ -156,6 +156,9 @@ impl Log<'_> {
         if length > MOST_RECORD as u64 {
             return Err(self.input.too_large("a chunk of the log", MOST_RECORD as u64));
         }
+        if length > self.input.warranted() {
+            return Err(self.input.swells());
+        }
         let mut content = Vec::new();
         let most = length + 1;
         let result = match chunk.compression {

@@ -3,8 +3,11 @@
 use std::sync::Arc;
 
 use arrow_array::{ArrayRef, Float64Array, Int64Array, ListArray, RecordBatch, StringArray, types::Float64Type};
-use arrow_ipc::writer::{FileWriter, StreamWriter};
-use parquet::arrow::ArrowWriter;
+use arrow_ipc::{
+    CompressionType,
+    writer::{FileWriter, IpcWriteOptions, StreamWriter},
+};
+use parquet::{arrow::ArrowWriter, basic::Compression, file::properties::WriterProperties};
 
 use super::{Made, place, with};
 
@@ -82,6 +85,7 @@ pub(super) fn parquet() -> Vec<Made> {
         ("other_magic_at_the_end.parquet", with(&whole, end - 4, b"PAR2")),
         ("footer_overwritten.parquet", with(&whole, footer, &[0xFF; 24])),
         ("rows_overwritten.parquet", with(&whole, 4, &[0xFF; 40])),
+        ("lying_length_of_a_packed_page.parquet", page_lying_about_unpacking()),
         ("footer_of_words.footer", b"this is no footer at all".to_vec()),
         ("footer_of_a_lying_list.footer", vec![0x15, 2, 0x19, 0xFC, 0xFF, 0xFF, 0xFF, 0xFF, 0x0F, 0, 0]),
         (
@@ -102,6 +106,35 @@ fn stream_of(batch: &RecordBatch) -> Vec<u8> {
     let mut writer = StreamWriter::try_new(Vec::new(), &batch.schema()).expect("a writer");
     writer.write(batch).expect("rows");
     writer.into_inner().expect("a stream")
+}
+
+/// A file of packed columns whose first page says that it unpacks to nearly 2 GiB.
+fn page_lying_about_unpacking() -> Vec<u8> {
+    let batch = table(vec![("time_s", numbers(&[Some(0.5); 400])), ("force_N", numbers(&[Some(1.5); 400]))]);
+    let packed = WriterProperties::builder()
+        .set_compression(Compression::SNAPPY)
+        .set_dictionary_enabled(false)
+        .build();
+    let mut writer = ArrowWriter::try_new(Vec::new(), batch.schema(), Some(packed)).expect("a writer");
+    writer.write(&batch).expect("rows");
+    let mut file = writer.into_inner().expect("a file");
+    // Behind the magic word: the kind of the page, its unpacked size (a number of seven bits a byte), its packed size.
+    let end = 7 + file[7..].iter().position(|byte| byte & 0x80 == 0).expect("the end of a number");
+    assert_eq!((file[4], file[6]), (0x15, 0x15));
+    file.splice(7..=end, [0xFE, 0xFF, 0xFF, 0xFF, 0x0F]);
+    file
+}
+
+/// A stream of packed columns, of which the first says that it unpacks to 1.5 GiB.
+fn lying_about_unpacking() -> Vec<u8> {
+    let numbers = |start: f64| numbers(&(0..200).map(|row| Some(start + f64::from(row / 50))).collect::<Vec<_>>());
+    let batch = table(vec![("time_s", numbers(0.0)), ("force_N", numbers(5.0))]);
+    let packed = IpcWriteOptions::default().try_with_compression(Some(CompressionType::LZ4_FRAME)).expect("options");
+    let mut writer = StreamWriter::try_new_with_options(Vec::new(), &batch.schema(), packed).expect("a writer");
+    writer.write(&batch).expect("rows");
+    let stream = writer.into_inner().expect("a stream");
+    let said = place(&stream, &1600_u64.to_le_bytes());
+    with(&stream, said, &(3_u64 << 29).to_le_bytes())
 }
 
 pub(super) fn arrow() -> Vec<Made> {
@@ -126,6 +159,7 @@ pub(super) fn arrow() -> Vec<Made> {
         ("cut_in_a_batch.arrows", stream[..batch + 8 + said + 20].to_vec()),
         ("lying_length_of_a_description.arrows", with(&stream, batch + 4, &[0xFF, 0xFF, 0xFF, 0x03])),
         ("description_overwritten.arrows", with(&stream, batch + 12, &[0xFF; 24])),
+        ("lying_length_of_a_packed_column.arrows", lying_about_unpacking()),
         ("schema_in_place_of_a_batch.arrows", [&stream[..batch], &stream[..]].concat()),
     ]);
     files
