@@ -25,9 +25,9 @@ impl FileError {
             Self::BadCell { hint, .. } | Self::Unfit { hint, .. } => Some((*hint).to_owned()),
             Self::Encrypted { .. } => Some("open it where it was made and save it without a password".to_owned()),
             Self::TooLarge { .. } => Some("split the file, or export less of it".to_owned()),
-            Self::Swells { .. } => {
-                Some("if you trust it, unpack it by another program and name what is inside".to_owned())
-            }
+            Self::Swells { .. } => Some(
+                "copy or export it again; if you trust it, unpack it, or write it anew without compression".to_owned(),
+            ),
             Self::NoParts { .. } => Some("a test needs a table of numbers with time and force side by side".to_owned()),
             Self::LineTooLong { .. } => Some("check that the file has line ends and the right encoding".to_owned()),
             Self::OneColumn { delimiter, .. } => Some(match delimiter {

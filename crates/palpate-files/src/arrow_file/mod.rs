@@ -8,10 +8,12 @@
 //! | `tests.rs` | which rows belong to which test |
 //! | `source.rs` | batches of rows, whatever the format |
 //! | `parquet.rs` | batches of a Parquet file |
+//! | `pages.rs` | what the pages of a Parquet file say they unpack to |
 //! | `ipc.rs` | batches of an Arrow file or stream |
 //! | `values.rs` | columns of a type as numbers or texts |
 
 mod ipc;
+mod pages;
 mod parquet;
 mod part;
 mod source;

@@ -13,11 +13,15 @@ use parquet::{
         ProjectionMask,
         arrow_reader::{ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReaderBuilder},
     },
+    basic::Compression,
     errors::ParquetError,
     file::reader::{ChunkReader, Length},
 };
 
-use super::source::{Visitor, damaged};
+use super::{
+    pages::page,
+    source::{Visitor, damaged},
+};
 use crate::{
     error::FileError,
     input::{Input, Packing, Seekable},
@@ -25,6 +29,11 @@ use crate::{
 
 /// Last bytes of a file whose footer is encrypted.
 const ENCRYPTED: &[u8] = b"PARE";
+
+/// Bytes that the head of a page mostly has, and most that it may have (16 MiB).
+const USUAL_HEAD: u64 = 4096;
+/// See [`USUAL_HEAD`].
+const MOST_OF_HEAD: u64 = 16 << 20;
 
 /// Rows of a batch.
 const BATCH: usize = 8192;
@@ -92,6 +101,41 @@ fn metadata(input: &Input, chunks: &Chunks) -> Result<ArrowReaderMetadata, FileE
     metadata.map_err(|error| damaged(input, "footer", &error.to_string()))
 }
 
+/// What the pages of the chosen columns say they unpack to must be within reason before room is made for it.
+fn check(input: &Input, chunks: &Chunks, metadata: &ArrowReaderMetadata, columns: &[usize]) -> Result<(), FileError> {
+    let schema = metadata.parquet_schema();
+    for group in metadata.metadata().row_groups() {
+        for (leaf, column) in group.columns().iter().enumerate() {
+            if column.compression() == Compression::UNCOMPRESSED || !columns.contains(&schema.get_column_root_idx(leaf))
+            {
+                continue;
+            }
+            let start = column.dictionary_page_offset().unwrap_or(i64::MAX).min(column.data_page_offset());
+            let (Ok(start), Ok(length)) = (u64::try_from(start), u64::try_from(column.compressed_size())) else {
+                continue;
+            };
+            check_pages(input, chunks, start, start.saturating_add(length).min(chunks.size))?;
+        }
+    }
+    Ok(())
+}
+
+fn check_pages(input: &Input, chunks: &Chunks, mut start: u64, end: u64) -> Result<(), FileError> {
+    while start < end {
+        let in_next =
+            |most: u64| chunks.get_bytes(start, (end - start).min(most) as usize).ok().and_then(|head| page(&head));
+        // The least and greatest value of a page of texts stand in its head.
+        let Some(page) = in_next(USUAL_HEAD).or_else(|| in_next(MOST_OF_HEAD)) else {
+            return Ok(());
+        };
+        if page.unpacked > input.warranted() {
+            return Err(input.swells());
+        }
+        start = start.saturating_add(page.head).saturating_add(page.packed);
+    }
+    Ok(())
+}
+
 pub(super) fn outline(input: &Input) -> Result<(SchemaRef, Option<u64>), FileError> {
     let metadata = metadata(input, &Chunks::of(input)?)?;
     let rows = metadata.metadata().file_metadata().num_rows();
@@ -108,6 +152,7 @@ pub(super) fn visit(
     let metadata = metadata(input, &chunks)?;
     let counts: Vec<u64> =
         metadata.metadata().row_groups().iter().map(|group| group.num_rows().max(0) as u64).collect();
+    check(input, &chunks, &metadata, columns)?;
     let mask = ProjectionMask::roots(metadata.parquet_schema(), columns.iter().copied());
     let total = counts.iter().fold(0_u64, |sum, count| sum.saturating_add(*count));
     // The groups from the first to the last that hold a row that is wanted.

@@ -121,7 +121,10 @@ fn page_lying_about_unpacking() -> Vec<u8> {
     // Behind the magic word: the kind of the page, its unpacked size (a number of seven bits a byte), its packed size.
     let end = 7 + file[7..].iter().position(|byte| byte & 0x80 == 0).expect("the end of a number");
     assert_eq!((file[4], file[6]), (0x15, 0x15));
+    let more = 5 - (end - 6);
     file.splice(7..=end, [0xFE, 0xFF, 0xFF, 0xFF, 0x0F]);
+    // The page takes its room from the one behind it.
+    file.drain(4 + 200..4 + 200 + more);
     file
 }
 
