@@ -242,6 +242,9 @@ impl JpkForce {
             if bytes > MOST_IN_MEMORY {
                 return Err(self.input.too_large("the channels of a segment", MOST_IN_MEMORY));
             }
+            if bytes > self.input.warranted() {
+                return Err(self.input.swells());
+            }
             taken.push((index, channel));
         }
         let mut row = vec![0.0; columns.len()];
