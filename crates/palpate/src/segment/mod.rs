@@ -3,7 +3,6 @@
 //! | file | what |
 //! |---|---|
 //! | `options.rs` | every threshold as an option, and the value it took |
-//! | `slope.rs` | local slopes of a noisy column |
 //! | `from_both.rs` | phases where displacement and force were recorded |
 //! | `levels.rs` | where a column stands still |
 //! | `pieces.rs` | a column as a polygon |
@@ -36,7 +35,6 @@ mod options;
 mod pieces;
 mod ramps;
 mod relaxation;
-mod slope;
 mod smooth;
 mod standstill;
 mod turning;
