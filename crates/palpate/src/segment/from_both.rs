@@ -1,9 +1,9 @@
 //! Phases of a record with displacement and force: what stands still, and which of the two is held.
 
 use super::levels::{Held, Levels, levels, range};
-use super::mode::{HoldMode, mode};
+use super::mode::{HoldMode, mode, mode_at_large};
 use super::ramps::{Level, fill_gaps};
-use super::{After, Phase, Segment, SegmentError, SegmentOptions, Segmentation};
+use super::{After, Phase, Segment, SegmentError, SegmentOptions, SegmentSettings, Segmentation};
 use crate::record::Record;
 use crate::statistics::median;
 
@@ -63,7 +63,7 @@ fn force_held(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Le
     let creeps = |level: &Level| {
         let inside: Vec<&Level> =
             still.iter().filter(|still| still.start < level.end && level.start < still.end).collect();
-        let is_held = match mode(record, level.start, level.end) {
+        let is_held = match mode_at_large(record, level.start, level.end) {
             HoldMode::ForceHeld => {
                 slows_down(record, level, FIRST_HALF) && inside.iter().all(|still| rests_late(record, still, level))
             }
@@ -71,7 +71,7 @@ fn force_held(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Le
             HoldMode::DisplacementHeld => inside.is_empty(),
             HoldMode::Neither => false,
         };
-        !open(level) && arrives(record, level, jaw.settings.noise) && (is_held || turns_back(record, &inside, level))
+        !open(level) && arrives(record, level, &jaw.settings) && (is_held || turns_back(record, &inside, level))
     };
     found.levels.iter().filter(|level| creeps(level)).copied().collect()
 }
@@ -109,7 +109,7 @@ const SEEN: f64 = 4.0;
 const FASTER: f64 = 2.0;
 
 /// Whether the jaw was faster before the force was held than it is on average since: the middle of a ramp has nothing of that.
-fn arrives(record: &Record, level: &Level, noise: f64) -> bool {
+fn arrives(record: &Record, level: &Level, jaw: &SegmentSettings) -> bool {
     let Some(displacement) = record.displacement() else {
         return false;
     };
@@ -119,7 +119,8 @@ fn arrives(record: &Record, level: &Level, noise: f64) -> bool {
     let inside = speed(level.start, level.end - 1);
     let length = level.end - level.start;
     let before = [1, 4, 16, 64].map(|part| level.start.saturating_sub((length / part).max(3)));
-    let faster = |from: usize| way(from, level.start) > SEEN * noise && speed(from, level.start) > FASTER * inside;
+    let far = (SEEN * jaw.noise).max(0.5 * jaw.tolerance);
+    let faster = |from: usize| way(from, level.start) > far && speed(from, level.start) > FASTER * inside;
     level.start > 0 && before.into_iter().any(faster)
 }
 
@@ -144,7 +145,7 @@ fn turns_back(record: &Record, inside: &[&Level], level: &Level) -> bool {
     };
     let slack = (level.end - level.start) / 20;
     let at_first = still.start.abs_diff(level.start) <= slack;
-    at_first && still.end + 2 * slack < level.end && mode(record, still.end, level.end) == HoldMode::ForceHeld
+    at_first && still.end + 2 * slack < level.end && mode_at_large(record, still.end, level.end) == HoldMode::ForceHeld
 }
 
 /// Both kinds of levels in order. Where they overlap the force is held: the displacement comes to rest late in a creep, as the

@@ -22,9 +22,9 @@ pub enum HoldMode {
 const PARTS: usize = 10;
 /// How many standard errors a change must have to be seen.
 const SEEN: f64 = 6.0;
-/// Way of the jaw over that in the record, from which on it counts.
+/// Way of the jaw over that to the hold, from which on it counts.
 const LEAST_SHARE: f64 = 2e-3;
-/// How many times farther than the force the jaw goes, both as shares of what they do in the record.
+/// How many times farther than the force the jaw goes, both as shares of what they do as they come to the hold.
 const FARTHER: f64 = 2.0;
 
 /// How far displacement and force go over a hold.
@@ -44,18 +44,20 @@ pub(crate) fn change(record: &Record, from: usize, until: usize) -> Option<Chang
     if until < from + 3 * PARTS {
         return None;
     }
+    // What both do in the hold is measured by what they do as they come to it.
+    let around = from.saturating_sub(until - from)..until;
+    let scales = [displacement, record.force()].map(|column| range(&column[around.clone()]).max(f64::MIN_POSITIVE));
     let (jaw, force) = (&displacement[from..until], &record.force()[from..until]);
     let (travel, change) = (moved(jaw), moved(force));
-    let travelled = travel.abs() / range(displacement);
-    let seen = travel.abs() > SEEN * error_of_mean(jaw) && travelled > LEAST_SHARE;
-    let changed = change.abs() / range(record.force());
-    let uncertain = SEEN * error_of_mean(force) / range(record.force());
-    let mode = if seen && travelled > FARTHER * changed.max(uncertain) {
-        HoldMode::ForceHeld
-    } else if seen && travelled > DRIFTS && changed > uncertain {
-        HoldMode::Neither
-    } else {
-        HoldMode::DisplacementHeld
+    let late = |column: &[f64]| column[column.len() / 2..].to_vec();
+    let mode = match judged([jaw, force], scales) {
+        // A controller that falls short at first ends on the force it holds.
+        HoldMode::DisplacementHeld | HoldMode::Neither
+            if judged([&late(jaw), &late(force)], scales) == HoldMode::ForceHeld =>
+        {
+            HoldMode::ForceHeld
+        }
+        mode => mode,
     };
     Some(Change {
         travel,
@@ -64,7 +66,32 @@ pub(crate) fn change(record: &Record, from: usize, until: usize) -> Option<Chang
     })
 }
 
-/// Share of its range that a jaw may drift over a hold and still hold the displacement.
+/// What is held in samples `from..until` where it is not known yet whether they are a hold: by what both do in all the record.
+pub(super) fn mode_at_large(record: &Record, from: usize, until: usize) -> HoldMode {
+    match record.displacement() {
+        Some(displacement) if until >= from + 3 * PARTS => judged(
+            [&displacement[from..until], &record.force()[from..until]],
+            [range(displacement), range(record.force())],
+        ),
+        _ => HoldMode::DisplacementHeld,
+    }
+}
+
+/// What is held, from jaw and force in the hold, and how far both go as they come to it.
+fn judged([jaw, force]: [&[f64]; 2], [way, rise]: [f64; 2]) -> HoldMode {
+    let (travelled, changed) = (moved(jaw).abs() / way, moved(force).abs() / rise);
+    let seen = moved(jaw).abs() > SEEN * error_of_mean(jaw) && travelled > LEAST_SHARE;
+    let uncertain = SEEN * error_of_mean(force) / rise;
+    if seen && travelled > FARTHER * changed.max(uncertain) {
+        HoldMode::ForceHeld
+    } else if seen && travelled > DRIFTS && changed > uncertain {
+        HoldMode::Neither
+    } else {
+        HoldMode::DisplacementHeld
+    }
+}
+
+/// Share of its way to the hold that a jaw may drift over it and still hold the displacement.
 const DRIFTS: f64 = 0.01;
 
 /// What is held in samples `from..until`; too short a hold, or one without displacement, counts as one of the displacement.
