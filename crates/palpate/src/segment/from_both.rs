@@ -148,15 +148,23 @@ fn turns_back(record: &Record, inside: &[&Level], level: &Level) -> bool {
     at_first && still.end + 2 * slack < level.end && mode_at_large(record, still.end, level.end) == HoldMode::ForceHeld
 }
 
+/// On a machine that holds the force, a standstill of the jaw shorter than this share of its holds is a chance in a creep.
+const SHORT: f64 = 0.2;
+
 /// Both kinds of levels in order. Where they overlap the force is held: the displacement comes to rest late in a creep, as the
 /// force does late in a relaxation, and the longer of the two is the hold.
 fn together(record: &Record, still: &[Level], pressed: &[Level]) -> Vec<Level> {
     let overlap = |a: &Level, b: &Level| a.start < b.end && b.start < a.end;
     let time = record.time();
     let length = |level: &Level| time[level.end - 1] - time[level.start];
+    let usual = if pressed.is_empty() { 0.0 } else { median(&mut pressed.iter().map(length).collect::<Vec<f64>>()) };
+    let is_short = |level: &Level| length(level) < SHORT * usual;
+    let holds_force = pressed.len() > still.iter().filter(|level| !is_short(level)).count();
     let stays = |level: &&Level| {
         // The rest before anything moved stays what it is.
-        level.start == 0 || !pressed.iter().any(|press| overlap(level, press) && length(level) <= length(press))
+        let chance = holds_force && is_short(level);
+        level.start == 0
+            || !chance && !pressed.iter().any(|press| overlap(level, press) && length(level) <= length(press))
     };
     let mut levels: Vec<Level> = still.iter().filter(stays).copied().collect();
     let still = levels.clone();

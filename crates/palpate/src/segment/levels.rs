@@ -8,7 +8,7 @@
 use super::edges::sharpened;
 use super::pieces::{Piece, Roughness, pieces};
 use super::ramps::Level;
-use super::standstill::{Refused, Standstill, Stillness, standstills};
+use super::standstill::{Refused, Standstill, Stillness, joined, standstills};
 use super::{SegmentError, SegmentOptions, SegmentSettings};
 use crate::statistics::{median, noise_in_time, quantum};
 
@@ -95,6 +95,7 @@ pub(super) fn levels(time: &[f64], held: &Held<'_>, options: &SegmentOptions) ->
     };
     let (mut found, refused) = standstills(time, &values, &pieces, &stillness);
     sharpened(time, &values, &pieces, (3.0 * noise).max(0.5 * held.wander), &mut found);
+    let mut found = joined(&values, &found, &stillness);
     // What is left of a standstill between its ramps may be too little for one.
     found.retain(|found| found.end - found.start >= stillness.samples);
     let ramp_speed = ramp_speed(time, &pieces, &found);

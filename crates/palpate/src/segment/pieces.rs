@@ -59,13 +59,8 @@ impl Line {
         self.value + self.slope() * (time - self.time)
     }
 
-    /// Sum of the squares about the mean.
-    pub(super) fn scatter(&self) -> f64 {
-        self.vv
-    }
-
     /// Sum of the squares that the line leaves.
-    pub(super) fn left(&self) -> f64 {
+    fn left(&self) -> f64 {
         if self.tt > 0.0 { (self.vv - self.tv * self.tv / self.tt).max(0.0) } else { self.vv }
     }
 }

@@ -5,7 +5,8 @@
 
 use super::evidence::{SEEN, evidence};
 use super::moves::{Move, moves};
-use super::pieces::{Line, Piece};
+use super::pieces::Piece;
+use crate::statistics::mean;
 
 /// What counts as standing still.
 #[derive(Debug, Clone, Copy)]
@@ -110,32 +111,34 @@ pub(super) fn standstills(
         start: moves[first].start,
         end: moves[last].end,
     };
-    (joined(time, values, found.into_iter().map(standstill), stillness), refused)
+    (found.into_iter().map(standstill).collect(), refused)
 }
 
-/// Square deviation, in units of the noise's, by which two neighbours without a ramp between them are two levels.
-const APART: f64 = 80.0;
+/// Share of the way that the column would have gone on in a hold by which two neighbours without a ramp between them differ, if
+/// they are two levels.
+const APART: f64 = 0.65;
+/// Most samples that tell how far two neighbours are apart.
+const BESIDE: usize = 64;
 
-/// Standstills in order; those that noise alone cut in two are one.
-fn joined(
-    time: &[f64],
-    values: &[f64],
-    found: impl Iterator<Item = Standstill>,
-    stillness: &Stillness,
-) -> Vec<Standstill> {
+/// Standstills in order; those that noise alone cut in two are one, and the first begins with the record if nothing but noise is
+/// before it.
+pub(super) fn joined(values: &[f64], found: &[Standstill], stillness: &Stillness) -> Vec<Standstill> {
+    let apart = APART * stillness.goes_on[0];
     let mut joined: Vec<Standstill> = Vec::new();
-    for next in found {
-        if let Some(last) = joined.last_mut()
-            && last.end + STRAY >= next.start
-        {
-            let line = |range| Line::through(time, values, range);
-            let more = line(last.start..next.end).scatter()
-                - line(last.start..last.end).left()
-                - line(next.start..next.end).left();
-            if more <= APART * stillness.noise.powi(2) {
-                last.end = next.end;
-                continue;
+    for mut next in found.iter().copied() {
+        let after = mean(&values[next.start..next.end.min(next.start + BESIDE)]);
+        match joined.last_mut() {
+            Some(last) if last.end + STRAY >= next.start => {
+                let before = mean(&values[last.start.max(last.end.saturating_sub(BESIDE))..last.end]);
+                if (after - before).abs() <= apart {
+                    last.end = next.end;
+                    continue;
+                }
             }
+            None if next.start <= STRAY && values[..next.start].iter().all(|v| (v - after).abs() <= apart) => {
+                next.start = 0;
+            }
+            _ => {}
         }
         joined.push(next);
     }

@@ -37,8 +37,8 @@ fn holds_of_constant_displacement_are_found() {
     let score = sum(|kind, _| kind != Kind::ForceHeld);
     println!("{}", told(&score));
     assert!(score.found_share() >= 0.99, "{}", told(&score));
-    // One in a thousand holds found is none.
-    assert!(1000 * score.extra <= score.found, "{}", told(&score));
+    // One in two thousand holds found is none.
+    assert!(2000 * score.extra <= score.found, "{}", told(&score));
 }
 
 #[test]
