@@ -165,8 +165,8 @@ pub(crate) enum DriveName {
 Examples:
   palpate inspect press.csv                            columns, units, the cut into phases
   palpate inspect press.csv --figure cut.svg           the cut as a figure
-  palpate inspect book.xlsx --part \"Specimen 3\"       one sheet of a workbook
-  palpate inspect press.csv --write-test press.toml    a first test description, every guess commented
+  palpate inspect book.xlsx --part \"Specimen 3\"        one sheet of a workbook
+  palpate inspect press.csv --write-test press.toml    a first test description, guesses marked
   palpate inspect --machines                           machines and grippers whose files are known")]
 pub(crate) struct InspectArguments {
     /// Record with time, force and, if possible, displacement, in any format that is known

@@ -119,8 +119,10 @@ fn force_held(
 
 /// Finds the holds of constant force in a record and compares laws of creep on the displacement of each.
 ///
-/// Where holds are `given` they are those, less any whose mode is [`HoldMode::DisplacementHeld`]. Else they are those whose mode is [`HoldMode::ForceHeld`]. Where there is none, phases are found as for a squeeze, with force and
-/// displacement exchanged: the force is what the machine holds, to a fiftieth of its range, whatever tolerance `segment` has. `until` (s) limits how much of each hold is fitted.
+/// Where holds are `given` they are those, less any whose mode is [`HoldMode::DisplacementHeld`]. Else they are those whose mode
+/// is [`HoldMode::ForceHeld`]. Where there is none, phases are found as for a squeeze, with force and displacement exchanged: the
+/// force is what the machine holds, to a fiftieth of its range, whatever tolerance `segment` has. `until` (s) limits how much of
+/// each hold is fitted.
 ///
 /// ```
 /// use palpate::analysis::creep_holds;

@@ -12,8 +12,9 @@ const ROUNDS: usize = 3;
 
 /// Moves the edges of standstills to where ramps and levels meet.
 ///
-/// Where a ramp has no line, samples no farther than `near` from the level belong to the hold. Elsewhere all samples of the straight piece of either side count, so that the error of an edge comes near the limit that noise
-/// sets. What is a sample of the ramp and what of the hold follows from the edge, so it is done three times.
+/// Where a ramp has no line, samples no farther than `near` from the level belong to the hold. Elsewhere all samples of the
+/// straight piece of either side count, so that the error of an edge comes near the limit that noise sets. What is a sample of
+/// the ramp and what of the hold follows from the edge, so it is done three times.
 pub(super) fn sharpened(time: &[f64], values: &[f64], pieces: &[Piece], near: f64, found: &mut [Standstill]) {
     let count = values.len();
     let cut = found.to_vec();
