@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use palpate::analysis::{AnalysisOptions, analyze, corrected_record, creep_holds};
+use palpate::analysis::{AnalysisOptions, analyze, corrected, creep_holds};
 use palpate::choose::{CompareOptions, RampChoice};
 use palpate::identify::Loss;
 use palpate::laws::Response;
@@ -128,9 +128,10 @@ fn one(
     let _working = Working::new(format!("comparing laws on {}", path.display()));
     let asked = &options.analysis;
     if arguments.creep {
-        let corrected = corrected_record(&file.record, asked)
-            .map_err(|error| Failure::of_file(path, &error, Some(error.hint())))?;
-        let holds = creep_holds(&corrected, (&asked.segment, &asked.given_holds), &options.compared, asked.fit_until)
+        let record = corrected(&file.record, asked)
+            .map_err(|error| Failure::of_file(path, &error, Some(error.hint())))?
+            .record;
+        let holds = creep_holds(&record, (&asked.segment, &asked.given_holds), &options.compared, asked.fit_until)
             .map_err(|error| Failure::of_file(path, &error, Some(error.hint().to_owned())))?;
         return Ok(ComparedRecord::of_creep(holds, input));
     }

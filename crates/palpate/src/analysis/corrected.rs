@@ -5,20 +5,27 @@ use super::{AnalysisError, AnalysisOptions};
 use crate::record::{Record, SkewChoice};
 use crate::segment::{SegmentError, Segmentation, free_samples, phases_with};
 
-/// A record with its phases, ready for first touch.
-pub(super) struct Corrected {
-    pub(super) record: Record,
+/// A corrected record with its phases, ready for first touch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Corrected {
+    /// The record; it knows what was done to it.
+    pub record: Record,
     /// Why there are none is for those to say who need them: a record of creep has none that come from its displacement.
-    pub(super) segmentation: Result<Segmentation, SegmentError>,
+    pub segmentation: Result<Segmentation, SegmentError>,
     /// What the clocks of the record as it came seem to differ by.
-    pub(super) skew: Option<ClockSkew>,
+    pub skew: Option<ClockSkew>,
 }
 
-/// Skew, sample times, baseline, compliance: in this order, since each needs those before it.
+/// Repairs single-row dropouts and makes the corrections that are asked for, as [`analyze`](super::analyze) does: skew, sample
+/// times, baseline, compliance, in this order, since each needs those before it.
 ///
 /// Edges are sought where they were measured; a baseline is the force where nothing touches; and a table of compliance
 /// counts forces from zero.
-pub(super) fn corrected(record: Record, options: &AnalysisOptions) -> Result<Corrected, AnalysisError> {
+///
+/// # Errors
+/// [`AnalysisError`] for a correction that cannot be made, and where a baseline is to be found but the phases are not.
+pub fn corrected(record: &Record, options: &AnalysisOptions) -> Result<Corrected, AnalysisError> {
+    let (record, _) = record.repaired();
     let asked = &options.corrections;
     let phases = |record: &Record| phases_with(record, &options.segment, &options.given_holds);
     let segmentation = phases(&record);
@@ -52,13 +59,4 @@ pub(super) fn corrected(record: Record, options: &AnalysisOptions) -> Result<Cor
         segmentation,
         skew,
     })
-}
-
-/// The record with single-row dropouts repaired and the corrections made that are asked for, as [`analyze`](super::analyze)
-/// makes them; for those who need the record alone.
-///
-/// # Errors
-/// [`AnalysisError`] for a correction that cannot be made, and where a baseline is to be found but the phases are not.
-pub fn corrected_record(record: &Record, options: &AnalysisOptions) -> Result<Record, AnalysisError> {
-    Ok(corrected(record.repaired().0, options)?.record)
 }

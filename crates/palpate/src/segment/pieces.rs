@@ -123,8 +123,9 @@ impl Ord for Proposal {
 
 /// Cuts a column into straight pieces.
 ///
-/// 1. At first every sample is a piece. The two neighbours whose union a straight line explains best are joined, again and
-///    again, until every union would leave more than noise (and the stray allowed) explains. Cost: N log N.
+/// 1. At first every sample is a piece, or in a long column every run that a line explains. The two neighbours whose union a
+///    straight line explains best are joined, again and again, until every union would leave more than noise (and the stray
+///    allowed) explains. Cost: N log N for short columns, N for long ones.
 /// 2. Among all polygons that have corners of this one, the one of least cost is taken.
 /// 3. Every corner moves to where its two lines leave least.
 pub(super) fn pieces(time: &[f64], values: &[f64], roughness: Roughness) -> Vec<Piece> {
@@ -138,11 +139,6 @@ pub(super) fn pieces(time: &[f64], values: &[f64], roughness: Roughness) -> Vec<
 
 /// Neighbours joined to pieces until no union is explained by a line.
 fn joined(time: &[f64], values: &[f64], roughness: Roughness, price: f64) -> Vec<Piece> {
-    let count = values.len();
-    // Piece i begins at sample i; `end` 0 stands for a piece that was joined to another.
-    let mut lines: Vec<Line> = time.iter().zip(values).map(|(t, v)| Line::of_sample(*t, *v)).collect();
-    let mut ends: Vec<usize> = (1..=count).collect();
-    let mut before: Vec<usize> = (0..count).map(|i| i.saturating_sub(1)).collect();
     let kept_apart = (price - FINER).max(LEAST_KEPT_APART);
     let cost = |a: &Line, b: &Line| {
         let more = a.joined(b).left() - a.left() - b.left();
@@ -150,9 +146,20 @@ fn joined(time: &[f64], values: &[f64], roughness: Roughness, price: f64) -> Vec
             kept_apart * roughness.noise * roughness.noise + a.count.min(b.count) * roughness.stray * roughness.stray;
         more / allowed
     };
+    let first = first_pieces(time, values, &cost);
+    let count = first.len();
+    // Index of the piece after; 0 stands for a piece that was joined to another.
+    let mut lines: Vec<Line> = first.iter().map(|piece| piece.line).collect();
+    let mut ends: Vec<usize> = (1..=count).collect();
+    let mut before: Vec<usize> = (0..count).map(|i| i.saturating_sub(1)).collect();
     let mut proposals: BinaryHeap<Proposal> = (1..count)
         .map(|right| Proposal {
-            cost: 0.0,
+            // Single samples join at no cost.
+            cost: if first[right - 1].end - first[right - 1].start + first[right].end - first[right].start == 2 {
+                0.0
+            } else {
+                cost(&lines[right - 1], &lines[right])
+            },
             left: right - 1,
             right,
             end: right + 1,
@@ -198,14 +205,52 @@ fn joined(time: &[f64], values: &[f64], roughness: Roughness, price: f64) -> Vec
     let mut start = 0;
     while start < count {
         pieces.push(Piece {
-            start,
-            end: ends[start],
+            start: first[start].start,
+            end: first[ends[start] - 1].end,
             line: lines[start],
         });
         start = ends[start];
     }
     pieces
 }
+
+/// What the joining begins with: single samples; of a long column runs of two, four and more that a line explains so well that
+/// no other joining would part them.
+fn first_pieces(time: &[f64], values: &[f64], cost: &impl Fn(&Line, &Line) -> f64) -> Vec<Piece> {
+    let run = (values.len() / MANY + 1).next_power_of_two();
+    let mut pieces: Vec<Piece> = Vec::with_capacity(values.len() / run + 1);
+    for begin in (0..values.len()).step_by(run) {
+        let first = pieces.len();
+        for i in begin..(begin + run).min(values.len()) {
+            pieces.push(Piece {
+                start: i,
+                end: i + 1,
+                line: Line::of_sample(time[i], values[i]),
+            });
+            // As in a binary count: a carry joins two runs of one length.
+            let mut length = 1;
+            while (i + 1 - begin) % (2 * length) == 0 {
+                let [.., left, right] = &pieces[first..] else { break };
+                let alike = left.end - left.start == length && right.end - right.start == length;
+                if !alike || (length > 1 && cost(&left.line, &right.line) > SURELY) {
+                    break;
+                }
+                let (end, line) = (right.end, left.line.joined(&right.line));
+                pieces.pop();
+                if let Some(last) = pieces.last_mut() {
+                    (last.end, last.line) = (end, line);
+                }
+                length *= 2;
+            }
+        }
+    }
+    pieces
+}
+
+/// Columns of more samples begin with runs of samples.
+const MANY: usize = 20_000;
+/// Share of what two pieces may cost to be joined up to which they are one without asking their other neighbours.
+const SURELY: f64 = 0.3;
 
 /// The polygon of least cost among those whose corners are corners of a finer one: what it leaves, in units of the noise's
 /// square, and a price for every piece.
@@ -260,19 +305,23 @@ fn polish(time: &[f64], values: &[f64], pieces: &mut [Piece]) {
     }
 }
 
+/// How far a cut is moved at most, in samples.
+const FAR: usize = 100_000;
 /// How often all cuts are moved to where they are best.
 const POLISHED: usize = 2;
 
 /// Moves the cut between two pieces to where their lines leave least.
 fn split(time: &[f64], values: &[f64], left: &mut Piece, right: &mut Piece) {
-    let range = left.start..right.end;
-    let backwards = range.clone().rev().scan(Line::default(), |line, i| {
+    // Of long pieces the cut is sought in the samples next to it.
+    let range = left.start.max(left.end.saturating_sub(FAR))..right.end.min(right.start + FAR);
+    let beyond = Line::through(time, values, range.end..right.end);
+    let backwards = range.clone().rev().scan(beyond, |line, i| {
         *line = Line::of_sample(time[i], values[i]).joined(line);
         Some(*line)
     });
     let mut after: Vec<Line> = backwards.collect();
     after.reverse();
-    let mut before = Line::default();
+    let mut before = Line::through(time, values, left.start..range.start);
     let mut best = (left.line.left() + right.line.left(), left.end, left.line, right.line);
     for cut in range.start + 1..range.end {
         before = before.joined(&Line::of_sample(time[cut - 1], values[cut - 1]));
@@ -310,6 +359,32 @@ mod tests {
         );
         assert_eq!(ends.len(), 3, "{ends:?}");
         assert!(ends[0].abs_diff(100) <= 1 && ends[1].abs_diff(250) <= 1, "{ends:?}");
+    }
+
+    /// What a long column is joined from in runs has its corners where a short one has them.
+    #[test]
+    fn long_columns_are_cut_at_their_corners() {
+        let mut random = Noise::new(4);
+        let (count, every) = (12 * MANY, 3 * MANY + 17);
+        let shape = |i: usize| {
+            let (step, rest) = (i / every, i % every);
+            step as f64 + (rest as f64 / 10.0).min(1.0)
+        };
+        let values: Vec<f64> = (0..count).map(|i| shape(i) + 1e-3 * random.normal()).collect();
+        let ends = cut(
+            &values,
+            Roughness {
+                noise: 1e-3,
+                stray: 0.0,
+                hunts: false,
+            },
+        );
+        let expected: Vec<usize> =
+            (0..=count / every).flat_map(|step| [step * every, step * every + 10]).skip(1).collect();
+        assert_eq!(ends.len(), expected.len() + 1, "{ends:?}");
+        for (found, expected) in ends.iter().zip(&expected) {
+            assert!(found.abs_diff(*expected) <= 1, "{ends:?} {expected:?}");
+        }
     }
 
     /// A kink of slope change s with n samples on either side is seen where s² n³/24 exceeds 25 σ².
