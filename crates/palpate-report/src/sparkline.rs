@@ -26,7 +26,8 @@ pub fn sparkline(time: &[f64], values: &[f64], width: usize) -> String {
 
 /// A character for each share of the time: that of the stretch which takes most of it, a blank where none does.
 ///
-/// `stretches` are first and last time and their character.
+/// `stretches` are first and last time and their character. One too short to take most of any share has the one in which its
+/// middle lies, as long as that leaves the stretches beside it a character.
 #[must_use]
 pub fn strip(from: f64, until: f64, stretches: &[(f64, f64, char)], width: usize) -> String {
     let step = (until - from) / width as f64;
@@ -34,11 +35,23 @@ pub fn strip(from: f64, until: f64, stretches: &[(f64, f64, char)], width: usize
         let (low, high) = (from + step * index as f64, from + step * (index + 1) as f64);
         end.min(high) - start.max(low)
     };
-    let character = |index: usize| {
-        let most = stretches.iter().max_by(|a, b| covered(index, a).total_cmp(&covered(index, b)));
-        most.filter(|stretch| covered(index, stretch) > 0.0).map_or(' ', |stretch| stretch.2)
+    let longest = |index: usize| {
+        let cover = |stretch: &usize| covered(index, &stretches[*stretch]);
+        let most = (0..stretches.len()).max_by(|a, b| cover(a).total_cmp(&cover(b)));
+        most.filter(|stretch| cover(stretch) > 0.0)
     };
-    (0..width).map(character).collect()
+    let mut owners: Vec<Option<usize>> = (0..width).map(longest).collect();
+    for (number, (start, end, _)) in stretches.iter().enumerate() {
+        let place = ((0.5 * (start + end) - from) / step) as usize;
+        let Some(Some(taken)) = owners.get(place).copied() else {
+            continue;
+        };
+        let shares = |stretch: usize| owners.iter().filter(|owner| **owner == Some(stretch)).count();
+        if shares(number) == 0 && shares(taken) > 1 {
+            owners[place] = Some(number);
+        }
+    }
+    owners.into_iter().map(|owner| owner.map_or(' ', |stretch| stretches[stretch].2)).collect()
 }
 
 /// The mean of each share of the time.
@@ -75,5 +88,13 @@ mod tests {
         let stretches = [(0.0, 2.6, '/'), (2.6, 8.0, '-'), (9.0, 10.0, '\\')];
         assert_eq!(strip(0.0, 10.0, &stretches, 10), "///----- \\");
         assert_eq!(strip(0.0, 10.0, &[], 4), "    ");
+    }
+
+    #[test]
+    fn a_short_ramp_between_long_holds_is_seen() {
+        let stretches = [(0.0, 4.0, '-'), (4.0, 4.1, '/'), (4.1, 9.9, '-'), (9.9, 10.0, '\\')];
+        assert_eq!(strip(0.0, 10.0, &stretches, 10), "----/----\\");
+        // Where every share has a stretch of its own nothing gives way.
+        assert_eq!(strip(0.0, 10.0, &[(0.0, 6.0, 'a'), (6.0, 6.1, 'b'), (6.1, 10.0, 'c')], 2), "ac");
     }
 }
