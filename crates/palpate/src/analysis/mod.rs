@@ -34,7 +34,7 @@ mod signals;
 mod skew;
 
 pub use across::{Across, LevelAgreement, Trend};
-pub use corrected::corrected_record;
+pub use corrected::{Corrected, corrected};
 pub use creep::{CreepError, CreepHold, creep_holds};
 pub use finding::{Finding, Severity};
 use hold::comparison_findings;

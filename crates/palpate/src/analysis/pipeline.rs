@@ -111,7 +111,6 @@ const POOR: f64 = 0.05;
 /// or no hold has anything to fit.
 pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, AnalysisError> {
     let signals = record.signals();
-    let (record, _) = record.repaired();
     let Corrected {
         record,
         segmentation,
@@ -124,6 +123,7 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
     if !segmentation.settings.from_displacement {
         findings.push(Finding::PhasesFromForce);
     }
+    findings.extend(segmentation.ruptures.iter().map(Finding::from));
     findings.extend(suspicious_signs(&record, &segmentation));
     let body = options.geometry.as_ref().map(|geometry| (&geometry.shape, geometry.sides));
     let contact = find_contact_of(&record, &segmentation, body, options.touch);

@@ -3,6 +3,7 @@
 use super::levels::{Held, Levels, levels, range};
 use super::mode::{HoldMode, mode, mode_at_large};
 use super::ramps::{Level, fill_gaps};
+use super::rupture::{Rupture, ruptures};
 use super::{After, Phase, Segment, SegmentError, SegmentOptions, SegmentSettings, Segmentation};
 use crate::record::Record;
 use crate::statistics::median;
@@ -36,13 +37,30 @@ pub(super) fn phases(
         }
         let Segment { start, end, .. } = segments[index];
         let is_pressed = pressed.iter().any(|level| level.start == start && level.end == end);
-        segments[index].mode = Some(if is_pressed { HoldMode::ForceHeld } else { mode(record, start, end) });
+        segments[index].mode = Some(if is_pressed && mode_at_large(record, start, end) == HoldMode::ForceHeld {
+            HoldMode::ForceHeld
+        } else {
+            mode(record, start, end)
+        });
         if is_pressed {
             segments[index].after = direction(record.force(), &segments, index).or(segments[index].after);
         }
     }
-    let Levels { settings, .. } = found;
-    Ok(Segmentation { segments, settings })
+    let ruptures = ruptures(record, &mut segments);
+    match ruptures.first() {
+        Some(Rupture {
+            time, before, after, ..
+        }) if !segments.iter().any(|segment| segment.phase == Phase::Hold) => Err(SegmentError::Ruptured {
+            time: *time,
+            before: *before,
+            after: *after,
+        }),
+        _ => Ok(Segmentation {
+            segments,
+            ruptures,
+            settings: found.settings,
+        }),
+    }
 }
 
 /// Levels of the force over which the displacement creeps.
@@ -60,20 +78,27 @@ fn force_held(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Le
     let (low, range) = (least(record.force()), range(record.force()));
     // A contact that is open shows no force, and nobody holds that.
     let open = |level: &Level| level.value.abs().min(level.value - low) <= OPEN * range + 3.0 * found.settings.noise;
-    let creeps = |level: &Level| {
-        let inside: Vec<&Level> =
-            still.iter().filter(|still| still.start < level.end && level.start < still.end).collect();
-        let is_held = match mode_at_large(record, level.start, level.end) {
-            HoldMode::ForceHeld => {
-                slows_down(record, level, FIRST_HALF) && inside.iter().all(|still| rests_late(record, still, level))
-            }
-            // Whoever holds a force on a jaw that is not seen to move, holds it.
-            HoldMode::DisplacementHeld => inside.is_empty(),
-            HoldMode::Neither => false,
-        };
-        !open(level) && arrives(record, level, &jaw.settings) && (is_held || turns_back(record, &inside, level))
-    };
-    found.levels.iter().filter(|level| creeps(level)).copied().collect()
+    let (mut pressed, mut likely, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
+    for level in found.levels.iter().filter(|level| !open(level) && arrives(record, level, &jaw.settings)) {
+        let inside: Vec<&Level> = still.iter().filter(|still| overlap(still, level)).collect();
+        let rests = || inside.iter().all(|still| rests_late(record, still, level));
+        match mode_at_large(record, level.start, level.end) {
+            _ if turns_back(record, &inside, level) => pressed.push(*level),
+            HoldMode::ForceHeld if slows_down(record, level, FIRST_HALF) && rests() => pressed.push(*level),
+            HoldMode::ForceHeld => likely.push(*level),
+            // The jaw stands there, and its noise hides it.
+            HoldMode::DisplacementHeld if inside.is_empty() => unseen.push(jaw.edges_of(record.time(), level)),
+            _ => {}
+        }
+    }
+    // A machine that holds the force once, and hardly ever the jaw, does so again.
+    let apart = |still: &&Level| !pressed.iter().chain(&likely).any(|level| overlap(still, level));
+    if !pressed.is_empty() && pressed.len() + likely.len() > 2 * still.iter().filter(apart).count() {
+        pressed.append(&mut likely);
+    }
+    pressed.append(&mut unseen);
+    pressed.sort_by_key(|level| level.start);
+    pressed
 }
 
 /// Share of its range up to which a force may be that of an open contact.
@@ -148,13 +173,16 @@ fn turns_back(record: &Record, inside: &[&Level], level: &Level) -> bool {
     at_first && still.end + 2 * slack < level.end && mode_at_large(record, still.end, level.end) == HoldMode::ForceHeld
 }
 
+fn overlap(a: &Level, b: &Level) -> bool {
+    a.start < b.end && b.start < a.end
+}
+
 /// On a machine that holds the force, a standstill of the jaw shorter than this share of its holds is a chance in a creep.
 const SHORT: f64 = 0.2;
 
 /// Both kinds of levels in order. Where they overlap the force is held: the displacement comes to rest late in a creep, as the
 /// force does late in a relaxation, and the longer of the two is the hold.
 fn together(record: &Record, still: &[Level], pressed: &[Level]) -> Vec<Level> {
-    let overlap = |a: &Level, b: &Level| a.start < b.end && b.start < a.end;
     let time = record.time();
     let length = |level: &Level| time[level.end - 1] - time[level.start];
     let usual = if pressed.is_empty() { 0.0 } else { median(&mut pressed.iter().map(length).collect::<Vec<f64>>()) };

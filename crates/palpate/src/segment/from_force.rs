@@ -58,7 +58,11 @@ pub(super) fn phases(time: &[f64], force: &[f64], options: &SegmentOptions) -> R
     if !segments.iter().any(holds) {
         return Err(found.none());
     }
-    Ok(Segmentation { segments, settings })
+    Ok(Segmentation {
+        segments,
+        ruptures: Vec::new(),
+        settings,
+    })
 }
 
 /// Where the hold begins whose core begins at `core`: the last turning point of the force since `from`, if what follows

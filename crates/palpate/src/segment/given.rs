@@ -83,7 +83,11 @@ pub fn phases_with(
     for segment in segments.iter_mut().filter(|segment| segment.phase == Phase::Hold) {
         segment.fit_start = segment.fit_start.max(segment.start);
     }
-    Ok(Segmentation { segments, settings })
+    Ok(Segmentation {
+        segments,
+        ruptures: Vec::new(),
+        settings,
+    })
 }
 
 /// The samples of a given hold.

@@ -45,9 +45,24 @@ pub(super) struct Levels {
     pub(super) levels: Vec<Level>,
     pub(super) settings: SegmentSettings,
     pub(super) refused: Refused,
+    pieces: Vec<Piece>,
+    /// How near to a level its samples are where a ramp has no line.
+    near: f64,
 }
 
 impl Levels {
+    /// A standstill that another column shows, with the edges that this column gives it.
+    pub(super) fn edges_of(&self, time: &[f64], other: &Level) -> Level {
+        let mut found = [Standstill {
+            start: other.start,
+            end: other.end,
+        }];
+        sharpened(time, &self.values, &self.pieces, self.near, &mut found);
+        // The corners of this column may lie elsewhere; what they cut short is not better.
+        let [found] = found;
+        if found.end - found.start < other.end - other.start { *other } else { level(&self.values, found) }
+    }
+
     /// Why there is no hold.
     pub(super) fn none(&self) -> SegmentError {
         SegmentError::NoHold {
@@ -94,7 +109,8 @@ pub(super) fn levels(time: &[f64], held: &Held<'_>, options: &SegmentOptions) ->
         duration: options.minimum_hold,
     };
     let (mut found, refused) = standstills(time, &values, &pieces, &stillness);
-    sharpened(time, &values, &pieces, (3.0 * noise).max(0.5 * held.wander), &mut found);
+    let near = (3.0 * noise).max(0.5 * held.wander);
+    sharpened(time, &values, &pieces, near, &mut found);
     let mut found = joined(&values, &found, &stillness);
     // What is left of a standstill between its ramps may be too little for one.
     found.retain(|found| found.end - found.start >= stillness.samples);
@@ -115,6 +131,8 @@ pub(super) fn levels(time: &[f64], held: &Held<'_>, options: &SegmentOptions) ->
         levels,
         settings,
         refused,
+        pieces,
+        near,
     })
 }
 

@@ -16,6 +16,7 @@
 //! | `given.rs` | holds whose limits someone gives |
 //! | `edges.rs` | where exactly a hold begins and ends |
 //! | `ramps.rs` | what lies between the holds: loading and unloading |
+//! | `rupture.rs` | where the body broke |
 //! | `relaxation.rs` | Type I or Type II, and how sure |
 //! | `contact_point.rs` | first touch and the zero of the force |
 //! | `contact_point/estimators.rs` | first touch by rules that know no law |
@@ -35,6 +36,7 @@ mod options;
 mod pieces;
 mod ramps;
 mod relaxation;
+mod rupture;
 mod smooth;
 mod standstill;
 mod turning;
@@ -47,6 +49,7 @@ pub use mode::HoldMode;
 pub(crate) use mode::{change, mode as held_in};
 pub use options::{HoldStart, SegmentOptions, SegmentSettings};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
+pub use rupture::Rupture;
 
 use serde::{Deserialize, Serialize};
 
@@ -56,7 +59,7 @@ use crate::record::Record;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
-    /// Standing still before anything moved.
+    /// Standing still with nothing held: before anything moved, or after the body broke.
     Rest,
     /// The displacement grows.
     Loading,
@@ -113,6 +116,8 @@ impl Segment {
 pub struct Segmentation {
     /// Segments; together they cover the record without gaps.
     pub segments: Vec<Segment>,
+    /// Where the body broke.
+    pub ruptures: Vec<Rupture>,
     /// The thresholds used.
     pub settings: SegmentSettings,
 }
@@ -167,6 +172,21 @@ pub enum SegmentError {
         /// Least number of samples of a hold.
         minimum_samples: usize,
     },
+    /// The jaw stands still only after the body broke.
+    #[error(
+        "no hold found: at {} the body broke under {}, and {} are left where the jaw then stands",
+        told(*time, "s"),
+        told(*before, "N"),
+        told(*after, "N")
+    )]
+    Ruptured {
+        /// When the force had fallen by half, s.
+        time: f64,
+        /// Largest force before, N.
+        before: f64,
+        /// Force where the jaw came to stand, N.
+        after: f64,
+    },
     /// A given hold that the record does not contain.
     #[error("given hold {number} lasts from {from} s to {to} s, the record from {begin} s to {last} s")]
     GivenOutside {
@@ -218,6 +238,9 @@ impl SegmentError {
             Self::TooShort { .. } => "check that the whole test was exported",
             Self::NoMotion { .. } => {
                 "check the displacement column and its unit; a record without motion has no relaxation to fit"
+            }
+            Self::Ruptured { .. } => {
+                "what stands after a rupture does not relax; if nothing broke, give the hold by hand ([[phases.hold]] in the test description)"
             }
             Self::NoHold {
                 samples,

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use palpate::analysis::{AnalysisError, AnalysisOptions, corrected_record};
+use palpate::analysis::{AnalysisError, AnalysisOptions, Corrected, Finding, corrected};
 use palpate::record::Record;
-use palpate::segment::{Phase, SegmentError, Segmentation, TouchEstimate, find_contact_of, phases_with};
+use palpate::segment::{Phase, SegmentError, Segmentation, TouchEstimate, find_contact_of};
 use palpate_files::description::TestDescription;
 use palpate_report::figure::Figure;
 use palpate_report::number::significant;
@@ -28,9 +28,14 @@ impl Cut {
     pub(super) fn of(record: &Record, test: Option<&TestDescription>) -> Result<Self, AnalysisError> {
         let options = test.map_or_else(AnalysisOptions::default, TestDescription::analysis_options);
         let before = record.corrections().len();
-        let record = corrected_record(record, &options)?;
-        let found = phases_with(&record, &options.segment, &options.given_holds);
-        Ok(Self { record, before, found })
+        let Corrected {
+            record, segmentation, ..
+        } = corrected(record, &options)?;
+        Ok(Self {
+            record,
+            before,
+            found: segmentation,
+        })
     }
 
     /// The phases, if there are any.
@@ -113,6 +118,9 @@ impl Cut {
                 Cell::number(record.force()[segment.start], 4),
                 Cell::number(record.force()[last], 4),
             ]);
+        }
+        for rupture in &segmentation.ruptures {
+            table = table.note(Finding::from(rupture).seen());
         }
         let mut out = table.to_plain_text();
         let done = &record.corrections()[self.before..];
