@@ -20,6 +20,9 @@ pub enum Encoding {
     /// GBK (simplified Chinese), which contains GB 2312; read as its superset GB 18030 where it is one.
     #[serde(rename = "gbk")]
     Gbk,
+    /// Shift JIS (Japanese), as Windows writes it.
+    #[serde(rename = "shift_jis")]
+    ShiftJis,
     /// Windows-1252, which contains Latin-1.
     #[serde(rename = "windows-1252")]
     Windows1252,
@@ -27,7 +30,7 @@ pub enum Encoding {
 
 impl Encoding {
     /// Every encoding that can be read.
-    pub const ALL: [Self; 5] = [Self::Utf8, Self::Utf16Le, Self::Utf16Be, Self::Gbk, Self::Windows1252];
+    pub const ALL: [Self; 6] = [Self::Utf8, Self::Utf16Le, Self::Utf16Be, Self::Gbk, Self::ShiftJis, Self::Windows1252];
 
     /// Its usual name, in lower case.
     #[must_use]
@@ -37,12 +40,13 @@ impl Encoding {
             Self::Utf16Le => "utf-16le",
             Self::Utf16Be => "utf-16be",
             Self::Gbk => "gbk",
+            Self::ShiftJis => "shift_jis",
             Self::Windows1252 => "windows-1252",
         }
     }
 
     /// Whether line ends, delimiters, quotes and digits are the same bytes as in ASCII and occur in no other
-    /// role, so that rows can be split without decoding. Second bytes of GBK start at 0x40 ('@'); the digits
+    /// role, so that rows can be split without decoding. Second bytes of GBK and Shift JIS start at 0x40 ('@'); the digits
     /// inside four-byte GB 18030 sequences are harmless, because no digit splits anything.
     pub(crate) fn splits_like_ascii(self) -> bool {
         !matches!(self, Self::Utf16Le | Self::Utf16Be)
@@ -54,6 +58,7 @@ impl Encoding {
             Self::Utf16Le => encoding_rs::UTF_16LE,
             Self::Utf16Be => encoding_rs::UTF_16BE,
             Self::Gbk => encoding_rs::GBK,
+            Self::ShiftJis => encoding_rs::SHIFT_JIS,
             Self::Windows1252 => encoding_rs::WINDOWS_1252,
         }
     }
@@ -75,7 +80,7 @@ impl fmt::Display for Encoding {
 
 /// The text names no encoding that can be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown encoding `{found}`; expected one of utf-8, utf-16le, utf-16be, gbk, windows-1252")]
+#[error("unknown encoding `{found}`; expected one of utf-8, utf-16le, utf-16be, gbk, shift_jis, windows-1252")]
 pub struct UnknownEncoding {
     /// What was given.
     pub found: String,
@@ -111,6 +116,7 @@ pub(crate) fn recognise(sample: &[u8]) -> Option<Encoding> {
         Ok(_) => Some(Encoding::Utf8),
         // No error length: the sample merely ends inside a character.
         Err(error) if error.error_len().is_none() => Some(Encoding::Utf8),
+        Err(_) if looks_japanese(sample) => Some(Encoding::ShiftJis),
         Err(_) if looks_chinese(sample) => Some(Encoding::Gbk),
         Err(_) => Some(Encoding::Windows1252),
     }
@@ -153,6 +159,36 @@ fn looks_chinese(sample: &[u8]) -> bool {
     common > 0 && common >= 2 * rare
 }
 
+/// Whether the bytes above ASCII pair up as everyday Japanese.
+///
+/// Kana and the common characters begin with 0x81 to 0x84 and 0x88 to 0x98. In Western text quotes and dashes do so, too, but
+/// stand alone, whereas words of Japanese have several characters. Narrow kana (0xA1 to 0xDF) are single bytes and tell nothing.
+fn looks_japanese(sample: &[u8]) -> bool {
+    let (mut in_words, mut alone, mut run) = (0_usize, 0_usize, 0_usize);
+    let mut bytes = sample.iter().copied();
+    let mut ended = |run: &mut usize| {
+        *(if *run > 1 { &mut in_words } else { &mut alone }) += *run;
+        *run = 0;
+    };
+    while let Some(lead) = bytes.next() {
+        match lead {
+            0xA1..=0xDF => continue,
+            0..0x80 => {
+                ended(&mut run);
+                continue;
+            }
+            _ => {}
+        }
+        match (lead, bytes.next()) {
+            (_, None) => break,
+            (0x81..=0x84 | 0x88..=0x98, Some(0x40..=0x7E | 0x80..=0xFC)) => run += 1,
+            _ => return false,
+        }
+    }
+    ended(&mut run);
+    in_words > alone
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -180,6 +216,19 @@ mod tests {
         assert_eq!(recognise(b"\xCA\xB1\xBC\xE4,\xCE\xBB\xD2\xC6,\xC1\xA6\n"), Some(Encoding::Gbk));
         for western in
             [&b"Temp (\xB0C), d (\xB5m)"[..], b"Gr\xF6\xDFe;Weg (\xB5m)", b"d\xE9placement,temps", b"fin \xE9\n"]
+        {
+            assert_eq!(recognise(western), Some(Encoding::Windows1252));
+        }
+    }
+
+    #[test]
+    fn japanese_against_western_and_chinese() {
+        // "時間(s),変位(μm),荷重(N)"
+        let header = b"\x8E\x9E\x8A\xD4(s),\x95\xCF\x88\xCA(\x83\xCAm),\x89\xD7\x8F\x64(N)\n";
+        assert_eq!(recognise(header), Some(Encoding::ShiftJis));
+        // "ストローク"
+        assert_eq!(recognise(b"\x83X\x83g\x83\x8D\x81[\x83N\n"), Some(Encoding::ShiftJis));
+        for western in [&b"Vitesse d\x92essai (mm/min)"[..], b"l\x92\xE9paisseur", b"10 \x96 20 mm", b"d\x92\xE9t\xE9 "]
         {
             assert_eq!(recognise(western), Some(Encoding::Windows1252));
         }

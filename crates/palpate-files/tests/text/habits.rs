@@ -72,6 +72,17 @@ fn chinese_machine_with_blank_first_line_and_units_row() {
 }
 
 #[test]
+fn japanese_machine_in_shift_jis() {
+    // 時間(s),変位(mm),荷重(N)
+    let text = b"\x8E\x9E\x8A\xD4(s),\x95\xCF\x88\xCA(mm),\x89\xD7\x8F\x64(N)\r\n0.0,0.0,-0.1\r\n0.1,0.2,0.3\r\n";
+    let layout = layout(text);
+    assert_eq!(layout.encoding, Encoding::ShiftJis);
+    assert_eq!(names(&layout), ["時間", "変位", "荷重"]);
+    assert_eq!(units(&layout), ["s", "mm", "N"]);
+    assert_eq!(read(text, &[3]).expect("columns").values, [[-0.1, 0.3]]);
+}
+
+#[test]
 fn line_ends() {
     for end in ["\n", "\r\n", "\r"] {
         let text = ["t,F", "0,1.5", "1,2.5", ""].join(end);
