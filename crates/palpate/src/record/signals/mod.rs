@@ -17,6 +17,8 @@ pub(super) use values::{stray_rows, zero_rows};
 
 use serde::{Deserialize, Serialize};
 
+use crate::record::Column;
+
 /// What the columns of a record are like; SI units.
 ///
 /// An examination looks and says; it changes nothing. It takes columns that would make no record, too: values that are
@@ -52,8 +54,8 @@ impl SignalReport {
         Self {
             stamps: Stamps::of(time),
             force_stamps: None,
-            displacement: displacement.map(|values| Values::of(values, together.map(|_| force))),
-            force: Values::of(force, together),
+            displacement: displacement.map(|values| Values::of(Column::Displacement, values, together.map(|_| force))),
+            force: Values::of(Column::Force, force, together),
         }
     }
 
@@ -63,8 +65,8 @@ impl SignalReport {
         Self {
             stamps: Stamps::of(displacement_time),
             force_stamps: Some(Stamps::of(force_time)),
-            displacement: Some(Values::of(displacement, None)),
-            force: Values::of(force, None),
+            displacement: Some(Values::of(Column::Displacement, displacement, None)),
+            force: Values::of(Column::Force, force, None),
         }
     }
 }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::rounding::rounding_step;
+use crate::record::Column;
 use crate::statistics::noise;
 
 /// What a measured column is like; its unit is that of the column.
@@ -56,7 +57,7 @@ const LISTED: usize = 20;
 
 impl Values {
     /// Examines a column; `other` was measured in the same rows.
-    pub(super) fn of(values: &[f64], other: Option<&[f64]>) -> Self {
+    pub(super) fn of(column: Column, values: &[f64], other: Option<&[f64]>) -> Self {
         let not_finite = values.iter().filter(|value| !value.is_finite()).count();
         let kept: Vec<f64>;
         // What is not finite would spoil every range; the rows of what is left count on.
@@ -76,7 +77,7 @@ impl Values {
                 zeros: rows.iter().filter(|row| values[**row] == 0.0).count(),
                 rows: rows.into_iter().take(LISTED).collect(),
             },
-            saturation: saturation(values, other),
+            saturation: saturation(column, values, other),
             step: rounding_step(values),
             repeating: repeats as f64 / values.len().saturating_sub(1).max(1) as f64,
             range: if high >= low { high - low } else { 0.0 },
@@ -115,7 +116,7 @@ pub(in crate::record) fn zero_rows(values: &[f64]) -> Vec<usize> {
 }
 
 /// Runs at the end of the range that is farther from where the column begins.
-fn saturation(values: &[f64], other: Option<&[f64]>) -> Option<Saturation> {
+fn saturation(column: Column, values: &[f64], other: Option<&[f64]>) -> Option<Saturation> {
     let (low, high) = range(values);
     if values.len() < 2 * RUN || high <= low {
         return None;
@@ -124,7 +125,9 @@ fn saturation(values: &[f64], other: Option<&[f64]>) -> Option<Saturation> {
     let runs: Vec<(usize, usize)> =
         runs(values).filter(|(start, length)| values[*start] == level && *length >= RUN).collect();
     let (first_row, longest) = *runs.iter().max_by_key(|(start, length)| (*length, usize::MAX - start))?;
-    let clipped = runs.iter().any(|run| goes_on(values, other, *run)) || noise_vanishes(values, level, longest);
+    // A jaw that is held may stand without noise, a force that is measured does not.
+    let without_noise = column == Column::Force && noise_vanishes(values, level, longest);
+    let clipped = without_noise || runs.iter().any(|run| goes_on(values, other, *run));
     Some(Saturation {
         level,
         rows: runs.iter().map(|(_, length)| length).sum(),
@@ -201,18 +204,18 @@ mod tests {
     fn a_clipped_force_is_told_from_a_held_displacement() {
         let (displacement, force) = squeeze();
         let clipped: Vec<f64> = force.iter().map(|f| f.min(8.0)).collect();
-        let found = Values::of(&clipped, Some(&displacement)).saturation.unwrap();
+        let found = Values::of(Column::Force, &clipped, Some(&displacement)).saturation.unwrap();
         assert!(found.clipped && found.level == 8.0 && found.first_row == 80, "{found:?}");
-        let held = Values::of(&displacement, Some(&force)).saturation.unwrap();
+        let held = Values::of(Column::Displacement, &displacement, Some(&force)).saturation.unwrap();
         assert!(!held.clipped && held.longest == 300, "{held:?}");
-        assert_eq!(Values::of(&force, Some(&displacement)).saturation, None);
+        assert_eq!(Values::of(Column::Force, &force, Some(&displacement)).saturation, None);
     }
 
     #[test]
     fn rounding_of_a_slow_force_is_no_clipping() {
         let (displacement, force) = squeeze();
         let rounded: Vec<f64> = force.iter().map(|f| f.round()).collect();
-        let found = Values::of(&rounded, Some(&displacement));
+        let found = Values::of(Column::Force, &rounded, Some(&displacement));
         assert!(found.saturation.is_none_or(|found| !found.clipped), "{found:?}");
         assert!((found.step.unwrap() - 1.0).abs() < 1e-12 && found.repeating > 0.8);
     }
@@ -222,29 +225,40 @@ mod tests {
         let (_, force) = squeeze();
         let mut random = Noise::new(5);
         let noisy: Vec<f64> = force.iter().map(|f| f + 0.05 * random.normal()).collect();
-        assert_eq!(Values::of(&noisy, None).saturation, None);
+        assert_eq!(Values::of(Column::Force, &noisy, None).saturation, None);
         let clipped: Vec<f64> = noisy.iter().map(|f| f.min(8.0)).collect();
-        assert!(Values::of(&clipped, None).saturation.unwrap().clipped);
+        assert!(Values::of(Column::Force, &clipped, None).saturation.unwrap().clipped);
+    }
+
+    #[test]
+    fn a_jaw_that_stands_without_noise_is_held_and_not_clipped() {
+        let mut random = Noise::new(5);
+        let noisy = |level: f64, random: &mut Noise| level + 1e-5 * random.normal();
+        let mut jaw: Vec<f64> = (0..300).map(|i| noisy(1e-5 * f64::from(i), &mut random)).collect();
+        jaw.extend([0.004; 300]);
+        jaw.extend((0..300).map(|_| noisy(0.002, &mut random)));
+        assert!(!Values::of(Column::Displacement, &jaw, None).saturation.unwrap().clipped);
+        assert!(Values::of(Column::Force, &jaw, None).saturation.unwrap().clipped);
     }
 
     #[test]
     fn strays_are_found_beyond_noise_alone() {
         let (displacement, _) = squeeze();
-        assert_eq!(Values::of(&displacement, None).strays.count, 0);
+        assert_eq!(Values::of(Column::Displacement, &displacement, None).strays.count, 0);
         let mut broken = displacement;
         broken[150] = 0.0;
         broken[200] = 0.03;
-        let strays = Values::of(&broken, None).strays;
+        let strays = Values::of(Column::Force, &broken, None).strays;
         assert_eq!((strays.count, strays.zeros, strays.rows), (2, 1, vec![150, 200]));
         let mut random = Noise::new(7);
         let noise: Vec<f64> = (0..3000).map(|_| random.normal()).collect();
-        assert_eq!(Values::of(&noise, None).strays.count, 0);
+        assert_eq!(Values::of(Column::Force, &noise, None).strays.count, 0);
     }
 
     #[test]
     fn columns_that_hold_nothing_do_no_harm() {
         for values in [&[][..], &[1.0], &[f64::NAN, f64::INFINITY], &[2.0; 40]] {
-            let found = Values::of(values, Some(values));
+            let found = Values::of(Column::Force, values, Some(values));
             assert!(found.range == 0.0 && found.saturation.is_none() && found.step.is_none());
         }
     }
