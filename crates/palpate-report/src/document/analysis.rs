@@ -29,6 +29,14 @@ pub struct Input {
     pub title: String,
 }
 
+impl Input {
+    /// The file, and the part of it that is this record where the file names one.
+    #[must_use]
+    pub fn called(&self) -> String {
+        self.part.as_ref().map_or_else(|| self.path.clone(), |part| format!("{}, {part}", self.path))
+    }
+}
+
 /// A finding with its words.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct FindingDocument {

@@ -36,7 +36,7 @@ pub fn comparison_bundle(
         }
         page = page
             .section(section)
-            .provenance("Record", &record.input.path)
+            .provenance("Record", record.input.called())
             .provenance("SHA-256", &record.input.sha256);
     }
     if !left_out.is_empty() {

@@ -118,7 +118,7 @@ pub(super) fn laws(records: &[ComparedRecord], cuts: &[f64]) -> Table {
         for hold in &record.holds {
             for row in hold.comparison.iter().flat_map(|comparison| &comparison.rows) {
                 let comparison = hold.comparison.as_ref();
-                let mut cells = vec![Cell::text(record.input.path.as_str()), Cell::Integer(hold.number as i64)];
+                let mut cells = vec![Cell::text(record.input.called()), Cell::Integer(hold.number as i64)];
                 cells.extend(comparison.map(|comparison| law_row(row, comparison, cuts)).unwrap_or_default());
                 table = table.row(cells);
             }
@@ -173,7 +173,7 @@ pub(super) fn verdict_text(record: &ComparedRecord) -> String {
 pub fn comparison_text(records: &[ComparedRecord], left_out: &[LeftOut]) -> String {
     let mut text = String::new();
     for record in records {
-        text.push_str(&format!("{}\n\n", record.input.path));
+        text.push_str(&format!("{}\n\n", record.input.called()));
         for hold in &record.holds {
             match laws_of_hold(hold) {
                 Some(table) => text.push_str(&table.to_plain_text()),
@@ -253,7 +253,7 @@ pub(super) fn left_out_line(file: &LeftOut) -> String {
 fn overview_row(record: &ComparedRecord, hold: &ComparedHold, laws: &[Law]) -> Vec<Cell> {
     let comparison = hold.comparison.as_ref();
     let verdict = comparison.and_then(|comparison| comparison.verdict.as_ref());
-    let mut cells = vec![Cell::text(record.input.path.as_str()), Cell::Integer(hold.number as i64)];
+    let mut cells = vec![Cell::text(record.input.called()), Cell::Integer(hold.number as i64)];
     for law in laws {
         cells.push(Cell::text(comparison.map_or("–".to_owned(), |comparison| overview(comparison, *law))));
     }

@@ -90,7 +90,7 @@ fn page(
         .section(Section::new("All fits").block(Block::Table(record_tables::fits(analysis))))
         .section(Section::new("Method and settings").blocks(method::blocks(analysis)));
     page = page
-        .provenance("Record", &input.path)
+        .provenance("Record", input.called())
         .provenance("SHA-256", &input.sha256)
         .provenance("Rows", input.rows.to_string());
     if let Some(test) = &input.test {
