@@ -180,6 +180,10 @@ fn overlap(a: &Level, b: &Level) -> bool {
 /// On a machine that holds the force, a standstill of the jaw shorter than this share of its holds is a chance in a creep.
 const SHORT: f64 = 0.2;
 
+/// How many times longer a standstill of the jaw may be than the hold of the force that it belongs to: when the force is let go
+/// the jaw takes a while to move.
+const LATER: f64 = 1.15;
+
 /// Both kinds of levels in order. Where they overlap the force is held: the displacement comes to rest late in a creep, as the
 /// force does late in a relaxation, and the longer of the two is the hold.
 fn together(record: &Record, still: &[Level], pressed: &[Level]) -> Vec<Level> {
@@ -192,7 +196,7 @@ fn together(record: &Record, still: &[Level], pressed: &[Level]) -> Vec<Level> {
         // The rest before anything moved stays what it is.
         let chance = holds_force && is_short(level);
         level.start == 0
-            || !chance && !pressed.iter().any(|press| overlap(level, press) && length(level) <= length(press))
+            || !chance && !pressed.iter().any(|press| overlap(level, press) && length(level) <= LATER * length(press))
     };
     let mut levels: Vec<Level> = still.iter().filter(stays).copied().collect();
     let still = levels.clone();

@@ -157,13 +157,9 @@ pub enum SegmentError {
         unit: &'static str,
     },
     /// It moves all the time.
-    #[error(
-        "no hold found: the longest standstill after a ramp lasts {} ({samples} samples), a hold needs {} and {minimum_samples} samples",
-        told(*longest, "s"),
-        told(*minimum_hold, "s")
-    )]
+    #[error("no hold found: {}", no_hold((*longest, *samples), (*minimum_hold, *minimum_samples)))]
     NoHold {
-        /// Longest standstill, s.
+        /// Longest stretch after a ramp in which it moves slowest, s; 0 if there is none.
         longest: f64,
         /// Its samples.
         samples: usize,
@@ -257,6 +253,21 @@ impl SegmentError {
                 "a cyclic test has no hold; for a short one lower the shortest hold (--minimum-hold), for a drifting one raise the tolerance (--tolerance)"
             }
         }
+    }
+}
+
+/// What is missing for a hold: time or samples, or else that the column stands still.
+fn no_hold((longest, samples): (f64, usize), (minimum, minimum_samples): (f64, usize)) -> String {
+    let slowest = format!("{} ({samples} samples)", told(longest, "s"));
+    if longest == 0.0 {
+        "it moves all the time, or stands from the start".to_owned()
+    } else if longest >= minimum && samples >= minimum_samples {
+        format!("where it moves slowest, for {slowest}, it drifts or turns without a stop")
+    } else {
+        let needed = told(minimum, "s");
+        format!(
+            "the longest standstill after a ramp lasts {slowest}, a hold needs {needed} and {minimum_samples} samples"
+        )
     }
 }
 
