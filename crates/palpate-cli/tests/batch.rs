@@ -59,6 +59,26 @@ fn a_folder_becomes_one_table_of_holds_and_laws() {
 }
 
 #[test]
+fn a_hold_without_a_fit_has_its_row_and_says_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut text = "Time (s),Displacement (mm),Force (N)\n".to_owned();
+    for i in 0..400 {
+        let (t, later) = (0.1 * f64::from(i), (0.1 * f64::from(i) - 20.0).max(0.0));
+        let displacement = t.min(2.0) + later.min(2.0);
+        let relaxing = if (2.0..20.0).contains(&t) { 2.0 * (-(t - 2.0) / 3.0).exp() } else { 0.0 };
+        text.push_str(&format!("{t:.1},{displacement:.4},{:.5}\n", 5.0 * displacement + relaxing));
+    }
+    file(folder, "two.csv", text);
+    done(folder, &["batch", "two.csv", "--out", "holds.csv"]);
+    let table = lines(folder, "holds.csv");
+    assert_eq!(column(&table, "hold"), ["1", "1", "1", "1", "1", "1", "2"]);
+    let last = |name: &str| column(&table, name)[6].clone();
+    assert_eq!((last("law"), last("exponent"), last("start_s")), (String::new(), String::new(), "22.0".to_owned()));
+    assert!(last("findings").contains("no_relaxation"), "{}", last("findings"));
+}
+
+#[test]
 fn parquet_holds_what_csv_holds() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

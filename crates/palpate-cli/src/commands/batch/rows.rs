@@ -1,4 +1,4 @@
-//! An analysed record as rows of the table: one a hold and law.
+//! An analysed record as rows of the table: one a hold and law, and one for a hold to which no law was fitted.
 
 use palpate_files::parquet_table::{Field, Kind, Rows, Values};
 use palpate_report::document::{AnalysisDocument, FitDocument, HoldDocument, LawDocument};
@@ -17,6 +17,8 @@ enum LawRow<'a> {
     Latency { fit: &'a FitDocument, preferred: bool },
     /// Another law of the comparison.
     Other { law: &'a LawDocument, chosen: bool },
+    /// None was fitted; the findings say why.
+    None,
 }
 
 /// A column: its name, which ends in its unit, what it holds, and where that stands.
@@ -70,22 +72,25 @@ const LAW: [Column; 7] = [
     count("preferred", |line| i64::from(line.preferred()).into()),
     number("rmse", |line| match &line.law {
         LawRow::Latency { fit, .. } => fit.rmse.into(),
-        LawRow::Other { .. } => Value::Null,
+        LawRow::Other { .. } | LawRow::None => Value::Null,
     }),
     number("relative_rmse", |line| match &line.law {
         LawRow::Latency { fit, .. } => relative(fit).into(),
         LawRow::Other { law, .. } => law.rmse.into(),
+        LawRow::None => Value::Null,
     }),
     number("delta_bic", |line| match &line.law {
         LawRow::Latency { fit, .. } => fit.delta_bic.into(),
         LawRow::Other { law, .. } => law.delta_bic.into(),
+        LawRow::None => Value::Null,
     }),
     text("termination", |line| match &line.law {
         LawRow::Latency { fit, .. } => fit.termination.clone().into(),
         LawRow::Other { law, .. } => law.termination.clone().or_else(|| law.error.clone()).into(),
+        LawRow::None => Value::Null,
     }),
     text("numbers", |line| match &line.law {
-        LawRow::Latency { .. } => Value::Null,
+        LawRow::Latency { .. } | LawRow::None => Value::Null,
         LawRow::Other { law, .. } => serde_json::to_string(&law.numbers).ok().into(),
     }),
 ];
@@ -137,7 +142,11 @@ fn of_hold<'a>(document: &'a AnalysisDocument, hold: &'a HoldDocument) -> impl I
         law,
         chosen: chosen == Some(&law.law),
     });
-    latency.chain(others).map(move |law| row(&Line { document, hold, law }))
+    let mut laws: Vec<LawRow<'_>> = latency.chain(others).collect();
+    if laws.is_empty() {
+        laws.push(LawRow::None);
+    }
+    laws.into_iter().map(move |law| row(&Line { document, hold, law }))
 }
 
 fn row(line: &Line<'_>) -> Vec<Value> {
@@ -149,22 +158,23 @@ fn row(line: &Line<'_>) -> Vec<Value> {
             let [low, high] = [0, 1].map(|end| interval.map(|interval| interval[end]));
             [value(fit), error.into(), low.into(), high.into()]
         }
-        LawRow::Other { .. } => [const { Value::Null }; 4],
+        LawRow::Other { .. } | LawRow::None => [const { Value::Null }; 4],
     });
     let last: [Value; 2] = match &line.law {
         LawRow::Latency { fit, .. } => [fit.samples.into(), fit.residual_correlation.into()],
-        LawRow::Other { .. } => [const { Value::Null }; 2],
+        LawRow::Other { .. } | LawRow::None => [const { Value::Null }; 2],
     };
     plain(&HOLD).chain(plain(&LAW)).chain(uncertain).chain(last).chain(plain(&ORIGIN)).collect()
 }
 
 impl Line<'_> {
     /// The name of the law as `--laws` takes it.
-    fn name(&self) -> String {
+    fn name(&self) -> Option<String> {
         match &self.law {
-            LawRow::Latency { fit, .. } if fit.exponent_fixed => format!("latency:{}", fit.exponent),
-            LawRow::Latency { .. } => "latency".to_owned(),
-            LawRow::Other { law, .. } => law.law.clone(),
+            LawRow::Latency { fit, .. } if fit.exponent_fixed => Some(format!("latency:{}", fit.exponent)),
+            LawRow::Latency { .. } => Some("latency".to_owned()),
+            LawRow::Other { law, .. } => Some(law.law.clone()),
+            LawRow::None => None,
         }
     }
 
@@ -172,6 +182,7 @@ impl Line<'_> {
         match self.law {
             LawRow::Latency { preferred, .. } => preferred,
             LawRow::Other { chosen, .. } => chosen,
+            LawRow::None => false,
         }
     }
 }
