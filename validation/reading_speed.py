@@ -6,7 +6,7 @@
                                                   the file of 10^8 rows (3 GB), which palpate reads in bounded memory
 
 The file is a squeeze-and-hold record as a machine writes it: a line of names and rows of time, displacement and force
-with 4, 5 and 6 decimals. Every reader runs in a process of its own, three times in turn; the fastest of each counts, with
+with 4, 5 and 6 decimals. Every reader runs in a process of its own, nine times in turn; the fastest of each counts, with
 the file in the cache of the operating system. "End to end" is from the path to three columns of doubles: for pandas
 `read_csv(engine="c")`, for polars `read_csv`. All have to agree on the sum of every column to 1e-6 of it.
 """
@@ -21,7 +21,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 ROWS = 10_000_000
-RUNS = 3
+RUNS = 9
 
 READERS = {
     "pandas, C engine": """

@@ -83,12 +83,35 @@ impl Columns {
     /// Adds a row that stands on a line of the file.
     #[inline]
     pub(crate) fn push(&mut self, row: &[f64], line: usize) {
-        let index = self.rows;
-        let follows = self.runs.last().is_some_and(|run| run.line + (index - run.row) == line);
-        if !follows && self.runs.len() < MOST_RUNS {
-            self.runs.push(Run { row: index, line });
-        }
+        self.note_line(line);
         self.push_values(row);
+    }
+
+    /// Adds rows, given by columns, that stand on lines from `line` on.
+    pub(crate) fn push_block(&mut self, block: &[Vec<f64>], line: usize) {
+        self.note_line(line);
+        let rows = block.first().map_or(0, Vec::len);
+        let held = self.values.first().map_or(0, Vec::len);
+        if self.averaged == 1 && held + rows < self.most {
+            self.values.iter_mut().zip(block).for_each(|(values, more)| values.extend_from_slice(more));
+            self.rows += rows;
+        } else {
+            let mut row = vec![0.0; block.len()];
+            for index in 0..rows {
+                row.iter_mut().zip(block).for_each(|(cell, column)| *cell = column[index]);
+                self.push_values(&row);
+            }
+        }
+    }
+
+    /// Notes the line of the row that comes next, if it does not follow the one before.
+    #[inline]
+    fn note_line(&mut self, line: usize) {
+        let row = self.rows;
+        let follows = self.runs.last().is_some_and(|run| run.line + (row - run.row) == line);
+        if !follows && self.runs.len() < MOST_RUNS {
+            self.runs.push(Run { row, line });
+        }
     }
 
     /// Adds a row of a format without lines.

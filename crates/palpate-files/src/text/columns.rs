@@ -6,6 +6,7 @@ use super::{
     layout::Layout,
     lines::LineReader,
     row::{Fault, RowPlan},
+    rows_ahead::{RowsAhead, Stop},
 };
 use crate::{
     contents::{Columns, Footer},
@@ -15,6 +16,9 @@ use crate::{
 
 /// Most lines behind the data that pass for a footer. More are a part of the record that cannot be read.
 const LONGEST_FOOTER: usize = 50;
+
+/// How many blocks may hold something else than rows of plain numbers before blocks are no longer tried.
+const TRIES: usize = 3;
 
 /// A faulty line that may turn out to start a footer.
 #[derive(Debug)]
@@ -27,7 +31,7 @@ struct Suspect {
 ///
 /// The file is streamed: memory is 8 bytes for each cell of the chosen columns and a few megabytes besides, and
 /// no more than [`MOST_ROWS`](crate::contents::MOST_ROWS) rows are kept: of a longer file successive rows are averaged. `progress` is told the bytes done and the bytes there are,
-/// once for every quarter of a mebibyte or so and once at the end.
+/// once for every quarter of a mebibyte or so for each processor and once at the end.
 ///
 /// Blank lines are passed over and counted. Lines at the very end that do not start like data are
 /// passed over as a footer, up to 50 of them. Every other line must be a full row.
@@ -52,6 +56,9 @@ pub fn read_columns(
     let mut row = vec![0.0; distinct.len()];
     let mut suspect: Option<Suspect> = None;
     let (mut told, mut reserved) = (0, false);
+    let mut blocks = RowsAhead::new(distinct.len());
+    let mut tries = if plan.may_be_plain() && !distinct.is_empty() { TRIES } else { 0 };
+    let mut by_lines_until = layout.first_data_line;
     loop {
         let (done, total) = reader.progress();
         let number = reader.line() + 1;
@@ -63,6 +70,14 @@ pub fn read_columns(
                 reserved = true;
             }
             told = done;
+        }
+        if tries > 0 && number >= by_lines_until && suspect.is_none() {
+            match blocks.read(&mut reader, &plan, &mut read, progress)? {
+                Stop::End => tries = 0,
+                Stop::Odd(lines) => (tries, by_lines_until) = (tries - 1, reader.line() + 1 + lines),
+            }
+            reserved |= read.rows() > 0;
+            continue;
         }
         let Some(line) = reader.next_line()? else {
             break;

@@ -19,22 +19,12 @@ impl<'a> Fields<'a> {
     /// [`Delimiter::Blanks`].
     #[inline]
     pub(crate) fn of(line: &'a [u8], delimiter: Delimiter) -> Self {
-        let byte = match delimiter {
-            Delimiter::Tab => b'\t',
-            Delimiter::Semicolon => b';',
-            Delimiter::Comma => b',',
-            Delimiter::Blanks => {
-                let line = trim(line, None);
-                return Self {
-                    rest: Some(line).filter(|line| !line.is_empty()),
-                    delimiter: None,
-                };
-            }
+        let delimiter = delimiter.byte();
+        let rest = match delimiter {
+            Some(_) => Some(line),
+            None => Some(trim(line, None)).filter(|line| !line.is_empty()),
         };
-        Self {
-            rest: Some(line),
-            delimiter: Some(byte),
-        }
+        Self { rest, delimiter }
     }
 
     /// Takes a cell that begins with a quote; `line` starts right behind that quote.

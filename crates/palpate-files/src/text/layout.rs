@@ -25,6 +25,16 @@ pub enum Delimiter {
 impl Delimiter {
     /// Every delimiter, the least ambiguous first: where two split a file equally well, the earlier wins.
     pub const ALL: [Self; 4] = [Self::Tab, Self::Semicolon, Self::Comma, Self::Blanks];
+
+    /// Its byte; none for runs of blanks.
+    pub(super) fn byte(self) -> Option<u8> {
+        match self {
+            Self::Tab => Some(b'\t'),
+            Self::Semicolon => Some(b';'),
+            Self::Comma => Some(b','),
+            Self::Blanks => None,
+        }
+    }
 }
 
 impl fmt::Display for Delimiter {
@@ -46,6 +56,16 @@ pub enum DecimalMark {
     Point,
     /// `1,5`
     Comma,
+}
+
+impl DecimalMark {
+    /// Its byte.
+    pub(super) fn byte(self) -> u8 {
+        match self {
+            Self::Point => b'.',
+            Self::Comma => b',',
+        }
+    }
 }
 
 impl fmt::Display for DecimalMark {

@@ -95,6 +95,35 @@ impl<'a> LineReader<'a> {
         Ok(Some(&self.buffer[from..to]))
     }
 
+    /// Takes out whole lines that end with LF, together some `most` bytes; fewer, or none, at the end of the file.
+    pub(crate) fn take_lines(&mut self, most: usize, into: &mut Vec<u8>) -> Result<(), FileError> {
+        while self.buffer.len() - self.start < most && self.refill()? {}
+        if self.after_cr && self.start < self.buffer.len() {
+            self.start += usize::from(self.buffer[self.start] == b'\n');
+            self.after_cr = false;
+        }
+        self.buffer.drain(..self.start);
+        self.start = 0;
+        let end = memchr::memrchr(b'\n', &self.buffer).map_or(0, |end| end + 1);
+        into.clear();
+        std::mem::swap(&mut self.buffer, into);
+        self.buffer.extend_from_slice(&into[end..]);
+        into.truncate(end);
+        Ok(())
+    }
+
+    /// Puts lines back that were taken out last and not counted.
+    pub(crate) fn put_back(&mut self, lines: &mut Vec<u8>) {
+        lines.extend_from_slice(&self.buffer[self.start..]);
+        std::mem::swap(&mut self.buffer, lines);
+        self.start = 0;
+    }
+
+    /// Counts lines that were taken out.
+    pub(crate) fn count(&mut self, lines: usize) {
+        self.line += lines;
+    }
+
     /// Drops what was handed out and takes more in; `false` at the end of the file.
     fn refill(&mut self) -> Result<bool, FileError> {
         self.buffer.drain(..self.start);

@@ -41,6 +41,7 @@ pub(crate) mod metadata;
 pub(crate) mod number;
 mod part;
 mod row;
+mod rows_ahead;
 mod sample;
 pub(crate) mod unit;
 

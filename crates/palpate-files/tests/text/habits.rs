@@ -260,3 +260,32 @@ fn progress_reaches_the_end() {
     assert_eq!(told.last(), Some(&(size, size)));
     assert!(told.len() > 5 && told.is_sorted());
 }
+
+/// Long files are read many rows at once, on all processors, wherever rows are plain; nobody can tell.
+#[test]
+fn a_long_file_is_read_like_a_short_one() {
+    const ROWS: usize = 300_000;
+    for end in ["\n", "\r\n", "\r"] {
+        let mut text = format!("Time (s),Displacement (mm),Force (N){end}");
+        for row in 0..ROWS {
+            match row {
+                90_000 => text.push_str(&format!("{end}{row},\"1.5\",-2e-3{end}")),
+                150_000 => text.push_str(&format!("{row} , +1.5, -.002{end}")),
+                _ => text.push_str(&format!("{row},1.5,-0.002{end}")),
+            }
+        }
+        let footer = format!("{text}end of test{end}");
+        let columns = read(&footer, &[1, 3]).expect("columns");
+        assert_eq!(columns.rows(), ROWS, "{end:?}");
+        assert!(columns.values[0].iter().enumerate().all(|(row, time)| *time == row as f64), "{end:?}");
+        assert!(columns.values[1].iter().all(|force| *force == -0.002), "{end:?}");
+        assert_eq!((columns.ignored.blank, columns.ignored.footer.map(|footer| footer.lines)), (1, Some(1)), "{end:?}");
+        let columns = read(&text, &[2]).expect("columns");
+        // One line of names, one blank line before row 90,000.
+        let lines = [0, 89_999, 90_000, ROWS - 1].map(|row| columns.line_of(row));
+        assert_eq!(lines, [Some(2), Some(90_001), Some(90_003), Some(ROWS + 2)], "{end:?}");
+        let broken = text.replacen("200000,1.5", "200000,x", 1);
+        let error = read(&broken, &[1, 2, 3]).expect_err("a word").to_string();
+        assert!(error.contains("line 200003") && error.contains("column 2"), "{end:?}: {error}");
+    }
+}
