@@ -1,4 +1,5 @@
-//! Batches of an Arrow file or stream: messages one behind the other, a file with a footer that is not needed.
+//! Batches of an Arrow file or stream: messages one behind the other. The footer of a file is needed only where a writer put
+//! its first message down in another way.
 
 use std::{
     collections::HashMap,
@@ -9,7 +10,7 @@ use std::{
 
 use arrow_array::{ArrayRef, RecordBatch};
 use arrow_buffer::Buffer;
-use arrow_ipc::{Message, MessageHeader, convert::fb_to_schema, reader, root_as_message};
+use arrow_ipc::{Block, Message, MessageHeader, convert::fb_to_schema, reader, root_as_footer, root_as_message};
 use arrow_schema::SchemaRef;
 
 use super::source::{Kind, Visitor, damaged};
@@ -32,6 +33,9 @@ struct Messages<'a> {
     input: &'a Input,
     bytes: BufReader<InputReader>,
     count: usize,
+    /// The footer, where the file begins in another way than with a message.
+    footer: Option<Vec<u8>>,
+    ended: bool,
 }
 
 impl<'a> Messages<'a> {
@@ -43,9 +47,12 @@ impl<'a> Messages<'a> {
             input,
             bytes: BufReader::new(input.reader()?),
             count: 0,
+            footer: None,
+            ended: false,
         };
         if kind == Kind::File {
             messages.take(8, "the beginning")?;
+            let mut place = 8;
             // Some writers begin the first message at a round place.
             for _ in 0..MOST_PADDING / 8 {
                 let ahead = messages.bytes.fill_buf().map_err(|error| input.failed(error))?;
@@ -53,9 +60,34 @@ impl<'a> Messages<'a> {
                     break;
                 }
                 messages.bytes.consume(8);
+                place += 8;
+            }
+            let ahead = messages.bytes.fill_buf().map_err(|error| input.failed(error))?;
+            if !ahead.starts_with(&MARK) {
+                messages.go_by_footer(place)?;
             }
         }
         Ok(messages)
+    }
+
+    /// Goes on to the first batch that the footer names: polars writes the schema without a length before it.
+    fn go_by_footer(&mut self, place: u64) -> Result<(), FileError> {
+        let wrong = |found: &str| damaged(self.input, "the footer", found);
+        let footer = footer(self.input)?;
+        let named = root_as_footer(&footer).map_err(|error| wrong(&error.to_string()))?;
+        let blocks = named.dictionaries().into_iter().flatten().chain(named.recordBatches().into_iter().flatten());
+        let Some(first) = blocks.map(Block::offset).min() else {
+            (self.footer, self.ended) = (Some(footer), true);
+            return Ok(());
+        };
+        let ahead = u64::try_from(first).ok().and_then(|first| first.checked_sub(place));
+        let ahead = ahead.ok_or_else(|| wrong("a batch before the beginning"))?;
+        let skipped = std::io::copy(&mut self.bytes.by_ref().take(ahead), &mut std::io::sink());
+        if skipped.map_err(|error| self.input.failed(error))? < ahead {
+            return Err(wrong("a batch beyond the end"));
+        }
+        self.footer = Some(footer);
+        Ok(())
     }
 
     /// So many bytes, or an error; room is made as they arrive.
@@ -77,6 +109,9 @@ impl<'a> Messages<'a> {
     /// The description and the body of the next message; `None` at the end.
     fn next(&mut self) -> Result<Option<(Vec<u8>, Buffer)>, FileError> {
         self.count += 1;
+        if self.ended {
+            return Ok(None);
+        }
         let mut length = Vec::new();
         let read = self.bytes.by_ref().take(4).read_to_end(&mut length);
         read.map_err(|error| self.input.failed(error))?;
@@ -107,11 +142,18 @@ impl<'a> Messages<'a> {
     }
 
     fn schema(&mut self) -> Result<SchemaRef, FileError> {
-        let Some((head, _)) = self.next()? else {
-            return Err(self.wrong("the end of the file"));
+        let head;
+        let schema = if let Some(footer) = &self.footer {
+            let footer = root_as_footer(footer).map_err(|error| self.wrong(&error.to_string()))?;
+            footer.schema()
+        } else {
+            let Some((first, _)) = self.next()? else {
+                return Err(self.wrong("the end of the file"));
+            };
+            head = first;
+            root_as_message(&head).map_err(|error| self.wrong(&error.to_string()))?.header_as_schema()
         };
-        let message = root_as_message(&head).map_err(|error| self.wrong(&error.to_string()))?;
-        let schema = message.header_as_schema().ok_or_else(|| self.wrong("no schema"))?;
+        let schema = schema.ok_or_else(|| self.wrong("no schema"))?;
         if schema.endianness() != arrow_ipc::Endianness::Little {
             return Err(self.wrong("numbers of the other byte order"));
         }
@@ -141,6 +183,23 @@ impl<'a> Messages<'a> {
         }
         Ok(())
     }
+}
+
+/// The footer of a file: before its length and the magic word at the end.
+fn footer(input: &Input) -> Result<Vec<u8>, FileError> {
+    let mut bytes = input.seekable()?;
+    let mut read = |from_end: i64, count: u64| {
+        let mut part = Vec::new();
+        bytes
+            .seek(std::io::SeekFrom::End(-from_end))
+            .and_then(|_| bytes.by_ref().take(count).read_to_end(&mut part))?;
+        Ok(part)
+    };
+    let length = read(10, 4).map_err(|error: std::io::Error| input.failed(error))?;
+    let length = length.first_chunk::<4>().map_or(0, |four| u64::from(u32::from_le_bytes(*four)));
+    let within = (1..=MOST_OF_MESSAGE).contains(&length);
+    let footer = within.then(|| read(length as i64 + 10, length).ok()).flatten();
+    footer.ok_or_else(|| damaged(input, "the footer", "a length beyond the file"))
 }
 
 /// A file that is whole ends with its magic word.
