@@ -1,5 +1,6 @@
 //! The many ways in which machines write the same table.
 
+use palpate_files::FileError;
 use palpate_files::contents::ColumnKind;
 use palpate_files::input::Input;
 use palpate_files::text::{DecimalMark, Delimiter, Encoding, LayoutOptions, read_columns};
@@ -287,5 +288,47 @@ fn a_long_file_is_read_like_a_short_one() {
         let broken = text.replacen("200000,1.5", "200000,x", 1);
         let error = read(&broken, &[1, 2, 3]).expect_err("a word").to_string();
         assert!(error.contains("line 200003") && error.contains("column 2"), "{end:?}: {error}");
+    }
+}
+
+/// Odd lines anywhere in a long file: with its first cells in quotes, so that every row is read with care, it gives the same.
+#[test]
+fn odd_lines_in_a_long_file_are_seen_as_in_any() {
+    const ODD: [&str; 8] = ["", " 1.5 , 2,3", "+1,2,3", "1e0,2,3", "1,2,3,", "1,2", "x,y,z", "1,2\r,3"];
+    let mut state = 7_u64;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    for run in 0..6 {
+        let rows = 30_000 + random(40_000);
+        let odd: Vec<(usize, &str)> = (0..random(4)).map(|_| (random(rows), ODD[random(ODD.len())])).collect();
+        let text = |quote: &str| {
+            let mut text = "a,b,c\n".to_owned();
+            for row in 0..rows {
+                match odd.iter().find(|(place, _)| *place == row) {
+                    Some((_, line)) => text.push_str(line),
+                    None => text.push_str(&format!("{quote}{row}{quote},{}.25,-{}", row % 977, row % 13)),
+                }
+                text.push('\n');
+            }
+            text
+        };
+        // Without the folder of the file.
+        let message = |error: FileError| error.to_string().rsplit('/').next().map(str::to_owned);
+        let outcome = |text: String| read(text, &[1, 2, 3]).map_err(message);
+        match (outcome(text("")), outcome(text("\""))) {
+            (Ok(plain), Ok(careful)) => {
+                assert_eq!(plain.values, careful.values, "{run}: {odd:?}");
+                assert_eq!(plain.ignored.blank, careful.ignored.blank, "{run}: {odd:?}");
+                let lines = [0, rows / 2, plain.rows() - 1];
+                assert_eq!(
+                    lines.map(|row| plain.line_of(row)),
+                    lines.map(|row| careful.line_of(row)),
+                    "{run}: {odd:?}"
+                );
+            }
+            (plain, careful) => assert_eq!(plain.err(), careful.err(), "{run}: {odd:?}"),
+        }
     }
 }
