@@ -63,10 +63,7 @@ impl<'a> LineReader<'a> {
     pub(crate) fn next_line(&mut self) -> Result<Option<&[u8]>, FileError> {
         let mut searched = 0;
         let (from, to) = loop {
-            if self.after_cr && self.start < self.buffer.len() {
-                self.start += usize::from(self.buffer[self.start] == b'\n');
-                self.after_cr = false;
-            }
+            self.pass_line_feed();
             let ahead = &self.buffer[self.start..];
             let unsearched = ahead.get(searched..).unwrap_or_default();
             if let Some(end) = memchr::memchr2(b'\n', b'\r', unsearched) {
@@ -95,13 +92,18 @@ impl<'a> LineReader<'a> {
         Ok(Some(&self.buffer[from..to]))
     }
 
-    /// Takes out whole lines that end with LF, together some `most` bytes; fewer, or none, at the end of the file.
-    pub(crate) fn take_lines(&mut self, most: usize, into: &mut Vec<u8>) -> Result<(), FileError> {
-        while self.buffer.len() - self.start < most && self.refill()? {}
+    /// An LF right behind a CR belongs to the line end that was handed out.
+    fn pass_line_feed(&mut self) {
         if self.after_cr && self.start < self.buffer.len() {
             self.start += usize::from(self.buffer[self.start] == b'\n');
             self.after_cr = false;
         }
+    }
+
+    /// Takes out whole lines that end with LF, together some `most` bytes; fewer, or none, at the end of the file.
+    pub(crate) fn take_lines(&mut self, most: usize, into: &mut Vec<u8>) -> Result<(), FileError> {
+        while self.buffer.len() - self.start < most && self.refill()? {}
+        self.pass_line_feed();
         self.buffer.drain(..self.start);
         self.start = 0;
         let end = memchr::memrchr(b'\n', &self.buffer).map_or(0, |end| end + 1);
