@@ -50,7 +50,7 @@ fn time_that_does_not_rise() {
     let text = done(folder.path(), &["analyze", &name]);
     assert!(text.contains("stamps_merged") && text.contains("1 of 121 rows"), "{text}");
     let text = done(folder.path(), &["inspect", &name]);
-    assert!(text.contains("1 time stamps repeat the one before"), "{text}");
+    assert!(text.contains("a time stamp repeats the one before"), "{text}");
     assert!(text.contains("done: time stamps: 1 of 121 rows merged"), "{text}");
 }
 

@@ -17,6 +17,16 @@ fn phases(folder: &Path, arguments: &[&str]) -> String {
     table[..end].to_owned()
 }
 
+/// What stands on standard error where inspection failed, but showed what is in the file.
+fn failed_but_told(folder: &Path, arguments: &[&str]) -> String {
+    let output = palpate(folder, arguments);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains("Columns"), "{told}");
+    error
+}
+
 #[test]
 fn the_cut_is_seen_at_a_glance() {
     let folder = tempfile::tempdir().unwrap();
@@ -82,9 +92,7 @@ fn what_the_file_does_not_say_is_asked_for_and_not_guessed() {
     let folder = folder.path();
     let text = ramp_and_hold(7.0, 20.0).replace("time_s,displacement_mm,force_n", "Time,Pos,Force");
     let record = file(folder, "gripper.csv", text);
-    let output = palpate(folder, &["inspect", &record, "--write-test", "t.toml"]);
-    let error = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{error}");
+    failed_but_told(folder, &["inspect", &record, "--write-test", "t.toml"]);
     let written = fs::read_to_string(folder.join("t.toml")).unwrap();
     assert!(written.contains("unit = \"?\"    # the file does not say; one of N, kN"), "{written}");
     let error = refused(folder, &["inspect", &record, "--test", "t.toml"]);
@@ -198,4 +206,64 @@ fn the_holds_of_a_first_description_can_be_given_and_moved() {
     let told = phases(folder, &["inspect", &record, "--test", "moved.toml"]);
     let hold = told.lines().find(|line| line.starts_with("hold")).unwrap_or_else(|| panic!("{told}"));
     assert_eq!(hold.split_whitespace().nth(2), Some("6.00000"), "{told}");
+}
+
+#[test]
+fn a_given_hold_that_the_record_does_not_contain_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let record = file(folder, "press.csv", ramp_and_hold(7.0, 20.0));
+    file(folder, "given.toml", "[[phases.hold]]\nfrom = \"2 s\"\nto = \"80 s\"\n");
+    let error = failed_but_told(folder, &["inspect", &record, "--test", "given.toml"]);
+    assert!(error.contains("given hold 1 lasts from 2 s to 80 s, the record from 0 s to 8.00000 s"), "{error}");
+}
+
+#[test]
+fn a_column_is_named_as_in_the_header_with_or_without_its_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let text = ramp_and_hold(7.0, 20.0).replace("force_n", "Load (N)").replace("displacement_mm", "Load (mm)");
+    let record = file(folder, "press.csv", &text);
+    let both = |displacement: &str, force: &str| {
+        let said = format!("columns.displacement.column = \"{displacement}\"\ncolumns.force.column = \"{force}\"\n");
+        file(folder, "columns.toml", said);
+    };
+    both("Load (mm)", "Load (N)");
+    let told = done(folder, &["inspect", &record, "--test", "columns.toml"]);
+    assert!(told.contains("displacement 0 to 1.000 mm\nforce 0 to 2.000 N"), "{told}");
+    both("Load (mm)", "Load");
+    let error = failed_but_told(folder, &["inspect", &record, "--test", "columns.toml"]);
+    assert!(error.contains("columns.force.column") && error.contains("found \"Load\""), "{error}");
+}
+
+#[test]
+fn clocks_that_differ_are_told_in_the_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // Three stairs, of which the force comes 60 ms after the displacement.
+    let at = |t: f64| {
+        let (step, rest) = ((t / 5.0).floor(), t % 5.0);
+        (step + rest.min(1.0)).clamp(0.0, 3.0)
+    };
+    let rows: String = (0..750)
+        .map(|i| 0.02 * f64::from(i))
+        .map(|t| format!("{t:.3},{:.5},{:.5}\n", at(t), 3.0 * at((t - 0.06).max(0.0))))
+        .collect();
+    let record = file(folder, "stairs.csv", format!("time_s,displacement_mm,force_n\n{rows}"));
+    let told = done(folder, &["inspect", &record]);
+    assert!(told.contains("ms later than the displacement; set skew = \"auto\" in [clock]"), "{told}");
+    file(folder, "auto.toml", "[clock]\nskew = \"auto\"\n");
+    let told = done(folder, &["inspect", &record, "--test", "auto.toml"]);
+    assert!(!told.contains("later than the displacement") && told.contains("done: force moved by "), "{told}");
+}
+
+#[test]
+fn hundreds_of_named_values_are_counted_and_not_listed() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let named: String = (0..40).map(|i| format!("# setting {i}: {i}\n")).collect();
+    let record = file(folder, "press.csv", named + &ramp_and_hold(7.0, 20.0));
+    let told = done(folder, &["inspect", &record]);
+    assert!(told.contains("setting 14") && !told.contains("setting 15"), "{told}");
+    assert!(told.contains("… and 25 more named values"), "{told}");
 }

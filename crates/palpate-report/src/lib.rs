@@ -14,9 +14,10 @@ pub mod compared;
 pub mod document;
 mod escape;
 pub mod figure;
-pub mod number;
 pub mod page;
 mod script;
 pub mod sparkline;
 pub mod study;
 pub mod table;
+
+pub use palpate::number;

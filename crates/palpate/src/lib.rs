@@ -9,6 +9,7 @@
 //! | module | what |
 //! |---|---|
 //! | [`units`] | quantities as people write them, turned into SI |
+//! | [`number`] | numbers written for people and for machines |
 //! | [`record`] | a measured record, checked |
 //! | [`segment`] | its phases: loading, hold, unloading; first touch; Type I and II |
 //! | [`strain`] | strain and strain rate, equations (6) to (9) |
@@ -70,6 +71,8 @@ pub mod identify;
 pub mod latency;
 #[cfg(feature = "std")]
 pub mod laws;
+#[cfg(feature = "std")]
+pub mod number;
 #[cfg(feature = "std")]
 mod ode;
 #[cfg(feature = "std")]

@@ -294,3 +294,24 @@ fn rules_that_disagree_or_find_nothing_are_told() {
     let fell_back = analysis.findings.iter().any(|finding| finding.code() == "touch_not_found");
     assert_eq!(fell_back, analysis.contact.method != Some(TouchMethod::LoadingCurve));
 }
+
+#[test]
+fn holds_at_the_end_of_a_load_cell_are_named() {
+    let record = stairs(50.0, 0.001, 0.0, 1);
+    let largest = record.force().iter().fold(0.0f64, |most, force| most.max(*force));
+    let clip = 0.7 * largest;
+    let force = record.force().iter().map(|force| force.min(clip)).collect();
+    let clipped = Record::new(record.time().to_vec(), record.displacement().map(<[f64]>::to_vec), force).unwrap();
+    let analysis = analyze(&clipped, &AnalysisOptions::default()).unwrap();
+    let reached: Vec<usize> = (1..)
+        .zip(analysis.segmentation.holds())
+        .filter(|(_, hold)| record.force()[hold.start..hold.end].iter().any(|force| *force >= clip))
+        .map(|(number, _)| number)
+        .collect();
+    assert!(!reached.is_empty() && reached.len() < 6, "{reached:?}");
+    let named = analysis.findings.iter().find_map(|finding| match finding {
+        Finding::Saturated { holds, .. } => Some(holds.clone()),
+        _ => None,
+    });
+    assert_eq!(named, Some(reached));
+}

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{description::ColumnRef, shown};
+use crate::{description::ColumnRef, shown, text::unit};
 
 /// A part of a file that holds one test: all of a text, one sheet of a workbook, one curve, one value of `test_id`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
@@ -47,16 +47,20 @@ pub struct Label {
 }
 
 impl Part {
-    /// The column called `name`, if exactly one is. An exact match goes before one that differs in case; in a log of a
-    /// robot, the name of a field may go without its topic (`wrench.force.z`).
+    /// The column called `name`, if exactly one is. An exact match goes before one that differs in case; a name may have its
+    /// unit with it as in the header (`Force (N)`), and in a log of a robot the name of a field may go without its topic
+    /// (`wrench.force.z`).
     #[must_use]
     pub fn column_named(&self, name: &str) -> Option<&ColumnInfo> {
-        let only = |same: &dyn Fn(&str) -> bool| {
-            let mut hits = self.columns.iter().filter(|column| column.name.as_deref().is_some_and(same));
+        let the_one = |same: &dyn Fn(&ColumnInfo) -> bool| {
+            let mut hits = self.columns.iter().filter(|column| same(column));
             hits.next().filter(|_| hits.next().is_none())
         };
+        let only = |same: &dyn Fn(&str) -> bool| the_one(&|column| column.name.as_deref().is_some_and(same));
+        let with_unit = unit::split(name);
         only(&|own| own == name)
             .or_else(|| only(&|own| own.to_lowercase() == name.to_lowercase()))
+            .or_else(|| the_one(&|own| own.unit.is_some() && with_unit == (own.name.clone(), own.unit.clone())))
             .or_else(|| only(&|own| topic_and_field(own).is_some_and(|(_, field)| field == name)))
     }
 

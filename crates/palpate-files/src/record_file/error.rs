@@ -211,9 +211,7 @@ impl ColumnError {
                 "choose another of `palpate inspect --machines`, or say in the test description:\n{}",
                 snippet::of_unit(key, &units.written, column)
             ),
-            Self::NoSuchColumn { .. } => {
-                "columns count from 1 at the left; a name is written without its unit".to_owned()
-            }
+            Self::NoSuchColumn { .. } => "columns count from 1 at the left; a name may go without its unit".to_owned(),
             Self::Twice { quantities, .. } => {
                 format!("correct columns.{} or columns.{}", quantities.0, quantities.1)
             }

@@ -3,7 +3,6 @@
 use palpate::analysis::{Analysis, Finding as RecordFinding, HoldAnalysis, Severity as RecordSeverity};
 
 use crate::compared::ComparedRecord;
-use crate::number::typeset;
 use crate::page::{Finding, Severity};
 
 /// Different words for one code that are written out; more are counted.
@@ -98,7 +97,7 @@ impl<'a> Seen<'a> {
             severity: shown(finding.severity()),
             finding,
             hold,
-            text: typeset(&finding.seen()),
+            text: finding.seen(),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The corrections that were asked for, in order.
 
+use super::signals::skew_finding;
 use super::skew::{ClockSkew, clock_skew};
-use super::{AnalysisError, AnalysisOptions};
+use super::{AnalysisError, AnalysisOptions, Finding};
 use crate::record::{Record, SkewChoice};
 use crate::segment::{SegmentError, Segmentation, free_samples, phases_with};
 
@@ -14,6 +15,14 @@ pub struct Corrected {
     pub segmentation: Result<Segmentation, SegmentError>,
     /// What the clocks of the record as it came seem to differ by.
     pub skew: Option<ClockSkew>,
+}
+
+impl Corrected {
+    /// [`Finding::ClocksSkewed`] if the clocks differ and nothing was done about it.
+    #[must_use]
+    pub fn skew_finding(&self) -> Option<Finding> {
+        skew_finding(&self.record, self.skew.as_ref())
+    }
 }
 
 /// Repairs single-row dropouts and makes the corrections that are asked for, as [`analyze`](super::analyze) does: skew, sample

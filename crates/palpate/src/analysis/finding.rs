@@ -184,6 +184,8 @@ pub enum Finding {
         level: f64,
         /// Rows at it.
         rows: usize,
+        /// Numbers of the holds with such rows, from 1.
+        holds: Vec<usize>,
     },
     /// A column has few levels, and its noise does not smooth them.
     Quantised {

@@ -1,12 +1,12 @@
 //! The order of the steps.
 
 use super::across::{Across, across};
-use super::corrected::{Corrected, corrected};
+use super::corrected::corrected;
 use super::hold::{HoldAnalysis, analyze_hold};
 use super::joint::changing_rate;
 use super::modulus::{ModulusSource, implied_modulus};
 use super::overlay::{Overlay, overlay};
-use super::signals::{correction_findings, signal_findings, skew_finding, touch_findings};
+use super::signals::{correction_findings, signal_findings, touch_findings};
 use super::skew::ClockSkew;
 use super::{AnalysisOptions, Finding};
 use crate::contact::{Shape, Specimen, SpecimenError};
@@ -111,15 +111,13 @@ const POOR: f64 = 0.05;
 /// or no hold has anything to fit.
 pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, AnalysisError> {
     let signals = record.signals();
-    let Corrected {
-        record,
-        segmentation,
-        skew,
-    } = corrected(record, options)?;
-    let segmentation = segmentation?;
-    let mut findings = correction_findings(&record);
-    findings.extend(signal_findings(&signals));
-    findings.extend(skew_finding(&record, skew.as_ref()));
+    let corrected = corrected(record, options)?;
+    let skewed = corrected.skew_finding();
+    let segmentation = corrected.segmentation?;
+    let mut findings = correction_findings(&corrected.record);
+    findings.extend(signal_findings(record, &signals, &held(&corrected.record, &segmentation)));
+    findings.extend(skewed);
+    let (record, skew) = (corrected.record, corrected.skew);
     if !segmentation.settings.from_displacement {
         findings.push(Finding::PhasesFromForce);
     }
@@ -169,6 +167,12 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
         overlay,
         findings,
     })
+}
+
+/// From when to when each hold lasts.
+fn held(record: &Record, segmentation: &Segmentation) -> Vec<(f64, f64)> {
+    let time = record.time();
+    segmentation.holds().map(|hold| (time[hold.start], time[hold.end - 1])).collect()
 }
 
 /// First sample of the loading or unloading that a hold follows.

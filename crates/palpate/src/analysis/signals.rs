@@ -9,8 +9,8 @@ const FEW_LEVELS: f64 = 200.0;
 /// Share of rows that repeat the row before above which noise does not smooth the rounding.
 const REPEATING: f64 = 0.5;
 
-/// Findings on the columns as they are.
-pub(super) fn signal_findings(signals: &SignalReport) -> Vec<Finding> {
+/// Findings on the columns of a record as they are, of which `holds` are the holds in time.
+pub(super) fn signal_findings(record: &Record, signals: &SignalReport, holds: &[(f64, f64)]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let gaps = signals.stamps.gaps;
     if let Some(from) = gaps.from {
@@ -22,18 +22,28 @@ pub(super) fn signal_findings(signals: &SignalReport) -> Vec<Finding> {
     }
     let displacement = signals.displacement.as_ref().map(|values| (Column::Displacement, values));
     for (column, values) in displacement.into_iter().chain([(Column::Force, &signals.force)]) {
-        findings.extend(clipped(column, values));
+        findings.extend(clipped(record, column, values, holds));
         findings.extend(rounded(column, values));
     }
     findings
 }
 
-fn clipped(column: Column, values: &Values) -> Option<Finding> {
+fn clipped(record: &Record, column: Column, values: &Values, holds: &[(f64, f64)]) -> Option<Finding> {
     let saturation = values.saturation.filter(|saturation| saturation.clipped)?;
+    let measured = match column {
+        Column::Displacement => record.displacement()?,
+        Column::Force => record.force(),
+    };
+    let time = record.time();
+    let reached = |(from, until): &(f64, f64)| {
+        let rows = time.partition_point(|t| t < from)..time.partition_point(|t| t <= until);
+        measured[rows].contains(&saturation.level)
+    };
     Some(Finding::Saturated {
         column,
         level: saturation.level,
         rows: saturation.rows,
+        holds: (1..).zip(holds).filter(|(_, hold)| reached(hold)).map(|(number, _)| number).collect(),
     })
 }
 

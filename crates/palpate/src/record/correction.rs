@@ -5,6 +5,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::{Baseline, Tare};
+use crate::number::significant;
 
 /// Which time stamps are meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -142,7 +143,8 @@ impl fmt::Display for Correction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::StampsSorted { clock, rows, largest } => {
-                write!(f, "{clock}: {rows} rows that came up to {largest:.4} s late put into order")
+                let late = significant(*largest, 3);
+                write!(f, "{clock}: {} that came up to {late} s late put into order", counted(*rows, "row"))
             }
             Self::StampsMerged {
                 clock,
@@ -157,17 +159,22 @@ impl fmt::Display for Correction {
                 write!(f, "{rows} rows of the file averaged as they were read, {averaged} to a sample")
             }
             Self::ClocksJoined { left_out } => {
-                write!(f, "displacement interpolated at the times of the force, {left_out} rows of the force left out")
+                let left_out = counted(*left_out, "row");
+                write!(f, "displacement interpolated at the times of the force, {left_out} of the force left out")
             }
             Self::DropoutsReplaced { column, count } => {
-                write!(f, "{count} single rows of the {} replaced by the mean of their neighbours", column.name())
+                let (rows, column) = (counted(*count, "single row"), column.name());
+                let whose = if *count == 1 { "its" } else { "their" };
+                write!(f, "{rows} of the {column} replaced by the mean of {whose} neighbours")
             }
             Self::Tared(tare) => {
-                write!(f, "counted from first touch at {:.4} mm and {:.4} N", 1e3 * tare.displacement, tare.force)
+                let (displacement, force) = (significant(1e3 * tare.displacement, 4), significant(tare.force, 4));
+                write!(f, "counted from first touch at {displacement} mm and {force} N")
             }
             Self::AirRunSubtracted => f.write_str("force of the air run subtracted"),
             Self::SkewRemoved { skew, left_out, .. } => {
-                write!(f, "force moved by {:.2} ms towards earlier times, {left_out} rows left out", 1e3 * skew)
+                let (moved, left_out) = (significant(1e3 * skew, 4), counted(*left_out, "row"));
+                write!(f, "force moved by {moved} ms towards earlier times, {left_out} left out")
             }
             Self::Resampled {
                 rate,
@@ -175,17 +182,33 @@ impl fmt::Display for Correction {
                 averaged,
             } => {
                 let how = if *averaged { "means" } else { "straight lines" };
-                write!(f, "resampled to {rate} Hz by {how}, from a sample every {interval:.4e} s")
+                write!(f, "resampled to {rate} Hz by {how}, from a sample every {} s", significant(*interval, 3))
             }
             Self::ComplianceRemoved { largest } => {
-                write!(f, "up to {:.3} µm of the machine taken off the displacement", 1e6 * largest)
+                write!(f, "up to {} µm of the machine taken off the displacement", significant(1e6 * largest, 4))
             }
             Self::DeflectionRemoved { largest } => {
-                write!(f, "up to {:.3} µm of deflection taken off the displacement", 1e6 * largest)
+                write!(f, "up to {} µm of deflection taken off the displacement", significant(1e6 * largest, 4))
             }
             Self::BaselineRemoved {
-                level, slope, samples, ..
-            } => write!(f, "baseline of {level:.4e} N and {slope:.2e} N/s taken off the force ({samples} samples)"),
+                baseline,
+                level,
+                slope,
+                samples,
+            } => {
+                let level = significant(*level, 4);
+                let slope = match baseline {
+                    Baseline::Constant => String::new(),
+                    Baseline::Sloped => format!(" and {} N/s", significant(*slope, 3)),
+                };
+                write!(f, "baseline of {level} N{slope} taken off the force ({})", counted(*samples, "sample"))
+            }
         }
     }
+}
+
+/// `1 row`, `2 rows`.
+fn counted(count: usize, what: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{plural}")
 }

@@ -53,6 +53,7 @@ pub use rupture::Rupture;
 
 use serde::{Deserialize, Serialize};
 
+use crate::number::significant;
 use crate::record::Record;
 
 /// What the jaw does in a segment.
@@ -184,7 +185,11 @@ pub enum SegmentError {
         after: f64,
     },
     /// A given hold that the record does not contain.
-    #[error("given hold {number} lasts from {from} s to {to} s, the record from {begin} s to {last} s")]
+    #[error(
+        "given hold {number} lasts from {from} s to {to} s, the record from {} s to {} s",
+        significant(*begin, 6),
+        significant(*last, 6)
+    )]
     GivenOutside {
         /// Which, from 1.
         number: usize,
@@ -274,13 +279,7 @@ fn no_hold((longest, samples): (f64, usize), (minimum, minimum_samples): (f64, u
 /// A quantity for people: three digits, lengths in mm.
 fn told(value: f64, unit: &str) -> String {
     let (value, unit) = if unit == "m" { (1e3 * value, "mm") } else { (value, unit) };
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value} {unit}");
-    }
-    let digits = (2.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize;
-    let text = format!("{value:.digits$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    format!("{text} {unit}")
+    format!("{} {unit}", significant(value, 3))
 }
 
 /// Fewest samples in which phases can be seen.

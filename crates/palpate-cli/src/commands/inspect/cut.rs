@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use palpate::analysis::{AnalysisError, AnalysisOptions, Corrected, Finding, corrected};
+use palpate::analysis::{AnalysisError, AnalysisOptions, Finding, corrected};
 use palpate::record::Record;
 use palpate::segment::{Phase, SegmentError, Segmentation, TouchEstimate, find_contact_of};
 use palpate_files::description::TestDescription;
@@ -21,6 +21,8 @@ pub(super) struct Cut {
     /// How many corrections were made before.
     before: usize,
     found: Result<Segmentation, SegmentError>,
+    /// That the clocks differ, if they do.
+    skewed: Option<Finding>,
 }
 
 impl Cut {
@@ -28,19 +30,27 @@ impl Cut {
     pub(super) fn of(record: &Record, test: Option<&TestDescription>) -> Result<Self, AnalysisError> {
         let options = test.map_or_else(AnalysisOptions::default, TestDescription::analysis_options);
         let before = record.corrections().len();
-        let Corrected {
-            record, segmentation, ..
-        } = corrected(record, &options)?;
+        let corrected = corrected(record, &options)?;
         Ok(Self {
-            record,
+            skewed: corrected.skew_finding(),
+            record: corrected.record,
             before,
-            found: segmentation,
+            found: corrected.segmentation,
         })
     }
 
     /// The phases, if there are any.
     pub(super) fn found(&self) -> Option<&Segmentation> {
         self.found.as_ref().ok()
+    }
+
+    /// Why the holds that a description gives cannot be those of the record, if so.
+    pub(super) fn refused(&self) -> Option<&SegmentError> {
+        let given = |error: &&SegmentError| {
+            use SegmentError::{GivenOutside, GivenOverlap, GivenShort};
+            matches!(error, GivenOutside { .. } | GivenOverlap { .. } | GivenShort { .. })
+        };
+        self.found.as_ref().err().filter(given)
     }
 
     /// The cut as a figure; of a record without phases, its curves.
@@ -57,9 +67,13 @@ impl Cut {
                 out.push_str(&self.phases(found));
                 out.push_str(&self.contact(found, test));
             }
+            Err(_) if self.refused().is_some() => {}
             Err(error) => {
                 let _ = writeln!(out, "Phases: {error}");
             }
+        }
+        if let Some(skewed) = &self.skewed {
+            let _ = writeln!(out, "{}; {}", skewed.seen(), skewed.remedy());
         }
         out
     }

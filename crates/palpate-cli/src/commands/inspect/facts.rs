@@ -3,23 +3,31 @@
 use std::fmt::Write as _;
 
 use palpate::record::{Stamps, Values};
-use palpate_files::contents::Part;
+use palpate_files::contents::{Format, Part};
 use palpate_files::record_file::{RecordFile, Role};
 use palpate_report::number::significant;
 use palpate_report::table::{Cell, Table, TableColumn};
 
+/// Most named values that are shown: force curves of an AFM have hundreds.
+const MOST_METADATA: usize = 16;
+
 /// How one test is written, what stands beside its data, and what the file labels.
-pub(super) fn part_facts(part: &Part) -> String {
+pub(super) fn part_facts(part: &Part, format: Format) -> String {
     let mut out = String::new();
     if let Some(name) = &part.name {
         let _ = writeln!(out, "{name}");
     }
-    if !part.written.is_empty() {
+    // Where nothing is to be said beyond the format, it was said.
+    if !part.written.is_empty() && part.written != format.to_string() {
         let _ = writeln!(out, "{}", part.written);
     }
-    for entry in &part.metadata {
-        let unit = entry.unit.as_deref().unwrap_or("");
-        let _ = writeln!(out, "  {} = {} {unit}", entry.name, entry.value);
+    let shown = if part.metadata.len() > MOST_METADATA { MOST_METADATA - 1 } else { MOST_METADATA };
+    for entry in part.metadata.iter().take(shown) {
+        let unit = entry.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
+        let _ = writeln!(out, "  {} = {}{unit}", entry.name, entry.value);
+    }
+    if part.metadata.len() > shown {
+        let _ = writeln!(out, "  … and {} more named values", part.metadata.len() - shown);
     }
     for label in &part.labels {
         let _ = writeln!(out, "  rows {} to {}: {}", label.start + 1, label.end, label.name);
@@ -36,8 +44,8 @@ pub(super) fn columns_table(part: &Part, file: Option<&RecordFile>) -> Table {
         .column(TableColumn::new("First value", "sample", ""))
         .column(TableColumn::new("Used as", "used_as", ""));
     for column in &part.columns {
-        let used = file.and_then(|file| file.columns.iter().find(|used| used.number == column.number));
-        let role = used.map_or(String::new(), |used| {
+        let used = file.into_iter().flat_map(|file| &file.columns).filter(|used| used.number == column.number);
+        let roles = used.map(|used| {
             let sign = if used.sign < 0.0 { ", sign turned" } else { "" };
             let what = match used.role {
                 Role::Values(quantity) => quantity.to_string(),
@@ -47,6 +55,8 @@ pub(super) fn columns_table(part: &Part, file: Option<&RecordFile>) -> Table {
             };
             format!("{what} in {}{sign}", used.unit)
         });
+        // One column can be force and deflection of a cantilever.
+        let role = roles.collect::<Vec<_>>().join("; ");
         table = table.row(vec![
             Cell::Integer(column.number as i64),
             Cell::text(column.name.as_deref().unwrap_or("")),
@@ -109,18 +119,24 @@ fn stamp_facts(out: &mut String, stamps: &Stamps, of: &str) {
     }
     if let Some(from) = stamps.gaps.from {
         let (count, longest) = (stamps.gaps.count, significant(stamps.gaps.longest, 3));
-        let _ = writeln!(
-            out,
-            "{count} gaps in the time stamps{of}, the longest {longest} s from {} s",
-            significant(from, 5)
-        );
+        let from = significant(from, 5);
+        let _ = match count {
+            1 => writeln!(out, "a gap in the time stamps{of} of {longest} s from {from} s"),
+            _ => writeln!(out, "{count} gaps in the time stamps{of}, the longest {longest} s from {from} s"),
+        };
     }
     if stamps.repeated > 0 {
-        let _ = writeln!(out, "{} time stamps{of} repeat the one before", stamps.repeated);
+        let _ = match stamps.repeated {
+            1 => writeln!(out, "a time stamp{of} repeats the one before"),
+            count => writeln!(out, "{count} time stamps{of} repeat the one before"),
+        };
     }
     if stamps.reversals.count > 0 {
         let largest = significant(stamps.reversals.largest, 3);
-        let _ = writeln!(out, "{} time stamps{of} step back, by up to {largest} s", stamps.reversals.count);
+        let _ = match stamps.reversals.count {
+            1 => writeln!(out, "a time stamp{of} steps back by {largest} s"),
+            count => writeln!(out, "{count} time stamps{of} step back, by up to {largest} s"),
+        };
     }
 }
 

@@ -93,7 +93,7 @@ fn file_facts(contents: &Contents) -> String {
 fn one_test(opened: &Opened<'_>, part: usize, arguments: &InspectArguments, out: &mut String) -> Result<(), Failure> {
     let test = opened.test();
     let about = &opened.contents().parts()[part];
-    out.push_str(&part_facts(about));
+    out.push_str(&part_facts(about, opened.contents().format()));
     let file = match opened.read(part) {
         Ok(file) => file,
         Err(failure) => {
@@ -110,6 +110,9 @@ fn one_test(opened: &Opened<'_>, part: usize, arguments: &InspectArguments, out:
     out.push_str(&signal_facts(&file));
     let cut = Cut::of(&file.record, test).map_err(|error| Failure::of_file(&file.path, &error, Some(error.hint())))?;
     out.push_str(&cut.told(test));
+    if let Some(error) = cut.refused() {
+        return Err(Failure::of_file(&file.path, error, Some(error.hint().to_owned())));
+    }
     if let Some(path) = &arguments.write_test {
         let found = cut.found().map(|segmentation| (&file, segmentation));
         write_test(path, &describe(opened.contents(), part, Some(&file), found))?;

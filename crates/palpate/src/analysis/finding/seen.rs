@@ -1,7 +1,7 @@
 //! What was seen, in numbers.
 
 use super::Finding;
-use crate::laws::Law;
+use crate::number::{significant, with_error};
 use crate::record::Column;
 
 impl Finding {
@@ -35,36 +35,52 @@ impl Finding {
                 format!("the fits of {} ended at the edge of their range", listed(laws))
             }
             Self::ExponentConfounded { correlation } => {
-                format!("the estimates of exponent and equilibrium correlate by {correlation:.3}")
+                format!("the estimates of exponent and equilibrium correlate by {}", significant(*correlation, 3))
             }
             Self::TermsIndistinguishable { laws } => {
                 format!("in {} terms merge or vanish", listed(laws))
             }
             Self::LawsIndistinguishable { laws } => format!("{} do equally well", listed(laws)),
             Self::DriftInsteadOfRelaxation { rise, fall } if *fall > 0.0 => {
-                format!("after falling by {fall:.3} N the force rises by {rise:.3} N at constant displacement")
+                format!(
+                    "after falling by {} N the force rises by {} N at constant displacement",
+                    significant(*fall, 3),
+                    significant(*rise, 3)
+                )
             }
             Self::DriftInsteadOfRelaxation { rise, .. } => {
-                format!("the force rises by {rise:.3} N in a hold after loading")
+                format!("the force rises by {} N in a hold after loading", significant(*rise, 3))
             }
             Self::FeedbackControlled { travel, change } => format!(
-                "the jaw moves by {:.3} mm in the hold while the force changes by {change:.3} N only",
-                1e3 * travel
+                "the jaw moves by {} mm in the hold while the force changes by {} N only",
+                significant(1e3 * travel, 3),
+                significant(*change, 3)
             ),
             Self::NothingHeld { travel, change } => {
-                format!("the jaw moves by {:.3} mm in the hold and the force changes by {change:.3} N", 1e3 * travel)
+                format!(
+                    "the jaw moves by {} mm in the hold and the force changes by {} N",
+                    significant(1e3 * travel, 3),
+                    significant(*change, 3)
+                )
             }
             Self::Ruptured { time, before, after } => format!(
-                "at {time:.3} s the body broke: the force had reached {before:.3} N, and is {after:.3} N where the jaw then stands"
+                "at {time:.3} s the body broke: the force had reached {} N, and is {} N where the jaw then stands",
+                significant(*before, 4),
+                significant(*after, 3)
             ),
             Self::ResidualsCorrelated {
                 correlation,
                 independent,
             } => format!(
-                "neighbouring residuals correlate by {correlation:.2}; the samples count as {independent:.0} independent ones"
+                "neighbouring residuals correlate by {}; the samples count as {independent:.0} independent ones",
+                significant(*correlation, 2)
             ),
             Self::NoRelaxation { change, standard_error } => {
-                format!("the force changes by {change:.2e} N with a standard error of {standard_error:.1e} N")
+                format!(
+                    "the force changes by {} N with a standard error of {} N",
+                    significant(*change, 3),
+                    significant(*standard_error, 2)
+                )
             }
             Self::TooFewSamples { found, needed } => format!("the hold has {found} samples, a fit needs {needed}"),
             Self::SampledTooSlowly { share } => {
@@ -97,25 +113,38 @@ impl Finding {
                     "in {count} places samples are missing, the longest time for {longest:.3} s from {from:.3} s on"
                 )
             }
-            Self::Saturated { column, level, rows } => {
-                format!("the {} stands at its extreme, {}, in {rows} rows", column.name(), measured(*column, *level))
+            Self::Saturated {
+                column,
+                level,
+                rows,
+                holds,
+            } => {
+                let among = match holds[..] {
+                    [] => String::new(),
+                    [hold] => format!(", some of them of hold {hold}"),
+                    _ => format!(", some of them of holds {}", listed(holds)),
+                };
+                let level = measured(*column, *level);
+                format!("the {} stands at its extreme, {level}, in {rows} rows{among}", column.name())
             }
             Self::Quantised { column, step } => {
                 format!("the {} moves in steps of {}", column.name(), measured(*column, *step))
             }
             Self::PhasesFromForce => "the record has no displacement".to_owned(),
-            Self::AirTravel { travel } => format!("the jaw travels {:.3} mm before the force rises", 1e3 * travel),
+            Self::AirTravel { travel } => {
+                format!("the jaw travels {} mm before the force rises", significant(1e3 * travel, 3))
+            }
             Self::ModulusEstimated {
                 modulus,
                 standard_error,
             } => format!(
                 "no modulus was given; the relaxed forces imply {} kPa",
-                with_error(modulus / 1e3, standard_error.map(|error| error / 1e3))
+                with_error(modulus / 1e3, standard_error.map_or(f64::NAN, |error| error / 1e3))
             ),
             Self::ModulusMismatch { given, implied } => format!(
-                "the given modulus is {:.4} kPa, the relaxed forces imply {:.4} kPa (force over area and relative squeeze)",
-                given / 1e3,
-                implied / 1e3
+                "the given modulus is {} kPa, the relaxed forces imply {} kPa (force over area and relative squeeze)",
+                significant(given / 1e3, 4),
+                significant(implied / 1e3, 4)
             ),
             Self::TouchUncertain {
                 error,
@@ -123,34 +152,39 @@ impl Finding {
                 shift,
                 interval,
             } => format!(
-                "first touch is known to {:.3} mm, which moves the equilibrium strain of hold {hold} by {:.2} %; its interval is only ± {:.2} %",
-                1e3 * error,
+                "first touch is known to {} mm, which moves the equilibrium strain of hold {hold} by {:.2} %; its interval is only ± {:.2} %",
+                significant(1e3 * error, 2),
                 100.0 * shift,
                 100.0 * interval
             ),
             Self::TouchSpread { spread, squeeze } => format!(
-                "rules for first touch differ by {:.3} mm (robust standard deviation), the largest squeeze is {:.3} mm",
-                1e3 * spread,
-                1e3 * squeeze
+                "rules for first touch differ by {} mm (robust standard deviation), the largest squeeze is {} mm",
+                significant(1e3 * spread, 2),
+                significant(1e3 * squeeze, 4)
             ),
             Self::TouchNotFound { method } => format!("the rule \"{}\" finds no first touch", method.name()),
             Self::ClocksSkewed { skew, standard_error } => format!(
                 "where ramps start and end the force bends {} ms {} than the displacement",
-                with_error(1e3 * skew.abs(), Some(1e3 * standard_error)),
+                with_error(1e3 * skew.abs(), 1e3 * standard_error),
                 if *skew > 0.0 { "later" } else { "earlier" }
             ),
             Self::SignSuspicious { column, fall } if column == "force" => {
-                format!("the force falls by {fall:.3} N in the first ramp")
+                format!("the force falls by {} N in the first ramp", significant(*fall, 3))
             }
             Self::SignSuspicious { column, fall } => {
-                format!("the {column} falls by {:.3} mm in the first ramp", 1e3 * fall)
+                format!("the {column} falls by {} mm in the first ramp", significant(1e3 * fall, 3))
             }
             Self::RateCoefficientTrend {
                 holds,
                 slope,
                 interval: (low, high),
                 ..
-            } => format!("over {holds} holds after loading d ln v/dεₑ = {slope:.2} (interval {low:.2} to {high:.2})"),
+            } => format!(
+                "over {holds} holds after loading d ln v/dεₑ = {} (interval {} to {})",
+                significant(*slope, 3),
+                significant(*low, 3),
+                significant(*high, 3)
+            ),
             Self::OverlayPoor { relative } => format!(
                 "measured and simulated force differ by {:.0} % of the largest force (root mean square)",
                 100.0 * relative
@@ -163,28 +197,17 @@ impl Finding {
 /// A value with its unit: mm or N.
 fn measured(column: Column, value: f64) -> String {
     match column {
-        Column::Displacement => format!("{:.4} mm", 1e3 * value),
-        Column::Force => format!("{value:.4} N"),
+        Column::Displacement => format!("{} mm", significant(1e3 * value, 4)),
+        Column::Force => format!("{} N", significant(value, 4)),
     }
 }
 
 /// "a, b and c".
-fn listed(laws: &[Law]) -> String {
-    let names: Vec<String> = laws.iter().map(ToString::to_string).collect();
+fn listed<T: ToString>(things: &[T]) -> String {
+    let names: Vec<String> = things.iter().map(ToString::to_string).collect();
     match names.as_slice() {
         [] => String::new(),
         [one] => one.clone(),
         [first @ .., last] => format!("{} and {last}", first.join(", ")),
-    }
-}
-
-/// "28.0 ± 0.3": the value to the place of the second digit of its error, or to four digits where it has none.
-fn with_error(value: f64, error: Option<f64>) -> String {
-    match error.filter(|error| *error > 1e-4 * value.abs()) {
-        Some(error) => {
-            let places = (1.0 - error.log10().floor()).clamp(0.0, 9.0) as usize;
-            format!("{value:.places$} ± {error:.places$}")
-        }
-        None => format!("{value:.4}"),
     }
 }

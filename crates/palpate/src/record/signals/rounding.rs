@@ -58,9 +58,11 @@ fn divisor(a: f64, b: f64, tolerance: f64) -> f64 {
     }
 }
 
-/// The step that the short differences have on average.
+/// The step that the short ones among differences in order of size have on average.
 fn refined(differences: &[f64], step: f64) -> f64 {
-    let short = differences.iter().filter(|difference| **difference < 20.5 * step);
+    // Values may all be many steps apart.
+    let longest = differences[0].max(20.5 * step);
+    let short = differences.iter().filter(|difference| **difference <= longest);
     let (sum, steps) = short.fold((0.0, 0.0), |(sum, steps), d| (sum + d, steps + (d / step).round()));
     sum / steps
 }
@@ -88,6 +90,12 @@ mod tests {
         assert!((rounding_step(&values).unwrap() - 0.6).abs() < 1e-12);
         let values: Vec<f64> = [0, 6, 10, 25, 31, 41].map(|k| 0.3 * f64::from(k)).to_vec();
         assert!((rounding_step(&values).unwrap() - 0.3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn all_values_may_be_many_steps_apart() {
+        let values: Vec<f64> = [0, 101, 252, 375, 1003, 2041, 4000].map(|k| 1e-3 * f64::from(k)).to_vec();
+        assert!((rounding_step(&values).unwrap() / 1e-3 - 1.0).abs() < 1e-12);
     }
 
     #[test]

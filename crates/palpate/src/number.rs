@@ -9,7 +9,7 @@ const MOST_DIGITS: usize = 17;
 /// small values read as `1.23×10⁻⁵`; the minus sign is U+2212.
 ///
 /// ```
-/// use palpate_report::number::significant;
+/// use palpate::number::significant;
 /// assert_eq!(significant(-0.012_34, 3), "−0.0123");
 /// assert_eq!(significant(1.5e-7, 2), "1.5×10⁻⁷");
 /// ```
@@ -40,7 +40,7 @@ pub fn significant(value: f64, digits: usize) -> String {
 /// (not finite, or not positive) only the value is written, to four digits.
 ///
 /// ```
-/// use palpate_report::number::with_error;
+/// use palpate::number::with_error;
 /// assert_eq!(with_error(12.3456, 0.0321), "12.35 ± 0.03");
 /// assert_eq!(with_error(1.2345e-5, 1.4e-7), "(1.234 ± 0.014)×10⁻⁵");
 /// ```
@@ -69,7 +69,7 @@ pub fn with_error(value: f64, error: f64) -> String {
 /// The shortest decimal text that reads back as exactly `value`; empty when it is not a number.
 ///
 /// ```
-/// use palpate_report::number::exact;
+/// use palpate::number::exact;
 /// assert_eq!(exact(0.1 + 0.2), "0.30000000000000004");
 /// assert_eq!(exact(5.0), "5");
 /// ```
@@ -135,37 +135,6 @@ fn rounded_to(value: f64, place: i32) -> f64 {
     format!("{value:.places$}").parse().unwrap_or(value)
 }
 
-/// The numbers in a sentence as people write them: a minus for a hyphen, `1.2×10⁻⁴` for `1.2e-4`.
-pub(crate) fn typeset(text: &str) -> String {
-    let characters: Vec<char> = text.chars().collect();
-    let digit = |place: usize| characters.get(place).is_some_and(char::is_ascii_digit);
-    let (mut out, mut i) = (String::new(), 0);
-    while i < characters.len() {
-        let (character, before) = (characters[i], i.checked_sub(1).map(|place| characters[place]));
-        let signed = usize::from(matches!(characters.get(i + 1), Some('-' | '+')));
-        if character == '-' && digit(i + 1) && !before.is_some_and(char::is_alphanumeric) {
-            out.push('−');
-        } else if character == 'e' && before.is_some_and(|c| c.is_ascii_digit()) && digit(i + 1 + signed) {
-            let mut end = i + 1 + signed;
-            while digit(end) {
-                end += 1;
-            }
-            let power: String = characters[i + 1..end].iter().collect();
-            match power.parse() {
-                Ok(0) => {}
-                Ok(exponent) => out.push_str(&format!("×10{}", superscript(exponent))),
-                Err(_) => out.push_str(&format!("e{power}")),
-            }
-            i = end;
-            continue;
-        } else {
-            out.push(character);
-        }
-        i += 1;
-    }
-    out
-}
-
 /// `-0.00 ± …` without its misleading sign.
 fn without_negative_zero(text: &str) -> String {
     let (head, tail) = text.split_at(text.find(" ± ").unwrap_or(text.len()));
@@ -204,12 +173,6 @@ mod tests {
         assert_eq!(with_error(12_346.0, 20.0), "(1.235 ± 0.002)×10⁴");
         assert_eq!(with_error(1.5, f64::NAN), "1.500");
         assert_eq!(with_error(1.5, 0.0), "1.500");
-    }
-
-    #[test]
-    fn numbers_in_sentences_are_typeset() {
-        assert_eq!(typeset("changes by -1.25e-4 N (-3 to -0.5)"), "changes by −1.25×10⁻⁴ N (−3 to −0.5)");
-        assert_eq!(typeset("well-known 2-3, 1e3, 5.0e0 N, free"), "well-known 2-3, 1×10³, 5.0 N, free");
     }
 
     #[test]
