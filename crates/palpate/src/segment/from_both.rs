@@ -86,6 +86,12 @@ fn force_held(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Le
             _ if turns_back(record, &inside, level) => pressed.push(*level),
             HoldMode::ForceHeld if slows_down(record, level, FIRST_HALF) && rests() => pressed.push(*level),
             HoldMode::ForceHeld => likely.push(*level),
+            // Of a jaw that went much farther elsewhere this creep is a small part.
+            HoldMode::DisplacementHeld
+                if !inside.is_empty() && mode(record, level.start, level.end) == HoldMode::ForceHeld =>
+            {
+                likely.push(*level);
+            }
             // The jaw stands there, and its noise hides it.
             HoldMode::DisplacementHeld if inside.is_empty() => unseen.push(jaw.edges_of(record.time(), level)),
             _ => {}
