@@ -62,6 +62,7 @@ impl FileError {
 fn foreign(looks_like: Foreign) -> &'static str {
     match looks_like {
         Foreign::Markup => "open it in a spreadsheet program and save the sheet as CSV",
+        Foreign::OpenDocument => "save it as an Excel workbook (.xlsx), or the sheet as CSV",
         Foreign::Sqlite => "export the record as delimited text; `ros2 bag convert` turns a bag of ROS 2 into MCAP",
         Foreign::Zip | Foreign::Compressed => "unpack it first, or export the record as text",
         Foreign::Picture | Foreign::Pdf => "a record of numbers is needed, not a document",

@@ -7,6 +7,8 @@ use std::fmt;
 pub enum Foreign {
     /// A zip archive that is none of the formats known here.
     Zip,
+    /// A document of LibreOffice, such as a spreadsheet (`.ods`).
+    OpenDocument,
     /// A file compressed in another way (bzip2, xz, zstd, 7z), or twice.
     Compressed,
     /// HDF5, or a MATLAB file of version 7.3.
@@ -35,6 +37,7 @@ impl fmt::Display for Foreign {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Zip => "a zip archive",
+            Self::OpenDocument => "an OpenDocument file",
             Self::Compressed => "a compressed file",
             Self::Hdf5 => "an HDF5 file",
             Self::Matlab => "a MATLAB file",
@@ -72,6 +75,13 @@ const SIGNATURES: [(&[u8], Foreign); 16] = [
 
 /// What `sample`, the beginning of a file, looks like if no format known here is right.
 pub(crate) fn recognise(sample: &[u8]) -> Option<Foreign> {
+    // The standard wants this first member, not compressed.
+    if sample
+        .get(30..)
+        .is_some_and(|member| member.starts_with(b"mimetypeapplication/vnd.oasis.opendocument."))
+    {
+        return Some(Foreign::OpenDocument);
+    }
     let signed = SIGNATURES
         .iter()
         .find(|(start, _)| sample.get(..start.len()).is_some_and(|first| first.eq_ignore_ascii_case(start)));

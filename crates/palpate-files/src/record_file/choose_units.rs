@@ -7,7 +7,7 @@ use super::{
     choose::{Chooser, Found},
     epoch,
     error::{ColumnError, MachineUnit},
-    quantity::unit_factor,
+    unit_words::unit_factor,
 };
 use crate::{
     contents::{ColumnInfo, ColumnKind},

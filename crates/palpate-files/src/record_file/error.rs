@@ -4,7 +4,7 @@ use std::{fmt, path::PathBuf};
 
 use palpate::{record::RecordError, units::Dimension};
 
-use super::{Quantity, quantity::unit_factor, snippet};
+use super::{Quantity, snippet, unit_words::unit_factor};
 use crate::{afm::UNCALIBRATED, contents::ColumnInfo, description::ColumnRef, error::FileError};
 
 /// A column as messages name it: `column 3 (Force)`.

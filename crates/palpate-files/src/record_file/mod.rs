@@ -7,7 +7,7 @@
 //! | `choose.rs`, `choose_units.rs` | chooses the columns and their units, from a description or by the header |
 //! | `recognise.rs`, `header_words.rs` | tells columns by their names |
 //! | `describe.rs` | a first description of a test ([`describe`]) |
-//! | `quantity.rs` | what a column can hold, and its units |
+//! | `quantity.rs`, `unit_words.rs` | what a column can hold, and its units |
 //! | `epoch.rs` | times counted from 1970 |
 //! | `error.rs`, `snippet.rs` | what is not clear, and the lines of a description that would clear it up |
 
@@ -22,15 +22,16 @@ mod quantity;
 mod read;
 mod recognise;
 mod snippet;
+mod unit_words;
 
 pub use describe::describe;
 pub(crate) use epoch::WORD as EPOCH;
 pub use error::{ColumnError, Counted, MachineUnit, NamedColumn, ReadError};
 pub use parts::{Tests, tests};
 pub use quantity::Quantity;
-pub(crate) use quantity::{unit_factor, volts_are};
 pub use read::{RecordFile, read_part, read_record};
 pub(crate) use recognise::names_time;
+pub(crate) use unit_words::{unit_factor, volts_are};
 
 use serde::Serialize;
 

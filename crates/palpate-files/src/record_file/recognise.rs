@@ -5,7 +5,7 @@ use palpate::units::Dimension;
 use super::{
     Quantity,
     header_words::{BENDING, OTHER, OTHER_CHARACTERS, VOCABULARY, Vocabulary},
-    quantity::unit_factor,
+    unit_words::unit_factor,
 };
 use crate::contents::{ColumnInfo, ColumnKind, topic_and_field};
 

@@ -1,6 +1,7 @@
 //! Where exactly a hold begins and ends: where the line through the ramp meets the line through the hold.
 
-use super::pieces::{Line, Piece};
+use super::line::Line;
+use super::pieces::Piece;
 use super::standstill::Standstill;
 
 /// Share of a sample interval by which an edge may be off: the rounding of a time column, far below a sample.

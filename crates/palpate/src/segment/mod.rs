@@ -5,7 +5,7 @@
 //! | `options.rs` | every threshold as an option, and the value it took |
 //! | `from_both.rs` | phases where displacement and force were recorded |
 //! | `levels.rs` | where a column stands still |
-//! | `pieces.rs` | a column as a polygon |
+//! | `pieces.rs`, `line.rs` | a column as a polygon of straight lines |
 //! | `moves.rs` | the polygon as what the column does |
 //! | `standstill.rs` | which parts of the polygon are standstills |
 //! | `evidence.rs` | what speaks for a standstill |
@@ -29,6 +29,7 @@ mod from_both;
 mod from_force;
 mod given;
 mod levels;
+mod line;
 mod loading_curve;
 mod mode;
 mod moves;
