@@ -1,0 +1,234 @@
+"""Soft contact that remembers: squeeze-and-hold tests turned into laws, and laws into forces.
+
+In a hold the strain of a soft body drifts to equilibrium at a rate set by how far it has to go: strain rate = -v (e - e_e)^n,
+the *nonlinear latency law* of Tsai, Kao et al. This package finds the law in a measured record and says how sure it is.
+
+>>> import numpy as np, palpate
+>>> t = np.linspace(0.0, 20.0, 200)
+>>> fit = palpate.fit_hold(t, 0.2 + 0.1 * (1 + 2 * t) ** -0.25)
+>>> round(fit.values["exponent"], 4)
+5.0
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any, Union
+
+from palpate import laws
+from palpate._palpate import (
+    Analysis,
+    Estimate,
+    Finding,
+    Fit,
+    FitError,
+    ModelError,
+    OptionError,
+    PalpateError,
+    PalpateWarning,
+    Record,
+    RecordError,
+    Table,
+)
+from palpate._palpate import fit_hold as _fit_hold
+from palpate._palpate import fit_many as _fit_many
+from palpate._palpate import read as _read
+
+__all__ = [
+    "Analysis",
+    "Estimate",
+    "Finding",
+    "Fit",
+    "FitError",
+    "ModelError",
+    "OptionError",
+    "PalpateError",
+    "PalpateWarning",
+    "Record",
+    "RecordError",
+    "Table",
+    "fit_hold",
+    "fit_many",
+    "laws",
+    "read",
+]
+
+Description = Union[str, os.PathLike[str], Mapping[str, Any], None]
+
+
+def _described(test: Description) -> tuple[str | os.PathLike[str] | None, str | None]:
+    """A description as a path or as the text of one; a mapping has the tables of the file, and JSON is nearly TOML."""
+    if isinstance(test, Mapping):
+        return None, _toml(test)
+    return test, None
+
+
+def _toml(table: Mapping[str, Any]) -> str:
+    import json
+
+    def value(entry: Any) -> str:
+        if isinstance(entry, Mapping):
+            return "{" + ", ".join(f"{json.dumps(str(key))} = {value(entry[key])}" for key in entry) + "}"
+        if isinstance(entry, (list, tuple)):
+            return "[" + ", ".join(value(item) for item in entry) + "]"
+        if isinstance(entry, (bool, int, float, str)):
+            return json.dumps(entry)
+        raise OptionError(f"a description holds texts, numbers, lists and tables, found {type(entry).__name__}")
+
+    return "".join(f"{json.dumps(str(key))} = {value(table[key])}\n" for key in table)
+
+
+def read(path: str | os.PathLike[str], *, test: Description = None, part: str | int | None = None) -> Record:
+    """Read the record in a file of any format that is known, found out by its content.
+
+    Parameters
+    ----------
+    path
+        Delimited text, workbook, Parquet, Arrow, AFM force curve or robot's log; packed by gzip or zip or not.
+    test
+        Test description that says what the file cannot know: path of a TOML file, or a mapping with its tables.
+    part
+        The one test of a file that holds several: its name (a sheet, a curve, a ``test_id``), or its number from 1.
+
+    Returns
+    -------
+    Record
+        Time, force and displacement in SI, loading positive.
+
+    Raises
+    ------
+    RecordError
+        The file holds no record, or it is not clear which column holds what: the message ends in the lines of a
+        description that would clear it up.
+    OptionError
+        The description is wrong.
+    OSError
+        The operating system does not hand the file out.
+    """
+    described, text = _described(test)
+    return _read(path, described, text, None if part is None else str(part))
+
+
+def _keywords(
+    law: str,
+    response: str,
+    fixed: Mapping[str, float] | None,
+    bounds: Mapping[str, tuple[float, float]] | None,
+    loss: str,
+    noise: str,
+    confidence: float,
+    log_spaced: int | None,
+) -> dict[str, Any]:
+    return {
+        "law": law,
+        "response": response,
+        "fixed": None if fixed is None else list(fixed.items()),
+        "bounds": None if bounds is None else list(bounds.items()),
+        "loss": loss,
+        "noise": noise,
+        "confidence": confidence,
+        "log_spaced": log_spaced,
+    }
+
+
+def fit_hold(
+    time_s: Any,
+    signal: Any,
+    *,
+    law: str = "latency",
+    weights: Any = None,
+    response: str = "relaxation",
+    fixed: Mapping[str, float] | None = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    loss: str = "squares",
+    noise: str = "residuals",
+    confidence: float = 0.95,
+    log_spaced: int | None = None,
+) -> Fit:
+    """Fit a law to one hold; no starting values.
+
+    The latency law is y(t) = y_e + D (1 + (n - 1) l t)^(-1/(n - 1)), equations (4) and (5) of Tsai, Kao et al.; for given
+    (l, n) it is linear in (y_e, D), which are solved for, and (ln l, n) are searched.
+
+    Parameters
+    ----------
+    time_s : array_like, shape (N,)
+        Times in s, rising; the first is the start of the hold.
+    signal : array_like, shape (N,)
+        Force, stress or strain (displacement or strain for creep), in any unit.
+    law
+        A name of ``palpate.laws.names()``: "latency" (n found), "latency:5", "standard-linear-solid", "prony:2", ...
+    weights : array_like, shape (N,), optional
+        1/sigma of every sample, as in lmfit; 0 leaves one out.
+    response
+        "relaxation" or "creep".
+    fixed
+        Numbers held at a value, by name: ``{"exponent": 5}``.
+    bounds
+        Bounds of numbers, by name: ``{"exponent": (1, 10)}``.
+    loss
+        "squares", or "huber" or "tukey" where single samples stray.
+    noise
+        What intervals take the noise for: what the "residuals" show, or "white".
+    confidence
+        Coverage of the intervals, between 0 and 1.
+    log_spaced
+        Fit about this many samples, equally spaced in ln t.
+
+    Returns
+    -------
+    Fit
+        Estimates with errors and intervals, covariance, and why it ended.
+
+    Raises
+    ------
+    FitError
+        Too few samples, times that do not rise, values that are not finite or all the same.
+    OptionError
+        A law, a number or an option that is not known.
+
+    Examples
+    --------
+    >>> import numpy as np, palpate
+    >>> t = np.linspace(0.0, 40.0, 400)
+    >>> fit = palpate.fit_hold(t, 1 + 2 * np.exp(-t / 8), law="standard-linear-solid")
+    >>> round(fit.values["time"], 6)
+    8.0
+    """
+    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced)
+    return _fit_hold(time_s, signal, weights, keywords)
+
+
+def fit_many(
+    time_s: Any,
+    signal: Any,
+    *,
+    law: str = "latency",
+    weights: Any = None,
+    response: str = "relaxation",
+    fixed: Mapping[str, float] | None = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    loss: str = "squares",
+    noise: str = "residuals",
+    confidence: float = 0.95,
+    log_spaced: int | None = None,
+) -> Table:
+    """Fit a law to many holds, on all processors and without the GIL.
+
+    Parameters
+    ----------
+    time_s, signal, weights
+        A list of arrays of any lengths, an array of shape (curves, samples), or a column of lists in Arrow (pyarrow,
+        polars). One column of times, or of weights, stands for all curves.
+    law, response, fixed, bounds, loss, noise, confidence, log_spaced
+        As for `fit_hold`.
+
+    Returns
+    -------
+    Table
+        A row a curve, in order: every number with its standard error and interval, root mean square residual, ending. A curve
+        that no law can be fitted to says why in ``error``, and its numbers are missing.
+    """
+    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced)
+    return _fit_many(time_s, signal, weights, keywords)

@@ -1,0 +1,67 @@
+"""Arrays as the compiled part takes them: contiguous doubles, or an error that says what was found."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from palpate._palpate import OptionError
+
+
+def as_doubles(values: Any, name: str) -> NDArray[np.float64]:
+    """One column of numbers as contiguous doubles.
+
+    Takes arrays of any real type, order and stride, lists, and columns of pandas, polars and pyarrow.
+    Text, complex numbers, masked values and more than one dimension are refused.
+    """
+    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+        at = int(np.flatnonzero(np.ma.getmaskarray(values))[0])
+        raise OptionError(f"{name}: expected a number everywhere, found a masked one at index {at}")
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise OptionError(f"{name}: expected one column of numbers, found lists of different lengths") from None
+    if array.ndim == 0:
+        raise OptionError(f"{name}: expected a column of numbers, found {_told(values)}")
+    if array.ndim > 1:
+        raise OptionError(f"{name}: expected one column of numbers, found an array of shape {array.shape}")
+    if array.size == 0:
+        return np.empty(0)
+    if array.dtype.kind == "O":
+        missing = [index for index, value in enumerate(array) if value is None]
+        if missing:
+            raise OptionError(f"{name}: expected a number everywhere, found None at index {missing[0]}")
+    if array.dtype.kind not in "biufO":
+        raise OptionError(f"{name}: expected numbers, found {array.dtype}")
+    try:
+        return np.ascontiguousarray(array, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise OptionError(f"{name}: expected numbers, found {_told(array[0])}") from None
+
+
+def as_ragged(curves: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Curves of any lengths one behind the other, and where each begins and the last ends.
+
+    A column of numbers is one curve; the rows of an array of two dimensions are one each.
+    """
+    if isinstance(curves, np.ndarray) and curves.ndim == 2:
+        flat = as_doubles(curves.reshape(-1), name)
+        return flat, np.arange(0, flat.size + 1, max(curves.shape[1], 1), dtype=np.int64)
+    if isinstance(curves, np.ndarray) and curves.dtype.kind != "O":
+        flat = as_doubles(curves, name)
+        return flat, np.array([0, flat.size], dtype=np.int64)
+    rows = list(curves)
+    if rows and np.ndim(rows[0]) == 0:
+        flat = as_doubles(rows, name)
+        return flat, np.array([0, flat.size], dtype=np.int64)
+    columns = [as_doubles(row, f"{name}, curve {index}") for index, row in enumerate(rows)]
+    offsets = np.zeros(len(columns) + 1, dtype=np.int64)
+    np.cumsum([column.size for column in columns], out=offsets[1:])
+    return (np.concatenate(columns) if columns else np.empty(0)), offsets
+
+
+def _told(value: Any) -> str:
+    text = repr(value)
+    return f"{type(value).__name__} {text if len(text) <= 40 else text[:37] + '...'}"

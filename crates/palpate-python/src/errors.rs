@@ -1,0 +1,68 @@
+//! Exceptions of the package, with the words of the command line.
+
+use std::fmt::Display;
+use std::io;
+
+use palpate::analysis::Finding;
+use palpate_files::FileError;
+use palpate_files::record_file::ReadError;
+use pyo3::exceptions::{PyUserWarning, PyValueError};
+use pyo3::prelude::*;
+use pyo3::{PyTypeInfo, create_exception};
+
+create_exception!(
+    palpate,
+    PalpateError,
+    PyValueError,
+    "Anything that palpate refuses; the message ends in what would help."
+);
+create_exception!(palpate, RecordError, PalpateError, "A record that cannot be read, or has nothing to analyse.");
+create_exception!(palpate, OptionError, PalpateError, "An argument that no computation can follow.");
+create_exception!(palpate, ModelError, PalpateError, "Numbers that make no body, no law or no motion.");
+create_exception!(palpate, FitError, PalpateError, "Samples that no law can be fitted to.");
+create_exception!(
+    palpate,
+    PalpateWarning,
+    PyUserWarning,
+    "Something about a record that its numbers alone do not tell."
+);
+
+/// An exception with a message and, on a line of its own, what would help.
+pub(crate) fn refused<E: PyTypeInfo>(message: impl Display, hint: Option<impl Display>) -> PyErr {
+    PyErr::new::<E, _>(told(message, hint))
+}
+
+fn told(message: impl Display, hint: Option<impl Display>) -> String {
+    match hint {
+        Some(hint) => format!("{message}\nhint: {hint}"),
+        None => message.to_string(),
+    }
+}
+
+/// An exception without a hint.
+pub(crate) fn refused_plainly<E: PyTypeInfo>(message: impl Display) -> PyErr {
+    refused::<E>(message, None::<&str>)
+}
+
+/// What a file cannot be read for: an `OSError` where the operating system says so.
+pub(crate) fn unread(error: &ReadError) -> PyErr {
+    let told = told(error, error.hint());
+    match error {
+        ReadError::File(FileError::NotFound { source, .. } | FileError::Unreadable { source, .. }) => {
+            io::Error::new(source.kind(), told).into()
+        }
+        ReadError::File(FileError::Directory { .. }) => io::Error::new(io::ErrorKind::IsADirectory, told).into(),
+        _ => PyErr::new::<RecordError, _>(told),
+    }
+}
+
+/// Warns of findings, each with what it means.
+pub(crate) fn warn_of<'a>(py: Python<'_>, findings: impl IntoIterator<Item = &'a Finding>) -> PyResult<()> {
+    let category = py.get_type::<PalpateWarning>();
+    for finding in findings {
+        let text = format!("{}: {}; {}", finding.code(), finding.seen(), finding.meaning());
+        let text = std::ffi::CString::new(text).unwrap_or_default();
+        PyErr::warn(py, &category, &text, 1)?;
+    }
+    Ok(())
+}

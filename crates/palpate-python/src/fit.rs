@@ -1,0 +1,408 @@
+//! Laws fitted to holds.
+
+use numpy::{PyArray1, PyArray2};
+use palpate::identify::{
+    Estimate, LawFit, LawOptions, Loss, NoiseChoice, NumberUnit, SampleChoice, Samples, Termination, fit_law,
+};
+use palpate::laws::{Law, Response};
+use palpate::number::{significant, with_error};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyType};
+
+use crate::arrays::doubles;
+use crate::errors::{FitError, OptionError, refused_plainly};
+use crate::work::briefly;
+
+/// A number that was found or given.
+#[pyclass(name = "Estimate", module = "palpate", frozen, eq)]
+#[derive(Clone, PartialEq)]
+pub(crate) struct PyEstimate {
+    estimate: Estimate,
+    unit: NumberUnit,
+}
+
+#[pymethods]
+impl PyEstimate {
+    /// The best value.
+    #[getter]
+    fn value(&self) -> f64 {
+        self.estimate.value
+    }
+
+    /// Standard error for white noise; None for a number that was given, or that the data leave open.
+    #[getter]
+    fn standard_error(&self) -> Option<f64> {
+        self.estimate.standard_error
+    }
+
+    /// Confidence interval for noise as the residuals show it.
+    #[getter]
+    fn interval(&self) -> Option<(f64, f64)> {
+        self.estimate.interval
+    }
+
+    /// Unit in words: "signal", "s", "1/s", "signal/s", "1", "signal^(1-n)/s", "signal/s^alpha".
+    #[getter]
+    fn unit(&self) -> &'static str {
+        unit_word(self.unit)
+    }
+
+    fn __float__(&self) -> f64 {
+        self.estimate.value
+    }
+
+    fn __repr__(&self) -> String {
+        match self.estimate.standard_error {
+            Some(error) => with_error(self.estimate.value, error),
+            None => significant(self.estimate.value, 6),
+        }
+    }
+}
+
+fn unit_word(unit: NumberUnit) -> &'static str {
+    match unit {
+        NumberUnit::Signal => "signal",
+        NumberUnit::Second => "s",
+        NumberUnit::PerSecond => "1/s",
+        NumberUnit::SignalPerSecond => "signal/s",
+        NumberUnit::One => "1",
+        NumberUnit::RateCoefficient => "signal^(1-n)/s",
+        NumberUnit::SignalPerPower => "signal/s^alpha",
+    }
+}
+
+/// A law fitted to a hold.
+#[pyclass(name = "Fit", module = "palpate", frozen, eq)]
+#[derive(Clone, PartialEq)]
+pub(crate) struct Fit {
+    fit: LawFit,
+}
+
+/// How a fit ended, in a word.
+pub(crate) fn ending(termination: Termination) -> String {
+    match serde_json::to_value(termination) {
+        Ok(serde_json::Value::String(word)) => word,
+        Ok(serde_json::Value::Object(map)) => map.keys().next().cloned().unwrap_or_default(),
+        _ => String::new(),
+    }
+}
+
+fn unequal(what: &str, found: usize, times: usize) -> PyErr {
+    refused_plainly::<FitError>(format!("a fit needs as many {what} as times, found {found} and {times}"))
+}
+
+impl Fit {
+    fn json(&self) -> PyResult<String> {
+        serde_json::to_string(&self.fit).map_err(refused_plainly::<FitError>)
+    }
+
+    fn with_confidence(&self, confidence: f64) -> PyResult<LawFit> {
+        if !(confidence > 0.0 && confidence < 1.0) {
+            let message = format!("an interval covers a share between 0 and 1, found {confidence}");
+            return Err(refused_plainly::<OptionError>(message));
+        }
+        let mut fit = self.fit.clone();
+        if let Some(uncertainty) = &mut fit.uncertainty {
+            uncertainty.confidence = confidence;
+        }
+        Ok(fit)
+    }
+}
+
+#[pymethods]
+impl Fit {
+    /// Name of the law, such as "latency" or "prony:2".
+    #[getter]
+    fn law(&self) -> String {
+        self.fit.law.to_string()
+    }
+
+    /// Every number of the law by its name.
+    #[getter]
+    fn estimates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for number in &self.fit.numbers {
+            let estimate = PyEstimate {
+                estimate: number.estimate,
+                unit: number.unit,
+            };
+            dict.set_item(&number.name, estimate)?;
+        }
+        Ok(dict)
+    }
+
+    /// Values of all numbers by name.
+    #[getter]
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for number in &self.fit.numbers {
+            dict.set_item(&number.name, number.estimate.value)?;
+        }
+        Ok(dict)
+    }
+
+    /// Names of the numbers that were searched, in the order of `covariance`.
+    #[getter]
+    fn parameters(&self) -> Vec<String> {
+        self.fit.parameters.clone()
+    }
+
+    /// Covariance of the searched numbers; None where the data leave one open.
+    #[getter]
+    fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.fit.covariance.as_ref().map(|rows| Ok(PyArray2::from_vec2(py, rows)?)).transpose()
+    }
+
+    /// Correlations of the searched numbers.
+    #[getter]
+    fn correlation<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.fit.correlation().as_ref().map(|rows| Ok(PyArray2::from_vec2(py, rows)?)).transpose()
+    }
+
+    /// Sum of squared residuals, weighted as the samples were.
+    #[getter]
+    fn residual_square(&self) -> f64 {
+        self.fit.residual_square
+    }
+
+    /// Root mean square residual, in the unit of the signal.
+    #[getter]
+    fn rmse(&self) -> f64 {
+        self.fit.rmse
+    }
+
+    /// Correlation of neighbouring residuals.
+    #[getter]
+    fn residual_correlation(&self) -> f64 {
+        self.fit.residual_correlation
+    }
+
+    /// Samples fitted.
+    #[getter]
+    fn samples(&self) -> usize {
+        self.fit.samples
+    }
+
+    /// Time from the first to the last sample, s.
+    #[getter]
+    fn duration_s(&self) -> f64 {
+        self.fit.duration
+    }
+
+    /// Why the fit ended: "converged", or what kept it from that.
+    #[getter]
+    fn termination(&self) -> String {
+        ending(self.fit.termination)
+    }
+
+    /// Whether it ended at an optimum inside the range that was searched.
+    #[getter]
+    fn is_good(&self) -> bool {
+        self.fit.termination.is_good()
+    }
+
+    /// The signal at times after the first sample; with `interval`, also its confidence band.
+    #[pyo3(signature = (elapsed_s, *, interval=None, of="curve"))]
+    fn predict<'py>(
+        &self,
+        py: Python<'py>,
+        elapsed_s: &Bound<'py, PyAny>,
+        interval: Option<f64>,
+        of: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let elapsed = doubles(elapsed_s, "elapsed_s")?;
+        let sample = match of {
+            "curve" => false,
+            "sample" => true,
+            other => {
+                let message = format!("of is \"curve\" or \"sample\", found {other:?}");
+                return Err(refused_plainly::<OptionError>(message));
+            }
+        };
+        let Some(confidence) = interval else {
+            let values = briefly(py, || self.fit.predict_many(&elapsed))?;
+            return Ok(PyArray1::from_vec(py, values).into_any());
+        };
+        let fit = self.with_confidence(confidence)?;
+        let estimate = |t: &f64| if sample { fit.predict_sample(*t) } else { fit.predict_interval(*t) };
+        let estimates: Vec<Estimate> = briefly(py, || elapsed.iter().map(estimate).collect())?;
+        let column = |pick: fn(&Estimate) -> f64| PyArray1::from_iter(py, estimates.iter().map(pick));
+        let value = column(|estimate| estimate.value);
+        let low = column(|estimate| estimate.interval.map_or(f64::NAN, |interval| interval.0));
+        let high = column(|estimate| estimate.interval.map_or(f64::NAN, |interval| interval.1));
+        Ok((value, low, high).into_pyobject(py)?.into_any())
+    }
+
+    /// The fit as text, in the manner of lmfit.
+    fn report(&self) -> String {
+        let fit = &self.fit;
+        let mut out = format!(
+            "[[Model]]\n    {}\n[[Fit Statistics]]\n    # data points      = {}\n    # variables        = {}\n    chi-square         = {}\n    root mean square   = {}\n    ended              = {}\n[[Variables]]\n",
+            fit.law,
+            fit.samples,
+            fit.free_numbers(),
+            significant(fit.residual_square, 6),
+            significant(fit.rmse, 6),
+            ending(fit.termination),
+        );
+        let width = fit.numbers.iter().map(|number| number.name.len()).max().unwrap_or(0) + 1;
+        for number in &fit.numbers {
+            let (name, estimate) = (format!("{}:", number.name), &number.estimate);
+            let value = significant(estimate.value, 8);
+            let error = match estimate.standard_error {
+                Some(error) if estimate.value != 0.0 => {
+                    let share = 100.0 * (error / estimate.value).abs();
+                    format!(" +/- {} ({share:.2}%)", significant(error, 6))
+                }
+                Some(error) => format!(" +/- {}", significant(error, 6)),
+                None => String::new(),
+            };
+            out.push_str(&format!("    {name:<width$} {value}{error}\n"));
+        }
+        if let Some(rows) = fit.correlation() {
+            let mut pairs: Vec<(f64, String)> = Vec::new();
+            for (i, row) in rows.iter().enumerate() {
+                for (j, entry) in row.iter().enumerate().skip(i + 1) {
+                    pairs.push((*entry, format!("C({}, {})", fit.parameters[i], fit.parameters[j])));
+                }
+            }
+            pairs.retain(|(entry, _)| entry.abs() >= 0.1);
+            pairs.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+            if !pairs.is_empty() {
+                out.push_str("[[Correlations]] (unreported correlations are < 0.100)\n");
+            }
+            for (entry, pair) in pairs {
+                out.push_str(&format!("    {pair} = {entry:+.4}\n"));
+            }
+        }
+        out
+    }
+
+    /// Everything about the fit as plain objects.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        py.import("json")?.call_method1("loads", (self.json()?,))
+    }
+
+    #[classmethod]
+    fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
+        let fit = serde_json::from_str(json).map_err(refused_plainly::<FitError>)?;
+        Ok(Self { fit })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
+        let make = py.get_type::<Self>().getattr("_from_json")?;
+        Ok((make, (self.json()?,)))
+    }
+
+    fn __repr__(&self) -> String {
+        let numbers = self.fit.numbers.iter().map(|number| {
+            let estimate = &number.estimate;
+            let value = match estimate.standard_error {
+                Some(error) => with_error(estimate.value, error),
+                None => significant(estimate.value, 4),
+            };
+            format!("{}={value}", number.name)
+        });
+        let numbers: Vec<String> = numbers.collect();
+        format!("<palpate.Fit {}: {}; {}>", self.fit.law, numbers.join(", "), ending(self.fit.termination))
+    }
+}
+
+/// Options of a fit as keywords say them.
+#[derive(Clone)]
+pub(crate) struct Asked {
+    pub(crate) law: Law,
+    pub(crate) options: LawOptions,
+}
+
+/// What the keywords of `fit_hold` and `fit_many` say.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Keywords {
+    law: String,
+    response: String,
+    fixed: Option<Vec<(String, f64)>>,
+    bounds: Option<Vec<(String, (f64, f64))>>,
+    loss: String,
+    noise: String,
+    confidence: f64,
+    log_spaced: Option<usize>,
+}
+
+impl Keywords {
+    pub(crate) fn asked(self) -> PyResult<Asked> {
+        let word = |name: &str, found: &str, known: &str| {
+            refused_plainly::<OptionError>(format!("{name} is one of {known}, found {found:?}"))
+        };
+        let law = self.law.parse().map_err(refused_plainly::<OptionError>)?;
+        let response = match self.response.as_str() {
+            "relaxation" => Response::Relaxation,
+            "creep" => Response::Creep,
+            other => return Err(word("response", other, "\"relaxation\", \"creep\"")),
+        };
+        let loss = match self.loss.as_str() {
+            "squares" => Loss::Squares,
+            "huber" => Loss::Huber,
+            "tukey" => Loss::Tukey,
+            other => return Err(word("loss", other, "\"squares\", \"huber\", \"tukey\"")),
+        };
+        let noise = match self.noise.as_str() {
+            "residuals" => NoiseChoice::FromResiduals,
+            "white" => NoiseChoice::White,
+            other => return Err(word("noise", other, "\"residuals\", \"white\"")),
+        };
+        let options = LawOptions {
+            response,
+            fixed: self.fixed.unwrap_or_default(),
+            bounds: self.bounds.unwrap_or_default(),
+            loss,
+            noise,
+            samples: self.log_spaced.map_or(SampleChoice::All, SampleChoice::LogSpaced),
+            confidence: self.confidence,
+            ..LawOptions::default()
+        };
+        Ok(Asked { law, options })
+    }
+}
+
+/// Standard deviations that weights, their inverses, stand for.
+pub(crate) fn deviations(weights: Vec<f64>) -> PyResult<Vec<f64>> {
+    if let Some(index) = weights.iter().position(|weight| weight.is_nan() || *weight < 0.0) {
+        let message = format!("weights are 1/σ and not below 0, found {} at index {index}", weights[index]);
+        return Err(refused_plainly::<FitError>(message));
+    }
+    Ok(weights.into_iter().map(f64::recip).collect())
+}
+
+/// One fit, of samples that are there.
+pub(crate) fn fitted(
+    times: &[f64],
+    values: &[f64],
+    deviations: Option<&[f64]>,
+    asked: &Asked,
+) -> Result<LawFit, palpate::identify::FitError> {
+    let samples = Samples::new(times, values);
+    let samples = deviations.map_or(samples, |deviations| samples.with_deviations(deviations));
+    fit_law(&samples, asked.law, &asked.options)
+}
+
+#[pyfunction]
+pub(crate) fn fit_hold<'py>(
+    py: Python<'py>,
+    time_s: &Bound<'py, PyAny>,
+    signal: &Bound<'py, PyAny>,
+    weights: Option<&Bound<'py, PyAny>>,
+    keywords: Keywords,
+) -> PyResult<Fit> {
+    let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
+    let weights = weights.map(|weights| doubles(weights, "weights")).transpose()?;
+    if let Some(weights) = weights.as_ref().filter(|weights| weights.len() != times.len()) {
+        return Err(unequal("weights", weights.len(), times.len()));
+    }
+    let deviations = weights.map(deviations).transpose()?;
+    let asked = keywords.asked()?;
+    let fit = briefly(py, || fitted(&times, &values, deviations.as_deref(), &asked))?;
+    Ok(Fit {
+        fit: fit.map_err(refused_plainly::<FitError>)?,
+    })
+}

@@ -1,0 +1,43 @@
+//! Laws as functions of arrays.
+
+use numpy::PyArray1;
+use palpate::latency::decay_many;
+use palpate::laws::Law;
+use pyo3::prelude::*;
+
+use crate::arrays::doubles;
+use crate::errors::{ModelError, refused_plainly};
+
+/// y_e + Δ φ(t; λ, n) with φ = (1 + (n − 1) λ t)^(−1/(n − 1)).
+#[pyfunction]
+pub(crate) fn latency<'py>(
+    py: Python<'py>,
+    elapsed_s: &Bound<'py, PyAny>,
+    equilibrium: f64,
+    amplitude: f64,
+    relative_rate_per_s: f64,
+    exponent: f64,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    if !(exponent.is_finite() && exponent > 0.0) {
+        return Err(refused_plainly::<ModelError>(format!("the exponent must be above 0, found {exponent}")));
+    }
+    if !(relative_rate_per_s.is_finite() && relative_rate_per_s >= 0.0) {
+        let message = format!("the relative rate must be 0 or more, found {relative_rate_per_s}");
+        return Err(refused_plainly::<ModelError>(message));
+    }
+    let mut times = doubles(elapsed_s, "elapsed_s")?;
+    // Before the hold the excess is that at its start.
+    times.iter_mut().for_each(|time| *time = time.max(0.0));
+    let mut values = vec![0.0; times.len()];
+    py.detach(|| {
+        decay_many(&times, relative_rate_per_s, exponent, &mut values);
+        values.iter_mut().for_each(|value| *value = equilibrium + amplitude * *value);
+    });
+    Ok(PyArray1::from_vec(py, values))
+}
+
+/// Names of laws as `law=` takes them; N and K stand for numbers.
+#[pyfunction]
+pub(crate) fn law_names() -> Vec<&'static str> {
+    Law::NAMES.to_vec()
+}

@@ -1,0 +1,48 @@
+//! The compiled part of the Python package `palpate`: thin, one file for each Python type.
+//!
+//! | file | what |
+//! |---|---|
+//! | `record.rs` | `read`, `Record` |
+//! | `analysis.rs` | `Analysis`, `Finding` |
+//! | `fit.rs`, `fit_many.rs` | `fit_hold`, `Fit`, `Estimate`; thousands of holds in one call |
+//! | `laws.rs` | laws as functions of arrays |
+//! | `table.rs`, `document.rs` | results as Arrow |
+//! | `arrays.rs` | numbers in |
+//! | `work.rs` | long work without the GIL, ended by Ctrl-C |
+//! | `errors.rs` | exceptions and warnings |
+//! | `command.rs` | the command line |
+
+mod analysis;
+mod arrays;
+mod command;
+mod document;
+mod errors;
+mod fit;
+mod fit_many;
+mod laws;
+mod record;
+mod table;
+mod work;
+
+use pyo3::prelude::*;
+
+/// The compiled part of the package.
+#[pymodule(gil_used = false)]
+mod _palpate {
+    #[pymodule_export]
+    use crate::analysis::{Analysis, Finding};
+    #[pymodule_export]
+    use crate::command::command;
+    #[pymodule_export]
+    use crate::errors::{FitError, ModelError, OptionError, PalpateError, PalpateWarning, RecordError};
+    #[pymodule_export]
+    use crate::fit::{Fit, PyEstimate, fit_hold};
+    #[pymodule_export]
+    use crate::fit_many::fit_many;
+    #[pymodule_export]
+    use crate::laws::{latency, law_names};
+    #[pymodule_export]
+    use crate::record::{Record, read};
+    #[pymodule_export]
+    use crate::table::Table;
+}

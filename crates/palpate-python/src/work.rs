@@ -1,0 +1,49 @@
+//! Long work beside the interpreter: without the GIL, ended by Ctrl-C, and no panic crosses.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+use pyo3::prelude::*;
+
+use crate::errors::{PalpateError, refused};
+
+/// How often signals are looked for.
+const LOOK: Duration = Duration::from_millis(50);
+
+fn broken(panic: &(dyn std::any::Any + Send)) -> PyErr {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
+    refused::<PalpateError>(
+        format!("palpate made a mistake of its own: {text}"),
+        Some("please report it with the data"),
+    )
+}
+
+/// Does work of microseconds to milliseconds without the GIL.
+pub(crate) fn briefly<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    py.detach(|| catch_unwind(AssertUnwindSafe(work))).map_err(|panic| broken(panic.as_ref()))
+}
+
+/// Does work of seconds on a thread of its own; Ctrl-C leaves it alone and returns.
+pub(crate) fn at_length<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
+    let (sender, receiver) = channel();
+    thread::spawn(move || {
+        // Nobody listens any more after Ctrl-C.
+        let _ = sender.send(catch_unwind(AssertUnwindSafe(work)));
+    });
+    let mut receiver = receiver;
+    loop {
+        let (back, waited) = py.detach(move || {
+            let waited = receiver.recv_timeout(LOOK);
+            (receiver, waited)
+        });
+        receiver = back;
+        match waited {
+            Ok(done) => return done.map_err(|panic| broken(panic.as_ref())),
+            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Disconnected) => return Err(broken(&"the work ended without a result")),
+        }
+    }
+}

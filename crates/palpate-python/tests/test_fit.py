@@ -1,0 +1,130 @@
+"""One law fitted to one hold."""
+
+from __future__ import annotations
+
+import copy
+import multiprocessing
+import pickle
+
+import lmfit
+import numpy as np
+import palpate
+import pytest
+from conftest import relaxation
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import curve_fit
+
+
+def test_known_numbers_are_found() -> None:
+    t, y = relaxation()
+    fit = palpate.fit_hold(t, y)
+    assert fit.law == "latency" and fit.is_good and fit.termination == "converged"
+    assert fit.values["exponent"] == pytest.approx(5.0, rel=1e-6)
+    assert fit.values["relative_rate"] == pytest.approx(0.5, rel=1e-6)
+    assert fit.values["rate_coefficient"] == pytest.approx(0.5 / 0.1**4, rel=1e-4)
+    assert fit.samples == 400 and fit.duration_s == 40.0
+
+
+def test_scipy_finds_the_same_numbers_and_errors() -> None:
+    t, y = relaxation(noise=1e-4)
+    fit = palpate.fit_hold(t, y, noise="white")
+    start = [0.15, 0.12, 1.0, 4.0]
+    best, covariance = curve_fit(palpate.laws.latency, t, y, p0=start, bounds=([-1, 0, 1e-3, 1.01], [1, 1, 1e3, 20]))
+    for place, name in enumerate(["equilibrium", "amplitude", "relative_rate", "exponent"]):
+        estimate = fit.estimates[name]
+        assert estimate.value == pytest.approx(best[place], rel=1e-4)
+        assert estimate.standard_error == pytest.approx(np.sqrt(covariance[place, place]), rel=1e-2)
+
+
+def test_lmfit_takes_the_law_as_a_model() -> None:
+    t, y = relaxation(noise=1e-4)
+    model = lmfit.Model(palpate.laws.latency)
+    assert model.independent_vars == ["elapsed_s"]
+    parameters = model.make_params(equilibrium=0.2, amplitude=0.1, relative_rate_per_s=0.5, exponent=5)
+    parameters["exponent"].set(vary=False)
+    result = model.fit(y, parameters, elapsed_s=t)
+    fit = palpate.fit_hold(t, y, law="latency:5")
+    assert fit.residual_square == pytest.approx(result.chisqr, rel=1e-6)
+    assert fit.values["equilibrium"] == pytest.approx(result.params["equilibrium"].value, rel=1e-5)
+
+
+def test_weights_are_those_of_lmfit() -> None:
+    t, y = relaxation(noise=1e-3)
+    weights = np.linspace(1.0, 3.0, t.size)
+    model = lmfit.Model(lambda x, a, b, c: a + b * np.exp(-x / c))
+    result = model.fit(y, x=t, a=0.2, b=0.1, c=5.0, weights=weights)
+    fit = palpate.fit_hold(t, y, law="standard-linear-solid", weights=weights)
+    assert fit.values["time"] == pytest.approx(result.params["c"].value, rel=1e-4)
+    assert fit.residual_square == pytest.approx(result.chisqr, rel=1e-6)
+    spoiled = y.copy()
+    spoiled[7] = 50.0
+    left_out = np.where(np.arange(t.size) == 7, 0.0, 1.0)
+    kept = left_out > 0
+    without = palpate.fit_hold(t[kept], y[kept], law="standard-linear-solid")
+    assert palpate.fit_hold(t, spoiled, law="standard-linear-solid", weights=left_out).values["time"] == pytest.approx(
+        without.values["time"], rel=1e-9
+    )
+
+
+def test_a_prediction_is_the_law_with_the_numbers_found() -> None:
+    t, y = relaxation(noise=1e-4)
+    fit = palpate.fit_hold(t, y)
+    at = np.array([0.0, 3.0, 400.0])
+    values = fit.values
+    law = palpate.laws.latency(
+        at, values["equilibrium"], values["amplitude"], values["relative_rate"], values["exponent"]
+    )
+    np.testing.assert_allclose(fit.predict(at), law, rtol=1e-14)
+    value, low, high = fit.predict(at, interval=0.95)
+    _, lower, higher = fit.predict(at, interval=0.99)
+    _, sample_low, sample_high = fit.predict(at, interval=0.95, of="sample")
+    assert np.array_equal(value, fit.predict(at))
+    assert np.all((lower < low) & (low < value) & (value < high) & (high < higher))
+    assert np.all((sample_low < low) & (high < sample_high))
+
+
+def test_a_fit_can_be_kept_sent_and_compared() -> None:
+    t, y = relaxation(noise=1e-4)
+    fit = palpate.fit_hold(t, y)
+    for twin in (pickle.loads(pickle.dumps(fit)), copy.copy(fit), copy.deepcopy(fit)):
+        assert twin == fit and twin.to_dict() == fit.to_dict()
+    assert fit != palpate.fit_hold(t, y, law="latency:5")
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        [far] = pool.starmap(palpate.fit_hold, [(t, y)])
+    assert far == fit
+
+
+def test_the_report_is_that_of_lmfit() -> None:
+    t, y = relaxation(noise=1e-4)
+    text = palpate.fit_hold(t, y).report()
+    for part in ("[[Model]]\n    latency", "[[Fit Statistics]]", "[[Variables]]", "[[Correlations]]", "+/-"):
+        assert part in text
+    assert "C(equilibrium, exponent) = -0.99" in text
+
+
+def test_numbers_can_be_held_and_bounded() -> None:
+    t, y = relaxation(noise=1e-4)
+    held = palpate.fit_hold(t, y, fixed={"exponent": 3})
+    assert held.estimates["exponent"].value == 3.0 and held.estimates["exponent"].standard_error is None
+    bounded = palpate.fit_hold(t, y, bounds={"exponent": (1.5, 4.0)})
+    assert bounded.values["exponent"] <= 4.0 and not bounded.is_good
+    assert bounded.covariance is None
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    exponent=st.floats(1.2, 9.0),
+    rate=st.floats(0.05, 5.0),
+    equilibrium=st.floats(-2.0, 2.0),
+    amplitude=st.floats(0.05, 5.0),
+    unit=st.sampled_from([1e-9, 1.0, 1e6]),
+)
+def test_any_law_is_found_in_any_unit(
+    exponent: float, rate: float, equilibrium: float, amplitude: float, unit: float
+) -> None:
+    t = np.linspace(0.0, 60.0, 300)
+    y = unit * palpate.laws.latency(t, equilibrium, amplitude, rate, exponent)
+    fit = palpate.fit_hold(t, y)
+    assert fit.values["exponent"] == pytest.approx(exponent, rel=1e-3)
+    assert np.max(np.abs(fit.predict(t) - y)) < 1e-7 * unit * amplitude

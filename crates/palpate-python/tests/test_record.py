@@ -1,0 +1,134 @@
+"""From a file to laws, as the command line does it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import palpate
+import polars
+import pytest
+
+KEYS = ("settings", "signals", "segments", "holds", "joint", "overlay", "findings", "software")
+
+
+def command(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """The command that came with the package."""
+    return subprocess.run([sys.executable, "-m", "palpate", *arguments], capture_output=True, text=True, check=False)
+
+
+@pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
+def test_an_analysis_is_that_of_the_command_line_to_the_last_bit(root: Path) -> None:
+    record, test = root / "examples/records/ball.csv", root / "examples/records/ball.toml"
+    told = command("analyze", str(record), "--test", str(test), "--format", "json")
+    assert told.returncode == 0, told.stderr
+    expected = json.loads(told.stdout)
+    assert palpate.read(record, test=test).analyze().to_dict() == expected
+    # A description may come later, and as a mapping.
+    bare = palpate.read(record).analyze(compare=False).to_dict()
+    mapped = palpate.read(record, test={"fit": {"exponents": [5], "free_exponent": False}}).analyze(compare=False)
+    asked = palpate.read(record).analyze(exponents=[5], free_exponent=False, compare=False)
+    assert mapped.to_dict()["holds"] == asked.to_dict()["holds"] != bare["holds"]
+
+
+@pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
+def test_tables_say_what_the_document_says(root: Path) -> None:
+    record = palpate.read(root / "examples/records/ball.csv", test=root / "examples/records/ball.toml")
+    analysis = record.analyze(compare=False)
+    document = analysis.to_dict()
+    holds, fits = polars.DataFrame(analysis.holds), polars.DataFrame(analysis.fits)
+    assert holds["start_s"].to_list() == [hold["start_s"] for hold in document["holds"]]
+    assert fits.columns[:3] == ["hold", "law", "domain"]
+    rows = [(hold["index"], fit) for hold in document["holds"] for fit in hold["fits"]]
+    assert fits["hold"].to_list() == [hold for hold, _ in rows]
+    assert fits["exponent"].to_list() == [fit["exponent"] for _, fit in rows]
+    assert fits["rate_coefficient_per_s_low"].to_list() == [
+        fit["confidence_interval"].get("rate_coefficient_per_s", [None])[0] for _, fit in rows
+    ]
+    codes = {finding["code"] for finding in document["findings"]}
+    codes |= {finding["code"] for hold in document["holds"] for finding in hold["findings"]}
+    assert {finding.code for finding in analysis.findings} == codes
+    assert list(analysis.segments["phase"]) == list(record.segments()["phase"])
+
+
+@pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
+def test_the_report_is_that_of_the_command_line(root: Path, tmp_path: Path) -> None:
+    record = root / "examples/records/ball.csv"
+    path = palpate.read(record).analyze(compare=False).report(tmp_path / "own")
+    assert command("analyze", str(record), "--no-compare", "--out", str(tmp_path / "its")).returncode == 0
+    own = {file.relative_to(tmp_path / "own"): file.read_bytes() for file in (tmp_path / "own").rglob("*.*")}
+    its = {file.relative_to(tmp_path / "its"): file.read_bytes() for file in (tmp_path / "its").rglob("*.*")}
+    assert own == its and Path(path) == tmp_path / "own" / "report.html"
+
+
+def steps() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A ramp of 1 s and a hold of 9 s."""
+    t = np.arange(0.0, 10.0, 0.02)
+    d = np.minimum(t, 1.0) * 2e-3
+    f = np.where(t < 1.0, 6.0 * t, 4.0 + 2.0 * (1 + 2 * np.clip(t - 1.0, 0, None)) ** -0.5)
+    return t, d, f
+
+
+def test_arrays_become_a_record_and_a_table() -> None:
+    t, d, f = steps()
+    record = palpate.Record.from_arrays(time_s=t, displacement_m=d, force_n=f, title="mine")
+    assert len(record) == 500 and record.title == "mine" and record.corrections == []
+    assert np.array_equal(record.time_s, t) and np.array_equal(record.force_n, f)
+    segments = record.segments()
+    assert segments["phase"] == ["loading", "hold"] and segments["mode"] == [None, "displacement_held"]
+    frame = polars.DataFrame(record)
+    assert frame.columns == ["time_s", "displacement_m", "force_n"] and frame["force_n"].to_list() == f.tolist()
+    assert polars.DataFrame(record.to_arrow()).equals(frame)
+    alone = palpate.Record.from_arrays(time_s=t, force_n=f)
+    assert alone.displacement_m is None and alone != record
+    assert alone == palpate.Record.from_arrays(time_s=list(t), force_n=list(f))
+
+
+def test_a_notebook_shows_the_report() -> None:
+    t, d, f = steps()
+    analysis = palpate.Record.from_arrays(time_s=t, displacement_m=d, force_n=f).analyze(compare=False)
+    shown = analysis._repr_html_()
+    assert shown is not None and shown.startswith("<iframe srcdoc=") and "svg" in shown
+    assert "The holds that were found" in str(analysis)
+
+
+@pytest.mark.parametrize("name", ["nothing.csv", "empty.csv", "words.csv", "unnamed.csv"])
+def test_errors_have_the_words_of_the_command_line(tmp_path: Path, name: str) -> None:
+    (tmp_path / "empty.csv").write_text("")
+    (tmp_path / "words.csv").write_text("no numbers\nat all\n")
+    (tmp_path / "unnamed.csv").write_text("".join(f"{i},{i * i},{i}\n" for i in range(30)))
+    path = tmp_path / name
+    kind: type[Exception] = FileNotFoundError if name == "nothing.csv" else palpate.RecordError
+    with pytest.raises(kind) as caught:
+        palpate.read(path)
+    assert command("analyze", str(path)).stderr.strip() == f"error: {caught.value}"
+
+
+def test_wrong_options_are_named(root: Path) -> None:
+    record = palpate.read(root / "examples/records/ball.csv")
+    for exponents in ([], [0.0], [float("nan")]):
+        with pytest.raises(palpate.OptionError, match="exponents are numbers above 0"):
+            record.analyze(exponents=exponents)
+    with pytest.raises(palpate.OptionError, match="confidence is a share between 0 and 1, found 1"):
+        record.analyze(confidence=1.0)
+    with pytest.raises(palpate.OptionError, match="contact.tuch"):
+        palpate.read(root / "examples/records/ball.csv", test={"contact": {"tuch": "auto"}})
+    with pytest.raises(palpate.OptionError, match="found set"):
+        palpate.read(root / "examples/records/ball.csv", test={"contact": {"touch": {1}}})
+    with pytest.raises(FileNotFoundError):
+        palpate.read(root / "examples/records/ball.csv", test="nothing.toml")
+
+
+def test_findings_that_forbid_a_number_are_warnings() -> None:
+    t, d, f = steps()
+    with pytest.warns(palpate.PalpateWarning, match="saturated: the force stands at its extreme, 5.000 N"):
+        palpate.Record.from_arrays(time_s=t, displacement_m=d, force_n=np.minimum(f, 5.0)).analyze(compare=False)
+
+
+def test_the_command_has_its_exit_codes(tmp_path: Path) -> None:
+    assert command("--version").stdout == "palpate 0.1.0\n"
+    assert command().returncode == 2
+    assert command("inspect", str(tmp_path / "nothing.csv")).returncode == 2

@@ -1,0 +1,85 @@
+"""Long work: beside other threads, ended by Ctrl-C, without leaks."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import os
+import resource
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import palpate
+import pytest
+from conftest import relaxation
+
+
+def test_threads_fit_side_by_side() -> None:
+    curves = [relaxation(noise=1e-4, seed=seed) for seed in range(16)]
+    alone = [palpate.fit_hold(t, y) for t, y in curves]
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(lambda curve: palpate.fit_hold(*curve), curves)) == alone
+
+
+def test_other_threads_run_meanwhile() -> None:
+    t, _ = relaxation(1000)
+    rows = np.array([relaxation(1000, 1e-4, seed)[1] for seed in range(300)])
+    count, done = 0, threading.Event()
+
+    def counts() -> None:
+        nonlocal count
+        while not done.is_set():
+            count += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=counts)
+    thread.start()
+    before = time.perf_counter()
+    palpate.fit_many(t, rows, law="prony:3")
+    took = time.perf_counter() - before
+    done.set()
+    thread.join()
+    assert count > 20 * took, f"{count} turns in {took} s"
+
+
+INTERRUPTED = """
+import numpy as np, palpate, threading, time, os, signal
+t = np.linspace(0, 60, 20000)
+rows = np.array([1 + palpate.laws.latency(t, 0, 1, 2, n) + 1e-3 * np.sin(7 * n * t) for n in np.linspace(2, 8, 60)])
+def interrupt():
+    time.sleep(0.5)
+    global at
+    at = time.perf_counter()
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Thread(target=interrupt).start()
+try:
+    while True:
+        palpate.fit_many(t, rows, law="prony:4")
+except KeyboardInterrupt:
+    print(time.perf_counter() - at, flush=True)
+os._exit(0)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_ctrl_c_is_heard() -> None:
+    told = subprocess.run([sys.executable, "-c", INTERRUPTED], capture_output=True, text=True, timeout=120, check=True)
+    assert float(told.stdout) < 0.2 * float(os.environ.get("PALPATE_PATIENCE", "3"))
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_ten_thousand_calls_leak_nothing() -> None:
+    t, y = relaxation(50)
+
+    def calls(count: int) -> int:
+        for _ in range(count):
+            fit = palpate.fit_hold(t, y, law="standard-linear-solid")
+            fit.predict(t, interval=0.9)
+            fit.estimates["time"].interval
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+    first = calls(1000)
+    assert calls(10_000) - first < 4096, "more than 4 MB"
