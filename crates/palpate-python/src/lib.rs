@@ -5,6 +5,8 @@
 //! | `record.rs` | `read`, `Record` |
 //! | `analysis.rs` | `Analysis`, `Finding` |
 //! | `fit.rs`, `fit_many.rs` | `fit_hold`, `Fit`, `Estimate`; thousands of holds in one call |
+//! | `compare.rs` | laws compared by what they foretell |
+//! | `simulate.rs` | `simulate`, `Trajectory`, `ContactState` |
 //! | `laws.rs` | laws as functions of arrays |
 //! | `table.rs`, `document.rs` | results as Arrow |
 //! | `arrays.rs` | numbers in |
@@ -15,12 +17,14 @@
 mod analysis;
 mod arrays;
 mod command;
+mod compare;
 mod document;
 mod errors;
 mod fit;
 mod fit_many;
 mod laws;
 mod record;
+mod simulate;
 mod table;
 mod work;
 
@@ -34,6 +38,8 @@ mod _palpate {
     #[pymodule_export]
     use crate::command::command;
     #[pymodule_export]
+    use crate::compare::{Comparison, compare};
+    #[pymodule_export]
     use crate::errors::{FitError, ModelError, OptionError, PalpateError, PalpateWarning, RecordError};
     #[pymodule_export]
     use crate::fit::{Fit, PyEstimate, fit_hold};
@@ -43,6 +49,8 @@ mod _palpate {
     use crate::laws::{latency, law_names};
     #[pymodule_export]
     use crate::record::{Record, read};
+    #[pymodule_export]
+    use crate::simulate::{ContactState, Trajectory, simulate};
     #[pymodule_export]
     use crate::table::Table;
 }

@@ -150,8 +150,15 @@ pub fn read_protocol(path: &Path) -> Result<Protocol, DescriptionError> {
 /// # Errors
 /// As for [`read_protocol`], less those of steps and output.
 pub fn read_scene(path: &Path) -> Result<(Option<String>, Model), DescriptionError> {
-    let text = source::read(path, LONGEST)?;
-    let source = Source { path, text: &text };
+    parse_scene(&source::read(path, LONGEST)?, path)
+}
+
+/// As [`read_scene`], of a text that was read already; `path` is used in messages alone.
+///
+/// # Errors
+/// As for [`parse_protocol`], less those of steps and output.
+pub fn parse_scene(text: &str, path: &Path) -> Result<(Option<String>, Model), DescriptionError> {
+    let source = Source { path, text };
     let tables: ProtocolTables = source.tables()?;
     let model = model(&source, &tables)?;
     Ok((tables.title, model))

@@ -13,12 +13,14 @@ the *nonlinear latency law* of Tsai, Kao et al. This package finds the law in a 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Union
 
 from palpate import laws
 from palpate._palpate import (
     Analysis,
+    Comparison,
+    ContactState,
     Estimate,
     Finding,
     Fit,
@@ -30,13 +32,18 @@ from palpate._palpate import (
     Record,
     RecordError,
     Table,
+    Trajectory,
 )
+from palpate._palpate import compare as _compare
 from palpate._palpate import fit_hold as _fit_hold
 from palpate._palpate import fit_many as _fit_many
 from palpate._palpate import read as _read
+from palpate._palpate import simulate as _simulate
 
 __all__ = [
     "Analysis",
+    "Comparison",
+    "ContactState",
     "Estimate",
     "Finding",
     "Fit",
@@ -48,10 +55,13 @@ __all__ = [
     "Record",
     "RecordError",
     "Table",
+    "Trajectory",
+    "compare",
     "fit_hold",
     "fit_many",
     "laws",
     "read",
+    "simulate",
 ]
 
 Description = Union[str, os.PathLike[str], Mapping[str, Any], None]
@@ -232,3 +242,90 @@ def fit_many(
     """
     keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced)
     return _fit_many(time_s, signal, weights, keywords)
+
+
+def compare(
+    time_s: Any,
+    signal: Any,
+    *,
+    laws: Sequence[str] | None = None,
+    weights: Any = None,
+    quantity: str = "force",
+    cuts: Sequence[float] | None = None,
+) -> Comparison:
+    """Fit laws to the first part of a hold, hold each against the rest, and say which to use.
+
+    Parameters
+    ----------
+    time_s, signal, weights : array_like, shape (N,)
+        As for `fit_hold`.
+    laws
+        Names of laws; if left out, all that suit.
+    quantity
+        What the signal is: "force" or "strain" in a relaxation, "displacement" in a creep.
+    cuts
+        Where to cut, as shares of the duration; (1/4, 1/3, 1/2) if left out.
+
+    Returns
+    -------
+    Comparison
+        The law to use, how sure that is, what each other one costs, and a table of all.
+
+    Raises
+    ------
+    FitError
+        A hold that no law can be fitted to.
+    OptionError
+        A law or a quantity that is not known.
+    """
+    return _compare(time_s, signal, weights, None if laws is None else list(laws), quantity, None if cuts is None else list(cuts))
+
+
+def simulate(
+    protocol: str | os.PathLike[str] | Mapping[str, Any],
+    *,
+    specimen: Mapping[str, Any] | None = None,
+    law: Mapping[str, Any] | None = None,
+    contact: Mapping[str, Any] | None = None,
+    output: Mapping[str, Any] | None = None,
+) -> Trajectory:
+    """Simulate squeeze, hold, creep and release by a protocol.
+
+    Parameters
+    ----------
+    protocol
+        Path of a protocol (TOML), or a mapping with its tables: ``{"specimen": {...}, "law": {...}, "step": [{...}, ...]}``.
+        Quantities are texts with a unit, such as ``"5 mm"``.
+    specimen, law, contact, output
+        Tables that stand in place of those of a mapping.
+
+    Returns
+    -------
+    Trajectory
+        Time, displacement, force and strains in SI, with contacts lost and regained.
+
+    Raises
+    ------
+    OptionError
+        A protocol that says what no contact can do; the message names the key.
+    ModelError
+        A motion that the body cannot take.
+
+    Examples
+    --------
+    >>> import palpate
+    >>> trajectory = palpate.simulate({
+    ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
+    ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+    ...     "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "10 s"}],
+    ... })
+    >>> round(float(trajectory.force_n[-1]), 2)
+    1.56
+    """
+    replaced = {"specimen": specimen, "law": law, "contact": contact, "output": output}
+    replaced = {name: table for name, table in replaced.items() if table is not None}
+    if isinstance(protocol, Mapping):
+        return _simulate(None, _toml({**protocol, **replaced}))
+    if replaced:
+        raise OptionError(f"{', '.join(replaced)}: tables replace those of a mapping, found the path of a protocol")
+    return _simulate(protocol, None)

@@ -304,7 +304,9 @@ impl From<&ComparedHold> for ComparedHoldDocument {
 }
 
 impl HoldComparisonDocument {
-    pub(super) fn new(comparison: &Comparison, quantity: Quantity) -> Self {
+    /// The document of a comparison of laws on samples of a quantity.
+    #[must_use]
+    pub fn new(comparison: &Comparison, quantity: Quantity) -> Self {
         let lowest =
             comparison.rows.iter().filter_map(|row| row.criteria).map(|c| c.aicc).fold(f64::INFINITY, f64::min);
         Self {

@@ -1,0 +1,275 @@
+//! Simulated contacts: whole protocols, and one step at a time.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use arrow_array::{ArrayRef, BooleanArray, Float64Array};
+use numpy::PyArray1;
+use palpate::simulate::{
+    ContactEventKind, ContactModel, ContactState as State, Trajectory as Simulated, simulate as walk,
+};
+use palpate_files::description::{DescriptionError, Model, parse_protocol, parse_scene, read_protocol, read_scene};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyType};
+
+use crate::errors::{ModelError, OptionError, refused, refused_plainly};
+use crate::table::Table;
+use crate::work::at_length;
+
+fn said(error: DescriptionError) -> PyErr {
+    let hint = error.hint();
+    refused::<OptionError>(error, hint)
+}
+
+/// A simulated contact over time, in SI, compression positive.
+#[pyclass(name = "Trajectory", module = "palpate", frozen, eq)]
+#[derive(Clone, PartialEq)]
+pub(crate) struct Trajectory {
+    series: Simulated,
+}
+
+fn missing(path: &Path) -> PyErr {
+    let message = format!("{}: no such file", path.display());
+    std::io::Error::new(std::io::ErrorKind::NotFound, message).into()
+}
+
+/// Simulates a protocol in a file, or in a text.
+#[pyfunction]
+pub(crate) fn simulate(py: Python<'_>, path: Option<PathBuf>, text: Option<&str>) -> PyResult<Trajectory> {
+    let protocol = match path {
+        Some(path) if !path.exists() => return Err(missing(&path)),
+        Some(path) => read_protocol(&path),
+        None => parse_protocol(text.unwrap_or_default(), Path::new("protocol")),
+    };
+    let protocol = protocol.map_err(said)?;
+    let series = at_length(py, move || walk(protocol.drive(), protocol.contact(), &protocol.sampling))?;
+    Ok(Trajectory {
+        series: series.map_err(refused_plainly::<ModelError>)?,
+    })
+}
+
+impl Trajectory {
+    fn columns(&self) -> [(&'static str, &[f64]); 8] {
+        let series = &self.series;
+        [
+            ("time_s", &series.time),
+            ("displacement_m", &series.displacement),
+            ("contact_displacement_m", &series.contact_displacement),
+            ("force_n", &series.force),
+            ("strain", &series.strain),
+            ("equilibrium_strain", &series.equilibrium_strain),
+            ("excess_strain", &series.excess_strain),
+            ("strain_rate_per_s", &series.strain_rate),
+        ]
+    }
+}
+
+#[pymethods]
+impl Trajectory {
+    /// Time, s.
+    #[getter]
+    fn time_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.series.time)
+    }
+
+    /// Displacement of the jaw, m.
+    #[getter]
+    fn displacement_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.series.displacement)
+    }
+
+    /// Displacement of the surface of the body at one contact, m.
+    #[getter]
+    fn contact_displacement_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.series.contact_displacement)
+    }
+
+    /// Contact force, N.
+    #[getter]
+    fn force_n<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.series.force)
+    }
+
+    /// Strain of the contact layer.
+    #[getter]
+    fn strain<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.series.strain)
+    }
+
+    /// Strain that the contact layer tends to.
+    #[getter]
+    fn equilibrium_strain<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.series.equilibrium_strain)
+    }
+
+    /// Strain less the equilibrium strain.
+    #[getter]
+    fn excess_strain<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.series.excess_strain)
+    }
+
+    /// Strain rate of the contact layer, 1/s.
+    #[getter]
+    fn strain_rate_per_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.series.strain_rate)
+    }
+
+    /// Whether the jaw touches the body.
+    #[getter]
+    fn in_contact<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        PyArray1::from_slice(py, &self.series.in_contact)
+    }
+
+    /// Contacts lost and regained: ("lost" or "regained", time in s, displacement of the surface in m).
+    #[getter]
+    fn events(&self) -> Vec<(&'static str, f64, f64)> {
+        let word = |kind| match kind {
+            ContactEventKind::Lost => "lost",
+            ContactEventKind::Regained => "regained",
+        };
+        let events = self.series.events.iter();
+        events.map(|event| (word(event.kind), event.time, event.contact_displacement)).collect()
+    }
+
+    fn __len__(&self) -> usize {
+        self.series.len()
+    }
+
+    /// All series as a table.
+    fn to_arrow(&self) -> PyResult<Table> {
+        let column = |values: &[f64]| -> ArrayRef { Arc::new(Float64Array::from(values.to_vec())) };
+        let mut columns: Vec<(&str, ArrayRef)> =
+            self.columns().into_iter().map(|(name, values)| (name, column(values))).collect();
+        columns.push(("in_contact", Arc::new(BooleanArray::from(self.series.in_contact.clone()))));
+        Table::of(columns)
+    }
+
+    #[pyo3(signature = (requested_schema=None))]
+    fn __arrow_c_stream__<'py>(
+        &self,
+        py: Python<'py>,
+        requested_schema: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.to_arrow()?.__arrow_c_stream__(py, requested_schema)
+    }
+
+    #[classmethod]
+    fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
+        let series = serde_json::from_str(json).map_err(refused_plainly::<ModelError>)?;
+        Ok(Self { series })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
+        let make = py.get_type::<Self>().getattr("_from_json")?;
+        let json = serde_json::to_string(&self.series).map_err(refused_plainly::<ModelError>)?;
+        Ok((make, (json,)))
+    }
+
+    fn __repr__(&self) -> String {
+        let (samples, events) = (self.series.len(), self.series.events.len());
+        format!("<palpate.Trajectory of {samples} samples, {events} contacts lost or regained>")
+    }
+}
+
+/// What makes an object again: a function and its arguments.
+type Made<'py, T> = (Bound<'py, PyAny>, T);
+
+/// A contact that a controller moves one step at a time.
+#[pyclass(name = "ContactState", module = "palpate")]
+pub(crate) struct ContactState {
+    model: ContactModel,
+    state: State,
+    /// The description, so that the state can be sent elsewhere.
+    text: String,
+}
+
+#[pymethods]
+impl ContactState {
+    #[new]
+    fn new(model: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let said_so = model.py().import("palpate")?.call_method1("_described", (model,))?;
+        let (path, text): (Option<PathBuf>, Option<String>) = said_so.extract()?;
+        let (text, scene) = match (path, text) {
+            (Some(path), _) if !path.exists() => return Err(missing(&path)),
+            (Some(path), _) => (std::fs::read_to_string(&path)?, read_scene(&path)),
+            (None, text) => {
+                let text = text.unwrap_or_default();
+                let scene = parse_scene(&text, Path::new("model"));
+                (text, scene)
+            }
+        };
+        match scene.map_err(said)?.1 {
+            Model::Latency(model) => Ok(Self {
+                model,
+                state: State::default(),
+                text,
+            }),
+            Model::Linear(_) => Err(refused_plainly::<ModelError>("a contact is stepped by the latency law alone")),
+        }
+    }
+
+    /// Moves the jaw to a displacement within a time step; returns the force, N.
+    fn step(&mut self, dt_s: f64, displacement_m: f64) -> PyResult<f64> {
+        self.state.step(&self.model, dt_s, displacement_m).map_err(refused_plainly::<ModelError>)
+    }
+
+    /// Applies a force within a time step; returns the displacement of the jaw, m.
+    fn step_force(&mut self, dt_s: f64, force_n: f64) -> PyResult<f64> {
+        self.state.step_force(&self.model, dt_s, force_n).map_err(refused_plainly::<ModelError>)
+    }
+
+    /// Force now, N.
+    #[getter]
+    fn force_n(&self) -> f64 {
+        self.state.force(&self.model)
+    }
+
+    /// Displacement of the surface of the body at one contact, m.
+    #[getter]
+    fn surface_m(&self) -> f64 {
+        self.state.surface(&self.model)
+    }
+
+    /// Whether the jaw touches the body.
+    #[getter]
+    fn is_touching(&self) -> bool {
+        self.state.is_touching(&self.model)
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.model == other.model && self.state == other.state
+    }
+
+    fn __copy__(&self) -> Self {
+        Self {
+            model: self.model.clone(),
+            state: self.state,
+            text: self.text.clone(),
+        }
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyDict>) -> Self {
+        self.__copy__()
+    }
+
+    #[classmethod]
+    fn _from_parts(_class: &Bound<'_, PyType>, text: String, state: [u8; 16]) -> PyResult<Self> {
+        match parse_scene(&text, Path::new("model")).map_err(said)?.1 {
+            Model::Latency(model) => Ok(Self {
+                model,
+                state: State::from_bytes(state).map_err(refused_plainly::<ModelError>)?,
+                text,
+            }),
+            Model::Linear(_) => Err(refused_plainly::<ModelError>("a contact is stepped by the latency law alone")),
+        }
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String, Bound<'py, PyBytes>)>> {
+        let make = py.get_type::<Self>().getattr("_from_parts")?;
+        Ok((make, (self.text.clone(), PyBytes::new(py, &self.state.to_bytes()))))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<palpate.ContactState: {} N>", palpate::number::significant(self.force_n(), 4))
+    }
+}

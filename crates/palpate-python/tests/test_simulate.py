@@ -1,0 +1,106 @@
+"""Contacts simulated: whole protocols, and one step at a time."""
+
+from __future__ import annotations
+
+import copy
+import csv
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import palpate
+import polars
+import pytest
+from conftest import relaxation
+
+PAPER: dict[str, Any] = {
+    "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
+    "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+    "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "10 s"}],
+}
+
+
+def test_a_protocol_gives_what_the_command_line_gives(root: Path, tmp_path: Path) -> None:
+    path, out = root / "examples/protocols/grip.toml", tmp_path / "grip.csv"
+    subprocess.run([sys.executable, "-m", "palpate", "simulate", str(path), "--out", str(out)], check=True)
+    with out.open() as file:
+        rows = list(csv.DictReader(file))
+    frame = polars.DataFrame(palpate.simulate(path))
+    assert frame.columns == list(rows[0])
+    for name in frame.columns:
+        assert [float(row[name]) for row in rows] == frame[name].cast(polars.Float64).to_list()
+
+
+def test_a_mapping_is_a_protocol_whose_tables_can_be_replaced() -> None:
+    trajectory = palpate.simulate(PAPER)
+    assert len(trajectory) == len(trajectory.time_s) == len(polars.DataFrame(trajectory))
+    assert trajectory.time_s[-1] == pytest.approx(10.6) and trajectory.in_contact.all() and trajectory.events == []
+    excess = trajectory.strain - trajectory.equilibrium_strain
+    np.testing.assert_allclose(trajectory.excess_strain, excess, atol=1e-15)
+    stiff = palpate.simulate(PAPER, specimen={**PAPER["specimen"], "modulus": "56 kPa"})
+    np.testing.assert_allclose(stiff.force_n, 2 * trajectory.force_n, rtol=1e-12)
+    sparse = palpate.simulate(PAPER, output={"times": ["0 s", "0.6 s", "10.6 s"]})
+    assert sparse.force_n[-1] == pytest.approx(trajectory.force_n[-1], rel=1e-12)
+    with pytest.raises(palpate.OptionError, match="tables replace those of a mapping"):
+        palpate.simulate("protocol.toml", law={})
+    with pytest.raises(palpate.OptionError, match="specimen"):
+        palpate.simulate({**PAPER, "specimen": {}})
+    with pytest.raises(FileNotFoundError, match="nothing.toml"):
+        palpate.simulate("nothing.toml")
+
+
+def test_a_trajectory_can_be_kept() -> None:
+    trajectory = palpate.simulate(PAPER)
+    assert pickle.loads(pickle.dumps(trajectory)) == copy.deepcopy(trajectory) == trajectory
+
+
+def test_steps_follow_the_protocol() -> None:
+    trajectory = palpate.simulate(PAPER)
+    state = palpate.ContactState(PAPER)
+    assert state.force_n == 0.0
+    forces = [0.0]
+    for dt, displacement in zip(np.diff(trajectory.time_s), trajectory.displacement_m[1:]):
+        forces.append(state.step(float(dt), float(displacement)))
+    largest = trajectory.force_n.max()
+    assert np.max(np.abs(np.array(forces) - trajectory.force_n)) < 2e-3 * largest
+    assert state.is_touching and state.surface_m == pytest.approx(2.5e-3) and forces[-1] == state.force_n
+
+
+def test_a_state_can_be_copied_and_sent() -> None:
+    state = palpate.ContactState(PAPER)
+    state.step(0.1, 2e-3)
+    twins = [copy.copy(state), copy.deepcopy(state), pickle.loads(pickle.dumps(state))]
+    assert all(twin == state for twin in twins)
+    state.step(0.1, 3e-3)
+    assert all(twin != state for twin in twins)
+    assert all(twin.step(0.1, 3e-3) == state.force_n for twin in twins)
+    # Under a force that stays the body creeps, at first not at all.
+    assert state.step_force(1e-9, state.force_n) == pytest.approx(3e-3, rel=1e-5)
+    assert state.step_force(0.1, state.force_n) > 3e-3
+
+
+def test_what_no_body_can_do_is_refused() -> None:
+    state = palpate.ContactState(PAPER)
+    for dt, displacement in [(-1.0, 1e-3), (float("nan"), 1e-3), (0.1, float("inf")), (0.1, 1.0)]:
+        with pytest.raises(palpate.ModelError):
+            state.step(dt, displacement)
+    assert state.force_n == 0.0
+    linear = {**PAPER, "law": {"name": "standard-linear-solid", "overshoot": 3, "time": "2 s"}}
+    with pytest.raises(palpate.ModelError, match="latency law alone"):
+        palpate.ContactState(linear)
+
+
+def test_laws_are_compared_by_what_they_foretell() -> None:
+    t, y = relaxation(800, 1e-4)
+    comparison = palpate.compare(t, y, laws=["latency:5", "standard-linear-solid", "prony:2"])
+    assert comparison.law == "latency:5" and comparison.certainty == "clear"
+    assert comparison.sentence is not None and "n = 5" in comparison.sentence
+    assert comparison.laws["law"][0] == "latency:5" and len(comparison.laws) == 3
+    assert comparison.to_dict()["signal"] == "force"
+    with pytest.raises(palpate.OptionError, match='no law is called "x"'):
+        palpate.compare(t, y, laws=["x"])
+    with pytest.raises(palpate.OptionError, match="quantity is"):
+        palpate.compare(t, y, quantity="charge")
