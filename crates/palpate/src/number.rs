@@ -34,6 +34,18 @@ pub fn significant(value: f64, digits: usize) -> String {
     text.replace('-', "−")
 }
 
+/// `1 row`, `2 rows`.
+///
+/// ```
+/// use palpate::number::counted;
+/// assert_eq!((counted(1, "row"), counted(2, "row")), ("1 row".to_owned(), "2 rows".to_owned()));
+/// ```
+#[must_use]
+pub fn counted(count: usize, what: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{plural}")
+}
+
 /// `value ± error`, both rounded to the digits the error warrants, for people.
 ///
 /// The error keeps one significant digit, or two when it starts with 1. Without a usable error

@@ -110,6 +110,7 @@ const TIME: &[(&str, f64)] =
 const FORCE: &[(&str, f64)] = &[
     ("N", 1.0),
     ("kN", 1e3),
+    ("daN", 10.0),
     ("mN", 1e-3),
     ("µN", 1e-6),
     ("uN", 1e-6),

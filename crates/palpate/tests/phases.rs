@@ -2,7 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
 use palpate::record::Record;
-use palpate::segment::{After, Phase, SegmentError, SegmentOptions, Segmentation, find_phases};
+use palpate::segment::{After, HoldMode, Phase, SegmentError, SegmentOptions, Segmentation, find_phases};
 use palpate::test_problems::Noise;
 
 /// A step: to mm, at mm/s, hold s.
@@ -139,4 +139,59 @@ fn a_few_odd_rows_are_no_motion() {
     let odd = |t: f64| if [100.0, 400.0, 700.0].contains(&(100.0 * t).round()) { 5.0 } else { 0.0 };
     let found = phases(&record(odd, 10.0, 100.0, 0.0, 0.0));
     assert!(matches!(found, Err(SegmentError::NoMotion { .. })), "{found:?}");
+}
+
+/// A creep under 10 N that ripples by 0.3 N at 3 Hz was one long ramp.
+#[test]
+fn a_controller_that_hunts_holds_the_force() {
+    let (mut noise, mut creep) = (Noise::new(1), 0.0);
+    let held = |t: f64| match t {
+        t if t < 2.0 => 0.0,
+        t if t < 4.0 => 5.0 * (t - 2.0),
+        t if t < 34.0 => 10.0,
+        t if t < 35.0 => 10.0 - 8.0 * (t - 34.0),
+        t if t < 65.0 => 2.0,
+        t => 2.0 - 0.4 * (t - 65.0),
+    };
+    let time: Vec<f64> = (0..7000).map(|i| 0.01 * f64::from(i)).collect();
+    let mut displacement = Vec::new();
+    let mut force = Vec::new();
+    for t in &time {
+        let now = held(*t);
+        creep += (0.08 * now - creep) * 0.01 / 8.0;
+        displacement.push(1e-3 * (0.2 * now + creep + 5e-4 * noise.normal()));
+        let ripple = if now > 1.0 { 0.3 * (std::f64::consts::TAU * 3.0 * t).sin() } else { 0.0 };
+        force.push(now + ripple + 0.01 * noise.normal());
+    }
+    let record = Record::new(time, Some(displacement), force).unwrap();
+    let found = phases(&record).unwrap();
+    let holds: Vec<_> = found.holds().collect();
+    assert_eq!(holds.len(), 2, "{holds:?}");
+    for (hold, (start, end)) in holds.iter().zip([(4.0, 34.0), (35.0, 65.0)]) {
+        let off = [record.time()[hold.start] - start, record.time()[hold.end - 1] - end];
+        assert!(off.iter().all(|off| off.abs() < 0.035), "{off:?}");
+        assert_eq!(hold.mode, Some(HoldMode::ForceHeld));
+    }
+}
+
+/// Rest, a ramp of 1 s and 20 s of relaxation from 9.5 to 5.1 N, by the force alone: no hold was found.
+#[test]
+fn a_slow_relaxation_is_a_hold_of_the_force_alone() {
+    let mut noise = Noise::new(2);
+    let time: Vec<f64> = (0..2600).map(|i| 0.01 * f64::from(i)).collect();
+    let force = time.iter().map(|t| {
+        let held = match *t {
+            t if t < 2.0 => 0.0,
+            t if t < 3.0 => 9.5 * (t - 2.0),
+            t if t < 23.0 => 5.0 + 4.5 * (-(t - 3.0) / 5.0).exp(),
+            t => (5.08 - 10.0 * (t - 23.0)).max(0.0),
+        };
+        held + 0.02 * noise.normal()
+    });
+    let record = Record::new(time.clone(), None, force.collect()).unwrap();
+    let found = phases(&record).unwrap();
+    let first = found.holds().next().unwrap();
+    let ends = [record.time()[first.start], record.time()[first.end - 1]];
+    assert!((ends[0] - 3.0).abs() < 0.06 && (ends[1] - 23.0).abs() < 0.06, "{ends:?}");
+    assert_eq!(first.after, Some(After::Loading));
 }

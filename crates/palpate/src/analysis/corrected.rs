@@ -3,7 +3,7 @@
 use super::signals::skew_finding;
 use super::skew::{ClockSkew, clock_skew};
 use super::{AnalysisError, AnalysisOptions, Finding};
-use crate::record::{Record, SkewChoice};
+use crate::record::{Record, SignalReport, SkewChoice};
 use crate::segment::{SegmentError, Segmentation, free_samples, phases_with};
 
 /// A corrected record with its phases, ready for first touch.
@@ -18,6 +18,15 @@ pub struct Corrected {
 }
 
 impl Corrected {
+    /// The record as it came with its clocks put right, and what its columns are like then, if they are seen to differ.
+    #[must_use]
+    pub fn aligned(&self, record: &Record) -> Option<(Record, SignalReport)> {
+        let skew = self.skew.filter(ClockSkew::is_seen)?;
+        let aligned = record.without_skew(skew.skew, Some(skew.standard_error)).ok()?;
+        let signals = aligned.signals();
+        Some((aligned, signals))
+    }
+
     /// [`Finding::ClocksSkewed`] if the clocks differ and nothing was done about it.
     #[must_use]
     pub fn skew_finding(&self) -> Option<Finding> {

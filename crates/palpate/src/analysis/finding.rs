@@ -153,6 +153,8 @@ pub enum Finding {
         /// Of how many rows a sample is the mean.
         averaged: usize,
     },
+    /// The record is one of stress, and no section was given.
+    StressAsForce,
     /// Rows with one time stamp.
     StampsMerged {
         /// Rows before.
@@ -249,7 +251,7 @@ pub enum Finding {
     SignSuspicious {
         /// `displacement` or `force`.
         column: String,
-        /// How far it goes below its start in the first ramp, m or N.
+        /// How far it goes below its start, m or N.
         fall: f64,
     },
     /// v is not known to be one number for all holds after loading.
@@ -301,6 +303,7 @@ impl Finding {
             Self::Thinned { .. } => "thinned",
             Self::DropoutsRepaired { .. } => "dropouts_repaired",
             Self::RowsAveraged { .. } => "rows_averaged",
+            Self::StressAsForce => "stress_as_force",
             Self::StampsMerged { .. } => "stamps_merged",
             Self::StampsSorted { .. } => "stamps_sorted",
             Self::Gaps { .. } => "gaps",
@@ -351,6 +354,7 @@ impl Finding {
             | Self::ContactOpen { .. }
             | Self::DropoutsRepaired { .. }
             | Self::RowsAveraged { .. }
+            | Self::StressAsForce
             | Self::StampsMerged { .. }
             | Self::StampsSorted { .. }
             | Self::Gaps { .. }

@@ -43,6 +43,7 @@ pub use joint::{JointAnalysis, JointHolds};
 pub use modulus::ModulusSource;
 pub use options::{AnalysisOptions, Geometry, LayersChoice};
 pub use overlay::Overlay;
-pub use pipeline::{Analysis, AnalysisError, analyze};
+pub use pipeline::{Analysis, AnalysisError, analyze, examine};
 pub use rate_bias::RateBias;
+pub use signals::suspicious_signs;
 pub use skew::{ClockSkew, clock_skew};

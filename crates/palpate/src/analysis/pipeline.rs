@@ -6,14 +6,13 @@ use super::hold::{HoldAnalysis, analyze_hold};
 use super::joint::changing_rate;
 use super::modulus::{ModulusSource, implied_modulus};
 use super::overlay::{Overlay, overlay};
-use super::signals::{correction_findings, signal_findings, touch_findings};
+use super::signals::{correction_findings, signal_findings, suspicious_signs, touch_findings};
 use super::skew::ClockSkew;
 use super::{AnalysisOptions, Finding};
 use crate::contact::{Shape, Specimen, SpecimenError};
 use crate::record::{Record, RecordError, SignalReport};
 use crate::segment::{ContactPoint, Phase, Segment, SegmentError, Segmentation, find_contact_of};
 use crate::simulate::Separation;
-use crate::statistics::noise;
 
 /// The study of one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,7 +72,7 @@ pub enum AnalysisError {
         limit_name: &'static str,
     },
     /// Holds were found, but none can be fitted.
-    #[error("none of the {holds} holds can be fitted: {reason}")]
+    #[error("{}: {reason}", none_of(*holds))]
     NothingToFit {
         /// Holds found.
         holds: usize,
@@ -110,19 +109,32 @@ const POOR: f64 = 0.05;
 /// [`AnalysisError`] when the record has no hold, a correction that was asked for cannot be made, the geometry makes no specimen or is smaller than the travel of the jaw,
 /// or no hold has anything to fit.
 pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, AnalysisError> {
+    let analysis = examine(record, options)?;
+    nothing_to_fit(&analysis.holds)?;
+    Ok(analysis)
+}
+
+/// As [`analyze`], but a record none of whose holds can be fitted is no error: its holds say by their findings why.
+///
+/// # Errors
+/// Those of [`analyze`] but [`AnalysisError::NothingToFit`].
+pub fn examine(record: &Record, options: &AnalysisOptions) -> Result<Analysis, AnalysisError> {
     let signals = record.signals();
     let corrected = corrected(record, options)?;
     let skewed = corrected.skew_finding();
+    // Of clocks that differ the force goes on while the jaw stands already: that is no saturation.
+    let aligned = corrected.aligned(record);
     let segmentation = corrected.segmentation?;
     let mut findings = correction_findings(&corrected.record);
-    findings.extend(signal_findings(record, &signals, &held(&corrected.record, &segmentation)));
+    let aligned = aligned.as_ref().map_or((record, &signals), |(record, signals)| (record, signals));
+    findings.extend(signal_findings(aligned, &held(&corrected.record, &segmentation)));
     findings.extend(skewed);
     let (record, skew) = (corrected.record, corrected.skew);
     if !segmentation.settings.from_displacement {
         findings.push(Finding::PhasesFromForce);
     }
     findings.extend(segmentation.ruptures.iter().map(Finding::from));
-    findings.extend(suspicious_signs(&record, &segmentation));
+    findings.extend(suspicious_signs(&record));
     let body = options.geometry.as_ref().map(|geometry| (&geometry.shape, geometry.sides));
     let contact = find_contact_of(&record, &segmentation, body, options.touch);
     if contact.air_travel > 0.0 {
@@ -142,7 +154,6 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
             analyze_hold(&record, (segment, ramp), index + 1, specimen.as_ref(), options)
         })
         .collect();
-    nothing_to_fit(&holds)?;
     findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
     let across = across(&holds, options, 4.0 * segmentation.settings.tolerance);
     findings.extend(changing_rate(&across.joint));
@@ -248,33 +259,6 @@ fn beyond_body(record: &Record, options: &AnalysisOptions) -> Result<(), Analysi
     Ok(())
 }
 
-/// Columns that fall in the first ramp of any size.
-fn suspicious_signs(record: &Record, segmentation: &Segmentation) -> Vec<Finding> {
-    let moved = |values: &[f64], segment: &Segment| {
-        let part = &values[segment.start.saturating_sub(1)..segment.end];
-        let away = part.iter().map(|value| value - part[0]);
-        away.fold(0.0, |most: f64, change| if change.abs() > most.abs() { change } else { most })
-    };
-    let guide = record.displacement().unwrap_or_else(|| record.force());
-    let ramps = || segmentation.segments.iter().filter(|s| matches!(s.phase, Phase::Loading | Phase::Unloading));
-    let most = ramps().map(|ramp| moved(guide, ramp).abs()).fold(0.0, f64::max);
-    let Some(first) = ramps().find(|ramp| moved(guide, ramp).abs() >= 0.25 * most) else {
-        return Vec::new();
-    };
-    let force = record.force();
-    let (low, high) = force.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
-    let seen = (0.05 * (high - low)).max(8.0 * noise(force));
-    let columns = [("displacement", record.displacement(), 0.0), ("force", Some(force), seen)];
-    let falls = columns.into_iter().filter_map(|(column, values, least)| {
-        let change = moved(values?, first);
-        (change < -least).then(|| Finding::SignSuspicious {
-            column: column.to_owned(),
-            fall: -change,
-        })
-    });
-    falls.collect()
-}
-
 /// A finding if the error of first touch moves an equilibrium strain by more than its interval says.
 ///
 /// ε = F/(E A(u₁)), so an error of u₁ moves it by the share A′/A · δu₁.
@@ -300,6 +284,13 @@ fn uncertain_touch(contact: &ContactPoint, specimen: &Specimen, holds: &[HoldAna
     })
 }
 
+fn none_of(holds: usize) -> String {
+    match holds {
+        1 => "the hold that was found cannot be fitted".to_owned(),
+        _ => format!("none of the {holds} holds can be fitted"),
+    }
+}
+
 /// An error unless some hold was fitted, with the reason that most likely can be helped.
 fn nothing_to_fit(holds: &[HoldAnalysis]) -> Result<(), AnalysisError> {
     if holds.is_empty() || holds.iter().any(|hold| !hold.fits.is_empty()) {
@@ -313,13 +304,13 @@ fn nothing_to_fit(holds: &[HoldAnalysis]) -> Result<(), AnalysisError> {
         left < 8 && hold.segment.len() >= left + 8
     });
     let (reason, hint) = if let Some(hold) = late {
-        let (left, from) = (hold.segment.end - hold.segment.fit_start, hold.fit_start - hold.start);
+        let left = hold.segment.end - hold.segment.fit_start;
         (
-            format!("the fit starts {from:.3} s into a hold and leaves {left} of its {} samples", hold.segment.len()),
+            format!("the fit starts so late that it leaves {left} of the {} samples of a hold", hold.segment.len()),
             "start the fit earlier: hold_start = \"settled\", or a shorter time after the peak",
         )
     } else if let Some((_, held)) = with("feedback_controlled") {
-        let hint = "fit the displacement as creep: palpate compare --creep (analysis::creep_holds)";
+        let hint = "fit the displacement as creep: palpate compare --creep";
         (format!("the machine held the force; {}", held.seen()), hint)
     } else if let Some((hold, few)) = with("too_few_samples") {
         let needed = if let Finding::TooFewSamples { needed, .. } = few { *needed } else { 0 };

@@ -3,6 +3,7 @@
 use super::{ClockSkew, Finding};
 use crate::record::{Column, Correction, Record, SignalReport, Values};
 use crate::segment::{ContactChoice, ContactPoint};
+use crate::statistics::{median, noise};
 
 /// Levels between the smallest and the largest value below which rounding is worth a word.
 const FEW_LEVELS: f64 = 200.0;
@@ -10,7 +11,7 @@ const FEW_LEVELS: f64 = 200.0;
 const REPEATING: f64 = 0.5;
 
 /// Findings on the columns of a record as they are, of which `holds` are the holds in time.
-pub(super) fn signal_findings(record: &Record, signals: &SignalReport, holds: &[(f64, f64)]) -> Vec<Finding> {
+pub(super) fn signal_findings((record, signals): (&Record, &SignalReport), holds: &[(f64, f64)]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let gaps = signals.stamps.gaps;
     if let Some(from) = gaps.from {
@@ -53,12 +54,36 @@ fn rounded(column: Column, values: &Values) -> Option<Finding> {
     (column == Column::Force && values.repeating > REPEATING).then_some(Finding::Quantised { column, step })
 }
 
+/// [`Finding::SignSuspicious`] for columns that fall first, where a test loads first.
+///
+/// What counts is the first time that a column is half as far from its start as it ever comes: many small steps up and one large
+/// one down are no reason for doubt.
+pub fn suspicious_signs(record: &Record) -> Vec<Finding> {
+    let force = record.force();
+    let (low, high) = force.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
+    let seen = (0.05 * (high - low)).max(8.0 * noise(force));
+    let columns = [("displacement", record.displacement(), 0.0), ("force", Some(force), seen)];
+    let falls = columns.into_iter().filter_map(|(column, values, least)| {
+        let values = values?;
+        let start = median(&mut values[..values.len().min(5)].to_vec());
+        let most = values.iter().fold(0.0, |most: f64, value| most.max((value - start).abs()));
+        let first = values.iter().find(|value| (**value - start).abs() >= 0.5 * most)?;
+        let fall = start - values.iter().copied().fold(f64::MAX, f64::min);
+        (*first < start && fall > least).then(|| Finding::SignSuspicious {
+            column: column.to_owned(),
+            fall,
+        })
+    });
+    falls.collect()
+}
+
 /// Findings on what was done to a record before its analysis and in it.
 pub(super) fn correction_findings(record: &Record) -> Vec<Finding> {
     let finding = |done: &Correction| match *done {
         Correction::StampsSorted { rows, largest, .. } => Some(Finding::StampsSorted { rows, largest }),
         Correction::StampsMerged { rows, merged, .. } => Some(Finding::StampsMerged { rows, merged }),
         Correction::RowsAveraged { rows, averaged } => Some(Finding::RowsAveraged { rows, averaged }),
+        Correction::StressAsForce => Some(Finding::StressAsForce),
         Correction::DropoutsReplaced { column, count } => Some(Finding::DropoutsRepaired { column, count }),
         _ => None,
     };
@@ -97,4 +122,38 @@ pub(super) fn touch_findings(record: &Record, contact: &ContactPoint, asked: Con
         findings.push(Finding::TouchNotFound { method });
     }
     findings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stairs(sign: f64) -> Record {
+        let knots = [
+            (0.0, 0.0),
+            (1.0, 5.0),
+            (5.0, 5.0),
+            (6.0, 10.0),
+            (10.0, 10.0),
+            (11.0, 15.0),
+            (15.0, 15.0),
+            (17.0, -1.0),
+        ];
+        let at = |t: f64| {
+            let next = knots.iter().position(|knot| knot.0 >= t).unwrap_or(knots.len() - 1).max(1);
+            let ((t0, y0), (t1, y1)) = (knots[next - 1], knots[next]);
+            y0 + (y1 - y0) * (t - t0) / (t1 - t0)
+        };
+        let time: Vec<f64> = (0..170).map(|i| 0.1 * f64::from(i)).collect();
+        let travel: Vec<f64> = time.iter().map(|t| sign * at(*t)).collect();
+        Record::new(time, Some(travel.clone()), travel).unwrap()
+    }
+
+    /// Steps up of a third each and a release in one go looked like a test that begins downwards.
+    #[test]
+    fn a_release_larger_than_the_steps_is_no_wrong_sign() {
+        assert_eq!(suspicious_signs(&stairs(1.0)), []);
+        let codes: Vec<&str> = suspicious_signs(&stairs(-1.0)).iter().map(Finding::code).collect();
+        assert_eq!(codes, ["sign_suspicious", "sign_suspicious"]);
+    }
 }

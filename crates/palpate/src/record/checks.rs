@@ -1,5 +1,7 @@
 //! What every record must be.
 
+use crate::number::significant;
+
 /// Columns that make no record. Rows count from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RecordError {
@@ -79,6 +81,28 @@ pub enum RecordError {
         /// Largest force of the table, N.
         high: f64,
     },
+    /// An air run that is not the same motion.
+    #[error(
+        "the air run must be the same motion: at {time} s the jaw has gone {} mm, in the air run {} mm",
+        significant(1e3 * expected, 4),
+        significant(1e3 * found, 4)
+    )]
+    AirRunDiffers {
+        /// When they are farthest apart, s.
+        time: f64,
+        /// Way of the jaw of the record, m.
+        expected: f64,
+        /// Way of the jaw of the air run, m.
+        found: f64,
+    },
+    /// An air run that ends too early.
+    #[error("the air run lasts {found} s, the motion of the record {needed} s")]
+    AirRunShort {
+        /// Length of the air run, s.
+        found: f64,
+        /// Length of the motion, s.
+        needed: f64,
+    },
     /// Nothing shows the force without contact.
     #[error("a baseline needs {needed} samples without contact or more, found {found}")]
     NoBaseline {
@@ -138,6 +162,9 @@ impl RecordError {
             Self::Rate { .. } => "resample at a rate between that of the record and one sample a second or so",
             Self::OutsideTable { .. } => {
                 "measure the compliance over all forces of the test, take the zero off the force, or give one number for it"
+            }
+            Self::AirRunDiffers { .. } | Self::AirRunShort { .. } => {
+                "record the air run with the program of the test, from its start to its end"
             }
             Self::NoBaseline { .. } => {
                 "say from when to when there is no contact (baseline_window), or leave the baseline out"

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::{Baseline, Tare};
-use crate::number::significant;
+use crate::number::{counted, significant};
 
 /// Which time stamps are meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -71,6 +71,8 @@ pub enum Correction {
         /// Of how many rows a sample is the mean.
         averaged: usize,
     },
+    /// The file gives stress, and nothing the section: the force is that on 1 m².
+    StressAsForce,
     /// Displacement and force with clocks of their own were brought onto the times of the force.
     ClocksJoined {
         /// Samples of the force outside the times of the displacement, left out.
@@ -158,6 +160,7 @@ impl fmt::Display for Correction {
             Self::RowsAveraged { rows, averaged } => {
                 write!(f, "{rows} rows of the file averaged as they were read, {averaged} to a sample")
             }
+            Self::StressAsForce => f.write_str("stress taken for the force on 1 m²: N stands for Pa"),
             Self::ClocksJoined { left_out } => {
                 let left_out = counted(*left_out, "row");
                 write!(f, "displacement interpolated at the times of the force, {left_out} of the force left out")
@@ -205,10 +208,4 @@ impl fmt::Display for Correction {
             }
         }
     }
-}
-
-/// `1 row`, `2 rows`.
-fn counted(count: usize, what: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {what}{plural}")
 }

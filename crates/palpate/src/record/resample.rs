@@ -1,6 +1,9 @@
 //! Other sample times, where they are asked for.
 
+use std::ops::Range;
+
 use super::clocks::interpolated;
+use super::signals::gap_rows;
 use super::{Correction, Record, RecordError};
 
 /// Most rows that a record may be resampled to.
@@ -12,6 +15,7 @@ impl Record {
     /// Where the new samples are closer than those of the record, or about as close, values are interpolated linearly.
     /// Where they are coarser (by half or more) each is the mean of the straight-line record over one new interval about
     /// its time, so that what is faster than the new rate is averaged and not folded back; a straight line stays one.
+    /// Gaps of the record that are longer than the new interval stay gaps: nothing was measured there.
     ///
     /// # Errors
     /// [`RecordError::Rate`] for a rate that is not above zero, or that makes fewer than two rows or more than 10⁸;
@@ -33,23 +37,46 @@ impl Record {
                 duration: end - start,
             });
         }
-        let times: Vec<f64> = (0..=intervals as usize).map(|i| (start + i as f64 / rate).min(end)).collect();
         let before = self.sample_interval();
         let averaged = 1.0 / rate > 1.5 * before;
-        let column = |values: &[f64]| {
-            if averaged {
-                block_means(&self.time, values, &times, 0.5 / rate)
-            } else {
-                interpolated(&self.time, values, &times)
-            }
-        };
-        let record = Self::new(times.clone(), self.displacement().map(column), column(&self.force))?;
+        let grid: Vec<f64> = (0..=intervals as usize).map(|i| (start + i as f64 / rate).min(end)).collect();
+        let (mut times, mut displacement, mut force) = (Vec::new(), Vec::new(), Vec::new());
+        for rows in self.stretches(1.0 / rate) {
+            let (from, until) = (self.time[rows.start], self.time[rows.end - 1]);
+            let inside = grid.partition_point(|t| *t < from)..grid.partition_point(|t| *t <= until);
+            let (knots, inside) = (&self.time[rows.clone()], &grid[inside]);
+            let column =
+                |values: &[f64]| resampled(knots, &values[rows.clone()], inside, averaged.then_some(0.5 / rate));
+            times.extend_from_slice(inside);
+            displacement.extend(self.displacement().map(column).unwrap_or_default());
+            force.extend(column(&self.force));
+        }
+        let record = Self::new(times, self.displacement().map(|_| displacement), force)?;
         let done = Correction::Resampled {
             rate,
             interval: before,
             averaged,
         };
         Ok(record.preceded_by(self.corrections.iter().cloned()).followed_by(done))
+    }
+
+    /// The rows between the gaps that are longer than `interval`.
+    fn stretches(&self, interval: f64) -> Vec<Range<usize>> {
+        let mut starts = vec![0];
+        let gaps = gap_rows(&self.time).into_iter();
+        starts.extend(gaps.filter(|row| self.time[row + 1] - self.time[*row] > interval).map(|row| row + 1));
+        starts.push(self.len());
+        starts.windows(2).map(|pair| pair[0]..pair[1]).collect()
+    }
+}
+
+/// The straight-line curve through `knots` at `times`, or its means within `half` of them.
+fn resampled(knots: &[f64], values: &[f64], times: &[f64], half: Option<f64>) -> Vec<f64> {
+    match half {
+        // One row between two gaps has no line.
+        _ if knots.len() < 2 => vec![values[0]; times.len()],
+        Some(half) => block_means(knots, values, times, half),
+        None => interpolated(knots, values, times),
     }
 }
 
@@ -116,6 +143,27 @@ mod tests {
             let steps = other.time().windows(2).map(|pair| pair[1] - pair[0]);
             assert!(steps.into_iter().all(|step| (step * rate - 1.0).abs() < 1e-9));
         }
+    }
+
+    /// A line through 7 s without samples was fitted as if it had been measured.
+    #[test]
+    fn gaps_stay_gaps() {
+        let time: Vec<f64> = (0..400).map(|i| 0.05 * f64::from(i) + if i >= 200 { 7.0 } else { 0.0 }).collect();
+        let force: Vec<f64> = time.iter().map(|t| 5.0 + (-t / 3.0).exp()).collect();
+        let record = Record::new(time, Some(force.clone()), force).unwrap();
+        for (rate, rows) in [(100.0, 996 + 996), (10.0, 100 + 100)] {
+            let other = record.resampled(rate).unwrap();
+            let steps: Vec<f64> = other.time().windows(2).map(|pair| pair[1] - pair[0]).collect();
+            let long: Vec<f64> = steps.into_iter().filter(|step| *step > 1.5 / rate).collect();
+            assert!(matches!(long[..], [gap] if (7.0..7.3).contains(&gap)), "{long:?}");
+            assert_eq!(other.len(), rows);
+            assert!(other.displacement() == Some(other.force()));
+            let off = other.time().iter().zip(other.force()).map(|(t, f)| (f - 5.0 - (-t / 3.0).exp()).abs());
+            assert!(off.fold(0.0, f64::max) < 3e-4);
+        }
+        // An interval as long as the gap leaves none.
+        let steps = record.resampled(0.1).unwrap().time().windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+        assert!(steps < 10.01);
     }
 
     #[test]

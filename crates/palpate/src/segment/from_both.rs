@@ -3,6 +3,7 @@
 use super::levels::{Held, Levels, levels, range};
 use super::mode::{HoldMode, mode, mode_at_large};
 use super::ramps::{Level, fill_gaps};
+use super::ripple::without_ripple;
 use super::rupture::{Rupture, ruptures};
 use super::{After, Phase, Segment, SegmentError, SegmentOptions, SegmentSettings, Segmentation};
 use crate::record::Record;
@@ -63,8 +64,23 @@ pub(super) fn phases(
     }
 }
 
-/// Levels of the force over which the displacement creeps.
+/// Levels of the force over which the displacement creeps; where none is seen, perhaps because its controller hunts, those
+/// of the force less its ripple, with the corners of the jaw.
 fn force_held(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Level> {
+    let found = creeps(record, jaw, options);
+    if !found.is_empty() {
+        return found;
+    }
+    let Some(calm) = without_ripple(record) else {
+        return found;
+    };
+    let mut found = creeps(&calm, jaw, options);
+    found.retain(|level| mode_at_large(&calm, level.start, level.end) == HoldMode::ForceHeld);
+    found.iter().map(|level| jaw.edges_of(record.time(), level)).collect()
+}
+
+/// Levels of the force over which the displacement creeps.
+fn creeps(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Level> {
     let still = &jaw.levels;
     let held = Held {
         name: ("force", "N"),

@@ -2,8 +2,10 @@
 //!
 //! In a ramp the force runs; in a hold it slows down until it hardly moves. Where it hardly moves is the core of a hold;
 //! going back from there, the last turning point of the force is where the ramp ended and relaxation began. A hold that
-//! goes on in the direction of its ramp has no such point and begins at its core.
+//! goes on in the direction of its ramp has no such point and begins at its core. Where no force stands still, relaxations
+//! that are slow all along are sought behind the turning points.
 
+use super::after_peaks::relaxations;
 use super::levels::{Held, levels};
 use super::ramps::{Level, fill_gaps};
 use super::turning::turns;
@@ -16,6 +18,8 @@ const STILL_BELOW: f64 = 0.35;
 const TURN: f64 = 0.004;
 /// Share of its range by which a force may still relax in the core of a hold.
 const WANDER: f64 = 0.02;
+/// Least turn of a force, as a share of its range, about a relaxation that is slow all along: what relaxes less comes to stand.
+const SLOW: f64 = 0.1;
 
 pub(super) fn phases(time: &[f64], force: &[f64], options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
     let (low, high) = force.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
@@ -50,6 +54,13 @@ pub(super) fn phases(time: &[f64], force: &[f64], options: &SegmentOptions) -> R
         let end = ending(force, (core.start, core.end), 3.0 * noise);
         levels.push(Level { start, end, ..*core });
         before = end;
+    }
+    if levels.iter().all(|level| level.start == 0 || force[level.end - 1] <= low + 0.02 * range) {
+        let mut slow = relaxations(time, force, (2.0 * turn).max(SLOW * range), found.settings.minimum_samples);
+        slow.retain(|slow| options.minimum_hold.is_none_or(|least| time[slow.end - 1] - time[slow.start] >= least));
+        levels.retain(|level| slow.iter().all(|slow| level.end <= slow.start || slow.end <= level.start));
+        levels.extend(slow);
+        levels.sort_by_key(|level| level.start);
     }
     let segments = fill_gaps(force, &levels, turn);
     // A contact that is open shows no force and no hold; one at the end of a test counts only beside true holds.

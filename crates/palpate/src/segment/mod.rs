@@ -11,8 +11,10 @@
 //! | `evidence.rs` | what speaks for a standstill |
 //! | `smooth.rs` | a standstill has corners, a turning point has none |
 //! | `mode.rs` | what is held: the displacement, the force, or neither |
-//! | `turning.rs` | turning points of a force |
+//! | `ripple.rs` | the ripple of a controller that hunts |
+//! | `turning.rs` | turning points |
 //! | `from_force.rs` | phases where only the force was |
+//! | `after_peaks.rs` | holds of a force that relaxes slowly all along |
 //! | `given.rs` | holds whose limits someone gives |
 //! | `edges.rs` | where exactly a hold begins and ends |
 //! | `ramps.rs` | what lies between the holds: loading and unloading |
@@ -22,6 +24,7 @@
 //! | `contact_point/estimators.rs` | first touch by rules that know no law |
 //! | `loading_curve.rs` | the force of a first ramp under the law, and where it begins |
 
+mod after_peaks;
 mod contact_point;
 mod edges;
 mod evidence;
@@ -37,6 +40,7 @@ mod options;
 mod pieces;
 mod ramps;
 mod relaxation;
+mod ripple;
 mod rupture;
 mod smooth;
 mod standstill;

@@ -1,4 +1,4 @@
-//! Turning points that noise makes look like a standstill.
+//! Turning points: all of a column, and those that noise makes look like a standstill.
 
 use super::ramps::Level;
 
@@ -22,6 +22,33 @@ pub(super) fn turns(time: &[f64], values: &[f64], level: Level, tolerance: f64, 
     let (flat, bent) = (square(&|_| mean), square(&|u| fit[0] + u * (fit[1] + u * fit[2])));
     // A flat level with ramps beside it is fitted worse by the parabola than by its own mean.
     curvature.abs() > 0.1 * tolerance && vertex.abs() < 0.5 && bent < share * flat
+}
+
+/// The turning points of a column that turns by more than `turn`, with its first and its last sample.
+pub(super) fn extremes(values: &[f64], turn: f64) -> Vec<usize> {
+    let mut found = vec![0];
+    let (mut low, mut high, mut rising) = (0, 0, None);
+    for (i, value) in values.iter().enumerate() {
+        if *value > values[high] {
+            high = i;
+        }
+        if *value < values[low] {
+            low = i;
+        }
+        let turned = match rising {
+            Some(true) | None if values[high] - value > turn => Some((high, false)),
+            Some(false) | None if value - values[low] > turn => Some((low, true)),
+            _ => None,
+        };
+        if let Some((at, up)) = turned {
+            if at > 0 {
+                found.push(at);
+            }
+            (low, high, rising) = (i, i, Some(up));
+        }
+    }
+    found.push(values.len() - 1);
+    found
 }
 
 /// Least-squares parabola: its coefficients, curvature and vertex.

@@ -60,6 +60,7 @@ impl Finding {
             Self::RowsAveraged { .. } => {
                 "what is shorter than that many rows is smoothed away: peaks are lower, and the first moments of a hold are coarser"
             }
+            Self::StressAsForce => "the forces are those on 1 m²; rates and exponents stay what they are",
             Self::StampsMerged { .. } => {
                 "the clock is coarser than the sampling, or rows were written twice; the mean of such rows stands in their place"
             }
@@ -151,6 +152,7 @@ impl Finding {
             Self::RowsAveraged { .. } => {
                 "nothing, if the test is long against that; else cut the file, or keep fewer rows a second"
             }
+            Self::StressAsForce => "describe the body with its section, as a strip, cylinder or block, or read N as Pa",
             Self::StampsMerged { .. } => {
                 "write the time with more digits; if most rows share stamps, check that this is the column of the time"
             }

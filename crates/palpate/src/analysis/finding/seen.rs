@@ -1,7 +1,7 @@
 //! What was seen, in numbers.
 
 use super::Finding;
-use crate::number::{significant, with_error};
+use crate::number::{counted, significant, with_error};
 use crate::record::Column;
 
 impl Finding {
@@ -82,7 +82,9 @@ impl Finding {
                     significant(*standard_error, 2)
                 )
             }
-            Self::TooFewSamples { found, needed } => format!("the hold has {found} samples, a fit needs {needed}"),
+            Self::TooFewSamples { found, needed } => {
+                format!("the hold has {}, a fit needs {needed}", counted(*found, "sample"))
+            }
             Self::SampledTooSlowly { share } => {
                 format!("{:.0} % of the relaxation happens within the first sample interval", 100.0 * share)
             }
@@ -95,6 +97,10 @@ impl Finding {
                 "the file has {rows} rows, more than are kept; every {averaged} successive ones became their mean ({} samples)",
                 rows.div_ceil(*averaged)
             ),
+            Self::StressAsForce => {
+                "the file gives stress, and the description no section: every number in N stands for as many Pa"
+                    .to_owned()
+            }
             Self::StampsMerged { rows, merged } => {
                 format!("{merged} of {rows} rows have the time stamp of the row before")
             }
@@ -158,7 +164,7 @@ impl Finding {
                 100.0 * interval
             ),
             Self::TouchSpread { spread, squeeze } => format!(
-                "rules for first touch differ by {} mm (robust standard deviation), the largest squeeze is {} mm",
+                "rules for first touch scatter by {} mm (robust standard deviation), the largest squeeze is {} mm",
                 significant(1e3 * spread, 2),
                 significant(1e3 * squeeze, 4)
             ),
@@ -169,10 +175,10 @@ impl Finding {
                 if *skew > 0.0 { "later" } else { "earlier" }
             ),
             Self::SignSuspicious { column, fall } if column == "force" => {
-                format!("the force falls by {} N in the first ramp", significant(*fall, 3))
+                format!("the force first falls, to {} N below its start", significant(*fall, 3))
             }
             Self::SignSuspicious { column, fall } => {
-                format!("the {column} falls by {} mm in the first ramp", significant(1e3 * fall, 3))
+                format!("the {column} first falls, to {} mm below its start", significant(1e3 * fall, 3))
             }
             Self::RateCoefficientTrend {
                 holds,

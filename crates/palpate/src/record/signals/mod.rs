@@ -11,6 +11,7 @@ mod stamps;
 mod values;
 
 pub use rounding::rounding_step;
+pub(super) use stamps::gap_rows;
 pub use stamps::{Gaps, Reversals, SampleInterval, Stamps};
 pub use values::{Saturation, Strays, Values};
 pub(super) use values::{stray_rows, zero_rows};

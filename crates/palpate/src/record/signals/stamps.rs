@@ -115,21 +115,32 @@ fn interval(rising: &[(usize, f64)]) -> Option<SampleInterval> {
     })
 }
 
-fn gaps(time: &[f64], rising: &[(usize, f64)]) -> Gaps {
-    let mut gaps = Gaps::default();
-    for (place, &(row, step)) in rising.iter().enumerate() {
+/// Rows behind which a gap begins, of rising times.
+pub(in crate::record) fn gap_rows(time: &[f64]) -> Vec<usize> {
+    let rising: Vec<(usize, f64)> = time.windows(2).map(|pair| pair[1] - pair[0]).enumerate().collect();
+    long_steps(&rising).map(|(row, _)| row).collect()
+}
+
+/// The steps that are gaps, each with the row before it.
+fn long_steps(rising: &[(usize, f64)]) -> impl Iterator<Item = (usize, f64)> {
+    rising.iter().enumerate().filter_map(|(place, &(row, step))| {
         let around = place.saturating_sub(2)..(place + 3).min(rising.len());
         let mut others: Vec<f64> = around.filter(|other| *other != place).map(|other| rising[other].1).collect();
         if others.len() < 2 {
-            continue;
+            return None;
         }
         others.sort_by(f64::total_cmp);
         // The upper of the middle ones: at a change of rate two of four neighbours have the new one.
-        if step > GAP * others[others.len() / 2] {
-            gaps.count += 1;
-            if step > gaps.longest {
-                (gaps.longest, gaps.row, gaps.from) = (step, Some(row), Some(time[row]));
-            }
+        (step > GAP * others[others.len() / 2]).then_some((row, step))
+    })
+}
+
+fn gaps(time: &[f64], rising: &[(usize, f64)]) -> Gaps {
+    let mut gaps = Gaps::default();
+    for (row, step) in long_steps(rising) {
+        gaps.count += 1;
+        if step > gaps.longest {
+            (gaps.longest, gaps.row, gaps.from) = (step, Some(row), Some(time[row]));
         }
     }
     gaps
