@@ -78,6 +78,43 @@ fn a_hold_without_a_fit_has_its_row_and_says_why() {
     assert!(last("findings").contains("no_relaxation"), "{}", last("findings"));
 }
 
+/// A record of nothing but creep had no row at all.
+#[test]
+fn a_record_of_creep_has_a_row_for_each_hold() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut text = "Time (s),Displacement (mm),Force (N)\n".to_owned();
+    for i in 0..1300 {
+        let t = 0.05 * f64::from(i);
+        let force = if t < 2.0 { 5.0 * t } else { 10.0 };
+        let creep = if t < 2.0 { 0.0 } else { 0.8 * (1.0 - (-(t - 2.0) / 8.0).exp()) };
+        text.push_str(&format!("{t:.2},{:.5},{force:.4}\n", 0.2 * force + creep));
+    }
+    file(folder, "creep.csv", text);
+    done(folder, &["batch", "creep.csv", "--out", "holds.csv"]);
+    let table = lines(folder, "holds.csv");
+    assert_eq!(
+        (table.len(), column(&table, "law"), column(&table, "mode")),
+        (2, vec![String::new()], vec!["force".to_owned()])
+    );
+    let findings = column(&table, "findings");
+    assert!(findings[0].contains("feedback_controlled"), "{findings:?}");
+}
+
+/// A file named by itself and by its folder was in the table twice, and a second batch read the table and the journal of the first.
+#[test]
+fn every_record_is_analysed_once_and_tables_are_no_records() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    records(folder, 2);
+    done(folder, &["batch", "curves", "--out", "curves/a.csv"]);
+    done(folder, &["batch", "curves", "--out", "curves/b.parquet"]);
+    let named = ["batch", "curves/c001.csv", "curves", "curves/*.csv", "curves/**/*", "--out", "c.csv"];
+    let error = String::from_utf8(palpate(folder, &named).stderr).unwrap();
+    assert!(error.contains("12 rows of 2 tests in 2 files"), "{error}");
+    assert_eq!(lines(folder, "c.csv").len(), 1 + 2 * 6);
+}
+
 #[test]
 fn parquet_holds_what_csv_holds() {
     let folder = tempfile::tempdir().unwrap();
@@ -195,5 +232,7 @@ fn bad_input() {
     fs::create_dir(folder.join("bare")).unwrap();
     let error = refused(folder, &["batch", "bare", "--out", "holds.csv"]);
     assert!(error.contains("expected a folder with records, found none"), "{error}");
+    let error = refused(folder, &["batch", "nowhere", "--out", "holds.csv"]);
+    assert!(error.contains("nowhere: no such file"), "{error}");
     assert!(!folder.join("holds.csv").exists());
 }

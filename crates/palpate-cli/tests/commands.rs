@@ -352,3 +352,18 @@ fn records_without_a_hold_are_refused() {
         common::refused(folder.path(), &arguments);
     }
 }
+
+/// Stress without a section was shown in N without a word.
+#[test]
+fn stress_without_a_section_is_told() {
+    let folder = tempdir().unwrap();
+    let folder = folder.path();
+    let text = ramp_and_hold(7.0, 20.0).replace("force_n", "Stress (Pa)");
+    file(folder, "press.csv", text);
+    let told = done(folder, &["analyze", "press.csv"]);
+    let told = told.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(told.contains("the file gives stress") && told.contains("stands for as many Pa"), "{told}");
+    assert!(done(folder, &["inspect", "press.csv"]).contains("done: stress taken for the force on 1 m²"));
+    done(folder, &["convert", "press.csv", "--out", "plain.csv"]);
+    assert!(std::fs::read_to_string(folder.join("plain.csv")).unwrap().contains("stress_as_force"));
+}

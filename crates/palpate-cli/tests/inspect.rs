@@ -267,3 +267,77 @@ fn hundreds_of_named_values_are_counted_and_not_listed() {
     assert!(told.contains("setting 14") && !told.contains("setting 15"), "{told}");
     assert!(told.contains("… and 25 more named values"), "{told}");
 }
+
+/// A weight in g was said not to be in the file, and pounds were to become N.
+#[test]
+fn a_unit_that_is_none_of_force_is_told_with_what_was_meant() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (unit, meant) in [("g", "gf"), ("kg", "kgf"), ("lbs", "lbf")] {
+        let text = ramp_and_hold(7.0, 20.0).replace("force_n", &format!("Force ({unit})"));
+        file(folder, "press.csv", text);
+        let error = failed_but_told(folder, &["inspect", "press.csv", "--write-test", &format!("{unit}.toml")]);
+        assert!(error.contains(&format!("unit = \"{meant}\"")), "{error}");
+        let written = fs::read_to_string(folder.join(format!("{unit}.toml"))).unwrap();
+        assert!(
+            written.contains(&format!("the file says \"{unit}\", no unit of force; \"{meant}\", or one of N")),
+            "{written}"
+        );
+    }
+}
+
+/// The corrections of a description were left out of the table, though it named the description.
+#[test]
+fn a_plain_table_is_corrected_as_described() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    file(folder, "press.csv", ramp_and_hold(7.0, 20.0));
+    file(folder, "test.toml", "[machine]\ncompliance = \"100 um/N\"\n");
+    done(folder, &["convert", "press.csv", "--out", "raw.csv"]);
+    let output = palpate(folder, &["convert", "press.csv", "--test", "test.toml", "--out", "net.csv"]);
+    assert!(String::from_utf8(output.stderr).unwrap().contains("of the machine taken off the displacement"));
+    let cells = |name: &str| -> Vec<Vec<f64>> {
+        let text = fs::read_to_string(folder.join(name)).unwrap();
+        text.lines()
+            .skip(2)
+            .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+            .collect()
+    };
+    let (raw, net) = (cells("raw.csv"), cells("net.csv"));
+    assert_eq!(raw.len(), net.len());
+    for (raw, net) in raw.iter().zip(&net) {
+        assert!((raw[1] - 1e-4 * raw[2] - net[1]).abs() < 1e-15 && raw[2] == net[2], "{raw:?} {net:?}");
+    }
+    let text = fs::read_to_string(folder.join("net.csv")).unwrap();
+    assert!(text.lines().next().unwrap().contains("compliance_removed"), "{text:.300}");
+}
+
+/// A force stamped 0.1 s late made the displacement look clipped in every hold.
+#[test]
+fn clocks_that_differ_are_no_saturation_and_signs_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut text = "Time (s),Displacement (mm),Force (N)\n".to_owned();
+    let travel = |t: f64| if t < 40.0 { t.clamp(0.0, 5.0) } else { (45.0 - t).clamp(2.0, 5.0) };
+    for i in 0..3500 {
+        let t = 0.02 * f64::from(i) - 2.0;
+        let late = t - 0.1;
+        let relaxing = if (5.0..40.0).contains(&late) { 20.0 * (-(late - 5.0) / 6.0).exp() } else { 0.0 };
+        let rising = if late < 5.0 { 4.0 * late.max(0.0) } else { 0.0 };
+        let rest = if late < 40.0 { relaxing + rising } else { 0.0 };
+        let ripple = 0.01 * (f64::from(i) * 7.3).sin() + 0.01 * (f64::from(i) * 3.1).cos();
+        text.push_str(&format!("{t:.2},{:.6},{:.6}\n", travel(t), 10.0 * travel(late) + rest + ripple));
+    }
+    file(folder, "press.csv", &text);
+    let told = done(folder, &["inspect", "press.csv"]);
+    assert!(told.contains("later than the displacement") && !told.contains("clipped"), "{told}");
+    let document = done(folder, &["analyze", "press.csv", "--no-compare", "--format", "json"]);
+    assert!(document.contains("clocks_skewed") && !document.contains("\"saturated\""));
+    let turned = text.lines().map(|line| match line.rsplit_once(',') {
+        Some((before, force)) if !force.contains('F') => format!("{before},{}\n", -force.parse::<f64>().unwrap()),
+        _ => format!("{line}\n"),
+    });
+    file(folder, "turned.csv", turned.collect::<String>());
+    let told = done(folder, &["inspect", "turned.csv"]);
+    assert!(told.contains("sign"), "{told}");
+}

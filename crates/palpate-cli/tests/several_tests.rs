@@ -71,7 +71,7 @@ fn a_batch_has_rows_of_each() {
     let file = table(folder);
     let output = palpate(folder, &["batch", file, "--out", "holds.csv"]);
     let error = String::from_utf8(output.stderr).unwrap();
-    assert!(error.starts_with("12 rows of 2 tests in 1 files"), "{error}");
+    assert!(error.starts_with("12 rows of 2 tests in 1 file"), "{error}");
     let table = fs::read_to_string(folder.join("holds.csv")).unwrap();
     assert_eq!(table.lines().filter(|line| line.contains(",left / 1,")).count(), 6, "{table}");
 }

@@ -42,6 +42,8 @@ pub enum DecimalDoubt {
     CommaSplitsNumbers,
     /// Every comma is followed by three digits, as between thousands.
     Thousands,
+    /// Every point is followed by three digits, as between thousands, beside whole numbers or semicolons.
+    PointThousands,
     /// Some numbers have a decimal point, others a decimal comma.
     Mixed,
 }
@@ -51,6 +53,7 @@ impl fmt::Display for DecimalDoubt {
         f.write_str(match self {
             Self::CommaSplitsNumbers => "expected commas either between cells or inside numbers, they seem to be both",
             Self::Thousands => "expected a decimal comma, but every comma could also set off thousands",
+            Self::PointThousands => "expected a decimal point, but every point could also set off thousands",
             Self::Mixed => "expected one decimal mark, found both points and commas",
         })
     }

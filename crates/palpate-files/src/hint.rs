@@ -77,6 +77,7 @@ fn doubtful(doubt: DecimalDoubt) -> &'static str {
             "export with semicolons or tabs between cells; if the commas only separate whole numbers, fix the decimal mark to point"
         }
         DecimalDoubt::Thousands => "fix the decimal mark to comma, or export without marks between thousands",
+        DecimalDoubt::PointThousands => "fix the decimal mark to point, or export without marks between thousands",
         DecimalDoubt::Mixed => "export with one decimal mark, or fix the decimal mark",
     }
 }

@@ -48,5 +48,5 @@ pub(crate) use machine::contradicts;
 pub use machine::{Machine, machines, machines_of};
 pub use protocol::{Protocol, parse_protocol, parse_scene, read_protocol, read_scene};
 pub use schema::{schema_protocol, schema_test};
-pub use sweep::{Plan, Spacing, Sweep, SweptNumber, parse_sweep, read_sweep};
+pub use sweep::{Plan, Spacing, Sweep, SweptNumber, parse_runs, parse_sweep, read_sweep};
 pub use test::{About, TestDescription, parse_test, read_test};

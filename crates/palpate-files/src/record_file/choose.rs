@@ -10,7 +10,7 @@ use super::{
     recognise,
 };
 use crate::{
-    contents::{ColumnInfo, Part},
+    contents::{ColumnInfo, ColumnKind, Part},
     description::{ClockChoice, ColumnChoice, ColumnRef, TestDescription},
 };
 
@@ -84,6 +84,7 @@ pub(super) fn choose(path: &Path, part: &Part, test: &TestDescription) -> Result
     let said = &test.columns;
     let (load, load_said) = chooser.force_or_stress(test)?;
     let displacement = chooser.find(Quantity::Displacement, said.displacement.as_ref())?;
+    let may_be_there = displacement.is_none() && load_said.is_none_or(|load| load.column.is_none());
     let clocks = [
         (Quantity::Displacement, said.displacement.as_ref(), displacement.as_ref()),
         (load.role.measured(), load_said, Some(&load)),
@@ -114,8 +115,12 @@ pub(super) fn choose(path: &Path, part: &Part, test: &TestDescription) -> Result
     found.push(load);
     chooser.refuse_twice(&found)?;
     let (section, per_unit_area) = chooser.section(test, &found)?;
+    let columns = chooser.with_units(&found)?;
+    if may_be_there {
+        chooser.refuse_unclear(&columns)?;
+    }
     Ok(Plan {
-        columns: chooser.with_units(&found)?,
+        columns,
         section,
         per_unit_area,
     })
@@ -264,11 +269,37 @@ impl<'a> Chooser<'a> {
         if let Some((column, unit)) = recognise::misfits(self.columns, quantity).next() {
             return self.unknown_unit(column, quantity, format!("columns.{quantity}.unit"), unit);
         }
+        let texts = self.columns.iter().filter(|column| column.kind == ColumnKind::Text && recognise::is_time(column));
+        if quantity == Quantity::Time
+            && let Some(column) = texts.into_iter().next()
+        {
+            return ColumnError::TimeAsText {
+                path: self.path.to_owned(),
+                column: column.into(),
+                found: column.sample.clone(),
+            };
+        }
         ColumnError::Missing {
             path: self.path.to_owned(),
             quantity,
             columns: self.columns.to_vec(),
         }
+    }
+
+    /// A record without displacement is one thing, a displacement that is not recognised another. Who names the column of
+    /// the force, but none of the displacement, has no displacement.
+    fn refuse_unclear(&self, used: &[ColumnUse]) -> Result<(), ColumnError> {
+        let free = |column: &&ColumnInfo| used.iter().all(|used| used.number != column.number);
+        let possible = recognise::possible_displacements(self.columns).filter(free);
+        let candidates: Vec<NamedColumn> = possible.map(NamedColumn::from).collect();
+        if candidates.is_empty() {
+            return Ok(());
+        }
+        Err(ColumnError::Unclear {
+            path: self.path.to_owned(),
+            candidates,
+            columns: self.columns.to_vec(),
+        })
     }
 
     /// Two clocks may be one column, two measured quantities may not.

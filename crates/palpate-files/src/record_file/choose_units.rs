@@ -34,8 +34,13 @@ impl Chooser<'_> {
             return Ok(None);
         }
         if found.column.kind == ColumnKind::DateTime {
-            let date = found.used("date and time".to_owned(), 1.0);
-            return Ok(Some(ColumnUse { epoch: true, ..date }));
+            // A time of day is not counted from 1970.
+            let is_dated = epoch::is_date(&found.column.sample);
+            let date = found.used(if is_dated { "date and time" } else { "time of day" }.to_owned(), 1.0);
+            return Ok(Some(ColumnUse {
+                epoch: is_dated,
+                ..date
+            }));
         }
         let is_said = found.unit.is_some_and(|unit| unit.trim().eq_ignore_ascii_case(epoch::WORD));
         let is_named = found.unit.or(found.column.unit.as_deref()).is_none() && epoch::is_named(found.column);

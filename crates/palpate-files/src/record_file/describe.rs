@@ -7,7 +7,7 @@ use palpate::{
     units::Dimension,
 };
 
-use super::{ColumnUse, EPOCH, Quantity, RecordFile, Role, recognise, unit_factor};
+use super::{ColumnUse, EPOCH, Quantity, RecordFile, Role, epoch, recognise, unit_factor};
 use crate::{
     contents::{ColumnInfo, ColumnKind, Contents, Part},
     description::machines_of,
@@ -143,8 +143,9 @@ fn write_unit(out: &mut String, column: &ColumnUse, info: &ColumnInfo) {
         let _ = writeln!(out, "unit = {}    # {source}", quoted(unit));
     };
     match (unit_factor(&column.unit, dimension), unit_factor(&column.unit, Dimension::Voltage)) {
-        _ if column.epoch && info.kind == ColumnKind::Number => unit(out, EPOCH),
-        _ if column.epoch => {}
+        _ if column.epoch && epoch::counts(info, factor) => unit(out, EPOCH),
+        _ if column.epoch && info.kind == ColumnKind::Number => unit(out, &column.unit),
+        _ if info.kind == ColumnKind::DateTime => {}
         (Some(plain), _) if factor == plain => unit(out, &column.unit),
         (Some(_), _) => {
             unit(out, &column.unit);
@@ -179,27 +180,44 @@ fn write_questions(out: &mut String, part: &Part) {
                     Some(unit) => {
                         let _ = writeln!(out, "unit = {}    # from the file", quoted(unit));
                     }
-                    None => ask_unit(out, quantity),
+                    None => ask_unit(out, quantity, &[only]),
                 }
             }
             [] => {
                 let optional =
                     if quantity == Quantity::Displacement { "; remove the table if there is none" } else { "" };
                 let _ = writeln!(out, "column = \"{ASK}\"    # no name says which{optional}");
-                ask_unit(out, quantity);
+                ask_unit(out, quantity, &[]);
             }
             ref several => {
                 let numbers: Vec<String> = several.iter().map(|column| column.number.to_string()).collect();
                 let _ = writeln!(out, "column = \"{ASK}\"    # {} could all hold it", numbers.join(", "));
-                ask_unit(out, quantity);
+                ask_unit(out, quantity, several);
             }
         }
         out.push('\n');
     }
 }
 
-fn ask_unit(out: &mut String, quantity: Quantity) {
-    let _ = writeln!(out, "unit = \"{ASK}\"    # the file does not say; one of {}", quantity.dimension().accepted());
+/// The unit that all columns have which could hold a quantity, or a question for it.
+fn ask_unit(out: &mut String, quantity: Quantity, possible: &[&ColumnInfo]) {
+    let accepted = quantity.dimension().accepted();
+    let mut units: Vec<Option<&str>> = possible.iter().map(|column| column.unit.as_deref()).collect();
+    units.dedup();
+    let _ = match units[..] {
+        [Some(unit)] if unit_factor(unit, quantity.dimension()).is_some() => {
+            writeln!(out, "unit = {}    # from the file", quoted(unit))
+        }
+        [Some(unit)] => {
+            let meant = quantity.unit_meant(unit);
+            writeln!(
+                out,
+                "unit = \"{ASK}\"    # the file says {}, no unit of {quantity}; \"{meant}\", or one of {accepted}",
+                quoted(unit)
+            )
+        }
+        _ => writeln!(out, "unit = \"{ASK}\"    # the file does not say; one of {accepted}"),
+    };
 }
 
 /// Line breaks in a cell would end a comment.

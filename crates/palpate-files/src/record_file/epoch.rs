@@ -27,13 +27,31 @@ pub(super) fn unit(column: &ColumnInfo) -> Option<(&'static str, f64)> {
 
 /// Whether the first cell of a column with this factor is a time between 2000 and 2100.
 pub(super) fn counts(column: &ColumnInfo, factor: f64) -> bool {
-    first(column).is_some_and(|first| YEARS.contains(&(first * factor)))
+    first(column).is_some_and(|first| is_of_our_days(first * factor))
+}
+
+/// Whether a time in s lies between 2000 and 2100, counted from 1970.
+pub(super) fn is_of_our_days(seconds: f64) -> bool {
+    YEARS.contains(&seconds)
+}
+
+/// A date in s less another, both counted from 1970: to the µs, which is the most that dates are written to. What is beyond
+/// that is rounding.
+pub(super) fn since(seconds: f64, first: f64) -> f64 {
+    ((seconds - first) * 1e6).round() / 1e6
 }
 
 /// Whether a column without a unit is named as such a time.
 pub(super) fn is_named(column: &ColumnInfo) -> bool {
     let name = column.name.as_deref().unwrap_or("").trim().to_lowercase().replace('_', " ");
     NAMES.contains(&name.as_str())
+}
+
+/// Whether a cell that is read as a time begins with a date.
+pub(super) fn is_date(cell: &str) -> bool {
+    // Of a time of day only the fraction of its seconds has a point or a comma.
+    let before = cell.split(':').next().unwrap_or("");
+    before.len() > 2
 }
 
 fn first(column: &ColumnInfo) -> Option<f64> {

@@ -59,6 +59,16 @@ pub enum ColumnError {
         /// All columns of the file.
         columns: Vec<ColumnInfo>,
     },
+    /// A column is named as the time, but holds texts.
+    #[error("{}: {column}: expected a time, found texts such as \"{found}\"", path.display())]
+    TimeAsText {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// What it begins with.
+        found: String,
+    },
     /// Several columns could hold a quantity.
     #[error("{}: expected one column of {quantity}, found {}", path.display(), listed(candidates))]
     Ambiguous {
@@ -68,6 +78,16 @@ pub enum ColumnError {
         quantity: Quantity,
         /// The columns.
         candidates: Vec<NamedColumn>,
+    },
+    /// No column is named as the displacement, but some could hold it.
+    #[error("{}: expected a name that says whether {} {}, found none that is known", path.display(), listed(candidates), is_displacement(candidates))]
+    Unclear {
+        /// The record.
+        path: PathBuf,
+        /// The columns that could hold the displacement.
+        candidates: Vec<NamedColumn>,
+        /// All columns of the file.
+        columns: Vec<ColumnInfo>,
     },
     /// The units of some columns are written nowhere.
     #[error("{}: expected a unit for {}, found {}", path.display(), units_of(columns), none(columns))]
@@ -169,12 +189,18 @@ impl ColumnError {
             Self::Missing { columns, .. } => {
                 format!("say which column holds what in a test description:\n{}", snippet::of_columns(columns))
             }
+            Self::TimeAsText { .. } => {
+                "write seconds, or 2024-03-12 10:11:12.5, 12.03.2024 10:11:12.5 or 10:11:12.5 in every row".to_owned()
+            }
             Self::Ambiguous {
                 quantity, candidates, ..
             } => {
                 let first = candidates.first().map_or(1, |column| column.number);
                 format!("choose one in a test description:\n[columns.{quantity}]\ncolumn = {first}")
             }
+            Self::Unclear {
+                candidates, columns, ..
+            } => snippet::of_unclear(candidates, columns),
             Self::NoUnit { columns, .. } => {
                 let lines = columns.iter().map(|(key, unit, column)| snippet::of_unit(key, unit, column));
                 let lines: Vec<String> = lines.collect();
@@ -202,10 +228,14 @@ impl ColumnError {
                 )
             }
             Self::UnknownUnit {
-                key, quantity, column, ..
+                key,
+                quantity,
+                column,
+                unit,
+                ..
             } => format!(
                 "if another unit is meant, say it in a test description:\n{}",
-                snippet::of_unit_and_column(key, quantity.usual_unit(), column)
+                snippet::of_unit_and_column(key, quantity.unit_meant(unit), column)
             ),
             Self::OtherUnit { key, column, units, .. } => format!(
                 "choose another of `palpate inspect --machines`, or say in the test description:\n{}",
@@ -230,6 +260,10 @@ impl ColumnError {
 fn listed(columns: &[NamedColumn]) -> String {
     let columns: Vec<String> = columns.iter().map(ToString::to_string).collect();
     columns.join(" and ")
+}
+
+fn is_displacement(columns: &[NamedColumn]) -> &'static str {
+    if columns.len() == 1 { "is the displacement" } else { "is the displacement, if any" }
 }
 
 /// What the header says instead of units: nothing, or something in brackets that is none.

@@ -42,6 +42,50 @@ pub(super) const VOCABULARY: [Vocabulary; 4] = [
             "course",
             "recorrido",
             "carrera",
+            "disp",
+            "distance",
+            "distanz",
+            "distancia",
+            "depth",
+            "tiefe",
+            "profondeur",
+            "profundidad",
+            "elongation",
+            "extensión",
+            "alargamiento",
+            "deformation",
+            "verformung",
+            "déformation",
+            "deformación",
+            "deformacion",
+            "compression",
+            "stauchung",
+            "compresión",
+            "compresion",
+            "penetration",
+            "eindringtiefe",
+            "eindringung",
+            "eindrucktiefe",
+            "pénétration",
+            "penetración",
+            "penetracion",
+            "enfoncement",
+            "indentación",
+            "indentacion",
+            "posición",
+            "posicion",
+            "hub",
+            "变形",
+            "變形",
+            "压缩量",
+            "压入深度",
+            "伸長",
+            "伸び",
+            "変形量",
+            "圧縮量",
+            "押込み量",
+            "押込量",
+            "押込み深さ",
         ],
         endings: &["weg"],
         characters: &["位移", "変位", "變位", "ストローク"],
@@ -117,3 +161,10 @@ pub(super) const OTHER_CHARACTERS: &[&str] =
 
 /// Names of the cantilever's bending in force curves, which is no travel of a jaw though it is a length.
 pub(super) const BENDING: &[&str] = &["vDeflection", "hDeflection", "cantilever deflection"];
+
+/// Names, bare of any unit, that may well mean a displacement.
+pub(super) const SIGNS_OF_LENGTH: &[&str] =
+    &["x", "y", "z", "d", "s", "u", "w", "h", "δ", "delta", "dx", "dz", "dl", "Δl"];
+
+/// Words of quantities that some machines give as a length, though they mean a ratio.
+pub(super) const STRAINS: &[&str] = &["strain", "dehnung"];

@@ -31,6 +31,16 @@ impl Quantity {
         }
     }
 
+    /// The unit that was most likely meant by one that it cannot have: who weighs writes kg for the force.
+    pub(super) fn unit_meant(self, written: &str) -> &'static str {
+        match (self, written.trim().to_lowercase().as_str()) {
+            (Self::Force, "kg" | "kilogram" | "kilograms") => "kgf",
+            (Self::Force, "g" | "gr" | "gram" | "grams" | "gramm") => "gf",
+            (Self::Force, "lb" | "lbs" | "pound" | "pounds") => "lbf",
+            _ => self.usual_unit(),
+        }
+    }
+
     /// The unit that it most often has.
     pub(super) fn usual_unit(self) -> &'static str {
         match self {

@@ -7,7 +7,7 @@ use palpate::{
     units,
 };
 
-use super::{ColumnUse, Counted, Quantity, ReadError, Role, choose, parts};
+use super::{ColumnUse, Counted, Quantity, ReadError, Role, choose, epoch, parts};
 use crate::{
     contents::{Contents, Format, IgnoredLines, Part},
     description::TestDescription,
@@ -100,11 +100,17 @@ pub fn read_part(
     let test = description.unwrap_or(&usual);
     let path = contents.path();
     let about = &contents.parts()[part];
-    let plan = choose::choose(path, about, test)?;
+    let mut plan = choose::choose(path, about, test)?;
     let numbers: Vec<usize> = plan.columns.iter().map(|column| column.number).collect();
     let mut read = contents.read(part, &numbers, progress)?;
     let mut values = std::mem::take(&mut read.values);
-    let start = count_from_start(&plan.columns, &mut values);
+    for (column, values) in plan.columns.iter_mut().zip(&values) {
+        // The dates of a workbook are seen only now.
+        let first = values.first().map_or(0.0, |first| first * column.factor);
+        column.epoch |= column.role.measured() == Quantity::Time && epoch::is_of_our_days(first);
+    }
+    let dated = |column: &ColumnUse| !epoch::counts(&about.columns[column.number - 1], column.factor);
+    let start = count_from_start(&plan.columns, &mut values, &dated);
     let series = plan.columns.iter().zip(values).map(|(column, mut values)| {
         let section = if column.role.measured() == Quantity::Stress { plan.section } else { 1.0 };
         to_si(&mut values, column, section);
@@ -116,7 +122,9 @@ pub fn read_part(
         rows: read.rows(),
         averaged: read.averaged,
     });
-    let done = averaged.into_iter().chain(bent.map(|largest| Correction::DeflectionRemoved { largest }));
+    let of_stress = plan.per_unit_area.then_some(Correction::StressAsForce);
+    let bent = bent.map(|largest| Correction::DeflectionRemoved { largest });
+    let done = of_stress.into_iter().chain(averaged).chain(bent);
     let record = raw.into_record().map(|record| record.corrected_before(done)).map_err(|source| ReadError::Record {
         path: path.to_owned(),
         part: about.name.clone(),
@@ -149,13 +157,18 @@ fn counted(format: Format, line: usize) -> Counted {
 }
 
 /// Makes times counted from 1970 relative to the first of them, which comes back in s.
-fn count_from_start(columns: &[ColumnUse], values: &mut [Vec<f64>]) -> Option<f64> {
+///
+/// Of numbers nothing is lost that was written; differences of dates are those of what was written.
+fn count_from_start(columns: &[ColumnUse], values: &mut [Vec<f64>], dated: &dyn Fn(&ColumnUse) -> bool) -> Option<f64> {
     let firsts = columns.iter().zip(&*values).filter(|(column, _)| column.epoch);
     let firsts = firsts.filter_map(|(column, values)| Some((*values.first()?, column.factor)));
     let (first, factor) = firsts.min_by(|one, other| (one.0 * one.1).total_cmp(&(other.0 * other.1)))?;
     for (column, values) in columns.iter().zip(values).filter(|(column, _)| column.epoch) {
         let origin = if column.factor == factor { first } else { first * factor / column.factor };
-        values.iter_mut().for_each(|value| *value -= origin);
+        let dated = column.factor == 1.0 && dated(column);
+        values.iter_mut().for_each(|value| {
+            *value = if dated { epoch::since(*value, origin) } else { *value - origin };
+        });
     }
     Some(first * factor)
 }

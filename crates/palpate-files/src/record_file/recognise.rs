@@ -4,7 +4,7 @@ use palpate::units::Dimension;
 
 use super::{
     Quantity,
-    header_words::{BENDING, OTHER, OTHER_CHARACTERS, VOCABULARY, Vocabulary},
+    header_words::{BENDING, OTHER, OTHER_CHARACTERS, SIGNS_OF_LENGTH, STRAINS, VOCABULARY, Vocabulary},
     unit_words::unit_factor,
 };
 use crate::contents::{ColumnInfo, ColumnKind, topic_and_field};
@@ -21,6 +21,13 @@ pub(super) fn candidates(columns: &[ColumnInfo], quantity: Quantity) -> Vec<&Col
 /// Whether one of the columns is named as a time.
 pub(crate) fn names_time(columns: &[ColumnInfo]) -> bool {
     !candidates(columns, Quantity::Time).is_empty()
+}
+
+/// Whether the name of a column, whatever it holds, is that of a time.
+pub(super) fn is_time(column: &ColumnInfo) -> bool {
+    let vocabulary = VOCABULARY.iter().find(|words| words.quantity == Quantity::Time);
+    let name = column.name.as_deref().zip(vocabulary);
+    name.is_some_and(|(name, vocabulary)| rank_of_name(name, vocabulary).is_some())
 }
 
 /// Names of columns that hold dates with times of day, beside the words for time.
@@ -57,6 +64,26 @@ pub(super) fn misfits(columns: &[ColumnInfo], quantity: Quantity) -> impl Iterat
         let plainly = rank_of_name(name, vocabulary?).is_some_and(|rank| rank < 2);
         (plainly && measures_another(unit, quantity)).then_some((column, unit))
     })
+}
+
+/// Columns that may well hold a displacement, though no word of theirs says so: those with a unit of length, and those
+/// without a unit whose name is a letter that usually stands for one.
+pub(super) fn possible_displacements(columns: &[ColumnInfo]) -> impl Iterator<Item = &ColumnInfo> {
+    let possible = |column: &&ColumnInfo| {
+        let (true, Some(name)) = (column.kind == ColumnKind::Number, column.name.as_deref()) else {
+            return false;
+        };
+        let words = words(measured(name));
+        let other = words.iter().any(|word| OTHER.contains(&word.as_str()) && !STRAINS.contains(&word.as_str()))
+            || OTHER_CHARACTERS.iter().any(|part| name.contains(part))
+            || BENDING.contains(&name.trim());
+        let sign = || SIGNS_OF_LENGTH.iter().any(|sign| sign.to_lowercase() == name.trim().to_lowercase());
+        match column.unit.as_deref() {
+            Some(unit) => !other && unit_factor(unit, Dimension::Length).is_some(),
+            None => sign(),
+        }
+    };
+    columns.iter().filter(possible)
 }
 
 /// Whether a unit is one of another kind of quantity.
@@ -102,13 +129,20 @@ fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
         Some(1)
     } else if is(vocabulary.loose) {
         Some(2)
-    } else if has(vocabulary.loose) {
+    } else if has(vocabulary.loose) && !named_otherwise(&words, vocabulary) {
         Some(3)
     } else if vocabulary.letter == Some(name.trim()) {
         Some(4)
     } else {
         None
     }
+}
+
+/// Whether a word means another quantity and nothing else: a "compression force" is no compression.
+fn named_otherwise(words: &[String], vocabulary: &Vocabulary) -> bool {
+    let others = VOCABULARY.iter().filter(|other| other.quantity != vocabulary.quantity);
+    let mut plain = others.flat_map(|other| other.plain);
+    plain.any(|plain| words.iter().any(|word| word == plain))
 }
 
 /// The part of a name that says what is measured. Of a log of a robot that is the field less the names of joints, since

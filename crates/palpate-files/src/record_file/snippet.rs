@@ -67,6 +67,25 @@ pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
     lines.join("\n")
 }
 
+/// The lines that say which column is the displacement, and those that say that there is none.
+pub(super) fn of_unclear(candidates: &[NamedColumn], columns: &[ColumnInfo]) -> String {
+    let number = candidates.first().map_or(1, |column| column.number);
+    let unit = columns.get(number.wrapping_sub(1)).and_then(|column| column.unit.as_deref());
+    let unit = unit.unwrap_or(Quantity::Displacement.usual_unit());
+    let named = |quantity| match recognise::candidates(columns, quantity)[..] {
+        [only] => Some(format!("[columns.{quantity}]\ncolumn = {}", only.number)),
+        _ => None,
+    };
+    let force = named(Quantity::Force).or_else(|| named(Quantity::Stress));
+    let without = force.map_or_else(String::new, |lines| format!("\nor, if it is not, name the force alone:\n{lines}"));
+    // Heights of a cantilever's base fall as it comes down.
+    let name = candidates.first().and_then(|column| column.name.as_deref()).unwrap_or("").to_lowercase();
+    let sign = if name.contains("height") { "\nsign = -1" } else { "" };
+    format!(
+        "if it is, say so in a test description:\n[columns.displacement]\ncolumn = {number}\nunit = \"{unit}\"{sign}{without}"
+    )
+}
+
 /// The lines that say both the column and its unit, where its header says another.
 pub(super) fn of_unit_and_column(key: &str, unit: &str, column: &NamedColumn) -> String {
     let (table, key) = key.rsplit_once('.').unwrap_or(("columns", key));

@@ -156,10 +156,12 @@ fn start(cells: &[Vec<Cell>], found: usize, kinds: &[ColumnKind]) -> usize {
         let held = numbers().filter(|(_, cell)| cell.is_numeric()).count();
         row.len() == kinds.len() && 2 * held > numbers().count()
     };
-    let mut first = cells.iter().position(|row| fits(row)).unwrap_or(found);
     let Some(leading) = first_number(kinds) else {
-        return first;
+        return cells.iter().position(|row| fits(row)).unwrap_or(found);
     };
+    // A line before the run that begins with a word names values: "Samples 3700 3700".
+    let begins = |(index, row): (usize, &Vec<Cell>)| fits(row) && (index >= found || row[leading].is_numeric());
+    let mut first = cells.iter().enumerate().position(begins).unwrap_or(found);
     for (index, row) in cells.iter().enumerate().take(first).rev() {
         if row.is_empty() {
             continue;
@@ -194,6 +196,8 @@ mod tests {
     fn where_the_data_starts() {
         let named = ["Diameter,0.4", "Length,14", "0,1", "0.1,2", "0.2,3"];
         assert_eq!(found(&named), Some((Delimiter::Comma, 2, 2)));
+        let labview = ["X\t1\t2", "Samples\t370\t370", "X0\tTime\tTime", "x\tu\tF", "0\t1\t2", "1\t2\t3", "2\t2\t2"];
+        assert_eq!(found(&labview), Some((Delimiter::Tab, 4, 3)));
         let faulty = ["t,F", "0,x", "1,2", "junk", "2,3", "3,4", "4,5"];
         assert_eq!(found(&faulty), Some((Delimiter::Comma, 1, 2)));
     }

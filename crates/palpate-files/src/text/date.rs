@@ -1,30 +1,57 @@
 //! Dates with times of day, as ISO 8601 and the logs of programs write them.
 //!
-//! `2024-08-24T21:09:40.123Z`, `2024-08-24 21:09:40,123`, `2024-08-24 21:09:40+02:00`: year first, seconds and all. Without
-//! a zone, times are taken as they stand: differences are right unless clocks were changed in between.
+//! `2024-08-24T21:09:40.123Z`, `2024-08-24 21:09:40,123`, `2024-08-24 21:09:40+02:00`: year first, seconds and all;
+//! `24.08.2024 21:09:40`, where points stand between day, month and year; `21:09:40.123`, a time of day or of a stopwatch.
+//! Without a zone, times are taken as they stand: differences are right unless clocks were changed in between. Dates with
+//! slashes that end in the year are none: nothing says whether the day or the month comes first.
 
-/// Seconds since 1970 of a date with its time of day; a leap second counts as the one behind it.
+/// Seconds since 1970 of a date with its time of day, or since midnight of a time of day; a leap second counts as the one
+/// behind it.
 pub(crate) fn parse(cell: &[u8]) -> Option<f64> {
+    if let Some((seconds, fraction, [])) = time_of_day(cell) {
+        return Some(seconds as f64 + fraction);
+    }
+    let ((year, month, day), rest) = year_first(cell).or_else(|| year_last(cell))?;
+    let (of_day, fraction, rest) = time_of_day(behind(rest, b"T t")?)?;
+    let sound = (1..=12).contains(&month) && (1..=days_of(year, month)).contains(&day);
+    if !sound {
+        return None;
+    }
+    Some((days_since_1970(year, month, day) * 86_400 + of_day - zone(rest)?) as f64 + fraction)
+}
+
+/// Year, month and day.
+type Date = (i64, i64, i64);
+
+fn year_first(cell: &[u8]) -> Option<(Date, &[u8])> {
     let (year, rest) = digits(cell, 4)?;
     let (month, rest) = digits(behind(rest, b"-/")?, 2)?;
     let (day, rest) = digits(behind(rest, b"-/")?, 2)?;
-    let (hour, rest) = digits(behind(rest, b"T t")?, 2)?;
+    Some(((year, month, day), rest))
+}
+
+fn year_last(cell: &[u8]) -> Option<(Date, &[u8])> {
+    let (day, rest) = one_or_two_digits(cell)?;
+    let (month, rest) = one_or_two_digits(behind(rest, b".")?)?;
+    let (year, rest) = digits(behind(rest, b".")?, 4)?;
+    Some(((year, month, day), rest))
+}
+
+/// Hours, minutes and seconds as seconds, the fraction of a second, and what stands behind.
+fn time_of_day(text: &[u8]) -> Option<(i64, f64, &[u8])> {
+    let (hour, rest) = one_or_two_digits(text)?;
     let (minute, rest) = digits(behind(rest, b":")?, 2)?;
     let (second, rest) = digits(behind(rest, b":")?, 2)?;
     let (fraction, rest) = match behind(rest, b".,") {
         Some(rest) => fraction(rest)?,
         None => (0.0, rest),
     };
-    let sound = (1..=12).contains(&month)
-        && (1..=days_of(year, month)).contains(&day)
-        && hour < 24
-        && minute < 60
-        && second <= 60;
-    if !sound {
-        return None;
-    }
-    let of_day = hour * 3600 + minute * 60 + second;
-    Some((days_since_1970(year, month, day) * 86_400 + of_day - zone(rest)?) as f64 + fraction)
+    let sound = hour < 24 && minute < 60 && second <= 60;
+    sound.then_some((hour * 3600 + minute * 60 + second, fraction, rest))
+}
+
+fn one_or_two_digits(text: &[u8]) -> Option<(i64, &[u8])> {
+    digits(text, 2).or_else(|| digits(text, 1))
 }
 
 /// The number in exactly `count` digits, and what stands behind.
@@ -104,6 +131,11 @@ mod tests {
             ("1969-12-31T23:59:59Z", -1.0),
             ("2001-09-09T01:46:40Z", 1e9),
             ("2033-05-18T03:33:20Z", 2e9),
+            ("24.08.2024 13:09:05,198", 1_724_504_945.198),
+            ("1.3.2000 0:00:00", 951_868_800.0),
+            ("00:00:05.250", 5.25),
+            ("9:30:00", 34_200.0),
+            ("23:59:59,5", 86_399.5),
         ] {
             assert_eq!(parse(text.as_bytes()), Some(seconds), "{text}");
         }
@@ -114,8 +146,10 @@ mod tests {
         for text in [
             "",
             "2024-08-24",
-            "21:09:40",
-            "24.08.2024 21:09:40",
+            "09:40",
+            "24:00:00",
+            "24/08/2024 21:09:40",
+            "24.13.2024 21:09:40",
             "2023-02-29T00:00:00",
             "2024-13-01T00:00:00",
             "2024-00-10T00:00:00",

@@ -38,7 +38,28 @@ fn weigh(lines: &[&str], block: &Block) -> Result<DecimalMark, Doubt> {
     let texts = |wanted| -> Vec<(usize, &str)> {
         places(block, wanted).into_iter().map(|place| (place.0, text_at(lines, block, place))).collect()
     };
-    weigh_texts(&texts(Cell::Point), &texts(Cell::Comma))
+    let (points, commas) = (texts(Cell::Point), texts(Cell::Comma));
+    match points.first() {
+        Some(&(line, found)) if commas.is_empty() && points_set_off_thousands(block, &points) => Err(Doubt {
+            line,
+            found: found.to_owned(),
+            doubt: DecimalDoubt::PointThousands,
+        }),
+        _ => weigh_texts(&points, &commas),
+    }
+}
+
+/// Whether every point of a file without decimal commas could set off thousands, and something speaks for it.
+///
+/// Who prints three decimals prints them in every row: whole numbers in a column with such points speak for
+/// thousands. So do semicolons between the cells, which are written where the comma marks decimals.
+fn points_set_off_thousands(block: &Block, points: &[(usize, &str)]) -> bool {
+    if !points.iter().all(|(_, text)| looks_like_thousands(text, '.')) {
+        return false;
+    }
+    let pointed: Vec<usize> = places(block, Cell::Point).into_iter().map(|(_, column)| column).collect();
+    let whole = places(block, Cell::Whole).into_iter().any(|(_, column)| pointed.contains(&column));
+    whole || block.delimiter == Delimiter::Semicolon
 }
 
 /// The decimal mark of numbers with a point and numbers with a comma, each with the index of its line.
@@ -56,7 +77,7 @@ pub(crate) fn weigh_texts(points: &[(usize, &str)], commas: &[(usize, &str)]) ->
         (Some(_), Some(_)) if rare(points, commas) => Ok(DecimalMark::Comma),
         (Some(&point), Some(&comma)) => Err(doubt(if comma.0 >= point.0 { comma } else { point }, DecimalDoubt::Mixed)),
         (None, Some(&comma)) => {
-            if commas.iter().all(|(_, text)| looks_like_thousands(text)) {
+            if commas.iter().all(|(_, text)| looks_like_thousands(text, ',')) {
                 Err(doubt(comma, DecimalDoubt::Thousands))
             } else {
                 Ok(DecimalMark::Comma)
@@ -80,11 +101,11 @@ fn text_at<'a>(lines: &[&'a str], block: &Block, (line, column): (usize, usize))
     row.get(column).copied().unwrap_or_default()
 }
 
-/// One comma with one to three digits before, the first no zero, and three behind it.
-fn looks_like_thousands(cell: &str) -> bool {
+/// One mark with one to three digits before, the first no zero, and three behind it.
+fn looks_like_thousands(cell: &str, mark: char) -> bool {
     let bare = cell.trim_start_matches(['+', '-']);
     let digits = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
-    bare.split_once(',').is_some_and(|(before, behind)| {
+    bare.split_once(mark).is_some_and(|(before, behind)| {
         (1..=3).contains(&before.len())
             && digits(before)
             && !before.starts_with('0')
@@ -164,6 +185,20 @@ mod tests {
         assert_eq!(decided(&["0,001;1,234"], None), Ok(DecimalMark::Comma));
         assert_eq!(decided(&["\"1,5\",\"2,25\""], None), Ok(DecimalMark::Comma));
         assert_eq!(decided(&["1,2", "3,4"], None), Ok(DecimalMark::Point));
+    }
+
+    /// Whole numbers of µm and mN from a German machine were read as a thousandth of what they are.
+    #[test]
+    fn points_between_thousands_are_no_decimals() {
+        let doubt = Err(DecimalDoubt::PointThousands);
+        assert_eq!(decided(&["0;0;3", "1;1.000;18.002", "2;2.000;20.110"], None), doubt);
+        assert_eq!(decided(&["0\t999", "1\t1.001", "2\t1.012"], None), doubt);
+        assert_eq!(decided(&["1;1.000;18.002"], None), doubt);
+        assert_eq!(decided(&["0;0;3", "1;1.000;18.002"], Some(DecimalMark::Point)), Ok(DecimalMark::Point));
+        // Three decimals in every row, a zero in front, or another number of decimals in some row.
+        for plain in [["0\t1.000", "1\t1.001"], ["0;0.999", "1;1.001"], ["0;1", "1;1.25"], ["0.5;1", "1;1.001"]] {
+            assert_eq!(decided(&plain, None), Ok(DecimalMark::Point), "{plain:?}");
+        }
     }
 
     #[test]

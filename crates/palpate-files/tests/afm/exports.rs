@@ -175,6 +175,20 @@ fn a_spring_that_changes_is_used_where_it_stands() {
     assert!(near(deflection[2], 2e-6) && near(deflection[3], 3e-6), "{deflection:?}");
 }
 
+/// A spring constant that stood above the first segment alone left the others without deflection and the record without
+/// indentation.
+#[test]
+fn constants_that_are_not_repeated_are_those_of_the_first_segment() {
+    let mut exports = press();
+    let whole = record(&exports, "").unwrap().record;
+    for export in &mut exports[1..] {
+        export.more = "";
+    }
+    let once = record(&exports, "").unwrap().record;
+    assert!(once.displacement().is_some());
+    assert_eq!((once.displacement(), once.force()), (whole.displacement(), whole.force()));
+}
+
 #[test]
 fn segments_without_what_the_others_have_are_skipped_with_a_reason() {
     let mut exports = press();

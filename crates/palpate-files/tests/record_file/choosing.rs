@@ -152,3 +152,57 @@ fn units_in_the_brackets_of_japan() {
         assert_eq!((file.record.time()[1], file.record.force()[1]), (0.5, 2.0), "{header}");
     }
 }
+
+#[test]
+fn displacements_by_the_names_that_machines_give_them() {
+    for name in [
+        "Distance",
+        "Extensión",
+        "Eindringtiefe",
+        "Elongation",
+        "Deformation",
+        "Penetration",
+        "Compression",
+        "Verformung",
+        "Stauchung",
+        "Déformation",
+        "Enfoncement",
+        "Posición",
+        "伸び",
+        "押込み量",
+        "disp_",
+    ] {
+        let table = format!("Time (s),{name} (mm),Force (N)\n0,1,1\n1,2,2\n2,2,1\n");
+        let read = read(&table, "").unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(read.record.displacement(), Some([1e-3, 2e-3, 2e-3].as_slice()), "{name}");
+    }
+    // The force under a compression is a force.
+    let read = read("Time (s),Compression force (N)\n0,1\n1,2\n2,1\n", "").unwrap();
+    assert_eq!((read.record.displacement(), read.record.force()), (None, [1.0, 2.0, 1.0].as_slice()));
+}
+
+#[test]
+fn times_of_day_and_german_dates_are_times() {
+    for (first, second, third) in [
+        ("12.03.2024 10:11:12.000", "12.03.2024 10:11:12.100", "12.03.2024 10:11:12.200"),
+        ("12.03.2024 10:11:12", "12.03.2024 10:11:12.1", "12.03.2024 10:11:12.2"),
+        ("2024-03-12T10:11:12", "2024-03-12T10:11:12.1", "2024-03-12T10:11:12.2"),
+    ] {
+        let table = format!("Timestamp;Weg (mm);Kraft (N)\n{first};0;1\n{second};1;2\n{third};1;1.5\n");
+        let file = read(&table, "").unwrap();
+        assert_eq!(file.record.time(), [0.0, 0.1, 0.2], "{first}");
+        assert_eq!(file.start, Some(1_710_238_272.0));
+    }
+    let table = "Date,Time,Force (N)\n2024-03-12,0:00:00.5,1\n2024-03-12,0:00:01.5,2\n2024-03-12,0:00:02.5,1\n";
+    let file = read(table, "").unwrap();
+    assert_eq!((file.record.time(), file.start), ([0.5, 1.5, 2.5].as_slice(), None));
+    assert_eq!(file.columns[0].unit, "time of day");
+    let table = "Timestamp,Force (N)\n03/04/2024 10:11:12,1\n03/04/2024 10:11:13,2\n03/04/2024 10:11:14,1\n";
+    let error = read(table, "").unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .ends_with("column 1 (Timestamp): expected a time, found texts such as \"03/04/2024 10:11:12\"")
+    );
+    assert!(error.hint().unwrap().contains("12.03.2024 10:11:12.5"));
+}

@@ -86,7 +86,7 @@ fn units_are_asked_for() {
         "Time (s),Force (lbs)\n0,1\n1,2\n",
         "",
         &["column 2 (Force): \"lbs\" is not a unit of force (accepted: N, kN"],
-        &["if another unit is meant", "[columns.force]\nunit = \"N\""],
+        &["if another unit is meant", "[columns.force]\nunit = \"lbf\""],
     );
 }
 
@@ -198,4 +198,31 @@ fn many_columns_are_not_all_shown() {
     let table = format!("{}\n{row}\n{row}\n{row}\n", names.join(","));
     let error = says(&table, "", &["in 30 columns", "column 8 (c8)", "… and 22 more"], &[]);
     assert!(!error.to_string().contains("(c9)"));
+}
+
+/// A column in mm of a name that was not known was left aside, and the record passed for one of force alone.
+#[test]
+fn a_length_of_unknown_name_is_asked_about() {
+    let table = "Zeit [s];Vorschub [mm];Kraft [N]\n0;0,5;1,5\n1;1,5;2,5\n2;1,5;2,1\n";
+    let error = says(
+        table,
+        "",
+        &["expected a name that says whether column 2 (Vorschub) is the displacement, found none that is known"],
+        &["[columns.displacement]\ncolumn = 2\nunit = \"mm\"", "[columns.force]\ncolumn = 3"],
+    );
+    let hint = error.hint().unwrap();
+    let (with, without) = hint.split_once("\nor, if it is not, name the force alone:\n").unwrap();
+    let with = read(table, with.split_once('\n').unwrap().1).unwrap();
+    assert_eq!(with.record.displacement(), Some([0.5e-3, 1.5e-3, 1.5e-3].as_slice()));
+    let without = read(table, without).unwrap();
+    assert_eq!(without.record.displacement(), None);
+    // A letter that usually stands for a length is asked about as well; what no length can be is not.
+    says(
+        "t,z,F\n0,1,1\n1,2,2\n2,2,1\n",
+        "columns.time.unit = \"s\"\ncolumns.force.unit = \"N\"",
+        &["column 2 (z) is the displacement"],
+        &[],
+    );
+    assert!(read("Time (s),Temperature (°C),Force (N)\n0,20,1\n1,20,2\n2,20,1\n", "").is_ok());
+    assert!(read("Time (s),Max displacement (mm),Force (N)\n0,20,1\n1,20,2\n2,20,1\n", "").is_ok());
 }

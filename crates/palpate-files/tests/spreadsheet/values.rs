@@ -3,11 +3,13 @@
 use palpate_files::{
     contents::{Contents, ReadOptions},
     input::Input,
+    record_file::read_record,
     text::{DecimalMark, LayoutOptions},
 };
 
 use crate::{
     message, names, open, read,
+    xls_book::{compound, moment, number, shared, stream},
     xlsx_book::{
         Book,
         C::{self, E, N, S, T, X},
@@ -98,4 +100,22 @@ fn times_become_seconds() {
     let contents = open(&Book::of(&[("iso", &table)]).bytes()).expect("a workbook");
     let values = read(&contents, 0, &[1]).expect("columns").values;
     assert!((values[0][1] - 1_684_130_401.5).abs() < 1e-6, "{values:?}");
+}
+
+/// Dates were read as seconds since 1970 and stayed that, with the rounding of such large numbers.
+#[test]
+fn dates_of_a_workbook_count_from_the_first_row() {
+    let cells = (0..4_u16).flat_map(|row| {
+        let days = 45_000.5 + 0.05 * f64::from(row) / 86_400.0;
+        [moment(row + 1, 0, days), number(row + 1, 1, f64::from(row % 3))]
+    });
+    let cells = [vec![shared(0, 0, 0), shared(0, 1, 1)], cells.collect()].concat();
+    let book = compound("Workbook", &stream(&["Time", "Force (N)"], &[("run", cells)], false));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.xls");
+    std::fs::write(&path, book).unwrap();
+    let read = read_record(&path, None, &mut |_, _| {}).unwrap();
+    assert_eq!(read.record.time(), [0.0, 0.05, 0.1, 0.15]);
+    assert!((read.start.unwrap() - 1_678_881_600.0).abs() < 1e-6);
+    assert!(read.columns[0].epoch);
 }

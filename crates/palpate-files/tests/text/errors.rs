@@ -85,6 +85,7 @@ fn uncertain_decimals() {
     for (text, expected) in [
         ("t,F\n0,01,0,52\n0,02,0,53\n", DecimalDoubt::CommaSplitsNumbers),
         ("1,234;5,678\n", DecimalDoubt::Thousands),
+        ("Weg;Kraft\n0;3\n1.000;18.002\n", DecimalDoubt::PointThousands),
         ("1.5;2,25\n2.5;3,25\n", DecimalDoubt::Mixed),
     ] {
         let error = refused(text);

@@ -19,13 +19,13 @@ const BENDING: &str = "vDeflection";
 pub(super) fn drafts(input: &Input, blocks: &[Block]) -> Result<Vec<Draft>, FileError> {
     let mut drafts = Vec::new();
     for (number, block) in blocks.iter().enumerate() {
-        drafts.push(draft(input, block, number)?);
+        drafts.push(draft(input, block, &blocks[0], number)?);
     }
     set_clocks(blocks, &mut drafts);
     Ok(drafts)
 }
 
-fn draft(input: &Input, block: &Block, number: usize) -> Result<Draft, FileError> {
+fn draft(input: &Input, block: &Block, first: &Block, number: usize) -> Result<Draft, FileError> {
     let units: Option<Vec<&str>> = block.value("units").map(|units| units.split_whitespace().collect());
     if let Some(units) = &units
         && block.rows > 0
@@ -52,31 +52,33 @@ fn draft(input: &Input, block: &Block, number: usize) -> Result<Draft, FileError
         style: block.value("segment").unwrap_or("segment").to_owned(),
         rows: block.rows,
         channels: block.columns.iter().enumerate().map(channel).collect(),
-        load: load(input, block, number, &unit)?,
+        load: load(input, (block, first), number, &unit)?,
         clock: None,
         first: numbers(&block.first),
     })
 }
 
-/// Force and deflection out of the one column of bending, as far as its unit and the constants lead.
+/// Force and deflection out of the one column of bending, as far as its unit and the constants lead. Constants that a
+/// segment does not repeat are those above the first.
 fn load(
     input: &Input,
-    block: &Block,
+    (block, first): (&Block, &Block),
     number: usize,
     unit: &dyn Fn(usize) -> Option<String>,
 ) -> Result<Load, FileError> {
     let Some(index) = block.columns.iter().position(|name| name == BENDING) else {
         return Ok(Load::default());
     };
-    let constant = |key: &str| match block.value(key).map(|text| (text, text.parse::<f64>())) {
-        None => Ok(None),
-        // JPK writes NaN where it knows none.
-        Some((_, Ok(value))) if value.is_nan() => Ok(None),
-        Some((_, Ok(value))) if value.is_normal() => Ok(Some(value)),
-        Some((text, _)) => {
-            Err(damaged(input, format!("segment {number}, {key}"), "a number other than 0", text.to_owned()))
-        }
-    };
+    let constant =
+        |key: &str| match block.value(key).or_else(|| first.value(key)).map(|text| (text, text.parse::<f64>())) {
+            None => Ok(None),
+            // JPK writes NaN where it knows none.
+            Some((_, Ok(value))) if value.is_nan() => Ok(None),
+            Some((_, Ok(value))) if value.is_normal() => Ok(Some(value)),
+            Some((text, _)) => {
+                Err(damaged(input, format!("segment {number}, {key}"), "a number other than 0", text.to_owned()))
+            }
+        };
     let (spring, sensitivity) = (constant("springConstant")?, constant("sensitivity")?);
     let (raw, raw_unit) = (Line::of(index), unit(index));
     let deflection = match raw_unit.as_deref() {

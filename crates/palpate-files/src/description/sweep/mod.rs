@@ -24,7 +24,7 @@ use super::{
 };
 use plan::{At, of_grid};
 use table::{Entry, Method, Table, Written};
-use values::{Values, Wrong};
+use values::{Value, Values, Wrong};
 
 pub use plan::Plan;
 pub(super) use table::SweepSchema;
@@ -256,6 +256,68 @@ pub fn parse_sweep(text: &str, path: &Path) -> Result<Sweep, DescriptionError> {
         base,
         numbers: swept,
         plan,
+        runs,
+    })
+}
+
+/// A sweep whose numbers come as columns of one length instead of a table `[sweep]`: run i takes the value i of each.
+///
+/// Numbers are named by their paths, such as `specimen.radius` or `step[2].rate`, and given in SI. A table `[sweep]` in the text is
+/// left aside.
+///
+/// ```
+/// use std::path::Path;
+/// use palpate_files::description::parse_runs;
+/// let text = r#"
+///     specimen = { shape = "ball", radius = "35 mm", modulus = "28 kPa" }
+///     law = { name = "latency", exponent = 5, rate_coefficient = "2e4 /s" }
+///     step = [{ to = "5 mm", rate = "500 mm/min", hold = "10 s" }]
+/// "#;
+/// let columns = [("law.exponent", vec![5.0, 3.0]), ("specimen.radius", vec![0.03, 0.04])];
+/// let runs = parse_runs(text, Path::new("squeeze.toml"), &columns)?;
+/// assert_eq!((runs.runs(), runs.run(1).0), (2, vec![3.0, 0.04]));
+/// # Ok::<(), palpate_files::description::DescriptionError>(())
+/// ```
+///
+/// # Errors
+/// As for [`parse_sweep`], and for columns of different lengths.
+pub fn parse_runs(text: &str, path: &Path, columns: &[(&str, Vec<f64>)]) -> Result<Sweep, DescriptionError> {
+    let source = Source { path, text };
+    let mut tables: ProtocolTables = source.tables()?;
+    let base = check(&source, &tables)?;
+    let known = known(&mut tables);
+    let runs = columns.first().map_or(0, |(_, values)| values.len());
+    let mut swept = Vec::with_capacity(columns.len());
+    for (path, values) in columns {
+        let Some((_, dimension)) = known.iter().find(|(known, _)| known == path) else {
+            return Err(DescriptionError::UnknownNumber {
+                place: source.place(*path),
+                number: (*path).to_owned(),
+                accepted: known.iter().map(|(path, _)| path.clone()).collect(),
+            });
+        };
+        if values.len() != runs {
+            let expected = format!("{runs} values, as the other numbers have");
+            return Err(source.value(*path, expected, &values.len().to_string()));
+        }
+        let unit = dimension.map_or("", |dimension| dimension.units()[0].0);
+        let value = |si: &f64| Value {
+            si: *si,
+            text: format!("{si} {unit}"),
+        };
+        swept.push(SweptNumber::new((*path).to_owned(), *dimension, Values::List(values.iter().map(value).collect())));
+    }
+    let runs = runs as u64;
+    if runs > MOST_RUNS {
+        return Err(source.value("runs", format!("at most {MOST_RUNS} runs"), &runs.to_string()));
+    }
+    Ok(Sweep {
+        path: path.to_owned(),
+        text: text.to_owned(),
+        tables,
+        base,
+        numbers: swept,
+        plan: Plan::Together { runs },
         runs,
     })
 }

@@ -19,6 +19,11 @@ pub enum Plan {
         /// Which of them.
         seed: u64,
     },
+    /// The first values together, then the second ones, and so on: lists of one length.
+    Together {
+        /// How many runs.
+        runs: u64,
+    },
 }
 
 /// A value by its place.
@@ -36,7 +41,7 @@ impl Plan {
             Self::Grid { counts } => {
                 counts.iter().try_fold(1u64, |runs, count| runs.checked_mul(u64::try_from(*count).ok()?))
             }
-            Self::LatinHypercube { samples, .. } => Some(*samples),
+            Self::LatinHypercube { samples: runs, .. } | Self::Together { runs } => Some(*runs),
         }
     }
 
@@ -57,6 +62,7 @@ impl Plan {
                 places.reverse();
                 places
             }
+            Self::Together { .. } => values.iter().map(|_| At::Entry(run as usize)).collect(),
             Self::LatinHypercube { samples, seed } => {
                 let share = |number: usize| {
                     let slices = Shuffle::new(seed_of(*seed, 2 * number as u64), *samples);
