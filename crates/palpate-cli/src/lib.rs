@@ -17,9 +17,12 @@ mod progress;
 mod terminal;
 
 use std::ffi::OsString;
+use std::ops::Range;
 use std::path::Path;
 
 use clap::Parser;
+use palpate_files::description::Sweep;
+use palpate_files::parquet_table::{Field, Rows};
 use palpate_report::study::Bundle;
 
 use crate::arguments::{Arguments, Command};
@@ -68,6 +71,17 @@ where
 /// What is wrong, and what would help.
 pub fn write_study(folder: &Path, study: &Bundle) -> Result<(), (String, Option<String>)> {
     files::write_bundle(folder, study).map_err(failure::Failure::into_parts)
+}
+
+/// The columns that `palpate sweep` writes: the number of the run, the swept numbers, the results, why there are none.
+#[must_use]
+pub fn sweep_fields(sweep: &Sweep) -> Vec<Field> {
+    commands::sweep::rows::fields(sweep)
+}
+
+/// Simulates runs of a sweep, from 0, as rows of that table, and tells `done` of each; `path` stands in messages.
+pub fn sweep_rows(sweep: &Sweep, path: &Path, runs: Range<u64>, done: impl FnMut()) -> Rows {
+    commands::sweep::rows::simulated(sweep, path, runs, done)
 }
 
 /// SHA-256 of a file, in hexadecimal.

@@ -3,6 +3,9 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+use palpate::analysis::corrected;
+use palpate::record::CorrectionOptions;
+use palpate_files::description::TestDescription;
 use palpate_files::parquet_table::{Field, Kind, Rows, TableError, TableWriter, Values};
 use palpate_files::record_file::RecordFile;
 use palpate_report::document::Software;
@@ -28,7 +31,10 @@ pub(crate) fn run(arguments: &ConvertArguments) -> Result<Outcome, Failure> {
     let format = format_of(&arguments.out)?;
     let test = description(arguments.test.as_deref(), arguments.part.as_deref())?;
     let opened = Opened::open(&arguments.record, test.as_ref())?;
-    let file = opened.read(one_part(&opened)?)?;
+    let mut file = opened.read(one_part(&opened)?)?;
+    if let Some(test) = opened.test() {
+        make_corrections(&mut file, test)?;
+    }
     let origin = origin(&file, &opened, arguments)?;
     let out = &arguments.out;
     let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -46,6 +52,22 @@ pub(crate) fn run(arguments: &ConvertArguments) -> Result<Outcome, Failure> {
     })?;
     note(&format!("{} rows written: {}", file.record.len(), out.display()));
     Ok(Outcome::Done)
+}
+
+/// Makes the corrections that a description asks for; without any, not even dropouts are mended.
+fn make_corrections(file: &mut RecordFile, test: &TestDescription) -> Result<(), Failure> {
+    let options = test.analysis_options();
+    if options.corrections == CorrectionOptions::default() {
+        return Ok(());
+    }
+    let before = file.record.corrections().len();
+    let done =
+        corrected(&file.record, &options).map_err(|error| Failure::of_file(&file.path, &error, Some(error.hint())))?;
+    file.record = done.record;
+    for done in &file.record.corrections()[before..] {
+        note(&format!("done: {done}"));
+    }
+    Ok(())
 }
 
 fn format_of(out: &Path) -> Result<Format, Failure> {
@@ -69,6 +91,7 @@ fn origin(file: &RecordFile, opened: &Opened<'_>, arguments: &ConvertArguments) 
         "schema": "palpate.record/1",
         "input": input,
         "columns": file.columns,
+        "corrections": file.record.corrections(),
         "test_toml": said.map_err(|error| Failure::new(error, None))?,
         "software": Software::this(),
     }))

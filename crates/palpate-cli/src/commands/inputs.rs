@@ -1,13 +1,23 @@
 //! The files that were named: one by one, by a folder, or by a pattern.
 
+use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::batch::is_written_by_batch;
 use crate::failure::Failure;
 
-/// The files that were named, those below the folders that were named, and those that patterns match, in order.
+/// The files that were named, those below the folders that were named, and those that patterns match, in order and each
+/// once.
+///
+/// Folders and patterns pass over what `palpate batch` has written: its tables and their journals.
 pub(super) fn records_of(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut paths = Vec::new();
+    if let [path, ..] = named
+        && !named.iter().any(|path| path.exists() || is_pattern(path))
+    {
+        return Err(Failure::of_file(path, "no such file", Some("check the spelling of the path".to_owned())));
+    }
     for path in named {
         let before = paths.len();
         if path.is_dir() {
@@ -21,6 +31,8 @@ pub(super) fn records_of(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
             paths.push(path.clone());
         }
     }
+    let mut seen = HashSet::new();
+    paths.retain(|path| seen.insert(path.canonicalize().unwrap_or_else(|_| path.clone())));
     Ok(paths)
 }
 
@@ -32,7 +44,7 @@ fn none_below(folder: &Path) -> Failure {
     )
 }
 
-/// All files below a folder but hidden ones and descriptions, sorted by path.
+/// All files below a folder but hidden ones, descriptions and what `palpate batch` wrote, sorted by path.
 fn below(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<(), Failure> {
     let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
     let mut entries: Vec<PathBuf> = entries
@@ -43,6 +55,9 @@ fn below(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<(), Failure> {
         .collect();
     entries.sort();
     for path in entries {
+        if is_written_by_batch(&path) {
+            continue;
+        }
         if path.is_dir() && !path.is_symlink() {
             below(&path, paths)?;
         } else if path.is_file() && path.extension().is_none_or(|extension| extension != "toml") {
@@ -64,7 +79,8 @@ fn matching(pattern: &Path, paths: &mut Vec<PathBuf>) -> Result<(), Failure> {
         .map_err(|error| Failure::of_file(pattern, format!("expected a pattern of file names, found {error}"), None))?;
     for path in found {
         let path = path.map_err(|error| Failure::new(error, None))?;
-        if path.is_file() {
+        let of_journal = path.parent().is_some_and(is_written_by_batch);
+        if path.is_file() && !of_journal && !is_written_by_batch(&path) {
             paths.push(path);
         }
     }

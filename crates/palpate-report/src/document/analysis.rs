@@ -4,14 +4,14 @@ use palpate::analysis::{Analysis, Finding, HoldAnalysis, JointAnalysis, JointHol
 use palpate::identify::{Estimate, ExponentChoice, TrendVerdict};
 use palpate::segment::{After, HoldMode, Phase, RelaxationType};
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{
     CorrectionDocument, FitDocument, HoldComparisonDocument, SettingsDocument, SignalsDocument, Software, TouchDocument,
 };
 
 /// Where a record came from.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Input {
     /// Path as given.
     pub path: String,

@@ -189,6 +189,7 @@ fn parts(done: &Correction) -> (&'static str, Numbers) {
         Correction::Tared(tare) => {
             ("tared", vec![("force_n", tare.force.into()), ("displacement_m", tare.displacement.into())])
         }
+        Correction::StressAsForce => ("stress_as_force", Vec::new()),
         Correction::AirRunSubtracted => ("air_run_subtracted", Vec::new()),
         Correction::SkewRemoved {
             skew,

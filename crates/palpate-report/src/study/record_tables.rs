@@ -70,6 +70,7 @@ fn untold(done: &Correction) -> Option<String> {
             | Correction::StampsSorted { .. }
             | Correction::StampsMerged { .. }
             | Correction::RowsAveraged { .. }
+            | Correction::StressAsForce
             | Correction::DropoutsReplaced { .. }
     );
     (!told).then(|| done.to_string())

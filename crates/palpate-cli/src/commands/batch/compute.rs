@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::sync_channel;
 use std::thread;
 
-use palpate::analysis::{AnalysisOptions, analyze};
+use palpate::analysis::{AnalysisOptions, examine};
 use palpate_files::description::TestDescription;
 use palpate_report::document::AnalysisDocument;
 
@@ -125,7 +125,7 @@ fn line(path: &Path, digest: Result<String, Failure>, asked: &Asked<'_>) -> Vec<
 fn document(opened: &Opened<'_>, part: usize, asked: &Asked<'_>) -> Result<AnalysisDocument, Failure> {
     let file = opened.read_quietly(part)?;
     let input = input(&file, opened.name(part), asked.described_by, asked.test)?;
-    let analysis = analyze(&file.record, asked.options)
+    let analysis = examine(&file.record, asked.options)
         .map_err(|error| Failure::of_file(&file.path, &error, Some(error.hint())))?;
     Ok(AnalysisDocument::new(&analysis, input))
 }

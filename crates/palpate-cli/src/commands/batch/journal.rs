@@ -176,6 +176,11 @@ impl Journal {
     }
 }
 
+/// Whether a folder is a journal, going by its name and what is in it.
+pub(super) fn is_journal(folder: &Path) -> bool {
+    folder.extension().is_some_and(|ending| ending == "journal") && folder.join(RESULTS).is_file()
+}
+
 /// The folder of the journal of a table.
 pub(super) fn folder_of(out: &Path) -> PathBuf {
     let mut name = out.as_os_str().to_owned();

@@ -18,6 +18,7 @@ use std::time::Instant;
 
 use palpate::analysis::AnalysisOptions;
 use palpate::choose::CompareOptions;
+use palpate::number::counted;
 use palpate_files::description::TestDescription;
 use palpate_report::document::Software;
 use sha2::{Digest, Sha256};
@@ -81,7 +82,7 @@ fn settings(
         "software": format!("{} {}", software.name, software.version),
         "test": described_by.map(|path| path.display().to_string()),
         "test_toml": said,
-        "options": format!("{options:?}"),
+        "options": serde_json::to_value(options).map_err(|error| Failure::new(error, None))?,
         "reading": format!("{:?}", test.map(|test| &test.reading)),
     });
     Ok(value.to_string())
@@ -90,6 +91,11 @@ fn settings(
 fn digest(settings: &str) -> String {
     let digest = Sha256::digest(settings.as_bytes());
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Whether a path is a table of a batch, or the folder of its journal.
+pub(super) fn is_written_by_batch(path: &Path) -> bool {
+    if path.is_dir() { journal::is_journal(path) } else { table::is_table(path) }
 }
 
 /// Whether a file is the table or part of its journal: in the folder of the records they are no records.
@@ -122,9 +128,10 @@ fn tell(arguments: &BatchArguments, written: &table::Written, files: usize, befo
         count => format!(", {count} of {} tests failed", written.tests),
     };
     note(&format!(
-        "{} rows of {} tests in {files} files{kept}{failed}, {:.1} s: {}",
-        written.rows,
-        written.tests - written.failures.len(),
+        "{} of {} in {}{kept}{failed}, {:.1} s: {}",
+        counted(written.rows, "row"),
+        counted(written.tests - written.failures.len(), "test"),
+        counted(files, "file"),
         started.elapsed().as_secs_f64(),
         arguments.out.display()
     ));

@@ -190,7 +190,13 @@ impl Line<'_> {
 /// Codes of the findings about the record and the hold.
 fn codes(line: &Line<'_>) -> String {
     let all = line.document.findings.iter().chain(&line.hold.findings);
-    let codes: Vec<&str> = all.map(|finding| finding.code.as_str()).collect();
+    let mut codes: Vec<&str> = Vec::new();
+    for finding in all {
+        // Of both columns, say.
+        if !codes.contains(&finding.code.as_str()) {
+            codes.push(&finding.code);
+        }
+    }
     codes.join(" ")
 }
 

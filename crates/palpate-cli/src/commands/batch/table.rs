@@ -1,6 +1,7 @@
 //! The rows of all records as one file, written whole or not at all.
 
-use std::io::{self, BufWriter, Write};
+use std::fs::File;
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
 use std::path::Path;
 
@@ -49,6 +50,27 @@ pub(super) struct Written {
 
 /// Under which the table says what it depends on.
 const MARK: &str = "palpate_batch";
+
+/// Most bytes of a Parquet footer that are looked at.
+const FOOTER: u64 = 1 << 20;
+
+/// Whether a file is such a table: by its first line, or by a key at its end.
+pub(super) fn is_table(path: &Path) -> bool {
+    let marked = || -> io::Result<bool> {
+        let mut file = File::open(path)?;
+        let first = format!("# {MARK}: ");
+        let mut bytes = Vec::new();
+        if path.extension().is_some_and(|ending| ending == "parquet") {
+            let length = file.seek(SeekFrom::End(0))?;
+            file.seek(SeekFrom::Start(length.saturating_sub(FOOTER)))?;
+            file.read_to_end(&mut bytes)?;
+            return Ok(bytes.windows(MARK.len()).any(|window| window == MARK.as_bytes()));
+        }
+        file.take(first.len() as u64).read_to_end(&mut bytes)?;
+        Ok(bytes == first.as_bytes())
+    };
+    marked().unwrap_or(false)
+}
 
 /// Writes the entries at `places`, one in memory at a time, with `settings` inside.
 pub(super) fn write(

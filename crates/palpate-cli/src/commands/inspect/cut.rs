@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use palpate::analysis::{AnalysisError, AnalysisOptions, Finding, corrected};
-use palpate::record::Record;
+use palpate::analysis::{AnalysisError, AnalysisOptions, Finding, corrected, suspicious_signs};
+use palpate::record::{Record, SignalReport};
 use palpate::segment::{Phase, SegmentError, Segmentation, TouchEstimate, find_contact_of};
 use palpate_files::description::TestDescription;
 use palpate_report::figure::Figure;
@@ -23,6 +23,8 @@ pub(super) struct Cut {
     found: Result<Segmentation, SegmentError>,
     /// That the clocks differ, if they do.
     skewed: Option<Finding>,
+    /// What the columns are like where clocks that differ are put right.
+    signals: Option<SignalReport>,
 }
 
 impl Cut {
@@ -33,6 +35,7 @@ impl Cut {
         let corrected = corrected(record, &options)?;
         Ok(Self {
             skewed: corrected.skew_finding(),
+            signals: corrected.aligned(record).map(|(_, signals)| signals),
             record: corrected.record,
             before,
             found: corrected.segmentation,
@@ -42,6 +45,11 @@ impl Cut {
     /// The phases, if there are any.
     pub(super) fn found(&self) -> Option<&Segmentation> {
         self.found.as_ref().ok()
+    }
+
+    /// What the columns are like, if their clocks were seen to differ.
+    pub(super) fn signals(&self) -> Option<&SignalReport> {
+        self.signals.as_ref()
     }
 
     /// Why the holds that a description gives cannot be those of the record, if so.
@@ -66,6 +74,9 @@ impl Cut {
             Ok(found) => {
                 out.push_str(&self.phases(found));
                 out.push_str(&self.contact(found, test));
+                for sign in suspicious_signs(&self.record) {
+                    let _ = writeln!(out, "{}; {}", sign.seen(), sign.remedy());
+                }
             }
             Err(_) if self.refused().is_some() => {}
             Err(error) => {
@@ -168,7 +179,7 @@ impl Cut {
             let rules: Vec<String> = contact.estimates.iter().map(rule).collect();
             let _ = writeln!(
                 out,
-                "rules for first touch differ by {} mm: {}",
+                "rules for first touch scatter by {} mm (robust standard deviation): {}",
                 significant(1e3 * spread, 2),
                 rules.join(", ")
             );

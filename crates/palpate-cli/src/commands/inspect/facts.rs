@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use palpate::record::{Stamps, Values};
-use palpate_files::contents::{Format, Part};
+use palpate::record::{SignalReport, Stamps, Values};
+use palpate_files::contents::{ColumnKind, Format, Part};
 use palpate_files::record_file::{RecordFile, Role};
 use palpate_report::number::significant;
 use palpate_report::table::{Cell, Table, TableColumn};
@@ -53,7 +53,10 @@ pub(super) fn columns_table(part: &Part, file: Option<&RecordFile>) -> Table {
                 Role::Deflection => "deflection, off the displacement,".to_owned(),
                 Role::ClockOf(quantity) => format!("time of {quantity}"),
             };
-            format!("{what} in {}{sign}", used.unit)
+            match column.kind {
+                ColumnKind::DateTime => format!("{what}, from a {}", used.unit),
+                _ => format!("{what} in {}{sign}", used.unit),
+            }
         });
         // One column can be force and deflection of a cantilever.
         let role = roles.collect::<Vec<_>>().join("; ");
@@ -68,7 +71,8 @@ pub(super) fn columns_table(part: &Part, file: Option<&RecordFile>) -> Table {
     table
 }
 
-pub(super) fn signal_facts(file: &RecordFile) -> String {
+/// What a record is like; where its clocks differ its columns are looked at with both put right.
+pub(super) fn signal_facts(file: &RecordFile, aligned: Option<&SignalReport>) -> String {
     let record = &file.record;
     let time = record.time();
     let steps = time.windows(2).map(|pair| pair[1] - pair[0]);
@@ -96,10 +100,11 @@ pub(super) fn signal_facts(file: &RecordFile) -> String {
     if let Some(stamps) = &file.signals.force_stamps {
         stamp_facts(&mut out, stamps, " of the force");
     }
-    if let Some(displacement) = &file.signals.displacement {
+    let values = aligned.unwrap_or(&file.signals);
+    if let Some(displacement) = &values.displacement {
         value_facts(&mut out, "displacement", displacement, (1e3, "mm"));
     }
-    value_facts(&mut out, "force", &file.signals.force, (1.0, "N"));
+    value_facts(&mut out, "force", &values.force, (1.0, "N"));
     for done in record.corrections() {
         let _ = writeln!(out, "done: {done}");
     }

@@ -107,8 +107,9 @@ fn one_test(opened: &Opened<'_>, part: usize, arguments: &InspectArguments, out:
     };
     out.push_str(&columns_table(about, Some(&file)).to_plain_text());
     out.push('\n');
-    out.push_str(&signal_facts(&file));
-    let cut = Cut::of(&file.record, test).map_err(|error| Failure::of_file(&file.path, &error, Some(error.hint())))?;
+    let cut = Cut::of(&file.record, test);
+    out.push_str(&signal_facts(&file, cut.as_ref().ok().and_then(Cut::signals)));
+    let cut = cut.map_err(|error| Failure::of_file(&file.path, &error, Some(error.hint())))?;
     out.push_str(&cut.told(test));
     if let Some(error) = cut.refused() {
         return Err(Failure::of_file(&file.path, error, Some(error.hint().to_owned())));

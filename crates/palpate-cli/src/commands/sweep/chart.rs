@@ -63,7 +63,7 @@ impl Chart {
     pub(super) fn draw(&self, sweep: &Sweep, table: &Path) -> Result<Vec<u8>, Failure> {
         let stride = match sweep.plan() {
             Plan::Grid { .. } => 1,
-            Plan::LatinHypercube { .. } => sweep.runs().div_ceil(MOST_POINTS).max(1),
+            Plan::LatinHypercube { .. } | Plan::Together { .. } => sweep.runs().div_ceil(MOST_POINTS).max(1),
         };
         let read =
             |column: &str| read_column(table, column, stride as usize).map_err(|error| table_failure(table, &error));
@@ -84,7 +84,9 @@ impl Chart {
         let axes = axes.collect::<Result<Vec<_>, Failure>>()?;
         let figure = match sweep.plan() {
             Plan::Grid { .. } => sweep_grid_figure(&name, &caption, &axes, &result),
-            Plan::LatinHypercube { .. } => Some(sweep_points_figure(&name, &caption, &axes, &result)),
+            Plan::LatinHypercube { .. } | Plan::Together { .. } => {
+                Some(sweep_points_figure(&name, &caption, &axes, &result))
+            }
         };
         let figure = figure.ok_or_else(|| Failure::of_file(table, "expected one row a run, found others", None))?;
         picture(&self.path, &figure)

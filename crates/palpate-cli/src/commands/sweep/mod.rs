@@ -10,7 +10,7 @@
 mod chart;
 mod compute;
 mod parts;
-mod rows;
+pub(crate) mod rows;
 
 use std::fs::File;
 use std::path::{Path, PathBuf};

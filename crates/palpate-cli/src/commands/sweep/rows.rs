@@ -55,7 +55,7 @@ pub(super) fn results(sweep: &Sweep) -> Vec<ResultColumn> {
 }
 
 /// All columns: the number of the run, the swept numbers, the results, and why there are none.
-pub(super) fn fields(sweep: &Sweep) -> Vec<Field> {
+pub(crate) fn fields(sweep: &Sweep) -> Vec<Field> {
     let swept = sweep.numbers().iter().map(|number| Field::new(&number.column, Kind::Number));
     let results = results(sweep).into_iter().map(|column| Field::new(column.name, Kind::Number));
     [Field::new("run", Kind::Count)]
@@ -67,7 +67,7 @@ pub(super) fn fields(sweep: &Sweep) -> Vec<Field> {
 }
 
 /// Simulates the runs with these indices, and hands each to `tell` once it is done.
-pub(super) fn simulated(sweep: &Sweep, path: &Path, runs: std::ops::Range<u64>, mut tell: impl FnMut()) -> Rows {
+pub(crate) fn simulated(sweep: &Sweep, path: &Path, runs: std::ops::Range<u64>, mut tell: impl FnMut()) -> Rows {
     let results = results(sweep).len();
     let mut numbers: Vec<Vec<Option<f64>>> = vec![Vec::new(); sweep.numbers().len() + results];
     let (mut counts, mut reasons) = (Vec::new(), Vec::new());
