@@ -6,16 +6,17 @@ use palpate::laws::{Law, Response};
 use palpate_report::compared::Quantity;
 use palpate_report::document::HoldComparisonDocument;
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 
 use crate::arrays::doubles;
 use crate::document::{Document, Fields};
 use crate::errors::{FitError, OptionError, refused_plainly};
 use crate::fit::deviations;
 use crate::table::Table;
-use crate::work::at_length;
+use crate::work::{Made, at_length};
 
 /// Laws compared on one hold: each was fitted to its first part and held against the rest.
-#[pyclass(name = "Comparison", module = "palpate", frozen)]
+#[pyclass(name = "Comparison", module = "palpate", frozen, eq)]
 pub(crate) struct Comparison {
     json: String,
     document: Document,
@@ -68,6 +69,12 @@ pub(crate) fn compare(
     Ok(Comparison { json, document })
 }
 
+impl PartialEq for Comparison {
+    fn eq(&self, other: &Self) -> bool {
+        self.json == other.json
+    }
+}
+
 impl Comparison {
     fn verdict(&self, field: &str) -> Option<String> {
         match self.document.get("verdict")?.get(field)? {
@@ -112,6 +119,16 @@ impl Comparison {
     /// Everything as plain objects.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         py.import("json")?.call_method1("loads", (&self.json,))
+    }
+
+    #[classmethod]
+    fn _from_json(_class: &Bound<'_, PyType>, json: String) -> PyResult<Self> {
+        let document = serde_json::from_str(&json).map_err(refused_plainly::<FitError>)?;
+        Ok(Self { json, document })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
+        Ok((py.get_type::<Self>().getattr("_from_json")?, (self.json.clone(),)))
     }
 
     fn __repr__(&self) -> String {

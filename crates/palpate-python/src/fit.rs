@@ -11,7 +11,7 @@ use pyo3::types::{PyDict, PyType};
 
 use crate::arrays::doubles;
 use crate::errors::{FitError, OptionError, refused_plainly};
-use crate::work::briefly;
+use crate::work::{Made, briefly};
 
 /// A number that was found or given.
 #[pyclass(name = "Estimate", module = "palpate", frozen, eq)]
@@ -51,6 +51,17 @@ impl PyEstimate {
         self.estimate.value
     }
 
+    #[classmethod]
+    fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
+        let (estimate, unit) = serde_json::from_str(json).map_err(refused_plainly::<FitError>)?;
+        Ok(Self { estimate, unit })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
+        let json = serde_json::to_string(&(self.estimate, self.unit)).map_err(refused_plainly::<FitError>)?;
+        Ok((py.get_type::<Self>().getattr("_from_json")?, (json,)))
+    }
+
     fn __repr__(&self) -> String {
         match self.estimate.standard_error {
             Some(error) => with_error(self.estimate.value, error),
@@ -71,7 +82,15 @@ fn unit_word(unit: NumberUnit) -> &'static str {
     }
 }
 
-/// A law fitted to a hold.
+/// A law fitted to a hold: estimates with errors and intervals, covariance, why it ended.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, palpate
+/// >>> t = np.linspace(0.0, 40.0, 400)
+/// >>> fit = palpate.fit_hold(t, 1 + 2 * np.exp(-t / 8), law="standard-linear-solid")
+/// >>> fit.estimates["time"].unit, fit.is_good, round(float(fit.predict([80.0])[0]), 4)
+/// ('s', True, 1.0001)
 #[pyclass(name = "Fit", module = "palpate", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Fit {
@@ -202,6 +221,25 @@ impl Fit {
     }
 
     /// The signal at times after the first sample; with `interval`, also its confidence band.
+    ///
+    /// Parameters
+    /// ----------
+    /// elapsed_s : array_like, shape (N,)
+    ///     Time since the start of the hold, s.
+    /// interval : float, optional
+    ///     Coverage of the band, between 0 and 1.
+    /// of : str
+    ///     Band of the "curve", or of a "sample" with the noise of the fitted ones.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, shape (N,), or three of them
+    ///     The curve; with `interval` the curve, the lower and the upper end of the band.
+    ///
+    /// Raises
+    /// ------
+    /// OptionError
+    ///     A coverage that is no share, a word that is none of the two.
     #[pyo3(signature = (elapsed_s, *, interval=None, of="curve"))]
     fn predict<'py>(
         &self,
@@ -289,7 +327,7 @@ impl Fit {
         Ok(Self { fit })
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
         let make = py.get_type::<Self>().getattr("_from_json")?;
         Ok((make, (self.json()?,)))
     }
@@ -335,6 +373,10 @@ impl Keywords {
             refused_plainly::<OptionError>(format!("{name} is one of {known}, found {found:?}"))
         };
         let law = self.law.parse().map_err(refused_plainly::<OptionError>)?;
+        if law == Law::Spectrum {
+            let message = "the spectrum has no few numbers to estimate: palpate.compare fits and judges it";
+            return Err(refused_plainly::<OptionError>(message));
+        }
         let response = match self.response.as_str() {
             "relaxation" => Response::Relaxation,
             "creep" => Response::Creep,

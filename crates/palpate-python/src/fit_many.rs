@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use arrow_array::cast::AsArray;
 use arrow_array::types::Float64Type;
 use arrow_array::{Array, ArrayRef, Float64Array, Int64Array, StringArray};
+use arrow_buffer::ScalarBuffer;
 use arrow_schema::DataType;
 use numpy::{PyArray1, PyArrayMethods};
 use palpate::identify::{FitError as Refused, LawFit, NumberUnit};
@@ -17,22 +18,20 @@ use rayon::prelude::*;
 use crate::errors::{FitError, refused_plainly};
 use crate::fit::{Asked, Keywords, deviations, ending, fitted};
 use crate::table::Table;
-use crate::work::at_length;
+use crate::work::{Progress, at_length_told};
 
-/// Curves of any lengths, one behind the other.
+/// Curves of any lengths. Columns of Arrow never change, and are not copied; arrays of NumPy may change, and are.
 struct Ragged {
-    values: Vec<f64>,
-    /// Where each begins, and where the last ends.
-    offsets: Vec<usize>,
+    curves: Vec<ScalarBuffer<f64>>,
 }
 
 impl Ragged {
     fn len(&self) -> usize {
-        self.offsets.len() - 1
+        self.curves.len()
     }
 
     fn curve(&self, index: usize) -> &[f64] {
-        &self.values[self.offsets[index]..self.offsets[index + 1]]
+        &self.curves[index]
     }
 }
 
@@ -43,18 +42,15 @@ fn ragged(curves: &Bound<'_, PyAny>, name: &str) -> PyResult<Ragged> {
     }
     let found = curves.py().import("palpate._arrays")?.call_method1("as_ragged", (curves, name))?;
     let (values, offsets): (Bound<'_, PyArray1<f64>>, Bound<'_, PyArray1<i64>>) = found.extract()?;
-    let offsets = offsets.try_readonly()?.as_array().iter().map(|offset| *offset as usize).collect();
+    let offsets: Vec<usize> = offsets.try_readonly()?.as_array().iter().map(|offset| *offset as usize).collect();
+    let values = ScalarBuffer::from(values.try_readonly()?.as_array().to_vec());
     Ok(Ragged {
-        values: values.try_readonly()?.as_array().to_vec(),
-        offsets,
+        curves: offsets.windows(2).map(|ends| values.slice(ends[0], ends[1] - ends[0])).collect(),
     })
 }
 
 fn of_arrow(column: &PyChunkedArray, name: &str) -> PyResult<Ragged> {
-    let mut ragged = Ragged {
-        values: Vec::new(),
-        offsets: vec![0],
-    };
+    let mut ragged = Ragged { curves: Vec::new() };
     let wrong = |kind: &DataType| {
         refused_plainly::<FitError>(format!("{name}: expected a column of lists of doubles, found one of {kind}"))
     };
@@ -62,11 +58,10 @@ fn of_arrow(column: &PyChunkedArray, name: &str) -> PyResult<Ragged> {
         let row = row.ok_or_else(|| refused_plainly::<FitError>(format!("{name}: a list is missing")))?;
         let numbers = row.as_primitive_opt::<Float64Type>().ok_or_else(|| wrong(row.data_type()))?;
         if numbers.null_count() > 0 {
-            let index = ragged.offsets.len() - 1;
+            let index = ragged.len();
             return Err(refused_plainly::<FitError>(format!("{name}, curve {index}: a number is missing")));
         }
-        ragged.values.extend_from_slice(numbers.values());
-        ragged.offsets.push(ragged.values.len());
+        ragged.curves.push(numbers.values().clone());
         Ok(())
     };
     for chunk in column.chunks() {
@@ -102,16 +97,17 @@ pub(crate) fn fit_many(
     signal: &Bound<'_, PyAny>,
     weights: Option<&Bound<'_, PyAny>>,
     keywords: Keywords,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Table> {
     let (times, values) = (ragged(time_s, "time_s")?, ragged(signal, "signal")?);
     let curves = values.len();
     let one_time = shared(&times, curves, "time_s")?;
     let weights = weights.map(|weights| ragged(weights, "weights")).transpose()?;
     let weights = match weights {
-        Some(Ragged { values, offsets }) => {
+        Some(Ragged { curves: weights }) => {
+            let of_one = |weights: ScalarBuffer<f64>| deviations(weights.to_vec()).map(ScalarBuffer::from);
             let found = Ragged {
-                values: deviations(values)?,
-                offsets,
+                curves: weights.into_iter().map(of_one).collect::<PyResult<_>>()?,
             };
             Some((shared(&found, curves, "weights")?, found))
         }
@@ -120,6 +116,8 @@ pub(crate) fn fit_many(
     let asked = keywords.asked()?;
     let stopped = Arc::new(AtomicBool::new(false));
     let stop = Arc::clone(&stopped);
+    let progress = Progress::of(progress);
+    let told = progress.clone();
     let work = move || -> (Vec<Fitted>, Asked) {
         let one = |index: usize| {
             if stop.load(Ordering::Relaxed) {
@@ -127,12 +125,14 @@ pub(crate) fn fit_many(
             }
             let time = times.curve(if one_time { 0 } else { index });
             let deviations = weights.as_ref().map(|(one, found)| found.curve(if *one { 0 } else { index }));
-            Some(fitted(time, values.curve(index), deviations, &asked))
+            let fit = fitted(time, values.curve(index), deviations, &asked);
+            told.step();
+            Some(fit)
         };
         let fits = (0..curves).into_par_iter().map(one).collect();
         (fits, asked)
     };
-    let (fits, _) = at_length(py, work).inspect_err(|_| stopped.store(true, Ordering::Relaxed))?;
+    let (fits, _) = at_length_told(py, &progress, work).inspect_err(|_| stopped.store(true, Ordering::Relaxed))?;
     table(&fits)
 }
 

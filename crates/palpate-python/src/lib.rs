@@ -6,7 +6,8 @@
 //! | `analysis.rs` | `Analysis`, `Finding` |
 //! | `fit.rs`, `fit_many.rs` | `fit_hold`, `Fit`, `Estimate`; thousands of holds in one call |
 //! | `compare.rs` | laws compared by what they foretell |
-//! | `simulate.rs` | `simulate`, `Trajectory`, `ContactState` |
+//! | `simulate.rs`, `simulate_many.rs` | `simulate`, `Trajectory`; one protocol with many numbers |
+//! | `contact_state.rs` | `ContactState`, `ContactStates` |
 //! | `laws.rs` | laws as functions of arrays |
 //! | `table.rs`, `document.rs` | results as Arrow |
 //! | `arrays.rs` | numbers in |
@@ -18,6 +19,7 @@ mod analysis;
 mod arrays;
 mod command;
 mod compare;
+mod contact_state;
 mod document;
 mod errors;
 mod fit;
@@ -25,6 +27,7 @@ mod fit_many;
 mod laws;
 mod record;
 mod simulate;
+mod simulate_many;
 mod table;
 mod work;
 
@@ -40,6 +43,8 @@ mod _palpate {
     #[pymodule_export]
     use crate::compare::{Comparison, compare};
     #[pymodule_export]
+    use crate::contact_state::{ContactState, ContactStates};
+    #[pymodule_export]
     use crate::errors::{FitError, ModelError, OptionError, PalpateError, PalpateWarning, RecordError};
     #[pymodule_export]
     use crate::fit::{Fit, PyEstimate, fit_hold};
@@ -50,7 +55,9 @@ mod _palpate {
     #[pymodule_export]
     use crate::record::{Record, read};
     #[pymodule_export]
-    use crate::simulate::{ContactState, Trajectory, simulate};
+    use crate::simulate::{Trajectory, simulate};
+    #[pymodule_export]
+    use crate::simulate_many::simulate_many;
     #[pymodule_export]
     use crate::table::Table;
 }

@@ -3,10 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use arrow_array::{ArrayRef, Float64Array};
+use arrow_array::cast::AsArray;
+use arrow_array::types::{Float32Type, Float64Type, Int32Type, Int64Type};
+use arrow_array::{Array, ArrayRef, Float64Array};
+use arrow_schema::DataType;
 use numpy::PyArray1;
-use palpate::analysis::{AnalysisOptions, analyze, corrected};
-use palpate::record::Record as Measured;
+use palpate::analysis::{AnalysisOptions, corrected};
+use palpate::record::{Correction, Record as Measured};
 use palpate::segment::Segment;
 use palpate_files::contents::Contents;
 use palpate_files::description::{DescriptionError, TestDescription, parse_test, read_test};
@@ -14,22 +17,75 @@ use palpate_files::record_file::{ReadError, RecordFile, read_part, tests};
 use palpate_report::document::Input;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
-use serde::Serialize;
+use pyo3_arrow::PyTable;
+use serde::{Deserialize, Serialize};
 
 use crate::analysis::Analysis;
 use crate::arrays::doubles;
 use crate::document::{Document, Fields};
 use crate::errors::{OptionError, RecordError, refused, refused_plainly, unread};
 use crate::table::Table;
-use crate::work::at_length;
+use crate::work::{Made, at_length, briefly};
 
-/// A record of time, force and, if there is one, displacement, in SI, checked.
+/// A record of time, force and, if there is one, displacement, in SI, checked; loading is positive.
+///
+/// Made by `palpate.read`, `Record.from_arrays` or `Record.from_arrow`. It never changes, can be compared, copied and pickled,
+/// and is a table for polars, pandas and pyarrow.
+///
+/// Examples
+/// --------
+/// >>> import palpate
+/// >>> record = palpate.Record.from_arrays(time_s=[0, 1, 2, 3], force_n=[0.0, 3.0, 2.0, 1.5], displacement_m=[0, 1e-3, 1e-3, 1e-3])
+/// >>> len(record), float(record.force_n.max())
+/// (4, 3.0)
 #[pyclass(name = "Record", module = "palpate", frozen, eq)]
 #[derive(Clone)]
 pub(crate) struct Record {
     record: Measured,
     input: Input,
-    test: Option<TestDescription>,
+    test: Option<Described>,
+}
+
+/// A description, and the text that it is made of again elsewhere.
+#[derive(Clone)]
+struct Described {
+    test: TestDescription,
+    text: String,
+}
+
+/// The columns of a record and what was done to them.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Kept {
+    time: Vec<f64>,
+    displacement: Option<Vec<f64>>,
+    force: Vec<f64>,
+    corrections: Vec<Correction>,
+}
+
+impl Kept {
+    pub(crate) fn of(record: &Measured) -> Self {
+        Self {
+            time: record.time().to_vec(),
+            displacement: record.displacement().map(<[f64]>::to_vec),
+            force: record.force().to_vec(),
+            corrections: record.corrections().to_vec(),
+        }
+    }
+
+    pub(crate) fn record(self) -> PyResult<Measured> {
+        let record = Measured::new(self.time, self.displacement, self.force);
+        let record = record.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
+        Ok(record.corrected_before(self.corrections))
+    }
+}
+
+/// What a record is made of again.
+#[derive(Serialize, Deserialize)]
+struct Parts {
+    measured: Kept,
+    input: Input,
+    test: Option<String>,
+    part: Option<String>,
 }
 
 impl PartialEq for Record {
@@ -39,37 +95,45 @@ impl PartialEq for Record {
 }
 
 /// A description in a file, or as text.
-fn description(path: Option<PathBuf>, text: Option<&str>) -> PyResult<Option<TestDescription>> {
+fn description(path: Option<PathBuf>, text: Option<&str>) -> PyResult<Option<Described>> {
     let said = |error: DescriptionError| {
         let hint = error.hint();
         refused::<OptionError>(error, hint)
     };
-    match (path, text) {
-        (Some(path), _) if !path.exists() => {
-            let message = format!("{}: no such file", path.display());
-            Err(std::io::Error::new(std::io::ErrorKind::NotFound, message).into())
-        }
-        (Some(path), _) => read_test(&path).map(Some).map_err(said),
-        (None, Some(text)) => parse_test(text, Path::new("test")).map(Some).map_err(said),
-        (None, None) => Ok(None),
-    }
+    let (test, text) = match (path, text) {
+        (Some(path), _) if !path.exists() => return Err(missing(&path)),
+        (Some(path), _) => (read_test(&path), std::fs::read_to_string(&path)?),
+        (None, Some(text)) => (parse_test(text, Path::new("test")), text.to_owned()),
+        (None, None) => return Ok(None),
+    };
+    Ok(Some(Described {
+        test: test.map_err(said)?,
+        text,
+    }))
 }
 
-fn opened(path: &Path, test: Option<&TestDescription>) -> Result<RecordFile, ReadError> {
+fn missing(path: &Path) -> PyErr {
+    let message = format!("{}: no such file", path.display());
+    std::io::Error::new(std::io::ErrorKind::NotFound, message).into()
+}
+
+/// The name of a test, and what its reading came to.
+type ReadTest = (String, Result<RecordFile, ReadError>);
+
+/// Every test that was asked for in a file, each read or refused.
+fn opened(path: &Path, test: Option<&TestDescription>) -> Result<Vec<ReadTest>, ReadError> {
     let usual = TestDescription::default();
     let said = test.unwrap_or(&usual);
     let contents = Contents::open(path, &said.reading).map_err(ReadError::File)?;
     let found = tests(&contents, said)?;
-    match found.parts[..] {
-        [only] => read_part(&contents, only, test, &mut |_, _| {}),
-        ref several => Err(ReadError::SeveralParts {
-            path: path.to_owned(),
-            parts: several.iter().map(|part| contents.parts()[*part].title().to_owned()).collect(),
-        }),
-    }
+    let one = |part: &usize| {
+        let title = contents.parts()[*part].title().to_owned();
+        (title, read_part(&contents, *part, test, &mut |_, _| {}))
+    };
+    Ok(found.parts.iter().map(one).collect())
 }
 
-/// Reads the record in a file; `test_path` or `test_text` describes it.
+/// Reads the records in a file, `only` one of them or all; `test_path` or `test_text` describes them.
 #[pyfunction]
 pub(crate) fn read(
     py: Python<'_>,
@@ -77,34 +141,81 @@ pub(crate) fn read(
     test_path: Option<PathBuf>,
     test_text: Option<&str>,
     part: Option<String>,
-) -> PyResult<Record> {
+    only: bool,
+) -> PyResult<Vec<Record>> {
     let described_by = test_path.clone();
     let mut test = description(test_path, test_text)?;
     if part.is_some() {
-        test.get_or_insert_default().reading.part = part;
+        let mut said = test.unwrap_or_else(|| Described {
+            test: TestDescription::default(),
+            text: String::new(),
+        });
+        said.test.reading.part = part;
+        test = Some(said);
     }
     let (read, test, sha256, path) = at_length(py, move || {
-        let read = opened(&path, test.as_ref());
+        let read = opened(&path, test.as_ref().map(|said| &said.test));
         let sha256 = palpate_cli::sha256(&path);
         (read, test, sha256, path)
     })?;
-    let file = read.map_err(|error| unread(&error))?;
+    let files = read.map_err(|error| unread(&error))?;
+    if only && files.len() > 1 {
+        let parts = files.into_iter().map(|(title, _)| title).collect();
+        return Err(unread(&ReadError::SeveralParts { path, parts }));
+    }
     let sha256 = sha256.map_err(|(message, hint)| refused::<RecordError>(message, hint))?;
     let stem = || path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let input = Input {
-        path: path.display().to_string(),
-        part: file.part.name.clone(),
-        sha256,
-        rows: file.rows,
-        rows_averaged: file.averaged,
-        test: described_by.map(|path| path.display().to_string()),
-        title: test.as_ref().and_then(|test| test.about.title.clone()).unwrap_or_else(stem),
+    let several = files.len() > 1;
+    let record = |(name, file): ReadTest| {
+        let file = file.map_err(|error| unread(&error))?;
+        let title = test.as_ref().and_then(|said| said.test.about.title.clone()).unwrap_or_else(stem);
+        let input = Input {
+            path: path.display().to_string(),
+            part: file.part.name.clone(),
+            sha256: sha256.clone(),
+            rows: file.rows,
+            rows_averaged: file.averaged,
+            test: described_by.as_ref().map(|path| path.display().to_string()),
+            title: if several { format!("{title}, {name}") } else { title },
+        };
+        Ok(Record {
+            record: file.record,
+            input,
+            test: test.clone(),
+        })
     };
-    Ok(Record {
-        record: file.record,
-        input,
-        test,
-    })
+    files.into_iter().map(record).collect()
+}
+
+/// A column of numbers by its name, none missing.
+fn column(table: &PyTable, name: &str) -> PyResult<Vec<f64>> {
+    let mut values = Vec::new();
+    for batch in table.batches() {
+        let Some(column) = batch.column_by_name(name) else {
+            let schema = batch.schema();
+            let names: Vec<&str> = schema.fields().iter().map(|field| field.name().as_str()).collect();
+            let message = format!("expected a column called {name:?}, found {}", names.join(", "));
+            return Err(refused_plainly::<RecordError>(message));
+        };
+        if column.null_count() > 0 {
+            let row = (0..column.len()).find(|row| column.is_null(*row)).unwrap_or(0);
+            let message = format!("{name}: expected a number in every row, found none in row {}", values.len() + row);
+            return Err(refused_plainly::<RecordError>(message));
+        }
+        match column.data_type() {
+            DataType::Float64 => values.extend_from_slice(column.as_primitive::<Float64Type>().values()),
+            DataType::Float32 => {
+                values.extend(column.as_primitive::<Float32Type>().values().iter().map(|v| f64::from(*v)));
+            }
+            DataType::Int64 => values.extend(column.as_primitive::<Int64Type>().values().iter().map(|v| *v as f64)),
+            DataType::Int32 => values.extend(column.as_primitive::<Int32Type>().values().iter().map(|v| f64::from(*v))),
+            other => {
+                let message = format!("{name}: expected a column of doubles, found one of {other}");
+                return Err(refused_plainly::<RecordError>(message));
+            }
+        }
+    }
+    Ok(values)
 }
 
 /// What the keywords of `Record.analyze` say.
@@ -144,26 +255,14 @@ impl Asked {
 }
 
 impl Record {
-    fn options(&self) -> AnalysisOptions {
-        self.test.as_ref().map_or_else(AnalysisOptions::default, TestDescription::analysis_options)
-    }
-}
-
-#[pymethods]
-impl Record {
-    /// A record of arrays in SI, loading positive.
-    #[classmethod]
-    #[pyo3(signature = (*, time_s, force_n, displacement_m=None, title="record"))]
-    fn from_arrays(
-        _class: &Bound<'_, PyType>,
-        time_s: &Bound<'_, PyAny>,
-        force_n: &Bound<'_, PyAny>,
-        displacement_m: Option<&Bound<'_, PyAny>>,
+    /// A record of columns of Python: time, displacement, force.
+    fn checked(
+        py: Python<'_>,
+        (time, displacement, force): (Vec<f64>, Option<Vec<f64>>, Vec<f64>),
         title: &str,
     ) -> PyResult<Self> {
-        let displacement = displacement_m.map(|values| doubles(values, "displacement_m")).transpose()?;
-        let record = Measured::new(doubles(time_s, "time_s")?, displacement, doubles(force_n, "force_n")?)
-            .map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
+        let record = briefly(py, move || Measured::new(time, displacement, force))?;
+        let record = record.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
         let input = Input {
             path: "arrays".to_owned(),
             part: None,
@@ -178,6 +277,102 @@ impl Record {
             input,
             test: None,
         })
+    }
+
+    fn options(&self) -> AnalysisOptions {
+        self.test.as_ref().map_or_else(AnalysisOptions::default, |said| said.test.analysis_options())
+    }
+}
+
+#[pymethods]
+impl Record {
+    /// A record of arrays in SI, loading positive.
+    ///
+    /// Parameters
+    /// ----------
+    /// time_s : array_like, shape (N,)
+    ///     Times in s, rising; at least two.
+    /// force_n : array_like, shape (N,)
+    ///     Force in N.
+    /// displacement_m : array_like, shape (N,), optional
+    ///     Displacement of the jaw in m.
+    /// title : str
+    ///     For reports.
+    ///
+    /// Raises
+    /// ------
+    /// RecordError
+    ///     Columns of different lengths, values that are not finite, times that do not rise, a force that never changes.
+    /// OptionError
+    ///     Columns that are no numbers.
+    #[classmethod]
+    #[pyo3(signature = (*, time_s, force_n, displacement_m=None, title="record"))]
+    fn from_arrays(
+        class: &Bound<'_, PyType>,
+        time_s: &Bound<'_, PyAny>,
+        force_n: &Bound<'_, PyAny>,
+        displacement_m: Option<&Bound<'_, PyAny>>,
+        title: &str,
+    ) -> PyResult<Self> {
+        let displacement = displacement_m.map(|values| doubles(values, "displacement_m")).transpose()?;
+        Self::checked(class.py(), (doubles(time_s, "time_s")?, displacement, doubles(force_n, "force_n")?), title)
+    }
+
+    /// A record of columns of a table in SI, loading positive.
+    ///
+    /// Parameters
+    /// ----------
+    /// table
+    ///     Of polars, pandas, pyarrow, or anything else with ``__arrow_c_stream__``.
+    /// time_s, force_n, displacement_m : str
+    ///     Names of the columns. A displacement is looked for under its own name if none is given, and may be missing.
+    /// title : str
+    ///     For reports.
+    ///
+    /// Raises
+    /// ------
+    /// RecordError
+    ///     No such column, one that is no numbers or lacks some, or as for `from_arrays`.
+    #[classmethod]
+    #[pyo3(signature = (table, *, time_s="time_s", force_n="force_n", displacement_m=None, title="record"))]
+    fn from_arrow(
+        class: &Bound<'_, PyType>,
+        table: &Bound<'_, PyAny>,
+        time_s: &str,
+        force_n: &str,
+        displacement_m: Option<&str>,
+        title: &str,
+    ) -> PyResult<Self> {
+        let table: PyTable = table.extract()?;
+        let known = |name: &str| table.batches().first().is_none_or(|batch| batch.column_by_name(name).is_some());
+        let usual = Some("displacement_m").filter(|name| known(name));
+        let displacement = displacement_m.or(usual).map(|name| column(&table, name)).transpose()?;
+        Self::checked(class.py(), (column(&table, time_s)?, displacement, column(&table, force_n)?), title)
+    }
+
+    #[classmethod]
+    fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
+        let parts: Parts = serde_json::from_str(json).map_err(refused_plainly::<RecordError>)?;
+        let mut test = description(None, parts.test.as_deref())?;
+        if let Some(said) = &mut test {
+            said.test.reading.part = parts.part;
+        }
+        Ok(Self {
+            record: parts.measured.record()?,
+            input: parts.input,
+            test,
+        })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
+        let parts = Parts {
+            measured: Kept::of(&self.record),
+            input: self.input.clone(),
+            test: self.test.as_ref().map(|said| said.text.clone()),
+            part: self.test.as_ref().and_then(|said| said.test.reading.part.clone()),
+        };
+        let json = serde_json::to_string(&parts).map_err(refused_plainly::<RecordError>)?;
+        Ok((py.get_type::<Self>().getattr("_from_json")?, (json,)))
     }
 
     /// Title of the record, for reports.
@@ -214,7 +409,18 @@ impl Record {
         self.record.len()
     }
 
-    /// The phases: loading, hold, unloading, rest.
+    /// The phases, found without labels: loading, hold, unloading, rest.
+    ///
+    /// Returns
+    /// -------
+    /// Table
+    ///     A row a phase: ``phase``, ``start_s``, ``end_s``, ``first_row``, ``last_row`` (both inside), what is held (``mode``),
+    ///     what came before (``after``), displacement in m and force in N at both ends.
+    ///
+    /// Raises
+    /// ------
+    /// RecordError
+    ///     Nothing moves, or nothing stands still.
     fn segments(&self, py: Python<'_>) -> PyResult<Table> {
         let (record, options) = (self.record.clone(), self.options());
         let cut = at_length(py, move || corrected(&record, &options))?;
@@ -246,7 +452,38 @@ impl Record {
         Table::of_documents(&rows)
     }
 
-    /// Phases, strains, laws for every hold, findings.
+    /// Phases, strains, laws for every hold, findings: the study of ``palpate analyze``.
+    ///
+    /// Parameters
+    /// ----------
+    /// test : path or mapping, optional
+    ///     A test description in place of that of the record.
+    /// exponents : sequence of float, optional
+    ///     Exponents n to fit with each; those of the description, or 1, 2, 3, 5 and 7, if left out.
+    /// free_exponent : bool, optional
+    ///     Whether n is found as well.
+    /// confidence : float, optional
+    ///     Coverage of the intervals, between 0 and 1.
+    /// fit_until_s : float, optional
+    ///     Longest stretch of a hold to fit, s.
+    /// compare : bool
+    ///     Whether laws are compared, which takes most of the time.
+    ///
+    /// Returns
+    /// -------
+    /// Analysis
+    ///
+    /// Raises
+    /// ------
+    /// RecordError
+    ///     No hold, or none that can be fitted.
+    /// OptionError
+    ///     An exponent, a confidence or a description that is wrong.
+    ///
+    /// Warns
+    /// -----
+    /// PalpateWarning
+    ///     Findings that forbid the use of a number.
     #[pyo3(signature = (*, test=None, exponents=None, free_exponent=None, confidence=None, fit_until_s=None, compare=true))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn analyze(
@@ -264,7 +501,8 @@ impl Record {
             let said = py.import("palpate")?.call_method1("_described", (test,))?;
             let (path, text): (Option<PathBuf>, Option<String>) = said.extract()?;
             input.test = path.as_ref().map(|path| path.display().to_string());
-            options = description(path, text.as_deref())?.unwrap_or_default().analysis_options();
+            options = description(path, text.as_deref())?
+                .map_or_else(AnalysisOptions::default, |said| said.test.analysis_options());
         }
         let asked = Asked {
             exponents,
@@ -273,13 +511,10 @@ impl Record {
             fit_until_s,
             compare,
         };
-        let (options, record) = (asked.over(options)?, self.record.clone());
-        let analysis = at_length(py, move || analyze(&record, &options))?;
-        let analysis = analysis.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
-        Analysis::new(py, analysis, input)
+        Analysis::of(py, self.record.clone(), asked.over(options)?, input)
     }
 
-    /// Columns `time_s`, `displacement_m` and `force_n`.
+    /// Columns `time_s`, `displacement_m` and `force_n` as a table.
     fn to_arrow(&self) -> PyResult<Table> {
         let column = |values: &[f64]| -> ArrayRef { Arc::new(Float64Array::from(values.to_vec())) };
         let mut columns = vec![("time_s", column(self.record.time()))];

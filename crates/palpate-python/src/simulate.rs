@@ -1,34 +1,32 @@
-//! Simulated contacts: whole protocols, and one step at a time.
+//! A simulated protocol.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use arrow_array::{ArrayRef, BooleanArray, Float64Array};
 use numpy::PyArray1;
-use palpate::simulate::{
-    ContactEventKind, ContactModel, ContactState as State, Trajectory as Simulated, simulate as walk,
-};
-use palpate_files::description::{DescriptionError, Model, parse_protocol, parse_scene, read_protocol, read_scene};
+use palpate::simulate::{ContactEventKind, Trajectory as Simulated, simulate as walk};
+use palpate_files::description::{DescriptionError, parse_protocol, read_protocol};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyType};
+use pyo3::types::PyType;
 
 use crate::errors::{ModelError, OptionError, refused, refused_plainly};
 use crate::table::Table;
-use crate::work::at_length;
+use crate::work::{Made, at_length};
 
-fn said(error: DescriptionError) -> PyErr {
+pub(crate) fn said(error: DescriptionError) -> PyErr {
     let hint = error.hint();
     refused::<OptionError>(error, hint)
 }
 
-/// A simulated contact over time, in SI, compression positive.
+/// A simulated contact over time, in SI, compression positive: arrays of one length, and a table for polars, pandas and pyarrow.
 #[pyclass(name = "Trajectory", module = "palpate", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Trajectory {
     series: Simulated,
 }
 
-fn missing(path: &Path) -> PyErr {
+pub(crate) fn missing(path: &Path) -> PyErr {
     let message = format!("{}: no such file", path.display());
     std::io::Error::new(std::io::ErrorKind::NotFound, message).into()
 }
@@ -168,108 +166,5 @@ impl Trajectory {
     fn __repr__(&self) -> String {
         let (samples, events) = (self.series.len(), self.series.events.len());
         format!("<palpate.Trajectory of {samples} samples, {events} contacts lost or regained>")
-    }
-}
-
-/// What makes an object again: a function and its arguments.
-type Made<'py, T> = (Bound<'py, PyAny>, T);
-
-/// A contact that a controller moves one step at a time.
-#[pyclass(name = "ContactState", module = "palpate")]
-pub(crate) struct ContactState {
-    model: ContactModel,
-    state: State,
-    /// The description, so that the state can be sent elsewhere.
-    text: String,
-}
-
-#[pymethods]
-impl ContactState {
-    #[new]
-    fn new(model: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let said_so = model.py().import("palpate")?.call_method1("_described", (model,))?;
-        let (path, text): (Option<PathBuf>, Option<String>) = said_so.extract()?;
-        let (text, scene) = match (path, text) {
-            (Some(path), _) if !path.exists() => return Err(missing(&path)),
-            (Some(path), _) => (std::fs::read_to_string(&path)?, read_scene(&path)),
-            (None, text) => {
-                let text = text.unwrap_or_default();
-                let scene = parse_scene(&text, Path::new("model"));
-                (text, scene)
-            }
-        };
-        match scene.map_err(said)?.1 {
-            Model::Latency(model) => Ok(Self {
-                model,
-                state: State::default(),
-                text,
-            }),
-            Model::Linear(_) => Err(refused_plainly::<ModelError>("a contact is stepped by the latency law alone")),
-        }
-    }
-
-    /// Moves the jaw to a displacement within a time step; returns the force, N.
-    fn step(&mut self, dt_s: f64, displacement_m: f64) -> PyResult<f64> {
-        self.state.step(&self.model, dt_s, displacement_m).map_err(refused_plainly::<ModelError>)
-    }
-
-    /// Applies a force within a time step; returns the displacement of the jaw, m.
-    fn step_force(&mut self, dt_s: f64, force_n: f64) -> PyResult<f64> {
-        self.state.step_force(&self.model, dt_s, force_n).map_err(refused_plainly::<ModelError>)
-    }
-
-    /// Force now, N.
-    #[getter]
-    fn force_n(&self) -> f64 {
-        self.state.force(&self.model)
-    }
-
-    /// Displacement of the surface of the body at one contact, m.
-    #[getter]
-    fn surface_m(&self) -> f64 {
-        self.state.surface(&self.model)
-    }
-
-    /// Whether the jaw touches the body.
-    #[getter]
-    fn is_touching(&self) -> bool {
-        self.state.is_touching(&self.model)
-    }
-
-    fn __eq__(&self, other: &Self) -> bool {
-        self.model == other.model && self.state == other.state
-    }
-
-    fn __copy__(&self) -> Self {
-        Self {
-            model: self.model.clone(),
-            state: self.state,
-            text: self.text.clone(),
-        }
-    }
-
-    fn __deepcopy__(&self, _memo: &Bound<'_, PyDict>) -> Self {
-        self.__copy__()
-    }
-
-    #[classmethod]
-    fn _from_parts(_class: &Bound<'_, PyType>, text: String, state: [u8; 16]) -> PyResult<Self> {
-        match parse_scene(&text, Path::new("model")).map_err(said)?.1 {
-            Model::Latency(model) => Ok(Self {
-                model,
-                state: State::from_bytes(state).map_err(refused_plainly::<ModelError>)?,
-                text,
-            }),
-            Model::Linear(_) => Err(refused_plainly::<ModelError>("a contact is stepped by the latency law alone")),
-        }
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String, Bound<'py, PyBytes>)>> {
-        let make = py.get_type::<Self>().getattr("_from_parts")?;
-        Ok((make, (self.text.clone(), PyBytes::new(py, &self.state.to_bytes()))))
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<palpate.ContactState: {} N>", palpate::number::significant(self.force_n(), 4))
     }
 }

@@ -1,21 +1,37 @@
 //! A table of results: Arrow inside, so that polars, pandas and pyarrow take it without copies.
 
+use std::io::Cursor;
 use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
 use arrow_array::types::{Float64Type, Int64Type};
 use arrow_array::{Array, ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
+use arrow_ipc::reader::StreamReader;
+use arrow_ipc::writer::StreamWriter;
 use arrow_schema::{ArrowError, DataType};
-use numpy::PyArray1;
+use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyKeyError, PyRuntimeError};
 use pyo3::prelude::*;
-use pyo3::types::PyList;
+use pyo3::types::{PyBytes, PyList, PyType};
 use pyo3_arrow::PyTable;
 
 use crate::document::{Document, Fields};
+use crate::work::Made;
 
 /// Columns of results, each named with its unit.
-#[pyclass(name = "Table", module = "palpate", frozen)]
+///
+/// ``table["force_n"]`` is an array where the column holds numbers (NaN where one is missing) and a list with None where it holds
+/// texts or truths. ``polars.DataFrame(table)``, ``pandas.DataFrame.from_arrow(table)`` and ``pyarrow.table(table)`` take it without
+/// a copy.
+///
+/// Examples
+/// --------
+/// >>> import palpate
+/// >>> table = palpate.fit_many([[0, 1, 2, 3, 4, 5, 6, 7]], [[9, 7, 6, 5.5, 5.2, 5.1, 5.05, 5.02]], law="standard-linear-solid")
+/// >>> len(table), round(float(table["time_s"][0]), 2)
+/// (1, 1.46)
+#[pyclass(name = "Table", module = "palpate", frozen, eq)]
+#[derive(Clone, PartialEq)]
 pub(crate) struct Table {
     batch: RecordBatch,
 }
@@ -101,6 +117,14 @@ impl Table {
                 PyArray1::from_slice(py, column.as_primitive::<Int64Type>().values()).into_any()
             }
             DataType::Int64 => PyList::new(py, column.as_primitive::<Int64Type>().iter())?.into_any(),
+            DataType::FixedSizeList(_, width) => {
+                let rows = column.as_fixed_size_list();
+                let numbers = rows.values().as_primitive::<Float64Type>();
+                let number =
+                    |index: usize| if rows.is_valid(index / *width as usize) { numbers.value(index) } else { f64::NAN };
+                let all = PyArray1::from_iter(py, (0..rows.len() * *width as usize).map(number));
+                all.reshape([rows.len(), *width as usize])?.into_any()
+            }
             DataType::Boolean => PyList::new(py, column.as_boolean().iter())?.into_any(),
             _ => PyList::new(py, column.as_string::<i32>().iter())?.into_any(),
         })
@@ -115,6 +139,25 @@ impl Table {
     ) -> PyResult<Bound<'py, PyAny>> {
         let table = PyTable::try_new(vec![self.batch.clone()], self.batch.schema())?;
         table.into_pyobject(py)?.call_method1("__arrow_c_stream__", (requested_schema,))
+    }
+
+    #[classmethod]
+    fn _from_ipc(_class: &Bound<'_, PyType>, bytes: &[u8]) -> PyResult<Self> {
+        let broken = |error: ArrowError| PyRuntimeError::new_err(error.to_string());
+        let mut reader = StreamReader::try_new(Cursor::new(bytes), None).map_err(broken)?;
+        let schema = reader.schema();
+        let batch = reader.next().transpose().map_err(broken)?;
+        Ok(Self {
+            batch: batch.unwrap_or_else(|| RecordBatch::new_empty(schema)),
+        })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Bound<'py, PyBytes>,)>> {
+        let broken = |error: ArrowError| PyRuntimeError::new_err(error.to_string());
+        let mut writer = StreamWriter::try_new(Vec::new(), &self.batch.schema()).map_err(broken)?;
+        writer.write(&self.batch).map_err(broken)?;
+        let bytes = writer.into_inner().map_err(broken)?;
+        Ok((py.get_type::<Self>().getattr("_from_ipc")?, (PyBytes::new(py, &bytes),)))
     }
 
     fn __repr__(&self) -> String {

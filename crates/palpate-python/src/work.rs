@@ -1,6 +1,8 @@
 //! Long work beside the interpreter: without the GIL, ended by Ctrl-C, and no panic crosses.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
@@ -11,6 +13,39 @@ use crate::errors::{PalpateError, refused};
 
 /// How often signals are looked for.
 const LOOK: Duration = Duration::from_millis(50);
+
+/// What makes an object again: a function and its arguments.
+pub(crate) type Made<'py, T> = (Bound<'py, PyAny>, T);
+
+/// How much of some work is done, for those who wait for it.
+#[derive(Clone, Default)]
+pub(crate) struct Progress {
+    done: Arc<AtomicU64>,
+    /// Called with how much is done, or nobody.
+    tell: Option<Arc<Py<PyAny>>>,
+}
+
+impl Progress {
+    /// Tells a callable of Python, or nobody.
+    pub(crate) fn of(tell: Option<Py<PyAny>>) -> Self {
+        Self {
+            done: Arc::default(),
+            tell: tell.map(Arc::new),
+        }
+    }
+
+    /// One more is done.
+    pub(crate) fn step(&self) {
+        self.done.fetch_add(1, Ordering::Relaxed);
+    }
+
+    fn look(&self, py: Python<'_>) -> PyResult<()> {
+        match &self.tell {
+            Some(tell) => tell.call1(py, (self.done.load(Ordering::Relaxed),)).map(drop),
+            None => Ok(()),
+        }
+    }
+}
 
 fn broken(panic: &(dyn std::any::Any + Send)) -> PyErr {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
@@ -28,6 +63,15 @@ pub(crate) fn briefly<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) 
 
 /// Does work of seconds on a thread of its own; Ctrl-C leaves it alone and returns.
 pub(crate) fn at_length<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
+    at_length_told(py, &Progress::default(), work)
+}
+
+/// Likewise, and tells how much is done.
+pub(crate) fn at_length_told<T: Send + 'static>(
+    py: Python<'_>,
+    progress: &Progress,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
     let (sender, receiver) = channel();
     thread::spawn(move || {
         // Nobody listens any more after Ctrl-C.
@@ -41,8 +85,14 @@ pub(crate) fn at_length<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -
         });
         receiver = back;
         match waited {
-            Ok(done) => return done.map_err(|panic| broken(panic.as_ref())),
-            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Ok(done) => {
+                progress.look(py)?;
+                return done.map_err(|panic| broken(panic.as_ref()));
+            }
+            Err(RecvTimeoutError::Timeout) => {
+                py.check_signals()?;
+                progress.look(py)?;
+            }
             Err(RecvTimeoutError::Disconnected) => return Err(broken(&"the work ended without a result")),
         }
     }

@@ -6,10 +6,14 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import palpate
+import pandas
 import polars
+import pyarrow
+import pyarrow.parquet
 import pytest
 
 KEYS = ("settings", "signals", "segments", "holds", "joint", "overlay", "findings", "software")
@@ -132,3 +136,40 @@ def test_the_command_has_its_exit_codes(tmp_path: Path) -> None:
     assert command("--version").stdout == "palpate 0.1.0\n"
     assert command().returncode == 2
     assert command("inspect", str(tmp_path / "nothing.csv")).returncode == 2
+
+
+def test_all_tests_of_a_file_are_read(tmp_path: Path) -> None:
+    t = np.linspace(0.0, 10.0, 101)
+    table = pyarrow.table(
+        {
+            "test_id": ["a"] * 101 + ["b"] * 101,
+            "time_s": np.concatenate([t, t]),
+            "force_n": np.concatenate([1 + np.exp(-t), 2 + np.exp(-t)]),
+        }
+    )
+    path = tmp_path / "long.parquet"
+    pyarrow.parquet.write_table(table, path)
+    first, second = palpate.read_all(path)
+    assert (first.title, second.title) == ("long, a", "long, b")
+    assert second.force_n[0] == 3.0 and second == palpate.read(path, part="b")
+    with pytest.raises(palpate.RecordError, match="expected one test, found 2"):
+        palpate.read(path)
+
+
+@pytest.mark.parametrize("of", [pyarrow.table, polars.DataFrame, pandas.DataFrame])
+def test_tables_become_records(of: Any) -> None:
+    columns = {"time_s": [0.0, 1.0, 2.0], "force_n": [0.0, 1.5, 1.0], "displacement_m": [0.0, 1e-3, 1e-3]}
+    record = palpate.Record.from_arrow(of(columns))
+    arrays: dict[str, Any] = {name: np.array(values) for name, values in columns.items()}
+    assert record == palpate.Record.from_arrays(**arrays)
+    assert palpate.Record.from_arrow(record) == record
+    other = palpate.Record.from_arrow(of({"t": [0, 1, 2], "F": [0.0, 1.5, 1.0]}), time_s="t", force_n="F")
+    assert other.displacement_m is None and list(other.time_s) == [0.0, 1.0, 2.0]
+    with pytest.raises(palpate.RecordError, match='expected a column called "time_s", found t, F'):
+        palpate.Record.from_arrow(of({"t": [0, 1, 2], "F": [0.0, 1.5, 1.0]}))
+
+
+def test_a_missing_number_in_a_table_is_named() -> None:
+    table = pyarrow.table({"time_s": [0.0, 1.0, 2.0], "force_n": [0.0, None, 1.0]})
+    with pytest.raises(palpate.RecordError, match="force_n: expected a number in every row, found none in row 1"):
+        palpate.Record.from_arrow(table)

@@ -13,7 +13,9 @@ the *nonlinear latency law* of Tsai, Kao et al. This package finds the law in a 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+import sys
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any, Union
 
 from palpate import laws
@@ -21,6 +23,7 @@ from palpate._palpate import (
     Analysis,
     Comparison,
     ContactState,
+    ContactStates,
     Estimate,
     Finding,
     Fit,
@@ -39,11 +42,13 @@ from palpate._palpate import fit_hold as _fit_hold
 from palpate._palpate import fit_many as _fit_many
 from palpate._palpate import read as _read
 from palpate._palpate import simulate as _simulate
+from palpate._palpate import simulate_many as _simulate_many
 
 __all__ = [
     "Analysis",
     "Comparison",
     "ContactState",
+    "ContactStates",
     "Estimate",
     "Finding",
     "Fit",
@@ -61,7 +66,9 @@ __all__ = [
     "fit_many",
     "laws",
     "read",
+    "read_all",
     "simulate",
+    "simulate_many",
 ]
 
 Description = Union[str, os.PathLike[str], Mapping[str, Any], None]
@@ -117,7 +124,50 @@ def read(path: str | os.PathLike[str], *, test: Description = None, part: str | 
         The operating system does not hand the file out.
     """
     described, text = _described(test)
-    return _read(path, described, text, None if part is None else str(part))
+    return _read(path, described, text, None if part is None else str(part), True)[0]
+
+
+def read_all(path: str | os.PathLike[str], *, test: Description = None) -> list[Record]:
+    """Read all tests in a file: the sheets of a workbook, the curves of a map, the ``test_id`` of a table.
+
+    Parameters
+    ----------
+    path, test
+        As for `read`.
+
+    Returns
+    -------
+    list of Record
+        In the order of the file, each with the name of its test in ``title``.
+
+    Raises
+    ------
+    RecordError, OptionError, OSError
+        As for `read`, for the first test that makes no record.
+    """
+    described, text = _described(test)
+    return _read(path, described, text, None, False)
+
+
+@contextmanager
+def _bar(progress: bool | None, total: int, unit: str) -> Generator[Callable[[int], None] | None]:
+    """Something to call with how much is done: a bar of tqdm where that is there, and where somebody looks or has asked."""
+    if progress is False or (progress is None and not sys.stderr.isatty()):
+        yield None
+        return
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        if progress:
+            raise OptionError("progress: expected tqdm, found none; install it, or leave progress out") from None
+        yield None
+        return
+    with tqdm(total=total, unit=unit, delay=0 if progress else 1.0) as bar:
+
+        def tell(done: int) -> None:
+            bar.update(done - bar.n)
+
+        yield tell
 
 
 def _keywords(
@@ -223,6 +273,7 @@ def fit_many(
     noise: str = "residuals",
     confidence: float = 0.95,
     log_spaced: int | None = None,
+    progress: bool | None = None,
 ) -> Table:
     """Fit a law to many holds, on all processors and without the GIL.
 
@@ -233,6 +284,8 @@ def fit_many(
         polars). One column of times, or of weights, stands for all curves.
     law, response, fixed, bounds, loss, noise, confidence, log_spaced
         As for `fit_hold`.
+    progress
+        Whether to show a bar of tqdm; if left out, where tqdm is there, standard error is a terminal and it takes a while.
 
     Returns
     -------
@@ -241,7 +294,9 @@ def fit_many(
         that no law can be fitted to says why in ``error``, and its numbers are missing.
     """
     keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced)
-    return _fit_many(time_s, signal, weights, keywords)
+    curves = len(signal) if hasattr(signal, "__len__") else 0
+    with _bar(progress, curves, "fit") as tell:
+        return _fit_many(time_s, signal, weights, keywords, tell)
 
 
 def compare(
@@ -329,3 +384,60 @@ def simulate(
     if replaced:
         raise OptionError(f"{', '.join(replaced)}: tables replace those of a mapping, found the path of a protocol")
     return _simulate(protocol, None)
+
+
+def simulate_many(
+    protocol: str | os.PathLike[str] | Mapping[str, Any],
+    numbers: Mapping[str, Any],
+    *,
+    times_s: Any = None,
+    progress: bool | None = None,
+) -> Table:
+    """Simulate one protocol with many numbers, on all processors and without the GIL.
+
+    Parameters
+    ----------
+    protocol
+        Path of a protocol (TOML), or a mapping with its tables, as for `simulate`.
+    numbers
+        Arrays of one length by the path of the number they replace, in SI:
+        ``{"law.rate_coefficient": [1e3, 1e4], "specimen.radius": [0.035, 0.03], "step[1].hold": [10, 60]}``. Run i takes the
+        value i of each. A number has to stand in the protocol to be replaced.
+    times_s : array_like, shape (T,), optional
+        Times at which the force is wanted, rising and inside the motion.
+    progress
+        As for `fit_many`.
+
+    Returns
+    -------
+    Table
+        A row a run, with the columns of ``palpate sweep``: the numbers, peak force and its time, force, displacement and
+        strains at the end, work and losses, what each step ends with, and why a run was refused. With ``times_s`` also
+        ``force_n``, an array of shape (runs, T).
+
+    Raises
+    ------
+    OptionError
+        A protocol that is wrong, a number that does not stand in it, arrays of different lengths.
+    ModelError
+        Times outside the motion.
+
+    Examples
+    --------
+    >>> import palpate
+    >>> protocol = {
+    ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
+    ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+    ...     "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "10 s"}],
+    ... }
+    >>> runs = palpate.simulate_many(protocol, {"specimen.radius": [0.03, 0.035]}, times_s=[0.6, 10.6])
+    >>> [round(force, 2) for force in runs["force_end_n"].tolist()]
+    [1.48, 1.56]
+    >>> runs["force_n"].shape
+    (2, 2)
+    """
+    path, text = _described(protocol)
+    columns = list(numbers.items())
+    runs = len(columns[0][1]) if columns else 0
+    with _bar(progress, runs, "run") as tell:
+        return _simulate_many(path, text, columns, times_s, tell)

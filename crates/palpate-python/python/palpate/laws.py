@@ -1,27 +1,49 @@
-"""Laws of relaxation as functions of arrays, fit for ``scipy.optimize.curve_fit`` and for lmfit.
+"""Laws of relaxation as functions of arrays, fit for ``scipy.optimize.curve_fit``, and as models of lmfit.
+
+Their numbers have the names and the meaning that `palpate.fit_hold` gives them; the relative rate says its unit as well.
 
 >>> import numpy as np
 >>> from palpate import laws
 >>> laws.latency(np.array([0.0, 2.0]), 0.2, 0.1, 0.5, 2.0)
 array([0.3 , 0.25])
+>>> laws.function("prony:2").__signature__
+<Signature (elapsed_s, equilibrium, amplitude_1, amplitude_2, time_1, time_2)>
 """
 
 from __future__ import annotations
 
+import inspect
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from palpate._palpate import OptionError
 from palpate._palpate import latency as _latency
 from palpate._palpate import law_names as _law_names
 
-__all__ = ["latency", "names"]
+__all__ = [
+    "burgers",
+    "function",
+    "latency",
+    "logarithmic",
+    "maxwell",
+    "model",
+    "names",
+    "power",
+    "prony",
+    "standard_linear_solid",
+    "stretched",
+]
+
+Doubles = NDArray[np.float64]
+Law = Callable[..., Doubles]
 
 
 def latency(
     elapsed_s: Any, equilibrium: float, amplitude: float, relative_rate_per_s: float, exponent: float
-) -> NDArray[np.float64]:
+) -> Doubles:
     """The nonlinear latency law in a hold, y_e + D (1 + (n - 1) l t)^(-1/(n - 1)), through n = 1.
 
     Equations (4) and (5) of Tsai, Kao et al., with l = v D^(n - 1).
@@ -48,6 +70,166 @@ def latency(
         An exponent that is not above 0, a rate below 0.
     """
     return _latency(elapsed_s, equilibrium, amplitude, relative_rate_per_s, exponent)
+
+
+def _times(elapsed_s: ArrayLike) -> Doubles:
+    return np.maximum(np.asarray(elapsed_s, dtype=np.float64), 0.0)
+
+
+def maxwell(elapsed_s: Any, amplitude: float, time: float) -> Doubles:
+    """Spring and dashpot in series, A exp(-t/T); T in s."""
+    return np.asarray(amplitude * np.exp(-_times(elapsed_s) / time))
+
+
+def standard_linear_solid(elapsed_s: Any, equilibrium: float, amplitude: float, time: float) -> Doubles:
+    """One exponential and a constant, y_e + A exp(-t/T); T in s."""
+    return np.asarray(equilibrium + amplitude * np.exp(-_times(elapsed_s) / time))
+
+
+def burgers(elapsed_s: Any, amplitude_1: float, amplitude_2: float, time_1: float, time_2: float) -> Doubles:
+    """Maxwell and Kelvin-Voigt in series, A_1 exp(-t/T_1) + A_2 exp(-t/T_2); T in s."""
+    t = _times(elapsed_s)
+    return np.asarray(amplitude_1 * np.exp(-t / time_1) + amplitude_2 * np.exp(-t / time_2))
+
+
+def stretched(elapsed_s: Any, equilibrium: float, amplitude: float, time: float, stretching: float) -> Doubles:
+    """Stretched exponential (Kohlrausch), y_e + A exp(-(t/T)^b); T in s."""
+    return np.asarray(equilibrium + amplitude * np.exp(-((_times(elapsed_s) / time) ** stretching)))
+
+
+def power(elapsed_s: Any, amplitude: float, time: float, exponent: float) -> Doubles:
+    """Power of time, A (1 + t/T)^(-m); T in s."""
+    return np.asarray(amplitude * (1.0 + _times(elapsed_s) / time) ** -exponent)
+
+
+def logarithmic(elapsed_s: Any, start: float, amplitude: float, time: float) -> Doubles:
+    """Logarithm of time, y_0 - A ln(1 + t/T); T in s."""
+    return np.asarray(start - amplitude * np.log1p(_times(elapsed_s) / time))
+
+
+def prony(terms: int) -> Law:
+    """A series of exponentials and a constant, y_e + sum A_k exp(-t/T_k), as a function of its 1 + 2 K numbers.
+
+    Parameters
+    ----------
+    terms
+        K, 1 or more.
+
+    Returns
+    -------
+    callable
+        ``f(elapsed_s, equilibrium, amplitude_1, ..., time_1, ...)``; T in s.
+
+    Raises
+    ------
+    OptionError
+        Fewer than one term.
+    """
+    if terms < 1:
+        raise OptionError(f"terms: expected 1 or more, found {terms}")
+    names = [f"{name}_{k}" for name in ("amplitude", "time") for k in range(1, terms + 1)]
+
+    def series(elapsed_s: Any, equilibrium: float, *given: float, **named: float) -> Doubles:
+        numbers = [*given, *(named[name] for name in names[len(given) :])]
+        t = _times(elapsed_s)
+        parts = (a * np.exp(-t / tau) for a, tau in zip(numbers[:terms], numbers[terms:], strict=True))
+        return np.asarray(equilibrium + sum(parts))
+
+    series.__name__ = f"prony_{terms}"
+    series.__doc__ = f"A series of {terms} exponentials and a constant."
+    parameters = [inspect.Parameter(n, inspect.Parameter.POSITIONAL_OR_KEYWORD) for n in ("elapsed_s", "equilibrium", *names)]
+    series.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    return series
+
+
+def function(law: str) -> Law:
+    """The function of a law by the name that ``law=`` takes, for ``scipy.optimize.curve_fit``.
+
+    Parameters
+    ----------
+    law
+        "latency", "latency:N", "maxwell", "standard-linear-solid", "burgers", "prony:K", "stretched", "power" or
+        "logarithmic".
+
+    Returns
+    -------
+    callable
+        ``f(elapsed_s, ...)`` with the numbers of the law by name.
+
+    Raises
+    ------
+    OptionError
+        A law that is not known, or one that is no closed form: ``Fit.predict`` evaluates those.
+    """
+    name, _, number = law.partition(":")
+    if name == "prony" and number.isdecimal():
+        return prony(int(number))
+    if name == "latency" and number:
+        return _latency_of(law, number)
+    plain: dict[str, Law] = {
+        "latency": latency,
+        "maxwell": maxwell,
+        "standard-linear-solid": standard_linear_solid,
+        "burgers": burgers,
+        "stretched": stretched,
+        "power": power,
+        "logarithmic": logarithmic,
+    }
+    if law not in plain:
+        known = ", ".join([*plain, "latency:N", "prony:K"])
+        raise OptionError(f"law: expected one that is a function here ({known}), found {law!r}")
+    return plain[law]
+
+
+def _latency_of(law: str, number: str) -> Law:
+    try:
+        exponent = float(number)
+    except ValueError:
+        raise OptionError(f"law: expected a number behind the colon, found {law!r}") from None
+
+    def fixed(elapsed_s: Any, equilibrium: float, amplitude: float, relative_rate_per_s: float) -> Doubles:
+        return _latency(elapsed_s, equilibrium, amplitude, relative_rate_per_s, exponent)
+
+    fixed.__name__ = f"latency_{number.replace('.', '_')}"
+    fixed.__doc__ = f"The nonlinear latency law with n = {exponent:g}."
+    return fixed
+
+
+#: Bounds that every law needs to be one.
+_BOUNDS: dict[str, tuple[float, float]] = {
+    "relative_rate_per_s": (0.0, np.inf),
+    "exponent": (1e-3, 100.0),
+    "stretching": (1e-3, 10.0),
+}
+
+
+def model(law: str) -> Any:
+    """A law as an ``lmfit.Model`` with the bounds that its numbers need; lmfit has to be installed.
+
+    Parameters
+    ----------
+    law
+        As for `function`.
+
+    Returns
+    -------
+    lmfit.Model
+        Of ``elapsed_s``; give starting values with ``make_params``.
+
+    Raises
+    ------
+    OptionError
+        As for `function`.
+    ImportError
+        Without lmfit.
+    """
+    import lmfit
+
+    made = lmfit.Model(function(law), independent_vars=["elapsed_s"], name=law)
+    for name in made.param_names:
+        low, high = _BOUNDS.get(name, (1e-12, np.inf) if name.startswith("time") else (-np.inf, np.inf))
+        made.set_param_hint(name, min=low, max=high)
+    return made
 
 
 def names() -> list[str]:

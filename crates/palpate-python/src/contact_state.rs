@@ -1,0 +1,361 @@
+//! Contacts that a controller moves one step at a time: one, or many side by side.
+
+use std::path::{Path, PathBuf};
+
+use numpy::PyArray1;
+use palpate::simulate::{ContactModel, ContactState as State, StepError};
+use palpate_files::description::{DescriptionError, Model, parse_scene, read_scene};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyType};
+
+use crate::arrays::doubles;
+use crate::errors::{ModelError, refused_plainly};
+use crate::simulate::{missing, said};
+use crate::work::{Made, briefly};
+
+/// A body and its law as a description has them: path of a file or mapping; and the text of it.
+fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
+    let said_so = model.py().import("palpate")?.call_method1("_described", (model,))?;
+    let (path, text): (Option<PathBuf>, Option<String>) = said_so.extract()?;
+    match (path, text) {
+        (Some(path), _) if !path.exists() => Err(missing(&path)),
+        (Some(path), _) => Ok((latency(read_scene(&path))?, std::fs::read_to_string(&path)?)),
+        (None, text) => {
+            let text = text.unwrap_or_default();
+            Ok((latency(parse_scene(&text, Path::new("model")))?, text))
+        }
+    }
+}
+
+fn latency(scene: Result<(Option<String>, Model), DescriptionError>) -> PyResult<ContactModel> {
+    match scene.map_err(said)?.1 {
+        Model::Latency(model) => Ok(model),
+        Model::Linear(_) => Err(refused_plainly::<ModelError>("a contact is stepped by the latency law alone")),
+    }
+}
+
+/// A contact that a controller moves one step at a time, in closed form and in constant time.
+///
+/// Parameters
+/// ----------
+/// model : path or mapping
+///     A protocol's tables ``specimen``, ``law`` and ``contact``; steps are left aside.
+///
+/// Examples
+/// --------
+/// >>> import palpate
+/// >>> state = palpate.ContactState({
+/// ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
+/// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+/// ... })
+/// >>> round(state.step(0.1, 5e-3), 2)
+/// 6.33
+#[pyclass(name = "ContactState", module = "palpate")]
+pub(crate) struct ContactState {
+    model: ContactModel,
+    state: State,
+    /// The description, so that the state can be sent elsewhere.
+    text: String,
+}
+
+#[pymethods]
+impl ContactState {
+    #[new]
+    fn new(model: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (model, text) = described(model)?;
+        Ok(Self {
+            model,
+            state: State::default(),
+            text,
+        })
+    }
+
+    /// Moves the jaw to a displacement within a time step.
+    ///
+    /// Parameters
+    /// ----------
+    /// dt_s : float
+    ///     Length of the step, s; above 0.
+    /// displacement_m : float
+    ///     Where the jaw stands at its end, m; it goes there at constant speed.
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///     Force at its end, N.
+    ///
+    /// Raises
+    /// ------
+    /// ModelError
+    ///     A step that is not above 0, a displacement beyond the body; the state stays as it was.
+    fn step(&mut self, dt_s: f64, displacement_m: f64) -> PyResult<f64> {
+        self.state.step(&self.model, dt_s, displacement_m).map_err(refused_plainly::<ModelError>)
+    }
+
+    /// Applies a force within a time step.
+    ///
+    /// Parameters
+    /// ----------
+    /// dt_s : float
+    ///     Length of the step, s; above 0.
+    /// force_n : float
+    ///     The force over the step, N.
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///     Displacement of the jaw at its end, m.
+    ///
+    /// Raises
+    /// ------
+    /// ModelError
+    ///     A step that is not above 0, a force that the body cannot bear; the state stays as it was.
+    fn step_force(&mut self, dt_s: f64, force_n: f64) -> PyResult<f64> {
+        self.state.step_force(&self.model, dt_s, force_n).map_err(refused_plainly::<ModelError>)
+    }
+
+    /// Force now, N.
+    #[getter]
+    fn force_n(&self) -> f64 {
+        self.state.force(&self.model)
+    }
+
+    /// Displacement of the surface of the body at one contact, m.
+    #[getter]
+    fn surface_m(&self) -> f64 {
+        self.state.surface(&self.model)
+    }
+
+    /// Whether the jaw touches the body.
+    #[getter]
+    fn is_touching(&self) -> bool {
+        self.state.is_touching(&self.model)
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.model == other.model && self.state == other.state
+    }
+
+    fn __copy__(&self) -> Self {
+        Self {
+            model: self.model.clone(),
+            state: self.state,
+            text: self.text.clone(),
+        }
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyDict>) -> Self {
+        self.__copy__()
+    }
+
+    #[classmethod]
+    fn _from_parts(_class: &Bound<'_, PyType>, text: String, state: [u8; 16]) -> PyResult<Self> {
+        Ok(Self {
+            model: latency(parse_scene(&text, Path::new("model")))?,
+            state: State::from_bytes(state).map_err(refused_plainly::<ModelError>)?,
+            text,
+        })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String, Bound<'py, PyBytes>)>> {
+        let make = py.get_type::<Self>().getattr("_from_parts")?;
+        Ok((make, (self.text.clone(), PyBytes::new(py, &self.state.to_bytes()))))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<palpate.ContactState: {} N>", palpate::number::significant(self.force_n(), 4))
+    }
+}
+
+/// Contacts that are moved side by side, such as those of many grippers, or of one under many guesses.
+///
+/// Parameters
+/// ----------
+/// model : path or mapping, or a list of them
+///     One model for ``count`` contacts, or one each.
+/// count : int, optional
+///     How many, of one model.
+///
+/// Examples
+/// --------
+/// >>> import palpate
+/// >>> model = {
+/// ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
+/// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+/// ... }
+/// >>> contacts = palpate.ContactStates(model, 3)
+/// >>> contacts.step(0.1, [3e-3, 4e-3, 5e-3]).round(2)
+/// array([2.65, 4.32, 6.33])
+#[pyclass(name = "ContactStates", module = "palpate")]
+#[derive(Clone, PartialEq)]
+pub(crate) struct ContactStates {
+    models: Vec<ContactModel>,
+    states: Vec<State>,
+    texts: Vec<String>,
+}
+
+/// A number for every contact: an array of as many, or one for all.
+fn for_each(values: &Bound<'_, PyAny>, name: &str, count: usize) -> PyResult<Vec<f64>> {
+    if let Ok(one) = values.extract::<f64>() {
+        return Ok(vec![one; count]);
+    }
+    let found = doubles(values, name)?;
+    if found.len() == count {
+        return Ok(found);
+    }
+    let message = format!("{name}: expected one number or {count}, one a contact, found {}", found.len());
+    Err(refused_plainly::<ModelError>(message))
+}
+
+impl ContactStates {
+    /// Steps all contacts, or none if one cannot.
+    fn stepped<'py>(
+        &mut self,
+        py: Python<'py>,
+        (dt, to): (Vec<f64>, Vec<f64>),
+        step: fn(&mut State, &ContactModel, f64, f64) -> Result<f64, StepError>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let (models, states) = (&self.models, &self.states);
+        let moved = briefly(py, move || {
+            let mut states = states.clone();
+            let mut results = Vec::with_capacity(states.len());
+            for (index, state) in states.iter_mut().enumerate() {
+                let model = models.get(index).unwrap_or(&models[0]);
+                results.push(step(state, model, dt[index], to[index]).map_err(|error| (index, error))?);
+            }
+            Ok((states, results))
+        })?;
+        let (states, results) = moved.map_err(|(index, error): (usize, StepError)| {
+            refused_plainly::<ModelError>(format!("contact {index}: {error}"))
+        })?;
+        self.states = states;
+        Ok(PyArray1::from_vec(py, results))
+    }
+
+    fn model(&self, index: usize) -> &ContactModel {
+        self.models.get(index).unwrap_or(&self.models[0])
+    }
+}
+
+#[pymethods]
+impl ContactStates {
+    #[new]
+    #[pyo3(signature = (model, count=None))]
+    fn new(model: &Bound<'_, PyAny>, count: Option<usize>) -> PyResult<Self> {
+        let described: Vec<(ContactModel, String)> = match count {
+            Some(0) => return Err(refused_plainly::<ModelError>("count: expected 1 or more, found 0")),
+            Some(_) => vec![described(model)?],
+            None => model.try_iter()?.map(|model| described(&model?)).collect::<PyResult<_>>()?,
+        };
+        if described.is_empty() {
+            return Err(refused_plainly::<ModelError>(
+                "expected one model and a count, or a list of models, found an empty list",
+            ));
+        }
+        let states = vec![State::default(); count.unwrap_or(described.len())];
+        let (models, texts) = described.into_iter().unzip();
+        Ok(Self { models, states, texts })
+    }
+
+    /// Moves every jaw to its displacement within a time step; all contacts, or none if one cannot.
+    ///
+    /// Parameters
+    /// ----------
+    /// dt_s, displacement_m : float or array_like, shape (N,)
+    ///     As for `ContactState.step`; one number stands for all contacts.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, shape (N,)
+    ///     Forces, N.
+    ///
+    /// Raises
+    /// ------
+    /// ModelError
+    ///     A step that one contact cannot make; the message says which.
+    fn step<'py>(
+        &mut self,
+        py: Python<'py>,
+        dt_s: &Bound<'py, PyAny>,
+        displacement_m: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let count = self.states.len();
+        let asked = (for_each(dt_s, "dt_s", count)?, for_each(displacement_m, "displacement_m", count)?);
+        self.stepped(py, asked, State::step)
+    }
+
+    /// Applies a force to every contact within a time step, as `step` does a displacement.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, shape (N,)
+    ///     Displacements of the jaws, m.
+    fn step_force<'py>(
+        &mut self,
+        py: Python<'py>,
+        dt_s: &Bound<'py, PyAny>,
+        force_n: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let count = self.states.len();
+        let asked = (for_each(dt_s, "dt_s", count)?, for_each(force_n, "force_n", count)?);
+        self.stepped(py, asked, State::step_force)
+    }
+
+    /// Forces now, N.
+    #[getter]
+    fn force_n<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let forces = self.states.iter().enumerate().map(|(index, state)| state.force(self.model(index)));
+        PyArray1::from_iter(py, forces)
+    }
+
+    /// Displacements of the surfaces at one contact each, m.
+    #[getter]
+    fn surface_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let surfaces = self.states.iter().enumerate().map(|(index, state)| state.surface(self.model(index)));
+        PyArray1::from_iter(py, surfaces)
+    }
+
+    /// Whether the jaws touch their bodies.
+    #[getter]
+    fn is_touching<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        let touching = self.states.iter().enumerate().map(|(index, state)| state.is_touching(self.model(index)));
+        PyArray1::from_iter(py, touching)
+    }
+
+    fn __len__(&self) -> usize {
+        self.states.len()
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self == other
+    }
+
+    fn __copy__(&self) -> Self {
+        self.clone()
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyDict>) -> Self {
+        self.clone()
+    }
+
+    #[classmethod]
+    fn _from_parts(_class: &Bound<'_, PyType>, texts: Vec<String>, states: Vec<[u8; 16]>) -> PyResult<Self> {
+        let model = |text: &String| latency(parse_scene(text, Path::new("model")));
+        let state = |bytes| State::from_bytes(bytes).map_err(refused_plainly::<ModelError>);
+        Ok(Self {
+            models: texts.iter().map(model).collect::<PyResult<_>>()?,
+            states: states.into_iter().map(state).collect::<PyResult<_>>()?,
+            texts,
+        })
+    }
+
+    #[expect(clippy::type_complexity, reason = "what pickle asks for")]
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Vec<String>, Vec<Bound<'py, PyBytes>>)>> {
+        let states = self.states.iter().map(|state| PyBytes::new(py, &state.to_bytes())).collect();
+        Ok((py.get_type::<Self>().getattr("_from_parts")?, (self.texts.clone(), states)))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<palpate.ContactStates: {} contacts>", self.states.len())
+    }
+}

@@ -1,0 +1,126 @@
+//! One protocol with many numbers.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use arrow_array::{ArrayRef, FixedSizeListArray, Float64Array, Int64Array, StringArray};
+use arrow_schema::{DataType, Field};
+use palpate::simulate::{Sampling, simulate};
+use palpate_files::description::{Sweep, parse_runs};
+use palpate_files::parquet_table::{Rows, Values};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use crate::arrays::doubles;
+use crate::errors::{ModelError, refused_plainly};
+use crate::simulate::{missing, said};
+use crate::table::Table;
+use crate::work::{Progress, at_length_told};
+
+/// Runs that are the work of one thread at a time.
+const SHARE: u64 = 16;
+
+/// Simulates a protocol in a file or in a text for many values of its numbers, in SI; a row a run.
+#[pyfunction]
+#[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
+pub(crate) fn simulate_many(
+    py: Python<'_>,
+    path: Option<PathBuf>,
+    text: Option<String>,
+    numbers: Vec<(String, Bound<'_, PyAny>)>,
+    times_s: Option<&Bound<'_, PyAny>>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Table> {
+    let (path, text) = match path {
+        Some(path) if !path.exists() => return Err(missing(&path)),
+        Some(path) => {
+            let text = std::fs::read_to_string(&path)?;
+            (path, text)
+        }
+        None => (PathBuf::from("protocol"), text.unwrap_or_default()),
+    };
+    let columns = numbers.iter().map(|(name, values)| Ok((name.as_str(), doubles(values, name)?)));
+    let columns: Vec<(&str, Vec<f64>)> = columns.collect::<PyResult<_>>()?;
+    let sweep = parse_runs(&text, &path, &columns).map_err(said)?;
+    let times = times_s.map(|times| doubles(times, "times_s")).transpose()?;
+    if let Some(times) = &times {
+        // Times outside the motion are wrong for all runs alike, but for those whose holds are swept.
+        let base = sweep.base();
+        simulate(base.drive(), base.contact(), &Sampling::Times(times.clone()))
+            .map_err(refused_plainly::<ModelError>)?;
+    }
+    let (progress, stopped) = (Progress::of(progress), Arc::new(AtomicBool::new(false)));
+    let (told, stop) = (progress.clone(), Arc::clone(&stopped));
+    let fields = palpate_cli::sweep_fields(&sweep);
+    let work = move || {
+        let shares = (0..sweep.runs().div_ceil(SHARE)).into_par_iter().map(|share| {
+            let runs = share * SHARE..((share + 1) * SHARE).min(sweep.runs());
+            if stop.load(Ordering::Relaxed) {
+                return (Vec::new(), Vec::new());
+            }
+            let forces = times
+                .as_deref()
+                .map_or_else(Vec::new, |times| runs.clone().map(|run| forces(&sweep, run, times)).collect());
+            let Rows { columns } = palpate_cli::sweep_rows(&sweep, Path::new(&path), runs, || told.step());
+            (columns, forces)
+        });
+        (shares.collect::<Vec<_>>(), times.map_or(0, |times| times.len()))
+    };
+    let done = at_length_told(py, &progress, work).inspect_err(|_| stopped.store(true, Ordering::Relaxed))?;
+    let (shares, samples) = done;
+    let columns = fields.iter().enumerate().map(|(index, field)| {
+        let parts = shares.iter().filter_map(|(columns, _)| columns.get(index));
+        (field.name.as_str(), joined(parts))
+    });
+    let mut columns: Vec<(&str, ArrayRef)> = columns.collect();
+    if samples > 0 {
+        let all = shares.iter().flat_map(|(_, forces)| forces);
+        columns.push(("force_n", lists(all, samples)?));
+    }
+    Table::of(columns)
+}
+
+/// Forces of a run at given times, N; none where the run is refused.
+fn forces(sweep: &Sweep, run: u64, times: &[f64]) -> Option<Vec<f64>> {
+    let protocol = sweep.run(run).1.ok()?;
+    let series = simulate(protocol.drive(), protocol.contact(), &Sampling::Times(times.to_vec())).ok()?;
+    Some(series.force)
+}
+
+/// The parts of one column as one.
+fn joined<'a>(parts: impl Iterator<Item = &'a Values>) -> ArrayRef {
+    let (mut counts, mut numbers, mut texts) = (Vec::new(), Vec::new(), Vec::new());
+    for part in parts {
+        match part {
+            Values::Count(values) => counts.extend_from_slice(values),
+            Values::Number(values) => numbers.extend_from_slice(values),
+            Values::Text(values) => texts.extend_from_slice(values),
+        }
+    }
+    if !texts.is_empty() {
+        return Arc::new(StringArray::from(texts));
+    }
+    if counts.is_empty() {
+        Arc::new(Float64Array::from(numbers))
+    } else {
+        Arc::new(Int64Array::from(counts))
+    }
+}
+
+/// Rows of `samples` numbers each.
+fn lists<'a>(rows: impl Iterator<Item = &'a Option<Vec<f64>>>, samples: usize) -> PyResult<ArrayRef> {
+    let (mut flat, mut valid) = (Vec::new(), Vec::new());
+    for row in rows {
+        valid.push(row.is_some());
+        match row {
+            Some(row) => flat.extend_from_slice(row),
+            None => flat.extend(std::iter::repeat_n(f64::NAN, samples)),
+        }
+    }
+    let item = Arc::new(Field::new("item", DataType::Float64, false));
+    let width = i32::try_from(samples).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    let list = FixedSizeListArray::try_new(item, width, Arc::new(Float64Array::from(flat)), Some(valid.into()));
+    Ok(Arc::new(list.map_err(|error| PyRuntimeError::new_err(error.to_string()))?))
+}

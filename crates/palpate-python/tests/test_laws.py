@@ -1,0 +1,58 @@
+"""Laws as functions: the same curves that fits have, for SciPy and for lmfit."""
+
+from __future__ import annotations
+
+import inspect
+
+import numpy as np
+import palpate
+import pytest
+from conftest import relaxation
+from palpate import laws
+from scipy.optimize import curve_fit
+
+#: Names of the numbers of a fit, where a function says the unit as well.
+UNITS = {"relative_rate": "relative_rate_per_s"}
+
+
+@pytest.mark.parametrize(
+    "law",
+    ["latency", "latency:5", "maxwell", "standard-linear-solid", "burgers", "prony:2", "stretched", "power", "logarithmic"],
+)
+def test_a_function_is_the_curve_of_the_fit(law: str) -> None:
+    t, y = relaxation(300, 1e-4)
+    fit = palpate.fit_hold(t, y, law=law)
+    function = laws.function(law)
+    numbers = {UNITS.get(name, name): value for name, value in fit.values.items()}
+    wanted = inspect.signature(function).parameters
+    given = {name: value for name, value in numbers.items() if name in wanted}
+    assert function(t, **given) == pytest.approx(fit.predict(t), rel=1e-12)
+    # Before the hold nothing relaxes.
+    assert function(np.array([-1.0, 0.0]), **given)[0] == function(np.array([0.0]), **given)[0]
+
+
+def test_scipy_takes_them() -> None:
+    t, y = relaxation(300, 1e-4)
+    fit = palpate.fit_hold(t, y, law="prony:2")
+    order = ["equilibrium", "amplitude_1", "amplitude_2", "time_1", "time_2"]
+    start = [0.2, 0.05, 0.05, 1.0, 8.0]
+    found, _ = curve_fit(laws.function("prony:2"), t, y, p0=start)
+    assert found == pytest.approx([fit.values[name] for name in order], rel=1e-3)
+
+
+def test_lmfit_takes_them() -> None:
+    t, y = relaxation(300, 1e-4)
+    fit = palpate.fit_hold(t, y)
+    model = laws.model("latency")
+    assert model.param_names == ["equilibrium", "amplitude", "relative_rate_per_s", "exponent"]
+    result = model.fit(y, elapsed_s=t, equilibrium=0.2, amplitude=0.1, relative_rate_per_s=1.0, exponent=4.0)
+    assert result.params["exponent"].value == pytest.approx(fit.values["exponent"], rel=1e-3)
+    assert result.params["relative_rate_per_s"].min == 0.0
+
+
+@pytest.mark.parametrize("law", ["fractional-zener", "prony", "prony:x", "prony:0", "latency:x", "Maxwell"])
+def test_a_law_that_is_no_function_is_refused(law: str) -> None:
+    with pytest.raises(palpate.OptionError):
+        laws.function(law)
+    with pytest.raises(palpate.OptionError):
+        palpate.fit_hold(*relaxation(100), law="spectrum")
