@@ -9,6 +9,7 @@
 //! | `progress.rs` | progress on anything over a second |
 //! | `terminal.rs` | standard output that survives a closed pipe |
 
+mod apart;
 mod arguments;
 mod commands;
 mod failure;
@@ -43,6 +44,10 @@ where
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }
     };
+    if let Err(failure) = apart::keep_apart(&arguments.command) {
+        failure.tell();
+        return 2;
+    }
     let result = match arguments.command {
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Simulate(arguments) => commands::simulate::run(&arguments),

@@ -59,7 +59,7 @@ fn records_with_nothing_to_fit() {
     refuses("time_s,displacement_mm,force_n\n0,0,0\n", &["rows", "found 1"]);
     let constant = |i: usize| format!("{},{},2.5\n", 0.1 * i as f64, if i < 10 { i } else { 10 });
     let rows: String = (0..60).map(constant).collect();
-    refuses(format!("time_s,displacement_mm,force_n\n{rows}"), &["2.5 N"]);
+    refuses(format!("time_s,displacement_mm,force_n\n{rows}"), &["the force is 2.500 N throughout"]);
     let triangle = |i: usize| format!("{},{},{}\n", 0.1 * i as f64, 10.0 - (i as f64 / 10.0 - 10.0).abs(), i % 7);
     let rows: String = (0..200).map(triangle).collect();
     refuses(format!("time_s,displacement_mm,force_n\n{rows}"), &["no hold", "hint:"]);
@@ -134,4 +134,23 @@ fn flags_that_do_not_exist_are_refused_by_name() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("--radius"));
     let error = refused(folder.path(), &["analyze", "record.csv", "--fit-until", "600"]);
     assert!(error.contains("unit"), "{error}");
+}
+
+/// `convert press.csv --out press.csv` put the table in the place of the record, `batch` an empty one.
+#[test]
+fn a_record_is_not_written_over() {
+    let folder = tempdir().unwrap();
+    let name = file(folder.path(), "press.csv", &ramp_and_hold(10.0, 20.0));
+    let before = std::fs::read(folder.path().join(&name)).unwrap();
+    for arguments in [
+        ["convert", &name, "--out", &name].as_slice(),
+        &["convert", &name, "--out", "./press.csv"],
+        &["batch", &name, "--out", &name],
+        &["batch", ".", "--out", &name],
+        &["inspect", &name, "--figure", &name],
+    ] {
+        let text = refused(folder.path(), arguments);
+        assert!(text.contains("expected another file than those that are read"), "{arguments:?}: {text}");
+        assert_eq!(std::fs::read(folder.path().join(&name)).unwrap(), before, "{arguments:?}");
+    }
 }

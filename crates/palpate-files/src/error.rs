@@ -78,6 +78,12 @@ pub enum FileError {
         /// The directory.
         path: PathBuf,
     },
+    /// The path leads to a pipe or a device, which cannot be gone through twice.
+    #[error("{}: expected a file, found a pipe or a device", path.display())]
+    NoFile {
+        /// The pipe or device.
+        path: PathBuf,
+    },
     /// The operating system does not hand the file out.
     #[error("{}: cannot be read ({})", path.display(), reason(source))]
     Unreadable {

@@ -16,6 +16,7 @@ impl FileError {
         match self {
             Self::NotFound { .. } => Some("check the spelling of the path".to_owned()),
             Self::Directory { .. } => Some("name one file inside it".to_owned()),
+            Self::NoFile { .. } => Some("write what comes through the pipe to a file first".to_owned()),
             Self::Unreadable { source, .. } => allowed(source),
             Self::Empty { .. } => Some("export the record again".to_owned()),
             Self::Foreign { looks_like, .. } => Some(foreign(*looks_like).to_owned()),
@@ -44,7 +45,7 @@ impl FileError {
             }
             Self::AmbiguousDecimal { doubt, .. } => Some(doubtful(*doubt).to_owned()),
             Self::NoSuchColumn { .. } => Some("columns count from 1 at the left".to_owned()),
-            Self::TextInNumbers { found, decimal, .. } => text(found, *decimal),
+            Self::TextInNumbers { found, decimal, .. } => Some(text(found, *decimal)),
             Self::NotFinite { .. } | Self::EmptyCell { .. } => {
                 Some("remove the row, or choose another column".to_owned())
             }
@@ -82,13 +83,22 @@ fn doubtful(doubt: DecimalDoubt) -> &'static str {
     }
 }
 
-fn text(found: &str, decimal: DecimalMark) -> Option<String> {
+/// What would help against a text where a number should stand.
+pub(crate) fn text(found: &str, decimal: DecimalMark) -> String {
     let cell = found.as_bytes();
+    let gaps = |letter: char| matches!(letter, '\u{a0}' | '\u{202f}' | '\u{2009}' | '\'' | '\u{2019}' | ' ');
     match (number::classify(cell), decimal) {
-        _ if found.contains('\u{2212}') => Some("the minus sign is U+2212: replace it by a hyphen".to_owned()),
-        (Cell::Comma, DecimalMark::Point) => Some("fix the decimal mark to comma".to_owned()),
-        (Cell::Point, DecimalMark::Comma) => Some("fix the decimal mark to point".to_owned()),
-        _ if number::has_thousands(cell) => Some("export without marks between thousands".to_owned()),
-        _ => Some("mend or remove the line; where the data begin further down, set skip_lines".to_owned()),
+        _ if found.contains('\u{2212}') => "the minus sign is U+2212: replace it by a hyphen",
+        (Cell::Comma | Cell::Point, _) if number::has_thousands(cell) => {
+            "export without marks between thousands; if the mark sets off decimals, fix the decimal mark to it"
+        }
+        (Cell::Comma, DecimalMark::Point) => "fix the decimal mark to comma",
+        (Cell::Point, DecimalMark::Comma) => "fix the decimal mark to point",
+        _ if number::has_thousands(cell) || number::looks_numeric(found) && found.contains(gaps) => {
+            "export without marks between thousands"
+        }
+        _ if number::looks_numeric(found) => "these are numbers kept as texts: export them as numbers",
+        _ => "mend or remove the line; where the data begin further down, set skip_lines",
     }
+    .to_owned()
 }

@@ -8,7 +8,7 @@ use palpate_report::document::{AnalysisDocument, Input};
 use palpate_report::study::{Pictures, analysis_bundle, analysis_text};
 
 use super::inputs::records_of;
-use super::record::{Opened, called, description, input, record};
+use super::record::{Opened, called, description, input, record, tell_skipped};
 use crate::arguments::{AnalyzeArguments, Format};
 use crate::failure::{Failure, Outcome};
 use crate::files::{file_name, folder_in, folders, write_bundle};
@@ -56,13 +56,6 @@ pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Outcome, Failure> {
     match failed {
         0 => Ok(Outcome::Done),
         count => Err(Failure::new(format!("{count} of {tests} records could not be analysed"), None)),
-    }
-}
-
-/// Names what a file holds besides tests.
-fn tell_skipped(opened: &Opened<'_>) {
-    for part in opened.skipped() {
-        note(&format!("{}: skipped {} ({})", opened.contents().path().display(), part.name, part.reason));
     }
 }
 

@@ -3,14 +3,14 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use palpate::analysis::corrected;
+use palpate::analysis::{corrected, suspicious_signs};
 use palpate::record::CorrectionOptions;
 use palpate_files::description::TestDescription;
 use palpate_files::parquet_table::{Field, Kind, Rows, TableError, TableWriter, Values};
 use palpate_files::record_file::RecordFile;
 use palpate_report::document::Software;
 
-use super::record::{Opened, description, input, one_part};
+use super::record::{Opened, description, input, one_part, tell_skipped};
 use crate::arguments::ConvertArguments;
 use crate::failure::{Failure, Outcome};
 use crate::files::{failure, place_file};
@@ -31,7 +31,17 @@ pub(crate) fn run(arguments: &ConvertArguments) -> Result<Outcome, Failure> {
     let format = format_of(&arguments.out)?;
     let test = description(arguments.test.as_deref(), arguments.part.as_deref())?;
     let opened = Opened::open(&arguments.record, test.as_ref())?;
+    tell_skipped(&opened);
     let mut file = opened.read(one_part(&opened)?)?;
+    for done in file.record.corrections() {
+        note(&format!("done: {done}"));
+    }
+    for sign in suspicious_signs(&file.record) {
+        note(&format!("{}; {}", sign.seen(), sign.remedy()));
+    }
+    if file.record.displacement().is_none() {
+        note("no column of displacement was found: the table has time and force alone");
+    }
     if let Some(test) = opened.test() {
         make_corrections(&mut file, test)?;
     }

@@ -99,6 +99,13 @@ impl<'t> Opened<'t> {
     }
 }
 
+/// Names what a file holds besides tests.
+pub(super) fn tell_skipped(opened: &Opened<'_>) {
+    for part in opened.skipped() {
+        note(&format!("{}: skipped {} ({})", opened.contents().path().display(), part.name, part.reason));
+    }
+}
+
 /// A record by its file, and its part where the file holds several.
 pub(super) fn called(path: &Path, part: Option<&str>) -> String {
     part.map_or_else(|| path.display().to_string(), |part| format!("{}, {part}", path.display()))

@@ -118,7 +118,11 @@ fn column(number: usize, field: &Field, reading: Reading, sample: String) -> Col
     let (name, behind) = unit::split(field.name());
     let (name, unit) = match (reading, said) {
         (Reading::Seconds, _) => (name, Some("s".to_owned())),
-        (_, Some(unit)) => (name, unit::alone(unit)),
+        // Where the name says another unit it stays whole, so that the contradiction is seen.
+        (_, Some(said)) => match unit::alone(said) {
+            unit if behind.is_none() || behind == unit => (name, unit),
+            unit => (Some(field.name().clone()), unit),
+        },
         (_, None) => (name, behind),
     };
     ColumnInfo {

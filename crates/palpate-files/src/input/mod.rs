@@ -87,6 +87,9 @@ impl Input {
         if about.is_dir() {
             return Err(FileError::Directory { path: path.to_owned() });
         }
+        if !about.is_file() {
+            return Err(FileError::NoFile { path: path.to_owned() });
+        }
         Self::of(path.to_owned(), Place::Disk, about.len())
     }
 

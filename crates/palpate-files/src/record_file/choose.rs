@@ -10,8 +10,9 @@ use super::{
     recognise,
 };
 use crate::{
-    contents::{ColumnInfo, ColumnKind, Part},
+    contents::{ColumnInfo, Part},
     description::{ClockChoice, ColumnChoice, ColumnRef, TestDescription},
+    text::number,
 };
 
 /// The columns to read and how to make a record of them.
@@ -269,20 +270,31 @@ impl<'a> Chooser<'a> {
         if let Some((column, unit)) = recognise::misfits(self.columns, quantity).next() {
             return self.unknown_unit(column, quantity, format!("columns.{quantity}.unit"), unit);
         }
-        let texts = self.columns.iter().filter(|column| column.kind == ColumnKind::Text && recognise::is_time(column));
-        if quantity == Quantity::Time
-            && let Some(column) = texts.into_iter().next()
-        {
-            return ColumnError::TimeAsText {
-                path: self.path.to_owned(),
-                column: column.into(),
-                found: column.sample.clone(),
-            };
+        if let Some(column) = recognise::text_named(self.columns, quantity) {
+            return self.as_text(column, quantity);
         }
         ColumnError::Missing {
             path: self.path.to_owned(),
             quantity,
             columns: self.columns.to_vec(),
+        }
+    }
+
+    /// A column that is named after a quantity, but holds texts.
+    fn as_text(&self, column: &ColumnInfo, quantity: Quantity) -> ColumnError {
+        let (path, named, found) = (self.path.to_owned(), NamedColumn::from(column), column.sample.clone());
+        let is_clock = quantity == Quantity::Time && !number::looks_numeric(&found);
+        match is_clock {
+            true => ColumnError::TimeAsText {
+                path,
+                column: named,
+                found,
+            },
+            false => ColumnError::NotNumbers {
+                path,
+                column: named,
+                found,
+            },
         }
     }
 
@@ -292,8 +304,14 @@ impl<'a> Chooser<'a> {
         let free = |column: &&ColumnInfo| used.iter().all(|used| used.number != column.number);
         let possible = recognise::possible_displacements(self.columns).filter(free);
         let candidates: Vec<NamedColumn> = possible.map(NamedColumn::from).collect();
-        if candidates.is_empty() {
-            return Ok(());
+        let text = recognise::text_named(self.columns, Quantity::Displacement);
+        match text {
+            _ if !candidates.is_empty() => {}
+            // What begins with a digit was meant as a number.
+            Some(column) if number::looks_numeric(&column.sample) => {
+                return Err(self.as_text(column, Quantity::Displacement));
+            }
+            _ => return Ok(()),
         }
         Err(ColumnError::Unclear {
             path: self.path.to_owned(),

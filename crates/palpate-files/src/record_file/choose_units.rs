@@ -12,6 +12,7 @@ use super::{
 use crate::{
     contents::{ColumnInfo, ColumnKind},
     description::contradicts,
+    text::unit,
 };
 
 impl Chooser<'_> {
@@ -75,6 +76,26 @@ impl Chooser<'_> {
         }
     }
 
+    /// A unit in the name of a column and another one in the row of units, or beside the column in a typed file: nobody knows which holds.
+    fn refuse_two_units(&self, found: &Found<'_>) -> Result<(), ColumnError> {
+        let dimension = found.role.measured().dimension();
+        let (Some(name), Some(beside), None) = (&found.column.name, &found.column.unit, found.unit) else {
+            return Ok(());
+        };
+        let Some(in_name) = unit::split(name).1 else {
+            return Ok(());
+        };
+        match (unit_factor(&in_name, dimension), unit_factor(beside, dimension)) {
+            (Some(one), Some(other)) if (one / other - 1.0).abs() > 1e-9 => Err(ColumnError::TwoUnits {
+                path: self.path.to_owned(),
+                column: found.column.into(),
+                key: found.key(),
+                units: Box::new((in_name, beside.clone())),
+            }),
+            _ => Ok(()),
+        }
+    }
+
     /// Units from the description, else from the header.
     pub(super) fn with_units(&self, found: &[Found<'_>]) -> Result<Vec<ColumnUse>, ColumnError> {
         let mut used = Vec::new();
@@ -86,13 +107,24 @@ impl Chooser<'_> {
                 continue;
             }
             self.refuse_contradiction(found)?;
+            self.refuse_two_units(found)?;
             let Some(unit) = found.unit.or(found.column.unit.as_deref()) else {
                 without.push((found.key(), quantity.usual_unit(), found.column.into()));
                 continue;
             };
             let volts = found.choice.and_then(|choice| choice.scale);
             let factor = match volts {
-                Some(scale) => unit_factor(unit, Dimension::Voltage).map(|volts| volts * scale),
+                Some(scale) => match unit_factor(unit, Dimension::Voltage) {
+                    Some(volts) => Some(volts * scale),
+                    None => {
+                        return Err(ColumnError::ScaleOfNoVolts {
+                            path: self.path.to_owned(),
+                            column: found.column.into(),
+                            key: found.key(),
+                            unit: unit.to_owned(),
+                        });
+                    }
+                },
                 None => unit_factor(unit, quantity.dimension()),
             };
             let factor = factor.ok_or_else(|| self.unknown_unit(found.column, quantity, found.key(), unit))?;

@@ -5,7 +5,7 @@ use std::{fmt, path::PathBuf};
 use palpate::{record::RecordError, units::Dimension};
 
 use super::{Quantity, snippet, unit_words::unit_factor};
-use crate::{afm::UNCALIBRATED, contents::ColumnInfo, description::ColumnRef, error::FileError};
+use crate::{afm::UNCALIBRATED, contents::ColumnInfo, description::ColumnRef, error::FileError, text::DecimalMark};
 
 /// A column as messages name it: `column 3 (Force)`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -69,6 +69,16 @@ pub enum ColumnError {
         /// What it begins with.
         found: String,
     },
+    /// A column is named after a quantity, but some of its cells are no numbers.
+    #[error("{}: {column}: expected numbers in every row, found `{found}`", path.display())]
+    NotNumbers {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// The first of them that is none, as far as known.
+        found: String,
+    },
     /// Several columns could hold a quantity.
     #[error("{}: expected one column of {quantity}, found {}", path.display(), listed(candidates))]
     Ambiguous {
@@ -122,6 +132,30 @@ pub enum ColumnError {
         key: String,
         /// The two units.
         units: Box<MachineUnit>,
+    },
+    /// A scale is given for a column that is not in volts.
+    #[error("{}: {column}: expected volts, which `scale` is for, found {unit}", path.display())]
+    ScaleOfNoVolts {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// Key of the description that would say the unit.
+        key: String,
+        /// The unit.
+        unit: String,
+    },
+    /// The file says two units for one column.
+    #[error("{}: {column}: expected one unit, found {} in its name and {} beside it", path.display(), units.0, units.1)]
+    TwoUnits {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// Key of the description that would say the unit.
+        key: String,
+        /// The unit in the name, and the other one.
+        units: Box<(String, String)>,
     },
     /// The description names a column that the file does not have, or has more than once.
     #[error("{}: {key}: expected {}, found {found} in the description", path.display(), snippet::choices(columns))]
@@ -192,6 +226,7 @@ impl ColumnError {
             Self::TimeAsText { .. } => {
                 "write seconds, or 2024-03-12 10:11:12.5, 12.03.2024 10:11:12.5 or 10:11:12.5 in every row".to_owned()
             }
+            Self::NotNumbers { found, .. } => crate::hint::text(found, DecimalMark::Point),
             Self::Ambiguous {
                 quantity, candidates, ..
             } => {
@@ -241,6 +276,16 @@ impl ColumnError {
                 "choose another of `palpate inspect --machines`, or say in the test description:\n{}",
                 snippet::of_unit(key, &units.written, column)
             ),
+            Self::ScaleOfNoVolts { key, column, .. } => format!(
+                "remove `scale`; if the header is wrong and the column holds volts, say so:\n{}",
+                snippet::of_unit_and_column(key, "V", column)
+            ),
+            Self::TwoUnits { key, column, units, .. } => {
+                format!(
+                    "say which one holds in a test description:\n{}",
+                    snippet::of_unit_and_column(key, &units.1, column)
+                )
+            }
             Self::NoSuchColumn { .. } => "columns count from 1 at the left; a name may go without its unit".to_owned(),
             Self::Twice { quantities, .. } => {
                 format!("correct columns.{} or columns.{}", quantities.0, quantities.1)

@@ -20,7 +20,7 @@ pub(super) const VOCABULARY: [Vocabulary; 4] = [
     Vocabulary {
         quantity: Quantity::Time,
         plain: &["time", "zeit", "temps", "tiempo"],
-        loose: &["elapsed", "seconds", "secondes", "sekunden", "timestamp", "epoch", "durée", "duree"],
+        loose: &["elapsed", "seconds", "secondes", "sekunden", "timestamp", "stamp", "epoch", "durée", "duree"],
         endings: &["zeit"],
         characters: &["时间", "時間"],
         letter: Some("t"),
@@ -94,7 +94,7 @@ pub(super) const VOCABULARY: [Vocabulary; 4] = [
     Vocabulary {
         quantity: Quantity::Force,
         plain: &["force", "load", "kraft", "fuerza"],
-        loose: &["loadcell", "effort", "charge", "carga"],
+        loose: &["loadcell", "effort", "charge", "carga", "fx", "fy", "fz"],
         endings: &["kraft"],
         characters: &["力", "载荷", "荷重", "负荷", "負荷"],
         letter: Some("F"),
@@ -127,10 +127,14 @@ pub(super) const OTHER: &[&str] = &[
     "nominal",
     "desired",
     "soll",
-    "sollwert",
     "consigne",
     "objetivo", // limits and statistics
     "limit",
+    "threshold",
+    "schwelle",
+    "seuil",
+    "umbral",
+    "per",
     "max",
     "min",
     "maximum",
@@ -154,6 +158,9 @@ pub(super) const OTHER: &[&str] = &[
     "modulus",
     "constant",
 ];
+
+/// Beginnings of German words for what was commanded, not measured: `Sollweg`, `Sollkraft`, `Sollwert`.
+pub(super) const COMMANDED: &[&str] = &["soll", "vorgabe"];
 
 /// The same in Chinese and Japanese: target, set, command, strain, rate, greatest, least.
 pub(super) const OTHER_CHARACTERS: &[&str] =

@@ -30,7 +30,7 @@ pub use error::{ColumnError, Counted, MachineUnit, NamedColumn, ReadError};
 pub use parts::{Tests, tests};
 pub use quantity::Quantity;
 pub use read::{RecordFile, read_part, read_record};
-pub(crate) use recognise::names_time;
+pub(crate) use recognise::{names_quantity, names_time};
 pub(crate) use unit_words::{unit_factor, volts_are};
 
 use serde::Serialize;

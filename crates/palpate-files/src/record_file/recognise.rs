@@ -4,7 +4,7 @@ use palpate::units::Dimension;
 
 use super::{
     Quantity,
-    header_words::{BENDING, OTHER, OTHER_CHARACTERS, SIGNS_OF_LENGTH, STRAINS, VOCABULARY, Vocabulary},
+    header_words::{BENDING, COMMANDED, OTHER, OTHER_CHARACTERS, SIGNS_OF_LENGTH, STRAINS, VOCABULARY, Vocabulary},
     unit_words::unit_factor,
 };
 use crate::contents::{ColumnInfo, ColumnKind, topic_and_field};
@@ -23,11 +23,19 @@ pub(crate) fn names_time(columns: &[ColumnInfo]) -> bool {
     !candidates(columns, Quantity::Time).is_empty()
 }
 
-/// Whether the name of a column, whatever it holds, is that of a time.
-pub(super) fn is_time(column: &ColumnInfo) -> bool {
-    let vocabulary = VOCABULARY.iter().find(|words| words.quantity == Quantity::Time);
-    let name = column.name.as_deref().zip(vocabulary);
-    name.is_some_and(|(name, vocabulary)| rank_of_name(name, vocabulary).is_some())
+/// A column of texts that is named after `quantity`.
+pub(super) fn text_named(columns: &[ColumnInfo], quantity: Quantity) -> Option<&ColumnInfo> {
+    let vocabulary = VOCABULARY.iter().find(|words| words.quantity == quantity)?;
+    let named = |column: &&ColumnInfo| {
+        let name = column.name.as_deref();
+        column.kind == ColumnKind::Text && name.is_some_and(|name| rank_of_name(name, vocabulary).is_some())
+    };
+    columns.iter().find(named)
+}
+
+/// Whether a name says any quantity.
+pub(crate) fn names_quantity(name: &str) -> bool {
+    VOCABULARY.iter().any(|vocabulary| rank_of_name(name, vocabulary).is_some())
 }
 
 /// Names of columns that hold dates with times of day, beside the words for time.
@@ -74,7 +82,10 @@ pub(super) fn possible_displacements(columns: &[ColumnInfo]) -> impl Iterator<It
             return false;
         };
         let words = words(measured(name));
-        let other = words.iter().any(|word| OTHER.contains(&word.as_str()) && !STRAINS.contains(&word.as_str()))
+        // What is said per finger is a displacement all the same.
+        let other = words
+            .iter()
+            .any(|word| OTHER.contains(&word.as_str()) && !STRAINS.contains(&word.as_str()) && word != "per")
             || OTHER_CHARACTERS.iter().any(|part| name.contains(part))
             || BENDING.contains(&name.trim());
         let sign = || SIGNS_OF_LENGTH.iter().any(|sign| sign.to_lowercase() == name.trim().to_lowercase());
@@ -87,7 +98,7 @@ pub(super) fn possible_displacements(columns: &[ColumnInfo]) -> impl Iterator<It
 }
 
 /// Whether a unit is one of another kind of quantity.
-fn measures_another(unit: &str, quantity: Quantity) -> bool {
+pub(super) fn measures_another(unit: &str, quantity: Quantity) -> bool {
     let others = [
         Dimension::Time,
         Dimension::Length,
@@ -108,7 +119,8 @@ fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
     let has = |known: &[&str]| words.iter().any(|word| known.contains(&word.as_str()));
     let is = |known: &[&str]| matches!(words.as_slice(), [only] if known.contains(&only.as_str()));
     let contains = |parts: &[&str]| parts.iter().any(|part| name.contains(part));
-    if has(OTHER) || contains(OTHER_CHARACTERS) {
+    let commanded = |word: &String| COMMANDED.iter().any(|start| word.len() > start.len() && word.starts_with(start));
+    if has(OTHER) || contains(OTHER_CHARACTERS) || words.iter().any(commanded) || is_scaled(name) {
         return None;
     }
     if vocabulary.quantity == Quantity::Displacement && BENDING.contains(&name.trim()) {
@@ -136,6 +148,25 @@ fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
     } else {
         None
     }
+}
+
+/// Whether a column is the bending of a cantilever.
+pub(super) fn is_bending(column: &ColumnInfo) -> bool {
+    column.name.as_deref().is_some_and(|name| BENDING.contains(&name.trim()))
+}
+
+/// Whether a name says that its values are multiples: `Force x1000`, `Weg*10`, `Load ×10^3`.
+fn is_scaled(name: &str) -> bool {
+    let mut rest = name.char_indices().peekable();
+    let mut before = ' ';
+    while let Some((_, letter)) = rest.next() {
+        let times = matches!(letter, '×' | '*') || (matches!(letter, 'x' | 'X') && !before.is_alphanumeric());
+        if times && rest.peek().is_some_and(|(_, next)| *next == '1') {
+            return true;
+        }
+        before = letter;
+    }
+    false
 }
 
 /// Whether a word means another quantity and nothing else: a "compression force" is no compression.
@@ -245,6 +276,25 @@ mod tests {
         assert_eq!(found(&bluehill, Quantity::Displacement), [1]);
         let both = [("Extension", Some("mm")), ("Displacement", Some("mm"))];
         assert_eq!(found(&both, Quantity::Displacement), [2]);
+    }
+
+    /// Setpoints of German machines, values a finger and multiples were taken for the measurement itself.
+    #[test]
+    fn words_that_change_what_a_name_means_are_not_passed_over() {
+        for name in [
+            "Sollkraft",
+            "Kraft (soll)",
+            "Force threshold",
+            "Force per finger",
+            "Force x1000",
+            "Kraft*10",
+            "Load ×10",
+        ] {
+            assert!(found(&[(name, Some("N"))], Quantity::Force).is_empty(), "{name}");
+        }
+        assert!(found(&[("Sollweg", Some("mm"))], Quantity::Displacement).is_empty());
+        assert_eq!(found(&[("Force x", Some("N"))], Quantity::Force), [1]);
+        assert_eq!(found(&[("Solenoid force", Some("N"))], Quantity::Force), [1]);
     }
 
     #[test]

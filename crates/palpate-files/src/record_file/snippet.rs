@@ -1,6 +1,8 @@
 //! Lines to paste into a test description.
 
-use super::{Quantity, error::NamedColumn, recognise};
+use palpate::units::Dimension;
+
+use super::{Quantity, error::NamedColumn, recognise, unit_words::unit_factor};
 use crate::contents::{ColumnInfo, ColumnKind, topic_and_field};
 
 /// Most columns that a message shows.
@@ -52,19 +54,41 @@ pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
         let taken = known.iter().flatten().any(|known| known.number == column.number);
         column.kind == ColumnKind::Number && !taken && (!is_log || in_topic(column))
     };
-    let mut rest = columns.iter().filter(free);
+    let mut rest: Vec<&ColumnInfo> = columns.iter().filter(free).collect();
     let mut lines = vec!["[columns]".to_owned()];
     let needed = wanted.into_iter().zip(known).filter(|(quantity, _)| !is_log || *quantity != Quantity::Time);
     for (quantity, known) in needed {
-        let Some(column) = known.or_else(|| rest.next()) else {
+        let fitting = |unit: &str| unit_factor(unit, quantity.dimension()).is_some();
+        // A unit tells, and one of another quantity tells against.
+        let place = rest
+            .iter()
+            .position(|column| column.unit.as_deref().is_some_and(fitting))
+            .or_else(|| rest.iter().position(|column| may_be(column, quantity)));
+        let Some(column) = known.or_else(|| place.map(|place| rest.remove(place))) else {
+            if quantity != Quantity::Displacement {
+                lines.push(format!("# {quantity}: no column is left that could hold it"));
+            }
             continue;
         };
-        let mut line = format!("{quantity} = {{ column = {}, unit = \"{}\" }}", column.number, quantity.usual_unit(),);
+        let volts = |unit: &&str| unit_factor(unit, Dimension::Voltage).is_some();
+        let unit = match column.unit.as_deref() {
+            Some(unit) if fitting(unit) => format!("unit = \"{unit}\""),
+            Some(unit) if volts(&unit) => format!("unit = \"{unit}\", scale = \"1 {}/V\"", quantity.usual_unit()),
+            _ => format!("unit = \"{}\"", quantity.usual_unit()),
+        };
+        let mut line = format!("{quantity} = {{ column = {}, {unit} }}", column.number);
+        let name = column.name.as_deref().map_or_else(String::new, |name| format!("{name}, which "));
         let optional = if quantity == Quantity::Displacement { "; leave out if there is none" } else { "" };
-        line.push_str(&format!("  # check: starts with {}{optional}", column.sample));
+        line.push_str(&format!("  # check: {name}starts with {}{optional}", column.sample));
         lines.push(line);
     }
     lines.join("\n")
+}
+
+/// Whether a column could hold a quantity for all that its unit and name say.
+fn may_be(column: &ColumnInfo, quantity: Quantity) -> bool {
+    let another = |unit: &str| recognise::measures_another(unit, quantity);
+    !column.unit.as_deref().is_some_and(another) && !recognise::is_bending(column)
 }
 
 /// The lines that say which column is the displacement, and those that say that there is none.
@@ -80,7 +104,11 @@ pub(super) fn of_unclear(candidates: &[NamedColumn], columns: &[ColumnInfo]) -> 
     let without = force.map_or_else(String::new, |lines| format!("\nor, if it is not, name the force alone:\n{lines}"));
     // Heights of a cantilever's base fall as it comes down.
     let name = candidates.first().and_then(|column| column.name.as_deref()).unwrap_or("").to_lowercase();
-    let sign = if name.contains("height") { "\nsign = -1" } else { "" };
+    let sign = match name.as_str() {
+        name if name.contains("height") => "\nsign = -1",
+        name if name.contains("per ") => "\ndoubled = true  # of two fingers",
+        _ => "",
+    };
     format!(
         "if it is, say so in a test description:\n[columns.displacement]\ncolumn = {number}\nunit = \"{unit}\"{sign}{without}"
     )

@@ -160,6 +160,12 @@ impl Reading<'_> {
         const MEND: &str = "mend or empty the row, or choose another column";
         let quoted = |text: &str| format!("`{}`", shorten(text));
         match &self.row[column] {
+            // A number that a spreadsheet took for a date, 12.3 for the 12th of March, is lost.
+            Some(Value::Moment(_) | Value::Duration(_)) if !self.table.moments[column] => Err(wrong(
+                "a number",
+                "a date or a time of day",
+                "write the number again, in a cell formatted as a number",
+            )),
             Some(Value::Number(number)) => Ok(*number),
             Some(Value::Duration(days)) => Ok(days * 86_400.0),
             Some(Value::Moment(days)) if self.table.dated[column] => Ok((days - self.days_to_epoch) * 86_400.0),

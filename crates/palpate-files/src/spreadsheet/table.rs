@@ -30,7 +30,9 @@ pub(super) struct Table {
     pub(super) end: Option<u32>,
     /// Index in `columns` of the first one of numbers, which tells rows of data from other rows.
     pub(super) leading: usize,
-    /// Columns that hold times of day without a date, or dates: what is taken off their days.
+    /// Columns of moments: dates, times of day or durations.
+    pub(super) moments: Vec<bool>,
+    /// Columns of dates, whose days count from the epoch.
     pub(super) dated: Vec<bool>,
     /// Decimal mark of the numbers that are texts; an error where it is not clear.
     pub(super) decimal: Result<DecimalMark, Doubt>,
@@ -165,6 +167,10 @@ fn table(sample: &Sample, places: &[u32], options: &LayoutOptions) -> Option<Tab
         last_row,
         end: None,
         leading,
+        moments: places
+            .iter()
+            .map(|&place| matches!(first_value(place), Some(Value::Moment(_) | Value::Duration(_))))
+            .collect(),
         dated: places
             .iter()
             .map(|&place| matches!(first_value(place), Some(Value::Moment(days)) if *days >= 1.0))

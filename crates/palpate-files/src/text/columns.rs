@@ -3,14 +3,15 @@
 use std::path::Path;
 
 use super::{
-    layout::Layout,
+    decimal,
+    layout::{DecimalMark, Delimiter, Layout},
     lines::LineReader,
     row::{Fault, RowPlan},
     rows_ahead::{RowsAhead, Stop},
 };
 use crate::{
     contents::{Columns, Footer},
-    error::FileError,
+    error::{DecimalDoubt, FileError},
     input::Input,
 };
 
@@ -92,7 +93,7 @@ pub fn read_columns(
                 }
                 read.push(&row, number);
             }
-            Err(_) if line.trim_ascii().is_empty() => read.ignored.blank += 1,
+            Err(_) if is_blank(line, layout.delimiter) => read.ignored.blank += 1,
             Err(fault) => suspect = Some(suspected(&plan, suspect, fault, line, number)?),
         }
     }
@@ -100,10 +101,32 @@ pub fn read_columns(
     progress(done, total);
     read.bytes = total;
     let mut read = finish(path, read, suspect, reader.line())?;
+    if layout.undecided && layout.decimal == DecimalMark::Point && read.averaged == 1 {
+        refuse_thousands(path, &read)?;
+    }
     if distinct != columns {
         read.values = arranged(read.values, &distinct, columns);
     }
     Ok(read)
+}
+
+/// Whether a line holds nothing but blanks and marks between cells: what spreadsheets leave below a table.
+fn is_blank(line: &[u8], delimiter: Delimiter) -> bool {
+    line.iter().all(|byte| byte.is_ascii_whitespace() || Some(*byte) == delimiter.byte())
+}
+
+/// An error where points that come late set off thousands.
+fn refuse_thousands(path: &Path, read: &Columns) -> Result<(), FileError> {
+    let late = read.values.iter().find_map(|values| Some((values, decimal::falls_to_a_thousandth(values)?)));
+    match late {
+        Some((values, row)) => Err(FileError::AmbiguousDecimal {
+            path: path.to_owned(),
+            line: read.line_of(row).unwrap_or(row + 1),
+            found: format!("{:.3}` after `{}", values[row], values[row - 1]),
+            doubt: DecimalDoubt::PointThousands,
+        }),
+        None => Ok(()),
+    }
 }
 
 /// Puts the columns read into the order they were chosen in, and copies those chosen more than once.

@@ -1,7 +1,8 @@
 //! Dates with times of day, as ISO 8601 and the logs of programs write them.
 //!
 //! `2024-08-24T21:09:40.123Z`, `2024-08-24 21:09:40,123`, `2024-08-24 21:09:40+02:00`: year first, seconds and all;
-//! `24.08.2024 21:09:40`, where points stand between day, month and year; `21:09:40.123`, a time of day or of a stopwatch.
+//! `24.08.2024 21:09:40`, where points stand between day, month and year; `21:09:40.123` or `09:09:40.123 PM`, a time of day or of a
+//! stopwatch.
 //! Without a zone, times are taken as they stand: differences are right unless clocks were changed in between. Dates with
 //! slashes that end in the year are none: nothing says whether the day or the month comes first.
 
@@ -46,8 +47,19 @@ fn time_of_day(text: &[u8]) -> Option<(i64, f64, &[u8])> {
         Some(rest) => fraction(rest)?,
         None => (0.0, rest),
     };
+    let (hour, rest) = half_day(hour, rest)?;
     let sound = hour < 24 && minute < 60 && second <= 60;
     sound.then_some((hour * 3600 + minute * 60 + second, fraction, rest))
+}
+
+/// The hour of the whole day where `AM` or `PM` says which half of it is meant, and what stands behind that.
+fn half_day(hour: i64, rest: &[u8]) -> Option<(i64, &[u8])> {
+    let (half, behind) = match rest.trim_ascii_start() {
+        [half @ (b'A' | b'a' | b'P' | b'p'), b'M' | b'm', behind @ ..] => (half.to_ascii_lowercase(), behind),
+        _ => return Some((hour, rest)),
+    };
+    let after_noon = if half == b'p' { 12 } else { 0 };
+    (1..=12).contains(&hour).then_some((hour % 12 + after_noon, behind))
 }
 
 fn one_or_two_digits(text: &[u8]) -> Option<(i64, &[u8])> {
@@ -136,6 +148,9 @@ mod tests {
             ("00:00:05.250", 5.25),
             ("9:30:00", 34_200.0),
             ("23:59:59,5", 86_399.5),
+            ("11:59:45.5 AM", 43_185.5),
+            ("12:00:01 am", 1.0),
+            ("1:00:00 PM", 46_800.0),
         ] {
             assert_eq!(parse(text.as_bytes()), Some(seconds), "{text}");
         }

@@ -34,6 +34,25 @@ pub(crate) fn decide(lines: &[&str], block: &Block, fixed: Option<DecimalMark>) 
     }
 }
 
+/// Whether no number has a mark at all.
+pub(crate) fn is_unseen(block: &Block) -> bool {
+    places(block, Cell::Point).is_empty() && places(block, Cell::Comma).is_empty()
+}
+
+/// The first value that is a thousandth of what comes next to it, in a column that began with whole numbers: 996 and then 1.003, whose
+/// point sets off thousands.
+pub(crate) fn falls_to_a_thousandth(values: &[f64]) -> Option<usize> {
+    let is_whole = |value: f64| value == value.trunc();
+    let first = values.iter().position(|value| !is_whole(*value))?;
+    let small = |value: f64| {
+        let thousandths = 1e3 * value;
+        (thousandths - thousandths.round()).abs() < 1e-6 * thousandths.abs().max(1.0)
+    };
+    let (before, here) = (*values.get(first.checked_sub(1)?)?, values[first]);
+    let jumps = before.abs() >= 100.0 && (0.5..2.0).contains(&(1e3 * here / before));
+    (small(here) && jumps).then_some(first)
+}
+
 fn weigh(lines: &[&str], block: &Block) -> Result<DecimalMark, Doubt> {
     let texts = |wanted| -> Vec<(usize, &str)> {
         places(block, wanted).into_iter().map(|place| (place.0, text_at(lines, block, place))).collect()
@@ -199,6 +218,15 @@ mod tests {
         for plain in [["0\t1.000", "1\t1.001"], ["0;0.999", "1;1.001"], ["0;1", "1;1.25"], ["0.5;1", "1;1.001"]] {
             assert_eq!(decided(&plain, None), Ok(DecimalMark::Point), "{plain:?}");
         }
+    }
+
+    /// Thousands that begin after the lines a layout is found out from: 1.003 N was read for 1003 N.
+    #[test]
+    fn a_column_of_whole_numbers_that_falls_to_a_thousandth_has_points_between_thousands() {
+        assert_eq!(falls_to_a_thousandth(&[980.0, 989.0, 996.0, 1.003, 1.01]), Some(3));
+        assert_eq!(falls_to_a_thousandth(&[980.0, 989.0, 996.0, 997.5, 1000.25]), None);
+        assert_eq!(falls_to_a_thousandth(&[0.0, 0.0, 1.003]), None);
+        assert_eq!(falls_to_a_thousandth(&[100.0, 200.0, 300.0]), None);
     }
 
     #[test]

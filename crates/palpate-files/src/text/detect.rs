@@ -37,6 +37,7 @@ pub fn detect(input: &Input, options: &LayoutOptions) -> Result<Layout, FileErro
         found: shorten(&doubt.found),
         doubt: doubt.doubt,
     })?;
+    let undecided = options.decimal.is_none() && decimal::is_unseen(&block);
     let header = header::find(&lines, skip, &mut block, options.header);
     let columns = columns(&lines, &block, &header);
     Ok(Layout {
@@ -48,6 +49,7 @@ pub fn detect(input: &Input, options: &LayoutOptions) -> Result<Layout, FileErro
         first_data_line: block.first + 1,
         metadata: named_values(&lines, skip, &block, &header),
         columns,
+        undecided,
     })
 }
 
@@ -106,7 +108,10 @@ fn columns(lines: &[&str], block: &Block, header: &Header) -> Vec<ColumnInfo> {
             } else {
                 kind
             },
-            sample: first_filled(lines, block, index),
+            sample: match kind {
+                ColumnKind::Text => first_text(lines, block, index),
+                _ => first_filled(lines, block, index),
+            },
         })
         .collect();
     // What a delimiter at the end of every row leaves behind is no column.
@@ -123,6 +128,17 @@ fn holds_dates(lines: &[&str], block: &Block, column: usize) -> bool {
         cells(line, block.delimiter).get(column).is_some_and(|cell| date::parse(cell.as_bytes()).is_some())
     };
     block.rows().all(is_date)
+}
+
+/// The first cell that keeps a column from being one of numbers.
+fn first_text(lines: &[&str], block: &Block, column: usize) -> String {
+    let texts = block.rows().filter(|(_, row)| row.get(column).is_some_and(|cell| !cell.is_numeric()));
+    let cell = |line: usize| -> Option<&str> {
+        let line: &str = lines[line];
+        cells(line, block.delimiter).get(column).copied()
+    };
+    let first = texts.filter_map(|(line, _)| cell(line)).find(|cell| !cell.is_empty());
+    first.map_or_else(|| first_filled(lines, block, column), shorten)
 }
 
 fn first_filled(lines: &[&str], block: &Block, column: usize) -> String {

@@ -8,6 +8,7 @@ use super::{
     number::{self, Cell},
     unit,
 };
+use crate::record_file;
 
 /// Names and units, one entry a column, and the indices of the lines they stand on.
 #[derive(Debug, Clone, Default)]
@@ -36,7 +37,11 @@ pub(crate) fn find_in_rows(rows: &Rows<'_>, skip: usize, block: &mut Block, want
     let above = candidates(rows, skip, block);
     let row = |index: usize| rows(index, block);
     let (names_line, units_line) = match above[..] {
-        [near, far, ..] if is_units(&row(near)) && is_names(&row(far), block) => (Some(far), Some(near)),
+        [near, far, ..]
+            if is_names(&row(far), block) && (is_units(&row(near)) || are_mostly_units(&row(near), &row(far))) =>
+        {
+            (Some(far), Some(near))
+        }
         [near, ..] if is_bracketed_units(&row(near)) && !has_names_too(&row(near)) => (None, Some(near)),
         [near, ..] if is_names(&row(near), block) => (Some(near), None),
         [near, ..] if wanted == Some(true) => (Some(near), None),
@@ -109,6 +114,17 @@ fn filled(row: &[String]) -> impl Iterator<Item = &str> {
 /// Whether a row of cells holds units. A bare "F" is a force, not the farad.
 fn is_units(row: &[String]) -> bool {
     filled(row).next().is_some() && filled(row).all(|cell| cell != "F" && unit::stands_alone(cell))
+}
+
+/// Whether a row below one of names holds units, some of them unheard of: half of the cells, and two at least, are units that do not
+/// stand among the names, and none says what is measured.
+fn are_mostly_units(row: &[String], names: &[String]) -> bool {
+    let known: Vec<&str> = filled(row).filter(|cell| *cell != "F" && unit::stands_alone(cell)).collect();
+    // Single letters alone may be names.
+    let plain = known.iter().any(|cell| cell.chars().count() > 1);
+    let among_names = filled(row).any(|cell| filled(names).any(|name| name == cell));
+    let says = |cell: &str| record_file::names_quantity(cell) && !unit::stands_alone(cell);
+    known.len() >= 2 && plain && 2 * known.len() >= filled(row).count() && !among_names && !filled(row).any(says)
 }
 
 /// Units that cannot be taken for names.

@@ -98,6 +98,9 @@ pub struct Layout {
     pub metadata: Vec<Metadata>,
     /// The columns, left to right.
     pub columns: Vec<ColumnInfo>,
+    /// No number seen so far had a mark, and nobody said which it is: a point further down could set off thousands.
+    #[serde(skip)]
+    pub undecided: bool,
 }
 
 /// What the caller knows about a file better than its bytes do. Everything left `None` is found out.

@@ -164,6 +164,14 @@ pub(crate) fn is_not_finite(cell: &[u8]) -> bool {
         || bare.starts_with(b"1,#")
 }
 
+/// Whether a text is made of what numbers are written with, whatever marks and gaps it has: `1,234.5`, `−0.5`, `1 234,5`.
+pub(crate) fn looks_numeric(text: &str) -> bool {
+    let of_numbers =
+        |letter: char| letter.is_ascii_digit() || "+-\u{2212}.,'\u{2019} \u{a0}\u{202f}\u{2009}eE".contains(letter);
+    let text = text.trim();
+    text.contains(|letter: char| letter.is_ascii_digit()) && text.chars().all(of_numbers)
+}
+
 /// Whether a cell is a number with marks between its thousands: `1,234,567.8`, `1.234,5`, `1 234`, `12'345`.
 pub(crate) fn has_thousands(cell: &[u8]) -> bool {
     let bare = match cell {

@@ -294,6 +294,7 @@ mod tests {
                     sample: String::new(),
                 };
                 let layout = Layout {
+                    undecided: false,
                     encoding: Encoding::Utf8,
                     delimiter,
                     decimal: mark,

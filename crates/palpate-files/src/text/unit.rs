@@ -5,16 +5,18 @@
 /// Words that units are made of, in lower case.
 const WORDS: &[&str] = &[
     // time and frequency
-    "s", "sec", "secs", "second", "seconds", "ms", "msec", "us", "µs", "μs", "ns", "min", "mins", "minute", "minutes",
-    "h", "hr", "hrs", "hour", "hours", "d", "day", "days", "hz", "khz", "mhz", "sekunde", "sekunden", "秒", "毫秒",
-    "分", "分钟", "小时", // length and angle
-    "m", "dm", "cm", "mm", "um", "µm", "μm", "nm", "pm", "km", "in", "inch", "inches", "ft", "mil", "deg", "°", "rad",
-    "mrad", "米", "厘米", "毫米", "微米", "度", // force and mass
-    "n", "kn", "mn", "un", "µn", "μn", "nn", "pn", "newton", "newtons", "lbf", "lb", "lbs", "kgf", "gf", "g", "kg",
-    "mg", "ug", "µg", "μg", "牛", "牛顿", "千牛", "毫牛", "克", "千克", // stress and pressure
-    "pa", "hpa", "kpa", "mpa", "gpa", "psi", "bar", "mbar", "atm", "帕", "千帕", "兆帕",
+    "s", "sec", "secs", "second", "seconds", "ms", "msec", "us", "usec", "µs", "μs", "ns", "nsec", "nanosec", "min",
+    "mins", "minute", "minutes", "h", "hr", "hrs", "hour", "hours", "d", "day", "days", "hz", "khz", "mhz", "sekunde",
+    "sekunden", "seconde", "secondes", "segundo", "segundos", "秒", "毫秒", "分", "分钟",
+    "小时", // length and angle
+    "m", "dm", "cm", "mm", "um", "µm", "μm", "nm", "pm", "km", "in", "inch", "inches", "\"", "ft", "mil", "deg", "°",
+    "rad", "mrad", "米", "厘米", "毫米", "微米", "度", // force and mass
+    "n", "dan", "cn", "kn", "mn", "un", "µn", "μn", "nn", "pn", "newton", "newtons", "lbf", "kip", "lb", "lbs", "kgf",
+    "gf", "g", "kg", "mg", "ug", "µg", "μg", "牛", "牛顿", "千牛", "毫牛", "克", "千克", // stress and pressure
+    "pa", "hpa", "kpa", "mpa", "gpa", "psi", "ksi", "bar", "mbar", "atm", "帕", "千帕", "兆帕",
     // ratios and arbitrary units
-    "%", "pct", "percent", "ppm", "strain", "1", "au", "a", "u", "count", "counts", // temperature
+    "%", "pct", "percent", "ppm", "strain", "1", "au", "a", "u", "count", "counts", "cycle", "cycles", "segment",
+    "segments", "point", "points", // temperature
     "°c", "℃", "degc", "c", "°f", "degf", "f", "k", "°k", // electricity, work, textiles
     "v", "mv", "uv", "µv", "μv", "ma", "ua", "ohm", "ohms", "ω", "kω", "mω", "kohm", "pf", "nf", "uf", "µf", "μf", "j",
     "mj", "uj", "w", "mw", "tex", "dtex", "den",
@@ -23,9 +25,9 @@ const WORDS: &[&str] = &[
 /// Units that are taken for one behind an underscore. Single letters that often number or label something else
 /// (`sensor_A`, `run_C`) are left out.
 const SUFFIXES: &[&str] = &[
-    "s", "sec", "secs", "seconds", "ms", "us", "µs", "μs", "ns", "hz", "khz", "m", "cm", "mm", "um", "µm", "μm", "nm",
-    "n", "kn", "mn", "un", "µn", "μn", "nn", "pn", "lbf", "kgf", "gf", "kg", "mg", "pa", "kpa", "mpa", "gpa", "psi",
-    "percent", "pct", "deg", "rad", "degc",
+    "s", "sec", "secs", "seconds", "ms", "msec", "us", "usec", "µs", "μs", "ns", "nsec", "nanosec", "hz", "khz", "m",
+    "cm", "mm", "um", "µm", "μm", "nm", "n", "kn", "mn", "un", "µn", "μn", "nn", "pn", "lbf", "kgf", "gf", "kg", "mg",
+    "pa", "kpa", "mpa", "gpa", "psi", "percent", "pct", "deg", "rad", "degc",
 ];
 
 /// Opening and closing brackets that enclose units.

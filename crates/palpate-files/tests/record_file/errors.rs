@@ -60,7 +60,7 @@ fn names_that_say_nothing() {
         "Last (N),Force (N)\n0,1\n1,2\n",
         "",
         &["expected a column of time"],
-        &["time = { column = 1", "force = { column = 2"],
+        &["# time: no column is left that could hold it", "force = { column = 2"],
     );
     says("Zeit (s),U (V)\n0,1\n1,2\n", "columns.stress = {}", &["expected a column of stress"], &[]);
 }
@@ -225,4 +225,49 @@ fn a_length_of_unknown_name_is_asked_about() {
     );
     assert!(read("Time (s),Temperature (°C),Force (N)\n0,20,1\n1,20,2\n2,20,1\n", "").is_ok());
     assert!(read("Time (s),Max displacement (mm),Force (N)\n0,20,1\n1,20,2\n2,20,1\n", "").is_ok());
+}
+
+/// The row of units won over the unit in the name: forces a thousand times too large, and nothing said.
+#[test]
+fn two_units_for_one_column_are_asked_about() {
+    let table = "Time (s),Force (N)\ns,kN\n0,1\n1,2\n2,1\n";
+    let error = says(
+        table,
+        "",
+        &["column 2 (Force (N)): expected one unit, found N in its name and kN beside it"],
+        &["[columns.force]\nunit = \"kN\"\ncolumn = 2"],
+    );
+    assert_eq!(read(table, error.hint().unwrap().split_once('\n').unwrap().1).unwrap().record.force()[1], 2000.0);
+    assert!(read("Time (s),Force (N)\ns,N\n0,1\n1,2\n2,1\n", "").is_ok());
+}
+
+/// Units that no list knows, in a column that nobody needs, were taken for the names of the columns (MTS TestSuite).
+#[test]
+fn a_row_of_units_is_known_by_most_of_them() {
+    let table = "Axial Count\tRunning Time\tAxial Displacement\tAxial Force\nturns\tSec\tmm\tdaN\n1\t0\t0\t0\n2\t1\t1\t2\n3\t2\t1\t1\n";
+    let file = read(table, "").unwrap();
+    assert_eq!(file.record.force(), [0.0, 20.0, 10.0]);
+    assert_eq!(file.columns[1].name.as_deref(), Some("Axial Displacement"));
+}
+
+/// "Found no name for it", of a column called Force.
+#[test]
+fn numbers_written_as_texts_are_named() {
+    let minus = "Time (s),Weg (mm),Force (N)\n0,0,\u{2212}1\n1,1,\u{2212}2\n2,1,\u{2212}1\n";
+    says(minus, "", &["column 3 (Force): expected numbers in every row, found `\u{2212}1`"], &["U+2212"]);
+    let thousands = "Time (s);Weg (mm);Force (N)\n0;0;1\n1;1;1 002,5\n2;1;1 001,5\n";
+    says(thousands, "", &["column 3 (Force)", "found `1 002,5`"], &["without marks between thousands"]);
+    // A displacement was left out.
+    let travel = "Time (s),Weg (mm),Force (N)\n0,\u{2212}0,1\n1,\u{2212}1,2\n2,\u{2212}1,1\n";
+    says(travel, "", &["column 2 (Weg): expected numbers"], &["U+2212"]);
+}
+
+#[test]
+fn a_scale_is_for_volts() {
+    says(
+        "Time (s),Force (N)\n0,1\n1,2\n2,1\n",
+        "columns.force.scale = \"2 N/V\"",
+        &["column 2 (Force): expected volts, which `scale` is for, found N"],
+        &["remove `scale`", "unit = \"V\""],
+    );
 }

@@ -29,9 +29,13 @@ fn a_faulty_cell_is_an_error_that_names_it() {
         (X("<c r=\"PLACE\" t=\"e\"><v>#N/A</v></c>"), "a number, found #N/A"),
         (X("<c r=\"PLACE\" t=\"b\"><v>1</v></c>"), "a number, found TRUE"),
         (E, "a number, found an empty cell"),
+        // 12.3 that a spreadsheet took for a day of March: 3,950,899,200 N.
+        (S(45_728.0, 2), "a number, found a date or a time of day"),
         (T("n.a."), "a number with a decimal point, found `n.a.`"),
     ] {
-        let contents = open(&of_column(&[N(1.0), N(2.0), cell, N(4.0)]).bytes()).expect("a workbook");
+        let mut book = of_column(&[N(1.0), N(2.0), cell, N(4.0)]);
+        book.formats = vec!["yyyy-mm-dd", "d-mmm"];
+        let contents = open(&book.bytes()).expect("a workbook");
         let error = read(&contents, 0, &[1, 2]).expect_err("a faulty cell");
         assert_eq!(
             error.to_string(),

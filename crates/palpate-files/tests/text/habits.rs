@@ -184,12 +184,12 @@ fn rheometer_export() {
 
 #[test]
 fn footer_is_passed_over_and_told() {
-    let text = "t,F\n0,1.5\n\n1,2.5\n\nEnd of test\nOperator,me\n,\n";
+    let text = "t,F\n0,1.5\n\n1,2.5\n\nEnd of test\nOperator,me\n,\n,,\n";
     let columns = read(text, &[1, 2]).expect("columns");
     assert_eq!(columns.rows(), 2);
-    assert_eq!(columns.ignored.blank, 2);
+    assert_eq!(columns.ignored.blank, 4);
     let footer = columns.ignored.footer.as_ref().expect("a footer");
-    assert_eq!((footer.first_line, footer.lines), (6, 3));
+    assert_eq!((footer.first_line, footer.lines), (6, 2));
     assert_eq!(footer.sample, "End of test");
     assert_eq!((columns.line_of(0), columns.line_of(1)), (Some(2), Some(4)));
 }

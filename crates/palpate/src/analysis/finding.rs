@@ -146,6 +146,15 @@ pub enum Finding {
         /// How many.
         count: usize,
     },
+    /// Single rows of the force that leave their neighbours and come back, and were left as they are.
+    RowsStray {
+        /// How many.
+        count: usize,
+        /// Time of the first, s.
+        time: f64,
+        /// Force there, N.
+        force: f64,
+    },
     /// The file is so long that successive rows became their mean.
     RowsAveraged {
         /// Rows of the file.
@@ -302,6 +311,7 @@ impl Finding {
             Self::NoContactArea => "no_contact_area",
             Self::Thinned { .. } => "thinned",
             Self::DropoutsRepaired { .. } => "dropouts_repaired",
+            Self::RowsStray { .. } => "rows_stray",
             Self::RowsAveraged { .. } => "rows_averaged",
             Self::StressAsForce => "stress_as_force",
             Self::StampsMerged { .. } => "stamps_merged",
@@ -353,6 +363,7 @@ impl Finding {
             | Self::SampledTooSlowly { .. }
             | Self::ContactOpen { .. }
             | Self::DropoutsRepaired { .. }
+            | Self::RowsStray { .. }
             | Self::RowsAveraged { .. }
             | Self::StressAsForce
             | Self::StampsMerged { .. }

@@ -6,10 +6,11 @@ use super::hold::{HoldAnalysis, analyze_hold};
 use super::joint::changing_rate;
 use super::modulus::{ModulusSource, implied_modulus};
 use super::overlay::{Overlay, overlay};
-use super::signals::{correction_findings, signal_findings, suspicious_signs, touch_findings};
+use super::signals::{correction_findings, signal_findings, stray_rows, suspicious_signs, touch_findings};
 use super::skew::ClockSkew;
 use super::{AnalysisOptions, Finding};
 use crate::contact::{Shape, Specimen, SpecimenError};
+use crate::number::significant;
 use crate::record::{Record, RecordError, SignalReport};
 use crate::segment::{ContactPoint, Phase, Segment, SegmentError, Segmentation, find_contact_of};
 use crate::simulate::Separation;
@@ -128,6 +129,7 @@ pub fn examine(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
     let mut findings = correction_findings(&corrected.record);
     let aligned = aligned.as_ref().map_or((record, &signals), |(record, signals)| (record, signals));
     findings.extend(signal_findings(aligned, &held(&corrected.record, &segmentation)));
+    findings.extend(stray_rows(&corrected.record));
     findings.extend(skewed);
     let (record, skew) = (corrected.record, corrected.skew);
     if !segmentation.settings.from_displacement {
@@ -232,7 +234,7 @@ fn specimen(
 /// An error if the jaw goes as far as the body is deep: a unit, a radius or a number of sides is wrong.
 ///
 /// A ball and a body between plates have that limit; a strip in grips can be stretched beyond its own length.
-fn beyond_body(record: &Record, options: &AnalysisOptions) -> Result<(), AnalysisError> {
+pub(super) fn beyond_body(record: &Record, options: &AnalysisOptions) -> Result<(), AnalysisError> {
     let (Some(geometry), Some(displacement)) = (&options.geometry, record.displacement()) else {
         return Ok(());
     };
@@ -291,6 +293,14 @@ fn none_of(holds: usize) -> String {
     }
 }
 
+/// The one force of all holds.
+fn constant_force(holds: &[HoldAnalysis]) -> Option<f64> {
+    let force = holds.first()?.force_start;
+    let is_constant =
+        |hold: &HoldAnalysis| hold.force_start == force && hold.values.iter().all(|value| *value == hold.values[0]);
+    (force != 0.0 && holds.iter().all(is_constant)).then_some(force)
+}
+
 /// An error unless some hold was fitted, with the reason that most likely can be helped.
 fn nothing_to_fit(holds: &[HoldAnalysis]) -> Result<(), AnalysisError> {
     if holds.is_empty() || holds.iter().any(|hold| !hold.fits.is_empty()) {
@@ -322,6 +332,10 @@ fn nothing_to_fit(holds: &[HoldAnalysis]) -> Result<(), AnalysisError> {
         }
     } else if let Some((_, area)) = with("no_contact_area") {
         (area.seen(), "check first touch (touch), the radius, and the unit and sign of the displacement")
+    } else if let Some(force) = constant_force(holds) {
+        let reason = format!("the force is {} N throughout: nothing relaxes", significant(force, 4));
+        let hint = "check that the force column is the right one and that the load cell was connected; a body that creeps is for `palpate compare --creep`";
+        (reason, hint)
     } else if let Some((_, still)) = with("no_relaxation") {
         let reason = format!("the force does not change in any hold ({} in the first)", still.seen());
         (reason, "check the force column and its unit; a body that does not relax has no law to fit")

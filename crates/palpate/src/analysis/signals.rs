@@ -77,6 +77,17 @@ pub fn suspicious_signs(record: &Record) -> Vec<Finding> {
     falls.collect()
 }
 
+/// [`Finding::RowsStray`] for rows of the force that stray alone and were not repaired.
+pub(super) fn stray_rows(record: &Record) -> Option<Finding> {
+    let strays = record.signals().force.strays;
+    let first = *strays.rows.first()?;
+    Some(Finding::RowsStray {
+        count: strays.count,
+        time: record.time()[first],
+        force: record.force()[first],
+    })
+}
+
 /// Findings on what was done to a record before its analysis and in it.
 pub(super) fn correction_findings(record: &Record) -> Vec<Finding> {
     let finding = |done: &Correction| match *done {

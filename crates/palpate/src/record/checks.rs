@@ -33,6 +33,26 @@ pub enum RecordError {
         /// The value.
         found: f64,
     },
+    /// A number that no sensor measures.
+    #[error(
+        "{column} must be a measured number, found {found:e} in row {row}, which instruments write where they have none"
+    )]
+    NoMeasurement {
+        /// Which column.
+        column: &'static str,
+        /// Which row.
+        row: usize,
+        /// The value.
+        found: f64,
+    },
+    /// A clock that never moves.
+    #[error("time must rise from row to row, found {found} s in all {rows} rows")]
+    ClockStands {
+        /// The one time, s.
+        found: f64,
+        /// Number of rows.
+        rows: usize,
+    },
     /// Time stands still or runs backwards.
     #[error("time must rise from row to row, found {found} s after {before} s in row {row}")]
     TimeNotRising {
@@ -140,7 +160,8 @@ impl RecordError {
     #[must_use]
     pub fn row(&self) -> Option<usize> {
         match self {
-            Self::NotFinite { row, .. } | Self::TimeNotRising { row, .. } => Some(*row),
+            Self::NotFinite { row, .. } | Self::NoMeasurement { row, .. } => Some(*row),
+            Self::TimeNotRising { row, .. } => Some(*row),
             Self::ClockGoesBack { row, .. } | Self::OutsideTable { row, .. } => Some(*row),
             _ => None,
         }
@@ -152,9 +173,18 @@ impl RecordError {
         match self {
             Self::Lengths { .. } => "give every column the same number of rows",
             Self::TooShort { .. } => "check that the whole table was exported, and that the right table was read",
-            Self::NotFinite { .. } => "remove the row, or export the record again without gaps",
+            Self::NotFinite { .. } | Self::NoMeasurement { .. } => {
+                "remove the row, or export the record again without gaps"
+            }
+            Self::ClockStands { .. } => "choose the column that holds the time, or write the time with more digits",
             Self::TimeNotRising { .. } => {
                 "sort the rows by time and drop repeated stamps, or check that the time column is the right one"
+            }
+            Self::ClockGoesBack { largest, .. } if (80_000.0..86_400.5).contains(largest) => {
+                "the test ran over midnight: export dates with the times of day, or seconds"
+            }
+            Self::ClockGoesBack { late, rows, .. } if late + 1 >= *rows => {
+                "the rows stand in reverse order: turn them round, or check that the time column is the right one"
             }
             Self::ClockGoesBack { .. } => {
                 "where the clock starts again, several runs stand in one file: split it there; else check that the time column is the right one"
@@ -170,7 +200,7 @@ impl RecordError {
                 "say from when to when there is no contact (baseline_window), or leave the baseline out"
             }
             Self::ConstantForce { .. } => {
-                "check that the force column is the right one and that the load cell was connected"
+                "check that the force column is the right one and that the load cell was connected; a body that creeps under a constant force needs a column of displacement (of a strain, say the length it stands for: travel_per_unit)"
             }
             Self::ClocksApart { .. } => "check the units and the columns of the two clocks",
         }
@@ -203,9 +233,19 @@ pub(super) fn finite(column: &'static str, values: &[f64]) -> Result<(), RecordE
             row,
             found: values[row],
         }),
-        None => Ok(()),
+        None => match values.iter().position(|value| value.abs() >= NONE) {
+            Some(row) => Err(RecordError::NoMeasurement {
+                column,
+                row,
+                found: values[row],
+            }),
+            None => Ok(()),
+        },
     }
 }
+
+/// What no sensor measures in SI, and instruments write where they have no value: 9.91e37, 3.4e38, 1e308.
+const NONE: f64 = 1e30;
 
 pub(super) fn rising(time: &[f64]) -> Result<(), RecordError> {
     match time.windows(2).position(|pair| pair[1] <= pair[0]) {
@@ -218,8 +258,10 @@ pub(super) fn rising(time: &[f64]) -> Result<(), RecordError> {
     }
 }
 
-pub(super) fn changing(force: &[f64]) -> Result<(), RecordError> {
-    if force.iter().all(|value| *value == force[0]) {
+/// A force that never changes says nothing, unless it is one and a body creeps under it.
+pub(super) fn changing(displacement: Option<&[f64]>, force: &[f64]) -> Result<(), RecordError> {
+    let is_constant = |values: &[f64]| values.iter().all(|value| *value == values[0]);
+    if is_constant(force) && (force[0] == 0.0 || displacement.is_none_or(is_constant)) {
         return Err(RecordError::ConstantForce {
             found: force[0],
             rows: force.len(),

@@ -27,6 +27,12 @@ pub(super) fn mended(clock: Clock, time: Vec<f64>, columns: Vec<Vec<f64>>) -> Re
     if mended.time.windows(2).all(|pair| pair[1] > pair[0]) {
         return Ok(mended);
     }
+    if mended.time.len() > 2 && mended.time.iter().all(|stamp| *stamp == mended.time[0]) {
+        return Err(RecordError::ClockStands {
+            found: mended.time[0],
+            rows: mended.time.len(),
+        });
+    }
     mended.sort(clock)?;
     mended.merge(clock);
     Ok(mended)

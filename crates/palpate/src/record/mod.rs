@@ -52,7 +52,7 @@ impl Record {
     ///
     /// # Errors
     /// [`RecordError`] for unequal lengths, fewer than two rows, values that are not finite, time that does not rise,
-    /// or a force that never changes.
+    /// or a force that never changes while nothing moves.
     ///
     /// ```
     /// use palpate::record::Record;
@@ -69,7 +69,7 @@ impl Record {
         }
         checks::finite("force", &force)?;
         checks::rising(&time)?;
-        checks::changing(&force)?;
+        checks::changing(displacement.as_deref(), &force)?;
         Ok(Self {
             time,
             displacement,

@@ -169,7 +169,7 @@ mod tests {
     #[test]
     fn a_clock_that_stands_still_is_an_error() {
         let error = raw(&[3.0; 50], &(0..50).map(f64::from).collect::<Vec<_>>()).into_record().unwrap_err();
-        assert!(matches!(error, RecordError::TooShort { found: 1, .. }), "{error}");
+        assert_eq!(error, RecordError::ClockStands { found: 3.0, rows: 50 });
     }
 
     #[test]

@@ -60,6 +60,11 @@ fn is_ramp(segment: &Segment) -> bool {
 /// at its speed goes on after the force fell; a gripper, which the force drives, runs away just before.
 fn rupture(record: &Record, begin: usize, stand: &Segment) -> Option<Rupture> {
     let (time, jaw, force) = (record.time(), record.displacement()?, record.force());
+    // A body breaks deeper than it was touched; else the jaw counts the other way round, and lets go.
+    let most = (0..stand.start).max_by(|a, b| force[*a].total_cmp(&force[*b]))?;
+    if jaw[most] < jaw[0] - 0.1 * range(jaw) {
+        return None;
+    }
     let begin = (begin..stand.start).min_by(|a, b| jaw[*a].total_cmp(&jaw[*b]))?;
     if stand.start < begin + FEWEST {
         return None;

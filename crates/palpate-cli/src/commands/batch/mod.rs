@@ -25,6 +25,7 @@ use sha2::{Digest, Sha256};
 
 use super::inputs::records_of;
 use super::record::description;
+use crate::apart::{is_same, refused};
 use crate::arguments::BatchArguments;
 use crate::failure::{Failure, Outcome};
 use crate::terminal::note;
@@ -38,6 +39,9 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<Outcome, Failure> {
     let test = description(arguments.test.as_deref(), None)?;
     let options = options(arguments, test.as_ref());
     let mut paths = records_of(&arguments.records)?;
+    if !is_written_by_batch(&arguments.out) && paths.iter().any(|path| is_same(path, &arguments.out)) {
+        return Err(refused(&arguments.out));
+    }
     paths.retain(|path| !is_ours(path, &arguments.out));
     let settings = settings(&options, arguments.test.as_deref(), test.as_ref())?;
     let digest = digest(&settings);
@@ -100,11 +104,7 @@ pub(super) fn is_written_by_batch(path: &Path) -> bool {
 
 /// Whether a file is the table or part of its journal: in the folder of the records they are no records.
 fn is_ours(path: &Path, out: &Path) -> bool {
-    let same = |one: &Path, other: &Path| match (one.canonicalize(), other.canonicalize()) {
-        (Ok(one), Ok(other)) => one == other,
-        _ => one == other,
-    };
-    same(path, out) || path.parent().is_some_and(|folder| same(folder, &folder_of(out)))
+    is_same(path, out) || path.parent().is_some_and(|folder| is_same(folder, &folder_of(out)))
 }
 
 /// Says what was done, and what could not be.

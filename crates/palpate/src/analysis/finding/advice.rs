@@ -57,6 +57,9 @@ impl Finding {
             Self::DropoutsRepaired { .. } => {
                 "the encoder or the logger lost a value; the mean of the neighbours stands in its place"
             }
+            Self::RowsStray { .. } => {
+                "a spike of the load cell or the logger pulls fits its way, a real peak does not belong to a hold"
+            }
             Self::RowsAveraged { .. } => {
                 "what is shorter than that many rows is smoothed away: peaks are lower, and the first moments of a hold are coarser"
             }
@@ -149,6 +152,9 @@ impl Finding {
             Self::NoContactArea => "check first touch (touch = \"...\" in the test description)",
             Self::Thinned { .. } => "nothing",
             Self::DropoutsRepaired { .. } | Self::StampsSorted { .. } | Self::Gaps { .. } => "check the logger",
+            Self::RowsStray { .. } => {
+                "remove the rows if they are no forces; `palpate compare --loss huber` makes them count less"
+            }
             Self::RowsAveraged { .. } => {
                 "nothing, if the test is long against that; else cut the file, or keep fewer rows a second"
             }

@@ -93,6 +93,18 @@ impl Finding {
             Self::Thinned { every } => format!("one sample in {every} is fitted"),
             Self::DropoutsRepaired { column, count: 1 } => format!("one row of the {} strays alone", column.name()),
             Self::DropoutsRepaired { column, count } => format!("{count} rows of the {} stray alone", column.name()),
+            Self::RowsStray { count: 1, time, force } => {
+                format!(
+                    "one row of the force strays alone: {} N at {} s",
+                    significant(*force, 4),
+                    significant(*time, 5)
+                )
+            }
+            Self::RowsStray { count, time, force } => format!(
+                "{count} rows of the force stray alone, the first at {} s with {} N",
+                significant(*time, 5),
+                significant(*force, 4)
+            ),
             Self::RowsAveraged { rows, averaged } => format!(
                 "the file has {rows} rows, more than are kept; every {averaged} successive ones became their mean ({} samples)",
                 rows.div_ceil(*averaged)

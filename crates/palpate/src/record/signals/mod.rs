@@ -14,7 +14,7 @@ pub use rounding::rounding_step;
 pub(super) use stamps::gap_rows;
 pub use stamps::{Gaps, Reversals, SampleInterval, Stamps};
 pub use values::{Saturation, Strays, Values};
-pub(super) use values::{stray_rows, zero_rows};
+pub(super) use values::{lost_rows, stray_rows};
 
 use serde::{Deserialize, Serialize};
 

@@ -110,10 +110,35 @@ pub(in crate::record) fn stray_rows(values: &[f64]) -> Vec<usize> {
     rows
 }
 
-/// Those of the rows that stray alone which are zero exactly: a logger's word for a value that it did not get.
-pub(in crate::record) fn zero_rows(values: &[f64]) -> Vec<usize> {
-    stray_rows(values).into_iter().filter(|row| values[*row] == 0.0).collect()
+/// Those of the rows that stray alone which no test can have measured: zero exactly, or many times farther off than all other rows
+/// reach: loggers' words for a value that they did not get.
+pub(in crate::record) fn lost_rows(values: &[f64]) -> Vec<usize> {
+    let mut rows = stray_rows(values);
+    let (mut low, mut high) = (f64::MAX, f64::MIN);
+    for (row, value) in values.iter().enumerate() {
+        if rows.binary_search(&row).is_err() {
+            (low, high) = (low.min(*value), high.max(*value));
+        }
+    }
+    let is_absurd = |value: f64| (value - high).max(low - value) > FAR * (high - low);
+    let absurd: Vec<usize> = rows.iter().copied().filter(|row| is_absurd(values[*row])).collect();
+    if !absurd.is_empty() {
+        // Beside a row that is out of this world no other strays: they are looked for without it.
+        let mut rest = values.to_vec();
+        for row in &absurd {
+            rest[*row] = 0.5 * (rest[row - 1] + rest[row + 1]);
+        }
+        rows = stray_rows(&rest);
+    }
+    rows.retain(|row| values[*row] == 0.0);
+    rows.extend(absurd);
+    rows.sort_unstable();
+    rows.dedup();
+    rows
 }
+
+/// How many times the range of all other rows away a row that strays is no measurement.
+const FAR: f64 = 10.0;
 
 /// Runs at the end of the range that is farther from where the column begins.
 fn saturation(column: Column, values: &[f64], other: Option<&[f64]>) -> Option<Saturation> {
