@@ -43,11 +43,28 @@ fn ragged(curves: &Bound<'_, PyAny>, name: &str) -> PyResult<Ragged> {
     let found = curves.py().import("palpate._arrays")?.call_method1("as_ragged", (curves, name))?;
     let (values, offsets): (Bound<'_, PyArray1<f64>>, Bound<'_, PyArray1<i64>>) = found.extract()?;
     let offsets: Vec<usize> = offsets.try_readonly()?.as_array().iter().map(|offset| *offset as usize).collect();
-    let values = ScalarBuffer::from(values.try_readonly()?.as_array().to_vec());
-    Ok(Ragged {
-        curves: offsets.windows(2).map(|ends| values.slice(ends[0], ends[1] - ends[0])).collect(),
-    })
+    let values = values.try_readonly()?;
+    let values = values.as_slice()?;
+    let (mut ragged, mut copied) = (
+        Ragged {
+            curves: Vec::with_capacity(offsets.len()),
+        },
+        0,
+    );
+    for ends in offsets.windows(2) {
+        ragged.curves.push(ScalarBuffer::from(values[ends[0]..ends[1]].to_vec()));
+        copied += ends[1] - ends[0];
+        if copied > AT_ONCE {
+            // A gigabyte takes a second to copy: Ctrl-C is heard in between.
+            curves.py().check_signals()?;
+            copied = 0;
+        }
+    }
+    Ok(ragged)
 }
+
+/// Numbers that are copied in some milliseconds.
+const AT_ONCE: usize = 4 << 20;
 
 fn of_arrow(column: &PyChunkedArray, name: &str) -> PyResult<Ragged> {
     let mut ragged = Ragged { curves: Vec::new() };

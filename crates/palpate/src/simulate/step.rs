@@ -63,10 +63,10 @@ pub struct ContactState {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum StepError {
     /// A time step, displacement or force that is NaN or infinite, or a time step below zero.
-    #[error("{name} must be finite and a time step 0 s or more, found {found}")]
+    #[error("{expected}, found {found}")]
     Number {
-        /// `time step`, `displacement` or `force`.
-        name: &'static str,
+        /// What must be what.
+        expected: &'static str,
         /// What was given.
         found: f64,
     },
@@ -87,7 +87,7 @@ impl ContactState {
     /// # Errors
     /// [`StepError`] for numbers that are not finite, a negative time step, and a displacement that the body cannot take.
     pub fn step(&mut self, model: &ContactModel, dt: f64, displacement: f64) -> Result<f64, StepError> {
-        check_step(dt, "displacement", displacement)?;
+        check_step(dt, "displacement must be a finite number", displacement)?;
         let (specimen, bonded) = (&model.specimen, model.separation == Separation::Bonded);
         let to = specimen.contact_displacement(displacement);
         specimen.check_contact_displacement(to, bonded)?;
@@ -110,7 +110,7 @@ impl ContactState {
     /// # Errors
     /// [`StepError`] for numbers that are not finite, a negative time step, and a force that no displacement carries.
     pub fn step_force(&mut self, model: &ContactModel, dt: f64, force: f64) -> Result<f64, StepError> {
-        check_step(dt, "force", force)?;
+        check_step(dt, "force must be a finite number", force)?;
         let (specimen, bonded) = (&model.specimen, model.separation == Separation::Bonded);
         let (depth, thickness) = (specimen.depth(), model.layers.thickness(specimen.depth()));
         if force < 0.0 && !(bonded && specimen.has_constant_section()) {
@@ -181,7 +181,7 @@ impl ContactState {
         behind.copy_from_slice(&bytes[8..]);
         let (jaw, behind) = (f64::from_le_bytes(jaw), f64::from_le_bytes(behind));
         for found in [jaw, behind] {
-            check_step(0.0, "displacement", found)?;
+            check_step(0.0, "displacement must be a finite number", found)?;
         }
         Ok(Self { jaw, behind })
     }
@@ -244,15 +244,15 @@ impl ContactState {
     }
 }
 
-fn check_step(dt: f64, name: &'static str, value: f64) -> Result<(), StepError> {
+fn check_step(dt: f64, expected: &'static str, value: f64) -> Result<(), StepError> {
     if !(dt.is_finite() && dt >= 0.0) {
         return Err(StepError::Number {
-            name: "time step",
+            expected: "time step must be a finite number of 0 s or more",
             found: dt,
         });
     }
     if !value.is_finite() {
-        return Err(StepError::Number { name, found: value });
+        return Err(StepError::Number { expected, found: value });
     }
     Ok(())
 }
