@@ -64,6 +64,8 @@ pub mod analysis;
 #[cfg(feature = "std")]
 pub mod batch;
 #[cfg(feature = "std")]
+pub mod calibrate;
+#[cfg(feature = "std")]
 pub mod choose;
 pub mod contact;
 #[cfg(feature = "std")]

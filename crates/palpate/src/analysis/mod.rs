@@ -13,6 +13,7 @@
 //! | `modulus.rs` | the modulus that the relaxed forces imply |
 //! | `overlay.rs` | the same displacement simulated with the fitted numbers |
 //! | `corrected.rs` | the corrections that were asked for, in order |
+//! | `prepared.rs` | the same with zero at first touch, for fits of the whole record |
 //! | `skew.rs`, `kink.rs` | how much later the force is stamped than the displacement |
 //! | `signals.rs` | what the columns, and what was done to them, give cause to say |
 //! | `finding.rs` | what the user should know, in plain words |
@@ -29,6 +30,7 @@ mod modulus;
 mod options;
 mod overlay;
 mod pipeline;
+mod prepared;
 mod rate_bias;
 mod signals;
 mod skew;
@@ -44,6 +46,7 @@ pub use modulus::ModulusSource;
 pub use options::{AnalysisOptions, Geometry, LayersChoice};
 pub use overlay::Overlay;
 pub use pipeline::{Analysis, AnalysisError, analyze, examine};
+pub use prepared::{Prepared, prepared};
 pub use rate_bias::RateBias;
 pub use signals::suspicious_signs;
 pub use skew::{ClockSkew, clock_skew};

@@ -9,7 +9,7 @@ pub(super) type Few = SmallVec<[f64; 8]>;
 pub(super) type Square = SmallVec<[f64; 25]>;
 
 /// Lower triangle of a symmetric positive definite matrix, factored.
-pub(super) struct Cholesky {
+pub(crate) struct Cholesky {
     size: usize,
     lower: Square,
     scale: Few,
@@ -17,7 +17,7 @@ pub(super) struct Cholesky {
 
 impl Cholesky {
     /// Factors `matrix` (row-major, `size` × `size`) after scaling its diagonal to one; `None` if it is singular to rounding.
-    pub(super) fn new(matrix: &[f64], size: usize) -> Option<Self> {
+    pub(crate) fn new(matrix: &[f64], size: usize) -> Option<Self> {
         let mut scale = Few::from_elem(1.0, size);
         for (i, scale) in scale.iter_mut().enumerate() {
             *scale /= matrix[i * (size + 1)].sqrt();
@@ -47,7 +47,7 @@ impl Cholesky {
     }
 
     /// Solves in place.
-    pub(super) fn solve(&self, right: &mut [f64]) {
+    pub(crate) fn solve(&self, right: &mut [f64]) {
         let n = self.size;
         for i in 0..n {
             let mut sum = right[i] * self.scale[i];

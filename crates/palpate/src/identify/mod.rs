@@ -85,6 +85,7 @@ pub use joint::{
 };
 pub use law_fit::{LawFit, LawNumber, NumberUnit, fit_law};
 pub use law_options::{ConstantChoice, LawOptions, Loss, NoiseChoice, SampleChoice};
+pub(crate) use linear_algebra::Cholesky;
 pub use noise::NoiseModel;
 pub use profile::{Interval, profile_interval};
 pub use prony_terms::fit_prony;
@@ -96,6 +97,7 @@ pub use separable::{Termination, Work};
 pub use spectrum::{Smoothing, SpectrumFit, SpectrumOptions, SpectrumPeak, SpectrumWork, fit_spectrum};
 pub use time_domain::fit_hold;
 pub use uncertainty::Uncertainty;
+pub(crate) use uncertainty::{Assessed, Scale};
 
 use serde::{Deserialize, Serialize};
 

@@ -3,14 +3,16 @@
 use serde::{Deserialize, Serialize};
 
 use super::estimates::Estimate;
+use super::linear_algebra::{Cholesky, Few};
 use super::noise::{Columns, Lags, Noise};
-use super::separable::Solution;
+use super::separable::{Solution, Termination};
 use super::{NoiseChoice, NoiseModel};
-use crate::statistics::coverage_factor;
+use crate::statistics::{coverage_factor, dot};
+use crate::vector::products::cross_products;
 
 /// How a number is brought to its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Scale {
+pub(crate) enum Scale {
     /// Symmetric about the value.
     Linear,
     /// Symmetric about ln of the value, for rates and exponents.
@@ -87,11 +89,11 @@ impl Uncertainty {
 }
 
 /// The uncertainty of a fit, with what rests on white noise beside it.
-pub(super) struct Assessed {
+pub(crate) struct Assessed {
     /// s² (JᵀJ)⁻¹ in the caller's units.
     pub(super) white: Option<Vec<Vec<f64>>>,
-    pub(super) uncertainty: Option<Uncertainty>,
-    pub(super) noise: NoiseModel,
+    pub(crate) uncertainty: Option<Uncertainty>,
+    pub(crate) noise: NoiseModel,
     pub(super) correlation: f64,
 }
 
@@ -149,6 +151,28 @@ impl Assessed {
         }
     }
 
+    /// Assesses least squares with this Jacobian, column by column, of a model that is linear in nothing.
+    pub(crate) fn of_columns(columns: Vec<Vec<f64>>, residuals: Vec<f64>, confidence: f64) -> Self {
+        let size = columns.len();
+        let views: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        let mut normal = vec![0.0; size * size];
+        cross_products(&views, &views, &mut normal);
+        let residual_square = dot(&residuals, &residuals);
+        let solution = Solution {
+            linear: vec![0.0; size],
+            nonlinear: Vec::new(),
+            residual_square,
+            variance: residual_square / (residuals.len() as f64 - size as f64),
+            residuals,
+            column_squares: Few::new(),
+            columns,
+            derivatives: Vec::new(),
+            inverse_normal: Cholesky::new(&normal, size).map(|factor| factor.inverse()),
+            termination: Termination::Converged,
+        };
+        Self::new(&solution, &[], &vec![1.0; size], 1.0, (confidence, NoiseChoice::FromResiduals), true)
+    }
+
     /// From a covariance for white noise of this `deviation`, intervals widened by a factor for samples that count as fewer.
     pub(super) fn widened(
         white: Option<Vec<Vec<f64>>>,
@@ -178,7 +202,7 @@ impl Assessed {
     }
 
     /// An estimate of `value` with this gradient (of ln value on the logarithmic scale).
-    pub(super) fn estimate(&self, value: f64, gradient: &[f64], scale: Scale) -> Estimate {
+    pub(crate) fn estimate(&self, value: f64, gradient: &[f64], scale: Scale) -> Estimate {
         match (&self.uncertainty, &self.white) {
             (Some(uncertainty), Some(white)) => {
                 uncertainty.estimate(value, gradient, variance_of(gradient, white), scale)

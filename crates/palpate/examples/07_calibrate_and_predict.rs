@@ -1,0 +1,49 @@
+//! One test calibrates a body; any other squeeze of it is then predicted, with what the test leaves open.
+
+use palpate::analysis::Geometry;
+use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, calibrate};
+use palpate::simulate::{ProtocolStep, Sampling, Separation, protocol, simulate_force};
+use palpate::test_problems::{Noise, PAPER_RATE, paper_ball, paper_test_a};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // The paper's test (a) on its ball, at 10 Hz, with a load cell good to 0.2 N.
+    let (motion, ball) = (paper_test_a(), paper_ball(Separation::Unilateral));
+    let times: Vec<f64> = (0..=660).map(|i| 0.1 * f64::from(i)).collect();
+    let mut noise = Noise::new(1);
+    let forces: Vec<f64> = simulate_force(&motion, &ball, &times)?
+        .into_iter()
+        .map(|force| force + 0.2 * noise.normal())
+        .collect();
+    let body = Geometry {
+        shape: ball.specimen.shape().clone(),
+        sides: ball.specimen.sides(),
+        modulus: None,
+    };
+    let held = [0.005, 0.010, 0.015, 0.020, 0.025];
+    let data = CalibrationData::new(body, ball.separation, motion, times, forces, &held)?;
+
+    for law in ["latency", "standard-linear-solid", "prony:2"] {
+        let candidate = Candidate {
+            law: law.parse()?,
+            equilibrium: EquilibriumLaw::EvenStrain,
+        };
+        let found = calibrate(&data, candidate, 0.95)?;
+        println!("{law}: leaves {:.3} N, BIC {:.0}", found.rmse, found.criteria.bic);
+        for number in &found.material.numbers {
+            println!("  {} {:.4e} {:?}", number.name, number.estimate.value, number.estimate.interval);
+        }
+        // Squeezed by 22 mm, six times as long as any hold of the test.
+        let squeeze = protocol(&[ProtocolStep {
+            to: 0.022,
+            rate: PAPER_RATE,
+            hold: 60.0,
+        }])?;
+        let later = found.material.predict(&squeeze, &Sampling::Times(vec![squeeze.end()]), 0.95)?;
+        let (low, high) = later.force_interval(0);
+        println!("  after a minute at 22 mm: {:.2} N, {low:.2} to {high:.2} N", later.trajectory.force[0]);
+        for beyond in &later.extrapolations {
+            println!("  {beyond}");
+        }
+    }
+    Ok(())
+}

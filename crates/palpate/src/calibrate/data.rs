@@ -1,0 +1,224 @@
+//! What a model is fitted to: the motion of the jaw and the force it met.
+
+use super::CalibrateError;
+use crate::analysis::{AnalysisOptions, Geometry, Prepared, prepared};
+use crate::contact::{Specimen, SpecimenError};
+use crate::record::Record;
+use crate::simulate::{Motion, Separation};
+
+/// Samples of force along a motion of the jaw that starts at first touch, ready to be fitted; SI units, loading positive.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CalibrationData {
+    geometry: Geometry,
+    separation: Separation,
+    motion: Motion,
+    times: Vec<f64>,
+    forces: Vec<f64>,
+    /// Samples that are fitted; the rest is foretold.
+    fitted: usize,
+    /// Samples of the record that these were chosen from.
+    samples: usize,
+    /// Contact displacements (m) at which the jaw was held, rising.
+    levels: Vec<f64>,
+}
+
+/// Samples that are fitted at most; of more, evenly chosen ones.
+const MOST_SAMPLES: usize = 20_000;
+
+/// Share of the deepest squeeze that a row of a table stands for at most.
+const WIDE: f64 = 0.3;
+
+/// Share of the deepest squeeze by which two levels differ at least.
+const APART: f64 = 0.02;
+
+impl CalibrationData {
+    /// Forces (N) at rising `times` (s) inside `motion`, whose first knot is at first touch of a relaxed body. `held` are the displacements
+    /// of the jaw (m) at which it was held; a table of equilibrium forces has its rows there.
+    ///
+    /// ```
+    /// use palpate::analysis::Geometry;
+    /// use palpate::calibrate::CalibrationData;
+    /// use palpate::contact::{Shape, Sides};
+    /// use palpate::simulate::{ProtocolStep, Separation, protocol};
+    /// let motion = protocol(&[ProtocolStep { to: 0.005, rate: 0.5 / 60.0, hold: 10.0 }])?;
+    /// let ball = Geometry { shape: Shape::Ball { radius: 0.035 }, sides: Sides::Two, modulus: None };
+    /// let times: Vec<f64> = (0..=100).map(|i| 0.1 * f64::from(i)).collect();
+    /// let forces = times.iter().map(|t| 1.5 * t.min(0.6)).collect();
+    /// let data = CalibrationData::new(ball, Separation::Unilateral, motion, times, forces, &[0.005])?;
+    /// assert_eq!(data.times().len(), 101);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`CalibrateError`] for columns of different lengths, numbers that are not finite, times that do not rise or lie outside the motion,
+    /// and a geometry that is none or that the jaw goes through.
+    pub fn new(
+        geometry: Geometry,
+        separation: Separation,
+        motion: Motion,
+        times: Vec<f64>,
+        forces: Vec<f64>,
+        held: &[f64],
+    ) -> Result<Self, CalibrateError> {
+        if times.len() != forces.len() {
+            return Err(CalibrateError::Lengths {
+                times: times.len(),
+                forces: forces.len(),
+            });
+        }
+        if let Some(index) = (0..times.len()).find(|i| !(times[*i].is_finite() && forces[*i].is_finite())) {
+            return Err(CalibrateError::NotFinite { sample: index + 1 });
+        }
+        let inside = |time: f64| time >= motion.start() && time <= motion.end();
+        let misplaced = |i: &usize| !inside(times[*i]) || (*i > 0 && times[*i] <= times[*i - 1]);
+        if let Some(index) = (0..times.len()).find(misplaced) {
+            return Err(CalibrateError::SampleTime {
+                sample: index + 1,
+                found: times[index],
+                from: motion.start(),
+                until: motion.end(),
+            });
+        }
+        let body = Specimen::new(geometry.shape.clone(), geometry.modulus.unwrap_or(1.0), geometry.sides)?;
+        deep_enough(&body, &motion, separation)?;
+        let samples = times.len();
+        let every = samples.div_ceil(MOST_SAMPLES).max(1);
+        let (times, forces): (Vec<f64>, Vec<f64>) = times.into_iter().zip(forces).step_by(every).unzip();
+        Ok(Self {
+            levels: levels(&body, &motion, held),
+            fitted: times.len(),
+            geometry,
+            separation,
+            motion,
+            times,
+            forces,
+            samples,
+        })
+    }
+
+    /// The same from a record: corrected, cut and set to zero at first touch as [`analyze`](crate::analysis::analyze) does.
+    ///
+    /// # Errors
+    /// Those of the corrections; [`CalibrateError::NoDisplacement`] and [`CalibrateError::NoGeometry`] for what has no model.
+    pub fn of_record(record: &Record, options: &AnalysisOptions) -> Result<Self, CalibrateError> {
+        let geometry = options.geometry.clone().ok_or(CalibrateError::NoGeometry)?;
+        let Prepared {
+            record, segmentation, ..
+        } = prepared(record, options)?;
+        let displacement = record.displacement().ok_or(CalibrateError::NoDisplacement)?;
+        // A bonded ball has no area before first touch; noise there is no pull.
+        let body = Specimen::new(geometry.shape.clone(), 1.0, geometry.sides)?;
+        let is_strip = body.contact_area(0.0) > 0.0;
+        let lowest = if options.separation == Separation::Bonded && !is_strip { 0.0 } else { f64::NEG_INFINITY };
+        let clean: Vec<f64> = displacement.iter().map(|d| d.max(lowest)).collect();
+        let held: Vec<f64> = segmentation
+            .holds()
+            .map(|hold| crate::statistics::median(&mut clean[hold.start..hold.end].to_vec()))
+            .collect();
+        let motion = Motion::new(record.time().to_vec(), clean)?.simplified(0.5 * segmentation.settings.tolerance);
+        let (times, forces) = (record.time().to_vec(), record.force().to_vec());
+        Self::new(geometry, options.separation, motion, times, forces, &held)
+    }
+
+    /// The same, fitted up to a time (s) and foretold from there on.
+    ///
+    /// # Errors
+    /// [`CalibrateError::Split`] where either part is left with fewer than eight samples.
+    pub fn fitted_until(mut self, time: f64) -> Result<Self, CalibrateError> {
+        const FEWEST: usize = 8;
+        let fitted = self.times.partition_point(|at| *at <= time);
+        if fitted < FEWEST || self.times.len() - fitted < FEWEST {
+            return Err(CalibrateError::Split {
+                at: time,
+                before: fitted,
+                after: self.times.len() - fitted,
+            });
+        }
+        self.fitted = fitted;
+        Ok(self)
+    }
+
+    /// The body.
+    #[must_use]
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// Whether the jaw can pull.
+    #[must_use]
+    pub fn separation(&self) -> Separation {
+        self.separation
+    }
+
+    /// The motion of the jaw.
+    #[must_use]
+    pub fn motion(&self) -> &Motion {
+        &self.motion
+    }
+
+    /// Times of all samples, s.
+    #[must_use]
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Forces then, N.
+    #[must_use]
+    pub fn forces(&self) -> &[f64] {
+        &self.forces
+    }
+
+    /// How many samples, from the first on, are fitted.
+    #[must_use]
+    pub fn fitted(&self) -> usize {
+        self.fitted
+    }
+
+    /// Samples of the record that these were evenly chosen from.
+    #[must_use]
+    pub fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// Contact displacements (m) of the rows of a table of equilibrium forces: where the jaw was held, the deepest, and some between where
+    /// these are far apart.
+    #[must_use]
+    pub fn levels(&self) -> &[f64] {
+        &self.levels
+    }
+}
+
+/// Checks that the body is deep enough for the motion.
+fn deep_enough(body: &Specimen, motion: &Motion, separation: Separation) -> Result<(), SpecimenError> {
+    let bonded = separation == Separation::Bonded;
+    motion
+        .displacements()
+        .iter()
+        .try_for_each(|d| body.check_contact_displacement(body.contact_displacement(*d), bonded))
+}
+
+/// The held levels that differ, and the deepest place; where these leave wide gaps, places in them, which ramps pass.
+fn levels(body: &Specimen, motion: &Motion, held: &[f64]) -> Vec<f64> {
+    let share = |d: f64| body.contact_displacement(d);
+    // A touch that is fitted moves places a little.
+    let deepest = 1.02 * motion.displacements().iter().copied().map(share).fold(0.0, f64::max);
+    let mut levels: Vec<f64> = held.iter().copied().map(share).filter(|u| *u > APART * deepest).collect();
+    levels.push(deepest);
+    levels.sort_by(f64::total_cmp);
+    let mut apart: Vec<f64> = Vec::new();
+    for level in levels {
+        match apart.last_mut() {
+            Some(last) if level - *last < APART * deepest => *last = level,
+            _ => apart.push(level),
+        }
+    }
+    let mut filled = Vec::new();
+    let mut before = 0.0;
+    for level in apart {
+        let parts = ((level - before) / (WIDE * deepest)).ceil().max(1.0);
+        filled.extend((1..parts as u32).map(|part| before + (level - before) * f64::from(part) / parts));
+        filled.push(level);
+        before = level;
+    }
+    filled
+}

@@ -1,0 +1,109 @@
+//! Why a calibration could not be made.
+
+use crate::analysis::AnalysisError;
+use crate::contact::{EquilibriumError, SpecimenError};
+use crate::laws::Law;
+use crate::simulate::{MotionError, SimulateError};
+
+/// Why a calibration could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CalibrateError {
+    /// Columns of different lengths.
+    #[error("a calibration needs a force for every time, found {times} times and {forces} forces")]
+    Lengths {
+        /// Number of times.
+        times: usize,
+        /// Number of forces.
+        forces: usize,
+    },
+    /// A sample that is NaN or infinite.
+    #[error("times and forces must be finite; those of sample {sample} are not")]
+    NotFinite {
+        /// Which, from 1.
+        sample: usize,
+    },
+    /// A time that does not rise or lies outside the motion.
+    #[error("sample times must rise and lie from {from} s to {until} s, found {found} s at sample {sample}")]
+    SampleTime {
+        /// Which, from 1.
+        sample: usize,
+        /// The time, s.
+        found: f64,
+        /// Start of the motion, s.
+        from: f64,
+        /// Its end, s.
+        until: f64,
+    },
+    /// Too little to fit or to foretell.
+    #[error("a calibration up to {at} s has {before} samples before and {after} after it; each part needs 8 at least")]
+    Split {
+        /// The time, s.
+        at: f64,
+        /// Samples up to it.
+        before: usize,
+        /// Samples after it.
+        after: usize,
+    },
+    /// No body.
+    #[error("a calibration needs the geometry of the body, which is not described")]
+    NoGeometry,
+    /// No motion.
+    #[error("a calibration needs the displacement of the jaw, which the record does not have")]
+    NoDisplacement,
+    /// A law that no contact is simulated with.
+    #[error("{law} is no law of a whole contact: it describes single holds")]
+    NotALaw {
+        /// Which.
+        law: Law,
+    },
+    /// An exponent that is no number above zero.
+    #[error("exponent must be above 0, found {found}")]
+    Exponent {
+        /// What was given.
+        found: f64,
+    },
+    /// Fewer samples than numbers to find.
+    #[error("{numbers} numbers are to be found, which needs more samples than the {samples} there are")]
+    TooFewSamples {
+        /// Samples to fit.
+        samples: usize,
+        /// Numbers.
+        numbers: usize,
+    },
+    /// A body that never pushes back.
+    #[error("the force does not rise with the squeeze: no stiffness above 0 N fits the record")]
+    NoStiffness,
+    /// A body that is none, or that the jaw goes through.
+    #[error(transparent)]
+    Specimen(#[from] SpecimenError),
+    /// An equilibrium law that does not go with the body.
+    #[error(transparent)]
+    Equilibrium(#[from] EquilibriumError),
+    /// A record that has no phases, or a correction that cannot be made.
+    #[error(transparent)]
+    Analysis(#[from] AnalysisError),
+    /// A motion that is none.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
+    /// A simulation that could not be run.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+}
+
+impl CalibrateError {
+    /// What would help.
+    #[must_use]
+    pub fn hint(&self) -> String {
+        match self {
+            Self::NoGeometry => "describe the body in [specimen] of the test description: shape and size".to_owned(),
+            Self::NoDisplacement => "name the column of the displacement in [columns]; without it holds alone are fitted, by `palpate analyze`".to_owned(),
+            Self::NotALaw { .. } => "laws of a whole contact are latency, latency:N, standard-linear-solid, prony:K and fung:K".to_owned(),
+            Self::Split { .. } => "choose a time inside the record".to_owned(),
+            Self::NoStiffness => "check the signs of force and displacement, and which of them is loading".to_owned(),
+            Self::Specimen(_) => "check the geometry in the test description and its units".to_owned(),
+            Self::Equilibrium(_) => "ask for another equilibrium law: even-strain, hertz or table".to_owned(),
+            Self::Analysis(error) => error.hint(),
+            _ => String::new(),
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! One candidate fitted to a whole record.
+
+use serde::{Deserialize, Serialize};
+
+use super::candidate::Prepared;
+use super::material::names;
+use super::search::{Problem, search};
+use super::{CalibrateError, CalibrationData, Candidate, Material, MaterialNumber, MaterialUncertainty, Shown};
+use crate::choose::{Criteria, criteria};
+use crate::identify::{Assessed, Estimate, NoiseModel, Scale, Termination};
+use crate::simulate::{Motion, simulate_force};
+
+/// How well a calibration foretells what it was not fitted to.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Foretold {
+    /// Root mean square of measured less foretold force, N.
+    pub rmse: f64,
+    /// The same as a share of the largest force of the record.
+    pub relative: f64,
+    /// Samples foretold.
+    pub samples: usize,
+}
+
+/// A candidate fitted to the whole of a record, ramps and holds alike.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Calibration {
+    /// The body with its numbers.
+    pub material: Material,
+    /// Simulated force at every sample, fitted or foretold, N.
+    pub simulated: Vec<f64>,
+    /// Numbers that were searched.
+    pub free_numbers: usize,
+    /// Root mean square residual over the fitted samples, N.
+    pub rmse: f64,
+    /// The same as a share of the largest force of the record.
+    pub relative: f64,
+    /// How residuals correlate; intervals and criteria rest on it.
+    pub noise: NoiseModel,
+    /// Information criteria, every sample counted as one; only differences between candidates on the same data mean anything.
+    pub criteria: Criteria,
+    /// What comes after the fitted part, if it was fitted in part.
+    pub foretold: Option<Foretold>,
+    /// Why it ended.
+    pub termination: Termination,
+    /// Simulations it took.
+    pub simulations: u64,
+}
+
+/// Fits a law of the layer and one of the relaxed force to a whole record: one set of numbers for all ramps and holds.
+///
+/// With the latency law these are n, v, the layer thickness ℓ and the coefficients of the relaxed force (one modulus, or the rows of a
+/// table): the holds carry n and v, the ramps ℓ, since the excess at their end is that of ẋ = u̇₁ (m − 1)/depth − v sgn(x)|x|ⁿ with
+/// m = depth/ℓ, and the relaxed levels the stiffness S(u) of F = S(u)(u/depth + x), equations (10) and (11). No starting values: a grid is
+/// searched first. Intervals are those of the logarithms of the numbers, for residuals that correlate as they do; `confidence` is their
+/// coverage.
+///
+/// ```
+/// use palpate::analysis::Geometry;
+/// use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, calibrate};
+/// use palpate::laws::Law;
+/// use palpate::simulate::{Separation, simulate_force};
+/// use palpate::test_problems::{paper_ball, paper_test_a};
+/// let (motion, model) = (paper_test_a(), paper_ball(Separation::Unilateral));
+/// let times: Vec<f64> = (0..=660).map(|i| 0.1 * f64::from(i)).collect();
+/// let forces = simulate_force(&motion, &model, &times)?;
+/// let ball = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None };
+/// let data = CalibrationData::new(ball, model.separation, motion, times, forces, &[])?;
+/// let found = calibrate(&data, Candidate { law: "latency".parse()?, equilibrium: EquilibriumLaw::EvenStrain }, 0.95)?;
+/// let value = |name| found.material.estimate(name).unwrap().value;
+/// assert!((value("modulus") - 28e3).abs() < 1e-3);            // Pa
+/// assert!((value("exponent") - 5.0).abs() < 1e-5);
+/// assert!((value("layer_thickness") - 0.035 / 8.0).abs() < 1e-8); // m
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`CalibrateError`] for a law that no contact is simulated with, an equilibrium law that does not go with the body, fewer samples than
+/// numbers, and a force that does not rise with the squeeze.
+pub fn calibrate(data: &CalibrationData, candidate: Candidate, confidence: f64) -> Result<Calibration, CalibrateError> {
+    let prepared = Prepared::new(candidate, data)?;
+    let free = prepared.searched.len();
+    if data.fitted() <= free {
+        return Err(CalibrateError::TooFewSamples {
+            samples: data.fitted(),
+            numbers: free,
+        });
+    }
+    let found = search(&prepared, data)?;
+    let problem = Problem {
+        prepared: &prepared,
+        motion: data.motion(),
+        times: &data.times()[..data.fitted()],
+        forces: &data.forces()[..data.fitted()],
+    };
+    let contact = prepared.contact(&found.theta).ok_or(CalibrateError::NoStiffness)?;
+    let simulated = simulate_force(data.motion(), &contact, data.times())?;
+    // A number at its bound has no error, the others have theirs beside it.
+    let open: Vec<usize> = (0..free)
+        .filter(|i| found.theta[*i] > prepared.searched[*i].low && found.theta[*i] < prepared.searched[*i].high)
+        .collect();
+    let jacobian = problem.jacobian(&found.theta);
+    let assessed = jacobian.as_ref().map(|jacobian| {
+        let columns: Vec<Vec<f64>> = open.iter().map(|i| jacobian[*i].clone()).collect();
+        Assessed::of_columns(columns, found.residuals.clone(), confidence)
+    });
+    let gradients = gradients(&prepared, &found.theta, &open);
+    let values = prepared.values(&found.theta);
+    let is_found = found.termination == Termination::Converged;
+    let estimate = |index: usize, name: &str| match &assessed {
+        Some(assessed) if is_found && !Material::is_given(candidate, name) => {
+            assessed.estimate(values[index], &gradients[index], Scale::Log)
+        }
+        _ => Estimate::fixed(values[index]),
+    };
+    let names = names(candidate, prepared.body.levels.len());
+    let numbers: Vec<MaterialNumber> = names
+        .into_iter()
+        .enumerate()
+        .map(|(index, (name, unit))| MaterialNumber {
+            estimate: estimate(index, &name),
+            name,
+            unit,
+        })
+        .collect();
+    let uncertainty = assessed.as_ref().filter(|_| is_found).and_then(|assessed| {
+        let uncertainty = assessed.uncertainty.as_ref()?;
+        Some(MaterialUncertainty {
+            confidence,
+            freedom: uncertainty.freedom,
+            covariance: transformed(&uncertainty.covariance, &gradients),
+        })
+    });
+    let noise = assessed.as_ref().map_or(NoiseModel::White, |assessed| assessed.noise);
+    let largest = data.forces().iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+    let foretold = (data.fitted() < data.times().len()).then(|| {
+        let rest = data.fitted()..;
+        let rmse = rms(&data.forces()[rest.clone()], &simulated[rest]);
+        Foretold {
+            rmse,
+            relative: rmse / largest,
+            samples: data.times().len() - data.fitted(),
+        }
+    });
+    let rmse = (found.square / data.fitted() as f64).sqrt();
+    Ok(Calibration {
+        material: Material {
+            body: prepared.body.clone(),
+            candidate,
+            numbers,
+            uncertainty,
+            noise: (found.square / (data.fitted() - free) as f64).sqrt(),
+            shown: shown(data, largest),
+        },
+        simulated,
+        free_numbers: free,
+        rmse,
+        relative: rmse / largest,
+        noise,
+        criteria: criteria(found.square, data.fitted() as f64, free as f64),
+        foretold,
+        termination: found.termination,
+        simulations: found.simulations,
+    })
+}
+
+/// Derivatives of the logarithms of the numbers by the open searched ones: rows of numbers.
+fn gradients(prepared: &Prepared, theta: &[f64], open: &[usize]) -> Vec<Vec<f64>> {
+    /// Both are logarithms: all but the layer thickness are straight.
+    const STEP: f64 = 1e-5;
+    let logs = |i: usize, by: f64| -> Vec<f64> {
+        let mut beside = theta.to_vec();
+        beside[i] += by;
+        prepared.values(&beside).into_iter().map(f64::ln).collect()
+    };
+    let columns: Vec<(Vec<f64>, Vec<f64>)> = open.iter().map(|i| (logs(*i, -STEP), logs(*i, STEP))).collect();
+    let count = prepared.values(theta).len();
+    let row = |k: usize| columns.iter().map(|(low, high)| (high[k] - low[k]) / (2.0 * STEP)).collect();
+    (0..count).map(row).collect()
+}
+
+/// G C Gᵀ.
+fn transformed(covariance: &[Vec<f64>], gradients: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let product = |a: &[f64], b: &[f64]| -> f64 {
+        let row = |(entry, by): (&Vec<f64>, &f64)| by * entry.iter().zip(b).map(|(c, g)| c * g).sum::<f64>();
+        covariance.iter().zip(a).map(row).sum()
+    };
+    gradients.iter().map(|a| gradients.iter().map(|b| product(a, b)).collect()).collect()
+}
+
+fn rms(measured: &[f64], simulated: &[f64]) -> f64 {
+    let square: f64 = measured.iter().zip(simulated).map(|(m, s)| (m - s).powi(2)).sum();
+    (square / measured.len() as f64).sqrt()
+}
+
+/// What the fitted part of the record has shown.
+fn shown(data: &CalibrationData, largest_force: f64) -> Shown {
+    let until = data.times()[data.fitted() - 1];
+    let deepest = |motion: &Motion| motion.displacements().iter().copied().fold(0.0, f64::max);
+    let motion = data.motion().simplified(0.01 * deepest(data.motion()));
+    let (mut longest, mut fastest, mut slowest, mut deep) = (0.0f64, 0.0f64, f64::INFINITY, 0.0f64);
+    let still = 0.02 * deepest(&motion);
+    for (times, knots) in motion.times().windows(2).zip(motion.displacements().windows(2)) {
+        if times[0] >= until {
+            break;
+        }
+        let (duration, way) = (times[1].min(until) - times[0], (knots[1] - knots[0]).abs());
+        deep = deep.max(knots[0]).max(data.motion().displacement_at(times[1].min(until)));
+        if way <= still {
+            longest = longest.max(duration);
+        } else {
+            let speed = way / (times[1] - times[0]);
+            fastest = fastest.max(speed);
+            slowest = slowest.min(speed);
+        }
+    }
+    Shown {
+        longest_hold: longest,
+        deepest: deep,
+        fastest,
+        slowest: if slowest.is_finite() { slowest } else { 0.0 },
+        largest_force,
+    }
+}

@@ -1,0 +1,260 @@
+//! A body with calibrated numbers: what a calibration leaves, and what predictions and grips are made from.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Candidate, EquilibriumLaw};
+use crate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
+use crate::identify::Estimate;
+use crate::latency::LatencyLaw;
+use crate::laws::{ExponentChoice, Law};
+use crate::simulate::{Contact, ContactModel, LinearContact, LinearLaw, LinearTerm, Memory, Separation};
+
+/// A contact with all its numbers, whichever law it obeys.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CalibratedContact {
+    /// The latency law.
+    Latency(ContactModel),
+    /// A linear law.
+    Linear(LinearContact),
+}
+
+impl<'a> From<&'a CalibratedContact> for Contact<'a> {
+    fn from(contact: &'a CalibratedContact) -> Self {
+        match contact {
+            CalibratedContact::Latency(model) => Self::Latency(model),
+            CalibratedContact::Linear(model) => Self::Linear(model),
+        }
+    }
+}
+
+impl CalibratedContact {
+    /// The body.
+    #[must_use]
+    pub fn specimen(&self) -> &Specimen {
+        match self {
+            Self::Latency(model) => &model.specimen,
+            Self::Linear(model) => &model.specimen,
+        }
+    }
+}
+
+/// What of a body is known without any test.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Body {
+    /// Its shape.
+    pub shape: Shape,
+    /// From how many sides it is squeezed.
+    pub sides: Sides,
+    /// Whether the jaw can pull.
+    pub separation: Separation,
+    /// Contact displacements (m) of the rows of a table of relaxed forces; none for other laws of them.
+    pub levels: Vec<f64>,
+}
+
+/// Unit of a number of a material.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MaterialUnit {
+    /// A pure number.
+    One,
+    /// s.
+    Second,
+    /// 1/s.
+    PerSecond,
+    /// m.
+    Metre,
+    /// N.
+    Newton,
+    /// Pa.
+    Pascal,
+}
+
+/// A number of a material; all are above zero.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MaterialNumber {
+    /// Name without unit: `modulus` or `equilibrium_force_1`, …; `exponent`, `rate_coefficient`, `layer_thickness`, or `overshoot_1`, `time_1`, ….
+    pub name: String,
+    /// Its unit.
+    pub unit: MaterialUnit,
+    /// Value, standard error, interval; a number that was given has neither of the latter.
+    pub estimate: Estimate,
+}
+
+/// How sure the numbers of a material are together.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MaterialUncertainty {
+    /// Coverage of the intervals.
+    pub confidence: f64,
+    /// Degrees of freedom of the residual variance.
+    pub freedom: f64,
+    /// Covariance of the logarithms of the numbers, in their order; 0 for those that were given.
+    pub covariance: Vec<Vec<f64>>,
+}
+
+/// What the test has shown: questions beyond it are extrapolations.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Shown {
+    /// The longest time at one place, s.
+    pub longest_hold: f64,
+    /// The deepest squeeze (travel of the jaw since first touch), m.
+    pub deepest: f64,
+    /// The fastest ramp, m/s.
+    pub fastest: f64,
+    /// The slowest ramp, m/s.
+    pub slowest: f64,
+    /// The largest force, N.
+    pub largest_force: f64,
+}
+
+/// A body with calibrated numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Material {
+    /// What is known of it without a test.
+    pub body: Body,
+    /// The laws whose numbers these are.
+    pub candidate: Candidate,
+    /// The numbers.
+    pub numbers: Vec<MaterialNumber>,
+    /// How sure they are; `None` where the test leaves one of them open.
+    pub uncertainty: Option<MaterialUncertainty>,
+    /// Standard deviation of what the model left of the measured force, N: noise, and what no number could mend.
+    pub noise: f64,
+    /// What the test has shown.
+    pub shown: Shown,
+}
+
+impl Body {
+    /// The contact whose numbers are `values`, in the order of [`names`]; `None` where they make none.
+    pub(super) fn contact(&self, candidate: Candidate, values: &[f64]) -> Option<CalibratedContact> {
+        let (stiffness, law) = values.split_at(self.levels.len().max(1));
+        let specimen = self.specimen(candidate.equilibrium, stiffness)?;
+        Some(match candidate.law {
+            Law::Latency { .. } => {
+                let layers = Layers::of_thickness(law[2], specimen.depth()).ok()?;
+                CalibratedContact::Latency(ContactModel {
+                    specimen,
+                    law: LatencyLaw::new(law[0], law[1]).ok()?,
+                    layers,
+                    separation: self.separation,
+                })
+            }
+            _ => {
+                let term = |term: &[f64]| LinearTerm {
+                    overshoot: term[0],
+                    rate: 1.0 / term[1],
+                };
+                let terms: Vec<LinearTerm> = law.chunks_exact(2).map(term).collect();
+                CalibratedContact::Linear(LinearContact {
+                    specimen,
+                    law: LinearLaw::new(&terms).ok()?,
+                    memory: match candidate.law {
+                        Law::Fung { .. } => Memory::Force,
+                        _ => Memory::Strain,
+                    },
+                    separation: self.separation,
+                })
+            }
+        })
+    }
+
+    fn specimen(&self, equilibrium: EquilibriumLaw, stiffness: &[f64]) -> Option<Specimen> {
+        let with = |modulus| Specimen::new(self.shape.clone(), modulus, self.sides).ok();
+        match equilibrium {
+            EquilibriumLaw::EvenStrain => with(stiffness[0]),
+            EquilibriumLaw::Hertz { poisson_ratio } => {
+                with(stiffness[0])?.with_equilibrium(Equilibrium::Hertz { poisson_ratio }).ok()
+            }
+            EquilibriumLaw::Table => {
+                let mut least = 0.0;
+                let row = |(u, force): (&f64, &f64)| {
+                    // Rows whose force per displacement is the same keep it to the last digit only here.
+                    let ratio = force / u;
+                    least = if ratio < least && ratio > least * (1.0 - 1e-9) { least } else { ratio };
+                    (*u, u * least * (1.0 + f64::EPSILON))
+                };
+                let rows: Vec<(f64, f64)> =
+                    std::iter::once((0.0, 0.0)).chain(self.levels.iter().zip(stiffness).map(row)).collect();
+                with(1.0)?.with_equilibrium(Equilibrium::measured(&rows).ok()?).ok()
+            }
+        }
+    }
+}
+
+/// Names and units of the numbers of a candidate with a table of this many rows.
+pub(super) fn names(candidate: Candidate, rows: usize) -> Vec<(String, MaterialUnit)> {
+    let mut names: Vec<(String, MaterialUnit)> = match candidate.equilibrium {
+        EquilibriumLaw::EvenStrain | EquilibriumLaw::Hertz { .. } => vec![("modulus".to_owned(), MaterialUnit::Pascal)],
+        EquilibriumLaw::Table => {
+            (1..=rows).map(|row| (format!("equilibrium_force_{row}"), MaterialUnit::Newton)).collect()
+        }
+    };
+    match candidate.law {
+        Law::Latency { .. } => names.extend([
+            ("exponent".to_owned(), MaterialUnit::One),
+            ("rate_coefficient".to_owned(), MaterialUnit::PerSecond),
+            ("layer_thickness".to_owned(), MaterialUnit::Metre),
+        ]),
+        _ => {
+            for term in 1..=candidate.terms().unwrap_or(0) {
+                names.push((format!("overshoot_{term}"), MaterialUnit::One));
+                names.push((format!("time_{term}"), MaterialUnit::Second));
+            }
+        }
+    }
+    names
+}
+
+impl Material {
+    /// Checks that the numbers make a contact; needed of what was read from a file.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        let names = names(self.candidate, self.body.levels.len());
+        let named = names.len() == self.numbers.len()
+            && names.iter().zip(&self.numbers).all(|((name, _), number)| *name == number.name);
+        let covered = self.uncertainty.as_ref().is_none_or(|uncertainty| {
+            uncertainty.covariance.len() == names.len()
+                && uncertainty.covariance.iter().all(|row| row.len() == names.len())
+        });
+        named && covered && self.body.contact(self.candidate, &self.values()).is_some()
+    }
+
+    /// The contact with the best numbers.
+    ///
+    /// # Panics
+    /// If the numbers make no contact, which [`is_whole`](Self::is_whole) would have said.
+    #[must_use]
+    #[expect(clippy::expect_used, reason = "a material that exists is whole")]
+    pub fn contact(&self) -> CalibratedContact {
+        self.body.contact(self.candidate, &self.values()).expect("the numbers of a material make a contact")
+    }
+
+    /// The contact with each number times a factor; `None` where that makes none.
+    #[must_use]
+    pub fn contact_off(&self, factors: &[f64]) -> Option<CalibratedContact> {
+        let values: Vec<f64> = self.values().iter().zip(factors).map(|(value, factor)| value * factor).collect();
+        self.body.contact(self.candidate, &values)
+    }
+
+    /// The values of the numbers.
+    #[must_use]
+    pub fn values(&self) -> Vec<f64> {
+        self.numbers.iter().map(|number| number.estimate.value).collect()
+    }
+
+    /// A number by its name.
+    #[must_use]
+    pub fn estimate(&self, name: &str) -> Option<&Estimate> {
+        self.numbers.iter().find(|number| number.name == name).map(|number| &number.estimate)
+    }
+
+    /// Whether a number was given, not found.
+    pub(super) fn is_given(candidate: Candidate, name: &str) -> bool {
+        name == "exponent"
+            && !matches!(
+                candidate.law,
+                Law::Latency {
+                    exponent: ExponentChoice::Free
+                }
+            )
+    }
+}

@@ -1,0 +1,27 @@
+//! One set of numbers for a whole record: what a hold describes, a calibration predicts.
+//!
+//! | file | what | equations |
+//! |---|---|---|
+//! | `data.rs` | what is fitted: a motion of the jaw and the force it met | |
+//! | `candidate.rs` | a law of the layer and one of the relaxed force, and the numbers that are searched | (10), (11) |
+//! | `starts.rs`, `search.rs` | a grid, then damped steps | |
+//! | `fit.rs` | from there to numbers with intervals | |
+//! | `material.rs` | the body with its numbers | |
+//! | `predict.rs` | what it does under any drive, with intervals | |
+//! | `error.rs` | why one could not be made | |
+
+mod candidate;
+mod data;
+mod error;
+mod fit;
+mod material;
+mod predict;
+mod search;
+mod starts;
+
+pub use candidate::{Candidate, EquilibriumLaw};
+pub use data::CalibrationData;
+pub use error::CalibrateError;
+pub use fit::{Calibration, Foretold, calibrate};
+pub use material::{Body, CalibratedContact, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, Shown};
+pub use predict::{Extrapolation, Prediction};

@@ -1,0 +1,292 @@
+//! What a calibrated body does under any drive, with intervals.
+
+use serde::{Deserialize, Serialize};
+
+use super::{CalibratedContact, Material};
+use crate::number::significant;
+use crate::simulate::{Drive, ProgramStep, Sampling, SimulateError, Trajectory, simulate};
+use crate::statistics::coverage_factor;
+
+/// A question beyond what the test has shown.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum Extrapolation {
+    /// A longer hold than any of the test.
+    LongerHold {
+        /// What was asked, s.
+        asked: f64,
+        /// What was shown, s.
+        shown: f64,
+    },
+    /// A deeper squeeze.
+    DeeperSqueeze {
+        /// What was asked, m.
+        asked: f64,
+        /// What was shown, m.
+        shown: f64,
+    },
+    /// A faster ramp.
+    FasterRamp {
+        /// What was asked, m/s.
+        asked: f64,
+        /// What was shown, m/s.
+        shown: f64,
+    },
+    /// A larger force.
+    LargerForce {
+        /// What was asked, N.
+        asked: f64,
+        /// What was shown, N.
+        shown: f64,
+    },
+    /// A force that is held, which no test in displacement shows.
+    ForceHeld,
+}
+
+impl std::fmt::Display for Extrapolation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let digits = |value: f64| significant(value, 3);
+        match *self {
+            Self::LongerHold { asked, shown } => write!(
+                f,
+                "a hold of {} s is asked for; the test has shown {} s: what comes later rests on the law alone",
+                digits(asked),
+                digits(shown)
+            ),
+            Self::DeeperSqueeze { asked, shown } => write!(
+                f,
+                "a squeeze of {} mm is asked for; the test went to {} mm: the relaxed force beyond rests on its law alone",
+                digits(1e3 * asked),
+                digits(1e3 * shown)
+            ),
+            Self::FasterRamp { asked, shown } => write!(
+                f,
+                "a ramp of {} mm/s is asked for; the fastest of the test was {} mm/s: peaks may differ",
+                digits(1e3 * asked),
+                digits(1e3 * shown)
+            ),
+            Self::LargerForce { asked, shown } => {
+                write!(f, "a force of {} N is met; the largest of the test was {} N", digits(asked), digits(shown))
+            }
+            Self::ForceHeld => {
+                write!(f, "a force is held; the test held displacements: creep follows by the law, and was not seen")
+            }
+        }
+    }
+}
+
+/// A predicted course with its uncertainty; SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prediction {
+    /// The course with the best numbers.
+    pub trajectory: Trajectory,
+    /// Standard deviation of the force (N) by what the calibration leaves open; 0 everywhere where it says nothing of it.
+    pub force_deviation: Vec<f64>,
+    /// The same of the displacement of the jaw (m); 0 where the displacement is asked for.
+    pub displacement_deviation: Vec<f64>,
+    /// Standard deviation of what the calibration left of the measured force, N: noise of one reading.
+    pub noise: f64,
+    /// Coverage of the intervals.
+    pub confidence: f64,
+    /// How many standard deviations they are wide, on either side.
+    pub factor: f64,
+    /// What was asked beyond the test.
+    pub extrapolations: Vec<Extrapolation>,
+}
+
+impl Prediction {
+    /// Ends of the interval of the mean force at sample `index`, N: what the numbers leave open.
+    #[must_use]
+    pub fn force_interval(&self, index: usize) -> (f64, f64) {
+        let (force, half) = (self.trajectory.force[index], self.factor * self.force_deviation[index]);
+        (force - half, force + half)
+    }
+
+    /// Ends of the interval of one reading of the force at sample `index`, N: numbers and noise.
+    #[must_use]
+    pub fn reading_interval(&self, index: usize) -> (f64, f64) {
+        let half = self.factor * self.force_deviation[index].hypot(self.noise);
+        let force = self.trajectory.force[index];
+        (force - half, force + half)
+    }
+}
+
+impl Material {
+    /// Simulates the body under a drive, with intervals from its calibration.
+    ///
+    /// The variance by the numbers is that of differences of simulations along the columns of a root L of their covariance C = L Lᵀ, one
+    /// standard deviation to either side: Σ_k ((f(+L_k) − f(−L_k))/2)².
+    ///
+    /// # Errors
+    /// As for [`simulate`].
+    pub fn predict<'a>(
+        &self,
+        drive: impl Into<Drive<'a>>,
+        sampling: &Sampling,
+        confidence: f64,
+    ) -> Result<Prediction, SimulateError> {
+        let drive = drive.into();
+        let best = self.contact();
+        let trajectory = simulate(drive, &best, sampling)?;
+        let count = trajectory.len();
+        let (mut force, mut displacement) = (vec![0.0; count], vec![0.0; count]);
+        let times = Sampling::Times(trajectory.time.clone());
+        let course = |contact: &CalibratedContact| simulate(drive, contact, &times).ok();
+        for direction in self.directions() {
+            let Some((high, low, width)) = both_sides(self, &direction, &course) else {
+                continue;
+            };
+            for (sum, (high, low)) in force.iter_mut().zip(high.force.iter().zip(&low.force)) {
+                *sum += ((high - low) / width).powi(2);
+            }
+            for (sum, (high, low)) in displacement.iter_mut().zip(high.displacement.iter().zip(&low.displacement)) {
+                *sum += ((high - low) / width).powi(2);
+            }
+        }
+        let freedom = self.uncertainty.as_ref().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom);
+        Ok(Prediction {
+            extrapolations: self.extrapolations(drive, &trajectory),
+            trajectory,
+            force_deviation: force.into_iter().map(f64::sqrt).collect(),
+            displacement_deviation: displacement.into_iter().map(f64::sqrt).collect(),
+            noise: self.noise,
+            confidence,
+            factor: coverage_factor(confidence, freedom),
+        })
+    }
+
+    /// Columns of a root of the covariance of the logarithms of the numbers: independent directions, each one standard deviation long.
+    #[must_use]
+    pub fn directions(&self) -> Vec<Vec<f64>> {
+        self.uncertainty.as_ref().map_or_else(Vec::new, |uncertainty| root(&uncertainty.covariance))
+    }
+
+    fn extrapolations(&self, drive: Drive<'_>, course: &Trajectory) -> Vec<Extrapolation> {
+        /// By how much more than was shown a question may ask.
+        const MORE: f64 = 1.05;
+        let shown = self.shown;
+        let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+        let (mut longest, mut fastest, mut held) = (0.0f64, 0.0f64, false);
+        match drive {
+            Drive::Motion(motion) => {
+                let still = 0.01 * most(motion.displacements());
+                let simple = motion.simplified(still);
+                for (times, places) in simple.times().windows(2).zip(simple.displacements().windows(2)) {
+                    let (duration, way) = (times[1] - times[0], (places[1] - places[0]).abs());
+                    if way <= 2.0 * still {
+                        longest = longest.max(duration);
+                    } else {
+                        fastest = fastest.max(way / duration);
+                    }
+                }
+            }
+            Drive::Force(_) => held = true,
+            Drive::Program(steps) => {
+                for step in steps {
+                    match *step {
+                        ProgramStep::Move { rate, .. } | ProgramStep::MoveToForce { rate, .. } => {
+                            fastest = fastest.max(rate);
+                        }
+                        ProgramStep::HoldPosition { duration } => longest = longest.max(duration),
+                        ProgramStep::Press { .. } | ProgramStep::HoldForce { .. } => held = true,
+                    }
+                }
+            }
+        }
+        let (deepest, largest) = (most(&course.displacement), most(&course.force));
+        let beyond = |asked: f64, shown: f64| asked > MORE * shown;
+        let mut found = Vec::new();
+        if beyond(longest, shown.longest_hold) {
+            found.push(Extrapolation::LongerHold {
+                asked: longest,
+                shown: shown.longest_hold,
+            });
+        }
+        if beyond(deepest, shown.deepest) {
+            found.push(Extrapolation::DeeperSqueeze {
+                asked: deepest,
+                shown: shown.deepest,
+            });
+        }
+        if beyond(fastest, shown.fastest) {
+            found.push(Extrapolation::FasterRamp {
+                asked: fastest,
+                shown: shown.fastest,
+            });
+        }
+        if beyond(largest, shown.largest_force) {
+            found.push(Extrapolation::LargerForce {
+                asked: largest,
+                shown: shown.largest_force,
+            });
+        }
+        if held {
+            found.push(Extrapolation::ForceHeld);
+        }
+        found
+    }
+}
+
+/// What comes out on either side of the best numbers along a direction, and how many standard deviations lie between; closer by where
+/// the full way cannot be simulated.
+fn both_sides<T>(
+    material: &Material,
+    direction: &[f64],
+    result: &impl Fn(&CalibratedContact) -> Option<T>,
+) -> Option<(T, T, f64)> {
+    let off = |by: f64| {
+        let factors: Vec<f64> = direction.iter().map(|log| (by * log).exp()).collect();
+        result(&material.contact_off(&factors)?)
+    };
+    let mut by = 1.0;
+    for _ in 0..8 {
+        if let (Some(high), Some(low)) = (off(by), off(-by)) {
+            return Some((high, low, 2.0 * by));
+        }
+        by *= 0.25;
+    }
+    None
+}
+
+/// Columns L_k with C = Σ L_k L_kᵀ, of a covariance that may be singular: Cholesky's method, the largest diagonal first.
+fn root(covariance: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let size = covariance.len();
+    let mut left: Vec<Vec<f64>> = covariance.to_vec();
+    let largest = (0..size).map(|i| covariance[i][i]).fold(0.0, f64::max);
+    let mut columns = Vec::new();
+    for _ in 0..size {
+        let Some(pivot) = (0..size).max_by(|a, b| left[*a][*a].total_cmp(&left[*b][*b])) else {
+            break;
+        };
+        if left[pivot][pivot] <= 1e-14 * largest {
+            break;
+        }
+        let scale = 1.0 / left[pivot][pivot].sqrt();
+        let column: Vec<f64> = left.iter().map(|row| row[pivot] * scale).collect();
+        for (row, a) in left.iter_mut().zip(&column) {
+            for (entry, b) in row.iter_mut().zip(&column) {
+                *entry -= a * b;
+            }
+        }
+        columns.push(column);
+    }
+    columns
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_root_gives_back_its_covariance_even_a_singular_one() {
+        let covariance = vec![vec![4.0, 2.0, 0.0], vec![2.0, 1.0, 0.0], vec![0.0, 0.0, 9.0]];
+        let columns = root(&covariance);
+        assert_eq!(columns.len(), 2);
+        for i in 0..3 {
+            for j in 0..3 {
+                let entry: f64 = columns.iter().map(|column| column[i] * column[j]).sum();
+                assert!((entry - covariance[i][j]).abs() < 1e-14);
+            }
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Calibration of whole records: recovery, coverage, prediction of what was not fitted.
+#![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
+
+use palpate::analysis::Geometry;
+use palpate::calibrate::{CalibrateError, CalibrationData, Candidate, EquilibriumLaw, Extrapolation, calibrate};
+use palpate::contact::{Shape, Sides};
+use palpate::simulate::{Motion, ProtocolStep, Sampling, Separation, protocol, simulate_force};
+use palpate::test_problems::{Noise, PAPER_RATE, paper_ball, paper_test_a, paper_test_b};
+
+/// A test of the paper's ball as a machine would have recorded it, at 10 Hz.
+fn measured(motion: &Motion, seed: u64, noise: f64) -> CalibrationData {
+    let model = paper_ball(Separation::Unilateral);
+    let times: Vec<f64> = (0..).map(|i| 0.1 * f64::from(i)).take_while(|t| *t <= motion.end()).collect();
+    let mut random = Noise::new(seed);
+    let forces = simulate_force(motion, &model, &times).unwrap();
+    let forces = forces.iter().map(|force| force + noise * random.normal()).collect();
+    let held: Vec<f64> = motion.displacements().windows(2).filter(|d| d[0] == d[1]).map(|d| d[0]).collect();
+    CalibrationData::new(ball(), Separation::Unilateral, motion.clone(), times, forces, &held).unwrap()
+}
+
+fn ball() -> Geometry {
+    Geometry {
+        shape: Shape::Ball { radius: 0.035 },
+        sides: Sides::Two,
+        modulus: None,
+    }
+}
+
+fn candidate(law: &str, equilibrium: EquilibriumLaw) -> Candidate {
+    Candidate {
+        law: law.parse().unwrap(),
+        equilibrium,
+    }
+}
+
+const EVEN: EquilibriumLaw = EquilibriumLaw::EvenStrain;
+
+#[test]
+fn without_noise_the_numbers_come_back() {
+    for motion in [paper_test_a(), paper_test_b()] {
+        let found = calibrate(&measured(&motion, 1, 0.0), candidate("latency", EVEN), 0.95).unwrap();
+        let truth = [("modulus", 28e3), ("exponent", 5.0), ("rate_coefficient", 2e4), ("layer_thickness", 0.035 / 8.0)];
+        for (name, truth) in truth {
+            let value = found.material.estimate(name).unwrap().value;
+            assert!((value / truth - 1.0).abs() < 1e-4, "{name}: {value}");
+        }
+        assert!(found.termination.is_good() && found.relative < 1e-8, "{:?} {:e}", found.termination, found.relative);
+    }
+}
+
+/// Test (a) up to 43 s is all loading; its unloading, and all of test (b), follow from the numbers.
+#[test]
+fn calibrated_on_loading_the_unloading_is_foretold() {
+    let a = measured(&paper_test_a(), 7, 0.2).fitted_until(53.0).unwrap();
+    let latency = calibrate(&a, candidate("latency", EVEN), 0.95).unwrap();
+    let linear = calibrate(&a, candidate("standard-linear-solid", EVEN), 0.95).unwrap();
+    let (good, poor) = (latency.foretold.unwrap(), linear.foretold.unwrap());
+    // What is left is the noise of the readings.
+    assert!((0.15..0.25).contains(&good.rmse) && poor.rmse > 1.8 * good.rmse, "{good:?} {poor:?}");
+    let b = measured(&paper_test_b(), 8, 0.0);
+    let foretold = latency.material.predict(b.motion(), &Sampling::Times(b.times().to_vec()), 0.95).unwrap();
+    let misses = (0..b.times().len()).filter(|i| {
+        let (low, high) = foretold.force_interval(*i);
+        b.forces()[*i] < low - 1e-3 || b.forces()[*i] > high + 1e-3
+    });
+    let misses = misses.count();
+    assert!(misses * 10 < b.times().len(), "{misses} of {}", b.times().len());
+    assert!(foretold.extrapolations.is_empty(), "{:?}", foretold.extrapolations);
+}
+
+#[test]
+fn a_table_of_relaxed_forces_is_that_of_the_body() {
+    let data = measured(&paper_test_a(), 3, 0.05);
+    let found = calibrate(&data, candidate("latency:5", EquilibriumLaw::Table), 0.95).unwrap();
+    let body = paper_ball(Separation::Unilateral).specimen;
+    for (index, u) in data.levels().iter().take(4).enumerate() {
+        let truth = body.force(body.equilibrium_strain(*u), *u);
+        let estimate = found.material.estimate(&format!("equilibrium_force_{}", index + 1)).unwrap();
+        let error = estimate.standard_error.unwrap();
+        assert!(
+            (estimate.value - truth).abs() < 4.0 * error && error < 0.02 * truth + 0.02,
+            "{u}: {estimate:?} {truth}"
+        );
+    }
+    assert!(found.material.is_whole());
+}
+
+/// The linear laws are in the same machine: a body of one exponential gives back its own numbers.
+#[test]
+fn competitors_find_their_own_numbers() {
+    use palpate::contact::Specimen;
+    use palpate::simulate::{LinearContact, LinearLaw, LinearTerm, Memory};
+    let motion = paper_test_a();
+    let times: Vec<f64> = (0..=660).map(|i| 0.1 * f64::from(i)).collect();
+    for (law, memory) in [("standard-linear-solid", Memory::Strain), ("fung:1", Memory::Force)] {
+        let term = LinearTerm {
+            overshoot: 0.8,
+            rate: 1.0 / 3.0,
+        };
+        let contact = LinearContact {
+            specimen: Specimen::new(Shape::Ball { radius: 0.035 }, 20e3, Sides::Two).unwrap(),
+            law: LinearLaw::new(&[term]).unwrap(),
+            memory,
+            separation: Separation::Unilateral,
+        };
+        let forces = simulate_force(&motion, &contact, &times).unwrap();
+        let data = CalibrationData::new(ball(), Separation::Unilateral, motion.clone(), times.clone(), forces, &[]);
+        let found = calibrate(&data.unwrap(), candidate(law, EVEN), 0.95).unwrap();
+        for (name, truth) in [("modulus", 20e3), ("overshoot_1", 0.8), ("time_1", 3.0)] {
+            let value = found.material.estimate(name).unwrap().value;
+            assert!((value / truth - 1.0).abs() < 1e-4, "{law} {name}: {value}");
+        }
+    }
+}
+
+#[test]
+fn questions_beyond_the_test_are_said_to_be() {
+    let found = calibrate(&measured(&paper_test_a(), 5, 0.2), candidate("latency:5", EVEN), 0.95).unwrap();
+    let squeeze = protocol(&[ProtocolStep {
+        to: 0.03,
+        rate: 2.0 * PAPER_RATE,
+        hold: 600.0,
+    }])
+    .unwrap();
+    let foretold = found.material.predict(&squeeze, &Sampling::Rate(1.0), 0.95).unwrap();
+    let kinds: Vec<&str> = foretold
+        .extrapolations
+        .iter()
+        .map(|found| match found {
+            Extrapolation::LongerHold { .. } => "longer",
+            Extrapolation::DeeperSqueeze { .. } => "deeper",
+            Extrapolation::FasterRamp { .. } => "faster",
+            Extrapolation::LargerForce { .. } => "larger",
+            Extrapolation::ForceHeld => "held",
+        })
+        .collect();
+    assert_eq!(kinds, ["longer", "deeper", "faster", "larger"]);
+    assert!(
+        foretold.extrapolations[0]
+            .to_string()
+            .contains("a hold of 600 s is asked for; the test has shown 10.0 s")
+    );
+    let last = foretold.trajectory.len() - 1;
+    let ((low, high), (least, most)) = (foretold.force_interval(last), foretold.reading_interval(last));
+    assert!(least < low && low < foretold.trajectory.force[last] && high < most);
+}
+
+#[test]
+fn what_cannot_be_calibrated_says_why() {
+    let data = measured(&paper_test_a(), 1, 0.2);
+    let refused = |law, equilibrium| calibrate(&data, candidate(law, equilibrium), 0.95).unwrap_err();
+    assert!(matches!(refused("stretched", EVEN), CalibrateError::NotALaw { .. }));
+    let hertz = refused("latency", EquilibriumLaw::Hertz { poisson_ratio: 0.7 });
+    assert!(matches!(hertz, CalibrateError::Equilibrium(_)), "{hertz}");
+    assert!(matches!(data.clone().fitted_until(0.2), Err(CalibrateError::Split { before: 3, .. })));
+    let away: Vec<f64> = data.forces().iter().map(|force| -force).collect();
+    let (motion, times) = (data.motion().clone(), data.times().to_vec());
+    let wrong = CalibrationData::new(ball(), Separation::Unilateral, motion.clone(), times.clone(), away, &[]).unwrap();
+    let wrong = calibrate(&wrong, candidate("latency", EVEN), 0.95).unwrap_err();
+    assert_eq!(wrong, CalibrateError::NoStiffness);
+    let short = CalibrationData::new(ball(), Separation::Unilateral, motion, times, vec![1.0], &[]).unwrap_err();
+    assert!(matches!(short, CalibrateError::Lengths { forces: 1, .. }));
+}
