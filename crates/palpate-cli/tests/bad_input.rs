@@ -140,7 +140,7 @@ fn flags_that_do_not_exist_are_refused_by_name() {
 #[test]
 fn a_record_is_not_written_over() {
     let folder = tempdir().unwrap();
-    let name = file(folder.path(), "press.csv", &ramp_and_hold(10.0, 20.0));
+    let name = file(folder.path(), "press.csv", ramp_and_hold(10.0, 20.0));
     let before = std::fs::read(folder.path().join(&name)).unwrap();
     for arguments in [
         ["convert", &name, "--out", &name].as_slice(),
