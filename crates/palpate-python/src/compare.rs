@@ -11,7 +11,7 @@ use pyo3::types::PyType;
 use crate::arrays::doubles;
 use crate::document::{Document, Fields};
 use crate::errors::{FitError, OptionError, refused_plainly};
-use crate::fit::deviations;
+use crate::fit::deviations_of;
 use crate::table::Table;
 use crate::work::{Made, at_length};
 
@@ -34,7 +34,7 @@ pub(crate) fn compare(
     cuts: Option<Vec<f64>>,
 ) -> PyResult<Comparison> {
     let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
-    let deviations = weights.map(|weights| deviations(doubles(weights, "weights")?)).transpose()?;
+    let deviations = deviations_of(weights)?;
     let (quantity, response) = match quantity {
         "force" => (Quantity::Force, Response::Relaxation),
         "strain" => (Quantity::Strain, Response::Relaxation),

@@ -6,10 +6,10 @@ use numpy::PyArray1;
 use palpate::simulate::{ContactModel, ContactState as State, StepError};
 use palpate_files::description::{DescriptionError, Model, parse_scene, read_scene};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyType};
+use pyo3::types::{PyBytes, PyDict, PyList, PyTuple, PyType};
 
 use crate::arrays::doubles;
-use crate::errors::{ModelError, refused_plainly};
+use crate::errors::{ModelError, OptionError, refused_plainly};
 use crate::simulate::{missing, said};
 use crate::work::{Made, briefly};
 
@@ -36,6 +36,10 @@ fn latency(scene: Result<(Option<String>, Model), DescriptionError>) -> PyResult
 
 /// A contact that a controller moves one step at a time, in closed form and in constant time.
 ///
+/// Motion and drift follow each other within a step (Strang's splitting): the error falls with the square of ``dt_s``. A ball of 35 mm
+/// that is squeezed by 5 mm at 50 mm/s ends with a force that is 1.2 % too large in steps of 10 ms, 0.013 % in steps of 1 ms, and 63 %
+/// in one step of 100 ms; `simulate` integrates such motions to a tolerance.
+///
 /// Parameters
 /// ----------
 /// model : path or mapping
@@ -48,8 +52,9 @@ fn latency(scene: Result<(Option<String>, Model), DescriptionError>) -> PyResult
 /// ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
 /// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
 /// ... })
-/// >>> round(state.step(0.1, 5e-3), 2)
-/// 6.33
+/// >>> forces = [state.step(1e-3, 5e-5 * (k + 1)) for k in range(100)]
+/// >>> round(forces[-1], 3)
+/// 3.886
 #[pyclass(name = "ContactState", module = "palpate")]
 pub(crate) struct ContactState {
     model: ContactModel,
@@ -75,7 +80,7 @@ impl ContactState {
     /// Parameters
     /// ----------
     /// dt_s : float
-    ///     Length of the step, s; above 0.
+    ///     Length of the step, s; 0 or more.
     /// displacement_m : float
     ///     Where the jaw stands at its end, m; it goes there at constant speed.
     ///
@@ -87,7 +92,7 @@ impl ContactState {
     /// Raises
     /// ------
     /// ModelError
-    ///     A step that is not above 0, a displacement beyond the body; the state stays as it was.
+    ///     A step below 0, a displacement beyond the body; the state stays as it was.
     fn step(&mut self, dt_s: f64, displacement_m: f64) -> PyResult<f64> {
         self.state.step(&self.model, dt_s, displacement_m).map_err(refused_plainly::<ModelError>)
     }
@@ -97,7 +102,7 @@ impl ContactState {
     /// Parameters
     /// ----------
     /// dt_s : float
-    ///     Length of the step, s; above 0.
+    ///     Length of the step, s; 0 or more.
     /// force_n : float
     ///     The force over the step, N.
     ///
@@ -109,7 +114,7 @@ impl ContactState {
     /// Raises
     /// ------
     /// ModelError
-    ///     A step that is not above 0, a force that the body cannot bear; the state stays as it was.
+    ///     A step below 0, a force that the body cannot bear; the state stays as it was.
     fn step_force(&mut self, dt_s: f64, force_n: f64) -> PyResult<f64> {
         self.state.step_force(&self.model, dt_s, force_n).map_err(refused_plainly::<ModelError>)
     }
@@ -174,18 +179,20 @@ impl ContactState {
 /// model : path or mapping, or a list of them
 ///     One model for ``count`` contacts, or one each.
 /// count : int, optional
-///     How many, of one model.
+///     How many, of one model; none beside a list.
 ///
 /// Examples
 /// --------
-/// >>> import palpate
+/// >>> import numpy as np, palpate
 /// >>> model = {
 /// ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
 /// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
 /// ... }
 /// >>> contacts = palpate.ContactStates(model, 3)
-/// >>> contacts.step(0.1, [3e-3, 4e-3, 5e-3]).round(2)
-/// array([2.65, 4.32, 6.33])
+/// >>> for k in range(100):
+/// ...     forces = contacts.step(1e-3, (k + 1) * np.array([3e-5, 4e-5, 5e-5]))
+/// >>> forces.round(2)
+/// array([1.94, 2.86, 3.89])
 #[pyclass(name = "ContactStates", module = "palpate")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct ContactStates {
@@ -193,6 +200,9 @@ pub(crate) struct ContactStates {
     states: Vec<State>,
     texts: Vec<String>,
 }
+
+/// Contacts that fit into the memory of a small machine.
+const MOST: usize = 100_000_000;
 
 /// A number for every contact: an array of as many, or one for all.
 fn for_each(values: &Bound<'_, PyAny>, name: &str, count: usize) -> PyResult<Vec<f64>> {
@@ -204,7 +214,7 @@ fn for_each(values: &Bound<'_, PyAny>, name: &str, count: usize) -> PyResult<Vec
         return Ok(found);
     }
     let message = format!("{name}: expected one number or {count}, one a contact, found {}", found.len());
-    Err(refused_plainly::<ModelError>(message))
+    Err(refused_plainly::<OptionError>(message))
 }
 
 impl ContactStates {
@@ -241,16 +251,29 @@ impl ContactStates {
 impl ContactStates {
     #[new]
     #[pyo3(signature = (model, count=None))]
-    fn new(model: &Bound<'_, PyAny>, count: Option<usize>) -> PyResult<Self> {
+    fn new(model: &Bound<'_, PyAny>, count: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let several = model.is_instance_of::<PyList>() || model.is_instance_of::<PyTuple>();
+        let asked = |found: String| {
+            let message = format!(
+                "count: expected how many contacts of one model, 1 to {MOST}, or none beside a list of models, found {found}"
+            );
+            refused_plainly::<OptionError>(message)
+        };
+        let count = match count {
+            None if several => None,
+            None => return Err(asked("none".to_owned())),
+            Some(count) if several => return Err(asked(format!("a list and {count}"))),
+            Some(count) => match count.extract::<usize>() {
+                Ok(number) if (1..=MOST).contains(&number) => Some(number),
+                _ => return Err(asked(count.to_string())),
+            },
+        };
         let described: Vec<(ContactModel, String)> = match count {
-            Some(0) => return Err(refused_plainly::<ModelError>("count: expected 1 or more, found 0")),
             Some(_) => vec![described(model)?],
             None => model.try_iter()?.map(|model| described(&model?)).collect::<PyResult<_>>()?,
         };
         if described.is_empty() {
-            return Err(refused_plainly::<ModelError>(
-                "expected one model and a count, or a list of models, found an empty list",
-            ));
+            return Err(asked("an empty list".to_owned()));
         }
         let states = vec![State::default(); count.unwrap_or(described.len())];
         let (models, texts) = described.into_iter().unzip();

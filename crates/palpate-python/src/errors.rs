@@ -44,6 +44,21 @@ pub(crate) fn refused_plainly<E: PyTypeInfo>(message: impl Display) -> PyErr {
     refused::<E>(message, None::<&str>)
 }
 
+/// Why there is no fit: because of what was asked, or of the samples.
+pub(crate) fn unfitted(error: palpate::identify::FitError) -> PyErr {
+    use palpate::identify::FitError as Refused;
+    match error {
+        Refused::NoForm { .. }
+        | Refused::UnknownNumber { .. }
+        | Refused::FixedNumber { .. }
+        | Refused::HeldAmplitude { .. }
+        | Refused::Bounds { .. }
+        | Refused::Exponent { .. }
+        | Refused::Confidence { .. } => refused_plainly::<OptionError>(error),
+        _ => refused_plainly::<FitError>(error),
+    }
+}
+
 /// What a file cannot be read for: an `OSError` where the operating system says so.
 pub(crate) fn unread(error: &ReadError) -> PyErr {
     let told = told(error, error.hint());

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 
 use crate::arrays::doubles;
-use crate::errors::{FitError, OptionError, refused_plainly};
+use crate::errors::{FitError, OptionError, refused_plainly, unfitted};
 use crate::work::{Made, briefly};
 
 /// A number that was found or given.
@@ -225,7 +225,7 @@ impl Fit {
     /// Parameters
     /// ----------
     /// elapsed_s : array_like, shape (N,)
-    ///     Time since the start of the hold, s.
+    ///     Time since the start of the hold, s; before it the signal is that at the start, at NaN it is NaN.
     /// interval : float, optional
     ///     Coverage of the band, between 0 and 1.
     /// of : str
@@ -263,7 +263,12 @@ impl Fit {
         };
         let fit = self.with_confidence(confidence)?;
         let estimate = |t: &f64| if sample { fit.predict_sample(*t) } else { fit.predict_interval(*t) };
-        let estimates: Vec<Estimate> = briefly(py, || elapsed.iter().map(estimate).collect())?;
+        let mut estimates: Vec<Estimate> = Vec::with_capacity(elapsed.len());
+        for some in elapsed.chunks(AT_ONCE) {
+            // A band of millions of samples takes seconds: Ctrl-C is heard in between.
+            py.check_signals()?;
+            briefly(py, || estimates.extend(some.iter().map(estimate)))?;
+        }
         let column = |pick: fn(&Estimate) -> f64| PyArray1::from_iter(py, estimates.iter().map(pick));
         let value = column(|estimate| estimate.value);
         let low = column(|estimate| estimate.interval.map_or(f64::NAN, |interval| interval.0));
@@ -346,6 +351,9 @@ impl Fit {
     }
 }
 
+/// Samples whose bands are computed in some milliseconds.
+const AT_ONCE: usize = 10_000;
+
 /// Options of a fit as keywords say them.
 #[derive(Clone)]
 pub(crate) struct Asked {
@@ -403,17 +411,26 @@ impl Keywords {
             confidence: self.confidence,
             ..LawOptions::default()
         };
+        options.suit(law).map_err(unfitted)?;
         Ok(Asked { law, options })
     }
 }
 
 /// Standard deviations that weights, their inverses, stand for.
-pub(crate) fn deviations(weights: Vec<f64>) -> PyResult<Vec<f64>> {
-    if let Some(index) = weights.iter().position(|weight| weight.is_nan() || *weight < 0.0) {
-        let message = format!("weights are 1/σ and not below 0, found {} at index {index}", weights[index]);
-        return Err(refused_plainly::<FitError>(message));
+pub(crate) fn deviations(weights: &[f64]) -> Result<Vec<f64>, String> {
+    match weights.iter().position(|weight| !(weight.is_finite() && *weight >= 0.0)) {
+        Some(index) => {
+            let found = weights[index];
+            Err(format!("weights: expected 1/σ, finite and 0 or more, found {found} at index {index}"))
+        }
+        None => Ok(weights.iter().map(|weight| weight.recip()).collect()),
     }
-    Ok(weights.into_iter().map(f64::recip).collect())
+}
+
+/// Those of one column of weights.
+pub(crate) fn deviations_of(weights: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Vec<f64>>> {
+    let weights = weights.map(|weights| doubles(weights, "weights")).transpose()?;
+    weights.map(|weights| deviations(&weights).map_err(refused_plainly::<OptionError>)).transpose()
 }
 
 /// One fit, of samples that are there.
@@ -437,14 +454,13 @@ pub(crate) fn fit_hold<'py>(
     keywords: Keywords,
 ) -> PyResult<Fit> {
     let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
-    let weights = weights.map(|weights| doubles(weights, "weights")).transpose()?;
-    if let Some(weights) = weights.as_ref().filter(|weights| weights.len() != times.len()) {
-        return Err(unequal("weights", weights.len(), times.len()));
+    let deviations = deviations_of(weights)?;
+    if let Some(deviations) = deviations.as_ref().filter(|deviations| deviations.len() != times.len()) {
+        return Err(unequal("weights", deviations.len(), times.len()));
     }
-    let deviations = weights.map(deviations).transpose()?;
     let asked = keywords.asked()?;
     let fit = briefly(py, || fitted(&times, &values, deviations.as_deref(), &asked))?;
     Ok(Fit {
-        fit: fit.map_err(refused_plainly::<FitError>)?,
+        fit: fit.map_err(unfitted)?,
     })
 }

@@ -1,5 +1,6 @@
 //! Thousands of holds in one call.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -7,22 +8,27 @@ use arrow_array::cast::AsArray;
 use arrow_array::types::Float64Type;
 use arrow_array::{Array, ArrayRef, Float64Array, Int64Array, StringArray};
 use arrow_buffer::ScalarBuffer;
-use arrow_schema::DataType;
+use arrow_cast::cast;
+use arrow_schema::{DataType, Field};
 use numpy::{PyArray1, PyArrayMethods};
-use palpate::identify::{FitError as Refused, LawFit, NumberUnit};
+use palpate::identify::{LawFit, LawNumber, LawOptions, NumberUnit, Samples, fit_law};
+use palpate::laws::Response;
 use pyo3::prelude::*;
 use pyo3_arrow::PyChunkedArray;
 use pyo3_arrow::input::AnyArray;
 use rayon::prelude::*;
 
-use crate::errors::{FitError, refused_plainly};
+use crate::errors::{OptionError, refused, refused_plainly, unfitted};
 use crate::fit::{Asked, Keywords, deviations, ending, fitted};
 use crate::table::Table;
 use crate::work::{Progress, at_length_told};
 
+/// One curve, or why it is none.
+type Curve = Result<ScalarBuffer<f64>, String>;
+
 /// Curves of any lengths. Columns of Arrow never change, and are not copied; arrays of NumPy may change, and are.
 struct Ragged {
-    curves: Vec<ScalarBuffer<f64>>,
+    curves: Vec<Curve>,
 }
 
 impl Ragged {
@@ -30,8 +36,8 @@ impl Ragged {
         self.curves.len()
     }
 
-    fn curve(&self, index: usize) -> &[f64] {
-        &self.curves[index]
+    fn curve(&self, index: usize) -> Result<&[f64], String> {
+        self.curves[index].as_deref().map_err(Clone::clone)
     }
 }
 
@@ -41,7 +47,8 @@ fn ragged(curves: &Bound<'_, PyAny>, name: &str) -> PyResult<Ragged> {
         return of_arrow(&curves.extract::<AnyArray>()?.into_chunked_array()?, name);
     }
     let found = curves.py().import("palpate._arrays")?.call_method1("as_ragged", (curves, name))?;
-    let (values, offsets): (Bound<'_, PyArray1<f64>>, Bound<'_, PyArray1<i64>>) = found.extract()?;
+    type Found<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>, HashMap<usize, String>);
+    let (values, offsets, mut wrong): Found<'_> = found.extract()?;
     let offsets: Vec<usize> = offsets.try_readonly()?.as_array().iter().map(|offset| *offset as usize).collect();
     let values = values.try_readonly()?;
     let values = values.as_slice()?;
@@ -51,8 +58,9 @@ fn ragged(curves: &Bound<'_, PyAny>, name: &str) -> PyResult<Ragged> {
         },
         0,
     );
-    for ends in offsets.windows(2) {
-        ragged.curves.push(ScalarBuffer::from(values[ends[0]..ends[1]].to_vec()));
+    for (index, ends) in offsets.windows(2).enumerate() {
+        let curve = || ScalarBuffer::from(values[ends[0]..ends[1]].to_vec());
+        ragged.curves.push(wrong.remove(&index).map_or_else(|| Ok(curve()), Err));
         copied += ends[1] - ends[0];
         if copied > AT_ONCE {
             // A gigabyte takes a second to copy: Ctrl-C is heard in between.
@@ -67,45 +75,74 @@ fn ragged(curves: &Bound<'_, PyAny>, name: &str) -> PyResult<Ragged> {
 const AT_ONCE: usize = 4 << 20;
 
 fn of_arrow(column: &PyChunkedArray, name: &str) -> PyResult<Ragged> {
-    let mut ragged = Ragged { curves: Vec::new() };
     let wrong = |kind: &DataType| {
-        refused_plainly::<FitError>(format!("{name}: expected a column of lists of doubles, found one of {kind}"))
+        let found = match kind {
+            DataType::Struct(fields) => format!("a table of {} columns", fields.len()),
+            other => format!("one of {other}"),
+        };
+        let help = "pass one column, such as table[\"force_n\"], or the rows of table.to_numpy()";
+        refused::<OptionError>(format!("{name}: expected a column of lists of numbers, found {found}"), Some(help))
     };
-    let mut push = |row: Option<ArrayRef>| -> PyResult<()> {
-        let row = row.ok_or_else(|| refused_plainly::<FitError>(format!("{name}: a list is missing")))?;
-        let numbers = row.as_primitive_opt::<Float64Type>().ok_or_else(|| wrong(row.data_type()))?;
-        if numbers.null_count() > 0 {
-            let index = ragged.len();
-            return Err(refused_plainly::<FitError>(format!("{name}, curve {index}: a number is missing")));
-        }
-        ragged.curves.push(numbers.values().clone());
-        Ok(())
-    };
+    let mut curves = Vec::new();
     for chunk in column.chunks() {
-        match chunk.data_type() {
-            DataType::List(_) => chunk.as_list::<i32>().iter().try_for_each(&mut push)?,
-            DataType::LargeList(_) => chunk.as_list::<i64>().iter().try_for_each(&mut push)?,
-            DataType::FixedSizeList(..) => chunk.as_fixed_size_list().iter().try_for_each(&mut push)?,
-            DataType::Float64 => push(Some(Arc::clone(chunk)))?,
+        // Whatever kind of list of whatever kind of number: lists of doubles pass as they are.
+        let rows = match chunk.data_type() {
+            DataType::List(_)
+            | DataType::LargeList(_)
+            | DataType::ListView(_)
+            | DataType::LargeListView(_)
+            | DataType::FixedSizeList(..) => {
+                let item = Arc::new(Field::new("item", DataType::Float64, true));
+                cast(chunk, &DataType::LargeList(item)).map_err(|_| wrong(chunk.data_type()))?
+            }
+            kind if kind.is_numeric() => {
+                let numbers = cast(chunk, &DataType::Float64).map_err(|_| wrong(kind))?;
+                curves.push(whole(Some(numbers), name));
+                continue;
+            }
             other => return Err(wrong(other)),
+        };
+        if !matches!(nested(chunk.data_type()), Some(kind) if kind.is_numeric() || *kind == DataType::Null) {
+            return Err(wrong(chunk.data_type()));
         }
+        curves.extend(rows.as_list::<i64>().iter().map(|row| whole(row, name)));
     }
-    Ok(ragged)
+    Ok(Ragged { curves })
 }
 
-/// Where the times of a curve are: one list may stand for all.
-fn shared(times: &Ragged, curves: usize, name: &str) -> PyResult<bool> {
+/// What a list is a list of.
+fn nested(kind: &DataType) -> Option<&DataType> {
+    match kind {
+        DataType::List(item) | DataType::LargeList(item) | DataType::ListView(item) => Some(item.data_type()),
+        DataType::LargeListView(item) | DataType::FixedSizeList(item, _) => Some(item.data_type()),
+        _ => None,
+    }
+}
+
+/// A curve of doubles all of which are there.
+fn whole(row: Option<ArrayRef>, name: &str) -> Curve {
+    let row = row.ok_or_else(|| format!("{name}: expected a list of numbers, found none"))?;
+    let numbers = row.as_primitive::<Float64Type>();
+    match (0..numbers.len()).find(|index| numbers.is_null(*index)) {
+        Some(index) => Err(format!("{name}: expected a number everywhere, found none at index {index}")),
+        None => Ok(numbers.values().clone()),
+    }
+}
+
+/// Whether one list stands for all curves; it is then the matter of all if it is wrong.
+fn one_for_all(times: &Ragged, curves: usize, name: &str) -> PyResult<bool> {
     match times.len() {
+        1 => times.curve(0).map(|_| true).map_err(refused_plainly::<OptionError>),
         count if count == curves => Ok(false),
-        1 => Ok(true),
         count => {
             let message = format!("{name}: expected one list for all curves or one each, {curves}, found {count}");
-            Err(refused_plainly::<FitError>(message))
+            Err(refused_plainly::<OptionError>(message))
         }
     }
 }
 
-type Fitted = Option<Result<LawFit, Refused>>;
+/// A fit, or why there is none; nothing at all after Ctrl-C.
+type Fitted = Option<Result<LawFit, String>>;
 
 #[pyfunction]
 pub(crate) fn fit_many(
@@ -118,39 +155,54 @@ pub(crate) fn fit_many(
 ) -> PyResult<Table> {
     let (times, values) = (ragged(time_s, "time_s")?, ragged(signal, "signal")?);
     let curves = values.len();
-    let one_time = shared(&times, curves, "time_s")?;
-    let weights = weights.map(|weights| ragged(weights, "weights")).transpose()?;
+    let one_time = one_for_all(&times, curves, "time_s")?;
     let weights = match weights {
-        Some(Ragged { curves: weights }) => {
-            let of_one = |weights: ScalarBuffer<f64>| deviations(weights.to_vec()).map(ScalarBuffer::from);
+        Some(weights) => {
+            let of_one = |weights: Curve| deviations(&weights?).map(ScalarBuffer::from);
             let found = Ragged {
-                curves: weights.into_iter().map(of_one).collect::<PyResult<_>>()?,
+                curves: ragged(weights, "weights")?.curves.into_iter().map(of_one).collect(),
             };
-            Some((shared(&found, curves, "weights")?, found))
+            Some((one_for_all(&found, curves, "weights")?, found))
         }
         None => None,
     };
     let asked = keywords.asked()?;
+    let shape = asked.clone();
     let stopped = Arc::new(AtomicBool::new(false));
     let stop = Arc::clone(&stopped);
     let progress = Progress::of(progress);
     let told = progress.clone();
-    let work = move || -> (Vec<Fitted>, Asked) {
+    let work = move || -> Vec<Fitted> {
+        let fit = |index: usize| {
+            let time = times.curve(if one_time { 0 } else { index })?;
+            let deviations = weights.as_ref().map(|(one, found)| found.curve(if *one { 0 } else { index }));
+            fitted(time, values.curve(index)?, deviations.transpose()?, &asked).map_err(|error| error.to_string())
+        };
         let one = |index: usize| {
             if stop.load(Ordering::Relaxed) {
                 return None;
             }
-            let time = times.curve(if one_time { 0 } else { index });
-            let deviations = weights.as_ref().map(|(one, found)| found.curve(if *one { 0 } else { index }));
-            let fit = fitted(time, values.curve(index), deviations, &asked);
+            let fit = fit(index);
             told.step();
             Some(fit)
         };
-        let fits = (0..curves).into_par_iter().map(one).collect();
-        (fits, asked)
+        (0..curves).into_par_iter().map(one).collect()
     };
-    let (fits, _) = at_length_told(py, &progress, work).inspect_err(|_| stopped.store(true, Ordering::Relaxed))?;
-    table(&fits)
+    let fits = at_length_told(py, &progress, work).inspect_err(|_| stopped.store(true, Ordering::Relaxed))?;
+    table(&shape, &fits)
+}
+
+/// The numbers that every fit of a law has, whatever the curve, by their names.
+fn numbers_of(asked: &Asked) -> PyResult<Vec<LawNumber>> {
+    let times: Vec<f64> = (0..200).map(f64::from).collect();
+    let falling = |t: &f64| 1.0 / (1.0 + 0.1 * t).sqrt();
+    let sign = if asked.options.response == Response::Creep { -1.0 } else { 1.0 };
+    let values: Vec<f64> = times.iter().map(|t| sign * falling(t)).collect();
+    let plain = LawOptions {
+        response: asked.options.response,
+        ..LawOptions::default()
+    };
+    Ok(fit_law(&Samples::new(&times, &values), asked.law, &plain).map_err(unfitted)?.numbers)
 }
 
 fn suffix(unit: NumberUnit) -> &'static str {
@@ -162,20 +214,17 @@ fn suffix(unit: NumberUnit) -> &'static str {
 }
 
 /// A row a curve; numbers that a fit does not have are missing.
-fn table(fits: &[Fitted]) -> PyResult<Table> {
+fn table(asked: &Asked, fits: &[Fitted]) -> PyResult<Table> {
     let good = || fits.iter().map(|fit| fit.as_ref().and_then(|fit| fit.as_ref().ok()));
     let floats = |pick: &dyn Fn(&LawFit) -> Option<f64>| -> ArrayRef {
         Arc::new(good().map(|fit| fit.and_then(pick)).collect::<Float64Array>())
     };
+    let law = asked.law.to_string();
     let mut columns: Vec<(String, ArrayRef)> = vec![
         ("curve".to_owned(), Arc::new((0..fits.len() as i64).collect::<Int64Array>())),
-        (
-            "law".to_owned(),
-            Arc::new(good().map(|fit| fit.map(|fit| fit.law.to_string())).collect::<StringArray>()),
-        ),
+        ("law".to_owned(), Arc::new(fits.iter().map(|_| Some(&law)).collect::<StringArray>())),
     ];
-    let numbers = good().flatten().next().map_or(&[][..], |fit| &fit.numbers);
-    for number in numbers {
+    for number in &numbers_of(asked)? {
         let (name, suffix) = (&number.name, suffix(number.unit));
         columns.push((format!("{name}{suffix}"), floats(&|fit| fit.value(name))));
         let error = |fit: &LawFit| fit.estimate(name)?.standard_error;
@@ -189,7 +238,7 @@ fn table(fits: &[Fitted]) -> PyResult<Table> {
     columns.push(("samples".to_owned(), Arc::new(samples)));
     let ended = good().map(|fit| fit.map(|fit| ending(fit.termination))).collect::<StringArray>();
     columns.push(("termination".to_owned(), Arc::new(ended)));
-    let errors = fits.iter().map(|fit| fit.as_ref()?.as_ref().err().map(ToString::to_string));
+    let errors = fits.iter().map(|fit| fit.as_ref()?.as_ref().err().cloned());
     columns.push(("error".to_owned(), Arc::new(errors.collect::<StringArray>())));
     Table::of(columns.iter().map(|(name, values)| (name.as_str(), Arc::clone(values))).collect())
 }

@@ -26,13 +26,15 @@ pub(crate) fn latency<'py>(
         return Err(refused_plainly::<ModelError>(message));
     }
     let mut times = doubles(elapsed_s, "elapsed_s")?;
-    // Before the hold the excess is that at its start.
+    // Before the hold the excess is that at its start; a time that is none has no value.
+    let missing: Vec<usize> = (0..times.len()).filter(|index| times[*index].is_nan()).collect();
     times.iter_mut().for_each(|time| *time = time.max(0.0));
     let mut values = vec![0.0; times.len()];
     py.detach(|| {
         decay_many(&times, relative_rate_per_s, exponent, &mut values);
         values.iter_mut().for_each(|value| *value = equilibrium + amplitude * *value);
     });
+    missing.into_iter().for_each(|index| values[index] = f64::NAN);
     Ok(PyArray1::from_vec(py, values))
 }
 

@@ -10,6 +10,7 @@ use arrow_ipc::reader::StreamReader;
 use arrow_ipc::writer::StreamWriter;
 use arrow_schema::{ArrowError, DataType};
 use numpy::{PyArray1, PyArrayMethods};
+use palpate::number::significant;
 use pyo3::exceptions::{PyKeyError, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyType};
@@ -92,6 +93,28 @@ impl Table {
     }
 }
 
+/// Rows that a notebook shows of each end of a table.
+const ENDS: usize = 5;
+
+/// A cell as a notebook shows it.
+fn cell(column: &ArrayRef, row: usize) -> String {
+    if column.is_null(row) {
+        return "<td></td>".to_owned();
+    }
+    let text = match column.data_type() {
+        DataType::Float64 => significant(column.as_primitive::<Float64Type>().value(row), 6),
+        DataType::Int64 => column.as_primitive::<Int64Type>().value(row).to_string(),
+        DataType::Boolean => column.as_boolean().value(row).to_string(),
+        DataType::FixedSizeList(_, width) => format!("{width} numbers"),
+        _ => escaped(column.as_string::<i32>().value(row)),
+    };
+    format!("<td>{text}</td>")
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
 #[pymethods]
 impl Table {
     /// Names of the columns.
@@ -100,8 +123,22 @@ impl Table {
         self.batch.schema().fields().iter().map(|field| field.name().clone()).collect()
     }
 
+    /// Names of the columns, as a mapping has them: ``dict(table)`` is one of columns.
+    fn keys(&self) -> Vec<String> {
+        self.column_names()
+    }
+
+    /// Number of rows.
     fn __len__(&self) -> usize {
         self.batch.num_rows()
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(PyList::new(py, self.column_names())?.try_iter()?.into_any())
+    }
+
+    fn __contains__(&self, name: &Bound<'_, PyAny>) -> bool {
+        name.extract::<String>().is_ok_and(|name| self.batch.column_by_name(&name).is_some())
     }
 
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
@@ -116,7 +153,10 @@ impl Table {
             DataType::Int64 if column.null_count() == 0 => {
                 PyArray1::from_slice(py, column.as_primitive::<Int64Type>().values()).into_any()
             }
-            DataType::Int64 => PyList::new(py, column.as_primitive::<Int64Type>().iter())?.into_any(),
+            DataType::Int64 => {
+                let number = |value: Option<i64>| value.map_or(f64::NAN, |value| value as f64);
+                PyArray1::from_iter(py, column.as_primitive::<Int64Type>().iter().map(number)).into_any()
+            }
             DataType::FixedSizeList(_, width) => {
                 let rows = column.as_fixed_size_list();
                 let numbers = rows.values().as_primitive::<Float64Type>();
@@ -158,6 +198,21 @@ impl Table {
         writer.write(&self.batch).map_err(broken)?;
         let bytes = writer.into_inner().map_err(broken)?;
         Ok((py.get_type::<Self>().getattr("_from_ipc")?, (PyBytes::new(py, &bytes),)))
+    }
+
+    /// The first and the last rows as a notebook shows them.
+    fn _repr_html_(&self) -> String {
+        let rows = self.batch.num_rows();
+        let shown = |row: &usize| *row < ENDS || *row + ENDS >= rows;
+        let row = |row: usize| {
+            let cells: String = self.batch.columns().iter().map(|column| cell(column, row)).collect();
+            let gap = if row + ENDS == rows && rows > 2 * ENDS { "<tr><td>…</td></tr>" } else { "" };
+            format!("{gap}<tr>{cells}</tr>")
+        };
+        let head: String = self.column_names().iter().map(|name| format!("<th>{}</th>", escaped(name))).collect();
+        let body: String = (0..rows).filter(shown).map(row).collect();
+        let size = format!("{rows} rows × {} columns", self.batch.num_columns());
+        format!("<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table><p>{size}</p>")
     }
 
     fn __repr__(&self) -> String {

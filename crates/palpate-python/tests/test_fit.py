@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import multiprocessing
 import pickle
+from typing import Any
 
 import lmfit
 import numpy as np
@@ -110,6 +111,76 @@ def test_numbers_can_be_held_and_bounded() -> None:
     bounded = palpate.fit_hold(t, y, bounds={"exponent": (1.5, 4.0)})
     assert bounded.values["exponent"] <= 4.0 and not bounded.is_good
     assert bounded.covariance is None
+
+
+def test_what_is_held_is_held_or_refused() -> None:
+    t, y = relaxation(noise=1e-4)
+    fit = palpate.fit_hold(t, y, fixed={"equilibrium": 0.15})
+    assert fit.values["equilibrium"] == 0.15 and fit.estimates["equilibrium"].standard_error is None
+    assert "equilibrium" not in fit.parameters
+    assert palpate.fit_many(t, [y], fixed={"equilibrium": 0.15})["equilibrium"].tolist() == [0.15]
+    for fixed in ({"amplitude": 0.1}, {"equilibrium": np.nan}, {"exponent": np.inf}, {"foo": 1}):
+        for fitted in (lambda f: palpate.fit_hold(t, y, fixed=f), lambda f: palpate.fit_many(t, [y], fixed=f)):
+            with pytest.raises(palpate.OptionError):
+                fitted(fixed)
+    with pytest.raises(palpate.OptionError, match="only equilibrium, relative_rate, exponent; give it bounds"):
+        palpate.fit_hold(t, y, fixed={"amplitude": 0.1})
+
+
+def test_bounds_may_be_lists_and_open() -> None:
+    t, y = relaxation(noise=1e-4)
+    free = palpate.fit_hold(t, y).values["exponent"]
+    for pair in ([1, 10], (None, 10), (1, None), (None, None)):
+        assert palpate.fit_hold(t, y, bounds={"exponent": pair}).values["exponent"] == pytest.approx(free, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("keyword", "value", "told"),
+    [
+        ("law", None, "law: expected a word, found None"),
+        ("fixed", {"exponent": "4"}, "fixed\\[\"exponent\"\\]: expected a number, found '4'"),
+        ("fixed", [("exponent", 4)], "fixed: expected numbers by name, such as"),
+        ("bounds", {"exponent": 4}, "expected a lower and an upper end, found 4"),
+        ("bounds", {"exponent": (3, 1)}, "bounds of exponent must rise"),
+        ("bounds", {"exponent": (1, "x")}, "expected a number, found 'x'"),
+        ("confidence", "x", "confidence: expected a number, found 'x'"),
+        ("confidence", 95, "confidence must lie between 0 and 1, found 95"),
+        ("log_spaced", -1, "log_spaced: expected a number of samples, found -1"),
+        ("log_spaced", 5.5, "log_spaced: expected a number of samples, found 5.5"),
+        ("noise", "pink", "noise is one of"),
+    ],
+)
+def test_a_wrong_option_is_an_option_error_that_names_it(keyword: str, value: object, told: str) -> None:
+    t, y = relaxation(noise=1e-4)
+    arguments: dict[str, Any] = {keyword: value}
+    with pytest.raises(palpate.OptionError, match=told):
+        palpate.fit_hold(t, y, **arguments)
+    with pytest.raises(palpate.OptionError, match=told):
+        palpate.fit_many(t, [y], **arguments)
+
+
+def test_a_sample_that_is_no_number_is_told_with_its_column() -> None:
+    t, y = relaxation()
+    spoiled = np.where(np.arange(t.size) == 5, np.nan, y)
+    with pytest.raises(palpate.FitError, match="the value of sample 5 must be a finite number, found NaN"):
+        palpate.fit_hold(t, spoiled)
+    with pytest.raises(palpate.FitError, match="the time of sample 5 must be a finite number, found inf"):
+        palpate.fit_hold(np.where(np.arange(t.size) == 5, np.inf, t), y)
+    with pytest.raises(palpate.OptionError, match="weights: expected 1/σ, finite and 0 or more, found inf at index 5"):
+        palpate.fit_hold(t, y, weights=np.where(np.arange(t.size) == 5, np.inf, 1.0))
+
+
+def test_there_is_no_signal_at_a_time_that_is_none() -> None:
+    t, y = relaxation(noise=1e-4)
+    fit = palpate.fit_hold(t, y)
+    at = np.array([np.nan, -1.0, 0.0])
+    assert np.isnan(fit.predict(at)[0]) and fit.predict(at)[1] == fit.predict(at)[2]
+    assert all(np.isnan(column[0]) and np.isfinite(column[1:]).all() for column in fit.predict(at, interval=0.9))
+    for name in ("latency", "maxwell", "standard-linear-solid", "prony:2", "stretched", "power", "logarithmic"):
+        law = palpate.laws.function(name)
+        count = {"latency": 4, "maxwell": 2, "prony:2": 5, "stretched": 4}.get(name, 3)
+        numbers = [0.5] * count
+        assert np.isnan(law(at, *numbers)[0]) and law(at, *numbers)[1] == law(at, *numbers)[2]
 
 
 @settings(max_examples=40, deadline=None)

@@ -51,7 +51,7 @@ def test_one_column_of_times_stands_for_all() -> None:
     shared = polars.DataFrame(palpate.fit_many(t, rows, law="latency:5"))
     each = polars.DataFrame(palpate.fit_many([t] * 5, list(rows), law="latency:5"))
     assert shared.equals(each) and shared["law"].to_list() == ["latency:5"] * 5
-    with pytest.raises(palpate.FitError, match="expected one list for all curves or one each, 5, found 2"):
+    with pytest.raises(palpate.OptionError, match="expected one list for all curves or one each, 5, found 2"):
         palpate.fit_many([t, t], rows)
 
 
@@ -75,9 +75,82 @@ def test_tables_go_to_every_library() -> None:
 
 
 def test_wrong_columns_are_refused() -> None:
-    with pytest.raises(palpate.FitError, match="a column of lists of doubles"):
+    with pytest.raises(palpate.OptionError, match="a column of lists of numbers"):
         palpate.fit_many(pyarrow.array(["a"]), pyarrow.array(["b"]))
-    with pytest.raises(palpate.FitError, match="a number is missing"):
-        palpate.fit_many(pyarrow.array([[0.0, 1.0]]), pyarrow.array([[0.0, None]]))
-    with pytest.raises(palpate.OptionError, match="signal, curve 1: expected numbers"):
-        palpate.fit_many([[0, 1], [0, 1]], [[0, 1], ["x", "y"]])
+    with pytest.raises(palpate.OptionError, match="a column of lists of numbers"):
+        palpate.fit_many(TIMES[0], pyarrow.array([["a"]]))
+    for table in (pandas.DataFrame(np.ones((3, 400))), polars.DataFrame(np.ones((3, 400)))):
+        with pytest.raises(palpate.OptionError, match="found a table of 400 columns\nhint: pass one column") as told:
+            palpate.fit_many(TIMES[0], table)
+        assert len(str(told.value)) < 200
+    for wrong in ({"a": SIGNALS[0]}, None, 5.0):
+        with pytest.raises(palpate.OptionError, match="signal: expected a list of curves, found"):
+            palpate.fit_many(TIMES[0], wrong)
+    for shared in ([[0.0, None]], pyarrow.array([None], pyarrow.list_(pyarrow.float64()))):
+        with pytest.raises(palpate.OptionError, match="time_s: expected .* found"):
+            palpate.fit_many(shared, SIGNALS)
+
+
+def test_a_curve_that_is_no_column_of_numbers_stops_no_other() -> None:
+    t, y = CURVES[2]
+    good = np.ones(400)
+    spoiled = np.where(np.arange(400) == 3, np.nan, 1.0)
+    null = [None, *y[1:]]
+    many: list[tuple[Any, Any, str]] = [
+        (pyarrow.array([y, None, y]), None, "signal: expected a list of numbers, found none"),
+        (pyarrow.array([y, null, y]), None, "signal: expected a number everywhere, found none at index 0"),
+        ([y, None, y], None, "signal: expected a column of numbers, found NoneType None"),
+        ([y, ["a", "b"], y], None, "signal: expected numbers, found <U1"),
+        ([y, null, y], None, "signal: expected a number everywhere, found None at index 0"),
+        ([y, y, y], [good, spoiled, good], "weights: expected 1/σ, finite and 0 or more, found NaN at index 3"),
+        ([y, np.where(np.arange(400) == 5, np.inf, y), y], None, "the value of sample 5 must be a finite number, found inf"),
+    ]
+    alone = palpate.fit_hold(t, y)
+    for signal, weights, told in many:
+        table = palpate.fit_many(t, signal, weights=weights)
+        assert table["error"] == [None, told, None]
+        assert table["exponent"][[0, 2]].tolist() == [alone.values["exponent"]] * 2
+        assert np.isnan(table["exponent"][1]) and np.isnan(table["samples"][1])
+
+
+def test_any_kind_of_number_and_list_of_arrow_is_taken() -> None:
+    t, y = CURVES[0]
+    single = y.astype(np.float32)
+    expected = palpate.fit_hold(t, single).values["exponent"]
+    whole = np.round(1e4 * y).astype(np.int32)
+    kinds = pyarrow.list_, pyarrow.large_list, pyarrow.list_view, pyarrow.large_list_view
+    for kind in kinds:
+        table = palpate.fit_many(t, pyarrow.array([single, single], kind(pyarrow.float32())))
+        assert table["exponent"].tolist() == [expected] * 2
+        table = palpate.fit_many(t, pyarrow.array([whole], kind(pyarrow.int32())))
+        assert table["exponent"].tolist() == [palpate.fit_hold(t, whole).values["exponent"]]
+    assert palpate.fit_many(t, pyarrow.array(single))["exponent"].tolist() == [expected]
+    # A slice of a longer column begins somewhere inside it.
+    column = pyarrow.array([y + 1, y, y - 1])
+    assert palpate.fit_many(t, column[1:2])["exponent"].tolist() == [palpate.fit_hold(t, y).values["exponent"]]
+
+
+@pytest.mark.parametrize("law", ["latency", "latency:5", "maxwell", "standard-linear-solid", "burgers", "prony:3", "stretched"])
+def test_the_columns_are_those_of_the_law_whatever_the_curves_are(law: str) -> None:
+    t, y = CURVES[0]
+    columns = palpate.fit_many(t, [y], law=law).column_names
+    for curves in ([], [y[:3]], np.empty((3, 0)), [None, y]):
+        table = palpate.fit_many(t, curves, law=law)
+        assert table.column_names == columns and len(table) == len(curves)
+        assert table["law"] == [law] * len(curves)
+    names = palpate.fit_hold(t, y, law=law).values
+    assert [name for name in columns if name.removesuffix("_per_s").removesuffix("_s") in names] == [
+        name for name in columns[2 : 2 + 4 * len(names) : 4]
+    ]
+
+
+def test_a_table_is_a_mapping_of_columns_and_shows_itself() -> None:
+    table = palpate.fit_many(TIMES, [*SIGNALS[:3], SIGNALS[3] * 0])
+    assert "exponent" in table and "nothing" not in table and 0 not in table
+    assert list(table) == table.keys() == table.column_names
+    assert list(dict(table)) == table.column_names
+    assert table["samples"].dtype == np.float64 and np.isnan(table["samples"][3])
+    page = table._repr_html_()
+    assert page.count("<tr>") == 5 and "<th>exponent</th>" in page and "4 rows" in page
+    long = palpate.fit_many(TIMES[0], [SIGNALS[0]] * 30)._repr_html_()
+    assert long.count("<tr>") == 12 and "…" in long

@@ -93,6 +93,34 @@ def test_what_no_body_can_do_is_refused() -> None:
         palpate.ContactState(linear)
 
 
+def test_the_error_of_a_step_falls_with_its_square() -> None:
+    def squeezed(steps: int) -> float:
+        state = palpate.ContactState(PAPER)
+        return [state.step(0.1 / steps, 5e-3 * k / steps) for k in range(1, steps + 1)][-1]
+
+    exact = squeezed(20_000)
+    errors = [squeezed(steps) / exact - 1 for steps in (1, 10, 100)]
+    assert errors == pytest.approx([0.63, 0.012, 1.25e-4], rel=0.03)
+
+
+def test_a_mapping_may_hold_any_number_and_text() -> None:
+    plain = palpate.simulate(PAPER)
+    law = {**PAPER["law"], "exponent": np.int64(PAPER["law"]["exponent"])}
+    assert palpate.simulate({**PAPER, "law": law}) == plain
+    law["exponent"] = np.float32(PAPER["law"]["exponent"])
+    assert palpate.simulate({**PAPER, "law": law, "title": "ball \U0001f600 \x7f \"α\"\n"}).force_n[-1] == plain.force_n[-1]
+    wrong: list[tuple[Any, str]] = [
+        (float("nan"), "law.exponent: expected a finite number, found nan"),
+        (np.float32("inf"), "law.exponent: expected a finite number, found inf"),
+        (None, "law.exponent: expected a text, a number, a list or a table, found NoneType"),
+    ]
+    for value, told in wrong:
+        with pytest.raises(palpate.OptionError, match=told):
+            palpate.simulate({**PAPER, "law": {**law, "exponent": value}})
+    with pytest.raises(palpate.OptionError, match='such as radius = "0.035 mm" or "0.035 m"'):
+        palpate.simulate({**PAPER, "specimen": {**PAPER["specimen"], "radius": 0.035}})
+
+
 def test_laws_are_compared_by_what_they_foretell() -> None:
     t, y = relaxation(800, 1e-4)
     comparison = palpate.compare(t, y, laws=["latency:5", "standard-linear-solid", "prony:2"])

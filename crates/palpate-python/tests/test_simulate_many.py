@@ -107,10 +107,14 @@ def test_a_step_that_cannot_be_made_moves_no_contact() -> None:
     before = contacts.force_n
     with pytest.raises(palpate.ModelError, match="contact 2"):
         contacts.step(0.1, [1e-3, 1e-3, float("nan")])
-    with pytest.raises(palpate.ModelError, match="expected one number or 3, one a contact, found 2"):
+    with pytest.raises(palpate.OptionError, match="expected one number or 3, one a contact, found 2"):
         contacts.step(0.1, [1e-3, 1e-3])
-    with pytest.raises(palpate.ModelError, match="found 0"):
-        palpate.ContactStates(MODEL, 0)
+    for count in (0, -1, 10**12, 3.5, "3", None):
+        with pytest.raises(palpate.OptionError, match=f"of one model, 1 to 100000000, .* found {str(count).lower()}"):
+            palpate.ContactStates(MODEL, count)  # type: ignore[arg-type]
+    for models, count in (([MODEL, MODEL], 3), ([], None)):
+        with pytest.raises(palpate.OptionError, match="found a list and 3|found an empty list"):
+            palpate.ContactStates(models, count)
     assert np.array_equal(contacts.force_n, before)
 
 

@@ -55,10 +55,11 @@ fn columns_that_are_no_hold_are_refused() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let mut wrong = values.clone();
         wrong[13] = bad;
-        all_refuse(&Samples::new(&times, &wrong), |error| *error == FitError::NotFinite { index: 13 });
+        let named = |error: &FitError, name: &str| matches!(error, FitError::NotFinite { index: 13, what, .. } if *what == name);
+        all_refuse(&Samples::new(&times, &wrong), |error| named(error, "value"));
         let mut wrong = times.clone();
         wrong[13] = bad;
-        all_refuse(&Samples::new(&wrong, &values), |error| *error == FitError::NotFinite { index: 13 });
+        all_refuse(&Samples::new(&wrong, &values), |error| named(error, "time"));
     }
 }
 

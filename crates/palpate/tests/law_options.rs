@@ -44,6 +44,67 @@ fn a_bound_that_binds_is_kept_and_said() {
 }
 
 #[test]
+fn a_known_equilibrium_is_held_by_its_name_or_as_the_constant() {
+    let named = LawOptions {
+        fixed: vec![("equilibrium".to_owned(), 1.5)],
+        ..LawOptions::default()
+    };
+    let constant = LawOptions {
+        constant: ConstantChoice::Fixed(1.5),
+        ..LawOptions::default()
+    };
+    for law in ["sls", "latency", "latency:3", "prony:2", "maxwell", "stretched"] {
+        let (named, constant) = (fit(law, &named, 1e-3).unwrap(), fit(law, &constant, 1e-3).unwrap());
+        assert_eq!((&named.numbers, named.rmse), (&constant.numbers, constant.rmse), "{law}");
+        let equilibrium = named.estimate("equilibrium").unwrap();
+        assert_eq!((equilibrium.value, equilibrium.standard_error), (1.5, None));
+        assert!(!named.parameters.contains(&"equilibrium".to_owned()));
+    }
+}
+
+#[test]
+fn what_cannot_be_held_is_refused_and_never_passed_over() {
+    let held = |name: &str, value: f64| LawOptions {
+        fixed: vec![(name.to_owned(), value)],
+        ..LawOptions::default()
+    };
+    for (law, name) in [("sls", "amplitude"), ("prony:2", "amplitude_1"), ("latency", "amplitude")] {
+        let error = fit(law, &held(name, 3.0), 1e-3).unwrap_err();
+        assert!(
+            matches!(&error, FitError::HeldAmplitude { name: found, held } if found == name && held.contains("equilibrium"))
+        );
+        assert_eq!(held(name, 3.0).suit(law.parse().unwrap()), Err(error));
+    }
+    for value in [f64::NAN, f64::INFINITY] {
+        for name in ["equilibrium", "time"] {
+            let error = fit("sls", &held(name, value), 1e-3).unwrap_err();
+            assert!(matches!(error, FitError::FixedNumber { .. }), "{error}");
+        }
+    }
+    assert!(fit("sls", &held("equilibrium", -1.0), 1e-3).is_ok());
+}
+
+#[test]
+fn an_end_of_a_bound_may_be_left_open() {
+    let free = fit("latency", &LawOptions::default(), 1e-3).unwrap();
+    for (low, high) in [(f64::NEG_INFINITY, f64::INFINITY), (0.5, f64::INFINITY), (f64::NEG_INFINITY, 20.0)] {
+        let within = fit("latency", &bounded("exponent", low, high), 1e-3).unwrap();
+        assert!((within.value("exponent").unwrap() / free.value("exponent").unwrap() - 1.0).abs() < 1e-6);
+    }
+    let beyond = fit("latency", &bounded("exponent", 2.0, f64::INFINITY), 1e-3).unwrap();
+    assert!((beyond.value("exponent").unwrap() - 2.0).abs() < 1e-9);
+}
+
+#[test]
+fn there_is_no_signal_at_a_time_that_is_none() {
+    let fit = fit("latency", &LawOptions::default(), 1e-3).unwrap();
+    let values = fit.predict_many(&[f64::NAN, -1.0, 0.0]);
+    assert!(values[0].is_nan() && values[1] == values[2]);
+    let interval = fit.predict_interval(f64::NAN);
+    assert!(interval.value.is_nan() && interval.interval.is_none());
+}
+
+#[test]
 fn a_number_may_be_held() {
     let held = LawOptions {
         fixed: vec![("time".to_owned(), 4.0)],

@@ -180,5 +180,5 @@ fn what_cannot_be_fitted_is_refused() {
     assert_eq!(refused(&[good], ExponentChoice::Fixed(-1.0)), FitError::Exponent { found: -1.0 });
     assert!(matches!(refused(&[hold(&[1.0; 5])], ExponentChoice::Free), FitError::Lengths { .. }));
     let holed = hold(&[5.0, 4.0, f64::NAN, 2.5, 2.2, 2.1]);
-    assert_eq!(refused(&[holed], ExponentChoice::Free), FitError::NotFinite { index: 2 });
+    assert!(matches!(refused(&[holed], ExponentChoice::Free), FitError::NotFinite { index: 2, .. }));
 }

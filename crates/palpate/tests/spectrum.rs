@@ -249,7 +249,7 @@ fn bad_input_has_a_name() {
         values[index] = value;
         values
     };
-    assert_eq!(fails(&t, &with(&y, 3, f64::NAN), None), FitError::NotFinite { index: 3 });
+    assert!(matches!(fails(&t, &with(&y, 3, f64::NAN), None), FitError::NotFinite { index: 3, .. }));
     assert_eq!(fails(&with(&t, 7, 0.0), &y, None), FitError::TimeNotRising { index: 7 });
     assert_eq!(fails(&t, &y, Some(&with(&[1.0; 20], 2, -1.0))), FitError::Weight { index: 2 });
     assert_eq!(fails(&t, &with(&y, 0, 1e200), None), FitError::OutOfRange);

@@ -275,8 +275,11 @@ fn quantity(key: &str, error: &UnitError, found: &str) -> String {
     };
     match error {
         UnitError::MissingUnit { dimension, found } => {
-            let value = format!("{} {}", found.trim(), usual_unit(*dimension));
-            format!("add the unit, such as {}", named(&value))
+            // Of both the usual and the SI unit, lest one of them be taken for what was meant.
+            let usual = usual_unit(*dimension);
+            let si = dimension.units().iter().find(|(symbol, factor)| *factor == 1.0 && *symbol != usual);
+            let other = si.map_or_else(String::new, |(si, _)| format!(" or \"{} {si}\"", found.trim()));
+            format!("add the unit, such as {}{other}", named(&format!("{} {usual}", found.trim())))
         }
         UnitError::NotANumber { dimension, .. } | UnitError::NotFinite { dimension, .. } => {
             let unit = usual_unit(*dimension);

@@ -18,6 +18,8 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, Union
 
+import numpy as np
+
 from palpate import laws
 from palpate._palpate import (
     Analysis,
@@ -71,6 +73,8 @@ __all__ = [
     "simulate_many",
 ]
 
+#: Lower and upper end of what a number may be; None leaves an end open.
+Bound = Union[tuple[Union[float, None], Union[float, None]], Sequence[Union[float, None]]]
 Description = Union[str, os.PathLike[str], Mapping[str, Any], None]
 
 
@@ -83,17 +87,31 @@ def _described(test: Description) -> tuple[str | os.PathLike[str] | None, str | 
 
 def _toml(table: Mapping[str, Any]) -> str:
     import json
+    import math
+    from numbers import Integral, Real
 
-    def value(entry: Any) -> str:
+    def text(entry: str) -> str:
+        # JSON escapes all that TOML wants escaped, but for one.
+        return json.dumps(entry, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+    def value(entry: Any, key: str) -> str:
         if isinstance(entry, Mapping):
-            return "{" + ", ".join(f"{json.dumps(str(key))} = {value(entry[key])}" for key in entry) + "}"
+            return "{" + ", ".join(f"{text(str(k))} = {value(entry[k], f'{key}.{k}')}" for k in entry) + "}"
         if isinstance(entry, (list, tuple)):
-            return "[" + ", ".join(value(item) for item in entry) + "]"
-        if isinstance(entry, (bool, int, float, str)):
-            return json.dumps(entry)
-        raise OptionError(f"a description holds texts, numbers, lists and tables, found {type(entry).__name__}")
+            return "[" + ", ".join(value(item, f"{key}[{i}]") for i, item in enumerate(entry, 1)) + "]"
+        if isinstance(entry, str):
+            return text(entry)
+        if isinstance(entry, (bool, np.bool_)):
+            return "true" if entry else "false"
+        if isinstance(entry, Integral):
+            return str(int(entry))
+        if isinstance(entry, Real):
+            if not math.isfinite(entry):
+                raise OptionError(f"{key}: expected a finite number, found {float(entry)}")
+            return repr(float(entry))
+        raise OptionError(f"{key}: expected a text, a number, a list or a table, found {type(entry).__name__}")
 
-    return "".join(f"{json.dumps(str(key))} = {value(table[key])}\n" for key in table)
+    return "".join(f"{text(str(key))} = {value(table[key], str(key))}\n" for key in table)
 
 
 def read(path: str | os.PathLike[str], *, test: Description = None, part: str | int | None = None) -> Record:
@@ -170,24 +188,55 @@ def _bar(progress: bool | None, total: int, unit: str) -> Generator[Callable[[in
         yield tell
 
 
+def _number(value: Any, name: str) -> float:
+    if isinstance(value, (bool, str)) or not hasattr(value, "__float__"):
+        raise OptionError(f"{name}: expected a number, found {value!r}")
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise OptionError(f"{name}: expected a number, found {value!r}") from None
+
+
+def _named(values: Any, name: str, example: str) -> list[tuple[str, Any]]:
+    if not isinstance(values, Mapping):
+        raise OptionError(f"{name}: expected numbers by name, such as {example}, found {values!r}")
+    return [(str(key), value) for key, value in values.items()]
+
+
+def _ends(pair: Any, name: str) -> tuple[float, float]:
+    """Both ends of a bound; one that is None is left open."""
+    if isinstance(pair, str) or not hasattr(pair, "__len__") or len(pair) != 2:
+        raise OptionError(f"{name}: expected a lower and an upper end, found {pair!r}")
+    low, high = pair
+    return (
+        float("-inf") if low is None else _number(low, name),
+        float("inf") if high is None else _number(high, name),
+    )
+
+
 def _keywords(
     law: str,
     response: str,
     fixed: Mapping[str, float] | None,
-    bounds: Mapping[str, tuple[float, float]] | None,
+    bounds: Mapping[str, Bound] | None,
     loss: str,
     noise: str,
     confidence: float,
     log_spaced: int | None,
 ) -> dict[str, Any]:
+    words = {"law": law, "response": response, "loss": loss, "noise": noise}
+    for name, word in words.items():
+        if not isinstance(word, str):
+            raise OptionError(f"{name}: expected a word, found {word!r}")
+    held = _named(fixed, "fixed", '{"exponent": 5}') if fixed is not None else None
+    bounded = _named(bounds, "bounds", '{"exponent": (1, 10)}') if bounds is not None else None
+    if log_spaced is not None and (isinstance(log_spaced, bool) or not hasattr(log_spaced, "__index__") or log_spaced < 1):
+        raise OptionError(f"log_spaced: expected a number of samples, found {log_spaced!r}")
     return {
-        "law": law,
-        "response": response,
-        "fixed": None if fixed is None else list(fixed.items()),
-        "bounds": None if bounds is None else list(bounds.items()),
-        "loss": loss,
-        "noise": noise,
-        "confidence": confidence,
+        **words,
+        "fixed": held and [(name, _number(value, f'fixed["{name}"]')) for name, value in held],
+        "bounds": bounded and [(name, _ends(pair, f'bounds["{name}"]')) for name, pair in bounded],
+        "confidence": _number(confidence, "confidence"),
         "log_spaced": log_spaced,
     }
 
@@ -200,7 +249,7 @@ def fit_hold(
     weights: Any = None,
     response: str = "relaxation",
     fixed: Mapping[str, float] | None = None,
-    bounds: Mapping[str, tuple[float, float]] | None = None,
+    bounds: Mapping[str, Bound] | None = None,
     loss: str = "squares",
     noise: str = "residuals",
     confidence: float = 0.95,
@@ -224,9 +273,9 @@ def fit_hold(
     response
         "relaxation" or "creep".
     fixed
-        Numbers held at a value, by name: ``{"exponent": 5}``.
+        Numbers held at a value, by name: ``{"exponent": 5, "equilibrium": 0}``; all but amplitudes.
     bounds
-        Bounds of numbers, by name: ``{"exponent": (1, 10)}``.
+        Bounds of numbers, by name: ``{"exponent": (1, 10)}``; None leaves an end open.
     loss
         "squares", or "huber" or "tukey" where single samples stray.
     noise
@@ -246,7 +295,7 @@ def fit_hold(
     FitError
         Too few samples, times that do not rise, values that are not finite or all the same.
     OptionError
-        A law, a number or an option that is not known.
+        A law, a number or an option that is not known; a number held or bounded where it cannot be.
 
     Examples
     --------
@@ -268,7 +317,7 @@ def fit_many(
     weights: Any = None,
     response: str = "relaxation",
     fixed: Mapping[str, float] | None = None,
-    bounds: Mapping[str, tuple[float, float]] | None = None,
+    bounds: Mapping[str, Bound] | None = None,
     loss: str = "squares",
     noise: str = "residuals",
     confidence: float = 0.95,
@@ -291,9 +340,20 @@ def fit_many(
     -------
     Table
         A row a curve, in order: every number with its standard error and interval, root mean square residual, ending. A curve
-        that no law can be fitted to says why in ``error``, and its numbers are missing.
+        that no law can be fitted to, or that is no column of numbers, says why in ``error``, and its numbers are missing.
+
+    Raises
+    ------
+    OptionError
+        As for `fit_hold`; no list of curves; times or weights that are meant for all curves and are none.
     """
     keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced)
+    columns = {"time_s": time_s, "signal": signal, "weights": weights}
+    for name, found in columns.items():
+        if isinstance(found, Mapping):
+            raise OptionError(f"{name}: expected a list of curves, found a mapping\nhint: pass list(curves.values())")
+        if found is None and name != "weights":
+            raise OptionError(f"{name}: expected a list of curves, found None")
     curves = len(signal) if hasattr(signal, "__len__") else 0
     with _bar(progress, curves, "fit") as tell:
         return _fit_many(time_s, signal, weights, keywords, tell)

@@ -41,25 +41,34 @@ def as_doubles(values: Any, name: str) -> NDArray[np.float64]:
         raise OptionError(f"{name}: expected numbers, found {_told(array[0])}") from None
 
 
-def as_ragged(curves: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Curves of any lengths one behind the other, and where each begins and the last ends.
+def as_ragged(curves: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.int64], dict[int, str]]:
+    """Curves of any lengths one behind the other, where each begins and the last ends, and what is wrong with which.
 
     A column of numbers is one curve; the rows of an array of two dimensions are one each.
     """
     if isinstance(curves, np.ndarray) and curves.ndim == 2:
         flat = as_doubles(curves.reshape(-1), name)
-        return flat, np.arange(0, flat.size + 1, max(curves.shape[1], 1), dtype=np.int64)
+        return flat, np.arange(curves.shape[0] + 1, dtype=np.int64) * curves.shape[1], {}
     if isinstance(curves, np.ndarray) and curves.dtype.kind != "O":
         flat = as_doubles(curves, name)
-        return flat, np.array([0, flat.size], dtype=np.int64)
-    rows = list(curves)
-    if rows and np.ndim(rows[0]) == 0:
+        return flat, np.array([0, flat.size], dtype=np.int64), {}
+    try:
+        rows = list(curves)
+    except TypeError:
+        raise OptionError(f"{name}: expected a list of curves, found {_told(curves)}") from None
+    if rows and all(row is None or np.ndim(row) == 0 for row in rows) and any(row is not None for row in rows):
         flat = as_doubles(rows, name)
-        return flat, np.array([0, flat.size], dtype=np.int64)
-    columns = [as_doubles(row, f"{name}, curve {index}") for index, row in enumerate(rows)]
+        return flat, np.array([0, flat.size], dtype=np.int64), {}
+    columns, wrong = [], {}
+    for index, row in enumerate(rows):
+        try:
+            columns.append(as_doubles(row, name))
+        except OptionError as error:
+            columns.append(np.empty(0))
+            wrong[index] = str(error)
     offsets = np.zeros(len(columns) + 1, dtype=np.int64)
     np.cumsum([column.size for column in columns], out=offsets[1:])
-    return (np.concatenate(columns) if columns else np.empty(0)), offsets
+    return (np.concatenate(columns) if columns else np.empty(0)), offsets, wrong
 
 
 def _told(value: Any) -> str:

@@ -1,5 +1,7 @@
 //! From a law, samples and options to a model in the units of the fit.
 
+use std::iter;
+
 use super::model::{Model, Number};
 use super::samples::{Samples, Scaled};
 use super::{ConstantChoice, FitError, LawOptions};
@@ -10,11 +12,11 @@ const FREE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
 /// Checks samples and options against a form, and brings both to the units of the fit.
 pub(super) fn build(form: Form, samples: &Samples<'_>, options: &LawOptions) -> Result<(Model, Scaled), FitError> {
-    let constant = match options.constant {
-        ConstantChoice::AsLaw if form.constant => None,
-        ConstantChoice::Free => None,
-        ConstantChoice::AsLaw => Some(0.0),
-        ConstantChoice::Fixed(value) => Some(value),
+    suits(&form, options)?;
+    let constant = match (options.held(form.constant_name()), options.constant) {
+        (Some(value), _) | (None, ConstantChoice::Fixed(value)) => Some(value),
+        (None, ConstantChoice::Free) => None,
+        (None, ConstantChoice::AsLaw) => (!form.constant).then_some(0.0),
     };
     let named = form.numbers();
     let free = named.iter().filter(|(_, name, kind)| is_free(name, *kind, options)).count();
@@ -22,15 +24,6 @@ pub(super) fn build(form: Form, samples: &Samples<'_>, options: &LawOptions) -> 
     let scaled = Scaled::new(samples, constant)?;
     let numbers = numbers(named, &scaled, options)?;
     let linear = linear_bounds(&form, constant.is_none(), samples, &scaled, options);
-    for name in options.bounds.iter().map(|(name, _)| name).chain(options.fixed.iter().map(|(name, _)| name)) {
-        let known = known_names(&form);
-        if !known.contains(name) {
-            return Err(FitError::UnknownNumber {
-                name: name.clone(),
-                known: known.join(", "),
-            });
-        }
-    }
     let model = Model::new(form, constant.is_none(), numbers, linear);
     let model = match &options.loading {
         None => model,
@@ -40,13 +33,41 @@ pub(super) fn build(form: Form, samples: &Samples<'_>, options: &LawOptions) -> 
 }
 
 fn is_free(name: &str, kind: NumberKind, options: &LawOptions) -> bool {
-    kind != NumberKind::Reference && !options.fixed.iter().any(|(fixed, _)| fixed == name)
+    kind != NumberKind::Reference && options.held(name).is_none()
 }
 
-fn known_names(form: &Form) -> Vec<String> {
-    let constant = [form.constant_name().to_owned()];
+/// Refuses options that no fit of this form can follow, whatever the samples.
+pub(super) fn suits(form: &Form, options: &LawOptions) -> Result<(), FitError> {
+    options.check()?;
+    let constant = form.constant_name();
     let numbers = form.numbers().into_iter().filter(|(_, _, kind)| *kind != NumberKind::Reference);
-    constant.into_iter().chain(form.amplitude_names()).chain(numbers.map(|(_, name, _)| name)).collect()
+    let numbers: Vec<String> = numbers.map(|(_, name, _)| name).collect();
+    let amplitudes = form.amplitude_names();
+    let all = || iter::once(constant).chain(amplitudes.iter().chain(&numbers).map(String::as_str));
+    let named = options.bounds.iter().map(|(name, _)| name).chain(options.fixed.iter().map(|(name, _)| name));
+    for name in named {
+        if !all().any(|known| known == name) {
+            return Err(FitError::UnknownNumber {
+                name: name.clone(),
+                known: all().collect::<Vec<_>>().join(", "),
+            });
+        }
+    }
+    for (name, value) in &options.fixed {
+        if amplitudes.contains(name) {
+            return Err(FitError::HeldAmplitude {
+                name: name.clone(),
+                held: iter::once(constant).chain(numbers.iter().map(String::as_str)).collect::<Vec<_>>().join(", "),
+            });
+        }
+        if !(value.is_finite() && (*value > 0.0 || name == constant)) {
+            return Err(FitError::FixedNumber {
+                name: name.clone(),
+                found: *value,
+            });
+        }
+    }
+    Ok(())
 }
 
 fn numbers(
@@ -72,9 +93,10 @@ fn numbers(
             let ends = [inner(kind, low.max(0.0)), inner(kind, high.max(0.0))];
             let pure = matches!(kind, NumberKind::Pure { .. });
             bounds = (ends[0].min(ends[1]).max(widest.0), ends[0].max(ends[1]).min(widest.1));
-            // An exponent may be sought wherever the caller wants it.
+            // An exponent may be sought wherever the caller wants it; an end left open is that of the law.
             if pure {
-                bounds = (low.max(f64::MIN_POSITIVE), *high);
+                let end = |asked: f64, widest: f64| if asked.is_finite() { asked } else { widest };
+                bounds = (end(*low, widest.0).max(f64::MIN_POSITIVE), end(*high, widest.1));
             }
             if !(bounds.0 <= bounds.1 && bounds.1.is_finite()) {
                 return Err(FitError::Bounds {
@@ -85,11 +107,8 @@ fn numbers(
             }
         }
         let mut fixed = (kind == NumberKind::Reference).then_some(0.0);
-        if let Some((_, value)) = options.fixed.iter().find(|(held, _)| *held == name) {
-            if !(value.is_finite() && *value > 0.0) {
-                return Err(FitError::FixedNumber { name, found: *value });
-            }
-            fixed = Some(inner(kind, *value));
+        if let Some(value) = options.held(&name) {
+            fixed = Some(inner(kind, value));
         }
         numbers.push(Number {
             shape,

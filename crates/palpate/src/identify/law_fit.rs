@@ -190,7 +190,6 @@ impl Fitted {
         options: &LawOptions,
         work: &mut Work,
     ) -> Result<Self, FitError> {
-        options.check()?;
         let form = law.form(options.response).ok_or(FitError::NoForm {
             law,
             response: options.response,

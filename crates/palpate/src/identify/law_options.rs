@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::FitError;
-use crate::laws::{Loading, Response};
+use super::build::suits;
+use crate::laws::{Law, Loading, Response};
 
 /// The constant beside the shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -61,7 +62,8 @@ pub struct LawOptions {
     pub response: Response,
     /// The constant: equilibrium, start or instantaneous part.
     pub constant: ConstantChoice,
-    /// Nonlinear numbers held at a value, by name as in the result, in s, 1/s or 1.
+    /// Numbers held at a value, by name as in the result: nonlinear ones in s, 1/s or 1, the constant in the unit of the signal.
+    /// Amplitudes cannot be held, but bounded.
     pub fixed: Vec<(String, f64)>,
     /// Bounds of numbers, by name as in the result: nonlinear ones in s, 1/s or 1, the constant and amplitudes in the unit of the signal.
     pub bounds: Vec<(String, (f64, f64))>,
@@ -102,6 +104,32 @@ impl Default for LawOptions {
 }
 
 impl LawOptions {
+    /// Refuses options that no fit of a law can follow, whatever the samples: what [`fit_law`](super::fit_law) looks at first.
+    ///
+    /// ```
+    /// use palpate::identify::{FitError, LawOptions};
+    /// use palpate::laws::Law;
+    /// let held = |name: &str| LawOptions { fixed: vec![(name.to_owned(), 2.0)], ..LawOptions::default() };
+    /// assert_eq!(held("equilibrium").suit(Law::StandardLinearSolid), Ok(()));
+    /// assert!(matches!(held("exponent").suit(Law::StandardLinearSolid), Err(FitError::UnknownNumber { .. })));
+    /// ```
+    ///
+    /// # Errors
+    /// [`FitError`] for a law without a form for the response, for numbers that the law does not have or that cannot be held,
+    /// values that they cannot have, bounds that do not rise, and a confidence that is none.
+    pub fn suit(&self, law: Law) -> Result<(), FitError> {
+        let form = law.form(self.response).ok_or(FitError::NoForm {
+            law,
+            response: self.response,
+        })?;
+        suits(&form, self)
+    }
+
+    /// What a number is held at.
+    pub(super) fn held(&self, name: &str) -> Option<f64> {
+        self.fixed.iter().find(|(held, _)| held == name).map(|(_, value)| *value)
+    }
+
     /// Refuses options that no fit can follow.
     pub(super) fn check(&self) -> Result<(), FitError> {
         if !(self.confidence > 0.0 && self.confidence < 1.0) {

@@ -191,6 +191,14 @@ pub enum FitError {
         /// What was given.
         found: f64,
     },
+    /// An amplitude that is to be held.
+    #[error("{name} cannot be held, only {held}; give it bounds instead")]
+    HeldAmplitude {
+        /// Which.
+        name: String,
+        /// The numbers of the law that can be held.
+        held: String,
+    },
     /// Bounds that leave nothing between them.
     #[error("the bounds of {name} must rise and leave room for what a hold can show, found {low} to {high}")]
     Bounds {
@@ -202,10 +210,14 @@ pub enum FitError {
         high: f64,
     },
     /// NaN or infinity.
-    #[error("sample {index} is not a finite number")]
+    #[error("the {what} of sample {index} must be a finite number, found {found}")]
     NotFinite {
         /// Which sample.
         index: usize,
+        /// Which of its numbers, such as "time".
+        what: &'static str,
+        /// What was found.
+        found: f64,
     },
     /// Times that do not rise.
     #[error("times must rise, sample {index} does not")]

@@ -46,7 +46,7 @@ impl LawFit {
 
     fn prediction(&self, elapsed: f64, deviation: f64) -> Estimate {
         let value = self.predict(elapsed);
-        let (Some(uncertainty), Some(white)) = (&self.uncertainty, &self.covariance) else {
+        let (Some(uncertainty), Some(white), false) = (&self.uncertainty, &self.covariance, elapsed.is_nan()) else {
             return Estimate::fixed(value);
         };
         let gradient = self.gradient(elapsed);

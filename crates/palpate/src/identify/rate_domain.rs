@@ -1,6 +1,7 @@
 //! Strain rate fitted against strain, equation (10): the paper's way.
 
 use super::estimates::{Domain, Estimate, LatencyFit};
+use super::samples::not_finite;
 use super::separable::{Ending, Refined, Shapes, Solution, Target, Termination, Work, polished, refine};
 use super::uncertainty::{Assessed, Scale};
 use super::{FitError, FitOptions, NoiseChoice};
@@ -75,8 +76,8 @@ fn check(strains: &[f64], rates: &[f64], choice: ExponentChoice) -> Result<(), F
             found: strains.len(),
         });
     }
-    match strains.iter().zip(rates).position(|(e, r)| !(e.is_finite() && r.is_finite())) {
-        Some(index) => Err(FitError::NotFinite { index }),
+    match not_finite([("strain", strains), ("strain rate", rates)]) {
+        Some(error) => Err(error),
         None => Ok(()),
     }
 }

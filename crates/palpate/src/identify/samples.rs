@@ -92,9 +92,8 @@ impl<'a> Samples<'a> {
         if all_finite(self.times) && all_finite(self.values) && rises(self.times) {
             return Ok(());
         }
-        let finite = |(t, y): (&f64, &f64)| t.is_finite() && y.is_finite();
-        match self.times.iter().zip(self.values).position(|sample| !finite(sample)) {
-            Some(index) => Err(FitError::NotFinite { index }),
+        match not_finite([("time", self.times), ("value", self.values)]) {
+            Some(error) => Err(error),
             None => {
                 let rising = self.times.windows(2).take_while(|pair| pair[0] < pair[1]).count();
                 Err(FitError::TimeNotRising { index: rising + 1 })
@@ -181,6 +180,16 @@ impl Scaled {
         let first = self.times.iter().copied().find(|t| *t > 0.0).unwrap_or(1.0);
         (1e-3f64.ln(), (1e3 / first).ln())
     }
+}
+
+/// The first sample of which a number is none, if there is one.
+pub(super) fn not_finite(columns: [(&'static str, &[f64]); 2]) -> Option<FitError> {
+    let first = |(what, column): (&'static str, &[f64])| {
+        let index = column.iter().position(|value| !value.is_finite())?;
+        let found = column[index];
+        Some((index, FitError::NotFinite { index, what, found }))
+    };
+    columns.into_iter().filter_map(first).min_by_key(|(index, _)| *index).map(|(_, error)| error)
 }
 
 /// 1/σ over its root mean square, and that, with care for σ near the limits of double precision.

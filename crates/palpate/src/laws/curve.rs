@@ -68,7 +68,7 @@ impl LawCurve {
         value[0]
     }
 
-    /// The signal at many times.
+    /// The signal at many times; before the start the value at the start, NaN at one that is NaN.
     #[must_use]
     pub fn values(&self, elapsed: &[f64]) -> Vec<f64> {
         let mut values = vec![0.0; elapsed.len()];
@@ -109,6 +109,10 @@ impl LawCurve {
             for (out, value) in out.iter_mut().zip(&shape) {
                 *out += term.amplitude * (column.offset + column.sign * value);
             }
+        }
+        // f64::max takes NaN for the start.
+        for (out, _) in out.iter_mut().zip(elapsed).filter(|(_, t)| t.is_nan()) {
+            *out = f64::NAN;
         }
     }
 }

@@ -18,6 +18,7 @@ pub use result::{SpectrumFit, SpectrumPeak, SpectrumWork};
 use serde::{Deserialize, Serialize};
 
 use super::FitError;
+use super::samples::not_finite;
 use crate::latency::decay_many;
 use normal::{GONE, Normal};
 use strength::{Smoothed, Smoother};
@@ -281,8 +282,8 @@ fn check(times: &[f64], values: &[f64], roots: Option<&[f64]>) -> Result<(), Fit
             values: found,
         });
     }
-    if let Some(index) = times.iter().zip(values).position(|(t, y)| !(t.is_finite() && y.is_finite())) {
-        return Err(FitError::NotFinite { index });
+    if let Some(error) = not_finite([("time", times), ("value", values)]) {
+        return Err(error);
     }
     if let Some(index) = roots.and_then(|roots| roots.iter().position(|root| !(root.is_finite() && *root >= 0.0))) {
         return Err(FitError::Weight { index });
