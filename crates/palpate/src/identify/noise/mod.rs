@@ -174,7 +174,7 @@ impl Noise {
             best = (deviance, noise);
         }
         if signs.slow
-            && let Some((deviance, noise)) = Mixture::new(jacobian, residuals).noise()
+            && let Some((deviance, noise)) = Mixture::new(jacobian, residuals).noise(best.0)
             && deviance + EVIDENCE * if best.1.model == NoiseModel::White { 2.0 } else { 1.0 } < best.0
         {
             best = (deviance, noise);
