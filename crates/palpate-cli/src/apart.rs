@@ -67,6 +67,14 @@ fn files_of(command: &Command) -> (Vec<&PathBuf>, Vec<&PathBuf>) {
             out.push(&a.out);
             (reads, writes) = (vec![&a.test], Vec::new());
         }
+        Command::Calibrate(a) => {
+            always.push(&a.record);
+            (reads, writes) = (vec![&a.test], vec![&a.out, &a.figure]);
+        }
+        Command::Predict(a) => {
+            always.extend([&a.material, &a.protocol]);
+            (reads, writes) = (Vec::new(), vec![&a.out, &a.figure]);
+        }
         Command::Reproduce(_)
         | Command::Analyze(_)
         | Command::Compare(_)

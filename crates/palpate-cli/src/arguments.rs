@@ -25,6 +25,8 @@ Examples:
   palpate analyze test.csv --test ball.toml      the same with geometry: strains and v in 1/s
   palpate batch curves --out holds.parquet       thousands of records, one table
   palpate compare test.csv                       which law of relaxation to use, and how sure that is
+  palpate calibrate test.csv --test ball.toml --out material.toml   one set of numbers for it all
+  palpate predict material.toml --protocol grip.toml --at \"60 s\"    force then, with its interval
   palpate simulate squeeze.toml --out force.csv  force of a squeeze protocol
   palpate sweep sweep.toml --figure peak.svg     the same for many numbers at once
 
@@ -39,6 +41,8 @@ pub(crate) enum Command {
     Analyze(AnalyzeArguments),
     Batch(BatchArguments),
     Compare(CompareArguments),
+    Calibrate(CalibrateArguments),
+    Predict(PredictArguments),
     Convert(ConvertArguments),
     Schema(SchemaArguments),
     Completions(CompletionsArguments),
@@ -359,6 +363,104 @@ pub(crate) struct CompareArguments {
     pub(crate) out: Option<PathBuf>,
 }
 
+/// Calibrate a body on a whole record, ramps and holds alike: one set of numbers that predicts.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+The numbers are those of the law and of the relaxed force: with the latency law n, v, the layer
+thickness and a modulus (or a table of forces). A material file holds them with their intervals;
+palpate predict takes it, --test takes it for the body, and a protocol names it: material = \"FILE\".
+
+Laws: latency, latency:N (n given), standard-linear-solid, prony:K (K terms), fung:K.
+
+Examples:
+  palpate calibrate press.csv --test ball.toml --out material.toml
+  palpate calibrate press.csv --test ball.toml --fit-until \"60 s\"     does it foretell the rest?
+  palpate calibrate press.csv --test ball.toml --equilibrium table     no law of the relaxed force
+  palpate schema material                                             what a material file holds")]
+pub(crate) struct CalibrateArguments {
+    /// Record with time, displacement and force
+    #[arg(value_name = "RECORD")]
+    pub(crate) record: PathBuf,
+    /// Test description (TOML): columns, units, the body
+    #[arg(long, value_name = "TEST.toml")]
+    pub(crate) test: Option<PathBuf>,
+    /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
+    #[arg(long, value_name = "NAME")]
+    pub(crate) part: Option<String>,
+    /// Law of the material
+    #[arg(long, value_name = "LAW", default_value = "latency", value_parser = law)]
+    pub(crate) law: Law,
+    /// Laws to hold against it on the same record
+    #[arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = law, default_value = "standard-linear-solid,prony:2,prony:3,fung:2")]
+    pub(crate) rivals: Vec<Law>,
+    /// Calibrate the one law alone
+    #[arg(long, conflicts_with = "rivals")]
+    pub(crate) no_rivals: bool,
+    /// Law of the force once relaxation is over
+    #[arg(long, value_enum, default_value_t = EquilibriumLawName::EvenStrain)]
+    pub(crate) equilibrium: EquilibriumLawName,
+    /// Poisson's ratio for Hertz's law; 0.5 if not given
+    #[arg(long, value_name = "NUMBER")]
+    pub(crate) poisson_ratio: Option<f64>,
+    /// Fit only up to this time of the record and foretell the rest
+    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
+    pub(crate) fit_until: Option<f64>,
+    /// Coverage of the intervals, between 0 and 1; 0.95 if nothing is said
+    #[arg(long, value_name = "SHARE", value_parser = coverage, allow_hyphen_values = true)]
+    pub(crate) confidence: Option<f64>,
+    /// File for the material (TOML)
+    #[arg(long, value_name = "MATERIAL.toml")]
+    pub(crate) out: Option<PathBuf>,
+    /// File for a figure of the record with the laws (.svg or .png)
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) figure: Option<PathBuf>,
+    /// What to print on standard output
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
+}
+
+/// Law of the force once relaxation is over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EquilibriumLawName {
+    /// Modulus × displacement/depth × contact area
+    EvenStrain,
+    /// Hertz's, for balls and pads
+    Hertz,
+    /// A monotone table with a row where the jaw was held
+    Table,
+}
+
+/// Predict what a calibrated body does under a protocol, with intervals.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Two intervals: of the mean (what the calibration leaves open) and of one reading (noise besides).
+A question beyond what the test has shown (a longer hold, a deeper squeeze, a faster ramp, a force
+that is held) is answered all the same, and said on standard error.
+
+Examples:
+  palpate predict material.toml --protocol grip.toml --at \"60 s\"
+  palpate predict material.toml --protocol grip.toml --out force.csv --figure force.svg")]
+pub(crate) struct PredictArguments {
+    /// Material file of palpate calibrate
+    #[arg(value_name = "MATERIAL.toml")]
+    pub(crate) material: PathBuf,
+    /// Protocol (TOML) with steps; a body in it is left aside
+    #[arg(long, value_name = "PROTOCOL.toml")]
+    pub(crate) protocol: PathBuf,
+    /// A time at which the force is wanted; may be given several times
+    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
+    pub(crate) at: Vec<f64>,
+    /// Coverage of the intervals, between 0 and 1
+    #[arg(long, value_name = "SHARE", default_value = "0.95", value_parser = coverage, allow_hyphen_values = true)]
+    pub(crate) confidence: f64,
+    /// File for the series (CSV); standard output if neither this nor --at is given
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) out: Option<PathBuf>,
+    /// File for a figure (.svg or .png)
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) figure: Option<PathBuf>,
+}
+
 /// What linear laws take the loading before a hold for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum RampName {
@@ -414,8 +516,12 @@ pub(crate) enum SchemaName {
     Protocol,
     /// Test description of `palpate analyze`
     Test,
+    /// Material file of `palpate calibrate`
+    Material,
     /// Result of `palpate analyze --format json`
     Analysis,
+    /// Result of `palpate calibrate --format json`
+    Calibration,
     /// Result of `palpate compare --format json`
     Comparison,
     /// summary.json of `palpate reproduce`
@@ -476,6 +582,13 @@ fn share(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(share) if share > 0.0 && share < 1.0 => Ok(share),
         _ => Err("expected shares of the hold between 0 and 1, such as 0.25,0.5".to_owned()),
+    }
+}
+
+fn coverage(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(share) if share > 0.0 && share < 1.0 => Ok(share),
+        _ => Err("expected a coverage between 0 and 1, such as 0.95".to_owned()),
     }
 }
 

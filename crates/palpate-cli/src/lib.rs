@@ -57,6 +57,8 @@ where
         Command::Batch(arguments) => commands::batch::run(&arguments),
         Command::Convert(arguments) => commands::convert::run(&arguments),
         Command::Compare(arguments) => commands::compare::run(&arguments),
+        Command::Calibrate(arguments) => commands::calibrate::run(&arguments),
+        Command::Predict(arguments) => commands::predict::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
         Command::Completions(arguments) => commands::completions::run(&arguments),
     };

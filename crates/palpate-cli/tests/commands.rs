@@ -254,6 +254,8 @@ fn schemas_describe_the_documents() {
         ("reproduction", "checks"),
         ("protocol", "step"),
         ("test", "specimen"),
+        ("material", "calibration"),
+        ("calibration", "laws"),
     ] {
         let schema = json(folder.path(), &["schema", name]);
         assert!(schema["properties"][key].is_object(), "{name} has no {key}");
@@ -276,6 +278,8 @@ fn completions_and_help() {
     assert!(done(folder.path(), &["completions", "bash"]).contains("palpate"));
     insta::assert_snapshot!("help", done(folder.path(), &["--help"]));
     insta::assert_snapshot!("help_analyze", done(folder.path(), &["analyze", "--help"]));
+    insta::assert_snapshot!("help_calibrate", done(folder.path(), &["calibrate", "--help"]));
+    insta::assert_snapshot!("help_predict", done(folder.path(), &["predict", "--help"]));
     insta::assert_snapshot!("help_compare", done(folder.path(), &["compare", "--help"]));
     insta::assert_snapshot!("help_simulate", done(folder.path(), &["simulate", "--help"]));
     insta::assert_snapshot!("help_sweep", done(folder.path(), &["sweep", "--help"]));

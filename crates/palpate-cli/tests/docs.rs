@@ -180,9 +180,9 @@ fn descriptions_in_guides_and_examples_are_valid() {
     for (path, text) in texts {
         let is_protocol = text.lines().any(|line| line.starts_with("[[step]]"));
         let checked = match is_protocol {
-            true if text.contains("\n[sweep]") => parse_sweep(&text, Path::new(&path)).map(drop),
-            true => parse_protocol(&text, Path::new(&path)).map(drop),
-            false => parse_test(&text, Path::new(&path)).map(drop),
+            true if text.contains("\n[sweep]") => parse_sweep(&text, &root().join(&path)).map(drop),
+            true => parse_protocol(&text, &root().join(&path)).map(drop),
+            false => parse_test(&text, &root().join(&path)).map(drop),
         };
         assert!(checked.is_ok(), "{path}: {checked:?}\n{text}");
     }

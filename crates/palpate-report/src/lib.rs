@@ -10,6 +10,7 @@
 //!
 //! On top of them, [`document`] holds results as JSON and [`study`] says which figures, tables and sections a study has.
 
+pub mod calibrated;
 pub mod compared;
 pub mod document;
 mod escape;

@@ -2,12 +2,14 @@
 
 pub(crate) mod analyze;
 pub(crate) mod batch;
+pub(crate) mod calibrate;
 pub(crate) mod compare;
 pub(crate) mod completions;
 pub(crate) mod convert;
 mod inputs;
 pub(crate) mod inspect;
 mod picture;
+pub(crate) mod predict;
 mod record;
 pub(crate) mod reproduce;
 pub(crate) mod schema;

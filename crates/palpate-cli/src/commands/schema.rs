@@ -1,7 +1,7 @@
 //! `palpate schema`: JSON Schemas.
 
-use palpate_files::description::{schema_protocol, schema_test};
-use palpate_report::document::{AnalysisDocument, ComparisonDocument, ReproductionDocument};
+use palpate_files::description::{schema_material, schema_protocol, schema_test};
+use palpate_report::document::{AnalysisDocument, CalibrationDocument, ComparisonDocument, ReproductionDocument};
 use schemars::schema_for;
 
 use crate::arguments::{SchemaArguments, SchemaName};
@@ -12,6 +12,8 @@ pub(crate) fn run(arguments: &SchemaArguments) -> Result<Outcome, Failure> {
     let schema = match arguments.name {
         SchemaName::Protocol => schema_protocol(),
         SchemaName::Test => schema_test(),
+        SchemaName::Material => schema_material(),
+        SchemaName::Calibration => schema_for!(CalibrationDocument).to_value(),
         SchemaName::Analysis => schema_for!(AnalysisDocument).to_value(),
         SchemaName::Comparison => schema_for!(ComparisonDocument).to_value(),
         SchemaName::Reproduction => schema_for!(ReproductionDocument).to_value(),

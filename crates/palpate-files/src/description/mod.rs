@@ -9,6 +9,7 @@
 //! | `protocol.rs` | a protocol: body, law and steps of the jaw ([`Protocol`]) |
 //! | `test.rs`, `test_tables.rs`, `settings.rs` | a test: its record, its body, how to evaluate it ([`TestDescription`]) |
 //! | `machine.rs`, `machines/` | grippers and machines whose conventions are known ([`machines`]) |
+//! | `material.rs` | a calibrated body with its intervals ([`MaterialFile`]) |
 //! | `law.rs` | the law of a protocol, with its body a [`Model`] |
 //! | `specimen.rs`, `contact.rs`, `columns.rs`, `column_tables.rs`, `corrections.rs` | tables that they are made of |
 //! | `choices.rs` | choices that a command line offers too |
@@ -27,6 +28,7 @@ mod error;
 mod file;
 mod law;
 mod machine;
+mod material;
 mod numbers;
 mod places;
 mod protocol;
@@ -46,7 +48,8 @@ pub use error::{DescriptionError, KeyPlace};
 pub use law::Model;
 pub(crate) use machine::contradicts;
 pub use machine::{Machine, machines, machines_of};
-pub use protocol::{Protocol, parse_protocol, parse_scene, read_protocol, read_scene};
-pub use schema::{schema_protocol, schema_test};
+pub use material::{MATERIAL_VERSION, MaterialFile, MaterialOrigin, parse_material, read_material};
+pub use protocol::{Protocol, parse_protocol, parse_scene, read_protocol, read_protocol_of, read_scene};
+pub use schema::{schema_material, schema_protocol, schema_test};
 pub use sweep::{Plan, Spacing, Sweep, SweptNumber, parse_runs, parse_sweep, read_sweep};
 pub use test::{About, TestDescription, parse_test, read_test};

@@ -16,6 +16,7 @@ use super::{
     contact::{self, SidesName},
     error::DescriptionError,
     law::{Law, LawTable, Model},
+    material::{protocol_tables, tables_of},
     quantity::QuantityText,
     source::{self, Source},
     specimen::SpecimenTable,
@@ -62,7 +63,10 @@ impl Protocol {
 /// A squeeze-and-hold protocol: the body, its law, and the steps of the jaw. Quantities are texts with a unit.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(title = "palpate protocol", rename = "Protocol")]
+#[schemars(title = "palpate protocol", rename = "Protocol", extend("required" = [], "anyOf" = [
+    { "required": ["specimen", "law"] },
+    { "required": ["material"] }
+]))]
 pub(super) struct ProtocolTables {
     /// A title for figures and reports.
     title: Option<String>,
@@ -79,6 +83,14 @@ pub(super) struct ProtocolTables {
     #[serde(default)]
     #[schemars(with = "Option<super::sweep::SweepSchema>")]
     sweep: Option<IgnoredAny>,
+    /// Path of a material file, from this file on, in place of specimen, law and contact.
+    #[serde(default, rename = "material")]
+    #[schemars(with = "Option<String>")]
+    _material: Option<IgnoredAny>,
+    /// Of a material file, whose body is taken as any other.
+    #[serde(default, rename = "calibration")]
+    #[schemars(skip)]
+    _calibration: Option<IgnoredAny>,
 }
 
 /// How the jaw meets the body.
@@ -145,6 +157,16 @@ pub fn read_protocol(path: &Path) -> Result<Protocol, DescriptionError> {
     parse_protocol(&source::read(path, LONGEST)?, path)
 }
 
+/// Reads the protocol in the file at `path` for the body of a material file: whatever the protocol says of a body is left aside.
+///
+/// # Errors
+/// As for [`read_protocol`] and [`read_material`](super::read_material).
+pub fn read_protocol_of(path: &Path, material: &Path) -> Result<Protocol, DescriptionError> {
+    let text = source::read(path, LONGEST)?;
+    let source = Source { path, text: &text };
+    check(&source, &tables_of(&source, material)?)
+}
+
 /// Reads title, body, law and contact of the protocol in the file at `path`, whatever its steps: for a contact that a record drives.
 ///
 /// # Errors
@@ -159,8 +181,8 @@ pub fn read_scene(path: &Path) -> Result<(Option<String>, Model), DescriptionErr
 /// As for [`parse_protocol`], less those of steps and output.
 pub fn parse_scene(text: &str, path: &Path) -> Result<(Option<String>, Model), DescriptionError> {
     let source = Source { path, text };
-    let tables: ProtocolTables = source.tables()?;
-    let model = model(&source, &tables)?;
+    let tables: ProtocolTables = protocol_tables(&source)?;
+    let model = model(&source, &tables.specimen, &tables.law, &tables.contact)?;
     Ok((tables.title, model))
 }
 
@@ -187,12 +209,17 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<(Option<String>, Model), D
 /// As for [`read_protocol`], less those of the file.
 pub fn parse_protocol(text: &str, path: &Path) -> Result<Protocol, DescriptionError> {
     let source = Source { path, text };
-    check(&source, &source.tables()?)
+    check(&source, &protocol_tables(&source)?)
 }
 
 /// Checks the tables of a protocol, all that is wrong with which is said of places in `source`.
 pub(super) fn check(source: &Source<'_>, tables: &ProtocolTables) -> Result<Protocol, DescriptionError> {
-    let model = model(source, tables)?;
+    let model = model(source, &tables.specimen, &tables.law, &tables.contact)?;
+    checked_steps(source, tables, model)
+}
+
+/// A protocol with this body and the steps of the tables.
+fn checked_steps(source: &Source<'_>, tables: &ProtocolTables, model: Model) -> Result<Protocol, DescriptionError> {
     let Steps {
         program,
         motion,
@@ -219,11 +246,16 @@ pub(super) fn check(source: &Source<'_>, tables: &ProtocolTables) -> Result<Prot
     })
 }
 
-fn model(source: &Source<'_>, tables: &ProtocolTables) -> Result<Model, DescriptionError> {
-    let specimen = tables.specimen.body(source, tables.contact.squeezed_from.map(Into::into))?;
-    let contact = &tables.contact;
+/// The body of these tables.
+pub(super) fn model(
+    source: &Source<'_>,
+    specimen: &SpecimenTable,
+    law: &LawTable,
+    contact: &ContactTable,
+) -> Result<Model, DescriptionError> {
+    let specimen = specimen.body(source, contact.squeezed_from.map(Into::into))?;
     let separation = contact::separation(contact.separation.unwrap_or(true));
-    match tables.law.law(source)? {
+    match law.law(source)? {
         Law::Latency(law) => Ok(Model::Latency(ContactModel {
             layers: layers(source, contact, specimen.depth())?,
             specimen,

@@ -2,12 +2,18 @@
 
 use serde_json::Value;
 
-use super::{protocol::ProtocolTables, test_tables::TestTables};
+use super::{material::MaterialTables, protocol::ProtocolTables, test_tables::TestTables};
 
 /// The JSON Schema of a protocol, see [`read_protocol`](super::read_protocol).
 #[must_use]
 pub fn schema_protocol() -> Value {
     schemars::schema_for!(ProtocolTables).to_value()
+}
+
+/// The JSON Schema of a material file, see [`read_material`](super::read_material).
+#[must_use]
+pub fn schema_material() -> Value {
+    schemars::schema_for!(MaterialTables).to_value()
 }
 
 /// The JSON Schema of a test description, see [`read_test`](super::read_test).

@@ -60,6 +60,11 @@ impl Source<'_> {
         T::deserialize(deserializer).map_err(|error| self.unfit(&error))
     }
 
+    /// Tables that were put together from several texts, unchecked.
+    pub(super) fn unplaced<T: DeserializeOwned>(&self, tables: toml::Table) -> Result<T, DescriptionError> {
+        T::deserialize(tables).map_err(|error| self.unfit(&error))
+    }
+
     pub(super) fn place(&self, key: impl Into<String>) -> KeyPlace {
         let key = key.into();
         let start = Places::of(self.text).start_of(&key);

@@ -139,6 +139,10 @@ pub fn read_test(path: &Path) -> Result<TestDescription, DescriptionError> {
 pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, DescriptionError> {
     let source = Source { path, text };
     let tables = machine::over_preset(&source, source.tables()?)?;
+    if tables.law.is_some() && tables.calibration.is_none() {
+        let reason = "in a test, whose laws are found from its record";
+        return Err(source.unused("law", reason, "remove [law], or keep it for a protocol"));
+    }
     let geometry = geometry(&source, &tables)?;
     let mut columns = tables.columns.checked(&source)?;
     if let Some(name) = &tables.machine.preset {
@@ -183,7 +187,9 @@ fn geometry(source: &Source<'_>, tables: &TestTables) -> Result<Option<Geometry>
     let sides = tables.contact.squeezed_from.map(Sides::from);
     let shape = match &tables.specimen {
         Some(specimen) => {
-            specimen.no_equilibrium(source)?;
+            if tables.calibration.is_none() {
+                specimen.no_equilibrium(source)?;
+            }
             specimen.shape(source)?
         }
         None => None,

@@ -1,7 +1,7 @@
 //! The tables of a test description as they stand in the file.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, de::IgnoredAny};
 
 use super::{
     column_tables::ColumnsTable,
@@ -37,6 +37,13 @@ pub(super) struct TestTables {
     pub(super) phases: PhasesTable,
     #[serde(default)]
     pub(super) fit: FitTable,
+    /// Of a material file, whose body is taken and whose law is left aside.
+    #[serde(default)]
+    #[schemars(skip)]
+    pub(super) law: Option<IgnoredAny>,
+    #[serde(default)]
+    #[schemars(skip)]
+    pub(super) calibration: Option<IgnoredAny>,
 }
 
 /// What the test is about.

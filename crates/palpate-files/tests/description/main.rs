@@ -2,6 +2,7 @@
 
 mod corrections;
 mod examples;
+mod material;
 mod protocol;
 mod schema;
 mod sweep;

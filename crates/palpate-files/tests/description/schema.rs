@@ -1,13 +1,17 @@
 //! JSON Schemas.
 
-use palpate_files::description::{schema_protocol, schema_test};
+use palpate_files::description::{schema_material, schema_protocol, schema_test};
 
 #[test]
 fn schemas_have_titles_words_and_strict_keys() {
     let protocol = schema_protocol();
     assert_eq!(protocol["title"], "palpate protocol");
     assert_eq!(protocol["additionalProperties"], false);
-    assert_eq!(protocol["required"], serde_json::json!(["specimen", "law"]));
+    let bodies = serde_json::json!([{ "required": ["specimen", "law"] }, { "required": ["material"] }]);
+    assert_eq!(protocol["anyOf"], bodies);
+    let material = schema_material();
+    assert_eq!(material["required"], serde_json::json!(["specimen", "law", "calibration"]));
+    assert!(material["$defs"]["CalibratedNumber"]["properties"]["interval"].is_object());
     let text = protocol.to_string();
     for word in ["two sides", "layer_thickness", "such as \\\"35 mm\\\"", "Radius of a ball; outer radius of a pad."] {
         assert!(text.contains(word), "{word}");

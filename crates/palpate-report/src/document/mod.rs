@@ -6,10 +6,12 @@
 //! | `fit.rs` | one fit inside it |
 //! | `settings.rs` | the resolved settings |
 //! | `signals.rs` | the columns of a record, what was done to them, first touch |
+//! | `calibration.rs` | `palpate.calibration/1`, laws calibrated on a whole record |
 //! | `comparison.rs` | `palpate.comparison/1`, laws compared on the holds of records |
 //! | `reproduction.rs` | `palpate.reproduction/1`, the summary of the reproduced study |
 
 mod analysis;
+mod calibration;
 mod comparison;
 mod fit;
 mod reproduction;
@@ -18,6 +20,7 @@ mod signals;
 
 pub use analysis::{AnalysisDocument, FindingDocument, HoldDocument, Input, TableRow};
 pub(crate) use analysis::{after_word, mode_word};
+pub use calibration::{CalibratedLawDocument, CalibratedNumberDocument, CalibrationDocument, ForetoldDocument};
 pub(crate) use comparison::certainty_word;
 pub use comparison::{
     ComparedHoldDocument, ComparedRecordDocument, ComparisonDocument, ComparisonSettingsDocument,

@@ -9,6 +9,8 @@
 //! | `comparison_tables.rs` | laws compared: tables, text and Markdown |
 //! | `comparison_figures.rs` | forward errors, residuals and spectra |
 //! | `comparison_page.rs` | their page |
+//! | `calibration.rs` | a whole record calibrated: tables, text and figure |
+//! | `prediction.rs` | what a calibrated body does: series, table and figure |
 //! | `findings.rs` | what was found, gathered over the holds |
 //! | `method.rs` | the settings that a page tells |
 //! | `law_figures.rs` | the law and its closed form (figures 1 and 2 of the paper) |
@@ -20,6 +22,7 @@
 //! | `reproduction_page.rs` | its page |
 
 mod bundle;
+mod calibration;
 mod comparison_figures;
 mod comparison_page;
 mod comparison_tables;
@@ -28,6 +31,7 @@ mod findings;
 mod hysteresis;
 mod law_figures;
 mod method;
+mod prediction;
 mod record_figures;
 mod record_page;
 mod record_tables;
@@ -38,10 +42,12 @@ mod trajectory;
 mod wave_figure;
 
 pub use bundle::{Bundle, Pictures, StudyError};
+pub use calibration::{calibration_figure, calibration_remarks, calibration_text, material_table};
 pub use comparison_page::comparison_bundle;
 pub use comparison_tables::{comparison_markdown, comparison_text};
 pub use cut_figure::cut_figure;
 pub use hysteresis::{cycle_table, hysteresis_figure, step_work_table};
+pub use prediction::{prediction_figure, prediction_table, write_prediction};
 pub use record_page::analysis_bundle;
 pub use record_tables::analysis_text;
 pub use reproduction::{Reproduction, reproduce, reproduction_bundle};

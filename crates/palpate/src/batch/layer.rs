@@ -133,7 +133,7 @@ impl ContactLayers {
                 let is_far = (distance > near[lane]) & !((n[lane] == 2.0) & (z >= 0.0));
                 target[lane] = if is_far { until[lane] } else { time };
                 if passes[lane] {
-                    let longest = time + longest_step(z, speed[lane], rest[lane]);
+                    let longest = time + longest_step(z, speed[lane], rest[lane], time);
                     target[lane] = if longest < target[lane] { longest } else { target[lane] };
                 }
                 going |= self.ramps.time[lane] < target[lane];

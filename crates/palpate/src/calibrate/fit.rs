@@ -184,7 +184,9 @@ fn transformed(covariance: &[Vec<f64>], gradients: &[Vec<f64>]) -> Vec<Vec<f64>>
         let row = |(entry, by): (&Vec<f64>, &f64)| by * entry.iter().zip(b).map(|(c, g)| c * g).sum::<f64>();
         covariance.iter().zip(a).map(row).sum()
     };
-    gradients.iter().map(|a| gradients.iter().map(|b| product(a, b)).collect()).collect()
+    let entry = |i: usize, j: usize| product(&gradients[i.min(j)], &gradients[i.max(j)]);
+    let size = gradients.len();
+    (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
 }
 
 fn rms(measured: &[f64], simulated: &[f64]) -> f64 {

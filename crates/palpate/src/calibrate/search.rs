@@ -168,6 +168,9 @@ const FEW: usize = 400;
 /// Starts that are refined.
 const REFINED: usize = 8;
 
+/// Valleys whose bottom is sought on the motion as measured.
+const VALLEYS: usize = 2;
+
 /// Steps of a refinement on few samples.
 const MOST_STEPS: usize = 60;
 
@@ -193,11 +196,17 @@ pub(super) fn search(prepared: &Prepared, data: &CalibrationData) -> Result<Foun
     if starts.is_empty() {
         return Err(super::starts::refusal(prepared, &coarse));
     }
-    let middle = problem(data.motion(), &few_times, &few_forces);
-    let mut found: Vec<Found> =
-        starts.iter().take(REFINED).filter_map(|start| middle.descend(start, MOST_STEPS)).collect();
-    simulations += found.iter().map(|found| found.simulations).sum::<u64>();
-    found.sort_by(|a, b| a.square.total_cmp(&b.square));
+    // Valleys are told apart on the simple motion; every knot of a measured one takes its own share of a simulation.
+    let mut descended = |problem: &Problem<'_>, starts: &[Vec<f64>]| {
+        let mut found: Vec<Found> = starts.iter().filter_map(|start| problem.descend(start, MOST_STEPS)).collect();
+        simulations += found.iter().map(|found| found.simulations).sum::<u64>();
+        found.sort_by(|a, b| a.square.total_cmp(&b.square));
+        found
+    };
+    let starts: Vec<Vec<f64>> = starts.into_iter().take(REFINED).collect();
+    let valleys: Vec<Vec<f64>> =
+        descended(&coarse, &starts).into_iter().take(VALLEYS).map(|found| found.theta).collect();
+    let found = descended(&problem(data.motion(), &few_times, &few_forces), &valleys);
     let whole = problem(data.motion(), times, forces);
     let best = found.first().and_then(|best| whole.descend(&best.theta, MOST_LAST_STEPS));
     let mut best = best.ok_or(CalibrateError::NoStiffness)?;

@@ -45,16 +45,17 @@ pub(crate) fn rest_of(exponent: f64, reach: f64) -> f64 {
 }
 
 /// The longest step from z with ż = `speed` there, in units of x*/g, where rest is met: steps shrink towards it and grow away from it, so
-/// that each sees a smooth power.
+/// that each sees a smooth power. After a long way to rest a step is still one to a clock that has come as far as `time`.
 #[inline(always)]
-pub(crate) fn longest_step(z: f64, speed: f64, rest: f64) -> f64 {
-    match z {
+pub(crate) fn longest_step(z: f64, speed: f64, rest: f64, time: f64) -> f64 {
+    let longest = match z {
         _ if z > 0.5 => f64::INFINITY,
         _ if z >= 0.0 => z.max(rest),
         _ if z >= -2.0 * rest => rest - z,
         // |z|/|ż|, a lower bound of the time to rest.
         _ => 0.4 * -z / speed,
-    }
+    };
+    longest.max(8.0 * f64::EPSILON * time)
 }
 
 /// Excess strain x(t) of the contact layer over one straight piece, from t = 0 at its start.
@@ -197,7 +198,7 @@ impl Element {
                 break;
             }
             solver.set_tolerance(TOLERANCE * reach * (1.0 - z).abs().max(1.0));
-            let longest = if passes_rest { longest_step(z, speed(z), rest) } else { f64::INFINITY };
+            let longest = if passes_rest { longest_step(z, speed(z), rest, time) } else { f64::INFINITY };
             steps.push(solver.step(until.min(time + longest), |_, z| speed(z)));
             end = (solver.time(), solver.state());
         }
@@ -309,6 +310,20 @@ mod tests {
             let error = (element.excess_at(t) - exact).abs();
             assert!(error < 5e-12, "t = {t}: {error:e}");
         }
+    }
+
+    /// Steps shrink towards rest, where a power below 1 is not smooth; once they were shorter than a tick of their clock, for ever.
+    #[test]
+    fn a_slow_drive_after_a_far_larger_excess_comes_to_its_steady_state() {
+        let law = LatencyLaw::new(0.2, 1.4e-3).unwrap();
+        let mut work = Work::default();
+        let element = Element::solve(law, -9.55e-3, 1.48e-6, 24.6, &mut Ramps::default(), &mut work);
+        let end = element.excess_at(24.6);
+        assert!(
+            (end / law.steady_excess(1.48e-6) - 1.0).abs() < 1e-6 && work.steps < 2000,
+            "{end:e}, {} steps",
+            work.steps
+        );
     }
 
     /// Time from rest to z in units of x*/g, for |z| < 1: the implicit closed form ∫ dz/(1 − sgn(z)|z|ⁿ).

@@ -16,6 +16,7 @@ use palpate::units::Dimension;
 
 use super::{
     error::DescriptionError,
+    material::protocol_tables,
     numbers::{Slot, numbers},
     places::Places,
     protocol::{Protocol, ProtocolTables, check},
@@ -229,7 +230,7 @@ pub fn read_sweep(path: &Path) -> Result<Sweep, DescriptionError> {
 /// As for [`read_sweep`], less those of the file.
 pub fn parse_sweep(text: &str, path: &Path) -> Result<Sweep, DescriptionError> {
     let source = Source { path, text };
-    let mut tables: ProtocolTables = source.tables()?;
+    let mut tables: ProtocolTables = protocol_tables(&source)?;
     let base = check(&source, &tables)?;
     let table = table::table(&source)?;
     if table.entries.is_empty() {
@@ -283,7 +284,7 @@ pub fn parse_sweep(text: &str, path: &Path) -> Result<Sweep, DescriptionError> {
 /// As for [`parse_sweep`], and for columns of different lengths.
 pub fn parse_runs(text: &str, path: &Path, columns: &[(&str, Vec<f64>)]) -> Result<Sweep, DescriptionError> {
     let source = Source { path, text };
-    let mut tables: ProtocolTables = source.tables()?;
+    let mut tables: ProtocolTables = protocol_tables(&source)?;
     let base = check(&source, &tables)?;
     let known = known(&mut tables);
     let runs = columns.first().map_or(0, |(_, values)| values.len());

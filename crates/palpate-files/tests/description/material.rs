@@ -1,0 +1,229 @@
+//! Material files: what is written is read again, and nothing that was changed by hand passes for calibrated.
+#![expect(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
+
+use std::path::Path;
+
+use palpate::calibrate::{
+    Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, Shown,
+};
+use palpate::contact::{Curve, Shape, Sides};
+use palpate::identify::Estimate;
+use palpate::simulate::Separation;
+use palpate_files::description::{
+    MaterialFile, MaterialOrigin, parse_material, parse_protocol, parse_test, read_protocol, read_protocol_of,
+};
+
+fn number(name: &str, unit: MaterialUnit, value: f64) -> MaterialNumber {
+    let estimate = Estimate {
+        value,
+        standard_error: Some(0.01 * value),
+        interval: Some((0.98 * value, 1.02 * value)),
+    };
+    MaterialNumber {
+        name: name.to_owned(),
+        unit,
+        estimate,
+    }
+}
+
+/// A material of this law with numbers that no short decimal writes.
+fn material(law: &str, equilibrium: EquilibriumLaw, shape: Shape) -> MaterialFile {
+    use MaterialUnit::{Metre, Newton, One, Pascal, PerSecond, Second};
+    let third = 1.0 / 3.0;
+    let mut numbers = match equilibrium {
+        EquilibriumLaw::Table => vec![
+            number("equilibrium_force_1", Newton, third),
+            number("equilibrium_force_2", Newton, 1.0),
+            number("equilibrium_force_3", Newton, 2.0 + third),
+        ],
+        _ => vec![number("modulus", Pascal, 1e5 * third)],
+    };
+    match law {
+        "latency" | "latency:5" => numbers.extend([
+            number("exponent", One, 5.0),
+            number("rate_coefficient", PerSecond, 1e5 * third),
+            number("layer_thickness", Metre, 0.01 * third),
+        ]),
+        _ => {
+            let terms = law.split(':').nth(1).map_or(1, |count| count.parse().unwrap());
+            for term in 1..=terms {
+                numbers.push(number(&format!("overshoot_{term}"), One, third * f64::from(term)));
+                numbers.push(number(&format!("time_{term}"), Second, 10.0 * third * f64::from(term)));
+            }
+        }
+    }
+    let size = numbers.len();
+    let entry = |i: usize, j: usize| if i == j { 1e-4 * third } else { 1e-5 * third };
+    let levels = if equilibrium == EquilibriumLaw::Table { vec![0.001, 0.002, 0.004] } else { Vec::new() };
+    MaterialFile {
+        material: Material {
+            body: Body {
+                shape,
+                sides: Sides::Two,
+                separation: Separation::Unilateral,
+                levels,
+            },
+            candidate: Candidate {
+                law: law.parse().unwrap(),
+                equilibrium,
+            },
+            numbers,
+            uncertainty: Some(MaterialUncertainty {
+                confidence: 0.95,
+                freedom: 2057.0,
+                covariance: (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect(),
+            }),
+            noise: 0.05 * third,
+            shown: Shown {
+                longest_hold: 60.0 * third,
+                deepest: 0.01 * third,
+                fastest: 0.1 * third,
+                slowest: 0.01 * third,
+                largest_force: 10.0 * third,
+            },
+        },
+        origin: MaterialOrigin {
+            record: "press \"3\"\n.csv".to_owned(),
+            sha256: "ab12".to_owned(),
+            test: Some("ball.toml".to_owned()),
+            palpate: "0.1.0".to_owned(),
+            samples: 2061,
+        },
+    }
+}
+
+fn ball() -> Shape {
+    Shape::Ball { radius: 0.035 }
+}
+
+fn usual() -> MaterialFile {
+    material("latency", EquilibriumLaw::EvenStrain, ball())
+}
+
+#[test]
+fn what_is_written_is_read_again_to_the_last_digit() {
+    let hertz = EquilibriumLaw::Hertz { poisson_ratio: 0.45 };
+    let pad = Shape::Pad {
+        radius: 0.02,
+        thickness: 0.01,
+    };
+    let prism = Shape::Prism {
+        area: 4e-5 / 3.0,
+        length: 0.05 / 3.0,
+    };
+    let area = Curve::new(&[(0.0, 0.0), (0.001, 1e-5), (0.004, 1e-4 / 3.0)]).unwrap();
+    let profile = Shape::Profile { depth: 0.02, area };
+    for law in ["latency", "latency:5", "standard-linear-solid", "prony:2", "prony:3", "fung:1", "fung:2"] {
+        for (equilibrium, shape) in [
+            (EquilibriumLaw::EvenStrain, ball()),
+            (EquilibriumLaw::EvenStrain, prism.clone()),
+            (EquilibriumLaw::EvenStrain, profile.clone()),
+            (EquilibriumLaw::Table, ball()),
+            (hertz, ball()),
+            (hertz, pad.clone()),
+        ] {
+            let file = material(law, equilibrium, shape);
+            let text = file.to_toml();
+            let read = parse_material(&text, Path::new("m.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"));
+            assert_eq!(read, file, "{text}");
+        }
+    }
+}
+
+#[test]
+fn a_material_without_intervals_is_one_too() {
+    let mut file = usual();
+    file.material.uncertainty = None;
+    for number in &mut file.material.numbers {
+        number.estimate = Estimate::fixed(number.estimate.value);
+    }
+    file.origin.test = None;
+    assert_eq!(parse_material(&file.to_toml(), Path::new("m.toml")).unwrap(), file);
+}
+
+#[test]
+fn a_material_is_the_body_of_a_protocol_and_of_a_test() {
+    let file = usual();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("soft.toml");
+    std::fs::write(&path, file.to_toml()).unwrap();
+    let steps = "[[step]]\nto = \"5 mm\"\nrate = \"10 mm/s\"\nhold = \"10 s\"\n";
+    let named = folder.path().join("named.toml");
+    std::fs::write(&named, format!("material = \"soft.toml\"\n{steps}")).unwrap();
+    let protocol = read_protocol(&named).unwrap();
+    let contact = file.material.contact();
+    assert_eq!(protocol.contact(), (&contact).into());
+    // The file itself is a protocol, once it has steps.
+    let whole = parse_protocol(&format!("{}\n{steps}", file.to_toml()), Path::new("p.toml")).unwrap();
+    assert_eq!(whole.contact(), (&contact).into());
+    // Another body in the protocol is left aside only where that is asked for.
+    let other = format!(
+        "specimen = {{ shape = \"ball\", radius = \"20 mm\", modulus = \"1 kPa\" }}\nlaw = {{ name = \"latency\", exponent = 2, rate_coefficient = \"1 /s\" }}\n{steps}"
+    );
+    let bodied = folder.path().join("bodied.toml");
+    std::fs::write(&bodied, &other).unwrap();
+    assert_eq!(read_protocol_of(&bodied, &path).unwrap().contact(), (&contact).into());
+    std::fs::write(&bodied, format!("material = \"soft.toml\"\n{other}")).unwrap();
+    let both = read_protocol(&bodied).unwrap_err();
+    assert!(both.to_string().contains("specimen") && both.to_string().contains("material"), "{both}");
+    // A missing file is told by its own name.
+    std::fs::write(&named, format!("material = \"none.toml\"\n{steps}")).unwrap();
+    assert!(read_protocol(&named).unwrap_err().to_string().contains("none.toml: no such file"));
+
+    let test = parse_test(&file.to_toml(), &path).unwrap();
+    let body = test.geometry.unwrap();
+    assert_eq!((body.shape, body.sides, test.separation), (ball(), Sides::Two, Separation::Unilateral));
+    assert_eq!(body.modulus, Some(1e5 * (1.0 / 3.0)));
+    // A law in a test that is no material stays refused.
+    let text = "law = { name = \"latency\", exponent = 2, rate_coefficient = \"1 /s\" }";
+    assert!(parse_test(text, &path).unwrap_err().to_string().contains("law"));
+}
+
+#[test]
+fn what_is_no_material_is_refused_with_its_place() {
+    let text = usual().to_toml();
+    let cases = [
+        ("version = 1", "version = 2", "calibration.version", "calibrate again"),
+        ("version = 1\n", "", "calibration.version", "the version of the table"),
+        ("exponent = 5.0", "exponent = 4.0", "law.exponent", "calibrated no more"),
+        ("radius = \"0.035 m\"", "radius = \"0.035\"", "specimen.radius", "unit"),
+        (
+            "interval = [4.9, 5.1]",
+            "interval = [5.1, 4.9]",
+            "calibration.number[2].interval",
+            "not below the lower",
+        ),
+        ("interval = [4.9, 5.1]", "interval = [nan, 5.1]", "calibration.number[2].interval", "above 0"),
+        (
+            "standard_error = 0.05\n",
+            "standard_error = -0.05\n",
+            "calibration.number[2].standard_error",
+            "0 or more",
+        ),
+        ("name = \"exponent\"", "name = \"order\"", "calibration.number", "numbers of the law latency"),
+        ("confidence = 0.95", "confidence = 95.0", "calibration.confidence", "between 0 and 1"),
+        ("freedom = 2057.0", "freedom = nan", "calibration.freedom", "above 0"),
+        (
+            "law = \"latency\"\nequilibrium",
+            "law = \"lantency\"\nequilibrium",
+            "calibration.law",
+            "a law such as",
+        ),
+        ("equilibrium = \"even strain\"", "equilibrium = \"hertz\"", "calibration.equilibrium", "[specimen]"),
+        ("unit = \"Pa\"", "unit = \"kPa\"", "calibration.number[1].unit", "Pa, N, m, s or /s"),
+        ("covariance = [\n  [", "covariance = [\n  [1.0],\n  [", "calibration.covariance", "4 rows of 4"),
+        ("covariance = [\n  [3.", "covariance = [\n  [-3.", "calibration.covariance", "4 rows of 4"),
+        ("residual = \"", "residual = \"x", "calibration.residual", "a force such as"),
+        ("sha256 = \"ab12\"\n", "", "calibration.sha256", "missing"),
+    ];
+    for (from, to, key, told) in cases {
+        assert!(text.contains(from), "{from}: {text}");
+        let error = parse_material(&text.replacen(from, to, 1), Path::new("m.toml")).unwrap_err();
+        let message = error.to_string();
+        assert!(message.contains(key) && message.contains(told), "{from} -> {to}: {message}");
+        assert!(error.hint().is_some(), "{message}");
+    }
+    let plain = text.split("# What follows").next().unwrap();
+    let error = parse_material(plain, Path::new("m.toml")).unwrap_err();
+    assert!(error.to_string().contains("calibration: missing"), "{error}");
+}

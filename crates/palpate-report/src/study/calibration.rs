@@ -1,0 +1,199 @@
+//! A whole record calibrated: tables, text and figure.
+
+use palpate::calibrate::{Calibration, Material, MaterialUnit};
+use palpate::identify::Termination;
+
+use super::findings::wrapped;
+use super::prediction::percent;
+use crate::calibrated::CalibratedRecord;
+use crate::document::termination;
+use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
+use crate::number::{counted, significant};
+use crate::table::{Cell, Table, TableColumn};
+
+/// Factor and unit in which people read a number of a material.
+fn for_people(unit: MaterialUnit) -> (f64, &'static str) {
+    match unit {
+        MaterialUnit::One => (1.0, ""),
+        MaterialUnit::Second => (1.0, "s"),
+        MaterialUnit::PerSecond => (1.0, "1/s"),
+        MaterialUnit::Metre => (1e3, "mm"),
+        MaterialUnit::Newton => (1.0, "N"),
+        MaterialUnit::Pascal => (1e-3, "kPa"),
+    }
+}
+
+/// The laws on the record, in the order in which they were asked for.
+fn laws(record: &CalibratedRecord) -> Table {
+    let (fitted, all) = (record.data.fitted(), record.data.times().len());
+    let until = record.data.times()[fitted - 1] - record.data.times()[0];
+    let rest = if fitted < all { format!("; {} foretold", counted(all - fitted, "sample")) } else { String::new() };
+    let caption = format!("Calibrated on {} over {} s{rest}.", counted(fitted, "sample"), significant(until, 4));
+    let mut table = Table::new("laws", caption)
+        .column(TableColumn::new("Law", "law", ""))
+        .column(TableColumn::new("p", "parameters", ""))
+        .column(TableColumn::new("RMSE", "rmse_n", "N"))
+        .column(TableColumn::new("of peak", "rmse_percent", "%"))
+        .column(TableColumn::new("ΔBIC", "delta_bic", ""));
+    if fitted < all {
+        table = table.column(TableColumn::new("Foretold to", "foretold_rmse_n", "N")).column(TableColumn::new(
+            "of peak",
+            "foretold_percent",
+            "%",
+        ));
+    }
+    table = table.column(TableColumn::new("Ended", "termination", ""));
+    let least = record.made().map(|made| made.criteria.bic).fold(f64::INFINITY, f64::min);
+    for (candidate, made) in &record.rows {
+        let law = Cell::text(candidate.law.to_string());
+        let row = match made {
+            Ok(made) => {
+                let mut row = vec![
+                    law,
+                    Cell::Integer(made.free_numbers as i64),
+                    Cell::number(made.rmse, 3),
+                    Cell::number(100.0 * made.relative, 3),
+                    Cell::number(made.criteria.bic - least, 3),
+                ];
+                if let Some(foretold) = made.foretold {
+                    row.extend([Cell::number(foretold.rmse, 3), Cell::number(100.0 * foretold.relative, 3)]);
+                }
+                row.push(Cell::text(termination(made.termination).replace('_', " ")));
+                row
+            }
+            Err(error) => {
+                let mut row = vec![law];
+                row.resize(table.columns.len(), Cell::missing(error.to_string()));
+                row
+            }
+        };
+        table = table.row(row);
+    }
+    table
+}
+
+/// The numbers of a material with their intervals.
+#[must_use]
+pub fn material_table(material: &Material) -> Table {
+    const OPEN: &str = "the record leaves it open, or it was given";
+    let share = material.uncertainty.as_ref().map_or(0.95, |uncertainty| uncertainty.confidence);
+    let mut table = Table::new("numbers", format!("Numbers of the law {}.", material.candidate.law))
+        .column(TableColumn::new("Number", "number", ""))
+        .column(TableColumn::new("Unit", "unit", ""))
+        .column(TableColumn::new("Value", "value", ""))
+        .column(TableColumn::new(format!("{} from", percent(share)), "low", ""))
+        .column(TableColumn::new("to", "high", ""));
+    for number in &material.numbers {
+        let ((factor, unit), estimate) = (for_people(number.unit), number.estimate);
+        let value = match estimate.standard_error {
+            Some(error) => Cell::uncertain(factor * estimate.value, factor * error),
+            None => Cell::number(factor * estimate.value, 4),
+        };
+        let end = |pick: fn((f64, f64)) -> f64| Cell::number_or(estimate.interval.map(|i| factor * pick(i)), 4, OPEN);
+        table = table.row(vec![
+            Cell::text(number.name.replace('_', " ")),
+            Cell::text(unit),
+            value,
+            end(|interval| interval.0),
+            end(|interval| interval.1),
+        ]);
+    }
+    table
+}
+
+/// What a calibration shows that its numbers alone do not tell.
+#[must_use]
+pub fn calibration_remarks(record: &CalibratedRecord) -> Vec<String> {
+    let mut remarks: Vec<String> = record.sentence().into_iter().collect();
+    if let Some(chosen) = record.chosen() {
+        remarks.extend(remarks_of(chosen));
+    }
+    remarks
+}
+
+fn remarks_of(made: &Calibration) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if made.termination != Termination::Converged {
+        let how = termination(made.termination).replace('_', " ");
+        remarks.push(format!("The search ended otherwise than at an optimum ({how}): the numbers have no intervals."));
+    } else if let Some(open) = made
+        .material
+        .numbers
+        .iter()
+        .find(|number| number.estimate.interval.is_none_or(|(low, high)| high > 100.0 * low))
+        && made.material.uncertainty.is_some()
+        && open.estimate.standard_error.is_some()
+    {
+        let name = open.name.replace('_', " ");
+        remarks.push(format!("The record says little about the {name}: its interval spans more than two decades. Holds of different excess strain would tell it."));
+    }
+    let (correlation, _) = match made.noise {
+        palpate::identify::NoiseModel::White => (0.0, 0.0),
+        palpate::identify::NoiseModel::Autoregressive { correlation } => (correlation, 1.0),
+        palpate::identify::NoiseModel::WhiteAndAutoregressive { correlation, share } => {
+            (correlation * share.sqrt(), share)
+        }
+    };
+    if correlation > 0.9 && made.relative > 5e-3 {
+        remarks.push(format!(
+            "What is left over ({} % of the peak) follows a course of its own: the law does not describe all of the record. The intervals are widened for that; how far it foretells, --fit-until shows.",
+            significant(100.0 * made.relative, 2)
+        ));
+    }
+    let shown = &made.material.shown;
+    remarks.push(format!(
+        "Shown: holds of up to {} s, {} mm deep, ramps of {} to {} mm/s, forces of up to {} N. Predictions beyond are extrapolations, and say so.",
+        significant(shown.longest_hold, 3),
+        significant(1e3 * shown.deepest, 3),
+        significant(1e3 * shown.slowest, 3),
+        significant(1e3 * shown.fastest, 3),
+        significant(shown.largest_force, 3)
+    ));
+    remarks
+}
+
+/// A calibration as text for a terminal.
+#[must_use]
+pub fn calibration_text(record: &CalibratedRecord) -> String {
+    let mut text = format!("{}\n\n{}", record.input.called(), laws(record).to_plain_text());
+    if let Some(chosen) = record.chosen() {
+        text.push_str(&format!("\n{}", material_table(&chosen.material).to_plain_text()));
+    }
+    text.push('\n');
+    calibration_remarks(record).iter().for_each(|remark| text.push_str(&wrapped(remark)));
+    text
+}
+
+/// Measured and simulated force over time, and what is left over.
+#[must_use]
+pub fn calibration_figure(record: &CalibratedRecord, name: &str) -> Figure {
+    let (times, forces) = (record.data.times(), record.data.forces());
+    let motion = record.data.motion();
+    let time = || Axis::linear("Time", "s");
+    let mut force = Panel::new(time(), Axis::linear("Force", "N")).share(1.6);
+    force = force.layer(Layer::line(times.to_vec(), forces.to_vec(), Role::Measured).label("measured"));
+    let mut left = Panel::new(time(), Axis::linear("Measured − simulated", "N"));
+    for (index, made) in record.made().take(MOST).enumerate() {
+        let role = if index == 0 { Role::Fitted } else { Role::Alternative(index as u8 - 1) };
+        let law = made.material.candidate.law.to_string();
+        force = force.layer(Layer::line(times.to_vec(), made.simulated.clone(), role).label(law));
+        let residuals = forces.iter().zip(&made.simulated).map(|(measured, simulated)| measured - simulated).collect();
+        left = left.layer(Layer::line(times.to_vec(), residuals, role));
+    }
+    if record.data.fitted() < times.len() {
+        let at = times[record.data.fitted() - 1];
+        force = force.layer(Layer::vertical(at, Role::Reference).label("fitted | foretold"));
+        left = left.layer(Layer::vertical(at, Role::Reference));
+    }
+    let travel = times.iter().map(|time| 1e3 * motion.displacement_at(*time)).collect();
+    let jaw = Panel::new(time(), Axis::linear("Displacement", "mm"));
+    Figure::new(name, "A whole record with the laws calibrated on it, and what each leaves over.")
+        .panel(force)
+        .panel(left.zero_line())
+        .panel(jaw.layer(Layer::line(times.to_vec(), travel, Role::Measured)))
+        .arrangement(Arrangement::Stacked)
+        .height_mm(150.0)
+}
+
+/// Laws that a figure shows.
+const MOST: usize = 4;
