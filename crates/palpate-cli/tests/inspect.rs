@@ -205,7 +205,7 @@ fn the_holds_of_a_first_description_can_be_given_and_moved() {
     file(folder, "moved.toml", moved);
     let told = phases(folder, &["inspect", &record, "--test", "moved.toml"]);
     let hold = told.lines().find(|line| line.starts_with("hold")).unwrap_or_else(|| panic!("{told}"));
-    assert_eq!(hold.split_whitespace().nth(2), Some("6.00000"), "{told}");
+    assert_eq!(hold.split_whitespace().nth(3), Some("6.00000"), "{told}");
 }
 
 #[test]

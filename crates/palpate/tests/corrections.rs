@@ -30,8 +30,10 @@ fn stairs(rate: f64, noise: f64, skew: f64, seed: u64) -> Record {
     let motion = protocol(&ups.chain([step(0.0, 6e-3)]).collect::<Vec<_>>()).unwrap();
     let mut random = Noise::new(seed);
     let end = motion.end() - 0.5;
-    let stamp = |i: u32| (f64::from(i) + 0.6 * random.uniform()) / rate + 0.2;
-    let time: Vec<f64> = (0..(rate * (end - 0.3)) as u32).map(stamp).collect();
+    let late = skew.max(0.0);
+    let stamp = |i: u32| (f64::from(i) + 0.6 * random.uniform()) / rate + 0.2 + if late > 0.1 { late } else { 0.0 };
+    let until = end - 0.3 - if skew.abs() > 0.1 { skew.abs() } else { 0.0 };
+    let time: Vec<f64> = (0..(rate * until) as u32).map(stamp).collect();
     let true_times: Vec<f64> = time.iter().map(|t| t - skew).collect();
     let force = simulate_force(&motion, &strip(), &true_times).unwrap();
     let largest = force.iter().fold(0.0f64, |most, f| most.max(f.abs()));
@@ -100,6 +102,44 @@ fn a_skew_is_reported_and_removed_when_asked() {
         "{:?}",
         analysis.skew
     );
+}
+
+#[test]
+fn a_skew_longer_than_a_ramp_is_found_too() {
+    for skew in [-0.4, 0.6, 1.5] {
+        let found = skew_of(&stairs(50.0, 0.002, skew, 3)).unwrap();
+        assert!(
+            (found.skew - skew).abs() < 0.01 && found.standard_error < 0.01 && found.is_seen(),
+            "{skew}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn a_skew_that_was_to_be_found_and_cannot_be_told_is_said() {
+    // One ramp and one hold: two edges, of which the first is no kink of the force.
+    let motion = protocol(&[ProtocolStep {
+        to: 2e-3,
+        rate: 2e-3,
+        hold: 10.0,
+    }])
+    .unwrap();
+    let time: Vec<f64> = (0..550).map(|i| 0.02 * f64::from(i)).collect();
+    let force = simulate_force(&motion, &strip(), &time).unwrap();
+    let displacement = time.iter().map(|t| motion.displacement_at(*t)).collect();
+    let record = Record::new(time, Some(displacement), force).unwrap();
+    let found = |skew: SkewChoice| {
+        let options = AnalysisOptions {
+            corrections: CorrectionOptions {
+                skew,
+                ..CorrectionOptions::default()
+            },
+            ..AnalysisOptions::default()
+        };
+        let findings = analyze(&record, &options).unwrap().findings;
+        findings.iter().any(|finding| matches!(finding, Finding::ClocksOpen { skew: None }))
+    };
+    assert!(found(SkewChoice::Auto) && !found(SkewChoice::Report) && !found(SkewChoice::Given(0.1)));
 }
 
 #[test]

@@ -195,3 +195,168 @@ fn a_slow_relaxation_is_a_hold_of_the_force_alone() {
     assert!((ends[0] - 3.0).abs() < 0.06 && (ends[1] - 23.0).abs() < 0.06, "{ends:?}");
     assert_eq!(first.after, Some(After::Loading));
 }
+
+/// A body that flows: two Maxwell arms beside a spring, in steps of 2 ms; of what is driven, the other column follows.
+struct Body {
+    arms: [(f64, f64, f64); 2],
+    at: f64,
+}
+
+impl Body {
+    fn new() -> Self {
+        Self {
+            arms: [(1.0, 0.5, 0.0), (0.8, 12.0, 0.0)],
+            at: 0.0,
+        }
+    }
+
+    const STEP: f64 = 2e-3;
+
+    /// Force with the jaw at this place (mm) after a step.
+    fn squeezed(&mut self, to: f64) -> f64 {
+        let mut force = 1.5 * to;
+        for (stiffness, time, left) in &mut self.arms {
+            *left = *left * (-Self::STEP / *time).exp() + *stiffness * (to - self.at);
+            force += *left;
+        }
+        self.at = to;
+        force
+    }
+
+    /// Place of the jaw under this force after a step.
+    fn pressed(&mut self, force: f64) -> f64 {
+        let faded: f64 = self.arms.iter().map(|(_, time, left)| left * (-Self::STEP / time).exp()).sum();
+        let stiffness: f64 = self.arms.iter().map(|arm| arm.0).sum();
+        let to = (force - faded + stiffness * self.at) / (1.5 + stiffness);
+        self.squeezed(to);
+        to
+    }
+}
+
+/// What a machine holds at a time: a place of the jaw (mm) or a force (N).
+enum Drive {
+    Place(f64),
+    Force(f64),
+}
+
+/// The record of a body under a drive, at 20 Hz, with 2 µm and 0.05 N of noise.
+fn driven(duration: f64, drive: impl Fn(f64) -> Drive) -> Record {
+    let (mut body, mut random) = (Body::new(), Noise::new(11));
+    let (mut time, mut jaw, mut force) = (Vec::new(), Vec::new(), Vec::new());
+    for step in 0..(duration / Body::STEP) as u32 {
+        let t = Body::STEP * f64::from(step);
+        let (place, load) = match drive(t) {
+            Drive::Place(to) => (to, body.squeezed(to)),
+            Drive::Force(load) => (body.pressed(load), load),
+        };
+        if step % 25 == 0 {
+            time.push(t);
+            jaw.push(1e-3 * (place + 2e-3 * random.normal()));
+            force.push(load + 0.05 * random.normal());
+        }
+    }
+    Record::new(time, Some(jaw), force).unwrap()
+}
+
+/// Holds as first and last time with what is held.
+fn holds(record: &Record) -> Vec<(f64, f64, HoldMode)> {
+    let found = phases(record).unwrap();
+    let time = record.time();
+    found.holds().map(|hold| (time[hold.start], time[hold.end - 1], hold.mode.unwrap())).collect()
+}
+
+fn near(found: &[(f64, f64, HoldMode)], expected: &[(f64, f64, HoldMode)], within: f64) {
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (found, expected) in found.iter().zip(expected) {
+        let off = (found.0 - expected.0).abs().max((found.1 - expected.1).abs());
+        assert!(off <= within && found.2 == expected.2, "{found:?} {expected:?}");
+    }
+}
+
+#[test]
+fn a_jaw_that_hunts_holds_all_the_same_and_that_is_said() {
+    let place = |t: f64| match t {
+        _ if t < 3.0 => 0.0,
+        _ if t < 5.0 => 3.0 * (t - 3.0),
+        _ if t < 65.0 => 6.0,
+        _ if t < 67.0 => 6.0 + 3.0 * (t - 65.0),
+        _ => 12.0,
+    };
+    for (share, rate) in [(0.002, 0.5), (0.002, 0.1), (0.01, 2.0), (0.02, 0.5)] {
+        let swing = |t: f64| if t < 3.0 { 0.0 } else { 12.0 * share * (std::f64::consts::TAU * rate * t).sin() };
+        let record = driven(127.0, |t| Drive::Place(place(t) + swing(t)));
+        let found = phases(&record).unwrap();
+        let held: Vec<f64> =
+            found.holds().map(|hold| record.time()[hold.end - 1] - record.time()[hold.start]).collect();
+        assert!(held.len() == 2 && held.iter().all(|held| *held > 58.0), "{share} {rate}: {held:?}");
+        let ripple = found.ripple.unwrap();
+        assert!(
+            (ripple.height / (24e-3 * share) - 1.0).abs() < 0.2 && (ripple.period * rate - 1.0).abs() < 0.1,
+            "{ripple:?}"
+        );
+    }
+    let calm = driven(127.0, |t| Drive::Place(place(t)));
+    assert_eq!(phases(&calm).unwrap().ripple, None);
+}
+
+#[test]
+fn the_recovery_after_a_creep_is_a_hold_of_the_small_force() {
+    for low in [0.2, 1.0, 5.0] {
+        let record = driven(130.0, |t| {
+            Drive::Force(match t {
+                _ if t < 2.0 => low,
+                _ if t < 3.0 => low + (20.0 - low) * (t - 2.0),
+                _ if t < 63.0 => 20.0,
+                _ if t < 64.0 => 20.0 - (20.0 - low) * (t - 63.0),
+                _ => low,
+            })
+        });
+        let found = holds(&record);
+        let [.., crept, recovered] = found.as_slice() else {
+            panic!("{low}: {found:?}")
+        };
+        near(
+            &[*crept, *recovered],
+            &[(3.0, 63.0, HoldMode::ForceHeld), (64.0, 129.95, HoldMode::ForceHeld)],
+            0.11,
+        );
+    }
+}
+
+#[test]
+fn a_machine_that_goes_over_from_the_jaw_to_the_force_makes_two_holds() {
+    let record = driven(63.0, |t| match t {
+        _ if t < 2.0 => Drive::Place(0.0),
+        _ if t < 3.0 => Drive::Place(10.0 * (t - 2.0)),
+        _ if t < 33.0 => Drive::Place(10.0),
+        // What the body bears by then.
+        _ => Drive::Force(15.64),
+    });
+    near(
+        &holds(&record),
+        &[(3.0, 32.95, HoldMode::DisplacementHeld), (33.0, 62.95, HoldMode::ForceHeld)],
+        0.4,
+    );
+}
+
+#[test]
+fn a_body_that_breaks_in_a_ramp_of_few_samples_is_seen() {
+    let place = |t: f64| match t {
+        _ if t < 3.0 => 0.0,
+        _ if t < 5.0 => 3.0 * (t - 3.0),
+        _ if t < 35.0 => 6.0,
+        _ if t < 37.0 => 6.0 + 3.0 * (t - 35.0),
+        _ => 12.0,
+    };
+    let whole = driven(67.0, |t| Drive::Place(place(t)));
+    // Every second row, and of the force a tenth is left from 36.3 s on.
+    let rows: Vec<usize> = (0..whole.len()).step_by(2).collect();
+    let time: Vec<f64> = rows.iter().map(|i| whole.time()[*i]).collect();
+    let jaw = rows.iter().map(|i| whole.displacement().unwrap()[*i]).collect();
+    let force = rows.iter().map(|i| whole.force()[*i] * if whole.time()[*i] < 36.3 { 1.0 } else { 0.1 }).collect();
+    let found = phases(&Record::new(time, Some(jaw), force).unwrap()).unwrap();
+    let [rupture] = found.ruptures.as_slice() else {
+        panic!("{found:?}")
+    };
+    assert!((rupture.time - 36.3).abs() < 0.11 && found.holds().count() == 1, "{rupture:?}");
+}

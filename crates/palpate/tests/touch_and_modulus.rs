@@ -325,6 +325,21 @@ fn a_jaw_that_goes_through_the_body_is_an_error() {
 }
 
 #[test]
+fn a_first_touch_that_the_jaw_does_not_reach_is_refused() {
+    let record = Bench::paper(0.0, 0.02).record(&LEVELS[0], 10.0, 1);
+    let farthest = record.displacement().unwrap().iter().copied().fold(f64::MIN, f64::max);
+    let options = AnalysisOptions {
+        touch: ContactChoice::Displacement(farthest + 1e-3),
+        ..AnalysisOptions::default()
+    };
+    let error = analyze(&record, &options).unwrap_err();
+    let AnalysisError::TouchBeyond { asked, farthest: found } = error else {
+        panic!("{error:?}")
+    };
+    assert!((asked - found - 1e-3).abs() < 1e-15 && found == farthest);
+}
+
+#[test]
 fn what_cannot_be_fitted_says_why() {
     let record = Bench::paper(0.0, 0.02).record(&LEVELS[0], 10.0, 1);
     let hint = |options: &AnalysisOptions| {
@@ -396,4 +411,30 @@ fn touch_and_overlay_that_cannot_be_trusted_are_said() {
         },
     );
     assert!(codes(&wrong.unwrap()).contains(&"overlay_poor"));
+}
+
+/// A body that loads as Hertz's does, and relaxes, behind 3 mm of air: the loading curve of palpate's own ball begins half a millimetre early.
+#[test]
+fn a_loading_curve_that_stands_alone_is_said_and_its_error_is_as_large() {
+    let mut random = Noise::new(3);
+    let time: Vec<f64> = (0..1200).map(|i| 0.05 * f64::from(i)).collect();
+    let jaw = |t: f64| (1e-3 * (t - 2.0)).clamp(0.0, 9e-3);
+    let force = |t: f64| {
+        let squeeze = (jaw(t) - 3e-3).max(0.0) * 1e3;
+        let relaxed = if t < 11.0 { 1.0 } else { 0.6 + 0.4 / (1.0 + (t - 11.0)).powf(0.4) };
+        4.0 * squeeze.powf(1.5) * relaxed
+    };
+    let displacement = time.iter().map(|t| jaw(*t) + 1e-6 * random.normal()).collect();
+    let forces = time.iter().map(|t| force(*t) + 0.05 * random.normal()).collect();
+    let record = Record::new(time, Some(displacement), forces).unwrap();
+    let found = analyze(&record, &ball(None)).unwrap();
+    let touch = found.contact.tare.displacement;
+    let off = (touch - 3e-3).abs();
+    let said = found.findings.iter().any(|finding| matches!(finding, Finding::TouchApart { .. }));
+    assert!(
+        off < 0.1e-3 || (said && found.contact.displacement_error.unwrap() > 0.7 * off),
+        "{:?}",
+        found.contact
+    );
+    assert!(said, "{:?}", found.contact);
 }

@@ -349,7 +349,8 @@ pub(crate) fn after_word(after: After) -> &'static str {
 }
 
 /// The word for what is held, as a description writes it.
-pub(crate) fn mode_word(mode: HoldMode) -> &'static str {
+#[must_use]
+pub fn mode_word(mode: HoldMode) -> &'static str {
     match mode {
         HoldMode::DisplacementHeld => "displacement",
         HoldMode::ForceHeld => "force",

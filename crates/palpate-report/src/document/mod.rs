@@ -18,8 +18,9 @@ mod reproduction;
 mod settings;
 mod signals;
 
+pub(crate) use analysis::after_word;
+pub use analysis::mode_word;
 pub use analysis::{AnalysisDocument, FindingDocument, HoldDocument, Input, TableRow};
-pub(crate) use analysis::{after_word, mode_word};
 pub use calibration::{CalibratedLawDocument, CalibratedNumberDocument, CalibrationDocument, ForetoldDocument};
 pub(crate) use comparison::certainty_word;
 pub use comparison::{

@@ -1,10 +1,10 @@
 //! The corrections that were asked for, in order.
 
-use super::signals::skew_finding;
+use super::signals::{open_skew, skew_finding};
 use super::skew::{ClockSkew, clock_skew};
 use super::{AnalysisError, AnalysisOptions, Finding};
 use crate::record::{Record, SignalReport, SkewChoice};
-use crate::segment::{SegmentError, Segmentation, free_samples, phases_with};
+use crate::segment::{ContactChoice, SegmentError, Segmentation, free_samples, phases_with};
 
 /// A corrected record with its phases, ready for first touch.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +15,8 @@ pub struct Corrected {
     pub segmentation: Result<Segmentation, SegmentError>,
     /// What the clocks of the record as it came seem to differ by.
     pub skew: Option<ClockSkew>,
+    /// Whether a skew was to be found and taken away.
+    pub skew_asked: bool,
 }
 
 impl Corrected {
@@ -27,10 +29,12 @@ impl Corrected {
         Some((aligned, signals))
     }
 
-    /// [`Finding::ClocksSkewed`] if the clocks differ and nothing was done about it.
+    /// [`Finding::ClocksSkewed`] if the clocks differ and nothing was done about it, [`Finding::ClocksOpen`] if that was asked for and could
+    /// not be told.
     #[must_use]
     pub fn skew_finding(&self) -> Option<Finding> {
-        skew_finding(&self.record, self.skew.as_ref())
+        let open = || open_skew(&self.record, self.skew.as_ref()).filter(|_| self.skew_asked);
+        skew_finding(&self.record, self.skew.as_ref()).or_else(open)
     }
 }
 
@@ -71,10 +75,21 @@ pub fn corrected(record: &Record, options: &AnalysisOptions) -> Result<Corrected
     if let Some(compliance) = &asked.compliance {
         next = next.without_compliance(compliance)?;
     }
+    touch_within(&next, options.touch)?;
     let segmentation = if next.corrections().len() == before { segmentation } else { phases(&next) };
     Ok(Corrected {
         record: next,
         segmentation,
         skew,
+        skew_asked: asked.skew == SkewChoice::Auto,
     })
+}
+
+/// Refuses a first touch that the jaw does not reach.
+fn touch_within(record: &Record, touch: ContactChoice) -> Result<(), AnalysisError> {
+    let (ContactChoice::Displacement(asked), Some(displacement)) = (touch, record.displacement()) else {
+        return Ok(());
+    };
+    let farthest = displacement.iter().copied().fold(f64::MIN, f64::max);
+    if asked < farthest { Ok(()) } else { Err(AnalysisError::TouchBeyond { asked, farthest }) }
 }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::identify::TrendVerdict;
 use crate::laws::Law;
 use crate::record::Column;
-use crate::segment::{Rupture, TouchMethod};
+use crate::segment::{Ripple, Rupture, TouchMethod};
 
 /// How much a finding matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -256,6 +256,25 @@ pub enum Finding {
         /// Its standard error, s.
         standard_error: f64,
     },
+    /// A skew was to be found, and could not be told.
+    ClocksOpen {
+        /// What the edges say with its standard error, s; `None` where too few show in both columns.
+        skew: Option<(f64, f64)>,
+    },
+    /// The jaw swings about the places that it holds.
+    JawHunts {
+        /// From peak to peak, m.
+        height: f64,
+        /// Its period, s.
+        period: f64,
+    },
+    /// The loading curve puts first touch far from where all other rules do.
+    TouchApart {
+        /// How far behind (above 0) or before the middle of the others, m.
+        apart: f64,
+        /// The largest squeeze, m.
+        squeeze: f64,
+    },
     /// A column seems to count the other way round.
     SignSuspicious {
         /// `displacement` or `force`.
@@ -327,6 +346,9 @@ impl Finding {
             Self::TouchSpread { .. } => "touch_spread",
             Self::TouchNotFound { .. } => "touch_not_found",
             Self::ClocksSkewed { .. } => "clocks_skewed",
+            Self::ClocksOpen { .. } => "clocks_open",
+            Self::JawHunts { .. } => "jaw_hunts",
+            Self::TouchApart { .. } => "touch_apart",
             Self::SignSuspicious { .. } => "sign_suspicious",
             Self::RateCoefficientTrend { .. } => "rate_coefficient_trend",
             Self::OverlayPoor { .. } => "overlay_poor",
@@ -375,6 +397,9 @@ impl Finding {
             | Self::TouchSpread { .. }
             | Self::TouchNotFound { .. }
             | Self::ClocksSkewed { .. }
+            | Self::ClocksOpen { .. }
+            | Self::JawHunts { .. }
+            | Self::TouchApart { .. }
             | Self::SignSuspicious { .. }
             | Self::RateCoefficientTrend { .. }
             | Self::OverlayPoor { .. } => Severity::Caution,
@@ -384,6 +409,15 @@ impl Finding {
             | Self::Saturated { .. }
             | Self::Ruptured { .. }
             | Self::NoOverlay { .. } => Severity::Warning,
+        }
+    }
+}
+
+impl From<Ripple> for Finding {
+    fn from(ripple: Ripple) -> Self {
+        Self::JawHunts {
+            height: ripple.height,
+            period: ripple.period,
         }
     }
 }

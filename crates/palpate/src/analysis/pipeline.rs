@@ -72,6 +72,14 @@ pub enum AnalysisError {
         /// What limits it.
         limit_name: &'static str,
     },
+    /// A first touch that the jaw does not reach.
+    #[error("first touch is given at {:.4} mm, the jaw goes no farther than {:.4} mm", 1e3 * asked, 1e3 * farthest)]
+    TouchBeyond {
+        /// What was given, m.
+        asked: f64,
+        /// The largest displacement of the record, m.
+        farthest: f64,
+    },
     /// Holds were found, but none can be fitted.
     #[error("{}: {reason}", none_of(*holds))]
     NothingToFit {
@@ -95,6 +103,9 @@ impl AnalysisError {
             Self::BeyondBody { .. } => {
                 "check the unit of the displacement, the size of the body and squeezed_from; a strip pulled in grips needs separation = false"
                     .to_owned()
+            }
+            Self::TouchBeyond { .. } => {
+                "displacements count compression as positive, from the zero of the column; leave touch out to have it found".to_owned()
             }
             Self::NothingToFit { hint, .. } => (*hint).to_owned(),
         }
@@ -135,6 +146,7 @@ pub fn examine(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
     if !segmentation.settings.from_displacement {
         findings.push(Finding::PhasesFromForce);
     }
+    findings.extend(segmentation.ripple.map(Finding::from));
     findings.extend(segmentation.ruptures.iter().map(Finding::from));
     findings.extend(suspicious_signs(&record));
     let body = options.geometry.as_ref().map(|geometry| (&geometry.shape, geometry.sides));

@@ -117,8 +117,20 @@ pub(super) fn skew_finding(record: &Record, skew: Option<&ClockSkew>) -> Option<
     })
 }
 
+/// A finding if the skew was to be found and could not be: its error is longer than samples are apart, or too few edges show in both columns.
+pub(super) fn open_skew(record: &Record, skew: Option<&ClockSkew>) -> Option<Finding> {
+    let resolved =
+        skew.is_some_and(|skew| 3.0 * skew.standard_error < 2.0 * skew.interval.max(record.sample_interval()));
+    (!resolved && skew.is_none_or(|skew| !skew.is_seen())).then(|| Finding::ClocksOpen {
+        skew: skew.map(|skew| (skew.skew, skew.standard_error)),
+    })
+}
+
 /// Share of the largest squeeze by which the rules for first touch may differ.
 const SPREAD: f64 = 0.05;
+
+/// Share of the largest squeeze by which the loading curve may lie apart from the other rules.
+const APART: f64 = 0.05;
 
 /// Findings on first touch in a record that counts from it.
 pub(super) fn touch_findings(record: &Record, contact: &ContactPoint, asked: ContactChoice) -> Vec<Finding> {
@@ -126,6 +138,9 @@ pub(super) fn touch_findings(record: &Record, contact: &ContactPoint, asked: Con
     let squeeze = record.displacement().into_iter().flatten().fold(0.0f64, |most, d| most.max(*d));
     if let Some(spread) = contact.spread.filter(|spread| *spread > SPREAD * squeeze) {
         findings.push(Finding::TouchSpread { spread, squeeze });
+    }
+    if let Some(apart) = contact.apart().filter(|apart| asked == ContactChoice::Auto && apart.abs() > APART * squeeze) {
+        findings.push(Finding::TouchApart { apart, squeeze });
     }
     if let ContactChoice::By(method) = asked
         && contact.method != Some(method)

@@ -54,16 +54,53 @@ const SAMPLES: (usize, usize) = (5, 50);
 #[must_use]
 pub fn clock_skew(record: &Record, segmentation: &Segmentation) -> Option<ClockSkew> {
     let displacement = record.displacement()?;
-    let edges = |share: usize| -> Vec<Edge> {
-        let pairs = segmentation.segments.windows(2);
-        pairs.filter_map(|pair| edge(record, displacement, (&pair[0], &pair[1]), share)).collect()
+    let pairs: Vec<(&Segment, &Segment)> = segmentation
+        .segments
+        .windows(2)
+        .map(|pair| (&pair[0], &pair[1]))
+        .filter(|pair| is_edge(*pair))
+        .collect();
+    let edges = |share: usize, lag: f64| -> Vec<Edge> {
+        pairs.iter().filter_map(|pair| edge(record, displacement, *pair, (share, lag))).collect()
     };
-    let (whole, half) = (combined(&edges(2))?, combined(&edges(4)));
-    let systematic = half.map_or(0.0, |half| (half.skew - whole.skew).abs());
-    Some(ClockSkew {
-        standard_error: whole.standard_error.hypot(systematic),
-        ..whole
-    })
+    let found = |lag: f64| -> Option<ClockSkew> {
+        let (whole, half) = (combined(&edges(2, lag))?, combined(&edges(4, lag)));
+        let systematic = half.map_or(0.0, |half| (half.skew - whole.skew).abs());
+        Some(ClockSkew {
+            standard_error: whole.standard_error.hypot(systematic),
+            ..whole
+        })
+    };
+    let near = found(0.0);
+    let stretch = median(&mut pairs.iter().map(|pair| stretch(record, *pair)).collect::<Vec<f64>>());
+    let is_sure = |skew: &ClockSkew| SURE * skew.edges > pairs.len() && skew.standard_error < 0.2 * stretch;
+    if near.as_ref().is_some_and(is_sure) || pairs.len() < FEWEST || pairs.len() > MOST_EDGES {
+        return near;
+    }
+    // Farther off than the stretches around the edges are long, a skew shows where most edges agree again.
+    let lags = (1..=FARTHEST).flat_map(|step| [1.0, -1.0].map(|sign| 0.5 * sign * f64::from(step) * stretch));
+    let far = lags.filter_map(found).filter(|skew| is_sure(skew) && skew.is_seen());
+    far.max_by(|a, b| a.edges.cmp(&b.edges).then(b.standard_error.total_cmp(&a.standard_error)))
+        .or(near)
+}
+
+/// A skew is sure if this many times its edges are more than there are.
+const SURE: usize = 2;
+/// Half stretches by which a skew is sought on either side.
+const FARTHEST: u32 = 12;
+/// Edges of a record beyond which a skew is not sought farther than next to them.
+const MOST_EDGES: usize = 40;
+
+fn is_edge((before, after): (&Segment, &Segment)) -> bool {
+    let moves = |segment: &Segment| matches!(segment.phase, Phase::Loading | Phase::Unloading);
+    moves(before) != moves(after)
+}
+
+/// Half of the shorter of two segments, s.
+fn stretch(record: &Record, (before, after): (&Segment, &Segment)) -> f64 {
+    let time = record.time();
+    let lasts = |segment: &Segment| time[segment.end - 1] - time[segment.start];
+    0.5 * lasts(before).min(lasts(after))
 }
 
 /// Force less displacement at one edge.
@@ -76,12 +113,13 @@ struct Edge {
     interval: f64,
 }
 
-/// The kinks at the border of two segments, one of which moves; over a share of 1/`part` of the shorter one.
-fn edge(record: &Record, displacement: &[f64], (before, after): (&Segment, &Segment), part: usize) -> Option<Edge> {
-    let moves = |segment: &Segment| matches!(segment.phase, Phase::Loading | Phase::Unloading);
-    if moves(before) == moves(after) {
-        return None;
-    }
+/// The kinks at the border of two segments, one of which moves; over a share of 1/`part` of the shorter one, and in the force `lag` s later.
+fn edge(
+    record: &Record,
+    displacement: &[f64],
+    (before, after): (&Segment, &Segment),
+    (part, lag): (usize, f64),
+) -> Option<Edge> {
     let side = (before.len().min(after.len()) / part).min(SAMPLES.1);
     if side < SAMPLES.0 {
         return None;
@@ -91,7 +129,12 @@ fn edge(record: &Record, displacement: &[f64], (before, after): (&Segment, &Segm
     let border = record.time()[after.start];
     let stretch = 0.5 * (times[times.len() - 1] - times[0]);
     let jaw = kink(times, &displacement[range.clone()], border, 0.6 * stretch, false)?;
-    let force = kink(times, &record.force()[range], border, 0.6 * stretch, true)?;
+    let late = if lag == 0.0 { after.start } else { record.time().partition_point(|t| *t < border + lag) };
+    if late < side || late + side > record.len() {
+        return None;
+    }
+    let range = late - side..late + side;
+    let force = kink(&record.time()[range.clone()], &record.force()[range], border + lag, 0.6 * stretch, true)?;
     let stands_out = |kink: &Kink| kink.bend.abs() * stretch > 4.0 * kink.noise;
     (stands_out(&jaw) && stands_out(&force)).then_some(Edge {
         difference: force.time - jaw.time,

@@ -67,6 +67,15 @@ impl ContactPoint {
         }
     }
 
+    /// By how much first touch lies before (below 0) or behind the middle of what the other rules say, m; `None` for fewer than three.
+    #[must_use]
+    pub fn apart(&self) -> Option<f64> {
+        let method = self.method?;
+        let others = self.estimates.iter().filter(|estimate| estimate.method != method);
+        let mut others: Vec<f64> = others.map(|estimate| estimate.displacement).collect();
+        (others.len() >= 3).then(|| self.tare.displacement - median(&mut others))
+    }
+
     /// The same with what the rules say.
     fn with_estimates(self, estimates: Vec<TouchEstimate>) -> Self {
         let spread = spread(&estimates);
@@ -89,6 +98,8 @@ fn spread(estimates: &[TouchEstimate]) -> Option<f64> {
     Some(1.482_6 * median(&mut places))
 }
 
+/// Share of the way from first touch to the end of the ramp by which a curve may lie apart from the other rules.
+const ALONE: f64 = 0.05;
 /// Share of the first ramp's travel below which a late force is no travel through air.
 const AIR: f64 = 0.02;
 /// Standard errors by which first touch must lie behind the foot of the ramp to speak of air.
@@ -228,7 +239,15 @@ fn automatic(
         method: Some(TouchMethod::LoadingCurve),
         ..behind_air(record, displacement, (foot, ramp), from, touch.displacement, Some(touch.base))
     };
-    Some(point.with_estimates(estimates))
+    let point = point.with_estimates(estimates);
+    // A curve that stands alone is that of another body; its own error knows nothing of that.
+    let apart = point
+        .apart()
+        .filter(|apart| apart.abs() > ALONE * (displacement[ramp.end - 1] - touch.displacement));
+    Some(ContactPoint {
+        displacement_error: Some(apart.map_or(touch.error, |apart| touch.error.hypot(apart))),
+        ..point
+    })
 }
 
 /// First touch at `touch` after travel from `from`; the zero of the force is its median over half the way, or `base`.

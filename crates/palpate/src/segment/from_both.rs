@@ -3,7 +3,7 @@
 use super::levels::{Held, Levels, levels, range};
 use super::mode::{HoldMode, mode, mode_at_large};
 use super::ramps::{Level, fill_gaps};
-use super::ripple::without_ripple;
+use super::ripple::{of_jaw, without_ripple};
 use super::rupture::{Rupture, ruptures};
 use super::{After, Phase, Segment, SegmentError, SegmentOptions, SegmentSettings, Segmentation};
 use crate::record::Record;
@@ -11,6 +11,8 @@ use crate::statistics::median;
 
 /// Share of its range by which a jaw wanders about what it holds.
 const SERVO: f64 = 0.002;
+/// How far a jaw wanders that hunts, in heights of its ripple.
+const RIPPLES: f64 = 1.5;
 /// Share of its range by which a force wanders that a controller holds.
 const CONTROLLER: f64 = 0.02;
 
@@ -19,10 +21,12 @@ pub(super) fn phases(
     displacement: &[f64],
     options: &SegmentOptions,
 ) -> Result<Segmentation, SegmentError> {
+    let ripple = of_jaw(record.time(), displacement);
+    let servo = ripple.map_or(0.0, |ripple| RIPPLES * ripple.height).max(SERVO * range(displacement));
     let held = Held {
         name: ("displacement", "m"),
         values: displacement,
-        wander: options.tolerance.unwrap_or(SERVO * range(displacement)),
+        wander: options.tolerance.unwrap_or(servo),
         hunts: false,
     };
     let found = levels(record.time(), &held, options)?;
@@ -59,6 +63,7 @@ pub(super) fn phases(
         _ => Ok(Segmentation {
             segments,
             ruptures,
+            ripple,
             settings: found.settings,
         }),
     }
@@ -95,7 +100,15 @@ fn creeps(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Level>
     // A contact that is open shows no force, and nobody holds that.
     let open = |level: &Level| level.value.abs().min(level.value - low) <= OPEN * range + 3.0 * found.settings.noise;
     let (mut pressed, mut likely, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
-    for level in found.levels.iter().filter(|level| !open(level) && arrives(record, level, &jaw.settings)) {
+    // A body that recovers does so ever more slowly, and nowhere stands; a jaw that is clear of it goes at its speed, then stands.
+    let recovers = |level: &Level| {
+        slows_down(record, level, FIRST_HALF_TO_REST) && !still.iter().any(|still| overlap(still, level))
+    };
+    for level in found
+        .levels
+        .iter()
+        .filter(|level| arrives(record, level, &jaw.settings) && (!open(level) || recovers(level)))
+    {
         let inside: Vec<&Level> = still.iter().filter(|still| overlap(still, level)).collect();
         let rests = || inside.iter().all(|still| rests_late(record, still, level));
         match mode_at_large(record, level.start, level.end) {
@@ -111,6 +124,24 @@ fn creeps(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Level>
             // The jaw stands there, and its noise hides it.
             HoldMode::DisplacementHeld if inside.is_empty() => unseen.push(jaw.edges_of(record.time(), level)),
             _ => {}
+        }
+    }
+    // Of a force that stays from a relaxation on, the part after the jaw stood is held.
+    let taken = pressed.clone();
+    for level in found.levels.iter().filter(|level| !taken.iter().any(|other| overlap(other, level))) {
+        let stood = |still: &&Level| still.start <= level.start && (level.start..level.end).contains(&still.end);
+        let Some(start) = still.iter().find(stood).map(|still| still.end) else {
+            continue;
+        };
+        let rest = Level { start, ..*level };
+        let is_long = rest.end - rest.start >= found.settings.minimum_samples;
+        if is_long
+            && !still.iter().any(|still| overlap(still, &rest))
+            && takes_over(record, &rest, still)
+            && mode_at_large(record, rest.start, rest.end) == HoldMode::ForceHeld
+        {
+            likely.retain(|other| !overlap(other, &rest));
+            pressed.push(rest);
         }
     }
     // A machine that holds the force once, and hardly ever the jaw, does so again.
@@ -169,6 +200,15 @@ fn arrives(record: &Record, level: &Level, jaw: &SegmentSettings) -> bool {
     let far = (SEEN * jaw.noise).max(0.5 * jaw.tolerance);
     let faster = |from: usize| way(from, level.start) > far && speed(from, level.start) > FASTER * inside;
     level.start > 0 && before.into_iter().any(faster)
+}
+
+/// Whether the machine goes over from holding the jaw to holding the force that it has just then: the jaw stood, and creeps from there on.
+fn takes_over(record: &Record, level: &Level, still: &[Level]) -> bool {
+    let slack = ((level.end - level.start) / 20).max(3);
+    let stood = still
+        .iter()
+        .any(|still| still.end.abs_diff(level.start) <= slack && still.end > still.start + slack);
+    stood && slows_down(record, level, FIRST_HALF_TO_REST)
 }
 
 /// Whether a standstill of the jaw lies outside a level of the force, or is the end of its creep.

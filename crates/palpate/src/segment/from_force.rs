@@ -72,6 +72,7 @@ pub(super) fn phases(time: &[f64], force: &[f64], options: &SegmentOptions) -> R
     Ok(Segmentation {
         segments,
         ruptures: Vec::new(),
+        ripple: None,
         settings,
     })
 }

@@ -86,6 +86,7 @@ pub fn phases_with(
     Ok(Segmentation {
         segments,
         ruptures: Vec::new(),
+        ripple: None,
         settings,
     })
 }

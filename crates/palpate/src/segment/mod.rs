@@ -54,6 +54,7 @@ pub use mode::HoldMode;
 pub(crate) use mode::{change, mode as held_in};
 pub use options::{HoldStart, SegmentOptions, SegmentSettings};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
+pub use ripple::Ripple;
 pub use rupture::Rupture;
 
 use serde::{Deserialize, Serialize};
@@ -124,6 +125,9 @@ pub struct Segmentation {
     pub segments: Vec<Segment>,
     /// Where the body broke.
     pub ruptures: Vec<Rupture>,
+    /// The ripple of a jaw that hunts about the places it holds, if it does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ripple: Option<Ripple>,
     /// The thresholds used.
     pub settings: SegmentSettings,
 }

@@ -1,37 +1,62 @@
-//! The ripple of a controller that hunts about the force it holds.
+//! The ripple of a controller that hunts about what it holds.
+
+use serde::{Deserialize, Serialize};
 
 use super::levels::range;
 use super::turning::extremes;
 use crate::record::Record;
 use crate::statistics::{median, noise_in_time};
 
-/// Largest ripple from peak to peak, as a share of the range of the force: what is larger is a test of many cycles.
-const LARGEST: f64 = 0.2;
-/// Smallest ripple, as a share of that range and in standard deviations of the noise.
-const SMALLEST: (f64, f64) = (0.01, 6.0);
+/// Smallest and largest ripple of a force from peak to peak, as shares of its range: what is larger is a test of many cycles.
+const OF_FORCE: [f64; 2] = [0.01, 0.2];
+/// The same of a jaw, whose small cycles are more often meant.
+const OF_JAW: [f64; 2] = [0.001, 0.06];
+/// Smallest ripple in standard deviations of the noise.
+const SMALLEST: f64 = 6.0;
 /// Fewest half waves.
 const FEWEST: usize = 16;
 /// Share of the half waves that must last about as long as their median does.
 const REGULAR: f64 = 0.7;
 
+/// A regular ripple on a column.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Ripple {
+    /// From peak to peak, in the unit of the column.
+    pub height: f64,
+    /// Its period, s.
+    pub period: f64,
+}
+
 /// The record with its force averaged over one period of a regular ripple; `None` if it has none.
 pub(super) fn without_ripple(record: &Record) -> Option<Record> {
     let (time, force) = (record.time(), record.force());
-    let range = range(force);
-    let turn = (SMALLEST.0 * range).max(SMALLEST.1 * noise_in_time(time, force));
-    let turns = extremes(force, turn);
-    let small = |pair: &&[usize]| (force[pair[1]] - force[pair[0]]).abs() < LARGEST * range;
-    let halves: Vec<f64> = turns.windows(2).filter(small).map(|pair| time[pair[1]] - time[pair[0]]).collect();
+    let ripple = ripple(time, force, OF_FORCE)?;
+    let calm = means_within(time, force, 0.5 * ripple.period);
+    Record::new(time.to_vec(), record.displacement().map(<[f64]>::to_vec), calm).ok()
+}
+
+/// The ripple of a jaw about the places that it holds.
+pub(super) fn of_jaw(time: &[f64], displacement: &[f64]) -> Option<Ripple> {
+    ripple(time, displacement, OF_JAW)
+}
+
+fn ripple(time: &[f64], values: &[f64], [smallest, largest]: [f64; 2]) -> Option<Ripple> {
+    let range = range(values);
+    let turn = (smallest * range).max(SMALLEST * noise_in_time(time, values));
+    let turns = extremes(values, turn);
+    let small = |pair: &&[usize]| (values[pair[1]] - values[pair[0]]).abs() < largest * range;
+    let halves: Vec<&[usize]> = turns.windows(2).filter(small).collect();
     if halves.len() < FEWEST {
         return None;
     }
-    let half = median(&mut halves.clone());
-    let regular = halves.iter().filter(|other| (0.6..1.4).contains(&(*other / half))).count();
-    if (regular as f64) < REGULAR * halves.len() as f64 {
-        return None;
-    }
-    let calm = means_within(time, force, half);
-    Record::new(time.to_vec(), record.displacement().map(<[f64]>::to_vec), calm).ok()
+    let usual = |of: &dyn Fn(&[usize]) -> f64| median(&mut halves.iter().map(|pair| of(pair)).collect::<Vec<f64>>());
+    let lasts = |pair: &[usize]| time[pair[1]] - time[pair[0]];
+    let half = usual(&lasts);
+    let regular = halves.iter().filter(|pair| (0.6..1.4).contains(&(lasts(pair) / half))).count();
+    (regular as f64 >= REGULAR * halves.len() as f64).then(|| Ripple {
+        height: usual(&|pair| (values[pair[1]] - values[pair[0]]).abs()),
+        period: 2.0 * half,
+    })
 }
 
 /// Means of the samples within `half` of each, at the ends over what there is on both sides alike.

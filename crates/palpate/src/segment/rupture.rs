@@ -31,7 +31,7 @@ const LEAST_RISE: f64 = 0.2;
 /// Samples at the start of a standstill that tell its force.
 const FIRST: usize = 3;
 /// Ramps of fewer samples do not tell.
-const FEWEST: usize = 20;
+const FEWEST: usize = 10;
 
 /// Turns standstills after a rupture into rest, and says where the body broke.
 pub(super) fn ruptures(record: &Record, segments: &mut [Segment]) -> Vec<Rupture> {

@@ -6,6 +6,7 @@ use palpate::analysis::{AnalysisError, AnalysisOptions, Finding, corrected, susp
 use palpate::record::{Record, SignalReport};
 use palpate::segment::{Phase, SegmentError, Segmentation, TouchEstimate, find_contact_of};
 use palpate_files::description::TestDescription;
+use palpate_report::document::mode_word;
 use palpate_report::figure::Figure;
 use palpate_report::number::significant;
 use palpate_report::sparkline::{sparkline, strip};
@@ -74,6 +75,9 @@ impl Cut {
             Ok(found) => {
                 out.push_str(&self.phases(found));
                 out.push_str(&self.contact(found, test));
+                if let Some(seen) = found.ripple.map(Finding::from) {
+                    let _ = writeln!(out, "{}; {}", seen.seen(), seen.remedy());
+                }
                 for sign in suspicious_signs(&self.record) {
                     let _ = writeln!(out, "{}; {}", sign.seen(), sign.remedy());
                 }
@@ -125,6 +129,7 @@ impl Cut {
         let record = &self.record;
         let mut table = Table::new("phases", "Phases")
             .column(TableColumn::new("Phase", "phase", ""))
+            .column(TableColumn::new("Held", "mode", ""))
             .column(TableColumn::new("From", "start_s", "s"))
             .column(TableColumn::new("To", "end_s", "s"))
             .column(TableColumn::new("Samples", "samples", ""))
@@ -136,6 +141,7 @@ impl Cut {
             let end = record.displacement().map(|displacement| 1e3 * displacement[last]);
             table = table.row(vec![
                 Cell::text(format!("{:?}", segment.phase).to_lowercase()),
+                Cell::text(segment.mode.map_or("", mode_word)),
                 Cell::number(record.time()[segment.start], 6),
                 Cell::number(record.time()[last], 6),
                 Cell::Integer(segment.len() as i64),

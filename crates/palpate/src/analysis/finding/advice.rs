@@ -93,6 +93,13 @@ impl Finding {
             Self::ClocksSkewed { .. } => {
                 "two clocks or a filter: fits of holds do not mind, but forces in ramps stand at the wrong displacement"
             }
+            Self::ClocksOpen { .. } => "nothing was moved: forces in ramps may stand at the wrong displacement",
+            Self::JawHunts { .. } => {
+                "a controller hunts, or cycles are meant: holds are those of the mean place, and forces in them follow the swing"
+            }
+            Self::TouchApart { .. } => {
+                "the body does not load as the law of this rule does, or drifts in air; strains, areas and a modulus share the difference"
+            }
             Self::SignSuspicious { .. } => {
                 "palpate counts compression, or stretch of a strip, as positive in displacement and force; loading is taken for unloading otherwise"
             }
@@ -178,6 +185,13 @@ impl Finding {
             }
             Self::TouchNotFound { .. } => "choose another rule, or give the displacement of first touch",
             Self::ClocksSkewed { .. } => "set skew = \"auto\" in [clock] of the test description to take it away",
+            Self::ClocksOpen { .. } => {
+                "sample ramps faster, or give the skew in [clock] of the test description as a time"
+            }
+            Self::JawHunts { .. } => {
+                "tune the controller; for cycles that are meant set tolerance in [phases] below their height"
+            }
+            Self::TouchApart { .. } => "set touch in the test description to another rule, or to a displacement",
             Self::SignSuspicious { .. } => {
                 "if the file counts the other way round, set sign = -1 for that column in the test description"
             }

@@ -186,6 +186,27 @@ impl Finding {
                 with_error(1e3 * skew.abs(), 1e3 * standard_error),
                 if *skew > 0.0 { "later" } else { "earlier" }
             ),
+            Self::ClocksOpen {
+                skew: Some((skew, error)),
+            } => format!(
+                "the skew of the clocks was to be found; the starts and ends of ramps say {} ms",
+                with_error(1e3 * skew, 1e3 * error)
+            ),
+            Self::ClocksOpen { skew: None } => {
+                "the skew of the clocks was to be found; fewer than three starts and ends of ramps show in both columns"
+                    .to_owned()
+            }
+            Self::JawHunts { height, period } => format!(
+                "the jaw swings by {} mm from peak to peak every {} s about the places it holds",
+                significant(1e3 * height, 2),
+                significant(*period, 2)
+            ),
+            Self::TouchApart { apart, squeeze } => format!(
+                "the loading curve puts first touch {} mm {} the middle of the other rules, the largest squeeze is {} mm",
+                significant(1e3 * apart.abs(), 2),
+                if *apart > 0.0 { "behind" } else { "before" },
+                significant(1e3 * squeeze, 4)
+            ),
             Self::SignSuspicious { column, fall } if column == "force" => {
                 format!("the force first falls, to {} N below its start", significant(*fall, 3))
             }

@@ -101,13 +101,23 @@ pub(in crate::record) fn stray_rows(values: &[f64]) -> Vec<usize> {
     for i in 1..values.len().saturating_sub(1) {
         let (here, after) = (values[i], values[i + 1]);
         let stray = (here - before).abs().min((here - after).abs());
-        let alone = stray > least && (after - before).abs() < 0.1 * stray;
+        let alone = stray > least && (after - before).abs() < 0.1 * stray && !is_tip(values, i, 0.5 * stray);
         if alone {
             rows.push(i);
         }
         before = if alone { 0.5 * (before + after) } else { here };
     }
     rows
+}
+
+/// Whether the lines through the two rows before and the two after both lead to within `least` of row `i`: the corner of a triangle of
+/// few samples.
+fn is_tip(values: &[f64], i: usize, least: f64) -> bool {
+    let leads = |next: usize, far: Option<usize>| {
+        let far = far.and_then(|far| values.get(far));
+        far.is_some_and(|far| (2.0 * values[next] - far - values[i]).abs() < least)
+    };
+    leads(i - 1, i.checked_sub(2)) && leads(i + 1, Some(i + 2))
 }
 
 /// Those of the rows that stray alone which no test can have measured: zero exactly, or many times farther off than all other rows
@@ -278,6 +288,15 @@ mod tests {
         let mut random = Noise::new(7);
         let noise: Vec<f64> = (0..3000).map(|_| random.normal()).collect();
         assert_eq!(Values::of(Column::Force, &noise, None).strays.count, 0);
+    }
+
+    #[test]
+    fn corners_of_triangles_of_few_samples_are_no_strays() {
+        let corner = |i: usize| [0.0, 1.0, 2.0, 3.0, 2.0, 1.0][i % 6];
+        let mut triangle: Vec<f64> = (0..60).map(corner).chain((0..400).map(|i| 0.005 * f64::from(i))).collect();
+        assert_eq!(stray_rows(&triangle), [] as [usize; 0]);
+        triangle[300] = 0.0;
+        assert_eq!(stray_rows(&triangle), [300]);
     }
 
     #[test]
