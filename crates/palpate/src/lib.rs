@@ -69,6 +69,8 @@ pub mod calibrate;
 pub mod choose;
 pub mod contact;
 #[cfg(feature = "std")]
+pub mod grip;
+#[cfg(feature = "std")]
 pub mod identify;
 pub mod latency;
 #[cfg(feature = "std")]

@@ -131,7 +131,9 @@ impl Material {
         let count = trajectory.len();
         let (mut force, mut displacement) = (vec![0.0; count], vec![0.0; count]);
         let times = Sampling::Times(trajectory.time.clone());
-        let course = |contact: &CalibratedContact| simulate(drive, contact, &times).ok();
+        let longer = continued(drive, &trajectory);
+        let others = longer.as_ref().map_or(drive, Drive::from);
+        let course = |contact: &CalibratedContact| simulate(others, contact, &times).ok();
         for direction in self.directions() {
             let Some((high, low, width)) = both_sides(self, &direction, &course) else {
                 continue;
@@ -225,6 +227,19 @@ impl Material {
         }
         found
     }
+}
+
+/// A program with its last hold going on: steps that end at a force end earlier with other numbers, and samples must not lie behind.
+fn continued(drive: Drive<'_>, course: &Trajectory) -> Option<Vec<ProgramStep>> {
+    let Drive::Program(steps) = drive else {
+        return None;
+    };
+    let duration = course.time.last().copied().filter(|end| *end > 0.0)?;
+    let last = match steps.last()? {
+        ProgramStep::Press { .. } | ProgramStep::HoldForce { .. } => ProgramStep::HoldForce { duration },
+        _ => ProgramStep::HoldPosition { duration },
+    };
+    Some(steps.iter().copied().chain([last]).collect())
 }
 
 /// What comes out on either side of the best numbers along a direction, and how many standard deviations lie between; closer by where

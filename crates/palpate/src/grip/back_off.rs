@@ -1,0 +1,173 @@
+//! Squeeze over and go back: a hold that begins relaxed.
+
+use serde::{Deserialize, Serialize};
+
+use super::least::{bisected, check_duration};
+use super::{Grip, GripError, Holding, Plan};
+use crate::number::significant;
+use crate::simulate::step_ends;
+
+/// What a number of the material does to a squeeze that is to begin relaxed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Sensitivity {
+    /// Name of the number.
+    pub name: String,
+    /// Its relative standard error; `None` where it has none.
+    pub error: Option<f64>,
+    /// By how much the force at the start of the hold misses the relaxed one (N) if the number is 1 % larger and the jaw moves as planned.
+    pub missed: f64,
+    /// By how much farther (m) the jaw would have to go if the number were 1 % larger.
+    pub over: f64,
+}
+
+/// A squeeze with a retreat beside the plain one to the same place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BackOff {
+    /// The retreat.
+    pub backed: Holding,
+    /// The plain squeeze.
+    pub plain: Holding,
+    /// How far the jaw goes before it turns, m.
+    pub over: f64,
+    /// Time over which drifts are told, s.
+    pub duration: f64,
+    /// Change of the force over that time after the retreat, N.
+    pub drift: f64,
+    /// The same after the plain squeeze, N.
+    pub plain_drift: f64,
+    /// What the numbers of the material do to it.
+    pub sensitivities: Vec<Sensitivity>,
+}
+
+impl Grip<'_> {
+    /// Squeezes over and goes back to `displacement` (m; the least whose relaxed force is enough if not given) at the speed of the gripper, so that
+    /// the hold begins with no excess strain: the force at its start is the relaxed one and stays.
+    ///
+    /// The turning point is found to the last bits as the one from which the force at the end of the retreat is F_e: farther, and it rises
+    /// during the hold; nearer, and it falls. `duration` (s) is the time over which drifts are told. A linear law of several terms has
+    /// one excess a term; their sum is zero then, and a small drift is left.
+    ///
+    /// # Errors
+    /// [`GripError::NoSqueeze`] if no relaxed force within the limits is enough; [`GripError::NoBackOff`] if they end before the turning point;
+    /// [`GripError::BeyondLimit`] for a displacement beyond them.
+    pub fn back_off(&self, displacement: Option<f64>, duration: f64) -> Result<BackOff, GripError> {
+        check_duration(duration)?;
+        let (deepest, by) = self.limits.deepest(self.contact.specimen());
+        let displacement = match displacement {
+            Some(displacement) => displacement,
+            None => self.relaxed_squeeze(deepest, by)?,
+        };
+        let speed = self.limits.speed;
+        let plain = self.holding(&Plan::squeeze(displacement, speed))?;
+        let over = self.turning_point(displacement)?;
+        let plan = Plan::back_off(over, displacement, speed);
+        let drift = |plan: &Plan| -> Result<f64, GripError> {
+            let ends = self.ends(&plan.held(duration))?;
+            Ok(ends[ends.len() - 1].force - ends[ends.len() - 2].force)
+        };
+        Ok(BackOff {
+            drift: drift(&plan)?,
+            plain_drift: drift(&plain.plan)?,
+            sensitivities: self.sensitivities(displacement, over),
+            backed: self.holding(&plan)?,
+            plain,
+            over,
+            duration,
+        })
+    }
+
+    /// The least displacement whose relaxed force is enough, m.
+    fn relaxed_squeeze(&self, deepest: f64, by: String) -> Result<f64, GripError> {
+        let is_enough = |d: f64| self.relaxed_force(d) >= self.needed_force(d);
+        if !is_enough(deepest) {
+            return Err(GripError::NoSqueeze {
+                needed: self.needed_force(deepest),
+                reached: self.relaxed_force(deepest),
+                duration: f64::INFINITY,
+                by,
+            });
+        }
+        // A hair more, for rounding in the force at the end of the retreat.
+        Ok((bisected(0.0, deepest, |d| Ok(is_enough(d)))?.1 * (1.0 + 1e-9)).min(deepest))
+    }
+
+    /// Where the jaw turns so that the hold begins relaxed, m.
+    fn turning_point(&self, displacement: f64) -> Result<f64, GripError> {
+        let (mut farthest, mut by) = self.limits.deepest(self.contact.specimen());
+        if let Some(limit) = self.limits.force {
+            let is_over = |d: f64| Ok(self.force_of(d, d, None) > limit);
+            if is_over(farthest)? {
+                farthest = bisected(displacement, farthest, is_over)?.0;
+                by = format!("largest force of {} N", significant(limit, 4));
+            }
+        }
+        self.turned(displacement, farthest, None).ok_or(GripError::NoBackOff {
+            displacement,
+            limit: farthest,
+            by,
+        })
+    }
+
+    /// The same with other factors of the numbers.
+    fn turned(&self, displacement: f64, farthest: f64, factors: Option<&[f64]>) -> Option<f64> {
+        let relaxed = self.relaxed_with(displacement, factors)?;
+        let is_low = |over: f64| Ok(self.force_of(over, displacement, factors) <= relaxed);
+        if farthest < displacement || !is_low(farthest).ok()? {
+            return None;
+        }
+        bisected(displacement, farthest, is_low).ok().map(|(_, over)| over)
+    }
+
+    /// Force at the end of a retreat, N; infinite where it cannot be simulated, so that it counts as too high.
+    fn force_of(&self, over: f64, displacement: f64, factors: Option<&[f64]>) -> f64 {
+        let steps = Plan::back_off(over, displacement, self.limits.speed).steps;
+        let ends = match factors.map(|factors| self.material.contact_off(factors)) {
+            None => self.ends(&steps),
+            Some(Some(contact)) => step_ends(&steps, &contact),
+            Some(None) => return f64::INFINITY,
+        };
+        ends.ok().and_then(|ends| ends.last().map(|end| end.force)).unwrap_or(f64::INFINITY)
+    }
+
+    fn relaxed_with(&self, displacement: f64, factors: Option<&[f64]>) -> Option<f64> {
+        let Some(factors) = factors else {
+            return Some(self.relaxed_force(displacement));
+        };
+        let contact = self.material.contact_off(factors)?;
+        let body = contact.specimen();
+        let u = body.contact_displacement(displacement);
+        Some(body.force(body.equilibrium_strain(u), u))
+    }
+
+    /// Central differences, a thousandth to either side, told per hundredth.
+    fn sensitivities(&self, displacement: f64, over: f64) -> Vec<Sensitivity> {
+        const STEP: f64 = 1e-3;
+        let (deepest, _) = self.limits.deepest(self.contact.specimen());
+        let numbers = &self.material.numbers;
+        let of = |index: usize| -> Option<Sensitivity> {
+            let factors =
+                |by: f64| -> Vec<f64> { (0..numbers.len()).map(|i| if i == index { 1.0 + by } else { 1.0 }).collect() };
+            let missed = |by: f64| -> Option<f64> {
+                let factors = factors(by);
+                Some(
+                    self.force_of(over, displacement, Some(&factors))
+                        - self.relaxed_with(displacement, Some(&factors))?,
+                )
+            };
+            let turned = |by: f64| self.turned(displacement, deepest, Some(&factors(by)));
+            let per_cent = |high: f64, low: f64| (high - low) / (2.0 * STEP) / 100.0;
+            let number = &numbers[index];
+            let error = number.estimate.standard_error.map(|error| error / number.estimate.value);
+            Some(Sensitivity {
+                name: number.name.clone(),
+                error,
+                missed: per_cent(missed(STEP)?, missed(-STEP)?),
+                over: per_cent(turned(STEP)?, turned(-STEP)?),
+            })
+        };
+        (0..numbers.len())
+            .filter_map(of)
+            .filter(|found| found.missed.is_finite() && found.over.is_finite())
+            .collect()
+    }
+}

@@ -1,0 +1,131 @@
+//! Why there is no grip.
+
+use crate::simulate::SimulateError;
+
+/// Why there is no grip.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum GripError {
+    /// A number that describes no load, no gripper and no question.
+    #[error("{name} must be {expected}, found {found}{unit}")]
+    Number {
+        /// What it is.
+        name: &'static str,
+        /// What it must be.
+        expected: &'static str,
+        /// What was given, SI.
+        found: f64,
+        /// Its unit, behind a blank.
+        unit: &'static str,
+    },
+    /// A body that was tested bonded to its grips.
+    #[error(
+        "the material was tested in grips that can pull; a grasp needs one that was squeezed by jaws that can leave it"
+    )]
+    Bonded,
+    /// A squeeze that is beyond what the gripper may do.
+    #[error("{name} of {found}{unit} is asked for, the limit is {limit}{unit}")]
+    BeyondLimit {
+        /// What goes too far.
+        name: &'static str,
+        /// What was asked for or is met.
+        found: f64,
+        /// The limit.
+        limit: f64,
+        /// Unit, behind a blank.
+        unit: &'static str,
+    },
+    /// No squeeze within the limits holds.
+    #[error(
+        "no squeeze within the limits holds: {needed:.4} N are needed, and {reached:.4} N are there after {duration} s at the most ({by})"
+    )]
+    NoSqueeze {
+        /// Force that is needed, N.
+        needed: f64,
+        /// The most there is at the end, N.
+        reached: f64,
+        /// How long it should hold, s; infinite for relaxed forces.
+        duration: f64,
+        /// Which limit stops it.
+        by: String,
+    },
+    /// A retreat that no squeeze within the limits prepares.
+    #[error("to begin the hold at {displacement:.6} m relaxed, the jaw would have to go beyond {limit:.6} m ({by})")]
+    NoBackOff {
+        /// Where the jaw is to hold, m.
+        displacement: f64,
+        /// How far it may go, m.
+        limit: f64,
+        /// What stops it there.
+        by: String,
+    },
+    /// A band that squeezes cannot keep the force in.
+    #[error(
+        "the band from {low:.4} N to {high:.4} N is too narrow: {time:.3} s on, after {moves} moves, the next comes too soon, or is one too many"
+    )]
+    TooManyMoves {
+        /// When, s.
+        time: f64,
+        /// How many.
+        moves: usize,
+        /// Lower edge, N.
+        low: f64,
+        /// Upper edge, N.
+        high: f64,
+    },
+    /// A simulation that could not be run.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+}
+
+impl GripError {
+    /// Whether the answer is no, and the question none to complain about.
+    #[must_use]
+    pub fn is_answer(&self) -> bool {
+        matches!(
+            self,
+            Self::NoSqueeze { .. } | Self::NoBackOff { .. } | Self::BeyondLimit { .. } | Self::TooManyMoves { .. }
+        )
+    }
+
+    /// What would help.
+    #[must_use]
+    pub fn hint(&self) -> &'static str {
+        match self {
+            Self::NoSqueeze { .. } => {
+                "allow a larger force or stroke, raise the friction, or take a lighter load or a lower safety factor"
+            }
+            Self::NoBackOff { .. } => "allow a larger stroke or force, close faster, or hold at a smaller squeeze",
+            Self::BeyondLimit { .. } => "ask for less, or raise the limit",
+            Self::TooManyMoves { .. } => "widen the band, allow longer pauses, or hold the force",
+            Self::Bonded => "calibrate on a test with separation = true in [contact]",
+            Self::Number { .. } | Self::Simulate(_) => "",
+        }
+    }
+}
+
+pub(super) fn at_least(name: &'static str, found: f64, least: f64, unit: &'static str) -> Result<(), GripError> {
+    let expected = if least == 0.0 { "finite and not below 0" } else { "finite and not below 1" };
+    if found.is_finite() && found >= least {
+        Ok(())
+    } else {
+        Err(GripError::Number {
+            name,
+            expected,
+            found,
+            unit,
+        })
+    }
+}
+
+pub(super) fn above_zero(name: &'static str, found: f64, unit: &'static str) -> Result<(), GripError> {
+    if found.is_finite() && found > 0.0 {
+        Ok(())
+    } else {
+        Err(GripError::Number {
+            name,
+            expected: "finite and above 0",
+            found,
+            unit,
+        })
+    }
+}

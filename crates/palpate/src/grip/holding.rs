@@ -1,0 +1,332 @@
+//! How long a squeeze holds.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Grasp, GripError, Limits, Plan, PlanKind};
+use crate::calibrate::{CalibratedContact, Material, Prediction};
+use crate::simulate::{ProgramStep, Sampling, Separation, SimulateError, StepEnd, step_ends, work_by_step};
+
+/// How long a hold lasts.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Lasts {
+    /// So long, s; 0 if it slips at once.
+    For(f64),
+    /// Longer than ten years.
+    Always,
+}
+
+impl Lasts {
+    /// The time, s; `None` for always.
+    #[must_use]
+    pub fn seconds(self) -> Option<f64> {
+        match self {
+            Self::For(time) => Some(time),
+            Self::Always => None,
+        }
+    }
+
+    /// Whether it is `duration` (s) at least.
+    #[must_use]
+    pub fn covers(self, duration: f64) -> bool {
+        self.seconds().is_none_or(|time| time >= duration)
+    }
+}
+
+/// Ten years, s: what holds that long holds always.
+pub(super) const ALWAYS: f64 = 3.156e8;
+
+/// A calibrated body in a gripper.
+///
+/// ```
+/// use palpate::calibrate::{Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUnit, Shown};
+/// use palpate::contact::{Shape, Sides};
+/// use palpate::grip::{Grasp, Grip, Lasts, Limits, Plan};
+/// use palpate::identify::Estimate;
+/// use palpate::simulate::Separation;
+///
+/// // The paper's ball, its numbers without errors.
+/// let number = |name: &str, unit, value| MaterialNumber { name: name.to_owned(), unit, estimate: Estimate::fixed(value) };
+/// let ball = Material {
+///     body: Body { shape: Shape::Ball { radius: 0.035 }, sides: Sides::Two, separation: Separation::Unilateral, levels: vec![] },
+///     candidate: Candidate { law: "latency".parse()?, equilibrium: EquilibriumLaw::EvenStrain },
+///     numbers: vec![
+///         number("modulus", MaterialUnit::Pascal, 28e3),
+///         number("exponent", MaterialUnit::One, 5.0),
+///         number("rate_coefficient", MaterialUnit::PerSecond, 2e4),
+///         number("layer_thickness", MaterialUnit::Metre, 0.035 / 8.0),
+///     ],
+///     uncertainty: None,
+///     noise: 0.0,
+///     shown: Shown { longest_hold: 20.0, deepest: 0.015, fastest: 0.5 / 60.0, slowest: 0.5 / 60.0, largest_force: 14.3 },
+/// };
+/// // 0.25 kg with μ = 0.6 need 2.04 N; 5 mm at 500 mm/min start with 3.04 N and relax to 1.06 N.
+/// let grip = Grip::new(&ball, Grasp::new(0.25, 0.6)?, Limits::new(0.5 / 60.0)?, 0.95)?;
+/// let holding = grip.holding(&Plan::squeeze(0.005, 0.5 / 60.0))?;
+/// assert!((holding.needed_force - 2.043_052).abs() < 1e-6 && (holding.start_force - 3.035_025).abs() < 1e-6);
+/// let Lasts::For(time) = holding.lasts else { panic!() };
+/// assert!((time - 0.610_7).abs() < 1e-3, "{time}"); // s until it slips
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Grip<'a> {
+    pub(super) material: &'a Material,
+    pub(super) contact: CalibratedContact,
+    pub(super) grasp: Grasp,
+    pub(super) limits: Limits,
+    pub(super) confidence: f64,
+}
+
+/// What becomes of a plan whose end is held in displacement; SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Holding {
+    /// The plan.
+    pub plan: Plan,
+    /// How long it takes to close, s.
+    pub closing: f64,
+    /// Displacement of the jaw in the hold, m.
+    pub displacement: f64,
+    /// Force that is needed there, N.
+    pub needed_force: f64,
+    /// Force at the start of the hold, N.
+    pub start_force: f64,
+    /// The largest force, N.
+    pub peak_force: f64,
+    /// The force that the hold tends to, N.
+    pub relaxed_force: f64,
+    /// Work that the jaws do while they close, J; what the body gives back is not counted against it.
+    pub work: f64,
+    /// From the start of the hold until it slips.
+    pub lasts: Lasts,
+    /// Ends of the interval of that time by what the calibration leaves open; `None` where it says nothing.
+    pub interval: Option<(Lasts, Lasts)>,
+    /// How sharply the time depends on the squeeze, d ln(time)/d(displacement), 1/m; `None` where it is no plain squeeze, or slips at once or never.
+    pub sharpness: Option<f64>,
+}
+
+impl<'a> Grip<'a> {
+    /// A body, its load and the gripper.
+    ///
+    /// # Errors
+    /// [`GripError::Number`] for numbers that describe none, a confidence outside 0…1 among them; [`GripError::Bonded`].
+    pub fn new(material: &'a Material, grasp: Grasp, limits: Limits, confidence: f64) -> Result<Self, GripError> {
+        grasp.check()?;
+        limits.check()?;
+        if !(confidence > 0.0 && confidence < 1.0) {
+            return Err(GripError::Number {
+                name: "confidence",
+                expected: "between 0 and 1",
+                found: confidence,
+                unit: "",
+            });
+        }
+        if material.body.separation == Separation::Bonded {
+            return Err(GripError::Bonded);
+        }
+        Ok(Self {
+            material,
+            contact: material.contact(),
+            grasp,
+            limits,
+            confidence,
+        })
+    }
+
+    /// The load.
+    #[must_use]
+    pub fn grasp(&self) -> &Grasp {
+        &self.grasp
+    }
+
+    /// The gripper.
+    #[must_use]
+    pub fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    /// Force (N) that is needed while the jaw is at a displacement (m).
+    #[must_use]
+    pub fn needed_force(&self, displacement: f64) -> f64 {
+        let body = self.contact.specimen();
+        self.grasp.needed_force(body, body.contact_displacement(displacement))
+    }
+
+    /// Force (N) of the relaxed body at a displacement (m) of the jaw.
+    #[must_use]
+    pub fn relaxed_force(&self, displacement: f64) -> f64 {
+        let body = self.contact.specimen();
+        let u = body.contact_displacement(displacement);
+        body.force(body.equilibrium_strain(u), u)
+    }
+
+    /// What becomes of a plan once its end is held in displacement.
+    ///
+    /// The body is simulated along the plan; it slips when the force falls below the one that is needed. The interval of that time is where the edges
+    /// of the band of the predicted force do so ([`Material::predict`]).
+    ///
+    /// # Errors
+    /// [`GripError::BeyondLimit`] for a plan that the gripper may not take, [`GripError::Simulate`] for one that cannot be simulated.
+    pub fn holding(&self, plan: &Plan) -> Result<Holding, GripError> {
+        let ends = self.ends(&plan.steps)?;
+        let (Some(end), peak_force) = (ends.last(), peak(&ends)) else {
+            return Err(SimulateError::EmptyProgram.into());
+        };
+        self.within_limits(&ends)?;
+        let needed_force = self.needed_force(end.displacement);
+        let (lasts, interval) = self.slips(plan, end, needed_force)?;
+        Ok(Holding {
+            closing: end.time,
+            displacement: end.displacement,
+            needed_force,
+            start_force: end.force,
+            peak_force,
+            relaxed_force: self.relaxed_force(end.displacement),
+            work: self.work(&plan.steps)?,
+            lasts,
+            interval,
+            sharpness: self.sharpness(plan, lasts),
+            plan: plan.clone(),
+        })
+    }
+
+    /// The course of the force over a plan and a hold of `duration` (s), with its band: `samples` times over the squeeze and as many over the hold.
+    ///
+    /// # Errors
+    /// [`GripError::Simulate`] for a plan that cannot be simulated.
+    pub fn course(&self, plan: &Plan, duration: f64, samples: usize) -> Result<Prediction, GripError> {
+        self.course_of(&plan.held(duration), samples)
+    }
+
+    /// The course over any program.
+    pub(super) fn course_of(&self, steps: &[ProgramStep], samples: usize) -> Result<Prediction, GripError> {
+        let ends = self.ends(steps)?;
+        let (mut times, mut from) = (vec![0.0], 0.0);
+        for end in &ends {
+            // Denser where a step begins: that is where the force changes fastest.
+            let share = |i: usize| (i as f64 / samples as f64).powi(2);
+            times.extend((1..=samples).map(|i| from + (end.time - from) * share(i)).filter(|time| *time > from));
+            from = end.time;
+        }
+        times.dedup();
+        Ok(self.material.predict(steps, &Sampling::Times(times), self.confidence)?)
+    }
+
+    /// How long squeezes to other displacements (m) at the same speed (m/s) hold; those that cannot be made are left out.
+    #[must_use]
+    pub fn neighbours(&self, displacements: &[f64], speed: f64) -> Vec<(f64, Lasts)> {
+        let lasts = |displacement: &f64| Some((*displacement, self.lasts(&Plan::squeeze(*displacement, speed)).ok()?));
+        displacements.iter().filter_map(lasts).collect()
+    }
+
+    /// Where the steps of a program end.
+    pub(super) fn ends(&self, steps: &[ProgramStep]) -> Result<Vec<StepEnd>, SimulateError> {
+        step_ends(steps, &self.contact)
+    }
+
+    /// Work that the jaws do over a program, J.
+    pub(super) fn work(&self, steps: &[ProgramStep]) -> Result<f64, SimulateError> {
+        Ok(work_by_step(steps, &self.contact)?.iter().map(|step| step.work + step.given_back).sum())
+    }
+
+    fn within_limits(&self, ends: &[StepEnd]) -> Result<(), GripError> {
+        let (deepest, _) = self.limits.deepest(self.contact.specimen());
+        let far = ends.iter().map(|end| end.displacement).fold(0.0, f64::max);
+        let beyond = |name, found, limit, unit| GripError::BeyondLimit {
+            name,
+            found,
+            limit,
+            unit,
+        };
+        if far > deepest {
+            return Err(beyond("squeeze", far, deepest, " m"));
+        }
+        let peak = peak(ends);
+        match self.limits.force {
+            Some(force) if peak > force * (1.0 + 1e-9) => Err(beyond("force", peak, force, " N")),
+            _ => Ok(()),
+        }
+    }
+
+    /// From the start of the hold until a plan slips, with the best numbers.
+    fn lasts(&self, plan: &Plan) -> Result<Lasts, GripError> {
+        let ends = self.ends(&plan.steps)?;
+        let end = ends.last().ok_or(SimulateError::EmptyProgram)?;
+        let needed = self.needed_force(end.displacement);
+        let mut surplus = |times: &[f64]| -> Result<Vec<f64>, GripError> {
+            times.iter().map(|time| Ok(self.force_after(plan, *time)? - needed)).collect()
+        };
+        crossing(&mut surplus)
+    }
+
+    fn force_after(&self, plan: &Plan, time: f64) -> Result<f64, SimulateError> {
+        Ok(self.ends(&plan.held(time))?.last().map_or(0.0, |end| end.force))
+    }
+
+    fn slips(&self, plan: &Plan, end: &StepEnd, needed: f64) -> Result<(Lasts, Option<(Lasts, Lasts)>), GripError> {
+        let lasts = self.lasts(plan)?;
+        if self.material.uncertainty.is_none() {
+            return Ok((lasts, None));
+        }
+        let program = plan.held(ALWAYS);
+        let edge = |pick: fn((f64, f64)) -> f64| {
+            let mut surplus = |times: &[f64]| -> Result<Vec<f64>, GripError> {
+                let at = times.iter().map(|time| end.time + time).collect();
+                let predicted = self.material.predict(&program, &Sampling::Times(at), self.confidence)?;
+                Ok((0..times.len()).map(|i| pick(predicted.force_interval(i)) - needed).collect())
+            };
+            crossing(&mut surplus)
+        };
+        Ok((lasts, Some((edge(|band| band.0)?, edge(|band| band.1)?))))
+    }
+
+    fn sharpness(&self, plan: &Plan, lasts: Lasts) -> Option<f64> {
+        /// Share of the squeeze to either side.
+        const STEP: f64 = 2e-3;
+        let PlanKind::Squeeze { displacement, speed } = plan.kind else {
+            return None;
+        };
+        lasts.seconds().filter(|time| *time > 0.0)?;
+        let log = |by: f64| {
+            let time = self.lasts(&Plan::squeeze(displacement * (1.0 + by), speed)).ok()?.seconds()?;
+            (time > 0.0).then(|| time.ln())
+        };
+        Some((log(STEP)? - log(-STEP)?) / (2.0 * STEP * displacement))
+    }
+}
+
+/// The largest force at the ends of steps, between which it rises or falls only.
+pub(super) fn peak(ends: &[StepEnd]) -> f64 {
+    ends.iter().map(|end| end.force).fold(0.0, f64::max)
+}
+
+/// The first time since the start of a hold at which a surplus of force falls below 0.
+fn crossing(surplus: &mut impl FnMut(&[f64]) -> Result<Vec<f64>, GripError>) -> Result<Lasts, GripError> {
+    /// Times per decade, and the first power of ten.
+    const PER_DECADE: i32 = 8;
+    const FIRST: i32 = -4;
+    let decades = ALWAYS.log10() - f64::from(FIRST);
+    let count = (decades * f64::from(PER_DECADE)).ceil() as i32;
+    let mut times = vec![0.0];
+    times.extend((0..count).map(|i| 10f64.powf(f64::from(FIRST) + f64::from(i) / f64::from(PER_DECADE))));
+    times.push(ALWAYS);
+    let values = surplus(&times)?;
+    let Some(short) = values.iter().position(|value| *value < 0.0) else {
+        return Ok(Lasts::Always);
+    };
+    if short == 0 {
+        return Ok(Lasts::For(0.0));
+    }
+    let (mut holds, mut slips) = (times[short - 1], times[short]);
+    for _ in 0..60 {
+        let middle = if holds == 0.0 { 0.5 * slips } else { (holds * slips).sqrt() };
+        if !(middle > holds && middle < slips) {
+            break;
+        }
+        if surplus(&[middle])?[0] < 0.0 {
+            slips = middle;
+        } else {
+            holds = middle;
+        }
+    }
+    Ok(Lasts::For(holds))
+}

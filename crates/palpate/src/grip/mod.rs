@@ -1,0 +1,36 @@
+//! Will it hold: from a calibrated body to the squeeze that a gripper should make.
+//!
+//! | file | what |
+//! |---|---|
+//! | `grasp.rs` | the load, and the normal force that it needs: Coulomb friction with the soft finger's limit surface |
+//! | `limits.rs` | what the gripper can do |
+//! | `plan.rs` | ways to close it |
+//! | `holding.rs` | how long a squeeze holds, with an interval |
+//! | `least.rs` | the least squeeze, peak force or work that holds long enough |
+//! | `back_off.rs` | squeeze over, go back, and the force stays where it is |
+//! | `pressed.rs` | the same grasp with the force held |
+//! | `regrip.rs` | when to squeeze again |
+//! | `error.rs` | why there is none |
+//!
+//! Two jaws press the body from opposite sides with the same force F; friction at both contacts carries the load. With the displacement
+//! held F falls to its equilibrium by the calibrated law; with the force held the body creeps.
+
+mod back_off;
+mod error;
+mod grasp;
+mod holding;
+mod least;
+mod limits;
+mod plan;
+mod pressed;
+mod regrip;
+
+pub use back_off::{BackOff, Sensitivity};
+pub use error::GripError;
+pub use grasp::{Grasp, STANDARD_GRAVITY};
+pub use holding::{Grip, Holding, Lasts};
+pub use least::Objective;
+pub use limits::Limits;
+pub use plan::{Plan, PlanKind};
+pub use pressed::Pressed;
+pub use regrip::{Band, Move, Regrip, Schedule};
