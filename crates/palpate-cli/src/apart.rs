@@ -75,6 +75,10 @@ fn files_of(command: &Command) -> (Vec<&PathBuf>, Vec<&PathBuf>) {
             always.extend([&a.material, &a.protocol]);
             (reads, writes) = (Vec::new(), vec![&a.out, &a.figure]);
         }
+        Command::Grip(a) => {
+            always.push(&a.material);
+            (reads, writes) = (Vec::new(), vec![&a.figure]);
+        }
         Command::Reproduce(_)
         | Command::Analyze(_)
         | Command::Compare(_)

@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use palpate::identify::SampleChoice;
 use palpate::laws::Law;
 use palpate::segment::{ContactChoice, HoldStart};
-use palpate::units::{Dimension, parse};
+use palpate::units::{Dimension, parse, split_number};
 use palpate_files::description::{parse_hold_start, parse_touch};
 
 /// Soft contact that remembers: squeeze-and-hold tests turned into laws, and laws into forces.
@@ -27,6 +27,7 @@ Examples:
   palpate compare test.csv                       which law of relaxation to use, and how sure that is
   palpate calibrate test.csv --test ball.toml --out material.toml   one set of numbers for it all
   palpate predict material.toml --protocol grip.toml --at \"60 s\"    force then, with its interval
+  palpate grip material.toml --mass 150g --friction 0.6   will it hold, and how to squeeze
   palpate simulate squeeze.toml --out force.csv  force of a squeeze protocol
   palpate sweep sweep.toml --figure peak.svg     the same for many numbers at once
 
@@ -43,6 +44,7 @@ pub(crate) enum Command {
     Compare(CompareArguments),
     Calibrate(CalibrateArguments),
     Predict(PredictArguments),
+    Grip(GripArguments),
     Convert(ConvertArguments),
     Schema(SchemaArguments),
     Completions(CompletionsArguments),
@@ -461,6 +463,152 @@ pub(crate) struct PredictArguments {
     pub(crate) figure: Option<PathBuf>,
 }
 
+/// Plan a grip of a calibrated body between two jaws: how long it holds, and how to squeeze.
+///
+/// Coulomb friction at both jaws carries the load, with the torsion that a soft contact bears. Shown beside one another: the squeeze
+/// with the displacement held, which loses force; squeeze and back off, which does not; the force held, under which the body creeps; and,
+/// where a band is given, when to squeeze again.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Without --squeeze the least one that holds for --hold is found; with it, how long it holds.
+
+Examples:
+  palpate grip ball.toml --mass 250g --friction 0.6 --hold \"60 s\"
+  palpate grip ball.toml --mass 250g --friction 0.6 --squeeze \"5 mm\"      how long does this hold
+  palpate grip ball.toml --mass 250g --friction 0.6 --hold always --objective peak-force
+  palpate grip ball.toml --mass 250g --friction 0.6 --control force --stroke \"8 mm\"
+  palpate grip ball.toml --mass 250g --friction 0.6 --hold \"1 h\" --band \"2.1..3 N\" --out plan
+
+Exit codes: 0 it holds, 1 it does not or no squeeze within the limits does, 2 could not run.")]
+pub(crate) struct GripArguments {
+    /// Material file of palpate calibrate
+    #[arg(value_name = "MATERIAL.toml")]
+    pub(crate) material: PathBuf,
+    #[command(flatten)]
+    pub(crate) load: LoadArguments,
+    #[command(flatten)]
+    pub(crate) gripper: GripperArguments,
+    /// What the gripper holds once it has closed
+    #[arg(long, value_enum, default_value_t = ControlName::Position, help_heading = "Question")]
+    pub(crate) control: ControlName,
+    /// Squeeze that is asked about
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true, help_heading = "Question")]
+    pub(crate) squeeze: Option<f64>,
+    /// Force that is asked about, with --control force
+    #[arg(long, value_name = "FORCE", value_parser = force, allow_hyphen_values = true, help_heading = "Question")]
+    pub(crate) force: Option<f64>,
+    /// How long it is to hold, or "always"; 60 s if neither this nor a squeeze is given
+    #[arg(long, value_name = "TIME", value_parser = hold_time, allow_hyphen_values = true, help_heading = "Question")]
+    pub(crate) hold: Option<f64>,
+    /// What the squeeze should have least of
+    #[arg(long, value_enum, default_value_t = ObjectiveName::Squeeze, conflicts_with = "squeeze", help_heading = "Question")]
+    pub(crate) objective: ObjectiveName,
+    /// The lower edge of the band of the force has to hold, not the best guess
+    #[arg(long, help_heading = "Question")]
+    pub(crate) assured: bool,
+    /// Band in which squeezes again and again keep the force, such as "2.1..3 N"
+    #[arg(long, value_name = "FORCES", value_parser = band, allow_hyphen_values = true, help_heading = "Question")]
+    pub(crate) band: Option<(f64, f64)>,
+    /// What that schedule should have least of
+    #[arg(long, value_enum, default_value_t = RegripName::Moves, requires = "band", help_heading = "Question")]
+    pub(crate) regrip: RegripName,
+    /// The shortest pause between two squeezes of least work
+    #[arg(long, value_name = "TIME", value_parser = time, default_value = "1 s", allow_hyphen_values = true, requires = "band", help_heading = "Question")]
+    pub(crate) shortest_pause: f64,
+    /// Coverage of the intervals, between 0 and 1
+    #[arg(long, value_name = "SHARE", default_value = "0.95", value_parser = coverage, allow_hyphen_values = true)]
+    pub(crate) confidence: f64,
+    /// Folder for a report with figure, tables, series and JSON
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// File for a figure (.svg or .png)
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) figure: Option<PathBuf>,
+    /// What to print on standard output
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
+}
+
+/// The load.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Load")]
+pub(crate) struct LoadArguments {
+    /// Mass of the body
+    #[arg(long, value_name = "MASS", value_parser = mass, allow_hyphen_values = true)]
+    pub(crate) mass: f64,
+    /// Coefficient of friction between jaw and body
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    pub(crate) friction: f64,
+    /// Safety factor on friction, 1 or more
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0, allow_hyphen_values = true)]
+    pub(crate) safety: f64,
+    /// Acceleration of the hand upwards
+    #[arg(long, value_name = "ACCELERATION", value_parser = acceleration, allow_hyphen_values = true)]
+    pub(crate) acceleration_up: Option<f64>,
+    /// Acceleration across gravity, in the plane of the jaws
+    #[arg(long, value_name = "ACCELERATION", value_parser = acceleration, allow_hyphen_values = true)]
+    pub(crate) acceleration_across: Option<f64>,
+    /// Acceleration along the closing axis, which unloads one jaw
+    #[arg(long, value_name = "ACCELERATION", value_parser = acceleration, allow_hyphen_values = true)]
+    pub(crate) acceleration_closing: Option<f64>,
+    /// Torque about the closing axis
+    #[arg(long, value_name = "TORQUE", value_parser = torque, allow_hyphen_values = true)]
+    pub(crate) torque: Option<f64>,
+    /// Distance of the centre of mass from the closing axis
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
+    pub(crate) off_centre: Option<f64>,
+    /// Gravity; 9.80665 m/s^2 if not given
+    #[arg(long, value_name = "ACCELERATION", value_parser = acceleration, allow_hyphen_values = true)]
+    pub(crate) gravity: Option<f64>,
+}
+
+/// The gripper.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Gripper")]
+pub(crate) struct GripperArguments {
+    /// The fastest that the jaws go; the fastest ramp of the test if not given
+    #[arg(long, value_name = "SPEED", value_parser = speed, allow_hyphen_values = true)]
+    pub(crate) speed: Option<f64>,
+    /// How far the jaws may squeeze
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
+    pub(crate) stroke: Option<f64>,
+    /// The largest force that gripper and body bear
+    #[arg(long, value_name = "FORCE", value_parser = force, allow_hyphen_values = true)]
+    pub(crate) most_force: Option<f64>,
+    /// How long closing may take
+    #[arg(long, value_name = "TIME", value_parser = time, default_value = "2 s", allow_hyphen_values = true)]
+    pub(crate) close_within: f64,
+}
+
+/// What the gripper holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ControlName {
+    /// The place of its jaws: the force relaxes
+    Position,
+    /// Its force: the body creeps
+    Force,
+}
+
+/// What a squeeze should have least of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ObjectiveName {
+    /// Way of the jaws
+    Squeeze,
+    /// The largest force: do not bruise
+    PeakForce,
+    /// Work of the jaws
+    Work,
+}
+
+/// What a schedule should have least of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RegripName {
+    /// Squeezes
+    Moves,
+    /// Work of the jaws
+    Work,
+}
+
 /// What linear laws take the loading before a hold for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum RampName {
@@ -524,6 +672,8 @@ pub(crate) enum SchemaName {
     Calibration,
     /// Result of `palpate compare --format json`
     Comparison,
+    /// Result of `palpate grip --format json`
+    Grip,
     /// summary.json of `palpate reproduce`
     Reproduction,
 }
@@ -549,6 +699,34 @@ fn force(text: &str) -> Result<f64, String> {
 
 fn length(text: &str) -> Result<f64, String> {
     positive(text, Dimension::Length)
+}
+
+fn mass(text: &str) -> Result<f64, String> {
+    positive(text, Dimension::Mass)
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    positive(text, Dimension::Speed)
+}
+
+fn acceleration(text: &str) -> Result<f64, String> {
+    parse(text, Dimension::Acceleration).map_err(|error| error.to_string())
+}
+
+fn torque(text: &str) -> Result<f64, String> {
+    parse(text, Dimension::Torque).map_err(|error| error.to_string())
+}
+
+fn hold_time(text: &str) -> Result<f64, String> {
+    if text.trim() == "always" { Ok(f64::INFINITY) } else { time(text) }
+}
+
+/// `2.1..3 N`, or with a unit at both ends.
+fn band(text: &str) -> Result<(f64, f64), String> {
+    let (low, high) = text.split_once("..").ok_or("expected two forces, such as \"2.1..3 N\"")?;
+    let unit = split_number(high.trim()).1;
+    let low = if split_number(low.trim()).1.is_empty() { format!("{low} {unit}") } else { low.to_owned() };
+    Ok((force(&low)?, force(high)?))
 }
 
 fn positive(text: &str, dimension: Dimension) -> Result<f64, String> {

@@ -59,6 +59,7 @@ where
         Command::Compare(arguments) => commands::compare::run(&arguments),
         Command::Calibrate(arguments) => commands::calibrate::run(&arguments),
         Command::Predict(arguments) => commands::predict::run(&arguments),
+        Command::Grip(arguments) => commands::grip::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
         Command::Completions(arguments) => commands::completions::run(&arguments),
     };

@@ -15,6 +15,7 @@ pub mod compared;
 pub mod document;
 mod escape;
 pub mod figure;
+pub mod gripped;
 pub mod page;
 mod script;
 pub mod sparkline;

@@ -39,6 +39,12 @@ pub enum Dimension {
     Compliance,
     /// Voltage of a sensor in V.
     Voltage,
+    /// Mass in kg.
+    Mass,
+    /// Acceleration in m/s².
+    Acceleration,
+    /// Torque in N m.
+    Torque,
 }
 
 impl Dimension {
@@ -57,6 +63,9 @@ impl Dimension {
             Self::ForceRate => "rate of force",
             Self::Compliance => "compliance",
             Self::Voltage => "voltage",
+            Self::Mass => "mass",
+            Self::Acceleration => "acceleration",
+            Self::Torque => "torque",
         }
     }
 
@@ -75,6 +84,9 @@ impl Dimension {
             Self::ForceRate => FORCE_RATE,
             Self::Compliance => COMPLIANCE,
             Self::Voltage => VOLTAGE,
+            Self::Mass => MASS,
+            Self::Acceleration => ACCELERATION,
+            Self::Torque => TORQUE,
         }
     }
 
@@ -89,6 +101,7 @@ impl Dimension {
 const INCH: f64 = 0.0254;
 const POUND_FORCE: f64 = 4.448_221_615_260_5;
 const KILOGRAM_FORCE: f64 = 9.806_65;
+const POUND: f64 = 0.453_592_37;
 
 const LENGTH: &[(&str, f64)] =
     &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6), ("um", 1e-6), ("nm", 1e-9), ("in", INCH)];
@@ -172,6 +185,36 @@ const COMPLIANCE: &[(&str, f64)] = &[
     ("in/lbf", INCH / POUND_FORCE),
 ];
 const VOLTAGE: &[(&str, f64)] = &[("V", 1.0), ("mV", 1e-3), ("µV", 1e-6), ("uV", 1e-6)];
+const MASS: &[(&str, f64)] = &[
+    ("kg", 1.0),
+    ("g", 1e-3),
+    ("mg", 1e-6),
+    ("µg", 1e-9),
+    ("ug", 1e-9),
+    ("lb", POUND),
+    ("oz", POUND / 16.0),
+];
+const ACCELERATION: &[(&str, f64)] = &[
+    ("m/s²", 1.0),
+    ("m/s^2", 1.0),
+    ("m/s2", 1.0),
+    ("cm/s²", 1e-2),
+    ("cm/s^2", 1e-2),
+    ("mm/s²", 1e-3),
+    ("mm/s^2", 1e-3),
+    ("g", KILOGRAM_FORCE),
+];
+const TORQUE: &[(&str, f64)] = &[
+    ("N m", 1.0),
+    ("Nm", 1.0),
+    ("N·m", 1.0),
+    ("N mm", 1e-3),
+    ("Nmm", 1e-3),
+    ("N·mm", 1e-3),
+    ("mN m", 1e-3),
+    ("mNm", 1e-3),
+    ("mN·m", 1e-3),
+];
 const FREQUENCY: &[(&str, f64)] = &[("Hz", 1.0), ("kHz", 1e3), ("/s", 1.0), ("1/s", 1.0)];
 
 /// Why a quantity could not be read.
@@ -224,6 +267,9 @@ fn example(dimension: Dimension) -> &'static str {
         Dimension::ForceRate => "10 N/s",
         Dimension::Compliance => "0.5 um/N",
         Dimension::Voltage => "2.5 V",
+        Dimension::Mass => "150 g",
+        Dimension::Acceleration => "2 m/s^2",
+        Dimension::Torque => "5 N mm",
     }
 }
 
@@ -318,6 +364,10 @@ mod tests {
             ("0.5 um/N", Dimension::Compliance, 0.5e-6),
             ("20 nm/nN", Dimension::Compliance, 20.0),
             ("3 mV", Dimension::Voltage, 3e-3),
+            ("0.15kg", Dimension::Mass, 0.15),
+            ("150 g", Dimension::Mass, 0.15),
+            ("0.5 g", Dimension::Acceleration, 4.903_325),
+            ("5 N mm", Dimension::Torque, 5e-3),
         ] {
             assert_eq!(parse(text, dimension), Ok(si), "{text}");
         }

@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<Outcome, Failure> {
     Ok(Outcome::Done)
 }
 
-fn described(error: DescriptionError) -> Failure {
+pub(super) fn described(error: DescriptionError) -> Failure {
     let hint = error.hint();
     Failure::new(error, hint)
 }

@@ -1,7 +1,9 @@
 //! `palpate schema`: JSON Schemas.
 
 use palpate_files::description::{schema_material, schema_protocol, schema_test};
-use palpate_report::document::{AnalysisDocument, CalibrationDocument, ComparisonDocument, ReproductionDocument};
+use palpate_report::document::{
+    AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument,
+};
 use schemars::schema_for;
 
 use crate::arguments::{SchemaArguments, SchemaName};
@@ -16,6 +18,7 @@ pub(crate) fn run(arguments: &SchemaArguments) -> Result<Outcome, Failure> {
         SchemaName::Calibration => schema_for!(CalibrationDocument).to_value(),
         SchemaName::Analysis => schema_for!(AnalysisDocument).to_value(),
         SchemaName::Comparison => schema_for!(ComparisonDocument).to_value(),
+        SchemaName::Grip => schema_for!(GripDocument).to_value(),
         SchemaName::Reproduction => schema_for!(ReproductionDocument).to_value(),
     };
     let text = serde_json::to_string_pretty(&schema).map_err(|error| Failure::new(error, None))?;

@@ -316,6 +316,9 @@ fn usual_unit(dimension: Dimension) -> &'static str {
         Dimension::ForceRate => "N/s",
         Dimension::Compliance => "um/N",
         Dimension::Voltage => "V",
+        Dimension::Mass => "g",
+        Dimension::Acceleration => "m/s^2",
+        Dimension::Torque => "N mm",
     }
 }
 

@@ -8,12 +8,14 @@
 //! | `signals.rs` | the columns of a record, what was done to them, first touch |
 //! | `calibration.rs` | `palpate.calibration/1`, laws calibrated on a whole record |
 //! | `comparison.rs` | `palpate.comparison/1`, laws compared on the holds of records |
+//! | `grip.rs` | `palpate.grip/1`, a planned grip |
 //! | `reproduction.rs` | `palpate.reproduction/1`, the summary of the reproduced study |
 
 mod analysis;
 mod calibration;
 mod comparison;
 mod fit;
+mod grip;
 mod reproduction;
 mod settings;
 mod signals;
@@ -29,6 +31,10 @@ pub use comparison::{
 };
 pub use fit::FitDocument;
 pub(crate) use fit::termination;
+pub use grip::{
+    BackOffDocument, GraspDocument, GripDocument, GripLimitsDocument, HoldingDocument, LastsDocument, MoveDocument,
+    NeighbourDocument, PressedDocument, RefusedDocument, ScheduleDocument, SensitivityDocument,
+};
 pub use reproduction::{CheckDocument, ReproductionDocument};
 pub use settings::SettingsDocument;
 pub use signals::{

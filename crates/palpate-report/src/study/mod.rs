@@ -11,6 +11,9 @@
 //! | `comparison_page.rs` | their page |
 //! | `calibration.rs` | a whole record calibrated: tables, text and figure |
 //! | `prediction.rs` | what a calibrated body does: series, table and figure |
+//! | `grip.rs` | a planned grip: tables, sentences, text |
+//! | `grip_figure.rs` | its force, margin and displacement over time |
+//! | `grip_page.rs` | its page |
 //! | `findings.rs` | what was found, gathered over the holds |
 //! | `method.rs` | the settings that a page tells |
 //! | `law_figures.rs` | the law and its closed form (figures 1 and 2 of the paper) |
@@ -28,6 +31,9 @@ mod comparison_page;
 mod comparison_tables;
 mod cut_figure;
 mod findings;
+mod grip;
+mod grip_figure;
+mod grip_page;
 mod hysteresis;
 mod law_figures;
 mod method;
@@ -46,6 +52,12 @@ pub use calibration::{calibration_figure, calibration_remarks, calibration_text,
 pub use comparison_page::comparison_bundle;
 pub use comparison_tables::{comparison_markdown, comparison_text};
 pub use cut_figure::cut_figure;
+pub use grip::{
+    grip_question, grip_remarks, grip_table, grip_text, grip_verdict, neighbour_table, schedule_table,
+    sensitivity_table,
+};
+pub use grip_figure::grip_figure;
+pub use grip_page::grip_bundle;
 pub use hysteresis::{cycle_table, hysteresis_figure, step_work_table};
 pub use prediction::{prediction_figure, prediction_table, write_prediction};
 pub use record_page::analysis_bundle;

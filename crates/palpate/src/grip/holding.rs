@@ -132,6 +132,18 @@ impl<'a> Grip<'a> {
         })
     }
 
+    /// The body.
+    #[must_use]
+    pub fn material(&self) -> &Material {
+        self.material
+    }
+
+    /// Coverage of the intervals.
+    #[must_use]
+    pub fn confidence(&self) -> f64 {
+        self.confidence
+    }
+
     /// The load.
     #[must_use]
     pub fn grasp(&self) -> &Grasp {

@@ -10,11 +10,13 @@
 //! | `back_off.rs` | squeeze over, go back, and the force stays where it is |
 //! | `pressed.rs` | the same grasp with the force held |
 //! | `regrip.rs` | when to squeeze again |
+//! | `answer.rs` | all of it for one question |
 //! | `error.rs` | why there is none |
 //!
 //! Two jaws press the body from opposite sides with the same force F; friction at both contacts carries the load. With the displacement
 //! held F falls to its equilibrium by the calibrated law; with the force held the body creeps.
 
+mod answer;
 mod back_off;
 mod error;
 mod grasp;
@@ -25,6 +27,7 @@ mod plan;
 mod pressed;
 mod regrip;
 
+pub use answer::{Answer, Control, Followed, Question};
 pub use back_off::{BackOff, Sensitivity};
 pub use error::GripError;
 pub use grasp::{Grasp, STANDARD_GRAVITY};

@@ -128,6 +128,9 @@ fn suffix(dimension: Option<Dimension>) -> &'static str {
         Some(Dimension::ForceRate) => "_n_per_s",
         Some(Dimension::Compliance) => "_m_per_n",
         Some(Dimension::Voltage) => "_v",
+        Some(Dimension::Mass) => "_kg",
+        Some(Dimension::Acceleration) => "_m_per_s2",
+        Some(Dimension::Torque) => "_n_m",
     }
 }
 

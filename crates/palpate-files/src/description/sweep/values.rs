@@ -151,6 +151,9 @@ fn forms(dimension: Option<Dimension>) -> String {
         Some(Dimension::ForceRate) => ("1..20 N/s", "1, 5, 20 N/s"),
         Some(Dimension::Compliance) => ("0.1..10 um/N", "0.1, 1, 10 um/N"),
         Some(Dimension::Voltage) => ("1..10 V", "1, 5, 10 V"),
+        Some(Dimension::Mass) => ("10..500 g", "10, 100, 500 g"),
+        Some(Dimension::Acceleration) => ("1..10 m/s^2", "1, 5, 10 m/s^2"),
+        Some(Dimension::Torque) => ("1..10 N mm", "1, 5, 10 N mm"),
     };
     format!("values such as \"linear {ends}, 9\", \"log {ends}, 50\" or \"{list}\"")
 }

@@ -1,0 +1,423 @@
+//! A planned grip: tables, sentences and text.
+
+use palpate::contact::Sides;
+use palpate::grip::{BackOff, Control, Grasp, Holding, Lasts, Objective, PlanKind, Pressed, Regrip, Schedule};
+
+use super::findings::wrapped;
+use super::prediction::percent;
+use crate::gripped::GrippedBody;
+use crate::number::{counted, significant};
+use crate::table::{Cell, Table, TableColumn};
+
+/// A time as people say it.
+fn lasted(seconds: f64) -> String {
+    let (unit, length) = match seconds {
+        s if s < 300.0 => ("s", 1.0),
+        s if s < 3.0 * 3600.0 => ("min", 60.0),
+        s if s < 2.0 * 86_400.0 => ("h", 3600.0),
+        s if s < 2.0 * 31_557_600.0 => ("days", 86_400.0),
+        _ => ("years", 31_557_600.0),
+    };
+    format!("{} {unit}", significant(seconds / length, 3))
+}
+
+fn lasts(time: Lasts) -> String {
+    time.seconds().map_or_else(|| "always".to_owned(), lasted)
+}
+
+fn mm(metres: f64) -> String {
+    format!("{} mm", significant(1e3 * metres, 4))
+}
+
+fn newton(force: f64) -> String {
+    format!("{} N", significant(force, 4))
+}
+
+/// The load in a sentence.
+fn load(grasp: &Grasp) -> String {
+    let mass = if grasp.mass < 1.0 {
+        format!("{} g", significant(1e3 * grasp.mass, 4))
+    } else {
+        format!("{} kg", significant(grasp.mass, 4))
+    };
+    let mut parts = vec![format!("{mass} with μ = {}", significant(grasp.friction, 3))];
+    if grasp.safety != 1.0 {
+        parts.push(format!("safety factor {}", significant(grasp.safety, 3)));
+    }
+    for (name, value) in [
+        ("upwards", grasp.acceleration_up),
+        ("across", grasp.acceleration_across),
+        ("along the closing axis", grasp.acceleration_closing),
+    ] {
+        if value != 0.0 {
+            parts.push(format!("{} m/s² {name}", significant(value, 3)));
+        }
+    }
+    if grasp.torsion() > 0.0 {
+        parts.push(format!("{} N mm of torsion at each jaw", significant(1e3 * grasp.torsion(), 3)));
+    }
+    parts.join(", ")
+}
+
+const NO_INTERVAL: &str = "the calibration says nothing of it";
+
+/// The grips beside one another.
+#[must_use]
+pub fn grip_table(body: &GrippedBody<'_>) -> Table {
+    let answer = &body.answer;
+    let share = percent(body.grip.confidence());
+    let caption = format!("Grips by the calibrated law; the end is {} behind the closing.", lasted(answer.shown));
+    let column = |heading: &str, key: &str, unit: &str| TableColumn::new(heading, key, unit);
+    let mut table = Table::new("grips", caption)
+        .column(column("Grip", "grip", ""))
+        .column(column("Closed", "closing_s", "s"))
+        .column(column("Squeeze", "displacement_mm", "mm"))
+        .column(column("at end", "end_displacement_mm", "mm"))
+        .column(column("Force", "start_force_n", "N"))
+        .column(column("peak", "peak_force_n", "N"))
+        .column(column("at end", "end_force_n", "N"))
+        .column(column("needed", "needed_force_n", "N"))
+        .column(column("Holds", "lasts_s", "s"))
+        .column(column(&format!("{share} from"), "lasts_low_s", "s"))
+        .column(column("to", "lasts_high_s", "s"))
+        .column(column("Work", "work_mj", "mJ"));
+    let time = |time: Lasts| match time {
+        Lasts::For(seconds) => Cell::number(seconds, 4),
+        Lasts::Always => Cell::text("always"),
+    };
+    let end = |course: &palpate::calibrate::Prediction| course.trajectory.force.last().copied().unwrap_or(0.0);
+    let holding = |name: &str, found: &Holding, end: f64| {
+        let interval = |pick: fn((Lasts, Lasts)) -> Lasts| {
+            found.interval.map_or_else(|| Cell::missing(NO_INTERVAL), |interval| time(pick(interval)))
+        };
+        vec![
+            Cell::text(name),
+            Cell::number(found.closing, 3),
+            Cell::number(1e3 * found.displacement, 4),
+            Cell::number(1e3 * found.displacement, 4),
+            Cell::number(found.start_force, 4),
+            Cell::number(found.peak_force, 4),
+            Cell::number(end, 4),
+            Cell::number(found.needed_force, 4),
+            time(found.lasts),
+            interval(|(low, _)| low),
+            interval(|(_, high)| high),
+            Cell::number(1e3 * found.work, 3),
+        ]
+    };
+    if let Ok(squeeze) = &answer.squeeze {
+        table = table.row(holding("squeeze", &squeeze.found, end(&squeeze.course)));
+    }
+    if let Ok(back_off) = &answer.back_off {
+        table = table.row(holding("squeeze and back off", &back_off.found.backed, end(&back_off.course)));
+    }
+    if let Ok(pressed) = &answer.pressed {
+        let found = &pressed.found;
+        let lasts = match (found.holds, found.stroke_ends) {
+            (false, _) => Cell::number(0.0, 4),
+            (true, Some(time)) => Cell::number(time, 4),
+            (true, None) => Cell::text("always"),
+        };
+        table = table.row(vec![
+            Cell::text("force held"),
+            Cell::number(found.closing, 3),
+            Cell::number(1e3 * found.displacement_start, 4),
+            Cell::number(1e3 * found.displacement_end, 4),
+            Cell::number(found.force, 4),
+            Cell::number(found.force, 4),
+            Cell::number(found.force, 4),
+            Cell::number(found.needed_force, 4),
+            lasts,
+            Cell::missing("a force that is held does not fall"),
+            Cell::missing("a force that is held does not fall"),
+            Cell::number(1e3 * found.work, 3),
+        ]);
+    }
+    table
+}
+
+/// How long squeezes a little less and more deep hold.
+#[must_use]
+pub fn neighbour_table(body: &GrippedBody<'_>) -> Option<Table> {
+    let answer = &body.answer;
+    let squeeze = answer.squeeze.as_ref().ok().filter(|_| answer.neighbours.len() > 1)?;
+    let speed = significant(1e3 * body.grip.limits().speed, 3);
+    let mut table = Table::new("neighbours", format!("Squeezes beside it, at {speed} mm/s."))
+        .column(TableColumn::new("Squeeze", "displacement_mm", "mm"))
+        .column(TableColumn::new("beside it", "change_percent", "%"))
+        .column(TableColumn::new("Holds", "lasts_s", "s"));
+    for (place, time) in &answer.neighbours {
+        table = table.row(vec![
+            Cell::number(1e3 * place, 4),
+            Cell::number((100.0 * (place / squeeze.found.displacement - 1.0)).round(), 2),
+            time.seconds().map_or_else(|| Cell::text("always"), |seconds| Cell::number(seconds, 4)),
+        ]);
+    }
+    Some(table)
+}
+
+/// What the numbers of the material do to squeeze and back off.
+#[must_use]
+pub fn sensitivity_table(body: &GrippedBody<'_>) -> Option<Table> {
+    let found = &body.answer.back_off.as_ref().ok()?.found;
+    let caption = "Squeeze and back off: what happens if a number of the material is 1 % larger than was found.";
+    let mut table = Table::new("sensitivities", caption)
+        .column(TableColumn::new("Number", "number", ""))
+        .column(TableColumn::new("known to", "standard_error_percent", "%"))
+        .column(TableColumn::new("Force missed", "missed_mn", "mN"))
+        .column(TableColumn::new("Turn farther by", "over_um", "µm"));
+    for one in &found.sensitivities {
+        table = table.row(vec![
+            Cell::text(one.name.replace('_', " ")),
+            Cell::number_or(one.error.map(|error| 100.0 * error), 2, "it has no error"),
+            // Rounding alone is nothing.
+            Cell::number(if one.missed.abs() < 1e-9 { 0.0 } else { 1e3 * one.missed }, 3),
+            Cell::number(1e6 * one.over, 3),
+        ]);
+    }
+    (!found.sensitivities.is_empty()).then_some(table)
+}
+
+/// The squeezes of a schedule.
+#[must_use]
+pub fn schedule_table(body: &GrippedBody<'_>) -> Option<Table> {
+    let found = &body.answer.schedule.as_ref()?.as_ref().ok()?.found;
+    let mut table = Table::new("schedule", "When to squeeze again; times since first touch.")
+        .column(TableColumn::new("Move", "move", ""))
+        .column(TableColumn::new("at", "time_s", "s"))
+        .column(TableColumn::new("Jaw from", "from_mm", "mm"))
+        .column(TableColumn::new("to", "to_mm", "mm"))
+        .column(TableColumn::new("Force from", "force_from_n", "N"))
+        .column(TableColumn::new("to", "force_to_n", "N"));
+    for (index, step) in found.moves.iter().enumerate() {
+        table = table.row(vec![
+            Cell::Integer(index as i64 + 1),
+            Cell::number(step.time, 5),
+            Cell::number(1e3 * step.from, 5),
+            Cell::number(1e3 * step.to, 5),
+            Cell::number(step.force_from, 4),
+            Cell::number(step.force_to, 4),
+        ]);
+    }
+    Some(table)
+}
+
+/// The verdict in a sentence.
+#[must_use]
+pub fn grip_verdict(body: &GrippedBody<'_>) -> String {
+    let answer = &body.answer;
+    let holds = match answer.holds() {
+        Ok(holds) => holds,
+        Err(error) => return format!("No: {error}."),
+    };
+    let word = if holds { "Yes" } else { "No" };
+    match answer.question.control {
+        Control::Position => match &answer.squeeze {
+            Ok(squeeze) => format!("{word}: {}", of_squeeze(body, &squeeze.found, holds)),
+            Err(error) => format!("No: {error}."),
+        },
+        Control::Force => match &answer.pressed {
+            Ok(pressed) => format!("{word}: {}", of_pressed(&pressed.found, holds)),
+            Err(error) => format!("No: {error}."),
+        },
+    }
+}
+
+fn of_squeeze(body: &GrippedBody<'_>, found: &Holding, holds: bool) -> String {
+    let what = match found.plan.kind {
+        PlanKind::Squeeze { displacement, speed } => {
+            format!("a squeeze of {} at {} mm/s", mm(displacement), significant(1e3 * speed, 3))
+        }
+        PlanKind::Settle { force, settling, .. } => {
+            format!("a force of {} that is kept for {} before the jaws are locked", newton(force), lasted(settling))
+        }
+        PlanKind::BackOff { over, displacement, .. } => {
+            format!("a squeeze of {} and back to {}", mm(over), mm(displacement))
+        }
+    };
+    let interval = found.interval.map_or_else(String::new, |(low, high)| {
+        let share = percent(body.grip.confidence());
+        format!(" ({share}: {} to {})", lasts(low), lasts(high))
+    });
+    match found.lasts {
+        Lasts::For(0.0) => format!(
+            "{what} slips at once: {} are needed, {} are there when the jaws stop.",
+            newton(found.needed_force),
+            newton(found.start_force)
+        ),
+        Lasts::Always => {
+            format!("{what} holds always{interval}: the relaxed force of {} is enough.", newton(found.relaxed_force))
+        }
+        Lasts::For(time) => {
+            let until = body.answer.question.duration.filter(|_| !holds).map_or_else(String::new, |wanted| {
+                if wanted.is_finite() {
+                    format!("; {} were asked for", lasted(wanted))
+                } else {
+                    "; always was asked for".to_owned()
+                }
+            });
+            format!("{what} holds for {}{interval}{until}.", lasted(time))
+        }
+    }
+}
+
+fn of_pressed(found: &Pressed, holds: bool) -> String {
+    if holds {
+        return format!("a force of {} that is held does not slip.", newton(found.force));
+    }
+    match found.stroke_ends {
+        Some(time) if found.holds => format!(
+            "a force of {} is enough, but the body creeps, and the jaws come to the end of their stroke after {}.",
+            newton(found.force),
+            lasted(time)
+        ),
+        _ => format!("a force of {} slips at once: {} are needed.", newton(found.force), newton(found.needed_force)),
+    }
+}
+
+/// What the tables mean, in sentences: the advice of both ways of control beside each other, retreat, schedule, limits of the test.
+#[must_use]
+pub fn grip_remarks(body: &GrippedBody<'_>) -> Vec<String> {
+    let answer = &body.answer;
+    let mut remarks = Vec::new();
+    if let Ok(squeeze) = &answer.squeeze {
+        remarks.extend(on_squeeze(&squeeze.found));
+    }
+    if let (Ok(squeeze), Ok(pressed)) = (&answer.squeeze, &answer.pressed) {
+        remarks.push(both_ways(&squeeze.found, &pressed.found, answer.shown));
+    }
+    if let Ok(back_off) = &answer.back_off {
+        remarks.push(on_back_off(&back_off.found));
+    }
+    if let Some(Ok(schedule)) = &answer.schedule {
+        remarks.push(on_schedule(&schedule.found));
+    }
+    for (name, error) in body.refused() {
+        if name != body.asked() {
+            remarks.push(format!("No {name}: {error}."));
+        }
+    }
+    if body.grip.material().body.sides == Sides::One {
+        remarks.push(
+            "The material was tested from one side: each of the two jaws moves as far as is said here, towards the other.".to_owned(),
+        );
+    }
+    remarks.extend(body.extrapolations().iter().map(|beyond| format!("Beyond the test: {beyond}.")));
+    remarks
+}
+
+fn on_squeeze(found: &Holding) -> Option<String> {
+    let sharpness = found.sharpness?;
+    let more = (sharpness * 0.01 * found.displacement).exp();
+    Some(if more < 2.0 {
+        format!("1 % more squeeze holds {} % longer.", significant(100.0 * (more - 1.0), 2))
+    } else {
+        format!("1 % more squeeze holds {} times as long.", significant(more, 2))
+    })
+}
+
+fn both_ways(squeeze: &Holding, pressed: &Pressed, shown: f64) -> String {
+    let surplus = 100.0 * (squeeze.peak_force / squeeze.needed_force - 1.0);
+    let creep = pressed.displacement_relaxed.map_or_else(String::new, |end| format!(", to {} in the end", mm(end)));
+    format!(
+        "Jaws that stand lose force: they squeeze {} % harder than is needed, and wait. A force that is held stays, and {} do: the body gives way instead, from {} to {} in {}{creep}.",
+        significant(surplus.max(0.0), 2),
+        newton(pressed.force),
+        mm(pressed.displacement_start),
+        mm(pressed.displacement_end),
+        lasted(shown),
+    )
+}
+
+fn on_back_off(found: &BackOff) -> String {
+    let lost = significant(found.plain_drift, 3);
+    let worst = found
+        .sensitivities
+        .iter()
+        .filter_map(|one| Some((one, 100.0 * one.error? * one.missed.abs())))
+        .max_by(|a, b| a.1.total_cmp(&b.1));
+    let open = worst.map_or_else(String::new, |(one, missed)| {
+        format!(
+            " Of what is open the {} matters most: a standard error of it is {} N.",
+            one.name.replace('_', " "),
+            significant(missed, 2)
+        )
+    });
+    format!(
+        "Squeeze to {} and go back to {}: the hold begins relaxed, and {} stay ({} N in {}; {lost} N after a plain squeeze to the same place).{open}",
+        mm(found.over),
+        mm(found.backed.displacement),
+        newton(found.backed.start_force),
+        // A drift of rounding alone is none.
+        significant(if found.drift.abs() < 1e-9 * found.backed.start_force { 0.0 } else { found.drift }, 3),
+        lasted(found.duration),
+    )
+}
+
+fn on_schedule(found: &Schedule) -> String {
+    let least = match found.objective {
+        Regrip::FewestMoves => "fewest moves",
+        Regrip::LeastWork { .. } => "least work",
+    };
+    format!(
+        "{} keep the force between {} and {} for {} ({least}), with {} mJ of work; the jaws end at {}.",
+        counted(found.moves.len(), "squeeze"),
+        newton(found.band.low),
+        newton(found.band.high),
+        lasted(found.duration),
+        significant(1e3 * found.work, 3),
+        mm(found.end_displacement),
+    )
+}
+
+/// What was asked, in a sentence.
+#[must_use]
+pub fn grip_question(body: &GrippedBody<'_>) -> String {
+    let question = &body.answer.question;
+    let limits = body.grip.limits();
+    let mut bounds = vec![
+        format!("Jaws at up to {} mm/s", significant(1e3 * limits.speed, 3)),
+        format!("closed within {}", lasted(limits.closing)),
+    ];
+    bounds.extend(limits.stroke.map(|stroke| format!("stroke of {}", mm(stroke))));
+    bounds.extend(limits.force.map(|force| format!("at most {}", newton(force))));
+    let wanted = match (question.control, question.squeeze, question.force) {
+        (Control::Position, Some(squeeze), _) => format!("how long does a squeeze of {} hold", mm(squeeze)),
+        (Control::Position, None, _) => format!(
+            "{} with the displacement held",
+            match question.objective {
+                Objective::Squeeze => "least squeeze",
+                Objective::PeakForce => "least peak force",
+                Objective::Work => "least work",
+            }
+        ),
+        (Control::Force, _, Some(force)) => format!("does {} hold, force held", newton(force)),
+        (Control::Force, _, None) => "least force, held".to_owned(),
+    };
+    let time = question.duration.map_or_else(String::new, |time| {
+        if time.is_finite() { format!(" for {}", lasted(time)) } else { " for always".to_owned() }
+    });
+    format!("{}. {}; {wanted}{time}.", load(body.grip.grasp()), bounds.join(", "))
+}
+
+/// A planned grip as text for a terminal.
+#[must_use]
+pub fn grip_text(body: &GrippedBody<'_>) -> String {
+    let mut text = format!("{}\n", body.path);
+    text.push_str(&wrapped(&grip_question(body)));
+    text.push('\n');
+    text.push_str(&wrapped(&grip_verdict(body)));
+    let grips = grip_table(body);
+    let tables = [
+        (!grips.rows.is_empty()).then_some(grips),
+        neighbour_table(body),
+        sensitivity_table(body),
+        schedule_table(body),
+    ];
+    for table in tables.into_iter().flatten() {
+        text.push_str(&format!("\n{}", table.to_plain_text()));
+    }
+    text.push('\n');
+    grip_remarks(body).iter().for_each(|remark| text.push_str(&wrapped(remark)));
+    text
+}

@@ -1,0 +1,205 @@
+//! A question to a gripper, and all that answers it.
+
+use serde::{Deserialize, Serialize};
+
+use super::least::check_duration;
+use super::{BackOff, Band, Grip, GripError, Holding, Lasts, Objective, Plan, Pressed, Regrip, Schedule};
+use crate::calibrate::Prediction;
+
+/// What the gripper holds once it has closed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Control {
+    /// Its jaws stand: the force relaxes.
+    Position,
+    /// Its force: the body creeps.
+    Force,
+}
+
+/// What is asked of a grip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Question {
+    /// What is held, and which of the grips the verdict is on.
+    pub control: Control,
+    /// Squeeze that is asked about, m; the least by `objective` if not given.
+    pub squeeze: Option<f64>,
+    /// Force that is asked about where the force is held, N; the least that is enough if not given.
+    pub force: Option<f64>,
+    /// How long it is to hold, s, infinite for always. If not given, a squeeze or force is asked how long it does, and the least is sought for a
+    /// minute.
+    pub duration: Option<f64>,
+    /// What the squeeze should have least of.
+    pub objective: Objective,
+    /// Whether the lower edge of the band has to hold.
+    pub assured: bool,
+    /// Band for a schedule of squeezes.
+    pub band: Option<Band>,
+    /// What the schedule has least of.
+    pub regrip: Regrip,
+}
+
+/// A grip with its course over time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Followed<T> {
+    /// The grip.
+    pub found: T,
+    /// Its course, with bands.
+    pub course: Prediction,
+}
+
+/// All that answers a question: the grips beside one another, each or why there is none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// The question.
+    pub question: Question,
+    /// How long the courses go on behind the squeeze, s.
+    pub shown: f64,
+    /// The squeeze with the displacement held.
+    pub squeeze: Result<Followed<Holding>, GripError>,
+    /// How long squeezes a little less and more deep hold, by displacement in m.
+    pub neighbours: Vec<(f64, Lasts)>,
+    /// Squeeze and back off, to the same place if that holds relaxed.
+    pub back_off: Result<Followed<BackOff>, GripError>,
+    /// The force held.
+    pub pressed: Result<Followed<Pressed>, GripError>,
+    /// Squeezes that keep the force in the band, if one was asked for.
+    pub schedule: Option<Result<Followed<Schedule>, GripError>>,
+}
+
+impl Question {
+    /// The least squeeze, with the displacement held for a time (s).
+    #[must_use]
+    pub fn hold_for(duration: f64) -> Self {
+        Self {
+            duration: Some(duration),
+            ..Self::default()
+        }
+    }
+
+    /// How long a squeeze to a displacement (m) holds.
+    #[must_use]
+    pub fn how_long(squeeze: f64) -> Self {
+        Self {
+            squeeze: Some(squeeze),
+            ..Self::default()
+        }
+    }
+}
+
+impl Default for Question {
+    /// The least squeeze that holds for a minute.
+    fn default() -> Self {
+        Self {
+            control: Control::Position,
+            squeeze: None,
+            force: None,
+            duration: None,
+            objective: Objective::Squeeze,
+            assured: false,
+            band: None,
+            regrip: Regrip::FewestMoves,
+        }
+    }
+}
+
+/// How long the least squeeze holds if nothing is said, s.
+const MINUTE: f64 = 60.0;
+
+/// Samples of a course, a step.
+const SAMPLES: usize = 200;
+
+impl Grip<'_> {
+    /// Answers a question: the squeeze with its neighbours, squeeze and back off, the force held, and the schedule, beside one another.
+    ///
+    /// # Errors
+    /// Of numbers that make no question ([`GripError::Number`]); what cannot be had is told in its place in the answer.
+    pub fn answer(&self, question: &Question) -> Result<Answer, GripError> {
+        let wanted = question.duration.unwrap_or(MINUTE);
+        check_duration(wanted)?;
+        let squeeze = match question.squeeze {
+            Some(displacement) => {
+                super::error::above_zero("squeeze", displacement, " m")?;
+                self.holding(&Plan::squeeze(displacement, self.limits.speed))
+            }
+            None => self.least(question.objective, wanted, question.assured),
+        };
+        let shown = shown(question, squeeze.as_ref().ok());
+        let around = |found: &Holding| {
+            let places = [0.9, 0.95, 1.0, 1.05, 1.1].map(|share| share * found.displacement);
+            self.neighbours(&places, self.limits.speed)
+        };
+        let neighbours = squeeze.as_ref().map(around).unwrap_or_default();
+        let same = question.squeeze.filter(|place| self.relaxed_force(*place) >= self.needed_force(*place));
+        let back_off = self.back_off(same, shown);
+        let pressed = self.pressed(question.force, shown);
+        let schedule = question.band.map(|band| self.regrip(band, question.regrip, shown));
+        let follow = |steps: &Plan| self.course(steps, shown, SAMPLES);
+        Ok(Answer {
+            question: *question,
+            shown,
+            squeeze: squeeze.and_then(|found| followed(found, |found| follow(&found.plan))),
+            neighbours,
+            back_off: back_off.and_then(|found| followed(found, |found| follow(&found.backed.plan))),
+            pressed: pressed.and_then(|found| followed(found, |found| self.pressed_course(found, SAMPLES))),
+            schedule: schedule.map(|made| {
+                // Its moves are many; each is short.
+                made.and_then(|found| followed(found, |found| self.schedule_course(found, SAMPLES / 4)))
+            }),
+        })
+    }
+}
+
+impl Answer {
+    /// Whether the grip that is asked about holds as long as was asked; without a time whether it does at all.
+    ///
+    /// # Errors
+    /// Why there is no such grip.
+    pub fn holds(&self) -> Result<bool, GripError> {
+        /// Of the time: a least squeeze holds exactly as long as was asked.
+        const ROUNDING: f64 = 1.0 - 1e-6;
+        match self.question.control {
+            Control::Position => {
+                let found = &self.squeeze.as_ref().map_err(Clone::clone)?.found;
+                let lasts = match found.interval {
+                    Some((low, _)) if self.question.assured => low,
+                    _ => found.lasts,
+                };
+                let wanted = self.question.duration.or((self.question.squeeze.is_none()).then_some(MINUTE));
+                Ok(match wanted {
+                    None => lasts != Lasts::For(0.0),
+                    Some(wanted) if wanted.is_finite() => lasts.covers(wanted * ROUNDING),
+                    Some(_) => lasts == Lasts::Always,
+                })
+            }
+            Control::Force => {
+                let found = &self.pressed.as_ref().map_err(Clone::clone)?.found;
+                Ok(found.holds && found.stroke_ends.is_none())
+            }
+        }
+    }
+
+    /// The course of the grip that is asked about, if there is one.
+    #[must_use]
+    pub fn course(&self) -> Option<&Prediction> {
+        match self.question.control {
+            Control::Position => self.squeeze.as_ref().ok().map(|followed| &followed.course),
+            Control::Force => self.pressed.as_ref().ok().map(|followed| &followed.course),
+        }
+    }
+}
+
+fn followed<T>(found: T, course: impl Fn(&T) -> Result<Prediction, GripError>) -> Result<Followed<T>, GripError> {
+    let course = course(&found)?;
+    Ok(Followed { found, course })
+}
+
+/// How long courses are: the time that is asked for, beyond the slip if none is, an hour for always.
+fn shown(question: &Question, squeeze: Option<&Holding>) -> f64 {
+    const HOUR: f64 = 3600.0;
+    match (question.duration, squeeze.map(|found| found.lasts)) {
+        (Some(wanted), _) if wanted.is_finite() => wanted,
+        (None, Some(Lasts::For(time))) if question.squeeze.is_some() => (1.5 * time).max(1.0),
+        (None, _) if question.squeeze.is_none() => MINUTE,
+        _ => HOUR,
+    }
+}
