@@ -22,8 +22,9 @@ use std::ops::Range;
 use std::path::Path;
 
 use clap::Parser;
-use palpate_files::description::Sweep;
+use palpate_files::description::{MaterialFile, Sweep};
 use palpate_files::parquet_table::{Field, Rows};
+use palpate_report::calibrated::CalibratedRecord;
 use palpate_report::study::Bundle;
 
 use crate::arguments::{Arguments, Command};
@@ -79,6 +80,20 @@ where
 /// What is wrong, and what would help.
 pub fn write_study(folder: &Path, study: &Bundle) -> Result<(), (String, Option<String>)> {
     files::write_bundle(folder, study).map_err(failure::Failure::into_parts)
+}
+
+/// Writes one file, whole or not at all.
+///
+/// # Errors
+/// What is wrong, and what would help.
+pub fn write_file(path: &Path, content: &[u8]) -> Result<(), (String, Option<String>)> {
+    files::write_file(path, content).map_err(failure::Failure::into_parts)
+}
+
+/// The file that `palpate calibrate` writes: the law that was asked for with where its numbers come from; `None` where it has none.
+#[must_use]
+pub fn material_file(record: &CalibratedRecord) -> Option<MaterialFile> {
+    commands::calibrate::material(record)
 }
 
 /// The columns that `palpate sweep` writes: the number of the run, the swept numbers, the results, why there are none.

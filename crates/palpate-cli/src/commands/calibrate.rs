@@ -61,16 +61,8 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Outcome, Failure> {
         rows,
     };
     let mut made = Vec::new();
-    if let (Some(path), Some(chosen)) = (&arguments.out, record.chosen()) {
-        let origin = MaterialOrigin {
-            record: record.input.called(),
-            sha256: record.input.sha256.clone(),
-            test: record.input.test.clone(),
-            palpate: env!("CARGO_PKG_VERSION").to_owned(),
-            samples: record.data.fitted(),
-        };
-        let material = chosen.material.clone();
-        made.push((path, MaterialFile { material, origin }.to_toml().into_bytes()));
+    if let (Some(path), Some(material)) = (&arguments.out, material(&record)) {
+        made.push((path, material.to_toml().into_bytes()));
     }
     if let Some(path) = &arguments.figure {
         made.push((path, picture(path, &calibration_figure(&record, "calibration"))?));
@@ -88,6 +80,21 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Outcome, Failure> {
     };
     print(&text)?;
     Ok(Outcome::Done)
+}
+
+/// The material of the law that was asked for, with where it comes from.
+pub(crate) fn material(record: &CalibratedRecord) -> Option<MaterialFile> {
+    let chosen = record.chosen()?;
+    Some(MaterialFile {
+        material: chosen.material.clone(),
+        origin: MaterialOrigin {
+            record: record.input.called(),
+            sha256: record.input.sha256.clone(),
+            test: record.input.test.clone(),
+            palpate: env!("CARGO_PKG_VERSION").to_owned(),
+            samples: record.data.fitted(),
+        },
+    })
 }
 
 fn equilibrium(arguments: &CalibrateArguments) -> Result<EquilibriumLaw, Failure> {

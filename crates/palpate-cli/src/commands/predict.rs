@@ -15,8 +15,9 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<Outcome, Failure> {
     if let Some(path) = &arguments.figure {
         check_picture(path)?;
     }
-    let material = read_material(&arguments.material).map_err(described)?.material;
-    let protocol = read_protocol_of(&arguments.protocol, &arguments.material).map_err(described)?;
+    let file = read_material(&arguments.material).map_err(described)?;
+    let protocol = read_protocol_of(&arguments.protocol, &file).map_err(described)?;
+    let material = file.material;
     let mut at = arguments.at.clone();
     at.sort_by(f64::total_cmp);
     at.dedup();

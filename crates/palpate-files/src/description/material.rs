@@ -629,18 +629,21 @@ pub(super) fn protocol_tables<T: serde::de::DeserializeOwned>(source: &Source<'_
     if let Some(key) = BODY.into_iter().find(|key| tables.contains_key(*key)) {
         return Err(source.both(key, "material"));
     }
-    tables_of(source, &source.path.parent().unwrap_or(Path::new("")).join(name))
+    let path = source.path.parent().unwrap_or(Path::new("")).join(name);
+    let text = source::read(&path, source::LONGEST)?;
+    parse_material(&text, &path)?;
+    tables_with(source, &text)
 }
 
-/// The tables of a protocol with the body of the material file at `path`.
-pub(super) fn tables_of<T: serde::de::DeserializeOwned>(
+/// The tables of a protocol with the body of a material that was checked already.
+pub(super) fn tables_with<T: serde::de::DeserializeOwned>(
     source: &Source<'_>,
-    path: &Path,
+    material: &str,
 ) -> Result<T, DescriptionError> {
-    let text = source::read(path, source::LONGEST)?;
-    parse_material(&text, path)?;
-    let mut body: toml::Table = Source { path, text: &text }.tables()?;
+    let path = Path::new("material");
+    let mut body: toml::Table = Source { path, text: material }.tables()?;
     let mut tables: toml::Table = source.tables()?;
+    tables.remove("material");
     for key in BODY {
         tables.remove(key);
         tables.extend(body.remove_entry(key));

@@ -49,7 +49,10 @@ pub use law::Model;
 pub(crate) use machine::contradicts;
 pub use machine::{Machine, machines, machines_of};
 pub use material::{MATERIAL_VERSION, MaterialFile, MaterialOrigin, parse_material, read_material};
-pub use protocol::{Protocol, parse_protocol, parse_scene, read_protocol, read_protocol_of, read_scene};
+pub use protocol::{
+    Protocol, parse_protocol, parse_protocol_of, parse_scene, read_protocol, read_protocol_of, read_scene,
+    self_contained,
+};
 pub use schema::{schema_material, schema_protocol, schema_test};
 pub use sweep::{Plan, Spacing, Sweep, SweptNumber, parse_runs, parse_sweep, read_sweep};
 pub use test::{About, TestDescription, parse_test, read_test};

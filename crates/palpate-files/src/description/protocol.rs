@@ -16,7 +16,7 @@ use super::{
     contact::{self, SidesName},
     error::DescriptionError,
     law::{Law, LawTable, Model},
-    material::{protocol_tables, tables_of},
+    material::{MaterialFile, protocol_tables, tables_with},
     quantity::QuantityText,
     source::{self, Source},
     specimen::SpecimenTable,
@@ -157,14 +157,21 @@ pub fn read_protocol(path: &Path) -> Result<Protocol, DescriptionError> {
     parse_protocol(&source::read(path, LONGEST)?, path)
 }
 
-/// Reads the protocol in the file at `path` for the body of a material file: whatever the protocol says of a body is left aside.
+/// Reads the protocol in the file at `path` for a calibrated body: whatever the protocol says of a body is left aside.
 ///
 /// # Errors
-/// As for [`read_protocol`] and [`read_material`](super::read_material).
-pub fn read_protocol_of(path: &Path, material: &Path) -> Result<Protocol, DescriptionError> {
-    let text = source::read(path, LONGEST)?;
-    let source = Source { path, text: &text };
-    check(&source, &tables_of(&source, material)?)
+/// As for [`read_protocol`].
+pub fn read_protocol_of(path: &Path, material: &MaterialFile) -> Result<Protocol, DescriptionError> {
+    parse_protocol_of(&source::read(path, LONGEST)?, path, material)
+}
+
+/// As [`read_protocol_of`], of a text that was read already; `path` is used in messages alone.
+///
+/// # Errors
+/// As for [`parse_protocol`].
+pub fn parse_protocol_of(text: &str, path: &Path, material: &MaterialFile) -> Result<Protocol, DescriptionError> {
+    let source = Source { path, text };
+    check(&source, &tables_with(&source, &material.to_toml())?)
 }
 
 /// Reads title, body, law and contact of the protocol in the file at `path`, whatever its steps: for a contact that a record drives.
@@ -184,6 +191,15 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<(Option<String>, Model), D
     let tables: ProtocolTables = protocol_tables(&source)?;
     let model = model(&source, &tables.specimen, &tables.law, &tables.contact)?;
     Ok((tables.title, model))
+}
+
+/// The text of a protocol with the body of the material file that it names, if it does: what says all by itself wherever it is read.
+///
+/// # Errors
+/// As for [`read_material`](super::read_material), and where the text is no TOML.
+pub fn self_contained(text: &str, path: &Path) -> Result<String, DescriptionError> {
+    let tables: toml::Table = protocol_tables(&Source { path, text })?;
+    Ok(tables.to_string())
 }
 
 /// Checks a protocol that was read already; `path` is used in messages alone.

@@ -11,6 +11,7 @@ use palpate::identify::Estimate;
 use palpate::simulate::Separation;
 use palpate_files::description::{
     MaterialFile, MaterialOrigin, parse_material, parse_protocol, parse_test, read_protocol, read_protocol_of,
+    self_contained,
 };
 
 fn number(name: &str, unit: MaterialUnit, value: f64) -> MaterialNumber {
@@ -153,6 +154,8 @@ fn a_material_is_the_body_of_a_protocol_and_of_a_test() {
     let protocol = read_protocol(&named).unwrap();
     let contact = file.material.contact();
     assert_eq!(protocol.contact(), (&contact).into());
+    let text = self_contained(&std::fs::read_to_string(&named).unwrap(), &named).unwrap();
+    assert_eq!(parse_protocol(&text, Path::new("elsewhere.toml")).unwrap(), protocol);
     // The file itself is a protocol, once it has steps.
     let whole = parse_protocol(&format!("{}\n{steps}", file.to_toml()), Path::new("p.toml")).unwrap();
     assert_eq!(whole.contact(), (&contact).into());
@@ -162,7 +165,7 @@ fn a_material_is_the_body_of_a_protocol_and_of_a_test() {
     );
     let bodied = folder.path().join("bodied.toml");
     std::fs::write(&bodied, &other).unwrap();
-    assert_eq!(read_protocol_of(&bodied, &path).unwrap().contact(), (&contact).into());
+    assert_eq!(read_protocol_of(&bodied, &file).unwrap().contact(), (&contact).into());
     std::fs::write(&bodied, format!("material = \"soft.toml\"\n{other}")).unwrap();
     let both = read_protocol(&bodied).unwrap_err();
     assert!(both.to_string().contains("specimen") && both.to_string().contains("material"), "{both}");

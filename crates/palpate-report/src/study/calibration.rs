@@ -3,12 +3,14 @@
 use palpate::calibrate::{Calibration, Material, MaterialUnit};
 use palpate::identify::Termination;
 
+use super::StudyError;
 use super::findings::wrapped;
 use super::prediction::percent;
 use crate::calibrated::CalibratedRecord;
 use crate::document::termination;
 use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
 use crate::number::{counted, significant};
+use crate::page::{Block, Page, Section};
 use crate::table::{Cell, Table, TableColumn};
 
 /// Factor and unit in which people read a number of a material.
@@ -162,6 +164,26 @@ pub fn calibration_text(record: &CalibratedRecord) -> String {
     text.push('\n');
     calibration_remarks(record).iter().for_each(|remark| text.push_str(&wrapped(remark)));
     text
+}
+
+/// The same with the figure as a page.
+///
+/// # Errors
+/// [`StudyError`] when the figure cannot be drawn.
+pub fn calibration_page(record: &CalibratedRecord) -> Result<Page, StudyError> {
+    let mut section = Section::new(&record.input.title).block(Block::Table(laws(record)));
+    if let Some(chosen) = record.chosen() {
+        section = section.block(Block::Table(material_table(&chosen.material)));
+    }
+    section = section
+        .block(Block::List(calibration_remarks(record)))
+        .block(Block::figure(&calibration_figure(record, "calibration"))?);
+    let page = Page::new("Calibration", "One set of numbers for a whole record, ramps and holds alike");
+    Ok(page
+        .section(section)
+        .provenance("Record", record.input.called())
+        .provenance("SHA-256", &record.input.sha256)
+        .provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION"))))
 }
 
 /// Measured and simulated force over time, and what is left over.

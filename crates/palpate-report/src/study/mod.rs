@@ -48,7 +48,7 @@ mod trajectory;
 mod wave_figure;
 
 pub use bundle::{Bundle, Pictures, StudyError};
-pub use calibration::{calibration_figure, calibration_remarks, calibration_text, material_table};
+pub use calibration::{calibration_figure, calibration_page, calibration_remarks, calibration_text, material_table};
 pub use comparison_page::comparison_bundle;
 pub use comparison_tables::{comparison_markdown, comparison_text};
 pub use cut_figure::cut_figure;

@@ -26,13 +26,12 @@ pub fn write_prediction(out: &mut dyn Write, prediction: &Prediction) -> io::Res
     for i in 0..course.len() {
         let (low, high) = prediction.force_interval(i);
         let (reading_low, reading_high) = prediction.reading_interval(i);
-        let half = prediction.factor * prediction.displacement_deviation[i];
-        let place = course.displacement[i];
+        let (near, far) = prediction.displacement_interval(i);
         let numbers = [
             course.time[i],
-            place,
-            place - half,
-            place + half,
+            course.displacement[i],
+            near,
+            far,
             course.force[i],
             low,
             high,
@@ -96,14 +95,15 @@ pub fn prediction_figure(prediction: &Prediction, name: &str, caption: &str) -> 
         )
         .layer(Layer::band(time(), low, high, Role::Fitted).label(format!("mean, {share}")))
         .layer(Layer::line(time(), course.force.clone(), Role::Fitted).label("predicted"));
-    let half = |i: usize| 1e3 * prediction.factor * prediction.displacement_deviation[i];
-    let place = |i: usize| 1e3 * course.displacement[i];
-    let (near, far) = ends(&|i| (place(i) - half(i), place(i) + half(i)));
+    let (near, far) = ends(&|i| {
+        let (near, far) = prediction.displacement_interval(i);
+        (1e3 * near, 1e3 * far)
+    });
     let mut jaw = Panel::new(axis(), Axis::linear("Displacement", "mm"));
     if prediction.displacement_deviation.iter().any(|deviation| *deviation > 0.0) {
         jaw = jaw.layer(Layer::band(time(), near, far, Role::Fitted));
     }
-    jaw = jaw.layer(Layer::line(time(), (0..course.len()).map(place).collect(), Role::Fitted));
+    jaw = jaw.layer(Layer::line(time(), course.displacement.iter().map(|place| 1e3 * place).collect(), Role::Fitted));
     Figure::new(name, caption)
         .panel(force)
         .panel(jaw)

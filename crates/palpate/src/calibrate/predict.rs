@@ -76,7 +76,7 @@ impl std::fmt::Display for Extrapolation {
 }
 
 /// A predicted course with its uncertainty; SI units.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Prediction {
     /// The course with the best numbers.
     pub trajectory: Trajectory,
@@ -100,6 +100,13 @@ impl Prediction {
     pub fn force_interval(&self, index: usize) -> (f64, f64) {
         let (force, half) = (self.trajectory.force[index], self.factor * self.force_deviation[index]);
         (force - half, force + half)
+    }
+
+    /// Ends of the interval of the displacement of the jaw at sample `index`, m: one place where the displacement is asked for.
+    #[must_use]
+    pub fn displacement_interval(&self, index: usize) -> (f64, f64) {
+        let (place, half) = (self.trajectory.displacement[index], self.factor * self.displacement_deviation[index]);
+        (place - half, place + half)
     }
 
     /// Ends of the interval of one reading of the force at sample `index`, N: numbers and noise.
