@@ -4,31 +4,30 @@ use std::path::{Path, PathBuf};
 
 use numpy::PyArray1;
 use palpate::simulate::{ContactModel, ContactState as State, StepError};
-use palpate_files::description::{DescriptionError, Model, parse_scene, read_scene};
+use palpate_files::description::{DescriptionError, Model, parse_scene, read_scene, self_contained};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyTuple, PyType};
 
 use crate::arrays::doubles;
-use crate::errors::{ModelError, OptionError, refused_plainly};
-use crate::simulate::{missing, said};
+use crate::errors::{ModelError, OptionError, refused_plainly, undescribed};
 use crate::work::{Made, briefly};
 
-/// A body and its law as a description has them: path of a file or mapping; and the text of it.
+/// A body and its law as a description has them: path of a file or mapping; and a text that makes them again anywhere.
 fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
     let said_so = model.py().import("palpate")?.call_method1("_described", (model,))?;
     let (path, text): (Option<PathBuf>, Option<String>) = said_so.extract()?;
-    match (path, text) {
-        (Some(path), _) if !path.exists() => Err(missing(&path)),
-        (Some(path), _) => Ok((latency(read_scene(&path))?, std::fs::read_to_string(&path)?)),
-        (None, text) => {
-            let text = text.unwrap_or_default();
-            Ok((latency(parse_scene(&text, Path::new("model")))?, text))
+    let (model, text, path) = match path {
+        Some(path) => (latency(read_scene(&path))?, std::fs::read_to_string(&path)?, path),
+        None => {
+            let (text, path) = (text.unwrap_or_default(), PathBuf::from("model"));
+            (latency(parse_scene(&text, &path))?, text, path)
         }
-    }
+    };
+    Ok((model, self_contained(&text, &path).map_err(undescribed)?))
 }
 
 fn latency(scene: Result<(Option<String>, Model), DescriptionError>) -> PyResult<ContactModel> {
-    match scene.map_err(said)?.1 {
+    match scene.map_err(undescribed)?.1 {
         Model::Latency(model) => Ok(model),
         Model::Linear(_) => Err(refused_plainly::<ModelError>("a contact is stepped by the latency law alone")),
     }

@@ -5,6 +5,7 @@ use std::io;
 
 use palpate::analysis::Finding;
 use palpate_files::FileError;
+use palpate_files::description::DescriptionError;
 use palpate_files::record_file::ReadError;
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
@@ -24,7 +25,7 @@ create_exception!(
     palpate,
     PalpateWarning,
     PyUserWarning,
-    "Something about a record that its numbers alone do not tell."
+    "Something about a record, or about a question beyond it, that numbers alone do not tell."
 );
 
 /// An exception with a message and, on a line of its own, what would help.
@@ -71,13 +72,28 @@ pub(crate) fn unread(error: &ReadError) -> PyErr {
     }
 }
 
+/// What a description cannot be used for: an `OSError` where the operating system says so.
+pub(crate) fn undescribed(error: DescriptionError) -> PyErr {
+    let told = told(&error, error.hint());
+    match error {
+        DescriptionError::NotFound { source, .. } | DescriptionError::Unreadable { source, .. } => {
+            io::Error::new(source.kind(), told).into()
+        }
+        DescriptionError::Directory { .. } => io::Error::new(io::ErrorKind::IsADirectory, told).into(),
+        _ => PyErr::new::<OptionError, _>(told),
+    }
+}
+
 /// Warns of findings, each with what it means.
 pub(crate) fn warn_of<'a>(py: Python<'_>, findings: impl IntoIterator<Item = &'a Finding>) -> PyResult<()> {
-    let category = py.get_type::<PalpateWarning>();
     for finding in findings {
-        let text = format!("{}: {}; {}", finding.code(), finding.seen(), finding.meaning());
-        let text = std::ffi::CString::new(text).unwrap_or_default();
-        PyErr::warn(py, &category, &text, 1)?;
+        warn(py, &format!("{}: {}; {}", finding.code(), finding.seen(), finding.meaning()))?;
     }
     Ok(())
+}
+
+/// Warns in a sentence.
+pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
+    let text = std::ffi::CString::new(text).unwrap_or_default();
+    PyErr::warn(py, &py.get_type::<PalpateWarning>(), &text, 1)
 }

@@ -1,5 +1,7 @@
 //! Laws fitted to holds.
 
+use std::borrow::Cow;
+
 use numpy::{PyArray1, PyArray2};
 use palpate::identify::{
     Estimate, LawFit, LawOptions, Loss, NoiseChoice, NumberUnit, SampleChoice, Samples, Termination, fit_law,
@@ -17,8 +19,8 @@ use crate::work::{Made, briefly};
 #[pyclass(name = "Estimate", module = "palpate", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub(crate) struct PyEstimate {
-    estimate: Estimate,
-    unit: NumberUnit,
+    pub(crate) estimate: Estimate,
+    pub(crate) unit: Cow<'static, str>,
 }
 
 #[pymethods]
@@ -41,10 +43,10 @@ impl PyEstimate {
         self.estimate.interval
     }
 
-    /// Unit in words: "signal", "s", "1/s", "signal/s", "1", "signal^(1-n)/s", "signal/s^alpha".
+    /// Unit in words: "signal", "s", "1/s", "signal/s", "1", "signal^(1-n)/s", "signal/s^alpha"; "m", "N" or "Pa" of a material.
     #[getter]
-    fn unit(&self) -> &'static str {
-        unit_word(self.unit)
+    fn unit(&self) -> &str {
+        &self.unit
     }
 
     fn __float__(&self) -> f64 {
@@ -58,7 +60,7 @@ impl PyEstimate {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
-        let json = serde_json::to_string(&(self.estimate, self.unit)).map_err(refused_plainly::<FitError>)?;
+        let json = serde_json::to_string(&(self.estimate, &self.unit)).map_err(refused_plainly::<FitError>)?;
         Ok((py.get_type::<Self>().getattr("_from_json")?, (json,)))
     }
 
@@ -143,7 +145,7 @@ impl Fit {
         for number in &self.fit.numbers {
             let estimate = PyEstimate {
                 estimate: number.estimate,
-                unit: number.unit,
+                unit: unit_word(number.unit).into(),
             };
             dict.set_item(&number.name, estimate)?;
         }

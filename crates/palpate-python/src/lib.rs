@@ -5,6 +5,7 @@
 //! | `record.rs` | `read`, `Record` |
 //! | `analysis.rs` | `Analysis`, `Finding` |
 //! | `fit.rs`, `fit_many.rs` | `fit_hold`, `Fit`, `Estimate`; thousands of holds in one call |
+//! | `calibration.rs`, `material.rs`, `prediction.rs` | one set of numbers for a whole record, and what it predicts |
 //! | `compare.rs` | laws compared by what they foretell |
 //! | `simulate.rs`, `simulate_many.rs` | `simulate`, `Trajectory`; one protocol with many numbers |
 //! | `contact_state.rs` | `ContactState`, `ContactStates` |
@@ -17,6 +18,7 @@
 
 mod analysis;
 mod arrays;
+mod calibration;
 mod command;
 mod compare;
 mod contact_state;
@@ -25,6 +27,8 @@ mod errors;
 mod fit;
 mod fit_many;
 mod laws;
+mod material;
+mod prediction;
 mod record;
 mod simulate;
 mod simulate_many;
@@ -39,6 +43,8 @@ mod _palpate {
     #[pymodule_export]
     use crate::analysis::{Analysis, Finding};
     #[pymodule_export]
+    use crate::calibration::Calibration;
+    #[pymodule_export]
     use crate::command::command;
     #[pymodule_export]
     use crate::compare::{Comparison, compare};
@@ -52,6 +58,10 @@ mod _palpate {
     use crate::fit_many::fit_many;
     #[pymodule_export]
     use crate::laws::{latency, law_names};
+    #[pymodule_export]
+    use crate::material::Material;
+    #[pymodule_export]
+    use crate::prediction::Prediction;
     #[pymodule_export]
     use crate::record::{Record, read};
     #[pymodule_export]

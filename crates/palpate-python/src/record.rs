@@ -12,7 +12,7 @@ use palpate::analysis::{AnalysisOptions, corrected};
 use palpate::record::{Correction, Record as Measured};
 use palpate::segment::Segment;
 use palpate_files::contents::Contents;
-use palpate_files::description::{DescriptionError, TestDescription, parse_test, read_test};
+use palpate_files::description::{TestDescription, parse_test, read_test};
 use palpate_files::record_file::{ReadError, RecordFile, read_part, tests};
 use palpate_report::document::Input;
 use pyo3::prelude::*;
@@ -22,8 +22,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::Analysis;
 use crate::arrays::doubles;
+use crate::calibration::{Calibration, Wanted, equilibrium_law, laws};
 use crate::document::{Document, Fields};
-use crate::errors::{OptionError, RecordError, refused, refused_plainly, unread};
+use crate::errors::{OptionError, RecordError, refused, refused_plainly, undescribed, unread};
 use crate::table::Table;
 use crate::work::{Made, at_length, briefly};
 
@@ -96,25 +97,12 @@ impl PartialEq for Record {
 
 /// A description in a file, or as text.
 fn description(path: Option<PathBuf>, text: Option<&str>) -> PyResult<Option<Described>> {
-    let said = |error: DescriptionError| {
-        let hint = error.hint();
-        refused::<OptionError>(error, hint)
-    };
     let (test, text) = match (path, text) {
-        (Some(path), _) if !path.exists() => return Err(missing(&path)),
-        (Some(path), _) => (read_test(&path), std::fs::read_to_string(&path)?),
-        (None, Some(text)) => (parse_test(text, Path::new("test")), text.to_owned()),
+        (Some(path), _) => (read_test(&path).map_err(undescribed)?, std::fs::read_to_string(&path)?),
+        (None, Some(text)) => (parse_test(text, Path::new("test")).map_err(undescribed)?, text.to_owned()),
         (None, None) => return Ok(None),
     };
-    Ok(Some(Described {
-        test: test.map_err(said)?,
-        text,
-    }))
-}
-
-fn missing(path: &Path) -> PyErr {
-    let message = format!("{}: no such file", path.display());
-    std::io::Error::new(std::io::ErrorKind::NotFound, message).into()
+    Ok(Some(Described { test, text }))
 }
 
 /// The name of a test, and what its reading came to.
@@ -239,11 +227,7 @@ impl Asked {
             options.exponents = exponents;
         }
         if let Some(confidence) = self.confidence {
-            if !(confidence > 0.0 && confidence < 1.0) {
-                let message = format!("confidence is a share between 0 and 1, found {confidence}");
-                return Err(refused_plainly::<OptionError>(message));
-            }
-            options.fit.confidence = confidence;
+            options.fit.confidence = coverage(confidence)?;
         }
         options.free_exponent = self.free_exponent.unwrap_or(options.free_exponent);
         options.fit_until = self.fit_until_s.or(options.fit_until);
@@ -252,6 +236,15 @@ impl Asked {
         }
         Ok(options)
     }
+}
+
+/// Coverage of intervals.
+pub(crate) fn coverage(confidence: f64) -> PyResult<f64> {
+    if confidence > 0.0 && confidence < 1.0 {
+        return Ok(confidence);
+    }
+    let message = format!("confidence is a share between 0 and 1, found {confidence}");
+    Err(refused_plainly::<OptionError>(message))
 }
 
 impl Record {
@@ -281,6 +274,19 @@ impl Record {
 
     fn options(&self) -> AnalysisOptions {
         self.test.as_ref().map_or_else(AnalysisOptions::default, |said| said.test.analysis_options())
+    }
+
+    /// The options of a description in place of that of the record, and what results say of it.
+    fn described_by(&self, test: Option<&Bound<'_, PyAny>>) -> PyResult<(Input, AnalysisOptions)> {
+        let mut input = self.input.clone();
+        let Some(test) = test else {
+            return Ok((input, self.options()));
+        };
+        let said = test.py().import("palpate")?.call_method1("_described", (test,))?;
+        let (path, text): (Option<PathBuf>, Option<String>) = said.extract()?;
+        input.test = path.as_ref().map(|path| path.display().to_string());
+        let said = description(path, text.as_deref())?;
+        Ok((input, said.map_or_else(AnalysisOptions::default, |said| said.test.analysis_options())))
     }
 }
 
@@ -456,8 +462,8 @@ impl Record {
     ///
     /// Parameters
     /// ----------
-    /// test : path or mapping, optional
-    ///     A test description in place of that of the record.
+    /// test : path, mapping or Material, optional
+    ///     A test description in place of that of the record, or a material, which knows the body.
     /// exponents : sequence of float, optional
     ///     Exponents n to fit with each; those of the description, or 1, 2, 3, 5 and 7, if left out.
     /// free_exponent : bool, optional
@@ -496,14 +502,7 @@ impl Record {
         fit_until_s: Option<f64>,
         compare: bool,
     ) -> PyResult<Analysis> {
-        let (mut input, mut options) = (self.input.clone(), self.options());
-        if let Some(test) = test {
-            let said = py.import("palpate")?.call_method1("_described", (test,))?;
-            let (path, text): (Option<PathBuf>, Option<String>) = said.extract()?;
-            input.test = path.as_ref().map(|path| path.display().to_string());
-            options = description(path, text.as_deref())?
-                .map_or_else(AnalysisOptions::default, |said| said.test.analysis_options());
-        }
+        let (input, options) = self.described_by(test)?;
         let asked = Asked {
             exponents,
             free_exponent,
@@ -512,6 +511,94 @@ impl Record {
             compare,
         };
         Analysis::of(py, self.record.clone(), asked.over(options)?, input)
+    }
+
+    /// One set of numbers for the whole record, ramps and holds alike: what ``palpate calibrate`` finds.
+    ///
+    /// The latency law, strain rate = -v (e - e_e)^n of equation (10) of Tsai, Kao et al., in layers of a thickness that is found as well: holds
+    /// carry n and v, ramps the layer thickness, relaxed levels the modulus. No starting values: a grid is searched first.
+    ///
+    /// Parameters
+    /// ----------
+    /// law : str
+    ///     "latency" (n found), "latency:5" (n given), "standard-linear-solid", "prony:K" or "fung:K".
+    /// test : path, mapping or Material, optional
+    ///     A test description in place of that of the record; one of them has to know the body: ``{"specimen": {"shape": "ball", "radius":
+    ///     "35 mm"}}``.
+    /// rivals : sequence of str, optional
+    ///     Laws to hold against it on the same record; "standard-linear-solid", "prony:2", "prony:3" and "fung:2" if left out, none for
+    ///     an empty list.
+    /// equilibrium : str
+    ///     Law of the force once relaxation is over: "even-strain" (modulus x displacement/depth x contact area, equation (11)), "hertz", or
+    ///     "table", a monotone one with a row where the jaw was held.
+    /// poisson_ratio : float, optional
+    ///     For Hertz's law, from 0 to 0.5; 0.5 if left out.
+    /// fit_until_s : float, optional
+    ///     Fit only up to this time of the record, s, and foretell the rest.
+    /// confidence : float, optional
+    ///     Coverage of the intervals, between 0 and 1; that of the description, or 0.95, if left out.
+    ///
+    /// Returns
+    /// -------
+    /// Calibration
+    ///     The material, what is left over of the record, and the rivals.
+    ///
+    /// Raises
+    /// ------
+    /// RecordError
+    ///     No displacement, no phases.
+    /// OptionError
+    ///     No body described, a law of single holds alone, a time outside the record, or any other option that is wrong.
+    /// ModelError
+    ///     A body that the jaw goes through, a law of the relaxed force that does not go with it.
+    /// FitError
+    ///     Too few samples, or a force that does not rise with the squeeze.
+    ///
+    /// Warns
+    /// -----
+    /// PalpateWarning
+    ///     The record leaves a number open.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import palpate
+    /// >>> ball = {"shape": "ball", "radius": "35 mm"}
+    /// >>> squeezed = palpate.simulate({
+    /// ...     "specimen": {**ball, "modulus": "28 kPa"},
+    /// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+    /// ...     "step": [{"to": to, "rate": "500 mm/min", "hold": "20 s"} for to in ("5 mm", "10 mm")],
+    /// ...     "output": {"sample_rate": "10 Hz"},
+    /// ... })
+    /// >>> record = palpate.Record.from_arrays(
+    /// ...     time_s=squeezed.time_s, displacement_m=squeezed.displacement_m, force_n=squeezed.force_n
+    /// ... )
+    /// >>> calibration = record.calibrate(test={"specimen": ball}, rivals=[])
+    /// >>> round(calibration.material.values["exponent"], 2)
+    /// 5.0
+    /// >>> prediction = calibration.material.predict([{"to": "8 mm", "rate": "500 mm/min", "hold": "20 s"}], at_s=[10.0])
+    /// >>> round(float(prediction.force_n[0]), 2)
+    /// 3.45
+    #[pyo3(signature = (*, law="latency", test=None, rivals=None, equilibrium="even-strain", poisson_ratio=None, fit_until_s=None, confidence=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn calibrate(
+        &self,
+        py: Python<'_>,
+        law: &str,
+        test: Option<&Bound<'_, PyAny>>,
+        rivals: Option<&Bound<'_, PyAny>>,
+        equilibrium: &str,
+        poisson_ratio: Option<f64>,
+        fit_until_s: Option<f64>,
+        confidence: Option<f64>,
+    ) -> PyResult<Calibration> {
+        let (input, options) = self.described_by(test)?;
+        let wanted = Wanted {
+            laws: laws(law, rivals)?,
+            equilibrium: equilibrium_law(equilibrium, poisson_ratio)?,
+            fit_until: fit_until_s,
+            confidence: coverage(confidence.unwrap_or(options.fit.confidence))?,
+        };
+        Calibration::of(py, self.record.clone(), options, input, wanted)
     }
 
     /// Columns `time_s`, `displacement_m` and `force_n` as a table.

@@ -6,40 +6,29 @@ use std::sync::Arc;
 use arrow_array::{ArrayRef, BooleanArray, Float64Array};
 use numpy::PyArray1;
 use palpate::simulate::{ContactEventKind, Trajectory as Simulated, simulate as walk};
-use palpate_files::description::{DescriptionError, parse_protocol, read_protocol};
+use palpate_files::description::{parse_protocol, read_protocol};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
-use crate::errors::{ModelError, OptionError, refused, refused_plainly};
+use crate::errors::{ModelError, refused_plainly, undescribed};
 use crate::table::Table;
 use crate::work::{Made, at_length};
-
-pub(crate) fn said(error: DescriptionError) -> PyErr {
-    let hint = error.hint();
-    refused::<OptionError>(error, hint)
-}
 
 /// A simulated contact over time, in SI, compression positive: arrays of one length, and a table for polars, pandas and pyarrow.
 #[pyclass(name = "Trajectory", module = "palpate", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Trajectory {
-    series: Simulated,
-}
-
-pub(crate) fn missing(path: &Path) -> PyErr {
-    let message = format!("{}: no such file", path.display());
-    std::io::Error::new(std::io::ErrorKind::NotFound, message).into()
+    pub(crate) series: Simulated,
 }
 
 /// Simulates a protocol in a file, or in a text.
 #[pyfunction]
 pub(crate) fn simulate(py: Python<'_>, path: Option<PathBuf>, text: Option<&str>) -> PyResult<Trajectory> {
     let protocol = match path {
-        Some(path) if !path.exists() => return Err(missing(&path)),
         Some(path) => read_protocol(&path),
         None => parse_protocol(text.unwrap_or_default(), Path::new("protocol")),
     };
-    let protocol = protocol.map_err(said)?;
+    let protocol = protocol.map_err(undescribed)?;
     let series = at_length(py, move || walk(protocol.drive(), protocol.contact(), &protocol.sampling))?;
     Ok(Trajectory {
         series: series.map_err(refused_plainly::<ModelError>)?,

@@ -1,5 +1,6 @@
 //! One protocol with many numbers.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,15 +8,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use arrow_array::{ArrayRef, FixedSizeListArray, Float64Array, Int64Array, StringArray};
 use arrow_schema::{DataType, Field};
 use palpate::simulate::{Sampling, simulate};
-use palpate_files::description::{Sweep, parse_runs};
+use palpate_files::description::{DescriptionError, Sweep, parse_runs};
 use palpate_files::parquet_table::{Rows, Values};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::arrays::doubles;
-use crate::errors::{ModelError, refused_plainly};
-use crate::simulate::{missing, said};
+use crate::errors::{ModelError, refused_plainly, undescribed};
 use crate::table::Table;
 use crate::work::{Progress, at_length_told};
 
@@ -34,16 +34,18 @@ pub(crate) fn simulate_many(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Table> {
     let (path, text) = match path {
-        Some(path) if !path.exists() => return Err(missing(&path)),
-        Some(path) => {
-            let text = std::fs::read_to_string(&path)?;
-            (path, text)
-        }
+        Some(path) => match std::fs::read_to_string(&path) {
+            Ok(text) => (path, text),
+            Err(source) if source.kind() == ErrorKind::NotFound => {
+                return Err(undescribed(DescriptionError::NotFound { path, source }));
+            }
+            Err(source) => return Err(undescribed(DescriptionError::Unreadable { path, source })),
+        },
         None => (PathBuf::from("protocol"), text.unwrap_or_default()),
     };
     let columns = numbers.iter().map(|(name, values)| Ok((name.as_str(), doubles(values, name)?)));
     let columns: Vec<(&str, Vec<f64>)> = columns.collect::<PyResult<_>>()?;
-    let sweep = parse_runs(&text, &path, &columns).map_err(said)?;
+    let sweep = parse_runs(&text, &path, &columns).map_err(undescribed)?;
     let times = times_s.map(|times| doubles(times, "times_s")).transpose()?;
     if let Some(times) = &times {
         // Times outside the motion are wrong for all runs alike, but for those whose holds are swept.

@@ -201,7 +201,7 @@ impl Table {
     }
 
     /// The first and the last rows as a notebook shows them.
-    fn _repr_html_(&self) -> String {
+    pub(crate) fn _repr_html_(&self) -> String {
         let rows = self.batch.num_rows();
         let shown = |row: &usize| *row < ENDS || *row + ENDS >= rows;
         let row = |row: usize| {

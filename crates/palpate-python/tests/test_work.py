@@ -45,11 +45,24 @@ def test_other_threads_run_meanwhile() -> None:
     assert count > 20 * took, f"{count} turns in {took} s"
 
 
+FITS = """
+t = np.linspace(0, 60, 20000)
+rows = np.array([1 + palpate.laws.latency(t, 0, 1, 2, n) + 1e-3 * np.sin(7 * n * t) for n in np.linspace(2, 8, 60)])
+work = lambda: palpate.fit_many(t, rows, law="prony:4")
+"""
+
+CALIBRATIONS = """
+t = np.linspace(0, 20, 1000)
+record = palpate.Record.from_arrays(
+    time_s=t, displacement_m=np.minimum(t, 1) * 5e-3, force_n=2 * np.minimum(t, 1) + 0.01 * np.sin(50 * t)
+)
+work = lambda: record.calibrate(law="prony:4", test={"specimen": {"shape": "ball", "radius": "35 mm"}})
+"""
+
 INTERRUPTED = """
 import numpy as np, palpate, threading, time, os, signal
 signal.signal(signal.SIGINT, signal.default_int_handler)
-t = np.linspace(0, 60, 20000)
-rows = np.array([1 + palpate.laws.latency(t, 0, 1, 2, n) + 1e-3 * np.sin(7 * n * t) for n in np.linspace(2, 8, 60)])
+{work}
 def interrupt():
     time.sleep(0.5)
     global at
@@ -58,7 +71,7 @@ def interrupt():
 threading.Thread(target=interrupt).start()
 try:
     while True:
-        palpate.fit_many(t, rows, law="prony:4")
+        work()
 except KeyboardInterrupt:
     print(time.perf_counter() - at, flush=True)
 os._exit(0)
@@ -66,9 +79,11 @@ os._exit(0)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-def test_ctrl_c_is_heard() -> None:
+@pytest.mark.parametrize("work", [FITS, CALIBRATIONS], ids=["fits", "calibrations"])
+def test_ctrl_c_is_heard(work: str) -> None:
     before = signal.getsignal(signal.SIGINT)
-    told = subprocess.run([sys.executable, "-c", INTERRUPTED], capture_output=True, text=True, timeout=120, check=True)
+    script = INTERRUPTED.format(work=work)
+    told = subprocess.run([sys.executable, "-W", "ignore", "-c", script], capture_output=True, text=True, timeout=120, check=True)
     assert float(told.stdout) < 0.2 * float(os.environ.get("PALPATE_PATIENCE", "3"))
     assert signal.getsignal(signal.SIGINT) is before
 

@@ -23,6 +23,7 @@ import numpy as np
 from palpate import laws
 from palpate._palpate import (
     Analysis,
+    Calibration,
     Comparison,
     ContactState,
     ContactStates,
@@ -30,10 +31,12 @@ from palpate._palpate import (
     Finding,
     Fit,
     FitError,
+    Material,
     ModelError,
     OptionError,
     PalpateError,
     PalpateWarning,
+    Prediction,
     Record,
     RecordError,
     Table,
@@ -48,6 +51,7 @@ from palpate._palpate import simulate_many as _simulate_many
 
 __all__ = [
     "Analysis",
+    "Calibration",
     "Comparison",
     "ContactState",
     "ContactStates",
@@ -55,10 +59,12 @@ __all__ = [
     "Finding",
     "Fit",
     "FitError",
+    "Material",
     "ModelError",
     "OptionError",
     "PalpateError",
     "PalpateWarning",
+    "Prediction",
     "Record",
     "RecordError",
     "Table",
@@ -75,14 +81,36 @@ __all__ = [
 
 #: Lower and upper end of what a number may be; None leaves an end open.
 Bound = Union[tuple[Union[float, None], Union[float, None]], Sequence[Union[float, None]]]
-Description = Union[str, os.PathLike[str], Mapping[str, Any], None]
+Description = Union[str, os.PathLike[str], Mapping[str, Any], Material, None]
 
 
 def _described(test: Description) -> tuple[str | os.PathLike[str] | None, str | None]:
     """A description as a path or as the text of one; a mapping has the tables of the file, and JSON is nearly TOML."""
     if isinstance(test, Mapping):
         return None, _toml(test)
+    if isinstance(test, Material):
+        return None, test.to_toml()
     return test, None
+
+
+def _driven(protocol: Any) -> tuple[str | os.PathLike[str] | None, str | None]:
+    """A protocol of a body that is known, which may be its steps alone."""
+    return _described({"step": protocol} if isinstance(protocol, (list, tuple)) else protocol)
+
+
+def _with_body(table: Mapping[str, Any]) -> Mapping[str, Any]:
+    """A protocol whose ``material`` is one in memory, with the tables of that body."""
+    import tomllib
+
+    material = table.get("material")
+    if not isinstance(material, Material):
+        return table
+    tables = ("specimen", "law", "contact")
+    for name in tables:
+        if name in table:
+            raise OptionError(f"{name}: expected either this or material, found both\nhint: remove {name} or material")
+    body = tomllib.loads(material.to_toml())
+    return {**{name: table[name] for name in table if name != "material"}, **{name: body[name] for name in tables}}
 
 
 def _toml(table: Mapping[str, Any]) -> str:
@@ -111,6 +139,7 @@ def _toml(table: Mapping[str, Any]) -> str:
             return repr(float(entry))
         raise OptionError(f"{key}: expected a text, a number, a list or a table, found {type(entry).__name__}")
 
+    table = _with_body(table)
     return "".join(f"{text(str(key))} = {value(table[key], str(key))}\n" for key in table)
 
 
@@ -410,7 +439,8 @@ def simulate(
     ----------
     protocol
         Path of a protocol (TOML), or a mapping with its tables: ``{"specimen": {...}, "law": {...}, "step": [{...}, ...]}``.
-        Quantities are texts with a unit, such as ``"5 mm"``.
+        Quantities are texts with a unit, such as ``"5 mm"``. ``"material"``, a `Material` or the path of its file, stands for
+        specimen, law and contact.
     specimen, law, contact, output
         Tables that stand in place of those of a mapping.
 

@@ -1,0 +1,309 @@
+//! A calibrated body.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use arrow_array::{ArrayRef, Float64Array, StringArray};
+use numpy::PyArray2;
+use palpate::calibrate::{EquilibriumLaw, MaterialNumber, MaterialUnit};
+use palpate::number::{significant, with_error};
+use palpate::simulate::Sampling;
+use palpate_files::description::{MaterialFile, parse_material, parse_protocol_of, read_material, read_protocol_of};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyType};
+
+use crate::arrays::doubles;
+use crate::errors::{ModelError, PalpateError, refused, refused_plainly, undescribed, warn};
+use crate::fit::PyEstimate;
+use crate::prediction::Prediction;
+use crate::record::coverage;
+use crate::table::Table;
+use crate::work::{Made, at_length};
+
+/// Said where intervals know nothing of the numbers.
+const OPEN: &str = "the calibration left a number open: the intervals hold noise alone";
+
+/// A calibrated body: shape, law and numbers with their covariance, what its test has shown, and where they come from.
+///
+/// Made by `Record.calibrate` or `Material.read`. Wherever a protocol, a model or a test description is taken, its ``material`` may be
+/// one, and a description may be one: ``palpate.simulate({"material": material, "step": [...]})``, ``palpate.ContactState(material)``,
+/// ``record.analyze(test=material)``.
+#[pyclass(name = "Material", module = "palpate", frozen, eq)]
+#[derive(Clone, PartialEq)]
+pub(crate) struct Material {
+    file: MaterialFile,
+}
+
+impl Material {
+    /// Of a calibration; warns where it leaves a number open.
+    pub(crate) fn of(py: Python<'_>, file: MaterialFile) -> PyResult<Self> {
+        let material = Self { file };
+        material.warn_of_open(py)?;
+        Ok(material)
+    }
+
+    pub(crate) fn parsed(text: &str) -> PyResult<Self> {
+        let file = parse_material(text, Path::new("material")).map_err(undescribed)?;
+        Ok(Self { file })
+    }
+
+    fn warn_of_open(&self, py: Python<'_>) -> PyResult<()> {
+        if self.file.material.uncertainty.is_none() { warn(py, OPEN) } else { Ok(()) }
+    }
+
+    fn numbers_found(&self) -> &[MaterialNumber] {
+        &self.file.material.numbers
+    }
+}
+
+fn unit_word(unit: MaterialUnit) -> &'static str {
+    match unit {
+        MaterialUnit::One => "1",
+        MaterialUnit::Second => "s",
+        MaterialUnit::PerSecond => "1/s",
+        MaterialUnit::Metre => "m",
+        MaterialUnit::Newton => "N",
+        MaterialUnit::Pascal => "Pa",
+    }
+}
+
+#[pymethods]
+impl Material {
+    /// The material in a file of ``palpate calibrate`` or of `write`, checked.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     A material file (TOML); ``palpate schema material`` prints its schema.
+    ///
+    /// Raises
+    /// ------
+    /// OptionError
+    ///     No material, one of another version, or one whose numbers were changed by hand; the message names line and key.
+    /// OSError
+    ///     The operating system does not hand the file out.
+    #[classmethod]
+    #[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
+    fn read(_class: &Bound<'_, PyType>, path: PathBuf) -> PyResult<Self> {
+        let file = read_material(&path).map_err(undescribed)?;
+        Ok(Self { file })
+    }
+
+    /// Writes the file that ``palpate calibrate --out`` writes, whole or not at all.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     The file; its folder is made if it is not there.
+    ///
+    /// Raises
+    /// ------
+    /// PalpateError
+    ///     The file cannot be written.
+    #[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
+    fn write(&self, path: PathBuf) -> PyResult<()> {
+        let written = palpate_cli::write_file(&path, self.to_toml().as_bytes());
+        written.map_err(|(message, hint)| refused::<PalpateError>(message, hint))
+    }
+
+    /// The same as text.
+    pub(crate) fn to_toml(&self) -> String {
+        self.file.to_toml()
+    }
+
+    /// Name of the law as it was fitted, such as "latency", "latency:5" or "prony:2".
+    #[getter]
+    pub(crate) fn law(&self) -> String {
+        self.file.material.candidate.law.to_string()
+    }
+
+    /// Law of the force once relaxation is over: "even-strain", "hertz" or "table".
+    #[getter]
+    fn equilibrium(&self) -> &'static str {
+        match self.file.material.candidate.equilibrium {
+            EquilibriumLaw::EvenStrain => "even-strain",
+            EquilibriumLaw::Hertz { .. } => "hertz",
+            EquilibriumLaw::Table => "table",
+        }
+    }
+
+    /// The numbers, a row each: ``name``, ``unit``, ``value``, ``standard_error``, ``low`` and ``high``, in SI; the latter three are missing
+    /// for a number that was given, or that the record leaves open.
+    #[getter]
+    fn numbers(&self) -> PyResult<Table> {
+        let texts = |text: fn(&MaterialNumber) -> &str| -> ArrayRef {
+            Arc::new(StringArray::from_iter_values(self.numbers_found().iter().map(text)))
+        };
+        let numbers = |number: fn(&MaterialNumber) -> Option<f64>| -> ArrayRef {
+            Arc::new(self.numbers_found().iter().map(number).collect::<Float64Array>())
+        };
+        Table::of(vec![
+            ("name", texts(|number| &number.name)),
+            ("unit", texts(|number| unit_word(number.unit))),
+            ("value", numbers(|number| Some(number.estimate.value))),
+            ("standard_error", numbers(|number| number.estimate.standard_error)),
+            ("low", numbers(|number| number.estimate.interval.map(|interval| interval.0))),
+            ("high", numbers(|number| number.estimate.interval.map(|interval| interval.1))),
+        ])
+    }
+
+    /// Every number by its name: "modulus" (or "equilibrium_force_1", ...), and "exponent", "rate_coefficient" and "layer_thickness" of the
+    /// latency law, "overshoot_1", "time_1", ... of a linear one.
+    #[getter]
+    fn estimates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for number in self.numbers_found() {
+            let estimate = PyEstimate {
+                estimate: number.estimate,
+                unit: unit_word(number.unit).into(),
+            };
+            dict.set_item(&number.name, estimate)?;
+        }
+        Ok(dict)
+    }
+
+    /// Values of all numbers by name, in SI.
+    #[getter]
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for number in self.numbers_found() {
+            dict.set_item(&number.name, number.estimate.value)?;
+        }
+        Ok(dict)
+    }
+
+    /// Covariance of the natural logarithms of the numbers, in their order; None where the record leaves one open.
+    #[getter]
+    fn log_covariance<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let uncertainty = self.file.material.uncertainty.as_ref();
+        uncertainty.map(|found| Ok(PyArray2::from_vec2(py, &found.covariance)?)).transpose()
+    }
+
+    /// Coverage of the intervals of the numbers; None where they have none.
+    #[getter]
+    fn confidence(&self) -> Option<f64> {
+        self.file.material.uncertainty.as_ref().map(|uncertainty| uncertainty.confidence)
+    }
+
+    /// Standard deviation of what the law left of the measured force, N: noise of one reading.
+    #[getter]
+    fn noise_n(&self) -> f64 {
+        self.file.material.noise
+    }
+
+    /// What the test has shown, beyond which predictions are extrapolations: ``longest_hold_s``, ``deepest_m``, ``fastest_m_per_s``,
+    /// ``slowest_m_per_s``, ``largest_force_n``.
+    #[getter]
+    fn shown<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let shown = &self.file.material.shown;
+        let dict = PyDict::new(py);
+        for (name, value) in [
+            ("longest_hold_s", shown.longest_hold),
+            ("deepest_m", shown.deepest),
+            ("fastest_m_per_s", shown.fastest),
+            ("slowest_m_per_s", shown.slowest),
+            ("largest_force_n", shown.largest_force),
+        ] {
+            dict.set_item(name, value)?;
+        }
+        Ok(dict)
+    }
+
+    /// Where the numbers come from: ``record``, ``sha256`` of its file, ``test`` description, version of ``palpate``, ``samples`` fitted.
+    #[getter]
+    fn origin<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let origin = &self.file.origin;
+        let dict = PyDict::new(py);
+        dict.set_item("record", &origin.record)?;
+        dict.set_item("sha256", &origin.sha256)?;
+        dict.set_item("test", &origin.test)?;
+        dict.set_item("palpate", &origin.palpate)?;
+        dict.set_item("samples", origin.samples)?;
+        Ok(dict)
+    }
+
+    /// What the body does under a protocol, with intervals: what ``palpate predict`` says.
+    ///
+    /// The variance of the force is the sum over the columns of a root of the covariance, C = L L^T, of ((f(+L_k) - f(-L_k))/2)^2.
+    ///
+    /// Parameters
+    /// ----------
+    /// protocol : path, mapping or sequence of mappings
+    ///     A protocol whose body, if it has one, is left aside; or its steps alone: ``[{"to": "12 mm", "rate": "500 mm/min", "hold": "60 s"}]``.
+    /// at_s : array_like, shape (N,), optional
+    ///     Times at which the force is wanted, s, rising and inside the motion; those of the protocol's output if left out.
+    /// confidence : float
+    ///     Coverage of the intervals, between 0 and 1.
+    ///
+    /// Returns
+    /// -------
+    /// Prediction
+    ///     Force and displacement with the intervals of their means and of one reading.
+    ///
+    /// Raises
+    /// ------
+    /// OptionError
+    ///     A protocol that says what no contact can do; a coverage that is no share.
+    /// ModelError
+    ///     A motion that the body cannot take, a time outside it.
+    ///
+    /// Warns
+    /// -----
+    /// PalpateWarning
+    ///     A longer hold, a deeper squeeze, a faster ramp, a larger force than the test has shown, or a force that is held: answered all
+    ///     the same. A material of which a number was left open.
+    #[pyo3(signature = (protocol, *, at_s=None, confidence=0.95))]
+    fn predict(
+        &self,
+        py: Python<'_>,
+        protocol: &Bound<'_, PyAny>,
+        at_s: Option<&Bound<'_, PyAny>>,
+        confidence: f64,
+    ) -> PyResult<Prediction> {
+        let said = py.import("palpate")?.call_method1("_driven", (protocol,))?;
+        let (path, text): (Option<PathBuf>, Option<String>) = said.extract()?;
+        let protocol = match path {
+            Some(path) => read_protocol_of(&path, &self.file),
+            None => parse_protocol_of(&text.unwrap_or_default(), Path::new("protocol"), &self.file),
+        };
+        let protocol = protocol.map_err(undescribed)?;
+        let confidence = coverage(confidence)?;
+        let sampling = match at_s {
+            Some(times) => Sampling::Times(doubles(times, "at_s")?),
+            None => protocol.sampling.clone(),
+        };
+        let material = self.file.material.clone();
+        let predicted = at_length(py, move || material.predict(protocol.drive(), &sampling, confidence))?;
+        let predicted = predicted.map_err(refused_plainly::<ModelError>)?;
+        self.warn_of_open(py)?;
+        Prediction::of(py, predicted)
+    }
+
+    #[classmethod]
+    fn _from_toml(_class: &Bound<'_, PyType>, text: &str) -> PyResult<Self> {
+        Self::parsed(text)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
+        Ok((py.get_type::<Self>().getattr("_from_toml")?, (self.to_toml(),)))
+    }
+
+    fn __repr__(&self) -> String {
+        let number = |number: &MaterialNumber| {
+            let (estimate, unit) = (&number.estimate, unit_word(number.unit));
+            let value = match estimate.standard_error {
+                Some(error) => with_error(estimate.value, error),
+                None => significant(estimate.value, 4),
+            };
+            let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+            format!("{}={value}{unit}", number.name)
+        };
+        let numbers: Vec<String> = self.numbers_found().iter().map(number).collect();
+        format!("<palpate.Material {}: {}>", self.law(), numbers.join(", "))
+    }
+
+    /// The numbers with their intervals, for notebooks.
+    fn _repr_html_(&self) -> PyResult<String> {
+        Ok(format!("<p>Numbers of the law {}.</p>{}", self.law(), self.numbers()?._repr_html_()))
+    }
+}
