@@ -133,6 +133,11 @@ impl Grip<'_> {
         let back_off = self.back_off(same, shown);
         let pressed = self.pressed(question.force, shown);
         let schedule = question.band.map(|band| self.regrip(band, question.regrip, shown));
+        if let Some(Err(error)) = &schedule
+            && !error.is_answer()
+        {
+            return Err(error.clone());
+        }
         let follow = |steps: &Plan| self.course(steps, shown, SAMPLES);
         Ok(Answer {
             question: *question,
