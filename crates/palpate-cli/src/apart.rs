@@ -82,6 +82,7 @@ fn files_of(command: &Command) -> (Vec<&PathBuf>, Vec<&PathBuf>) {
         Command::Reproduce(_)
         | Command::Analyze(_)
         | Command::Compare(_)
+        | Command::Watch(_)
         | Command::Schema(_)
         | Command::Completions(_) => (reads, writes) = (Vec::new(), Vec::new()),
     }

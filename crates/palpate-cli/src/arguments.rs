@@ -28,6 +28,7 @@ Examples:
   palpate calibrate test.csv --test ball.toml --out material.toml   one set of numbers for it all
   palpate predict material.toml --protocol grip.toml --at \"60 s\"    force then, with its interval
   palpate grip material.toml --mass 150g --friction 0.6   will it hold, and how to squeeze
+  palpate watch gripper.csv --slip-force \"2 N\"    a log as if live: holds, and time to slip
   palpate simulate squeeze.toml --out force.csv  force of a squeeze protocol
   palpate sweep sweep.toml --figure peak.svg     the same for many numbers at once
 
@@ -45,6 +46,7 @@ pub(crate) enum Command {
     Calibrate(CalibrateArguments),
     Predict(PredictArguments),
     Grip(GripArguments),
+    Watch(WatchArguments),
     Convert(ConvertArguments),
     Schema(SchemaArguments),
     Completions(CompletionsArguments),
@@ -609,6 +611,73 @@ pub(crate) enum RegripName {
     Work,
 }
 
+/// Watch a recorded log as if it came in live: holds, where they tend, time to slip.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+On a terminal a small view is drawn in place, at ten times real time; elsewhere there is one line
+an event and one each --every. The end is a table of the holds.
+
+Examples:
+  palpate watch gripper.csv --test gripper.toml --slip-force \"2 N\" --warn-before \"1 s\"
+  palpate watch gripper.csv --speed 1
+  palpate watch gripper.csv --format jsonl --every \"0.1 s\" | jq .time_to_slip_s")]
+pub(crate) struct WatchArguments {
+    /// Log with time, force and, best, displacement
+    #[arg(value_name = "LOG")]
+    pub(crate) log: PathBuf,
+    /// Test description (TOML): columns and units
+    #[arg(long, value_name = "TEST.toml")]
+    pub(crate) test: Option<PathBuf>,
+    /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
+    #[arg(long, value_name = "NAME")]
+    pub(crate) part: Option<String>,
+    /// Material file of palpate calibrate: the excess strain is then known from first touch on
+    #[arg(long, value_name = "MATERIAL.toml", conflicts_with = "exponent")]
+    pub(crate) material: Option<PathBuf>,
+    /// Exponent of the law where no material says it, from 1 to 30
+    #[arg(long, value_name = "N", default_value = "5", value_parser = exponent, allow_hyphen_values = true)]
+    pub(crate) exponent: f64,
+    /// Standard deviation to which that exponent is known; intervals are as much wider
+    #[arg(long, value_name = "NUMBER", default_value = "0", value_parser = deviation, conflicts_with = "material", allow_hyphen_values = true)]
+    pub(crate) exponent_deviation: f64,
+    /// Normal force at which what is held slips
+    #[arg(long, value_name = "FORCE", value_parser = force, allow_hyphen_values = true)]
+    pub(crate) slip_force: Option<f64>,
+    /// How long before slip to warn
+    #[arg(long, value_name = "TIME", default_value = "1 s", value_parser = time, requires = "slip_force", allow_hyphen_values = true)]
+    pub(crate) warn_before: f64,
+    /// Coverage of the intervals, between 0 and 1
+    #[arg(long, value_name = "SHARE", default_value = "0.95", value_parser = coverage, allow_hyphen_values = true)]
+    pub(crate) confidence: f64,
+    /// Times real time, or max; 10 on a terminal and max elsewhere if not given
+    #[arg(long, value_name = "NUMBER|max", value_parser = replay_speed, allow_hyphen_values = true)]
+    pub(crate) speed: Option<ReplaySpeed>,
+    /// Time of the log between two lines
+    #[arg(long, value_name = "TIME", default_value = "0.5 s", value_parser = time, allow_hyphen_values = true)]
+    pub(crate) every: f64,
+    /// What to print on standard output
+    #[arg(long, value_enum, default_value_t = WatchFormat::Text)]
+    pub(crate) format: WatchFormat,
+}
+
+/// How fast a log is replayed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum ReplaySpeed {
+    /// So many times real time.
+    Times(f64),
+    /// As fast as it goes.
+    Max,
+}
+
+/// Output of `watch` on standard output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum WatchFormat {
+    /// A view on a terminal, lines elsewhere
+    Text,
+    /// One JSON object a line
+    Jsonl,
+}
+
 /// What linear laws take the loading before a hold for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum RampName {
@@ -760,6 +829,23 @@ fn share(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(share) if share > 0.0 && share < 1.0 => Ok(share),
         _ => Err("expected shares of the hold between 0 and 1, such as 0.25,0.5".to_owned()),
+    }
+}
+
+fn deviation(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(deviation) if (0.0..=10.0).contains(&deviation) => Ok(deviation),
+        _ => Err("expected a number from 0 to 10".to_owned()),
+    }
+}
+
+fn replay_speed(text: &str) -> Result<ReplaySpeed, String> {
+    match text.trim() {
+        "max" => Ok(ReplaySpeed::Max),
+        number => match number.trim_start_matches('×').parse::<f64>() {
+            Ok(times) if times.is_finite() && times > 0.0 => Ok(ReplaySpeed::Times(times)),
+            _ => Err("expected a number above 0, such as 10, or max".to_owned()),
+        },
     }
 }
 

@@ -280,6 +280,7 @@ fn completions_and_help() {
     insta::assert_snapshot!("help_analyze", done(folder.path(), &["analyze", "--help"]));
     insta::assert_snapshot!("help_calibrate", done(folder.path(), &["calibrate", "--help"]));
     insta::assert_snapshot!("help_predict", done(folder.path(), &["predict", "--help"]));
+    insta::assert_snapshot!("help_watch", done(folder.path(), &["watch", "--help"]));
     insta::assert_snapshot!("help_compare", done(folder.path(), &["compare", "--help"]));
     insta::assert_snapshot!("help_simulate", done(folder.path(), &["simulate", "--help"]));
     insta::assert_snapshot!("help_sweep", done(folder.path(), &["sweep", "--help"]));

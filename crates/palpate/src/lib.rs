@@ -22,6 +22,7 @@
 //! | [`simulate`] | from a motion of the jaw to the force |
 //! | [`batch`] | thousands of contacts at once |
 //! | [`analysis`] | all of it for one record, with findings in plain words |
+//! | [`observe`] | a contact watched tick by tick: holds, their equilibrium, time to slip |
 //! | [`test_problems`] | known problems with known answers |
 //!
 //! | feature | what |
@@ -77,6 +78,8 @@ pub mod latency;
 pub mod laws;
 #[cfg(feature = "std")]
 pub mod number;
+#[cfg(feature = "std")]
+pub mod observe;
 #[cfg(feature = "std")]
 mod ode;
 #[cfg(feature = "std")]

@@ -16,3 +16,4 @@ pub(crate) mod reproduce;
 pub(crate) mod schema;
 pub(crate) mod simulate;
 pub(crate) mod sweep;
+pub(crate) mod watch;

@@ -1,0 +1,114 @@
+//! Plain lines: one an event, one each time that was asked for, and a table of holds.
+
+use std::io::{self, Write};
+
+use palpate::observe::{Held, Observation, Slip};
+use palpate_report::number::significant;
+use palpate_report::table::{Cell, Table, TableColumn};
+
+use super::Shown;
+use super::events::{Event, HoldSeen};
+use super::words::{held, slip, state, uncertain};
+
+pub(super) struct Lines {
+    slip_force: Option<f64>,
+}
+
+impl Lines {
+    pub(super) fn new(slip_force: Option<f64>) -> Self {
+        Self { slip_force }
+    }
+}
+
+impl Shown for Lines {
+    fn tick(&mut self, out: &mut dyn Write, seen: &Observation, asked: bool) -> io::Result<()> {
+        if !asked {
+            return Ok(());
+        }
+        write!(out, "{:>9.3} s  {:<34}  {:>8} N", seen.time, state(seen), significant(seen.force, 4))?;
+        if let Some(equilibrium) = seen.equilibrium_force {
+            write!(out, "  tends to {}", uncertain(equilibrium, "N"))?;
+        }
+        if let Some(strain) = seen.excess_strain {
+            write!(out, "  excess strain {}", uncertain(strain, ""))?;
+        }
+        if let Some(creep) = seen.creep_rate {
+            write!(out, "  creeps at {}", uncertain(scaled(creep), "µm/s"))?;
+        }
+        if let (Some(words), Some(_)) = (slip(seen), seen.held) {
+            write!(out, "  slip: {words}")?;
+        }
+        writeln!(out)
+    }
+
+    fn event(&mut self, out: &mut dyn Write, event: &Event) -> io::Result<()> {
+        match event {
+            Event::Began(seen) => writeln!(out, "{:>9.3} s  hold: {}", seen.time, state(seen)),
+            Event::Changed(seen) => writeln!(out, "{:>9.3} s  it is the {}", seen.time, state(seen)),
+            Event::Ended(time, hold) => {
+                let lasted = significant(hold.until - hold.since, 4);
+                writeln!(out, "{time:>9.3} s  end of the hold after {lasted} s")
+            }
+            Event::Warned(seen) => writeln!(out, "{:>9.3} s  WARNING: {}", seen.time, warning(seen)),
+        }
+    }
+
+    fn end(&mut self, out: &mut dyn Write, holds: &[HoldSeen]) -> io::Result<()> {
+        write!(out, "\n{}", summary(holds, self.slip_force))
+    }
+}
+
+/// A warning in words.
+pub(super) fn warning(seen: &Observation) -> String {
+    match seen.slip {
+        Slip::Slipping => format!("slips, the force is {} N", significant(seen.force, 3)),
+        _ => format!("slip soon: {}", slip(seen).unwrap_or_default()),
+    }
+}
+
+/// A speed in µm/s.
+pub(super) fn scaled(speed: palpate::observe::Uncertain) -> palpate::observe::Uncertain {
+    palpate::observe::Uncertain {
+        value: 1e6 * speed.value,
+        deviation: 1e6 * speed.deviation,
+    }
+}
+
+/// The holds of a log.
+pub(super) fn summary(holds: &[HoldSeen], slip_force: Option<f64>) -> String {
+    if holds.is_empty() {
+        return "No hold was seen.\n".to_owned();
+    }
+    let column = |head: &str, key: &str, unit: &str| TableColumn::new(head, key, unit);
+    let mut table = Table::new("holds", "Holds")
+        .column(column("Held", "held", ""))
+        .column(column("From", "start_s", "s"))
+        .column(column("To", "end_s", "s"))
+        .column(column("Force at start", "force_start_n", "N"))
+        .column(column("at end", "force_end_n", "N"))
+        .column(column("Tends to", "equilibrium_force_n", "N"))
+        .column(column("±", "equilibrium_force_deviation_n", "N"))
+        .column(column("Creeps at", "creep_rate_um_per_s", "µm/s"));
+    if slip_force.is_some() {
+        table = table.column(column("Warned", "warned_s", "s")).column(column("Slipped", "slipped_s", "s"));
+    }
+    for hold in holds {
+        let unknown = if hold.held == Held::Force { "force held" } else { "not known" };
+        let mut row = vec![
+            Cell::text(held(hold.held)),
+            Cell::number(hold.since, 5),
+            Cell::number(hold.until, 5),
+            Cell::number(hold.forces.0, 4),
+            Cell::number(hold.forces.1, 4),
+            Cell::number_or(hold.equilibrium.map(|force| force.value), 4, unknown),
+            Cell::number_or(hold.equilibrium.map(|force| force.deviation), 2, unknown),
+            Cell::number_or(hold.creep.map(|creep| 1e6 * creep.value), 3, "not held by force"),
+        ];
+        if slip_force.is_some() {
+            row.push(Cell::number_or(hold.warned, 5, "no warning"));
+            row.push(Cell::number_or(hold.slipped, 5, "no slip"));
+        }
+        table = table.row(row);
+    }
+    table.to_plain_text()
+}

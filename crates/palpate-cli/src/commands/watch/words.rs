@@ -1,0 +1,70 @@
+//! An observation in words.
+
+use palpate::number::{significant, with_error};
+use palpate::observe::{Held, Observation, Phase, Slip, TimeToSlip, Uncertain};
+
+pub(super) fn phase(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Free => "free",
+        Phase::Loading => "loading",
+        Phase::Holding => "holding",
+        Phase::Unloading => "unloading",
+    }
+}
+
+pub(super) fn held(held: Held) -> &'static str {
+    match held {
+        Held::Displacement => "displacement",
+        Held::Force => "force",
+    }
+}
+
+pub(super) fn slip_word(slip: Slip) -> &'static str {
+    match slip {
+        Slip::None => "none",
+        Slip::Soon => "soon",
+        Slip::Slipping => "slipping",
+    }
+}
+
+/// A value ± its standard deviation, to the digits that it has.
+pub(super) fn uncertain(number: Uncertain, unit: &str) -> String {
+    let text = with_error(number.value, number.deviation);
+    if unit.is_empty() { text } else { format!("{text} {unit}") }
+}
+
+/// A time that is left.
+pub(super) fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{} s", significant(s, 2)),
+        s if s < 7200.0 => format!("{} min", significant(s / 60.0, 2)),
+        s if s < 172_800.0 => format!("{} h", significant(s / 3600.0, 2)),
+        s => format!("{} d", significant(s / 86_400.0, 2)),
+    }
+}
+
+/// What is known of slip; `None` where nobody asked.
+pub(super) fn slip(seen: &Observation) -> Option<String> {
+    Some(match seen.time_to_slip? {
+        _ if seen.slip == Slip::Slipping => "slipping".to_owned(),
+        TimeToSlip::Unknown => "not known yet".to_owned(),
+        TimeToSlip::Never => "never by relaxation".to_owned(),
+        TimeToSlip::After { value, low, high } => {
+            let (low, high) = (duration(low), high.map_or("never".to_owned(), duration));
+            match value {
+                Some(value) => format!("in {} ({low} to {high})", duration(value)),
+                None => format!("perhaps never, not before {low}"),
+            }
+        }
+    })
+}
+
+/// Phase and what is held.
+pub(super) fn state(seen: &Observation) -> String {
+    match (seen.held, seen.held_since) {
+        (Some(what), Some(since)) => {
+            format!("{} held since {} s", held(what), significant(since, 5))
+        }
+        _ => phase(seen.phase).to_owned(),
+    }
+}

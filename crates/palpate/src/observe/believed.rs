@@ -1,0 +1,250 @@
+//! A calibrated body run beside the record, and corrected by it.
+//!
+//! The model with its best numbers is stepped with every reading of the displacement, and beside it one pair of models a direction that the
+//! calibration leaves open: each column of a root of its covariance, the stiffness of this body as against the one that was calibrated, and
+//! first touch. Halves of the differences of a pair are the derivatives of all that is asked by one standard deviation of its direction, so
+//! that the standings z of the directions, N(0, 1) before the first reading, follow from the forces by a Kalman filter of a state that does
+//! not move (recursive least squares with a prior, Kalman 1960).
+
+use super::observation::Uncertain;
+use super::{ObserveError, ObserverOptions};
+use crate::calibrate::{CalibratedContact, Material};
+use crate::simulate::{ContactModel, ContactState};
+
+/// Readings closer than this (s) tell no more than one: what a model leaves over lasts longer.
+const APART: f64 = 0.01;
+/// A mean square of normalised surprises above which the body is not the one that was calibrated.
+const SURPRISED: f64 = 6.0;
+/// Standard deviations from the calibrated numbers beyond which it is another body.
+const FAR: f64 = 5.0;
+/// Most directions: those that leave open the most.
+const MOST: usize = 16;
+/// Share of a surprise in that mean.
+const MEMORY: f64 = 0.02;
+
+/// A model and its state.
+#[derive(Debug, Clone)]
+struct Member {
+    model: ContactModel,
+    /// What is added to the displacement, m.
+    offset: f64,
+    state: ContactState,
+}
+
+impl Member {
+    /// Strain in excess of equilibrium; none while the jaw is off.
+    fn excess(&self, displacement: f64) -> f64 {
+        let specimen = &self.model.specimen;
+        let place = specimen.contact_displacement(displacement + self.offset);
+        let stiffness = specimen.force(1.0, place);
+        if stiffness > 0.0 && self.state.is_touching(&self.model) {
+            self.state.force(&self.model) / stiffness - specimen.equilibrium_strain(place)
+        } else {
+            0.0
+        }
+    }
+
+    fn equilibrium(&self, displacement: f64) -> f64 {
+        let specimen = &self.model.specimen;
+        let place = specimen.contact_displacement(displacement + self.offset).max(0.0);
+        specimen.force(specimen.equilibrium_strain(place), place)
+    }
+}
+
+/// A calibrated body beside the record.
+#[derive(Debug, Clone)]
+pub(super) struct Believed {
+    best: Member,
+    /// The pairs, each with how many standard deviations lie on either side.
+    pairs: Vec<(Member, Member, f64)>,
+    /// Their standings, and the covariance of those, row by row.
+    standing: Vec<f64>,
+    covariance: Vec<f64>,
+    /// Room for a derivative and its product with the covariance.
+    slope: Vec<f64>,
+    gain: Vec<f64>,
+    noise: f64,
+    /// Mean of squared surprises in shares of their variance.
+    surprise: f64,
+    /// The last reading of the displacement: when (s), and what (m).
+    last: Option<f64>,
+    displacement: f64,
+    exponent_deviation: f64,
+    /// Degrees of freedom of the calibration.
+    pub(super) freedom: f64,
+}
+
+impl Believed {
+    pub(super) fn new(material: &Material, options: &ObserverOptions) -> Result<Self, ObserveError> {
+        let CalibratedContact::Latency(model) = material.contact() else {
+            return Err(ObserveError::LinearMaterial);
+        };
+        let member = |model: ContactModel, offset: f64| Member {
+            model,
+            offset,
+            state: ContactState::default(),
+        };
+        let off = |direction: &[f64], by: f64| {
+            let factors: Vec<f64> = direction.iter().map(|log| (by * log).exp()).collect();
+            match material.contact_off(&factors) {
+                Some(CalibratedContact::Latency(model)) => Some(member(model, 0.0)),
+                _ => None,
+            }
+        };
+        let is_stiffness = |name: &str| name == "modulus" || name.starts_with("equilibrium_force");
+        let stiffer = |name: &str| if is_stiffness(name) { options.stiffness_deviation } else { 0.0 };
+        let mut directions = material.directions();
+        directions.truncate(MOST - 2);
+        directions.push(material.numbers.iter().map(|number| stiffer(&number.name)).collect());
+        let mut pairs = Vec::new();
+        for direction in &directions {
+            // Closer by where a full deviation makes no body.
+            let sides =
+                [1.0, 0.25, 0.0625].map(|by| off(direction, by).zip(off(direction, -by)).map(|pair| (pair, by)));
+            pairs.extend(sides.into_iter().flatten().next().map(|((high, low), by)| (high, low, by)));
+        }
+        if options.touch_deviation > 0.0 {
+            let touch = options.touch_deviation;
+            pairs.push((member(model.clone(), touch), member(model.clone(), -touch), 1.0));
+        }
+        let count = pairs.len();
+        let mut covariance = vec![0.0; count * count];
+        covariance.iter_mut().step_by(count + 1).for_each(|variance| *variance = 1.0);
+        let exponent = material.numbers.iter().find(|number| number.name == "exponent");
+        let noise = options.noise.map_or(material.noise, |noise| noise.1.max(material.noise));
+        Ok(Self {
+            best: member(model, 0.0),
+            pairs,
+            standing: vec![0.0; count],
+            covariance,
+            slope: vec![0.0; count],
+            gain: vec![0.0; count],
+            noise: noise.max(f64::MIN_POSITIVE.sqrt()),
+            surprise: 1.0,
+            last: None,
+            displacement: 0.0,
+            exponent_deviation: exponent.and_then(|number| number.estimate.standard_error).unwrap_or(0.0),
+            freedom: material.uncertainty.as_ref().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom),
+        })
+    }
+
+    /// Checks that all models can be brought to a displacement.
+    pub(super) fn check(&self, time: f64, displacement: f64) -> Result<(), ObserveError> {
+        let members = self.pairs.iter().flat_map(|(high, low, _)| [high, low]).chain([&self.best]);
+        for member in members {
+            let mut state = member.state;
+            if state.step(&member.model, 0.0, displacement + member.offset).is_err() {
+                return Err(ObserveError::Displacement { time, displacement });
+            }
+        }
+        Ok(())
+    }
+
+    /// Brings the models to the displacement at `time` (s) and corrects them by the force that was read.
+    pub(super) fn feed(&mut self, time: f64, displacement: f64, force: f64) {
+        let dt = self.last.map_or(0.0, |last| time - last);
+        self.last = Some(time);
+        self.displacement = displacement;
+        let step = |member: &mut Member| {
+            // Checked before: it is taken.
+            let _ = member.state.step(&member.model, dt, displacement + member.offset);
+        };
+        step(&mut self.best);
+        for (high, low, _) in &mut self.pairs {
+            step(high);
+            step(low);
+        }
+        let of = |member: &Member| member.state.force(&member.model);
+        let expected = of(&self.best);
+        let mut surprise = force - expected;
+        for ((slope, pair), standing) in self.slope.iter_mut().zip(&self.pairs).zip(&self.standing) {
+            *slope = half(pair, of);
+            surprise -= *slope * standing;
+        }
+        if self.slope.iter().all(|slope| *slope == 0.0) {
+            return;
+        }
+        let mut variance = self.noise * self.noise;
+        for (gain, row) in self.gain.iter_mut().zip(self.covariance.chunks_exact(self.slope.len())) {
+            *gain = row.iter().zip(&self.slope).map(|(entry, slope)| entry * slope).sum();
+        }
+        variance += self.gain.iter().zip(&self.slope).map(|(gain, slope)| gain * slope).sum::<f64>();
+        self.surprise += MEMORY * (surprise * surprise / variance - self.surprise);
+        // What one of several readings within that time tells.
+        let share = if dt > 0.0 { (APART / dt).max(1.0) } else { 1.0 };
+        variance += (share - 1.0) * self.noise * self.noise;
+        for (standing, gain) in self.standing.iter_mut().zip(&self.gain) {
+            *standing += gain * surprise / variance;
+        }
+        let count = self.slope.len();
+        for (row, gain) in self.covariance.chunks_exact_mut(count).zip(&self.gain) {
+            for (entry, other) in row.iter_mut().zip(&self.gain) {
+                *entry -= gain * other / variance;
+            }
+        }
+    }
+
+    /// Exponent of the law of a hold, and what the calibration leaves open of it.
+    pub(super) fn exponent(&self) -> Uncertain {
+        Uncertain {
+            value: self.best.model.law.exponent().max(1.0),
+            deviation: self.exponent_deviation,
+        }
+    }
+
+    /// Whether the forces are those of the calibrated body.
+    pub(super) fn is_met(&self) -> bool {
+        self.surprise < SURPRISED && self.standing.iter().all(|standing| standing.abs() < FAR)
+    }
+
+    fn combined(&self, of: impl Fn(&Member) -> f64) -> Uncertain {
+        let mut value = of(&self.best);
+        let count = self.pairs.len();
+        let mut slopes = [0.0; MOST];
+        for ((slope, pair), standing) in slopes.iter_mut().zip(&self.pairs).zip(&self.standing) {
+            *slope = half(pair, &of);
+            value += *slope * standing;
+        }
+        let slopes = &slopes[..count];
+        let along = |row: &[f64]| row.iter().zip(slopes).map(|(entry, slope)| entry * slope).sum::<f64>();
+        let rows = self.covariance.chunks_exact(count.max(1));
+        let variance: f64 = rows.zip(slopes).map(|(row, slope)| slope * along(row)).sum();
+        Uncertain {
+            value,
+            deviation: variance.max(0.0).sqrt(),
+        }
+    }
+
+    /// Force that a hold here tends to, N.
+    pub(super) fn equilibrium(&self) -> Uncertain {
+        self.combined(|member| member.equilibrium(self.displacement))
+    }
+
+    /// Force in excess of it, N.
+    pub(super) fn excess_force(&self) -> Uncertain {
+        self.combined(|member| member.state.force(&member.model) - member.equilibrium(self.displacement))
+    }
+
+    /// Strain in excess of equilibrium.
+    pub(super) fn excess_strain(&self) -> Uncertain {
+        self.combined(|member| member.excess(self.displacement))
+    }
+
+    /// v|x|ⁿ⁻¹, 1/s.
+    pub(super) fn relative_rate(&self) -> f64 {
+        self.best.model.law.relative_rate(self.excess_strain().value)
+    }
+
+    /// The force after `dt` (s) more with the jaw where it is, N.
+    pub(super) fn force_after(&self, dt: f64) -> Uncertain {
+        self.combined(|member| {
+            let mut state = member.state;
+            state.step(&member.model, dt, self.displacement + member.offset).unwrap_or(0.0)
+        })
+    }
+}
+
+/// Derivative by one standard deviation of a direction.
+fn half((high, low, by): &(Member, Member, f64), of: impl Fn(&Member) -> f64) -> f64 {
+    0.5 * (of(high) - of(low)) / by
+}

@@ -1,0 +1,69 @@
+//! A contact watched tick by tick, for controllers: when a hold begins, where it tends, when it slips.
+//!
+//! | file | what | equations |
+//! |---|---|---|
+//! | `options.rs`, `observation.rs`, `error.rs` | what goes in, what comes out, what is refused | |
+//! | `observer.rs`, `saying.rs` | from tick to tick: phase, hold, fit; and what is said of it, warnings too | |
+//! | `noise.rs`, `smooth.rs` | noise of a signal, and the signal without most of it | |
+//! | `stand.rs`, `alone.rs` | that a jaw, or a force, stands still; the end of loading where there is no displacement | |
+//! | `bins.rs` | a hold of any length in 64 means | |
+//! | `hold_fit.rs` | a hold fitted, with what it leaves open | (4), (5) |
+//! | `believed.rs` | a calibrated body run beside the record | (10), (11) |
+//! | `forecast.rs` | the time when its force has fallen to that of slip | |
+//!
+//! In a hold of the displacement F(t) = F_e + A φ(t; λ, n), [`decay`](crate::latency::decay), equations (4) and (5). Its readings become
+//! means over lengths that grow with the time since the hold began, at most 64 of them. Each time the hold is 4 % longer F_e, A and λ are
+//! fitted to the means, n being given, and what they leave open is kept as a profile of the likelihood over λ, for the ends of the interval of
+//! n too where n is known to a deviation only. The interval of the force at a time is the widest that any of them allows; the interval of the time to slip is where that interval of the force meets the force of
+//! slip. Early in a hold it is wide, or open, as it should be.
+//!
+//! A jaw stands once it has stayed within its noise (five standard deviations, found out by the observer, or 0.1 % of its travel) for as long
+//! as it would have taken at its last speed to go four times as far: some five ticks at 1 kHz. Where the force stands and the jaw creeps it
+//! is the force that is held, and nothing slips by relaxation.
+//!
+//! With a calibrated [`Material`](crate::calibrate::Material) its model runs beside the record, so that the excess strain is known from first
+//! touch on; what the calibration leaves open, the stiffness of this body and first touch are corrected by the forces. Where these are not
+//! those of that body, the hold is fitted as it is. Displacements then count from first touch.
+//!
+//! ```
+//! use palpate::latency::decay;
+//! use palpate::observe::{Observer, ObserverOptions, Phase, Slip, TimeToSlip};
+//!
+//! let mut observer = Observer::new(ObserverOptions { slip_force: Some(2.0), ..ObserverOptions::default() })?;
+//! let mut warned = None;
+//! for tick in 0..60_000 {
+//!     // 5 mm within 0.5 s, then a hold whose force tends to 1.2 N; it is 2 N after 0.81 s
+//!     let time = f64::from(tick) * 1e-3;
+//!     let (displacement, force) =
+//!         if time < 0.5 { (0.01 * time, 5.8 * time) } else { (0.005, 1.2 + 1.7 * decay(6.0 * (time - 0.5), 5.0)) };
+//!     let seen = observer.feed(time, Some(displacement), force)?;
+//!     if seen.slip == Slip::Soon {
+//!         warned = warned.or(Some(time));
+//!     }
+//! }
+//! assert!(warned.is_some_and(|time| time < 0.5 + 0.81));
+//! let seen = observer.feed(60.0, Some(0.005), 1.2 + 1.7 * decay(6.0 * 59.5, 5.0))?;
+//! assert_eq!(seen.phase, Phase::Holding);
+//! assert!((seen.held_since.unwrap() - 0.5).abs() < 2e-3);
+//! assert!((seen.equilibrium_force.unwrap().value - 1.2).abs() < 1e-3);
+//! # Ok::<(), palpate::observe::ObserveError>(())
+//! ```
+
+mod alone;
+mod believed;
+mod bins;
+mod error;
+mod forecast;
+mod hold_fit;
+mod noise;
+mod observation;
+mod observer;
+mod options;
+mod saying;
+mod smooth;
+mod stand;
+
+pub use error::ObserveError;
+pub use observation::{Held, Observation, Phase, Slip, TimeToSlip, Uncertain};
+pub use observer::Observer;
+pub use options::ObserverOptions;

@@ -1,0 +1,306 @@
+//! From tick to tick: phase, hold, fit, warning.
+
+use super::alone::Alone;
+use super::believed::Believed;
+use super::bins::Bins;
+use super::forecast::Crossing;
+use super::hold_fit::{FEWEST, HoldFit};
+use super::noise::NoiseMeter;
+use super::smooth::Smooth;
+use super::stand::{Change, Stand};
+use super::{Held, Observation, ObserveError, ObserverOptions, Uncertain};
+use crate::statistics::coverage_factor;
+
+/// Noise (standard deviations of one reading) within which a signal stands.
+const NOISE: f64 = 5.0;
+/// Share of its range within which a jaw stands that has no noise.
+const SERVO: f64 = 0.001;
+/// Share of its range within which a controller holds a force.
+const CONTROLLER: f64 = 0.015;
+/// Share of the largest force below which there is no contact, and noise below which there is none.
+const OPEN: (f64, f64) = (0.02, 4.0);
+/// A jaw, and a force, stand once they would have gone so many tolerances at their last speed. A controller that sets a force goes in
+/// steps, and stands between them.
+const PATIENCE: (f64, f64) = (4.0, 8.0);
+/// Tolerances of the force above which a force may be held: below, noise hides how it moves.
+const PLAIN: f64 = 2.0;
+/// A fit is made again once the hold is longer by this share.
+const AGAIN: f64 = 0.04;
+/// Fewest readings of a fit.
+const READINGS: u32 = 8;
+
+/// A hold that goes on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hold {
+    pub(super) held: Held,
+    pub(super) since: f64,
+    pub(super) fit: Option<HoldFit>,
+    pub(super) crossing: Option<Crossing>,
+    pub(super) creep: Option<Uncertain>,
+    /// Time since the hold began at which the next fit is due, s.
+    pub(super) due: f64,
+    pub(super) readings: u32,
+}
+
+impl Hold {
+    fn new(held: Held, since: f64) -> Self {
+        Self {
+            held,
+            since,
+            fit: None,
+            crossing: None,
+            creep: None,
+            due: 0.0,
+            readings: 0,
+        }
+    }
+}
+
+/// Watches a contact tick by tick; see [the module](super).
+#[derive(Debug, Clone)]
+pub struct Observer {
+    pub(super) options: ObserverOptions,
+    pub(super) last: Option<f64>,
+    pub(super) displacement_noise: NoiseMeter,
+    pub(super) force_noise: NoiseMeter,
+    pub(super) smooth: Smooth,
+    pub(super) jaw: Stand,
+    pub(super) grip: Stand,
+    /// Least and largest displacement and force, m and N.
+    pub(super) reached: [(f64, f64); 2],
+    /// The force since the jaw stands, from `relaxes_from` (s) on.
+    pub(super) relaxation: Bins,
+    pub(super) relaxes_from: f64,
+    /// The displacement since the force stands.
+    pub(super) creep: Bins,
+    pub(super) displacement_seen: bool,
+    pub(super) alone: Alone,
+    pub(super) hold: Option<Hold>,
+    pub(super) believed: Option<Believed>,
+}
+
+impl Observer {
+    /// An observer that has seen nothing.
+    ///
+    /// # Errors
+    /// [`ObserveError::Option`] for an option out of its range, [`ObserveError::LinearMaterial`] for a material that obeys a linear law.
+    pub fn new(options: ObserverOptions) -> Result<Self, ObserveError> {
+        options.check()?;
+        let noise = options.noise;
+        let believed = options.material.as_ref().map(|material| Believed::new(material, &options)).transpose()?;
+        Ok(Self {
+            believed,
+            options,
+            last: None,
+            displacement_noise: NoiseMeter::new(noise.map(|noise| noise.0)),
+            force_noise: NoiseMeter::new(noise.map(|noise| noise.1)),
+            smooth: Smooth::default(),
+            jaw: Stand::default(),
+            grip: Stand::default(),
+            reached: [(f64::INFINITY, f64::NEG_INFINITY); 2],
+            relaxation: Bins::new(),
+            relaxes_from: 0.0,
+            creep: Bins::new(),
+            displacement_seen: false,
+            alone: Alone::default(),
+            hold: None,
+        })
+    }
+
+    /// Takes the readings at `time` (s): the displacement of the jaw (m, growing as it closes; `None` where there is no reading) and the
+    /// force (N, above 0 as the jaw presses), and says what they mean.
+    ///
+    /// Most ticks cost well under a microsecond; those on which a hold is fitted anew, each time it has become 4 % longer, some hundred, and
+    /// three times that where the exponent has a deviation. Nothing allocates, and the observer stays as large as it is.
+    ///
+    /// # Errors
+    /// [`ObserveError::NotFinite`], [`ObserveError::TimeNotRising`] and, with a material, [`ObserveError::Displacement`]; the observer is then
+    /// as before.
+    pub fn feed(&mut self, time: f64, displacement: Option<f64>, force: f64) -> Result<Observation, ObserveError> {
+        self.check(time, displacement, force)?;
+        let dt = self.last.map_or(0.0, |last| time - last);
+        self.last = Some(time);
+        self.force_noise.feed(time, force);
+        self.smooth.feed(dt, force, self.force_noise.deviation());
+        reach(&mut self.reached[1], force);
+        if let Some(displacement) = displacement {
+            self.displacement_noise.feed(time, displacement);
+            reach(&mut self.reached[0], displacement);
+            self.displacement_seen = true;
+            if let Some(believed) = &mut self.believed {
+                believed.feed(time, displacement, force);
+            }
+        }
+        let began = self.follow(time, displacement, force);
+        self.fit(time);
+        Ok(self.say(time, began))
+    }
+
+    fn check(&self, time: f64, displacement: Option<f64>, force: f64) -> Result<(), ObserveError> {
+        let place = self.last.unwrap_or(0.0);
+        let readings =
+            [("time", place, time), ("displacement", time, displacement.unwrap_or(0.0)), ("force", time, force)];
+        for (what, at, found) in readings {
+            if !found.is_finite() {
+                return Err(ObserveError::NotFinite { what, time: at, found });
+            }
+        }
+        match self.last {
+            Some(last) if time <= last => return Err(ObserveError::TimeNotRising { last, found: time }),
+            _ => {}
+        }
+        match (&self.believed, displacement) {
+            (Some(believed), Some(displacement)) => believed.check(time, displacement),
+            _ => Ok(()),
+        }
+    }
+
+    /// Brings the stands and the hold up to date; true where a hold began.
+    fn follow(&mut self, time: f64, displacement: Option<f64>, force: f64) -> bool {
+        let tolerance = |meter: &NoiseMeter, reached: (f64, f64), share: f64| {
+            let noise = meter.deviation()?;
+            Some(
+                (NOISE * noise)
+                    .max(share * (reached.1 - reached.0))
+                    .max(1.01 * meter.quantum().min(reached.1 - reached.0)),
+            )
+        };
+        let force_tolerance = tolerance(&self.force_noise, self.reached[1], CONTROLLER);
+        let grip = self.grip.feed(time, force, force_tolerance, PATIENCE.1);
+        if matches!(grip, Change::Moved | Change::Left | Change::Crept) {
+            self.creep.clear();
+        } else if let Some(displacement) = displacement {
+            self.creep.push(time - self.grip.start(), displacement);
+        }
+        let jaw = match displacement {
+            Some(displacement) => {
+                let tolerance = tolerance(&self.displacement_noise, self.reached[0], SERVO);
+                self.jaw.feed(time, displacement, tolerance, PATIENCE.0)
+            }
+            None if self.displacement_seen => Change::Same,
+            None => {
+                let tolerance = self.force_noise.deviation().map(|noise| NOISE * noise * Smooth::kept());
+                let predicted = self.hold.and_then(|hold| hold.fit).map(|fit| fit.force(time - self.relaxes_from));
+                self.alone.feed(time, self.smooth.level(), tolerance, predicted)
+            }
+        };
+        if matches!(jaw, Change::Moved | Change::Left | Change::Crept) || self.is_open() {
+            // The first reading at a place may still belong to the way there.
+            self.relaxation.clear();
+            self.relaxes_from = time;
+        } else {
+            self.relaxation.push(time - self.relaxes_from, force);
+        }
+        let told = force_tolerance.is_some_and(|tolerance| self.smooth.level().abs() > PLAIN * tolerance);
+        self.begin_or_end(jaw, grip, told)
+    }
+
+    /// `told` is whether the force is large enough for its standing still to mean anything.
+    fn begin_or_end(&mut self, jaw: Change, grip: Change, told: bool) -> bool {
+        let jaw_stands = self.displacement_seen && self.jaw.stands();
+        let stands = jaw_stands || (!self.displacement_seen && self.alone.stands() && told);
+        if let Some(hold) = &mut self.hold {
+            hold.readings = hold.readings.saturating_add(1);
+            let goes_on = match hold.held {
+                Held::Displacement if jaw == Change::Crept && self.grip.stands() => {
+                    *hold = Hold::new(Held::Force, hold.since);
+                    true
+                }
+                Held::Displacement => !matches!(jaw, Change::Left | Change::Crept),
+                Held::Force if grip == Change::Same => true,
+                // The force gave way, the jaw did not.
+                Held::Force if jaw_stands => {
+                    *hold = Hold::new(Held::Displacement, hold.since);
+                    true
+                }
+                Held::Force => false,
+            };
+            if !goes_on || self.is_open() {
+                self.hold = None;
+            }
+            return false;
+        }
+        if self.is_open() {
+            return false;
+        }
+        self.hold = if stands {
+            Some(Hold::new(Held::Displacement, self.relaxes_from))
+        } else if self.displacement_seen && self.grip.stands() && self.jaw.slowed() && told {
+            Some(Hold::new(Held::Force, self.grip.start()))
+        } else {
+            None
+        };
+        self.hold.is_some()
+    }
+
+    /// Whether there is no contact.
+    pub(super) fn is_open(&self) -> bool {
+        let Some(noise) = self.force_noise.deviation() else {
+            return true;
+        };
+        let noise = noise * Smooth::kept();
+        let largest = self.reached[1].1.abs().max(self.reached[1].0.abs());
+        let edge = (OPEN.0 * largest).max(OPEN.1 * noise);
+        // What is held has to fall further to be lost.
+        self.smooth.level().abs() <= if self.hold.is_some() { 0.5 * edge } else { edge }
+    }
+
+    fn fit(&mut self, time: f64) {
+        let Some(hold) = &mut self.hold else { return };
+        let from = if hold.held == Held::Displacement { self.relaxes_from } else { self.grip.start() };
+        let elapsed = time - from;
+        if elapsed < hold.due {
+            return;
+        }
+        if hold.held == Held::Force {
+            hold.creep = self.creep.late_slope();
+            hold.due = (1.0 + AGAIN) * elapsed;
+            return;
+        }
+        let slip = self.options.slip_force;
+        let believed = self.believed.as_ref().filter(|believed| believed.is_met());
+        let by_material = believed.zip(slip).map(|(believed, slip)| {
+            let factor = coverage_factor(self.options.confidence, believed.freedom);
+            Crossing::find(elapsed, slip, |time| {
+                let force = believed.force_after(time - elapsed);
+                let half = factor * force.deviation;
+                (force.value - half, force.value, force.value + half)
+            })
+        });
+        hold.due = (1.0 + AGAIN) * elapsed;
+        let bins = self.relaxation.as_slice();
+        let readings: f64 = bins.iter().map(|bin| bin.count).sum();
+        if let Some(noise) = self.force_noise.deviation()
+            && bins.len() > FEWEST
+            && readings >= f64::from(READINGS)
+        {
+            let confidence = self.options.confidence;
+            let exponent = self.believed.as_ref().map_or(
+                Uncertain {
+                    value: self.options.exponent,
+                    deviation: self.options.exponent_deviation,
+                },
+                Believed::exponent,
+            );
+            hold.fit = HoldFit::new(bins, exponent, noise, |freedom| coverage_factor(confidence, freedom));
+        } else {
+            // Every tick, until there are enough.
+            hold.due = elapsed;
+        }
+        let by_itself = hold.fit.zip(slip).map(|(fit, slip)| {
+            Crossing::find(elapsed, slip, |time| {
+                let (low, high) = fit.interval(time);
+                (low, fit.force(time), high)
+            })
+        });
+        // What a material tells of a hold it tells at once; what the hold tells of itself becomes the sharper of the two.
+        hold.crossing = match (by_material, by_itself) {
+            (Some(material), Some(itself)) if itself.width(elapsed) < material.width(elapsed) => Some(itself),
+            (material, itself) => material.or(itself),
+        };
+    }
+}
+
+fn reach(reached: &mut (f64, f64), value: f64) {
+    *reached = (reached.0.min(value), reached.1.max(value));
+}

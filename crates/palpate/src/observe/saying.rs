@@ -1,0 +1,104 @@
+//! What an observer says after a tick: its state as an observation, and warnings.
+
+use super::smooth::Smooth;
+use super::{Held, Observation, Observer, Phase, Slip, TimeToSlip, Uncertain};
+
+/// Slip that cannot be excluded is no warning where the best value is so many times farther than the warning is wanted: in the first moments
+/// of a hold nothing can be excluded.
+const FALSE_ALARM: f64 = 4.0;
+
+impl Observer {
+    /// What is said after the tick at `time` (s).
+    pub(super) fn say(&self, time: f64, began: bool) -> Observation {
+        let phase = match &self.hold {
+            Some(_) => Phase::Holding,
+            None if self.is_open() => Phase::Free,
+            None if self.direction() < 0.0 => Phase::Unloading,
+            None => Phase::Loading,
+        };
+        let mut said = Observation {
+            time,
+            phase,
+            held: None,
+            held_since: None,
+            began,
+            force: self.smooth.level(),
+            equilibrium_force: None,
+            excess_force: None,
+            excess_strain: None,
+            relative_rate: None,
+            creep_rate: None,
+            time_to_slip: self.options.slip_force.map(|_| TimeToSlip::Unknown),
+            slip: Slip::None,
+        };
+        if let Some(hold) = &self.hold {
+            said.held = Some(hold.held);
+            said.held_since = Some(hold.since);
+            said.creep_rate = hold.creep;
+            let elapsed = time - self.relaxes_from;
+            if let Some(fit) = &hold.fit {
+                said.force = fit.force(elapsed);
+                said.equilibrium_force = fit.equilibrium();
+                said.excess_force = said.equilibrium_force.map(|equilibrium| Uncertain {
+                    value: said.force - equilibrium.value,
+                    deviation: equilibrium.deviation,
+                });
+                said.relative_rate = fit.relaxes().then(|| fit.relative_rate(elapsed));
+            }
+            self.say_believed(&mut said, hold.held);
+            if self.options.slip_force.is_some() {
+                said.time_to_slip = Some(match (hold.held, hold.crossing) {
+                    (Held::Force, _) => TimeToSlip::Never,
+                    (_, Some(crossing)) => crossing.seen(elapsed),
+                    _ => TimeToSlip::Unknown,
+                });
+            }
+        }
+        said.slip = self.warning(&said);
+        said
+    }
+
+    /// What a material tells of a hold, where the forces are its.
+    fn say_believed(&self, said: &mut Observation, held: Held) {
+        let Some(believed) = self.believed.as_ref().filter(|believed| believed.is_met()) else {
+            return;
+        };
+        said.excess_strain = Some(believed.excess_strain());
+        let equilibrium = believed.equilibrium();
+        let sharper = said.equilibrium_force.is_none_or(|itself| equilibrium.deviation <= itself.deviation);
+        if !sharper {
+            return;
+        }
+        said.excess_force = Some(believed.excess_force());
+        said.relative_rate = Some(believed.relative_rate());
+        if held == Held::Displacement {
+            said.equilibrium_force = Some(equilibrium);
+            said.force = believed.force_after(0.0).value;
+        }
+    }
+
+    fn direction(&self) -> f64 {
+        if self.displacement_seen { self.jaw.direction() } else { self.grip.direction() }
+    }
+
+    fn warning(&self, said: &Observation) -> Slip {
+        let Some(slip) = self.options.slip_force else {
+            return Slip::None;
+        };
+        if said.phase != Phase::Holding {
+            return Slip::None;
+        }
+        let noise = self.force_noise.deviation().unwrap_or(0.0) * Smooth::kept();
+        match said.time_to_slip {
+            _ if said.force <= slip => Slip::Slipping,
+            Some(TimeToSlip::After {
+                value: Some(value),
+                low,
+                ..
+            }) if low <= self.options.warn_before && value <= FALSE_ALARM * self.options.warn_before => Slip::Soon,
+            // Before the first fit there is the margin alone.
+            Some(TimeToSlip::Unknown) if said.force - 3.0 * noise <= slip => Slip::Soon,
+            _ => Slip::None,
+        }
+    }
+}

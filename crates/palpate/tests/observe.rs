@@ -1,0 +1,460 @@
+//! A contact watched tick by tick: what is found, when, and how often intervals contain the truth.
+#![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
+
+use palpate::observe::{Held, Observation, ObserveError, Observer, ObserverOptions, Phase, Slip, TimeToSlip};
+use palpate::simulate::{ContactModel, ContactState, Separation};
+use palpate::test_problems::{Noise, paper_ball};
+
+const RATE: f64 = 500.0;
+/// When the jaw stops, s: 5 mm at 500 mm/min.
+const STOP: f64 = 0.6;
+
+fn model() -> ContactModel {
+    paper_ball(Separation::Unilateral)
+}
+
+/// Times, displacements and forces without noise: a squeeze and a hold of `hold` s.
+fn squeeze(hold: f64) -> Vec<(f64, f64, f64)> {
+    let (model, mut contact, mut last) = (model(), ContactState::default(), 0.0);
+    (1..=((STOP + hold) * RATE) as usize)
+        .map(|i| {
+            let time = i as f64 / RATE;
+            let displacement = 5e-3 * (time / STOP).min(1.0);
+            let force = contact.step(&model, time - last, displacement).unwrap();
+            last = time;
+            (time, displacement, force)
+        })
+        .collect()
+}
+
+/// What is seen of it with 0.05 N and 1 µm of noise.
+fn watched(course: &[(f64, f64, f64)], seed: u64, options: &ObserverOptions) -> Vec<Observation> {
+    let (mut observer, mut noise) = (Observer::new(options.clone()).unwrap(), Noise::new(seed));
+    let see = |(time, displacement, force): &(f64, f64, f64)| {
+        let displacement = displacement + 1e-6 * noise.normal();
+        observer.feed(*time, Some(displacement), force + 0.05 * noise.normal()).unwrap()
+    };
+    course.iter().map(see).collect()
+}
+
+fn slipping_at(slip_force: f64) -> ObserverOptions {
+    ObserverOptions {
+        slip_force: Some(slip_force),
+        ..ObserverOptions::default()
+    }
+}
+
+/// Force of the hold `after` s.
+fn force_after(after: f64) -> f64 {
+    squeeze(after).last().unwrap().2
+}
+
+#[test]
+fn a_hold_is_told_within_a_few_ticks_and_once() {
+    let course = squeeze(20.0);
+    for seed in 0..100 {
+        let seen = watched(&course, seed, &ObserverOptions::default());
+        let began: Vec<&Observation> = seen.iter().filter(|seen| seen.began).collect();
+        assert_eq!(began.len(), 1, "{seed}: {began:?}");
+        assert!(began[0].time > STOP && began[0].time - STOP < 10.5 / RATE, "{seed}: {}", began[0].time);
+        assert!((began[0].held_since.unwrap() - STOP).abs() < 2.5 / RATE, "{seed}: {began:?}");
+        assert_eq!(began[0].held, Some(Held::Displacement));
+        assert!(seen.iter().all(|seen| (seen.time >= began[0].time) == (seen.phase == Phase::Holding)), "{seed}");
+    }
+}
+
+#[test]
+fn the_equilibrium_and_its_deviation_are_honest() {
+    let course = squeeze(60.0);
+    // 28 kPa, ball of 35 mm between two plates at 5 mm, relaxed.
+    let truth = {
+        let mut contact = ContactState::default();
+        contact.step(&model(), 1.0, 5e-3).unwrap();
+        contact.step(&model(), 1e15, 5e-3).unwrap()
+    };
+    let (mut inside, mut told) = (0, 0);
+    for seed in 0..200 {
+        let seen = watched(&course, seed, &ObserverOptions::default());
+        for after in [2.0, 10.0, 60.0] {
+            let seen = &seen[((STOP + after) * RATE) as usize - 1];
+            if let Some(found) = seen.equilibrium_force {
+                told += 1;
+                inside += i32::from((found.value - truth).abs() < 1.96 * found.deviation);
+                assert!(after < 60.0 || found.deviation < 0.05 * truth, "{seed}: {found:?}");
+            }
+        }
+    }
+    let share = f64::from(inside) / f64::from(told);
+    println!("equilibrium inside in {share} of {told}");
+    assert!(told > 300 && (0.9..0.995).contains(&share), "{share} of {told}");
+}
+
+#[test]
+fn intervals_of_the_time_to_slip_contain_the_truth_as_often_as_they_say() {
+    for slip_after in [3.0, 30.0] {
+        let course = squeeze(slip_after);
+        let options = slipping_at(force_after(slip_after));
+        for after in [0.1, 0.3, 1.0, 2.5, 10.0, 25.0] {
+            if after >= slip_after {
+                continue;
+            }
+            let (mut inside, mut open, seeds) = (0, 0, 300);
+            for seed in 0..seeds {
+                let until = ((STOP + after) * RATE) as usize;
+                let seen = watched(&course[..until], 1000 + seed, &options);
+                let truth = STOP + slip_after - seen.last().unwrap().time;
+                match seen.last().unwrap().time_to_slip.unwrap() {
+                    TimeToSlip::After { low, high, .. } => {
+                        open += i32::from(high.is_none());
+                        inside += i32::from(low <= truth * 1.001 && high.is_none_or(|high| truth <= high * 1.001));
+                    }
+                    TimeToSlip::Unknown => inside += 1,
+                    TimeToSlip::Never => {}
+                }
+            }
+            println!("slip {slip_after} s after the stop, seen at {after} s: inside {inside} of {seeds}, open {open}");
+            assert!(inside >= 275, "{slip_after} {after}: {inside} of {seeds}");
+        }
+    }
+}
+
+#[test]
+fn the_warning_comes_before_slip() {
+    for slip_after in [0.3, 3.0, 30.0] {
+        let course = squeeze(slip_after);
+        let options = slipping_at(force_after(slip_after));
+        let (mut early, mut all) = (0.0, 0.0);
+        for seed in 0..100 {
+            let seen = watched(&course, seed, &options);
+            let holding = || seen.iter().filter(|seen| seen.phase == Phase::Holding);
+            let first = holding().find(|seen| seen.slip != Slip::None).unwrap().time;
+            // The lower end of an interval of 95 % comes after the truth in every fortieth.
+            let due = STOP + slip_after - 0.8 * options.warn_before;
+            assert!(first < STOP + slip_after, "{slip_after} {seed}: {first}");
+            for seen in holding() {
+                all += 1.0;
+                early += f64::from(u8::from(seen.time < due - 2.0 && seen.slip != Slip::None));
+                assert!(
+                    seen.time < due || seen.slip != Slip::None || seen.time < STOP + 0.1,
+                    "{slip_after} {seed}: {seen:?}"
+                );
+            }
+        }
+        if slip_after > 20.0 {
+            assert!(early < 0.05 * all);
+        }
+        println!("slip after {slip_after} s: warned much too early in {:.4} of ticks", early / all);
+    }
+}
+
+#[test]
+fn an_equilibrium_above_slip_is_never_and_below_is_not() {
+    let course = squeeze(60.0);
+    let last = |slip: f64| *watched(&course, 3, &slipping_at(slip)).last().unwrap();
+    let relaxed = last(0.1).equilibrium_force.unwrap().value;
+    assert_eq!(last(0.5 * relaxed).time_to_slip, Some(TimeToSlip::Never));
+    assert!(matches!(last(1.05 * relaxed).time_to_slip, Some(TimeToSlip::After { .. })));
+    assert_eq!(last(0.5 * relaxed).slip, Slip::None);
+    assert_eq!(last(2.0).slip, Slip::Slipping);
+}
+
+#[test]
+fn a_force_that_is_held_creeps_and_never_slips() {
+    let (model, mut contact, mut noise) = (model(), ContactState::default(), Noise::new(5));
+    let mut observer = Observer::new(slipping_at(1.0)).unwrap();
+    let (mut began, mut last, mut displacement, mut before) = (0, None, 0.0, 0.0);
+    for i in 1..=8000 {
+        let time = f64::from(i) / RATE;
+        let force = (4.0 * time).min(3.0);
+        before = if i == 7500 { displacement } else { before };
+        displacement = contact.step_force(&model, 1.0 / RATE, force).unwrap();
+        let seen = observer
+            .feed(time, Some(displacement + 1e-6 * noise.normal()), force + 0.01 * noise.normal())
+            .unwrap();
+        began += i32::from(seen.began);
+        last = Some(seen);
+    }
+    let seen = last.unwrap();
+    assert_eq!((seen.phase, seen.held, began), (Phase::Holding, Some(Held::Force), 1));
+    assert_eq!((seen.time_to_slip, seen.slip), (Some(TimeToSlip::Never), Slip::None));
+    let (creep, truth) = (seen.creep_rate.unwrap(), (displacement - before) * RATE / 500.0);
+    // the line goes through the later half, over which the creep slows down
+    assert!((creep.value / truth - 1.0).abs() < 0.6 && creep.deviation < 0.1 * truth, "{creep:?} {truth}");
+}
+
+#[test]
+fn unloading_and_a_second_squeeze_are_told_apart() {
+    let way = |time: f64| match time {
+        t if t < 0.6 => t / 0.12,
+        t if t < 5.0 => 5.0,
+        t if t < 5.6 => 5.0 - (t - 5.0) / 0.12,
+        t if t < 7.0 => 0.0,
+        t if t < 7.6 => (t - 7.0) / 0.12,
+        _ => 5.0,
+    };
+    let (model, mut contact, mut noise) = (model(), ContactState::default(), Noise::new(1));
+    let mut observer = Observer::new(ObserverOptions::default()).unwrap();
+    let mut seen = Vec::new();
+    for i in 1..=6000 {
+        let time = f64::from(i) / RATE;
+        let force = contact.step(&model, 1.0 / RATE, 1e-3 * way(time)).unwrap();
+        let displacement = 1e-3 * way(time) + 1e-6 * noise.normal();
+        seen.push(observer.feed(time, Some(displacement), force + 0.05 * noise.normal()).unwrap());
+    }
+    let at = |time: f64| seen[(time * RATE) as usize].phase;
+    assert_eq!(
+        [0.3, 2.0, 5.04, 6.5, 7.55, 11.0].map(at),
+        [Phase::Loading, Phase::Holding, Phase::Unloading, Phase::Free, Phase::Loading, Phase::Holding]
+    );
+    assert_eq!(seen.iter().filter(|seen| seen.began).count(), 2);
+}
+
+#[test]
+fn a_force_without_displacement_is_enough_for_a_squeeze_and_a_hold() {
+    for seed in 0..50 {
+        let mut noise = Noise::new(seed);
+        let mut observer = Observer::new(slipping_at(1.0)).unwrap();
+        let mut last = None;
+        let mut began = Vec::new();
+        for (time, _, force) in squeeze(20.0) {
+            let seen = observer.feed(time, None, force + 0.02 * noise.normal()).unwrap();
+            began.extend(seen.began.then_some(time));
+            last = Some(seen);
+        }
+        assert_eq!(began.len(), 1, "{seed}: {began:?}");
+        assert!(began[0] - STOP < 0.15, "{seed}: {began:?}");
+        assert!(last.unwrap().equilibrium_force.is_some());
+    }
+}
+
+#[test]
+fn bad_ticks_are_refused_and_change_nothing() {
+    let course = squeeze(2.0);
+    let mut observer = Observer::new(slipping_at(1.0)).unwrap();
+    for (time, displacement, force) in &course {
+        observer.feed(*time, Some(*displacement), *force).unwrap();
+    }
+    let before = format!("{observer:?}");
+    for (time, displacement, force) in [
+        (f64::NAN, Some(5e-3), 2.0),
+        (9.0, Some(f64::INFINITY), 2.0),
+        (9.0, Some(5e-3), f64::NAN),
+        (2.6, Some(5e-3), 2.0),
+        (1.0, Some(5e-3), 2.0),
+    ] {
+        let refused = observer.feed(time, displacement, force).unwrap_err();
+        assert!(!refused.to_string().is_empty() && !refused.hint().is_empty());
+    }
+    assert_eq!(before, format!("{observer:?}"));
+    for options in [
+        ObserverOptions {
+            exponent: 0.5,
+            ..ObserverOptions::default()
+        },
+        slipping_at(0.0),
+        slipping_at(f64::NAN),
+        ObserverOptions {
+            exponent_deviation: f64::NAN,
+            ..ObserverOptions::default()
+        },
+        ObserverOptions {
+            warn_before: -1.0,
+            ..ObserverOptions::default()
+        },
+        ObserverOptions {
+            confidence: 1.0,
+            ..ObserverOptions::default()
+        },
+        ObserverOptions {
+            noise: Some((0.0, 0.0)),
+            ..ObserverOptions::default()
+        },
+    ] {
+        assert!(matches!(Observer::new(options), Err(ObserveError::Option { .. })));
+    }
+}
+
+#[test]
+fn a_gap_in_a_hold_is_bridged() {
+    let course = squeeze(60.0);
+    let (mut observer, mut noise) = (Observer::new(slipping_at(1.0)).unwrap(), Noise::new(2));
+    let (mut began, mut last) = (0, None);
+    for (time, displacement, force) in course.iter().filter(|(time, ..)| !(5.0..45.0).contains(time)) {
+        let seen = observer.feed(*time, Some(*displacement), force + 0.05 * noise.normal()).unwrap();
+        began += i32::from(seen.began);
+        last = Some(seen);
+    }
+    let seen = last.unwrap();
+    assert_eq!((began, seen.phase), (1, Phase::Holding));
+    assert!((seen.force - course.last().unwrap().2).abs() < 0.02);
+}
+
+#[test]
+fn a_million_ticks_and_strange_ones_stay_finite() {
+    let mut observer = Observer::new(slipping_at(1.0)).unwrap();
+    let mut noise = Noise::new(9);
+    let finite = |seen: &Observation| {
+        let pair = |pair: Option<palpate::observe::Uncertain>| {
+            pair.is_none_or(|pair| pair.value.is_finite() && pair.deviation.is_finite())
+        };
+        let slip = match seen.time_to_slip {
+            Some(TimeToSlip::After { value, low, high }) => {
+                [value, Some(low), high].iter().flatten().all(|time| time.is_finite())
+            }
+            _ => true,
+        };
+        seen.force.is_finite()
+            && slip
+            && pair(seen.equilibrium_force)
+            && pair(seen.excess_force)
+            && pair(seen.creep_rate)
+    };
+    for i in 1..=1_000_000 {
+        let time = 1e-3 * f64::from(i);
+        let x = 1.0 + 1.5 / (1.0 + 20.0 * time).powf(0.25);
+        let seen =
+            observer.feed(time, Some(5e-3 * (time / 0.6).min(1.0)), x * (time / 0.6).min(1.0) + 0.05 * noise.normal());
+        assert!(finite(&seen.unwrap()));
+        if i == 1_000_000 {
+            // n = 5 and λ = 5/s from the start of the record: at 0.6 s, where the hold begins, still a hold of the law.
+            let found = seen.unwrap().equilibrium_force.unwrap();
+            assert!((found.value - 1.0).abs() < 4.0 * found.deviation && found.deviation < 1e-3, "{found:?}");
+        }
+    }
+    // A few kilobytes, none of them on the heap without a material.
+    assert!(size_of::<Observer>() < 20_000);
+    // Constant, stepped, huge and tiny signals.
+    let courses: [fn(f64) -> (f64, f64); 6] = [
+        |_| (0.0, 0.0),
+        |_| (1.0, 1.0),
+        |t| (t.floor(), t.floor()),
+        |t| (1e300 * t, 1e300),
+        |t| (1e-300 * t, -1e-300 * t),
+        |t| ((t * 7.0).sin(), (t * 3.0).cos()),
+    ];
+    for course in courses {
+        let mut observer = Observer::new(slipping_at(1.0)).unwrap();
+        for i in 1..=3000 {
+            let (displacement, force) = course(0.01 * f64::from(i));
+            assert!(finite(&observer.feed(0.01 * f64::from(i), Some(displacement), force).unwrap()));
+        }
+    }
+}
+
+/// The ball of `model`, with numbers 10 % off on average and errors that say so.
+fn material(stiffer: f64) -> palpate::calibrate::Material {
+    use palpate::calibrate::{
+        Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, Shown,
+    };
+    use palpate::identify::Estimate;
+    use palpate::laws::{ExponentChoice, Law};
+    let model = model();
+    let thickness = model.layers.thickness(model.specimen.depth());
+    let number = |name: &str, unit, value: f64, share: f64| MaterialNumber {
+        name: name.to_owned(),
+        unit,
+        estimate: Estimate {
+            value,
+            standard_error: Some(share * value),
+            interval: Some((value * (1.0 - 2.0 * share), value * (1.0 + 2.0 * share))),
+        },
+    };
+    let variance = |share: f64| share * share;
+    let mut covariance = vec![vec![0.0; 4]; 4];
+    (covariance[0][0], covariance[1][1], covariance[2][2], covariance[3][3]) =
+        (variance(0.02), variance(0.01), variance(0.1), variance(0.02));
+    Material {
+        body: Body {
+            shape: model.specimen.shape().clone(),
+            sides: model.specimen.sides(),
+            separation: Separation::Unilateral,
+            levels: Vec::new(),
+        },
+        candidate: Candidate {
+            law: Law::Latency {
+                exponent: ExponentChoice::Free,
+            },
+            equilibrium: EquilibriumLaw::EvenStrain,
+        },
+        numbers: vec![
+            number("modulus", MaterialUnit::Pascal, stiffer * model.specimen.modulus(), 0.02),
+            number("exponent", MaterialUnit::One, 5.03, 0.01),
+            number("rate_coefficient", MaterialUnit::PerSecond, 2.1e4, 0.1),
+            number("layer_thickness", MaterialUnit::Metre, 1.01 * thickness, 0.02),
+        ],
+        uncertainty: Some(MaterialUncertainty {
+            confidence: 0.95,
+            freedom: 2000.0,
+            covariance,
+        }),
+        noise: 0.05,
+        shown: Shown {
+            longest_hold: 60.0,
+            deepest: 0.01,
+            fastest: 0.01,
+            slowest: 0.001,
+            largest_force: 5.0,
+        },
+    }
+}
+
+#[test]
+fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
+    let slip_after = 30.0;
+    let course = squeeze(slip_after);
+    // The exponent known as well as the material knows it.
+    let plain = ObserverOptions {
+        exponent_deviation: 0.05,
+        ..slipping_at(force_after(slip_after))
+    };
+    let informed = ObserverOptions {
+        material: Some(material(1.03)),
+        ..plain.clone()
+    };
+    let end = model().law.excess_after(0.133_032_479_302, 0.3);
+    for after in [0.3, 3.0, 20.0] {
+        let (mut inside, mut widths) = (0, [0.0; 2]);
+        for seed in 0..50 {
+            let until = ((STOP + after) * RATE) as usize;
+            let truth = slip_after - after;
+            for (width, options) in widths.iter_mut().zip([&plain, &informed]) {
+                let seen = *watched(&course[..until], seed, options).last().unwrap();
+                let Some(TimeToSlip::After {
+                    low, high: Some(high), ..
+                }) = seen.time_to_slip
+                else {
+                    continue;
+                };
+                *width += (high / low.max(1e-3)).ln() / 50.0;
+                if options.material.is_some() {
+                    inside += i32::from(low <= truth * 1.001 && truth <= high * 1.001);
+                    if after == 0.3 {
+                        let strain = seen.excess_strain.unwrap();
+                        assert!(
+                            (strain.value - end).abs() < 5.0 * strain.deviation && strain.deviation < 0.1 * end,
+                            "{strain:?} {end}"
+                        );
+                    }
+                }
+            }
+        }
+        println!("seen at {after} s: inside {inside} of 50, ln(high/low) {widths:?}");
+        assert!(inside >= 44, "{after}: {inside}");
+        // Readings that follow closely count as fewer, so that later the hold alone tells as much.
+        assert!(widths[1] < if after < 1.0 { 0.3 } else { 1.3 } * widths[0], "{after}: {widths:?}");
+    }
+}
+
+#[test]
+fn forces_of_another_body_are_fitted_as_they_are() {
+    let course = squeeze(10.0);
+    let options = ObserverOptions {
+        material: Some(material(3.0)),
+        ..slipping_at(0.5)
+    };
+    let seen = *watched(&course, 1, &options).last().unwrap();
+    assert!(seen.excess_strain.is_none() && seen.equilibrium_force.is_some());
+    let mut observer = Observer::new(options).unwrap();
+    assert!(matches!(observer.feed(0.0, Some(1.0), 0.0), Err(ObserveError::Displacement { .. })));
+    assert!(observer.feed(0.0, Some(0.0), 0.0).is_ok());
+}
