@@ -40,7 +40,13 @@ pub fn grip_figure(body: &GrippedBody<'_>, name: &str) -> Figure {
         .collect();
     let closing = answer.squeeze.as_ref().map_or(body.grip.limits().closing, |made| made.found.closing);
     // A hold that is long beside the squeeze is told by its logarithm.
-    let axis = || if answer.shown > 30.0 * closing { Axis::log("Time", "s") } else { Axis::linear("Time", "s") };
+    let axis = || {
+        if answer.shown > 30.0 * closing {
+            Axis::log("Time", "s").range(0.1 * closing, closing + answer.shown)
+        } else {
+            Axis::linear("Time", "s")
+        }
+    };
     let mut force = Panel::new(axis(), Axis::linear("Force", "N")).share(1.6);
     let mut margin = Panel::new(axis(), Axis::linear("Force / needed", ""));
     let mut jaw = Panel::new(axis(), Axis::linear("Displacement", "mm"));

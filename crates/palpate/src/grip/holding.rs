@@ -215,7 +215,7 @@ impl<'a> Grip<'a> {
         let (mut times, mut from) = (vec![0.0], 0.0);
         for end in &ends {
             // Denser where a step begins: that is where the force changes fastest.
-            let share = |i: usize| (i as f64 / samples as f64).powi(2);
+            let share = |i: usize| (i as f64 / samples as f64).powi(3);
             times.extend((1..=samples).map(|i| from + (end.time - from) * share(i)).filter(|time| *time > from));
             from = end.time;
         }
