@@ -380,6 +380,7 @@ Examples:
   palpate calibrate press.csv --test ball.toml --out material.toml
   palpate calibrate press.csv --test ball.toml --fit-until \"60 s\"     does it foretell the rest?
   palpate calibrate press.csv --test ball.toml --equilibrium table     no law of the relaxed force
+  palpate calibrate steps.csv --test ball.toml --rate by-strain        has v a trend with the strain?
   palpate schema material                                             what a material file holds")]
 pub(crate) struct CalibrateArguments {
     /// Record with time, displacement and force
@@ -406,6 +407,9 @@ pub(crate) struct CalibrateArguments {
     /// Poisson's ratio for Hertz's law; 0.5 if not given
     #[arg(long, value_name = "NUMBER")]
     pub(crate) poisson_ratio: Option<f64>,
+    /// What the rate coefficient v of the latency law depends on, by one more number; the other choices are rivals then
+    #[arg(long, value_enum, default_value_t = RateLawName::Constant)]
+    pub(crate) rate: RateLawName,
     /// Fit only up to this time of the record and foretell the rest
     #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
     pub(crate) fit_until: Option<f64>,
@@ -432,6 +436,17 @@ pub(crate) enum EquilibriumLawName {
     Hertz,
     /// A monotone table with a row where the jaw was held
     Table,
+}
+
+/// What the rate coefficient v depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RateLawName {
+    /// Nothing: one number
+    Constant,
+    /// The equilibrium strain: v f^(ε_e/0.1)
+    ByStrain,
+    /// Whether strain falls (after loading, v) or rises (after unloading, f v)
+    ByDirection,
 }
 
 /// Predict what a calibrated body does under a protocol, with intervals.

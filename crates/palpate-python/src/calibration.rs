@@ -5,7 +5,7 @@ use std::sync::Arc;
 use arrow_array::{ArrayRef, BooleanArray, Float64Array};
 use numpy::PyArray1;
 use palpate::analysis::AnalysisOptions;
-use palpate::calibrate::{CalibrateError, CalibrationData, Candidate, EquilibriumLaw, calibrate};
+use palpate::calibrate::{CalibrateError, CalibrationData, Candidate, EquilibriumLaw, RateLaw, calibrate};
 use palpate::identify::Termination;
 use palpate::laws::Law;
 use palpate::record::Record as Measured;
@@ -31,6 +31,7 @@ const RIVALS: [&str; 4] = ["standard-linear-solid", "prony:2", "prony:3", "fung:
 pub(crate) struct Wanted {
     pub(crate) laws: Vec<Law>,
     pub(crate) equilibrium: EquilibriumLaw,
+    pub(crate) rate: RateLaw,
     pub(crate) fit_until: Option<f64>,
     pub(crate) confidence: f64,
 }
@@ -71,12 +72,26 @@ pub(crate) fn equilibrium_law(name: &str, poisson_ratio: Option<f64>) -> PyResul
     }
 }
 
+/// What the rate coefficient depends on.
+pub(crate) fn rate_law(name: &str) -> PyResult<RateLaw> {
+    match name {
+        "constant" => Ok(RateLaw::Constant),
+        "by-strain" => Ok(RateLaw::ByStrain),
+        "by-direction" => Ok(RateLaw::ByDirection),
+        other => {
+            let message = format!("rate is one of \"constant\", \"by-strain\", \"by-direction\", found {other:?}");
+            Err(refused_plainly::<OptionError>(message))
+        }
+    }
+}
+
 /// Why there is no calibration: because of what was asked, of the record, of the body or of the samples.
 fn uncalibrated(error: &CalibrateError) -> PyErr {
     let hint = Some(error.hint()).filter(|hint| !hint.is_empty());
     match error {
         CalibrateError::NoGeometry
         | CalibrateError::NotALaw { .. }
+        | CalibrateError::RateOf { .. }
         | CalibrateError::Exponent { .. }
         | CalibrateError::Split { .. } => refused::<OptionError>(error, hint),
         CalibrateError::TooFewSamples { .. } | CalibrateError::NoStiffness => refused::<FitError>(error, hint),
@@ -99,11 +114,13 @@ fn calibrated(
         data = data.fitted_until(until)?;
     }
     let mut rows = Vec::new();
-    for law in &wanted.laws {
-        let candidate = Candidate {
-            law: *law,
-            equilibrium: wanted.equilibrium,
-        };
+    let chosen = Candidate {
+        rate: wanted.rate,
+        ..Candidate::new(wanted.laws[0], wanted.equilibrium)
+    };
+    let rivals = &wanted.laws[1..];
+    let candidates = if rivals.is_empty() { vec![chosen] } else { chosen.with_rivals(rivals) };
+    for candidate in candidates {
         let made = calibrate(&data, candidate, wanted.confidence);
         if rows.is_empty()
             && let Err(error) = made

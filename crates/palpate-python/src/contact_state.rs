@@ -29,6 +29,9 @@ fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
 fn latency(scene: Result<(Option<String>, Model), DescriptionError>) -> PyResult<ContactModel> {
     match scene.map_err(undescribed)?.1 {
         Model::Latency(model) => Ok(model),
+        Model::Varying(_) => {
+            Err(refused_plainly::<ModelError>("a contact is stepped by a latency law with one rate coefficient"))
+        }
         Model::Linear(_) => Err(refused_plainly::<ModelError>("a contact is stepped by the latency law alone")),
     }
 }

@@ -114,7 +114,7 @@ impl Material {
     /// Name of the law as it was fitted, such as "latency", "latency:5" or "prony:2".
     #[getter]
     pub(crate) fn law(&self) -> String {
-        self.file.material.candidate.law.to_string()
+        self.file.material.candidate.to_string()
     }
 
     /// Law of the force once relaxation is over: "even-strain", "hertz" or "table".

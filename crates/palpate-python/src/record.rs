@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::Analysis;
 use crate::arrays::doubles;
-use crate::calibration::{Calibration, Wanted, equilibrium_law, laws};
+use crate::calibration::{Calibration, Wanted, equilibrium_law, laws, rate_law};
 use crate::document::{Document, Fields};
 use crate::errors::{OptionError, RecordError, refused, refused_plainly, undescribed, unread};
 use crate::table::Table;
@@ -533,6 +533,10 @@ impl Record {
     ///     "table", a monotone one with a row where the jaw was held.
     /// poisson_ratio : float, optional
     ///     For Hertz's law, from 0 to 0.5; 0.5 if left out.
+    /// rate : str
+    ///     What the rate coefficient v of the latency law depends on, by one more number: "constant"; "by-strain", v f^(ε_e/0.1) with
+    ///     f = ``strain_factor``; or "by-direction", v after loading and f v after unloading with f = ``unloading_factor``. The other
+    ///     two are rivals then.
     /// fit_until_s : float, optional
     ///     Fit only up to this time of the record, s, and foretell the rest.
     /// confidence : float, optional
@@ -578,7 +582,7 @@ impl Record {
     /// >>> prediction = calibration.material.predict([{"to": "8 mm", "rate": "500 mm/min", "hold": "20 s"}], at_s=[10.0])
     /// >>> round(float(prediction.force_n[0]), 2)
     /// 3.45
-    #[pyo3(signature = (*, law="latency", test=None, rivals=None, equilibrium="even-strain", poisson_ratio=None, fit_until_s=None, confidence=None))]
+    #[pyo3(signature = (*, law="latency", test=None, rivals=None, equilibrium="even-strain", poisson_ratio=None, rate="constant", fit_until_s=None, confidence=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn calibrate(
         &self,
@@ -588,6 +592,7 @@ impl Record {
         rivals: Option<&Bound<'_, PyAny>>,
         equilibrium: &str,
         poisson_ratio: Option<f64>,
+        rate: &str,
         fit_until_s: Option<f64>,
         confidence: Option<f64>,
     ) -> PyResult<Calibration> {
@@ -595,6 +600,7 @@ impl Record {
         let wanted = Wanted {
             laws: laws(law, rivals)?,
             equilibrium: equilibrium_law(equilibrium, poisson_ratio)?,
+            rate: rate_law(rate)?,
             fit_until: fit_until_s,
             confidence: coverage(confidence.unwrap_or(options.fit.confidence))?,
         };

@@ -40,7 +40,7 @@ impl CalibratedRecord {
         // A law that found no optimum is none to recommend.
         let sound = |made: &&Calibration| made.termination.is_good() || std::ptr::eq(*made, chosen);
         let best = self.made().filter(sound).min_by(|a, b| self.score(a).total_cmp(&self.score(b)))?;
-        let (law, other) = (chosen.material.candidate.law, best.material.candidate.law);
+        let (law, other) = (chosen.material.candidate, best.material.candidate);
         let by = if chosen.foretold.is_some() {
             "foretells the rest of the record best"
         } else {

@@ -23,10 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let data = CalibrationData::new(body, ball.separation, motion, times, forces, &held)?;
 
     for law in ["latency", "standard-linear-solid", "prony:2"] {
-        let candidate = Candidate {
-            law: law.parse()?,
-            equilibrium: EquilibriumLaw::EvenStrain,
-        };
+        let candidate = Candidate::new(law.parse()?, EquilibriumLaw::EvenStrain);
         let found = calibrate(&data, candidate, 0.95)?;
         println!("{law}: leaves {:.3} N, BIC {:.0}", found.rmse, found.criteria.bic);
         for number in &found.material.numbers {

@@ -68,10 +68,7 @@ fn report((test, fitted): (&str, &str), halves: &[BTreeMap<&str, Count>; 2], rec
 
 fn counts(motion: &Motion, law: &str, seeds: std::ops::Range<u64>) -> BTreeMap<&'static str, Count> {
     let mut counts: BTreeMap<&str, Count> = BTreeMap::new();
-    let candidate = Candidate {
-        law: law.parse().expect("a law"),
-        equilibrium: EquilibriumLaw::EvenStrain,
-    };
+    let candidate = Candidate::new(law.parse().expect("a law"), EquilibriumLaw::EvenStrain);
     for seed in seeds {
         let found = calibrate(&data(motion, seed), candidate, 0.95).expect("a calibration");
         for (name, _, truth) in TRUTH {

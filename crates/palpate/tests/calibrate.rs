@@ -2,9 +2,11 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
 use palpate::analysis::Geometry;
-use palpate::calibrate::{CalibrateError, CalibrationData, Candidate, EquilibriumLaw, Extrapolation, calibrate};
-use palpate::contact::{Shape, Sides};
-use palpate::simulate::{Motion, ProtocolStep, Sampling, Separation, protocol, simulate_force};
+use palpate::calibrate::{
+    CalibrateError, CalibrationData, Candidate, EquilibriumLaw, Extrapolation, RateLaw, calibrate,
+};
+use palpate::contact::{RateDependence, Shape, Sides};
+use palpate::simulate::{Motion, ProtocolStep, Sampling, Separation, VaryingContact, protocol, simulate_force};
 use palpate::test_problems::{Noise, PAPER_RATE, paper_ball, paper_test_a, paper_test_b};
 
 /// A test of the paper's ball as a machine would have recorded it, at 10 Hz.
@@ -27,10 +29,7 @@ fn ball() -> Geometry {
 }
 
 fn candidate(law: &str, equilibrium: EquilibriumLaw) -> Candidate {
-    Candidate {
-        law: law.parse().unwrap(),
-        equilibrium,
-    }
+    Candidate::new(law.parse().unwrap(), equilibrium)
 }
 
 const EVEN: EquilibriumLaw = EquilibriumLaw::EvenStrain;
@@ -66,6 +65,99 @@ fn calibrated_on_loading_the_unloading_is_foretold() {
     let misses = misses.count();
     assert!(misses * 10 < b.times().len(), "{misses} of {}", b.times().len());
     assert!(foretold.extrapolations.is_empty(), "{:?}", foretold.extrapolations);
+}
+
+/// The record of a ball whose rate coefficient depends on strain or direction.
+fn varying(rate: RateDependence, motion: &Motion, noise: f64) -> CalibrationData {
+    let contact = VaryingContact {
+        model: paper_ball(Separation::Unilateral),
+        rate,
+    };
+    let plain = measured(motion, 1, 0.0);
+    let mut random = Noise::new(5);
+    let forces = simulate_force(motion, &contact, plain.times()).unwrap();
+    let forces = forces.iter().map(|force| force + noise * random.normal()).collect();
+    CalibrationData::new(ball(), Separation::Unilateral, motion.clone(), plain.times().to_vec(), forces, plain.levels())
+        .unwrap()
+}
+
+/// 15 mm and back to 10 and 6 mm, then 25 and back to 18: holds after loading and after unloading.
+fn there_and_back() -> Motion {
+    let step = |to: f64| ProtocolStep {
+        to,
+        rate: PAPER_RATE,
+        hold: 10.0,
+    };
+    protocol(&[0.015, 0.010, 0.006, 0.025, 0.018].map(step)).unwrap()
+}
+
+#[test]
+fn a_rate_that_depends_on_strain_or_direction_is_found_and_chosen() {
+    let truths = [
+        (RateLaw::ByStrain, RateDependence::Strain { factor: 0.3 }, "strain_factor", 0.3),
+        (RateLaw::ByDirection, RateDependence::Direction { factor: 0.25 }, "unloading_factor", 0.25),
+    ];
+    for (rate, truth, name, factor) in truths {
+        let data = varying(truth, &there_and_back(), 0.02);
+        let candidates = Candidate {
+            rate,
+            ..candidate("latency", EVEN)
+        };
+        let made: Vec<_> =
+            candidates.with_rivals(&[]).into_iter().map(|one| calibrate(&data, one, 0.95).unwrap()).collect();
+        assert_eq!(made.len(), 3);
+        let (low, high) = made[0].material.estimate(name).unwrap().interval.unwrap();
+        let value = made[0].material.estimate(name).unwrap().value;
+        assert!((value / factor - 1.0).abs() < 0.05 && high - low < 0.1 * factor, "{name}: {value}, {low} to {high}");
+        assert!(made[0].termination.is_good() && made[0].rmse < 0.022, "{}", made[0].rmse);
+        for other in &made[1..] {
+            let behind = other.criteria.bic - made[0].criteria.bic;
+            assert!(behind > 50.0, "{} is behind by {behind}", other.material.candidate);
+        }
+        // And foretold: fitted on the first three holds, the others follow.
+        let part = data.fitted_until(34.0).unwrap();
+        let [mine, plain] = [candidates, candidate("latency", EVEN)]
+            .map(|one| calibrate(&part, one, 0.95).unwrap().foretold.unwrap().rmse);
+        assert!(mine < 0.5 * plain, "{rate:?}: {mine} {plain}");
+    }
+}
+
+#[test]
+fn a_constant_rate_is_not_said_to_vary() {
+    let data = measured(&there_and_back(), 4, 0.2);
+    for rate in [RateLaw::ByStrain, RateLaw::ByDirection] {
+        let asked = Candidate {
+            rate,
+            ..candidate("latency", EVEN)
+        };
+        let found = calibrate(&data, asked, 0.95).unwrap();
+        let (low, high) = found.material.estimate(rate.factor_name().unwrap()).unwrap().interval.unwrap();
+        assert!(low < 1.0 && high > 1.0, "{rate:?}: {low} to {high}");
+        let plain = calibrate(&data, candidate("latency", EVEN), 0.95).unwrap();
+        assert!(found.criteria.bic > plain.criteria.bic, "{rate:?}");
+    }
+}
+
+#[test]
+fn a_direction_that_the_record_does_not_show_is_said() {
+    let step = |to: f64| ProtocolStep {
+        to,
+        rate: PAPER_RATE,
+        hold: 10.0,
+    };
+    let loading = protocol(&[0.005, 0.010].map(step)).unwrap();
+    let asked = Candidate {
+        rate: RateLaw::ByDirection,
+        ..candidate("latency", EVEN)
+    };
+    let error = calibrate(&measured(&loading, 1, 0.05), asked, 0.95).unwrap_err();
+    assert!(matches!(error, CalibrateError::FactorUnseen { .. }) && !error.hint().is_empty(), "{error}");
+    let linear = Candidate {
+        rate: RateLaw::ByStrain,
+        ..candidate("prony:2", EVEN)
+    };
+    let error = calibrate(&measured(&loading, 1, 0.05), linear, 0.95).unwrap_err();
+    assert!(error.to_string().contains("no rate coefficient"), "{error}");
 }
 
 #[test]

@@ -1,17 +1,18 @@
 //! Contact force, strain wave, separation and creep against mpmath and SciPy (`contact_force.json`, `cascade.json`,
-//! `cascade_grid.json`, `separation.json`, `creep.json`, `bodies.json`).
+//! `cascade_grid.json`, `separation.json`, `creep.json`, `bodies.json`, `varying_rates.json`).
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
 mod common;
 
 use common::reference;
-use palpate::contact::{Curve, Equilibrium, Layers, Shape, Sides, Specimen};
+use palpate::contact::{Curve, Equilibrium, Layers, RateDependence, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactEventKind, ContactModel, ForceHistory, Motion, Sampling, Separation, SimulateError, simulate,
-    simulate_force, strain_wave,
+    ContactEventKind, ContactModel, ForceHistory, Motion, Sampling, Separation, SimulateError, VaryingContact,
+    simulate, simulate_force, strain_wave,
 };
+use palpate::test_problems::paper_ball;
 use serde::Deserialize;
 
 /// What all cases of a contact share.
@@ -300,24 +301,30 @@ struct CreepCase {
     excess_strain: Vec<f64>,
 }
 
+impl CreepCase {
+    fn model(&self) -> ContactModel {
+        let shape = match self.shape.as_str() {
+            "ball" => Shape::Ball { radius: self.size[0] },
+            _ => Shape::Prism {
+                area: self.size[0],
+                length: self.size[1],
+            },
+        };
+        ContactModel {
+            specimen: Specimen::new(shape, self.modulus, Sides::Two).unwrap(),
+            law: LatencyLaw::new(self.exponent, self.rate_coefficient).unwrap(),
+            layers: Layers::new(self.layers).unwrap(),
+            separation: Separation::Bonded,
+        }
+    }
+}
+
 #[test]
 fn under_a_force() {
     let (tolerance, cases) = reference::<CreepTolerance, CreepCase>("creep");
     let mut verdict = Verdict::new();
     for case in &cases {
-        let shape = match case.shape.as_str() {
-            "ball" => Shape::Ball { radius: case.size[0] },
-            _ => Shape::Prism {
-                area: case.size[0],
-                length: case.size[1],
-            },
-        };
-        let model = ContactModel {
-            specimen: Specimen::new(shape, case.modulus, Sides::Two).unwrap(),
-            law: LatencyLaw::new(case.exponent, case.rate_coefficient).unwrap(),
-            layers: Layers::new(case.layers).unwrap(),
-            separation: Separation::Bonded,
-        };
+        let model = case.model();
         let (times, forces) = case.knots.iter().copied().unzip();
         let history = ForceHistory::new(times, forces).unwrap();
         let result = simulate(&history, &model, &Sampling::Times(case.times.clone())).unwrap();
@@ -428,4 +435,91 @@ fn layers_that_relax_too_fast_are_refused_and_do_not_run_on() {
     let refused = strain_wave(&motion, &model, &sampling);
     assert!(matches!(refused, Err(SimulateError::StiffLayers { .. })), "{refused:?}");
     assert!(simulate(&motion, &model, &sampling).is_ok());
+}
+
+#[derive(Deserialize)]
+struct VaryingTolerance {
+    strain: f64,
+    direction: f64,
+}
+
+#[derive(Deserialize)]
+struct VaryingCase {
+    drive: String,
+    rate: String,
+    factor: f64,
+    #[serde(flatten)]
+    contact: CreepCase,
+}
+
+#[test]
+fn with_a_rate_that_depends_on_strain_or_direction() {
+    let (tolerance, cases) = reference::<VaryingTolerance, VaryingCase>("varying_rates");
+    let mut verdict = Verdict::new();
+    for VaryingCase {
+        drive,
+        rate,
+        factor,
+        contact: case,
+    } in &cases
+    {
+        let (rate, allowed) = match rate.as_str() {
+            "strain" => (RateDependence::Strain { factor: *factor }, tolerance.strain),
+            _ => (RateDependence::Direction { factor: *factor }, tolerance.direction),
+        };
+        let contact = VaryingContact {
+            model: case.model(),
+            rate,
+        };
+        let (times, values) = case.knots.iter().copied().unzip();
+        let sampling = Sampling::Times(case.times.clone());
+        let result = match drive.as_str() {
+            "motion" => simulate(&Motion::new(times, values).unwrap(), &contact, &sampling),
+            _ => simulate(&ForceHistory::new(times, values).unwrap(), &contact, &sampling),
+        }
+        .unwrap();
+        let depth = contact.model.specimen.depth();
+        let off = distance(&result.contact_displacement, &case.contact_displacement) / depth;
+        verdict.add(&case.name, "displacement", off, allowed);
+        verdict.add(&case.name, "excess strain", distance(&result.excess_strain, &case.excess_strain), allowed);
+    }
+    verdict.finish();
+}
+
+/// The recovery ẏ = −(v(y)/m) yⁿ of a surface, against Runge and Kutta's method.
+#[test]
+fn a_surface_left_alone_recovers_by_its_own_rate() {
+    for rate in [RateDependence::Strain { factor: 0.2 }, RateDependence::Direction { factor: 0.3 }] {
+        let mut contact = VaryingContact {
+            model: paper_ball(Separation::Unilateral),
+            rate,
+        };
+        let squeeze = Motion::new(vec![0.0, 1.0, 11.0, 11.01, 80.0], vec![0.0, 0.015, 0.015, -0.01, -0.01]).unwrap();
+        let times: Vec<f64> = (0..60).map(|i| 11.02 + f64::from(i)).collect();
+        let off = simulate(&squeeze, &contact, &Sampling::Times(times.clone())).unwrap();
+        assert!(off.force.iter().all(|force| *force == 0.0) && off.contact_displacement[0] > 1e-3);
+        let since = times[0];
+        let again = |elapsed: f64, dent: f64| {
+            let (depth, layers) = (contact.model.specimen.depth(), contact.model.layers.count());
+            let law = |y: f64| rate.times(-1.0, y) * contact.model.law.rate_coefficient() / layers * y.powi(5);
+            // Runge and Kutta's method of fourth order.
+            let (mut y, steps) = (dent / depth, 4000);
+            let h = elapsed / f64::from(steps);
+            for _ in 0..steps {
+                let a = law(y);
+                let b = law(y - 0.5 * h * a);
+                let c = law(y - 0.5 * h * b);
+                y -= h / 6.0 * (a + 2.0 * b + 2.0 * c + law(y - h * c));
+            }
+            y * depth
+        };
+        for (time, u) in times.iter().zip(&off.contact_displacement) {
+            let exact = again(time - since, off.contact_displacement[0]);
+            assert!((u - exact).abs() < 1e-6 * 0.035, "{rate:?} at {time} s: {u} {exact}");
+        }
+        contact.rate = RateDependence::Constant;
+        let plain = simulate(&squeeze, &contact, &Sampling::Times(times.clone())).unwrap();
+        let model = simulate(&squeeze, &contact.model, &Sampling::Times(times)).unwrap();
+        assert_eq!(plain.contact_displacement, model.contact_displacement);
+    }
 }

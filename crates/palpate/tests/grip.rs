@@ -39,10 +39,7 @@ fn ball(errors: Option<[f64; 4]>) -> Material {
             separation: Separation::Unilateral,
             levels: vec![],
         },
-        candidate: Candidate {
-            law: "latency".parse().unwrap(),
-            equilibrium: EquilibriumLaw::EvenStrain,
-        },
+        candidate: Candidate::new("latency".parse().unwrap(), EquilibriumLaw::EvenStrain),
         numbers: names.into_iter().enumerate().map(number).collect(),
         uncertainty,
         noise: 0.05,

@@ -370,12 +370,12 @@ fn material(stiffer: f64) -> palpate::calibrate::Material {
             separation: Separation::Unilateral,
             levels: Vec::new(),
         },
-        candidate: Candidate {
-            law: Law::Latency {
+        candidate: Candidate::new(
+            Law::Latency {
                 exponent: ExponentChoice::Free,
             },
-            equilibrium: EquilibriumLaw::EvenStrain,
-        },
+            EquilibriumLaw::EvenStrain,
+        ),
         numbers: vec![
             number("modulus", MaterialUnit::Pascal, stiffer * model.specimen.modulus(), 0.02),
             number("exponent", MaterialUnit::One, 5.03, 0.01),

@@ -1,7 +1,7 @@
 //! `palpate calibrate`: a whole record to one set of numbers.
 
 use palpate::analysis::AnalysisOptions;
-use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, calibrate};
+use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, RateLaw, calibrate};
 use palpate_files::description::{MaterialFile, MaterialOrigin, TestDescription};
 use palpate_report::calibrated::CalibratedRecord;
 use palpate_report::document::CalibrationDocument;
@@ -9,7 +9,7 @@ use palpate_report::study::{calibration_figure, calibration_text};
 
 use super::picture::{check_picture, picture};
 use super::record::{Opened, description, input, one_part, tell_skipped};
-use crate::arguments::{CalibrateArguments, EquilibriumLawName, Format};
+use crate::arguments::{CalibrateArguments, EquilibriumLawName, Format, RateLawName};
 use crate::failure::{Failure, Outcome};
 use crate::files::write_file;
 use crate::progress::Working;
@@ -39,13 +39,19 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Outcome, Failure> {
     if data.samples() > data.times().len() {
         note(&format!("{} of {} samples are used, evenly chosen", data.times().len(), data.samples()));
     }
-    let rivals = if arguments.no_rivals { &[][..] } else { &arguments.rivals };
-    let mut laws = vec![arguments.law];
-    laws.extend(rivals.iter().filter(|law| **law != arguments.law));
+    let chosen = Candidate {
+        law: arguments.law,
+        equilibrium,
+        rate: match arguments.rate {
+            RateLawName::Constant => RateLaw::Constant,
+            RateLawName::ByStrain => RateLaw::ByStrain,
+            RateLawName::ByDirection => RateLaw::ByDirection,
+        },
+    };
     let mut rows = Vec::new();
-    for law in laws {
-        let _working = Working::new(format!("calibrating {law}"));
-        let candidate = Candidate { law, equilibrium };
+    let candidates = if arguments.no_rivals { vec![chosen] } else { chosen.with_rivals(&arguments.rivals) };
+    for candidate in candidates {
+        let _working = Working::new(format!("calibrating {candidate}"));
         let made = calibrate(&data, candidate, confidence);
         if rows.is_empty()
             && let Err(error) = made

@@ -3,9 +3,10 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use palpate::contact::RateDependence;
 use palpate::simulate::{
-    Contact, ContactEventKind, Drive, Energy, ForceHistory, Memory, Motion, MotionError, Sampling, SimulateError,
-    StrainWave, Trajectory, cycles, energy, simulate, strain_wave, work_by_step,
+    Contact, ContactEventKind, ContactModel, Drive, Energy, ForceHistory, Memory, Motion, MotionError, Sampling,
+    SimulateError, StrainWave, Trajectory, cycles, energy, simulate, strain_wave, work_by_step,
 };
 use palpate::test_problems::Noise;
 use palpate_files::description::{DescriptionError, Model, Protocol, read_protocol, read_scene};
@@ -212,12 +213,16 @@ fn record(trajectory: &Trajectory, arguments: &SimulateArguments) -> String {
 
 fn caption(title: Option<&str>, what: &str, model: Contact<'_>) -> String {
     let law = match model {
-        Contact::Latency(model) => format!(
-            "n = {}, v = {:e} 1/s, {} layers",
-            model.law.exponent(),
-            model.law.rate_coefficient(),
-            model.layers.count()
-        ),
+        Contact::Latency(model) => latency(model),
+        Contact::Varying(contact) => match contact.rate {
+            RateDependence::Constant => latency(&contact.model),
+            RateDependence::Strain { factor } => {
+                format!("{}, v times {factor} by 0.1 of equilibrium strain", latency(&contact.model))
+            }
+            RateDependence::Direction { factor } => {
+                format!("{}, v times {factor} while strain rises", latency(&contact.model))
+            }
+        },
         Contact::Linear(contact) => {
             let memory = match contact.memory {
                 Memory::Strain => "strain",
@@ -230,6 +235,11 @@ fn caption(title: Option<&str>, what: &str, model: Contact<'_>) -> String {
         }
     };
     format!("{}{what}; {law}.", title.map_or(String::new(), |title| format!("{title}. ")))
+}
+
+fn latency(model: &ContactModel) -> String {
+    let (law, layers) = (model.law, model.layers.count());
+    format!("n = {}, v = {:e} 1/s, {layers} layers", law.exponent(), law.rate_coefficient())
 }
 
 fn is_csv(path: &Path) -> Result<(), Failure> {

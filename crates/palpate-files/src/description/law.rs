@@ -3,9 +3,9 @@
 use std::fmt::Display;
 
 use palpate::{
-    contact::Specimen,
+    contact::{RateDependence, Specimen},
     latency::LatencyLaw,
-    simulate::{Contact, ContactModel, LinearContact, LinearLaw, LinearLawError, LinearTerm, Memory},
+    simulate::{Contact, ContactModel, LinearContact, LinearLaw, LinearLawError, LinearTerm, Memory, VaryingContact},
     units::Dimension,
 };
 use schemars::JsonSchema;
@@ -18,6 +18,8 @@ use super::{error::DescriptionError, quantity::QuantityText, source::Source};
 pub enum Model {
     /// The latency law in layers.
     Latency(ContactModel),
+    /// The same with a rate coefficient that depends on the state of the layer.
+    Varying(VaryingContact),
     /// A linear law.
     Linear(LinearContact),
 }
@@ -28,6 +30,7 @@ impl Model {
     pub fn contact(&self) -> Contact<'_> {
         match self {
             Self::Latency(model) => model.into(),
+            Self::Varying(contact) => contact.into(),
             Self::Linear(contact) => contact.into(),
         }
     }
@@ -38,12 +41,12 @@ impl Model {
         self.contact().specimen()
     }
 
-    /// The latency law with its layers, if it is that.
+    /// The latency law of one rate coefficient with its layers, if it is that.
     #[must_use]
     pub fn latency(&self) -> Option<&ContactModel> {
         match self {
             Self::Latency(model) => Some(model),
-            Self::Linear(_) => None,
+            Self::Varying(_) | Self::Linear(_) => None,
         }
     }
 }
@@ -54,7 +57,8 @@ impl<'a> From<&'a Model> for Contact<'a> {
     }
 }
 
-/// The law that strain follows. Give the numbers that it needs: latency takes exponent and rate_coefficient; standard-linear-solid takes
+/// The law that strain follows. Give the numbers that it needs: latency takes exponent and rate_coefficient, and may take strain_factor or
+/// unloading_factor; standard-linear-solid takes
 /// overshoot and time; prony takes terms; fung takes shares; fractional-zener takes overshoot, time and order.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -66,6 +70,12 @@ pub(super) struct LawTable {
     pub(super) exponent: Option<f64>,
     /// Rate coefficient v of the latency law, such as "2e4 /s".
     pub(super) rate_coefficient: Option<QuantityText>,
+    /// Factor by which v changes with every 0.1 of equilibrium strain; rate_coefficient is then that at first touch.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(super) strain_factor: Option<f64>,
+    /// How many times v the rate coefficient is while strain rises to equilibrium, after unloading.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(super) unloading_factor: Option<f64>,
     /// By how much a sudden squeeze overshoots equilibrium, as a multiple of it.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(super) overshoot: Option<f64>,
@@ -133,7 +143,7 @@ enum MemoryName {
 
 /// A law, whichever it is.
 pub(super) enum Law {
-    Latency(LatencyLaw),
+    Latency(LatencyLaw, RateDependence),
     Linear(LinearLaw, Memory),
 }
 
@@ -181,7 +191,9 @@ impl LawTable {
             LawName::Latency => {
                 let exponent = above("law.exponent", self.exponent)?;
                 let rate = quantity("law.rate_coefficient", self.rate_coefficient.as_ref(), Dimension::Rate)?;
-                return LatencyLaw::new(exponent, rate).map(Law::Latency).map_err(|error| refused(&error));
+                let dependence = self.rate_dependence(source)?;
+                let law = LatencyLaw::new(exponent, rate).map_err(|error| refused(&error))?;
+                return Ok(Law::Latency(law, dependence));
             }
             LawName::StandardLinearSolid => LinearLaw::standard(above("law.overshoot", self.overshoot)?, time()?),
             LawName::Prony => LinearLaw::new(&self.prony(source)?),
@@ -207,6 +219,24 @@ impl LawTable {
         })
     }
 
+    /// What the rate coefficient depends on: strain or direction, not both.
+    fn rate_dependence(&self, source: &Source<'_>) -> Result<RateDependence, DescriptionError> {
+        let above = |key: &str, factor: f64| source.number(key, factor, "a number above 0", |factor| factor > 0.0);
+        match (self.strain_factor, self.unloading_factor) {
+            (None, None) => Ok(RateDependence::Constant),
+            (Some(factor), None) => Ok(RateDependence::Strain {
+                factor: above("law.strain_factor", factor)?,
+            }),
+            (None, Some(factor)) => Ok(RateDependence::Direction {
+                factor: above("law.unloading_factor", factor)?,
+            }),
+            (Some(_), Some(_)) => {
+                let reason = "with strain_factor: v depends on one of them";
+                Err(source.unused("law.unloading_factor", reason, "remove strain_factor or unloading_factor"))
+            }
+        }
+    }
+
     fn prony(&self, source: &Source<'_>) -> Result<Vec<LinearTerm>, DescriptionError> {
         let term = |(index, term): (usize, &TermTable)| {
             let key = |name: &str| format!("law.terms[{}].{name}", index + 1);
@@ -226,12 +256,14 @@ impl LawTable {
         self.shares.iter().flatten().enumerate().map(term).collect()
     }
 
-    /// All numbers of the law must be there, and no other.
+    /// All numbers of the law must be there, and no other but those it may have.
     fn check_numbers(&self, source: &Source<'_>) -> Result<(), DescriptionError> {
         let (law, wanted) = (self.name.name(), self.name.numbers());
         let given = [
             ("exponent", self.exponent.is_some(), "a number above 0, such as 5"),
             ("rate_coefficient", self.rate_coefficient.is_some(), "a rate, such as \"2e4 /s\""),
+            ("strain_factor", self.strain_factor.is_some(), "a number above 0"),
+            ("unloading_factor", self.unloading_factor.is_some(), "a number above 0"),
             ("overshoot", self.overshoot.is_some(), "a number above 0, such as 3"),
             ("time", self.time.is_some(), "a time, such as \"2 s\""),
             ("order", self.order.is_some(), "an order from 0.05 to below 1, such as 0.5"),
@@ -240,7 +272,8 @@ impl LawTable {
         ];
         for (name, is_given, expected) in given {
             let key = format!("law.{name}");
-            if is_given && !wanted.contains(&name) {
+            let may_be = self.name == LawName::Latency && name.ends_with("_factor");
+            if is_given && !may_be && !wanted.contains(&name) {
                 let reason = format!("with name = \"{law}\", which takes {}", wanted.join(", "));
                 return Err(source.unused(&key, &reason, &format!("remove {name}")));
             }

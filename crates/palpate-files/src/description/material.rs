@@ -8,13 +8,14 @@ use std::{fmt::Write, path::Path};
 use palpate::{
     calibrate::{
         Body, CalibratedContact, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty,
-        MaterialUnit, Shown,
+        MaterialUnit, RateLaw, Shown,
     },
-    contact::{Equilibrium, Shape, Sides},
+    contact::{Equilibrium, RateDependence, Shape, Sides},
     identify::Estimate,
+    latency::LatencyLaw,
     laws::Law,
     number::{exact, significant},
-    simulate::{LinearContact, Memory, Separation},
+    simulate::{ContactModel, LinearContact, Memory, Separation},
     units::Dimension,
 };
 use schemars::JsonSchema;
@@ -179,6 +180,10 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
     let candidate = Candidate {
         law,
         equilibrium: equilibrium(source, table.equilibrium, &model)?,
+        rate: match &model {
+            Model::Varying(contact) => rate_law(contact.rate),
+            Model::Latency(_) | Model::Linear(_) => RateLaw::Constant,
+        },
     };
     let material = Material {
         body: Body {
@@ -257,6 +262,22 @@ fn equilibrium(source: &Source<'_>, name: EquilibriumName, model: &Model) -> Res
     }
 }
 
+fn rate_law(rate: RateDependence) -> RateLaw {
+    match rate {
+        RateDependence::Constant => RateLaw::Constant,
+        RateDependence::Strain { .. } => RateLaw::ByStrain,
+        RateDependence::Direction { .. } => RateLaw::ByDirection,
+    }
+}
+
+/// The factor by which v differs, if it does.
+fn factor(rate: RateDependence) -> Option<f64> {
+    match rate {
+        RateDependence::Constant => None,
+        RateDependence::Strain { factor } | RateDependence::Direction { factor } => Some(factor),
+    }
+}
+
 /// Contact displacements of the rows of a table of relaxed forces, but for first touch.
 fn levels(model: &Model) -> Vec<f64> {
     match model.specimen().equilibrium() {
@@ -292,6 +313,8 @@ fn numbers(source: &Source<'_>, tables: &[NumberTable]) -> Result<Vec<MaterialNu
         if let Some([low, high]) = table.interval {
             above("interval", low)?;
             source.number(&key("interval"), high, "an upper end that is not below the lower", |high| high >= low)?;
+            let within = format!("a value within its interval, {low} to {high}");
+            source.number(&key("value"), value, &within, |value| (low..=high).contains(&value))?;
         }
         if let Some(error) = table.standard_error {
             source.number(&key("standard_error"), error, "a number of 0 or more", |error| error >= 0.0)?;
@@ -358,14 +381,27 @@ fn shown(source: &Source<'_>, table: &ShownTable) -> Result<Shown, DescriptionEr
     })
 }
 
+/// Numbers of the latency law and its layers, there and here.
+fn latency_pairs(there: &ContactModel, here: &ContactModel) -> [(String, f64, f64); 3] {
+    [
+        ("law.exponent".to_owned(), there.law.exponent(), here.law.exponent()),
+        ("law.rate_coefficient".to_owned(), there.law.rate_coefficient(), here.law.rate_coefficient()),
+        ("contact.layer_thickness".to_owned(), there.layers.count(), here.layers.count()),
+    ]
+}
+
 /// A key whose number differs between the two, with both.
 fn disagreement(model: &Model, contact: &CalibratedContact) -> Option<(String, f64, f64)> {
     let mut pairs = Vec::new();
     match (model, contact) {
-        (Model::Latency(there), CalibratedContact::Latency(here)) => {
-            pairs.push(("law.exponent".to_owned(), there.law.exponent(), here.law.exponent()));
-            pairs.push(("law.rate_coefficient".to_owned(), there.law.rate_coefficient(), here.law.rate_coefficient()));
-            pairs.push(("contact.layer_thickness".to_owned(), there.layers.count(), here.layers.count()));
+        (Model::Latency(there), CalibratedContact::Latency(here)) => pairs.extend(latency_pairs(there, here)),
+        (Model::Varying(there), CalibratedContact::Varying(here)) => {
+            pairs.extend(latency_pairs(&there.model, &here.model));
+            if let (Some(a), Some(b), Some(name)) =
+                (factor(there.rate), factor(here.rate), rate_law(here.rate).factor_name())
+            {
+                pairs.push((format!("law.{name}"), a, b));
+            }
         }
         (Model::Linear(there), CalibratedContact::Linear(here)) => {
             let terms = [there, here].map(|contact| contact.law.terms());
@@ -419,7 +455,7 @@ impl MaterialFile {
             "# Calibrated by palpate {} on {}: {}, {} samples,\n# {} N left over. palpate predict takes this file, and a protocol that says material = \"…\".\n",
             origin.palpate,
             comment(&origin.record),
-            material.candidate.law,
+            material.candidate,
             origin.samples,
             significant(material.noise, 3)
         )
@@ -497,15 +533,12 @@ impl MaterialFile {
     fn write_law(&self, out: &mut String) {
         out.push_str("\n[law]\n");
         match self.material.contact() {
-            CalibratedContact::Latency(model) => {
-                let _ = writeln!(
-                    out,
-                    "name = \"latency\"\nexponent = {:?}{}\nrate_coefficient = \"{} /s\"{}",
-                    model.law.exponent(),
-                    self.interval("exponent", 1.0, ""),
-                    exact(model.law.rate_coefficient()),
-                    self.interval("rate_coefficient", 1.0, " /s"),
-                );
+            CalibratedContact::Latency(model) => self.write_latency(out, model.law),
+            CalibratedContact::Varying(contact) => {
+                self.write_latency(out, contact.model.law);
+                if let (Some(name), Some(factor)) = (rate_law(contact.rate).factor_name(), factor(contact.rate)) {
+                    let _ = writeln!(out, "{name} = {factor:?}{}", self.interval(name, 1.0, ""));
+                }
             }
             CalibratedContact::Linear(LinearContact { law, memory, .. }) => {
                 let time = |rate: f64| format!("\"{} s\"", exact(1.0 / rate));
@@ -530,6 +563,17 @@ impl MaterialFile {
                 };
             }
         }
+    }
+
+    fn write_latency(&self, out: &mut String, law: LatencyLaw) {
+        let _ = writeln!(
+            out,
+            "name = \"latency\"\nexponent = {:?}{}\nrate_coefficient = \"{} /s\"{}",
+            law.exponent(),
+            self.interval("exponent", 1.0, ""),
+            exact(law.rate_coefficient()),
+            self.interval("rate_coefficient", 1.0, " /s"),
+        );
     }
 
     fn write_calibration(&self, out: &mut String) {

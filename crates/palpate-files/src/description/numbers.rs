@@ -29,6 +29,8 @@ pub(super) fn numbers(tables: &mut ProtocolTables) -> Vec<Number<'_>> {
     let (law, specimen) = (&mut tables.law, &mut tables.specimen);
     for (path, number) in [
         ("law.exponent", &mut law.exponent),
+        ("law.strain_factor", &mut law.strain_factor),
+        ("law.unloading_factor", &mut law.unloading_factor),
         ("law.overshoot", &mut law.overshoot),
         ("law.order", &mut law.order),
         ("contact.layers", &mut tables.contact.layers),

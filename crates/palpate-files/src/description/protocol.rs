@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use palpate::{
-    contact::{Layers, SpecimenError},
+    contact::{Layers, RateDependence, SpecimenError},
     simulate::{
-        self, Contact, ContactModel, Drive, LinearContact, Motion, ProgramStep, ProtocolStep, Sampling, step_ends,
+        self, Contact, ContactModel, Drive, LinearContact, Motion, ProgramStep, ProtocolStep, Sampling, VaryingContact,
+        step_ends,
     },
     units::Dimension,
 };
@@ -272,12 +273,18 @@ pub(super) fn model(
     let specimen = specimen.body(source, contact.squeezed_from.map(Into::into))?;
     let separation = contact::separation(contact.separation.unwrap_or(true));
     match law.law(source)? {
-        Law::Latency(law) => Ok(Model::Latency(ContactModel {
-            layers: layers(source, contact, specimen.depth())?,
-            specimen,
-            law,
-            separation,
-        })),
+        Law::Latency(law, rate) => {
+            let model = ContactModel {
+                layers: layers(source, contact, specimen.depth())?,
+                specimen,
+                law,
+                separation,
+            };
+            Ok(match rate {
+                RateDependence::Constant => Model::Latency(model),
+                rate => Model::Varying(VaryingContact { model, rate }),
+            })
+        }
         Law::Linear(law, memory) => {
             let given = [("layers", contact.layers.is_some()), ("layer_thickness", contact.layer_thickness.is_some())];
             if let Some((name, _)) = given.iter().find(|(_, given)| *given) {

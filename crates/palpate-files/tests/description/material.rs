@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use palpate::calibrate::{
-    Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, Shown,
+    Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, RateLaw, Shown,
 };
 use palpate::contact::{Curve, Shape, Sides};
 use palpate::identify::Estimate;
@@ -64,10 +64,7 @@ fn material(law: &str, equilibrium: EquilibriumLaw, shape: Shape) -> MaterialFil
                 separation: Separation::Unilateral,
                 levels,
             },
-            candidate: Candidate {
-                law: law.parse().unwrap(),
-                equilibrium,
-            },
+            candidate: Candidate::new(law.parse().unwrap(), equilibrium),
             numbers,
             uncertainty: Some(MaterialUncertainty {
                 confidence: 0.95,
@@ -129,6 +126,42 @@ fn what_is_written_is_read_again_to_the_last_digit() {
             assert_eq!(read, file, "{text}");
         }
     }
+}
+
+#[test]
+fn a_rate_coefficient_that_depends_on_the_state_is_written_and_read() {
+    for rate in [RateLaw::ByStrain, RateLaw::ByDirection] {
+        let mut file = usual();
+        let name = rate.factor_name().unwrap();
+        let factor = 0.1 + 0.2;
+        file.material.candidate.rate = rate;
+        file.material.numbers.push(number(name, MaterialUnit::One, factor));
+        let covariance = &mut file.material.uncertainty.as_mut().unwrap().covariance;
+        covariance.iter_mut().for_each(|row| row.push(0.0));
+        covariance.push(vec![0.0, 0.0, 0.0, 0.0, 1e-3]);
+        let text = file.to_toml();
+        assert!(text.contains(&format!("{name} = 0.30000000000000004")), "{text}");
+        assert_eq!(parse_material(&text, Path::new("m.toml")).unwrap(), file, "{text}");
+        // The same in a protocol, which is not calibrated.
+        let steps = "[[step]]\nto = \"5 mm\"\nrate = \"10 mm/s\"\nhold = \"10 s\"\n";
+        let protocol = parse_protocol(&format!("{text}\n{steps}"), Path::new("p.toml")).unwrap();
+        assert_eq!(protocol.contact(), (&file.material.contact()).into());
+        let changed = text.replacen(&format!("{name} = 0.3"), &format!("{name} = 0.4"), 1);
+        let error = parse_material(&changed, Path::new("m.toml")).unwrap_err().to_string();
+        assert!(error.contains(&format!("law.{name}")) && error.contains("calibrated no more"), "{error}");
+        let none = text.replacen(&format!("{name} = 0.3"), &format!("{name} = -0.3"), 1);
+        let error = parse_material(&none, Path::new("m.toml")).unwrap_err().to_string();
+        assert!(error.contains(&format!("law.{name}")) && error.contains("above 0"), "{error}");
+    }
+    let both = "specimen = { shape = \"ball\", radius = \"35 mm\", modulus = \"28 kPa\" }\nlaw = { name = \"latency\", exponent = 5, rate_coefficient = \"2e4 /s\", strain_factor = 2, unloading_factor = 3 }\nstep = [{ to = \"5 mm\", rate = \"10 mm/s\" }]";
+    let error = parse_protocol(both, Path::new("p.toml")).unwrap_err().to_string();
+    assert!(error.contains("v depends on one of them"), "{error}");
+    let linear = both.replace(
+        "name = \"latency\", exponent = 5, rate_coefficient = \"2e4 /s\", strain_factor = 2, unloading_factor = 3",
+        "name = \"standard-linear-solid\", overshoot = 2, time = \"1 s\", strain_factor = 2",
+    );
+    let error = parse_protocol(&linear, Path::new("p.toml")).unwrap_err().to_string();
+    assert!(error.contains("law.strain_factor"), "{error}");
 }
 
 #[test]
@@ -195,6 +228,12 @@ fn what_is_no_material_is_refused_with_its_place() {
             "interval = [5.1, 4.9]",
             "calibration.number[2].interval",
             "not below the lower",
+        ),
+        (
+            "interval = [4.9, 5.1]",
+            "interval = [7.0, 9.0]",
+            "calibration.number[2].value",
+            "within its interval, 7 to 9",
         ),
         ("interval = [4.9, 5.1]", "interval = [nan, 5.1]", "calibration.number[2].interval", "above 0"),
         (

@@ -356,7 +356,7 @@ const LINEAR: &str = r#"
 fn linear_laws_stand_in_a_protocol() {
     let law = |text: &str| match protocol(text).unwrap().model {
         Model::Linear(contact) => (contact.law, contact.memory),
-        Model::Latency(_) => panic!("expected a linear law"),
+        Model::Latency(_) | Model::Varying(_) => panic!("expected a linear law"),
     };
     let (prony, memory) = law(LINEAR);
     assert_eq!((prony.relaxation(0.0), memory), (4.0, Memory::Strain));

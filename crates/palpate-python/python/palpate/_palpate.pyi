@@ -122,6 +122,7 @@ class Record:
         rivals: Sequence[str] | None = None,
         equilibrium: str = "even-strain",
         poisson_ratio: float | None = None,
+        rate: str = "constant",
         fit_until_s: float | None = None,
         confidence: float | None = None,
     ) -> Calibration: ...

@@ -85,7 +85,7 @@ impl CalibrationDocument {
             let candidate: &palpate::calibrate::Candidate = candidate;
             let good = made.as_ref().ok();
             CalibratedLawDocument {
-                law: candidate.law.to_string(),
+                law: candidate.to_string(),
                 parameters: good.map(|made| made.free_numbers),
                 rmse_n: good.map(|made| made.rmse),
                 relative: good.map(|made| made.relative),

@@ -380,7 +380,7 @@ impl GripDocument {
             software: Software::this(),
             material: body.path.clone(),
             material_sha256: body.sha256.clone(),
-            law: body.grip.material().candidate.law.to_string(),
+            law: body.grip.material().candidate.to_string(),
             confidence: body.grip.confidence(),
             grasp: GraspDocument {
                 mass_kg: grasp.mass,

@@ -47,7 +47,7 @@ fn laws(record: &CalibratedRecord) -> Table {
     table = table.column(TableColumn::new("Ended", "termination", ""));
     let least = record.made().map(|made| made.criteria.bic).fold(f64::INFINITY, f64::min);
     for (candidate, made) in &record.rows {
-        let law = Cell::text(candidate.law.to_string());
+        let law = Cell::text(candidate.to_string());
         let row = match made {
             Ok(made) => {
                 let mut row = vec![
@@ -79,7 +79,7 @@ fn laws(record: &CalibratedRecord) -> Table {
 pub fn material_table(material: &Material) -> Table {
     const OPEN: &str = "the record leaves it open, or it was given";
     let share = material.uncertainty.as_ref().map_or(0.95, |uncertainty| uncertainty.confidence);
-    let mut table = Table::new("numbers", format!("Numbers of the law {}.", material.candidate.law))
+    let mut table = Table::new("numbers", format!("Numbers of the law {}.", material.candidate))
         .column(TableColumn::new("Number", "number", ""))
         .column(TableColumn::new("Unit", "unit", ""))
         .column(TableColumn::new("Value", "value", ""))
@@ -197,7 +197,7 @@ pub fn calibration_figure(record: &CalibratedRecord, name: &str) -> Figure {
     let mut left = Panel::new(time(), Axis::linear("Measured − simulated", "N"));
     for (index, made) in record.made().take(MOST).enumerate() {
         let role = if index == 0 { Role::Fitted } else { Role::Alternative(index as u8 - 1) };
-        let law = made.material.candidate.law.to_string();
+        let law = made.material.candidate.to_string();
         force = force.layer(Layer::line(times.to_vec(), made.simulated.clone(), role).label(law));
         let residuals = forces.iter().zip(&made.simulated).map(|(measured, simulated)| measured - simulated).collect();
         left = left.layer(Layer::line(times.to_vec(), residuals, role));

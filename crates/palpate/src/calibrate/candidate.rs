@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::material::{Body, CalibratedContact};
 use super::{CalibrateError, CalibrationData};
-use crate::contact::{Equilibrium, Specimen};
+use crate::contact::{Equilibrium, RateDependence, Specimen};
 use crate::laws::{ExponentChoice, Law, MOST_TERMS};
 
 /// The law of the force that a body tends to, whose coefficients are to be found.
@@ -23,6 +23,58 @@ pub enum EquilibriumLaw {
     Table,
 }
 
+/// Whether the rate coefficient of the latency law is one number, or depends on where the layer stands.
+///
+/// Fitted hold by hold it has a trend with the equilibrium strain (the paper's Table I) and another level after unloading (Table II);
+/// whether that is the body's, or the fits', a calibration with one more number tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RateLaw {
+    /// One number.
+    #[default]
+    Constant,
+    /// v(ε_e) = v f^(ε_e/0.1), with f to be found: [`RateDependence::Strain`].
+    ByStrain,
+    /// v after loading and f v after unloading, with f to be found: [`RateDependence::Direction`].
+    ByDirection,
+}
+
+impl RateLaw {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Constant, Self::ByStrain, Self::ByDirection];
+
+    /// Name of its factor among the numbers of a material.
+    #[must_use]
+    pub fn factor_name(self) -> Option<&'static str> {
+        match self {
+            Self::Constant => None,
+            Self::ByStrain => Some("strain_factor"),
+            Self::ByDirection => Some("unloading_factor"),
+        }
+    }
+
+    /// What a record lacks that does not show its factor.
+    pub(super) fn needs(self) -> Option<&'static str> {
+        match self {
+            Self::Constant => None,
+            Self::ByStrain => Some("nothing relaxes while the body is squeezed"),
+            Self::ByDirection => {
+                Some("no strain rises to equilibrium, as it does where the jaw has gone back and stands")
+            }
+        }
+    }
+
+    /// With its factor put in.
+    #[must_use]
+    pub fn with(self, factor: f64) -> RateDependence {
+        match self {
+            Self::Constant => RateDependence::Constant,
+            Self::ByStrain => RateDependence::Strain { factor },
+            Self::ByDirection => RateDependence::Direction { factor },
+        }
+    }
+}
+
 /// What is fitted to a record: a law of relaxation and one of the relaxed force.
 ///
 /// The law is `latency` or `latency:N`, `standard-linear-solid`, `prony:K` (memory of strain) or `fung:K` (memory of the relaxed force,
@@ -33,9 +85,45 @@ pub struct Candidate {
     pub law: Law,
     /// The law of the relaxed force.
     pub equilibrium: EquilibriumLaw,
+    /// What the rate coefficient of the latency law depends on; constant of any other.
+    pub rate: RateLaw,
+}
+
+impl std::fmt::Display for Candidate {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", self.law)?;
+        match self.rate {
+            RateLaw::Constant => Ok(()),
+            RateLaw::ByStrain => f.write_str(", v by strain"),
+            RateLaw::ByDirection => f.write_str(", v by direction"),
+        }
+    }
 }
 
 impl Candidate {
+    /// A law of the layer, of a rate coefficient that depends on nothing, and one of the relaxed force.
+    #[must_use]
+    pub fn new(law: Law, equilibrium: EquilibriumLaw) -> Self {
+        Self {
+            law,
+            equilibrium,
+            rate: RateLaw::Constant,
+        }
+    }
+
+    /// The candidate and what it is held against on the same record: other laws of the layer and, if its rate coefficient depends on the
+    /// state, the other ways in which it could.
+    #[must_use]
+    pub fn with_rivals(self, laws: &[Law]) -> Vec<Self> {
+        let rates = RateLaw::ALL.into_iter().filter(|rate| self.rate != RateLaw::Constant && *rate != self.rate);
+        let others = laws.iter().filter(|law| **law != self.law).map(|law| Self {
+            law: *law,
+            rate: RateLaw::Constant,
+            ..self
+        });
+        std::iter::once(self).chain(rates.map(|rate| Self { rate, ..self })).chain(others).collect()
+    }
+
     /// Terms of its linear law.
     pub(super) fn terms(self) -> Result<usize, CalibrateError> {
         match self.law {
@@ -84,6 +172,9 @@ pub(super) struct Scales {
 
 /// Range of m − 1 in which the layers are sought, in logarithms.
 const OVERSHOOTS: (f64, f64) = (1e-3, 1e4);
+
+/// Range of the factor by which v differs, on either side of 1, as a logarithm.
+const FACTORS: f64 = 12.0;
 
 /// Range of the exponent.
 const EXPONENTS: (f64, f64) = (0.2, 30.0);
@@ -134,8 +225,16 @@ impl Prepared {
                 }
                 searched.push(log("reference_rate", slowest, fastest));
                 searched.push(log("overshoot", OVERSHOOTS.0, OVERSHOOTS.1));
+                searched.extend(candidate.rate.factor_name().map(|name| Searched {
+                    name: name.to_owned(),
+                    low: -FACTORS,
+                    high: FACTORS,
+                }));
             }
-            _ => {
+            law => {
+                if candidate.rate != RateLaw::Constant {
+                    return Err(CalibrateError::RateOf { law });
+                }
                 for term in 1..=candidate.terms()? {
                     searched.push(log(&format!("overshoot_{term}"), 1e-6, 1e4));
                     searched.push(log(&format!("rate_{term}"), slowest, fastest));
@@ -162,6 +261,11 @@ impl Prepared {
     /// The contact with these numbers; `None` where they make none.
     pub(super) fn contact(&self, theta: &[f64]) -> Option<CalibratedContact> {
         self.body.contact(self.candidate, &self.values(theta))
+    }
+
+    /// At which equilibrium strain κ is that of the holds: v is that of first touch, and would move by decades with its trend.
+    fn reference_strain(&self) -> f64 {
+        0.5 * self.scales.deepest / self.specimen.depth()
     }
 
     /// v = κ/(x_ref (m − 1))^(n − 1): the excess of a sudden squeeze is (m − 1) times its strain.
@@ -201,8 +305,12 @@ impl Prepared {
                 };
                 let (rate, overshoot) = (law[0].exp(), law[1].exp());
                 values.push(n);
-                values.push(self.coefficient(n, rate, overshoot));
+                let factor = law.get(2).map(|log| log.exp());
+                let dependence = self.candidate.rate.with(factor.unwrap_or(1.0));
+                let there = dependence.times(1.0, self.reference_strain());
+                values.push(self.coefficient(n, rate, overshoot) / there);
                 values.push(self.specimen.depth() / (1.0 + overshoot));
+                values.extend(factor);
             }
             _ => {
                 // By rising time, in whatever order they were found.

@@ -56,6 +56,18 @@ pub enum CalibrateError {
         /// Which.
         law: Law,
     },
+    /// A rate coefficient that depends on the state, of a law that has none.
+    #[error("{law} has no rate coefficient that could depend on strain or direction")]
+    RateOf {
+        /// Which.
+        law: Law,
+    },
+    /// A factor of the rate coefficient that no sample feels.
+    #[error("the record does not show by what factor v differs: {missing}")]
+    FactorUnseen {
+        /// What it lacks.
+        missing: &'static str,
+    },
     /// An exponent that is no number above zero.
     #[error("exponent must be above 0, found {found}")]
     Exponent {
@@ -98,6 +110,8 @@ impl CalibrateError {
             Self::NoGeometry => "describe the body in [specimen] of the test description: shape and size".to_owned(),
             Self::NoDisplacement => "name the column of the displacement in [columns]; without it holds alone are fitted, by `palpate analyze`".to_owned(),
             Self::NotALaw { .. } => "laws of a whole contact are latency, latency:N, standard-linear-solid, prony:K and fung:K".to_owned(),
+            Self::RateOf { .. } => "leave the dependence of v out, or ask for the law latency".to_owned(),
+            Self::FactorUnseen { .. } => "calibrate with a constant rate coefficient, or on a longer record".to_owned(),
             Self::Split { .. } => "choose a time inside the record".to_owned(),
             Self::NoStiffness => "check the signs of force and displacement, and which of them is loading".to_owned(),
             Self::Specimen(_) => "check the geometry in the test description and its units".to_owned(),

@@ -65,7 +65,7 @@ pub struct Calibration {
 /// let forces = simulate_force(&motion, &model, &times)?;
 /// let ball = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None };
 /// let data = CalibrationData::new(ball, model.separation, motion, times, forces, &[])?;
-/// let found = calibrate(&data, Candidate { law: "latency".parse()?, equilibrium: EquilibriumLaw::EvenStrain }, 0.95)?;
+/// let found = calibrate(&data, Candidate::new("latency".parse()?, EquilibriumLaw::EvenStrain), 0.95)?;
 /// let value = |name| found.material.estimate(name).unwrap().value;
 /// assert!((value("modulus") - 28e3).abs() < 1e-3);            // Pa
 /// assert!((value("exponent") - 5.0).abs() < 1e-5);
@@ -99,6 +99,12 @@ pub fn calibrate(data: &CalibrationData, candidate: Candidate, confidence: f64) 
         .filter(|i| found.theta[*i] > prepared.searched[*i].low && found.theta[*i] < prepared.searched[*i].high)
         .collect();
     let jacobian = problem.jacobian(&found.theta);
+    if let (Some(missing), Some(factor)) =
+        (candidate.rate.needs(), jacobian.as_ref().and_then(|columns| columns.last()))
+        && factor.iter().all(|slope| *slope == 0.0)
+    {
+        return Err(CalibrateError::FactorUnseen { missing });
+    }
     let assessed = jacobian.as_ref().map(|jacobian| {
         let columns: Vec<Vec<f64>> = open.iter().map(|i| jacobian[*i].clone()).collect();
         Assessed::of_columns(columns, found.residuals.clone(), confidence)

@@ -2,18 +2,22 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Candidate, EquilibriumLaw};
+use super::{Candidate, EquilibriumLaw, RateLaw};
 use crate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
 use crate::identify::Estimate;
 use crate::latency::LatencyLaw;
 use crate::laws::{ExponentChoice, Law};
-use crate::simulate::{Contact, ContactModel, LinearContact, LinearLaw, LinearTerm, Memory, Separation};
+use crate::simulate::{
+    Contact, ContactModel, LinearContact, LinearLaw, LinearTerm, Memory, Separation, VaryingContact,
+};
 
 /// A contact with all its numbers, whichever law it obeys.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CalibratedContact {
     /// The latency law.
     Latency(ContactModel),
+    /// The same with a rate coefficient that depends on the state of the layer.
+    Varying(VaryingContact),
     /// A linear law.
     Linear(LinearContact),
 }
@@ -22,6 +26,7 @@ impl<'a> From<&'a CalibratedContact> for Contact<'a> {
     fn from(contact: &'a CalibratedContact) -> Self {
         match contact {
             CalibratedContact::Latency(model) => Self::Latency(model),
+            CalibratedContact::Varying(model) => Self::Varying(model),
             CalibratedContact::Linear(model) => Self::Linear(model),
         }
     }
@@ -33,6 +38,7 @@ impl CalibratedContact {
     pub fn specimen(&self) -> &Specimen {
         match self {
             Self::Latency(model) => &model.specimen,
+            Self::Varying(contact) => &contact.model.specimen,
             Self::Linear(model) => &model.specimen,
         }
     }
@@ -72,7 +78,8 @@ pub enum MaterialUnit {
 /// A number of a material; all are above zero.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MaterialNumber {
-    /// Name without unit: `modulus` or `equilibrium_force_1`, …; `exponent`, `rate_coefficient`, `layer_thickness`, or `overshoot_1`, `time_1`, ….
+    /// Name without unit: `modulus` or `equilibrium_force_1`, …; `exponent`, `rate_coefficient`, `layer_thickness`,
+    /// `strain_factor` or `unloading_factor`; or `overshoot_1`, `time_1`, ….
     pub name: String,
     /// Its unit.
     pub unit: MaterialUnit,
@@ -131,12 +138,20 @@ impl Body {
         Some(match candidate.law {
             Law::Latency { .. } => {
                 let layers = Layers::of_thickness(law[2], specimen.depth()).ok()?;
-                CalibratedContact::Latency(ContactModel {
+                let model = ContactModel {
                     specimen,
                     law: LatencyLaw::new(law[0], law[1]).ok()?,
                     layers,
                     separation: self.separation,
-                })
+                };
+                match candidate.rate {
+                    RateLaw::Constant => CalibratedContact::Latency(model),
+                    varying => {
+                        let rate = varying.with(law[3]);
+                        rate.is_sound().then_some(())?;
+                        CalibratedContact::Varying(VaryingContact { model, rate })
+                    }
+                }
             }
             _ => {
                 let term = |term: &[f64]| LinearTerm {
@@ -189,11 +204,14 @@ pub(super) fn names(candidate: Candidate, rows: usize) -> Vec<(String, MaterialU
         }
     };
     match candidate.law {
-        Law::Latency { .. } => names.extend([
-            ("exponent".to_owned(), MaterialUnit::One),
-            ("rate_coefficient".to_owned(), MaterialUnit::PerSecond),
-            ("layer_thickness".to_owned(), MaterialUnit::Metre),
-        ]),
+        Law::Latency { .. } => {
+            names.extend([
+                ("exponent".to_owned(), MaterialUnit::One),
+                ("rate_coefficient".to_owned(), MaterialUnit::PerSecond),
+                ("layer_thickness".to_owned(), MaterialUnit::Metre),
+            ]);
+            names.extend(candidate.rate.factor_name().map(|name| (name.to_owned(), MaterialUnit::One)));
+        }
         _ => {
             for term in 1..=candidate.terms().unwrap_or(0) {
                 names.push((format!("overshoot_{term}"), MaterialUnit::One));

@@ -19,7 +19,7 @@ mod predict;
 mod search;
 mod starts;
 
-pub use candidate::{Candidate, EquilibriumLaw};
+pub use candidate::{Candidate, EquilibriumLaw, RateLaw};
 pub use data::CalibrationData;
 pub use error::CalibrateError;
 pub use fit::{Calibration, Foretold, calibrate};

@@ -89,7 +89,9 @@ fn laws(prepared: &Prepared) -> Vec<Vec<f64>> {
             for exponent in free {
                 for rate in spread((0.3 / scales.duration).ln(), fastest, 14) {
                     for overshoot in spread(0.1f64.ln(), 60f64.ln(), 10) {
-                        let law = exponent.iter().copied().chain([rate, overshoot]);
+                        // A rate coefficient that depends on nothing is where one that does begins.
+                        let factor = prepared.candidate.rate.factor_name().map(|_| 0.0);
+                        let law = exponent.iter().copied().chain([rate, overshoot]).chain(factor);
                         grid.push(law.collect());
                     }
                 }

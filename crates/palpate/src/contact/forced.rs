@@ -7,12 +7,12 @@
 //!
 //! **While the force is held** (creep, recovery) this is the latency law in a time s of its own, ṡ = K with K between 1/m and 1: x(s) is
 //! the closed form (4), (5) however stiff the law, and s is nearly straight, so that a few dozen steps do for any time. Of no force K is
-//! 1/m exactly, the recovery of a free surface.
+//! 1/m exactly, the recovery of a free surface. A rate coefficient that depends on the state is one more factor of K.
 //!
 //! **While it changes** u₂ is integrated as it stands: it stays smooth at first touch, where the displacement of a ball begins like √t.
 
 use super::balance::{Layer, carried_at, share};
-use super::{Layers, Specimen, Work};
+use super::{Layers, RateDependence, Specimen, Work};
 use crate::latency::LatencyLaw;
 use crate::ode::{Dop853, Step};
 
@@ -24,6 +24,7 @@ const TOLERANCE: f64 = 1e-13;
 pub(crate) struct Body {
     pub(crate) specimen: Specimen,
     pub(crate) law: LatencyLaw,
+    pub(crate) rate: RateDependence,
     pub(crate) layers: Layers,
     pub(crate) bonded: bool,
 }
@@ -100,6 +101,11 @@ impl Body {
         self.layers.thickness(self.specimen.depth())
     }
 
+    /// How many times its rate coefficient the law has at an excess strain and a contact displacement (m).
+    fn faster(&self, excess: f64, u: f64) -> f64 {
+        self.rate.times(excess, self.specimen.equilibrium_strain(u))
+    }
+
     /// The state under `force` (N) with the node behind the layer at `behind` (m).
     fn carry(&self, force: f64, behind: f64) -> Option<(f64, f64)> {
         let thickness = self.thickness();
@@ -148,7 +154,8 @@ impl Forced {
                 let step = solver.step(duration, |_, s| {
                     let (u, excess) = carried(s);
                     // Beyond what the body carries the step is thrown away below.
-                    share(&body.specimen, body.layers, u.unwrap_or(body.specimen.depth()), excess).0
+                    let u = u.unwrap_or(body.specimen.depth());
+                    share(&body.specimen, body.layers, u, excess).0 * body.faster(excess, u)
                 });
                 if carried(solver.state()).0.is_none() {
                     let start = steps.last().map_or(0.0, Step::end);
@@ -178,8 +185,8 @@ impl Forced {
             }
             let step = solver.step(duration, |elapsed, behind| {
                 // Beyond what the body carries the step is thrown away below.
-                let excess = carried(elapsed, behind).map_or(0.0, |(_, excess)| excess);
-                -thickness * body.law.rate(excess)
+                let (u, excess) = carried(elapsed, behind).unwrap_or((0.0, 0.0));
+                -thickness * body.law.rate(excess) * body.faster(excess, u)
             });
             if carried(solver.time(), solver.state()).is_none() {
                 let good = |elapsed: f64| carried(elapsed, step.at(elapsed)).is_some();
@@ -217,7 +224,7 @@ impl Forced {
         };
         let (share, carrying) = share(&body.specimen, body.layers, displacement, excess);
         let depth = body.specimen.depth();
-        let by_law = body.law.rate(excess);
+        let by_law = body.law.rate(excess) * body.faster(excess, displacement);
         let slope = self.force.slope();
         let by_force = if slope == 0.0 { 0.0 } else { slope / carrying };
         let excess_rate = share * (by_force * (body.layers.count() - 1.0) / depth + by_law);

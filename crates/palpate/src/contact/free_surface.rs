@@ -27,4 +27,11 @@ impl FreeSurface {
     pub(crate) fn displacement_at(&self, elapsed: f64) -> f64 {
         self.depth * self.recovery.excess_after(self.dent / self.depth, elapsed)
     }
+    /// When (s after the jaw left) the surface is at displacement `dent` (m), which lies between that at which it was left and 0: (5) solved
+    /// for the time.
+    pub(crate) fn time_to(&self, dent: f64) -> f64 {
+        let (log, order) = ((dent / self.dent).ln(), self.recovery.exponent() - 1.0);
+        let stretched = if order == 0.0 { -log } else { (-order * log).exp_m1() / order };
+        stretched / self.recovery.relative_rate(self.dent / self.depth)
+    }
 }

@@ -9,6 +9,7 @@
 //! | `specimen.rs` | the body with its modulus: force, equilibrium strain, what it can take | (6), (8), (11) |
 //! | `layers.rs` | how the body is cut into layers and how travel of the jaw becomes drive | section IV, steps 1–2 |
 //! | `element.rs` | the contact layer through one straight piece of motion: hold or ramp | section IV, step 3 |
+//! | `rate.rs` | how the rate coefficient depends on the state of the layer | Tables I and II |
 //! | `balance.rs` | where a body carries a given force | (11) |
 //! | `forced.rs` | the contact layer through one straight piece of a force history: creep or ramp | |
 //! | `free_surface.rs` | the surface once the jaw has left it | |
@@ -28,6 +29,8 @@ mod free_surface;
 mod layers;
 #[cfg(feature = "alloc")]
 mod measured;
+#[cfg(feature = "std")]
+mod rate;
 mod shape;
 mod specimen;
 
@@ -38,6 +41,8 @@ pub use layers::{Layers, LayersError};
 pub use shape::{Shape, Statement};
 pub use specimen::{Sides, Specimen, SpecimenError};
 
+#[cfg(feature = "std")]
+pub use rate::RateDependence;
 #[cfg(feature = "std")]
 pub(crate) use {
     element::{Element, Ramps, is_kinked, longest_step, rest_of},

@@ -49,7 +49,7 @@ pub(super) const ALWAYS: f64 = 3.156e8;
 /// let number = |name: &str, unit, value| MaterialNumber { name: name.to_owned(), unit, estimate: Estimate::fixed(value) };
 /// let ball = Material {
 ///     body: Body { shape: Shape::Ball { radius: 0.035 }, sides: Sides::Two, separation: Separation::Unilateral, levels: vec![] },
-///     candidate: Candidate { law: "latency".parse()?, equilibrium: EquilibriumLaw::EvenStrain },
+///     candidate: Candidate::new("latency".parse()?, EquilibriumLaw::EvenStrain),
 ///     numbers: vec![
 ///         number("modulus", MaterialUnit::Pascal, 28e3),
 ///         number("exponent", MaterialUnit::One, 5.0),

@@ -72,6 +72,16 @@ impl LatencyLaw {
         self.rate_coefficient
     }
 
+    /// The law with its rate coefficient times a factor above 0; within the range of doubles.
+    #[cfg(feature = "std")]
+    pub(crate) fn times(self, factor: f64) -> Self {
+        let rate_coefficient = (self.rate_coefficient * factor).clamp(f64::MIN_POSITIVE, f64::MAX);
+        Self {
+            rate_coefficient,
+            ..self
+        }
+    }
+
     /// Strain rate in 1/s at excess strain `excess` = ε − ε_e, equations (2), (3) and (10).
     ///
     /// −v sgn(x) |x|ⁿ; zero at x = 0, always towards equilibrium.

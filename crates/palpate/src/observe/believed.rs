@@ -9,7 +9,9 @@
 use super::observation::Uncertain;
 use super::{ObserveError, ObserverOptions};
 use crate::calibrate::{CalibratedContact, Material};
-use crate::simulate::{ContactModel, ContactState};
+use crate::contact::RateDependence;
+use crate::latency::LatencyLaw;
+use crate::simulate::{ContactModel, ContactState, StepError};
 
 /// Readings closer than this (s) tell no more than one: what a model leaves over lasts longer.
 const APART: f64 = 0.01;
@@ -25,13 +27,42 @@ const MEMORY: f64 = 0.02;
 /// A model and its state.
 #[derive(Debug, Clone)]
 struct Member {
+    /// With the law as it is where the layer stands.
     model: ContactModel,
+    /// The law with its rate coefficient at first touch.
+    law: LatencyLaw,
+    rate: RateDependence,
     /// What is added to the displacement, m.
     offset: f64,
     state: ContactState,
 }
 
 impl Member {
+    fn new(contact: CalibratedContact, offset: f64) -> Option<Self> {
+        let (model, rate) = match contact {
+            CalibratedContact::Latency(model) => (model, RateDependence::Constant),
+            CalibratedContact::Varying(contact) => (contact.model, contact.rate),
+            CalibratedContact::Linear(_) => return None,
+        };
+        Some(Self {
+            law: model.law,
+            rate,
+            model,
+            offset,
+            state: ContactState::default(),
+        })
+    }
+
+    /// Brings the jaw to `displacement` (m) within `dt` (s); the force, N.
+    fn step(&mut self, dt: f64, displacement: f64) -> Result<f64, StepError> {
+        let there = displacement + self.offset;
+        if self.rate != RateDependence::Constant {
+            let place = self.model.specimen.contact_displacement(there);
+            self.model.law = self.rate.law(self.law, self.excess(displacement), place / self.model.specimen.depth());
+        }
+        self.state.step(&self.model, dt, there)
+    }
+
     /// Strain in excess of equilibrium; none while the jaw is off.
     fn excess(&self, displacement: f64) -> f64 {
         let specimen = &self.model.specimen;
@@ -76,20 +107,10 @@ pub(super) struct Believed {
 
 impl Believed {
     pub(super) fn new(material: &Material, options: &ObserverOptions) -> Result<Self, ObserveError> {
-        let CalibratedContact::Latency(model) = material.contact() else {
-            return Err(ObserveError::LinearMaterial);
-        };
-        let member = |model: ContactModel, offset: f64| Member {
-            model,
-            offset,
-            state: ContactState::default(),
-        };
+        let best = Member::new(material.contact(), 0.0).ok_or(ObserveError::LinearMaterial)?;
         let off = |direction: &[f64], by: f64| {
             let factors: Vec<f64> = direction.iter().map(|log| (by * log).exp()).collect();
-            match material.contact_off(&factors) {
-                Some(CalibratedContact::Latency(model)) => Some(member(model, 0.0)),
-                _ => None,
-            }
+            Member::new(material.contact_off(&factors)?, 0.0)
         };
         let is_stiffness = |name: &str| name == "modulus" || name.starts_with("equilibrium_force");
         let stiffer = |name: &str| if is_stiffness(name) { options.stiffness_deviation } else { 0.0 };
@@ -105,7 +126,8 @@ impl Believed {
         }
         if options.touch_deviation > 0.0 {
             let touch = options.touch_deviation;
-            pairs.push((member(model.clone(), touch), member(model.clone(), -touch), 1.0));
+            let at = |offset: f64| Member { offset, ..best.clone() };
+            pairs.push((at(touch), at(-touch), 1.0));
         }
         let count = pairs.len();
         let mut covariance = vec![0.0; count * count];
@@ -113,7 +135,7 @@ impl Believed {
         let exponent = material.numbers.iter().find(|number| number.name == "exponent");
         let noise = options.noise.map_or(material.noise, |noise| noise.1.max(material.noise));
         Ok(Self {
-            best: member(model, 0.0),
+            best,
             pairs,
             standing: vec![0.0; count],
             covariance,
@@ -147,7 +169,7 @@ impl Believed {
         self.displacement = displacement;
         let step = |member: &mut Member| {
             // Checked before: it is taken.
-            let _ = member.state.step(&member.model, dt, displacement + member.offset);
+            let _ = member.step(dt, displacement);
         };
         step(&mut self.best);
         for (high, low, _) in &mut self.pairs {

@@ -1,15 +1,17 @@
 //! A contact, whichever law it obeys.
 
-use super::{ContactModel, LinearContact, Separation};
+use super::{ContactModel, LinearContact, Separation, VaryingContact};
 use crate::contact::Specimen;
 
 /// A contact to simulate, whichever law it obeys.
 ///
-/// The simulations take anything that turns into it: `&ContactModel` and `&LinearContact`.
+/// The simulations take anything that turns into it: `&ContactModel`, `&VaryingContact` and `&LinearContact`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Contact<'a> {
     /// The latency law in layers.
     Latency(&'a ContactModel),
+    /// The same with a rate coefficient that depends on the state of the layer.
+    Varying(&'a VaryingContact),
     /// A linear law.
     Linear(&'a LinearContact),
 }
@@ -17,6 +19,12 @@ pub enum Contact<'a> {
 impl<'a> From<&'a ContactModel> for Contact<'a> {
     fn from(contact: &'a ContactModel) -> Self {
         Self::Latency(contact)
+    }
+}
+
+impl<'a> From<&'a VaryingContact> for Contact<'a> {
+    fn from(contact: &'a VaryingContact) -> Self {
+        Self::Varying(contact)
     }
 }
 
@@ -32,6 +40,7 @@ impl<'a> Contact<'a> {
     pub fn specimen(self) -> &'a Specimen {
         match self {
             Self::Latency(contact) => &contact.specimen,
+            Self::Varying(contact) => &contact.model.specimen,
             Self::Linear(contact) => &contact.specimen,
         }
     }
@@ -41,6 +50,7 @@ impl<'a> Contact<'a> {
     pub fn separation(self) -> Separation {
         match self {
             Self::Latency(contact) => contact.separation,
+            Self::Varying(contact) => contact.model.separation,
             Self::Linear(contact) => contact.separation,
         }
     }
@@ -51,6 +61,7 @@ macro_rules! by_law {
     ($contact:expr, $name:ident => $work:expr) => {
         match $contact {
             $crate::simulate::Contact::Latency($name) => $work,
+            $crate::simulate::Contact::Varying($name) => $work,
             $crate::simulate::Contact::Linear($name) => $work,
         }
     };

@@ -3,7 +3,7 @@
 //! The walk through a drive asks for no more than this: the layer while the jaw moves, under a force, and the surface without a jaw.
 
 use super::{ContactModel, Separation, Work};
-use crate::contact::{Body, Carried, Element, Forced, FreeSurface, Ramps, Specimen, Stopped};
+use crate::contact::{Body, Carried, Element, Forced, FreeSurface, Ramps, RateDependence, Specimen, Stopped};
 
 /// A contact with a law of its layer.
 pub(super) trait Layer {
@@ -52,12 +52,12 @@ pub(super) trait Layer {
     fn strain_in(&self, piece: &Self::Moving, elapsed: f64) -> f64;
     /// Appends the excess strain at times (s) in a piece that began at `start`.
     fn extend_strains(&self, piece: &Self::Moving, start: f64, times: &[f64], strains: &mut Vec<f64>);
-    /// The same, and the rates (1/s) of the whole strain at `speed` (m/s).
+    /// The same, and the rates (1/s) of the whole strain at `speed` (m/s), with the jaw at `places` (m).
     fn extend(
         &self,
         piece: &Self::Moving,
         start_and_speed: (f64, f64),
-        times: &[f64],
+        times_and_places: (&[f64], &[f64]),
         strains: &mut Vec<f64>,
         rates: &mut Vec<f64>,
     );
@@ -171,7 +171,7 @@ impl Layer for ContactModel {
         &self,
         piece: &Element,
         (start, speed): (f64, f64),
-        times: &[f64],
+        (times, _): (&[f64], &[f64]),
         strains: &mut Vec<f64>,
         rates: &mut Vec<f64>,
     ) {
@@ -187,40 +187,18 @@ impl Layer for ContactModel {
         piece.step_ends().collect()
     }
 
-    /// Only a retreating jaw can lose the contact, and there the strain is either falling or rises once and then falls
-    /// (its second derivative has one sign), so that a change of sign shows at the ends of the integration steps.
     fn loss(&self, piece: &Element, (start, end): (f64, f64), speed: f64, jaw: &impl Fn(f64) -> f64) -> Option<f64> {
-        if speed >= 0.0 {
-            return None;
-        }
         let strain = |elapsed: f64| piece.excess_at(elapsed) + self.specimen.equilibrium_strain(jaw(start + elapsed));
-        let (mut touching, duration) = (0.0, end - start);
         let by_jaw = self.layers.drive(speed, self.specimen.depth()) + speed / self.specimen.depth();
         let gain = |elapsed: f64| self.law.rate(piece.excess_at(elapsed)) + by_jaw;
-        for elapsed in piece.step_ends().chain([duration]) {
-            if elapsed <= duration && strain(elapsed) < 0.0 {
-                if touching == 0.0 && strain(0.0) <= 0.0 && gain(0.0) > 0.0 {
-                    // Just met and still gaining on the jaw: it is lost after the strain has risen, if that is more than rounding.
-                    if gain(elapsed) < 0.0 {
-                        touching = crossing(0.0, elapsed, gain);
-                    }
-                    if strain(touching) <= 0.0 {
-                        touching = 0.0;
-                        continue;
-                    }
-                }
-                let gone = if strain(touching) <= 0.0 { touching } else { crossing(touching, elapsed, strain) };
-                return Some(start + gone);
-            }
-            touching = elapsed;
-        }
-        None
+        lost(piece.step_ends(), end - start, speed, strain, gain).map(|elapsed| start + elapsed)
     }
 
     fn pressed(&self, forces: (f64, f64), &behind: &f64, duration: f64, work: &mut Work) -> Result<Forced, Stopped> {
         let body = Body {
             specimen: self.specimen.clone(),
             law: self.law,
+            rate: RateDependence::Constant,
             layers: self.layers,
             bonded: self.is_bonded(),
         };
@@ -264,32 +242,77 @@ impl Layer for ContactModel {
         &self,
         surface: &FreeSurface,
         since: f64,
-        (start, mut end): (f64, f64),
+        times: (f64, f64),
         speed: f64,
         jaw: &impl Fn(f64) -> f64,
     ) -> Option<f64> {
-        let lead = |time: f64| jaw(time) - surface.displacement_at(time - since);
-        if speed < 0.0 {
-            // The surface slows down as it recovers, so the jaw's lead rises while the surface is the faster one
-            // and falls afterwards: only that first part can hold the meeting.
-            let depth = self.specimen.depth();
-            let thickness = self.layers.thickness(depth);
-            let faster = |time: f64| {
-                let strain = surface.displacement_at(time - since) / depth;
-                speed - thickness * self.law.rate(strain)
-            };
-            if faster(start) <= 0.0 {
-                return None;
+        let depth = self.specimen.depth();
+        let thickness = self.layers.thickness(depth);
+        let place = |time: f64| surface.displacement_at(time - since);
+        let pace = |u: f64| thickness * self.law.rate(u / depth);
+        meeting(place, pace, times, speed, jaw)
+    }
+}
+
+/// When (s into a piece of `duration`) the strain of the layer reaches zero; `gain` is its rate, `ends` those of the integration steps.
+///
+/// Only a retreating jaw can lose the contact, and there the strain is either falling or rises once and then falls (its second derivative
+/// has one sign), so that a change of sign shows at the ends of the steps.
+pub(super) fn lost(
+    ends: impl Iterator<Item = f64>,
+    duration: f64,
+    speed: f64,
+    strain: impl Fn(f64) -> f64,
+    gain: impl Fn(f64) -> f64,
+) -> Option<f64> {
+    if speed >= 0.0 {
+        return None;
+    }
+    let mut touching = 0.0;
+    for elapsed in ends.chain([duration]) {
+        if elapsed <= duration && strain(elapsed) < 0.0 {
+            if touching == 0.0 && strain(0.0) <= 0.0 && gain(0.0) > 0.0 {
+                // Just met and still gaining on the jaw: it is lost after the strain has risen, if that is more than rounding.
+                if gain(elapsed) < 0.0 {
+                    touching = crossing(0.0, elapsed, &gain);
+                }
+                if strain(touching) <= 0.0 {
+                    touching = 0.0;
+                    continue;
+                }
             }
-            if faster(end) < 0.0 {
-                end = crossing(start, end, faster);
-            }
+            return Some(if strain(touching) <= 0.0 { touching } else { crossing(touching, elapsed, strain) });
         }
-        if lead(end) < 0.0 || (lead(end) == 0.0 && speed < 0.0) {
+        touching = elapsed;
+    }
+    None
+}
+
+/// When between two times (s) the jaw, going at `speed` (m/s), meets a surface that is at `place` (m) at a time and goes back at `pace`
+/// (m/s, below zero) from a place.
+pub(super) fn meeting(
+    place: impl Fn(f64) -> f64,
+    pace: impl Fn(f64) -> f64,
+    (start, mut end): (f64, f64),
+    speed: f64,
+    jaw: &impl Fn(f64) -> f64,
+) -> Option<f64> {
+    let lead = |time: f64| jaw(time) - place(time);
+    if speed < 0.0 {
+        // The surface slows down as it recovers, so the jaw's lead rises while the surface is the faster one
+        // and falls afterwards: only that first part can hold the meeting.
+        let faster = |time: f64| speed - pace(place(time));
+        if faster(start) <= 0.0 {
             return None;
         }
-        Some(if lead(start) >= 0.0 { start } else { crossing(start, end, |time| -lead(time)) })
+        if faster(end) < 0.0 {
+            end = crossing(start, end, faster);
+        }
     }
+    if lead(end) < 0.0 || (lead(end) == 0.0 && speed < 0.0) {
+        return None;
+    }
+    Some(if lead(start) >= 0.0 { start } else { crossing(start, end, |time| -lead(time)) })
 }
 
 /// Where a function that is positive at `positive` and negative at `negative` changes sign, by bisection to the last bit.

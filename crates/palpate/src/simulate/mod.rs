@@ -7,6 +7,7 @@
 //! | `program.rs` | steps in displacement and in force, one after the other |
 //! | `course.rs` | what drives a contact: a motion, a force history or a program |
 //! | `model.rs` | the contact model: specimen, law, layers, and whether the jaw can pull |
+//! | `varying.rs` | the same with a rate coefficient that depends on the state |
 //! | `contact.rs` | a contact, whichever law it obeys |
 //! | `layer.rs` | what the walk asks of the contact layer, whichever law it obeys |
 //! | `walk.rs` | goes through a motion piece by piece: in contact, jaw off, in contact again |
@@ -46,6 +47,8 @@ mod summary;
 #[cfg(feature = "std")]
 mod trajectory;
 #[cfg(feature = "std")]
+mod varying;
+#[cfg(feature = "std")]
 mod walk;
 #[cfg(feature = "std")]
 mod wave;
@@ -69,6 +72,7 @@ pub use {
     program::{ProgramStep, StepEnd, step_ends},
     summary::{Summary, summary},
     trajectory::{Sampling, Trajectory, simulate, simulate_force},
+    varying::VaryingContact,
     walk::{ContactEvent, ContactEventKind},
     wave::{StrainWave, strain_wave, strain_wave_within},
 };

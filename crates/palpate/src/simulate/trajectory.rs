@@ -92,8 +92,8 @@ impl Trajectory {
             StretchState::Touching(piece) => {
                 self.contact_displacement.extend(jaw);
                 let line = (stretch.start, stretch.contact_speed);
-                model.extend(piece, line, times, &mut self.excess_strain, &mut self.strain_rate);
                 let contact = &self.contact_displacement[from..];
+                model.extend(piece, line, (times, contact), &mut self.excess_strain, &mut self.strain_rate);
                 self.equilibrium_strain.extend(contact.iter().map(|u| specimen.equilibrium_strain(*u)));
                 let parts = self.equilibrium_strain[from..].iter().zip(&self.excess_strain[from..]);
                 self.strain.extend(parts.map(|(equilibrium, excess)| equilibrium + excess));

@@ -75,7 +75,7 @@ impl Layer for LinearContact {
         &self,
         piece: &Moving,
         (start, _): (f64, f64),
-        times: &[f64],
+        (times, _): (&[f64], &[f64]),
         strains: &mut Vec<f64>,
         rates: &mut Vec<f64>,
     ) {
