@@ -161,9 +161,19 @@ pub(crate) fn sha256(path: &Path) -> Result<String, Failure> {
             }
             hasher.update(&buffer[..count]);
         }
-        Ok(hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+        Ok(hexadecimal(&hasher.finalize()))
     };
     hash().map_err(|error| Failure::of_file(path, error, None))
+}
+
+/// SHA-256 of what a file would hold, hexadecimal.
+pub(crate) fn sha256_of(content: &[u8]) -> String {
+    use sha2::{Digest, Sha256};
+    hexadecimal(&Sha256::digest(content))
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// A name of a test as the name of a file: what no system allows there becomes a hyphen.

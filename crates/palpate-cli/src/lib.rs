@@ -115,3 +115,9 @@ pub fn sweep_rows(sweep: &Sweep, path: &Path, runs: Range<u64>, done: impl FnMut
 pub fn sha256(path: &Path) -> Result<String, (String, Option<String>)> {
     files::sha256(path).map_err(failure::Failure::into_parts)
 }
+
+/// The same of what a file would hold.
+#[must_use]
+pub fn sha256_of(content: &[u8]) -> String {
+    files::sha256_of(content)
+}

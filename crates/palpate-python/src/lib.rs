@@ -6,6 +6,8 @@
 //! | `analysis.rs` | `Analysis`, `Finding` |
 //! | `fit.rs`, `fit_many.rs` | `fit_hold`, `Fit`, `Estimate`; thousands of holds in one call |
 //! | `calibration.rs`, `material.rs`, `prediction.rs` | one set of numbers for a whole record, and what it predicts |
+//! | `grip.rs`, `grip_parts.rs` | `Grip`: how to squeeze, and how long that holds; its parts |
+//! | `observer.rs`, `observation.rs` | a contact watched tick by tick |
 //! | `compare.rs` | laws compared by what they foretell |
 //! | `simulate.rs`, `simulate_many.rs` | `simulate`, `Trajectory`; one protocol with many numbers |
 //! | `contact_state.rs` | `ContactState`, `ContactStates` |
@@ -26,8 +28,12 @@ mod document;
 mod errors;
 mod fit;
 mod fit_many;
+mod grip;
+mod grip_parts;
 mod laws;
 mod material;
+mod observation;
+mod observer;
 mod prediction;
 mod record;
 mod simulate;
@@ -57,9 +63,17 @@ mod _palpate {
     #[pymodule_export]
     use crate::fit_many::fit_many;
     #[pymodule_export]
+    use crate::grip::Grip;
+    #[pymodule_export]
+    use crate::grip_parts::{BackOff, ForceHeld, Holding, Schedule};
+    #[pymodule_export]
     use crate::laws::{latency, law_names};
     #[pymodule_export]
     use crate::material::Material;
+    #[pymodule_export]
+    use crate::observation::Observation;
+    #[pymodule_export]
+    use crate::observer::Observer;
     #[pymodule_export]
     use crate::prediction::Prediction;
     #[pymodule_export]

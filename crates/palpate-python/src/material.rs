@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use arrow_array::{ArrayRef, Float64Array, StringArray};
 use numpy::PyArray2;
-use palpate::calibrate::{EquilibriumLaw, MaterialNumber, MaterialUnit};
+use palpate::calibrate::{EquilibriumLaw, Material as Body, MaterialNumber, MaterialUnit};
+use palpate::grip::{Grasp, Limits, Question};
 use palpate::number::{significant, with_error};
 use palpate::simulate::Sampling;
 use palpate_files::description::{MaterialFile, parse_material, parse_protocol_of, read_material, read_protocol_of};
@@ -15,6 +16,7 @@ use pyo3::types::{PyDict, PyType};
 use crate::arrays::doubles;
 use crate::errors::{ModelError, PalpateError, refused, refused_plainly, undescribed, warn};
 use crate::fit::PyEstimate;
+use crate::grip::{Asked, Grip, band, control, objective, regrip, ungripped};
 use crate::prediction::Prediction;
 use crate::record::coverage;
 use crate::table::Table;
@@ -45,6 +47,11 @@ impl Material {
     pub(crate) fn parsed(text: &str) -> PyResult<Self> {
         let file = parse_material(text, Path::new("material")).map_err(undescribed)?;
         Ok(Self { file })
+    }
+
+    /// What the observer is told of it.
+    pub(crate) fn body(&self) -> Body {
+        self.file.material.clone()
     }
 
     fn warn_of_open(&self, py: Python<'_>) -> PyResult<()> {
@@ -277,6 +284,163 @@ impl Material {
         let predicted = predicted.map_err(refused_plainly::<ModelError>)?;
         self.warn_of_open(py)?;
         Prediction::of(py, predicted)
+    }
+
+    /// How to squeeze the body between two jaws, and how long that holds: what ``palpate grip`` says.
+    ///
+    /// Each jaw carries half of the weight and of the torsion about the closing axis. With T the tangential force at a jaw, M its torsion,
+    /// a the radius of the contact and S the safety factor F = S sqrt(T^2 + (M/(c a))^2)/mu + m |a_closing|/2 is needed.
+    ///
+    /// Parameters
+    /// ----------
+    /// mass_kg : float
+    ///     Mass of the body, kg.
+    /// friction : float
+    ///     Coefficient of friction between jaw and body.
+    /// safety : float
+    ///     Safety factor on friction, 1 or more.
+    /// acceleration_up_m_per_s2, acceleration_across_m_per_s2, acceleration_closing_m_per_s2 : float
+    ///     Acceleration of the hand upwards, across gravity in the plane of the jaws, and along the closing axis, m/s^2.
+    /// torque_n_m : float
+    ///     Torque about the closing axis, N m.
+    /// off_centre_m : float
+    ///     Distance of the centre of mass from the closing axis, m.
+    /// gravity_m_per_s2 : float
+    ///     Gravity, m/s^2.
+    /// speed_m_per_s : float, optional
+    ///     The fastest that the jaws go, m/s; the fastest ramp of the test if left out.
+    /// stroke_m, most_force_n : float, optional
+    ///     How far the jaws may squeeze, m, and the largest force that gripper and body bear, N.
+    /// close_within_s : float
+    ///     How long closing may take, s.
+    /// control : str
+    ///     What the gripper holds once it has closed: "position" (the force relaxes) or "force" (the body creeps).
+    /// squeeze_m : float, optional
+    ///     Squeeze that is asked about, m; the least that holds is sought if left out.
+    /// force_n : float, optional
+    ///     Force that is asked about with ``control="force"``, N; the least that is enough if left out.
+    /// hold_s : float, optional
+    ///     How long it is to hold, s; ``math.inf`` for always. 60 s if neither this nor a squeeze is given.
+    /// objective : str, optional
+    ///     What the squeeze that is sought should have least of: "squeeze" (if left out), "peak-force" or "work".
+    /// assured : bool
+    ///     Whether the lower edge of the band of the force has to hold, not the best guess.
+    /// band_n : tuple of float, optional
+    ///     Two forces, N, between which squeezes again and again keep the force.
+    /// regrip : str, optional
+    ///     What that schedule should have least of: "moves" (if left out) or "work".
+    /// shortest_pause_s : float, optional
+    ///     The shortest pause between two squeezes of least work, s; 1 if left out.
+    /// confidence : float
+    ///     Coverage of the intervals, between 0 and 1.
+    ///
+    /// Returns
+    /// -------
+    /// Grip
+    ///     The squeeze that is asked about, squeeze and back off, the force held and the schedule, beside one another. That none holds is an
+    ///     answer: ``holds`` is false, ``refused`` says why.
+    ///
+    /// Raises
+    /// ------
+    /// OptionError
+    ///     Numbers that describe no load, no gripper or no question; options that exclude each other.
+    /// ModelError
+    ///     A body that was tested bonded to its grips.
+    ///
+    /// Warns
+    /// -----
+    /// PalpateWarning
+    ///     A longer hold, a deeper squeeze, a faster ramp, a larger force than the test has shown, or a force that is held: answered all
+    ///     the same. A material of which a number was left open.
+    ///
+    /// Examples
+    /// --------
+    /// 0.25 kg between jaws with a friction of 0.6 need 0.25 * 9.80665/(2 * 0.6) N.
+    ///
+    /// >>> import palpate
+    /// >>> made = palpate.simulate({
+    /// ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
+    /// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+    /// ...     "step": [
+    /// ...         {"to": "5 mm", "rate": "500 mm/min", "hold": "20 s"},
+    /// ...         {"to": "9 mm", "rate": "500 mm/min", "hold": "20 s"},
+    /// ...     ],
+    /// ... })
+    /// >>> record = palpate.Record.from_arrays(time_s=made.time_s, displacement_m=made.displacement_m, force_n=made.force_n)
+    /// >>> material = record.calibrate(test={"specimen": {"shape": "ball", "radius": "35 mm"}}, rivals=[]).material
+    /// >>> grip = material.grip(mass_kg=0.25, friction=0.6, squeeze_m=0.005)
+    /// >>> round(grip.squeeze.needed_force_n, 3), round(grip.time_to_slip_s, 2)
+    /// (2.043, 0.61)
+    #[pyo3(signature = (
+        *, mass_kg, friction, safety=1.0, acceleration_up_m_per_s2=0.0, acceleration_across_m_per_s2=0.0,
+        acceleration_closing_m_per_s2=0.0, torque_n_m=0.0, off_centre_m=0.0, gravity_m_per_s2=9.80665, speed_m_per_s=None,
+        stroke_m=None, most_force_n=None, close_within_s=2.0, control="position", squeeze_m=None, force_n=None, hold_s=None,
+        objective=None, assured=false, band_n=None, regrip=None, shortest_pause_s=None, confidence=0.95,
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn grip(
+        &self,
+        py: Python<'_>,
+        mass_kg: f64,
+        friction: f64,
+        safety: f64,
+        acceleration_up_m_per_s2: f64,
+        acceleration_across_m_per_s2: f64,
+        acceleration_closing_m_per_s2: f64,
+        torque_n_m: f64,
+        off_centre_m: f64,
+        gravity_m_per_s2: f64,
+        speed_m_per_s: Option<f64>,
+        stroke_m: Option<f64>,
+        most_force_n: Option<f64>,
+        close_within_s: f64,
+        control: &str,
+        squeeze_m: Option<f64>,
+        force_n: Option<f64>,
+        hold_s: Option<f64>,
+        objective: Option<&str>,
+        assured: bool,
+        band_n: Option<(f64, f64)>,
+        regrip: Option<&str>,
+        shortest_pause_s: Option<f64>,
+        confidence: f64,
+    ) -> PyResult<Grip> {
+        let question = Question {
+            control: self::control(control, squeeze_m, force_n)?,
+            squeeze: squeeze_m,
+            force: force_n,
+            duration: hold_s,
+            objective: self::objective(objective, squeeze_m)?,
+            assured,
+            band: band(band_n),
+            regrip: self::regrip(regrip, shortest_pause_s, band_n)?,
+        };
+        let grasp = Grasp {
+            mass: mass_kg,
+            friction,
+            gravity: gravity_m_per_s2,
+            acceleration_up: acceleration_up_m_per_s2,
+            acceleration_across: acceleration_across_m_per_s2,
+            acceleration_closing: acceleration_closing_m_per_s2,
+            torque: torque_n_m,
+            off_centre: off_centre_m,
+            safety,
+        };
+        let speed = speed_m_per_s.unwrap_or(self.file.material.shown.fastest);
+        let limits = Limits {
+            stroke: stroke_m,
+            force: most_force_n,
+            closing: close_within_s,
+            ..Limits::new(speed).map_err(|error| ungripped(&error))?
+        };
+        let asked = Asked {
+            grasp,
+            limits,
+            question,
+            confidence: coverage(confidence)?,
+        };
+        self.warn_of_open(py)?;
+        Grip::of(py, &self.file, asked)
     }
 
     #[classmethod]

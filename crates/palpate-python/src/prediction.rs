@@ -34,6 +34,11 @@ impl Prediction {
         Ok(Self { predicted })
     }
 
+    /// One that has been warned of.
+    pub(crate) fn kept(predicted: Predicted) -> Self {
+        Self { predicted }
+    }
+
     /// Lower and upper ends of an interval at every sample.
     fn ends(&self, of: fn(&Predicted, usize) -> (f64, f64)) -> (Vec<f64>, Vec<f64>) {
         (0..self.predicted.trajectory.len()).map(|index| of(&self.predicted, index)).unzip()

@@ -7,15 +7,26 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
+use pyo3::PyTypeInfo;
 use pyo3::prelude::*;
+use serde::Serialize;
 
-use crate::errors::{PalpateError, refused};
+use crate::errors::{PalpateError, refused, refused_plainly};
 
 /// How often signals are looked for.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// What makes an object again: a function and its arguments.
 pub(crate) type Made<'py, T> = (Bound<'py, PyAny>, T);
+
+/// What makes an object again from its parts as JSON: `_from_json` of its class.
+pub(crate) fn made_again<'py, T: PyTypeInfo>(
+    py: Python<'py>,
+    parts: &impl Serialize,
+) -> PyResult<Made<'py, (String,)>> {
+    let json = serde_json::to_string(parts).map_err(refused_plainly::<PalpateError>)?;
+    Ok((py.get_type::<T>().getattr("_from_json")?, (json,)))
+}
 
 /// How much of some work is done, for those who wait for it.
 #[derive(Clone, Default)]

@@ -446,6 +446,53 @@ fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
 }
 
 #[test]
+fn a_material_whose_rate_depends_on_the_strain_is_watched_by_that() {
+    use palpate::calibrate::{CalibratedContact, MaterialNumber, MaterialUnit, RateLaw};
+    use palpate::identify::Estimate;
+    use palpate::simulate::{Motion, Sampling, simulate};
+    let mut varying = material(1.0);
+    varying.candidate.rate = RateLaw::ByStrain;
+    varying.numbers.push(MaterialNumber {
+        name: "strain_factor".to_owned(),
+        unit: MaterialUnit::One,
+        estimate: Estimate::fixed(0.02),
+    });
+    let covariance = &mut varying.uncertainty.as_mut().unwrap().covariance;
+    covariance.iter_mut().for_each(|row| row.push(0.0));
+    covariance.push(vec![0.0; 5]);
+    let CalibratedContact::Varying(truth) = varying.contact() else {
+        panic!("a contact whose rate varies");
+    };
+    let motion = Motion::new(vec![0.0, STOP, 8.0], vec![0.0, 5e-3, 5e-3]).unwrap();
+    let times = (1..(8.0 * RATE) as usize).map(|i| i as f64 / RATE).collect();
+    let course = simulate(&motion, &truth, &Sampling::Times(times)).unwrap();
+    let ticks: Vec<_> = (0..course.len()).map(|i| (course.time[i], course.displacement[i], course.force[i])).collect();
+    let informed = |material| ObserverOptions {
+        material: Some(material),
+        ..ObserverOptions::default()
+    };
+    let seen = watched(&ticks, 3, &informed(varying));
+    // Right after the stop, when the hold itself tells little, and later.
+    for at in [0.8, 2.0, 7.9] {
+        let index = (at * RATE) as usize - 1;
+        let strain = seen[index].excess_strain.unwrap();
+        let exact = course.excess_strain[index];
+        assert!(
+            (strain.value - exact).abs() < 4.0 * strain.deviation + 1e-4 && strain.deviation < 0.1 * exact,
+            "{at} s: {strain:?} {exact}"
+        );
+    }
+    // A body with one rate coefficient is not this one.
+    let plain = watched(&ticks, 3, &informed(material(1.0)));
+    let last = plain.last().unwrap();
+    let exact = course.excess_strain.last().unwrap();
+    assert!(
+        last.excess_strain.is_none_or(|strain| (strain.value - exact).abs() > 4.0 * strain.deviation),
+        "{last:?} {exact}"
+    );
+}
+
+#[test]
 fn forces_of_another_body_are_fitted_as_they_are() {
     let course = squeeze(10.0);
     let options = ObserverOptions {
@@ -457,4 +504,34 @@ fn forces_of_another_body_are_fitted_as_they_are() {
     let mut observer = Observer::new(options).unwrap();
     assert!(matches!(observer.feed(0.0, Some(1.0), 0.0), Err(ObserveError::Displacement { .. })));
     assert!(observer.feed(0.0, Some(0.0), 0.0).is_ok());
+}
+
+#[test]
+fn an_observer_goes_on_elsewhere_to_the_last_bit() {
+    let course = squeeze(10.0);
+    let informed = ObserverOptions {
+        material: Some(material(1.03)),
+        ..slipping_at(1.7)
+    };
+    for options in [slipping_at(1.7), informed] {
+        for cut in [0, 7, 290, 330, 2000] {
+            let (mut here, mut noise) = (Observer::new(options.clone()).unwrap(), Noise::new(1));
+            let noisy: Vec<(f64, f64)> =
+                course.iter().map(|tick| (tick.1 + 1e-6 * noise.normal(), tick.2 + 0.05 * noise.normal())).collect();
+            for index in 0..cut {
+                here.feed(course[index].0, Some(noisy[index].0), noisy[index].1).unwrap();
+            }
+            let bytes = here.to_bytes();
+            let mut there = Observer::from_bytes(options.clone(), &bytes).unwrap();
+            assert_eq!(there.to_bytes(), bytes);
+            for index in cut..course.len() {
+                let feed = |one: &mut Observer| one.feed(course[index].0, Some(noisy[index].0), noisy[index].1);
+                assert_eq!(feed(&mut here), feed(&mut there), "{cut} {index}");
+            }
+            assert_ne!(here.to_bytes(), bytes);
+            for broken in [&bytes[1..], &bytes[..bytes.len() - 1], &[bytes.as_slice(), &[0]].concat()] {
+                assert_eq!(Observer::from_bytes(options.clone(), broken).unwrap_err(), ObserveError::Bytes);
+            }
+        }
+    }
 }

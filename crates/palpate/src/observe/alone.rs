@@ -1,5 +1,6 @@
 //! The end of loading seen in a force alone.
 
+use super::kept::kept;
 use super::stand::Change;
 
 /// A hold is told once the force, at the speed of its loading, would have risen this many tolerances above its peak.
@@ -23,6 +24,7 @@ pub(super) struct Alone {
     off: u32,
     seen: bool,
 }
+kept!(Alone: foot, peak, since, stands, falls, least, off, seen);
 
 impl Alone {
     pub(super) fn feed(&mut self, time: f64, level: f64, tolerance: Option<f64>, predicted: Option<f64>) -> Change {

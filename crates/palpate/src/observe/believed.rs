@@ -6,6 +6,7 @@
 //! that the standings z of the directions, N(0, 1) before the first reading, follow from the forces by a Kalman filter of a state that does
 //! not move (recursive least squares with a prior, Kalman 1960).
 
+use super::kept::Kept;
 use super::observation::Uncertain;
 use super::{ObserveError, ObserverOptions};
 use crate::calibrate::{CalibratedContact, Material};
@@ -150,10 +151,38 @@ impl Believed {
         })
     }
 
+    /// Writes what readings have changed; the rest is that of [`new`](Self::new).
+    pub(super) fn keep(&self, into: &mut Vec<u8>) {
+        for member in self.members() {
+            // The law is that of where the layer stands.
+            (member.state.to_bytes(), member.model.law.rate_coefficient()).keep(into);
+        }
+        self.standing.iter().chain(&self.covariance).for_each(|value| value.keep(into));
+        (self.surprise, (self.last, self.displacement)).keep(into);
+    }
+
+    /// Reads it.
+    pub(super) fn read(&mut self, from: &mut &[u8]) -> Option<()> {
+        let pairs = self.pairs.iter_mut().flat_map(|(high, low, _)| [high, low]);
+        for member in pairs.chain([&mut self.best]) {
+            let (state, rate) = Kept::read(from)?;
+            member.state = ContactState::from_bytes(state).ok()?;
+            member.model.law = LatencyLaw::new(member.law.exponent(), rate).ok()?;
+        }
+        for value in self.standing.iter_mut().chain(&mut self.covariance) {
+            *value = Kept::read(from)?;
+        }
+        (self.surprise, (self.last, self.displacement)) = Kept::read(from)?;
+        Some(())
+    }
+
+    fn members(&self) -> impl Iterator<Item = &Member> {
+        self.pairs.iter().flat_map(|(high, low, _)| [high, low]).chain([&self.best])
+    }
+
     /// Checks that all models can be brought to a displacement.
     pub(super) fn check(&self, time: f64, displacement: f64) -> Result<(), ObserveError> {
-        let members = self.pairs.iter().flat_map(|(high, low, _)| [high, low]).chain([&self.best]);
-        for member in members {
+        for member in self.members() {
             let mut state = member.state;
             if state.step(&member.model, 0.0, displacement + member.offset).is_err() {
                 return Err(ObserveError::Displacement { time, displacement });

@@ -1,5 +1,6 @@
 //! A hold in a bounded number of means.
 
+use super::kept::kept;
 use super::observation::Uncertain;
 
 /// Most means.
@@ -21,6 +22,7 @@ pub(super) struct Bin {
     from: f64,
     to: f64,
 }
+kept!(Bin: time, spread, value, count, from, to);
 
 /// Means over lengths that grow with the time since the hold began.
 #[derive(Debug, Clone, Copy)]
@@ -28,6 +30,7 @@ pub(super) struct Bins {
     bins: [Bin; MOST],
     len: usize,
 }
+kept!(Bins: bins, len; |bins| bins.len <= MOST);
 
 impl Bins {
     pub(super) fn new() -> Self {

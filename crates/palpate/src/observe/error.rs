@@ -42,6 +42,9 @@ pub enum ObserveError {
         /// What was given, m.
         displacement: f64,
     },
+    /// Bytes that hold no observer, or one with other options.
+    #[error("expected the bytes of an observer with these options, found others")]
+    Bytes,
 }
 
 impl ObserveError {
@@ -53,6 +56,7 @@ impl ObserveError {
             Self::NotFinite { .. } => "leave the tick out: the observer bridges a gap",
             Self::TimeNotRising { .. } => "after a clock was set, begin with a new observer",
             Self::Displacement { .. } => "count displacement from first touch, growing as the jaw closes, in m",
+            Self::Bytes => "give the options that it had, and bytes of the same version",
             Self::Option { .. } => "",
         }
     }

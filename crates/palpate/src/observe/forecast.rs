@@ -1,5 +1,6 @@
 //! From a force that falls and its interval to the time when it has fallen to the force of slip.
 
+use super::kept::Kept;
 use super::observation::TimeToSlip;
 
 /// What lies later than this (s) is called never.
@@ -18,6 +19,28 @@ pub(super) enum Crossing {
         low: f64,
         high: Option<f64>,
     },
+}
+
+impl Kept for Crossing {
+    fn keep(&self, into: &mut Vec<u8>) {
+        match *self {
+            Self::Never => false.keep(into),
+            Self::At { value, low, high } => {
+                true.keep(into);
+                low.keep(into);
+                (value, high).keep(into);
+            }
+        }
+    }
+
+    fn read(from: &mut &[u8]) -> Option<Self> {
+        if !bool::read(from)? {
+            return Some(Self::Never);
+        }
+        let low = f64::read(from)?;
+        let (value, high) = Kept::read(from)?;
+        Some(Self::At { value, low, high })
+    }
 }
 
 impl Crossing {

@@ -6,6 +6,7 @@
 //! only, the ends of its interval have nodes of their own: the readings of a hold are not asked for n, of which they tell little.
 
 use super::bins::Bin;
+use super::kept::kept;
 use super::observation::Uncertain;
 use crate::latency::decay;
 
@@ -34,6 +35,7 @@ pub(super) struct Node {
     /// z²s² less what the sum of squares has grown by.
     budget: f64,
 }
+kept!(Node: exponent, log_rate, rate, squares, amplitude, mean, mean_shape, shape_squares, budget);
 
 impl Node {
     fn new(bins: &[Bin], weight: f64, exponent: f64, log_rate: f64) -> Self {
@@ -105,6 +107,7 @@ pub(super) struct HoldFit {
     /// Half an interval in standard deviations.
     factor: f64,
 }
+kept!(HoldFit: best, nodes, len, variance, weight, factor; |fit| fit.len <= fit.nodes.len());
 
 impl HoldFit {
     /// Fits means of a hold at an exponent that is known to its deviation; `deviation` is the least that one reading scatters (N), `factor` half an interval in standard deviations by

@@ -10,6 +10,7 @@
 //! | `hold_fit.rs` | a hold fitted, with what it leaves open | (4), (5) |
 //! | `believed.rs` | a calibrated body run beside the record | (10), (11) |
 //! | `forecast.rs` | the time when its force has fallen to that of slip | |
+//! | `kept.rs` | the state as bytes, to send an observer elsewhere | |
 //!
 //! In a hold of the displacement F(t) = F_e + A φ(t; λ, n), [`decay`](crate::latency::decay), equations (4) and (5). Its readings become
 //! means over lengths that grow with the time since the hold began, at most 64 of them. Each time the hold is 4 % longer F_e, A and λ are
@@ -55,6 +56,7 @@ mod bins;
 mod error;
 mod forecast;
 mod hold_fit;
+mod kept;
 mod noise;
 mod observation;
 mod observer;

@@ -1,5 +1,7 @@
 //! How noisy a signal is, found out as it comes.
 
+use super::kept::kept;
+
 /// Readings of which one estimate is made.
 const ROOM: usize = 32;
 /// After how many readings the first estimates come.
@@ -21,6 +23,7 @@ pub(super) struct NoiseMeter {
     step: Option<f64>,
     quantum: f64,
 }
+kept!(NoiseMeter: known, last, seen, room, filled, found, step, quantum; |meter| meter.filled < ROOM);
 
 impl NoiseMeter {
     pub(super) fn new(known: Option<f64>) -> Self {

@@ -1,7 +1,11 @@
 //! What an observer says after a tick.
 
+use serde::{Deserialize, Serialize};
+
+use super::kept::{Kept, kept};
+
 /// What happens at a tick.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Phase {
     /// No contact: the force is within its noise of zero.
     #[default]
@@ -15,7 +19,7 @@ pub enum Phase {
 }
 
 /// What is held.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Held {
     /// The displacement: the force relaxes.
     Displacement,
@@ -23,17 +27,28 @@ pub enum Held {
     Force,
 }
 
+impl Kept for Held {
+    fn keep(&self, into: &mut Vec<u8>) {
+        (*self == Self::Force).keep(into);
+    }
+
+    fn read(from: &mut &[u8]) -> Option<Self> {
+        Some(if bool::read(from)? { Self::Force } else { Self::Displacement })
+    }
+}
+
 /// A value and its standard deviation.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Uncertain {
     /// Best value.
     pub value: f64,
     /// Standard deviation.
     pub deviation: f64,
 }
+kept!(Uncertain: value, deviation);
 
 /// How long until the force has relaxed to the force of slip.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum TimeToSlip {
     /// Not known yet: no hold, or too little of it.
     Unknown,
@@ -51,7 +66,7 @@ pub enum TimeToSlip {
 }
 
 /// Warnings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Slip {
     /// Nothing to warn of.
     #[default]
@@ -63,7 +78,7 @@ pub enum Slip {
 }
 
 /// What an observer says after a tick; SI units.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Observation {
     /// When, s.
     pub time: f64,

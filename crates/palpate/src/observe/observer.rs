@@ -5,6 +5,7 @@ use super::believed::Believed;
 use super::bins::Bins;
 use super::forecast::Crossing;
 use super::hold_fit::{FEWEST, HoldFit};
+use super::kept::{Kept, kept};
 use super::noise::NoiseMeter;
 use super::smooth::Smooth;
 use super::stand::{Change, Stand};
@@ -29,6 +30,9 @@ const AGAIN: f64 = 0.04;
 /// Fewest readings of a fit.
 const READINGS: u32 = 8;
 
+/// What the bytes of an observer begin with.
+const FORMAT: [u8; 8] = *b"observe1";
+
 /// A hold that goes on.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hold {
@@ -41,6 +45,7 @@ pub(super) struct Hold {
     pub(super) due: f64,
     pub(super) readings: u32,
 }
+kept!(Hold: held, since, fit, crossing, creep, due, readings);
 
 impl Hold {
     fn new(held: Held, since: f64) -> Self {
@@ -134,6 +139,67 @@ impl Observer {
         let began = self.follow(time, displacement, force);
         self.fit(time);
         Ok(self.say(time, began))
+    }
+
+    /// What it was told before the first tick.
+    #[must_use]
+    pub fn options(&self) -> &ObserverOptions {
+        &self.options
+    }
+
+    /// All that readings have changed, to send an observer elsewhere; [`from_bytes`](Self::from_bytes) goes on with it to the last bit.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = FORMAT.to_vec();
+        self.keep(&mut bytes);
+        bytes
+    }
+
+    /// An observer that goes on where the one of [`to_bytes`](Self::to_bytes) was, which had the same options.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new), and [`ObserveError::Bytes`] for bytes that come from no such observer.
+    pub fn from_bytes(options: ObserverOptions, bytes: &[u8]) -> Result<Self, ObserveError> {
+        let mut observer = Self::new(options)?;
+        let mut from = bytes.strip_prefix(&FORMAT).ok_or(ObserveError::Bytes)?;
+        observer.read(&mut from).filter(|()| from.is_empty()).ok_or(ObserveError::Bytes)?;
+        Ok(observer)
+    }
+
+    fn keep(&self, into: &mut Vec<u8>) {
+        self.last.keep(into);
+        self.displacement_noise.keep(into);
+        self.force_noise.keep(into);
+        self.smooth.keep(into);
+        self.jaw.keep(into);
+        self.grip.keep(into);
+        self.reached.keep(into);
+        self.relaxation.keep(into);
+        self.relaxes_from.keep(into);
+        self.creep.keep(into);
+        self.displacement_seen.keep(into);
+        self.alone.keep(into);
+        self.hold.keep(into);
+        if let Some(believed) = &self.believed {
+            believed.keep(into);
+        }
+    }
+
+    fn read(&mut self, from: &mut &[u8]) -> Option<()> {
+        self.last = Kept::read(from)?;
+        self.displacement_noise = Kept::read(from)?;
+        self.force_noise = Kept::read(from)?;
+        self.smooth = Kept::read(from)?;
+        self.jaw = Kept::read(from)?;
+        self.grip = Kept::read(from)?;
+        self.reached = Kept::read(from)?;
+        self.relaxation = Kept::read(from)?;
+        self.relaxes_from = Kept::read(from)?;
+        self.creep = Kept::read(from)?;
+        self.displacement_seen = Kept::read(from)?;
+        self.alone = Kept::read(from)?;
+        self.hold = Kept::read(from)?;
+        self.believed.as_mut().map_or(Some(()), |believed| believed.read(from))
     }
 
     fn check(&self, time: f64, displacement: Option<f64>, force: f64) -> Result<(), ObserveError> {

@@ -1,5 +1,7 @@
 //! A signal without most of its noise, and its rate: two numbers.
 
+use super::kept::kept;
+
 /// Share of a surprise that corrects the level.
 const LEVEL: f64 = 0.25;
 /// Share that corrects the rate: critically damped, α²/(2 − α).
@@ -17,6 +19,7 @@ pub(super) struct Smooth {
     usual: f64,
     seen: bool,
 }
+kept!(Smooth: level, rate, usual, seen);
 
 impl Smooth {
     /// Takes a reading `dt` (s) after the last; `noise` is its standard deviation, if that is known.

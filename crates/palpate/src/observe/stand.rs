@@ -1,5 +1,7 @@
 //! Whether a signal stands still, told within a few readings.
 
+use super::kept::kept;
+
 /// Fewest readings of a stand.
 const FEWEST: u32 = 3;
 /// Readings after which a stand is told where no speed is known, at the beginning of a record.
@@ -30,6 +32,7 @@ pub(super) struct Stand {
     direction: f64,
     stands: bool,
 }
+kept!(Stand: start, middle, last, place, count, readings, outside, drifts_since, speed, fastest, direction, stands);
 
 /// A signal creeps where it leaves this much slower than it came.
 const CREEPS: f64 = 0.2;

@@ -1,0 +1,332 @@
+//! A contact watched tick by tick.
+
+use palpate::observe::{ObserveError, Observer as Watcher, ObserverOptions};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyType};
+use serde::{Deserialize, Serialize};
+
+use crate::arrays::doubles;
+use crate::errors::{ModelError, OptionError, PalpateError, RecordError, refused, refused_plainly};
+use crate::material::Material;
+use crate::observation::{Observation, columns};
+use crate::table::Table;
+use crate::work::{Made, at_length};
+
+/// Watches a contact tick by tick, as a controller would: when a hold begins, where its force tends, how long until it slips.
+///
+/// It knows nothing but what came before, keeps a hold of any length as 64 means, and fits it anew each time it has become 4 % longer.
+/// ``palpate watch`` replays a log through the same observer.
+///
+/// Parameters
+/// ----------
+/// material : Material, optional
+///     The calibrated body, of the latency law: its excess strain is then known from first touch on. Displacements count from there.
+/// exponent : float, optional
+///     Exponent of the law where no material says it, from 1 to 30; 5 if left out.
+/// exponent_deviation : float, optional
+///     Standard deviation to which that exponent is known, from 0 to 10; 0 if left out.
+/// slip_force_n : float, optional
+///     Normal force at and below which what is held slips, N; without it nobody asks for slip.
+/// warn_before_s : float
+///     How long before slip to warn, s.
+/// confidence : float
+///     Coverage of the intervals, between 0 and 1.
+/// displacement_noise_m, force_noise_n : float, optional
+///     Standard deviation of one reading, m and N, both or none; found out from the readings if left out.
+/// stiffness_deviation : float
+///     With a material: by how much the stiffness of this body may differ, as a standard deviation of its logarithm, from 0 to 1.
+/// touch_deviation_m : float
+///     With a material: standard deviation to which first touch is known, m.
+///
+/// Raises
+/// ------
+/// OptionError
+///     A number out of its range, or one that a material says itself.
+/// ModelError
+///     A material of another law than latency.
+///
+/// Examples
+/// --------
+/// 5 mm within 0.5 s, then a hold whose force tends to 1.2 N; it is 2 N 0.81 s later.
+///
+/// >>> import numpy as np, palpate
+/// >>> t = np.arange(60_001) * 1e-3
+/// >>> hold = palpate.laws.latency(np.maximum(t - 0.5, 0.0), 1.2, 1.7, 6.0, 5.0)
+/// >>> force, place = np.where(t < 0.5, 5.8 * t, hold), np.minimum(0.01 * t, 0.005)
+/// >>> observer = palpate.Observer(slip_force_n=2.0, warn_before_s=0.5)
+/// >>> seen = observer.feed_many(t[:1000], force[:1000], place[:1000])
+/// >>> round(float(seen["time_to_slip_s"][-1]), 2), round(float(hold[1310]), 2)
+/// (0.31, 2.0)
+/// >>> for i in range(1000, len(t)):
+/// ...     now = observer.feed(t[i], force[i], place[i])
+/// >>> now.phase, now.held, now.warning, round(now.equilibrium_force_n, 3)
+/// ('holding', 'displacement', 'slipping', 1.2)
+#[pyclass(name = "Observer", module = "palpate")]
+pub(crate) struct Observer {
+    watcher: Watcher,
+    /// The material as it was given, so that the observer can be sent elsewhere.
+    material: Option<Material>,
+}
+
+/// Options that are no material, to make an observer again.
+#[derive(Serialize, Deserialize)]
+struct Told {
+    exponent: f64,
+    exponent_deviation: f64,
+    slip_force: Option<f64>,
+    warn_before: f64,
+    confidence: f64,
+    noise: Option<(f64, f64)>,
+    stiffness_deviation: f64,
+    touch_deviation: f64,
+}
+
+impl Told {
+    fn of(options: &ObserverOptions) -> Self {
+        Self {
+            exponent: options.exponent,
+            exponent_deviation: options.exponent_deviation,
+            slip_force: options.slip_force,
+            warn_before: options.warn_before,
+            confidence: options.confidence,
+            noise: options.noise,
+            stiffness_deviation: options.stiffness_deviation,
+            touch_deviation: options.touch_deviation,
+        }
+    }
+
+    fn options(self, material: Option<&Material>) -> ObserverOptions {
+        ObserverOptions {
+            material: material.map(Material::body),
+            exponent: self.exponent,
+            exponent_deviation: self.exponent_deviation,
+            slip_force: self.slip_force,
+            warn_before: self.warn_before,
+            confidence: self.confidence,
+            noise: self.noise,
+            stiffness_deviation: self.stiffness_deviation,
+            touch_deviation: self.touch_deviation,
+        }
+    }
+}
+
+/// Why there is no observer, or no observation; `at` is what stands before the message.
+fn refused_at(at: &str, error: &ObserveError) -> PyErr {
+    let message = format!("{at}{error}");
+    let hint = Some(error.hint()).filter(|hint| !hint.is_empty());
+    match error {
+        ObserveError::Option { .. } => refused::<OptionError>(message, hint),
+        ObserveError::LinearMaterial => {
+            refused::<ModelError>(message, Some("calibrate with law=\"latency\", or observe without a material"))
+        }
+        ObserveError::NotFinite { .. } | ObserveError::TimeNotRising { .. } => refused::<RecordError>(message, hint),
+        ObserveError::Displacement { .. } => refused::<ModelError>(message, hint),
+        ObserveError::Bytes => refused::<PalpateError>(message, hint),
+    }
+}
+
+fn same_lengths(time: &[f64], force: &[f64], displacement: Option<&[f64]>) -> PyResult<()> {
+    let found = displacement.map_or(time.len(), <[f64]>::len);
+    if force.len() == time.len() && found == time.len() {
+        return Ok(());
+    }
+    let message = format!(
+        "expected columns of one length, found {} times, {} forces{}",
+        time.len(),
+        force.len(),
+        displacement.map_or_else(String::new, |column| format!(", {} displacements", column.len()))
+    );
+    Err(refused_plainly::<RecordError>(message))
+}
+
+#[pymethods]
+impl Observer {
+    #[new]
+    #[pyo3(signature = (
+        material=None, *, exponent=None, exponent_deviation=None, slip_force_n=None, warn_before_s=1.0, confidence=0.95,
+        displacement_noise_m=None, force_noise_n=None, stiffness_deviation=0.05, touch_deviation_m=1e-4,
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn new(
+        material: Option<PyRef<'_, Material>>,
+        exponent: Option<f64>,
+        exponent_deviation: Option<f64>,
+        slip_force_n: Option<f64>,
+        warn_before_s: f64,
+        confidence: f64,
+        displacement_noise_m: Option<f64>,
+        force_noise_n: Option<f64>,
+        stiffness_deviation: f64,
+        touch_deviation_m: f64,
+    ) -> PyResult<Self> {
+        let material = material.map(|material| material.clone());
+        for (name, given) in [("exponent", exponent), ("exponent_deviation", exponent_deviation)] {
+            if material.is_some() && given.is_some() {
+                let message = format!("{name}: expected either this or material, found both");
+                return Err(refused::<OptionError>(
+                    message,
+                    Some(format!("leave {name} out: a material says it itself")),
+                ));
+            }
+        }
+        if displacement_noise_m.is_some() != force_noise_n.is_some() {
+            let (given, missing) = match force_noise_n {
+                Some(_) => ("force_noise_n", "displacement_noise_m"),
+                None => ("displacement_noise_m", "force_noise_n"),
+            };
+            let message = format!("{missing}: expected the noise of both readings or of none, found {given} alone");
+            return Err(refused::<OptionError>(
+                message,
+                Some("leave both out: the noise is found out from the readings"),
+            ));
+        }
+        let told = Told {
+            exponent: exponent.unwrap_or(5.0),
+            exponent_deviation: exponent_deviation.unwrap_or(0.0),
+            slip_force: slip_force_n,
+            warn_before: warn_before_s,
+            confidence,
+            noise: displacement_noise_m.zip(force_noise_n),
+            stiffness_deviation,
+            touch_deviation: touch_deviation_m,
+        };
+        let watcher = Watcher::new(told.options(material.as_ref())).map_err(|error| refused_at("", &error))?;
+        Ok(Self { watcher, material })
+    }
+
+    /// Takes the readings of a tick and says what they mean, in microseconds.
+    ///
+    /// Parameters
+    /// ----------
+    /// time_s : float
+    ///     When, s, on any clock that rises.
+    /// force_n : float
+    ///     Force, N; above 0 as the jaw presses.
+    /// displacement_m : float, optional
+    ///     Displacement of the jaw, m, growing as it closes; None where there is no reading.
+    ///
+    /// Returns
+    /// -------
+    /// Observation
+    ///
+    /// Raises
+    /// ------
+    /// RecordError
+    ///     A reading that is not finite, a clock that stands or goes back; the observer stays as it was.
+    /// ModelError
+    ///     A displacement that the body of the material cannot take; the observer stays as it was.
+    #[pyo3(signature = (time_s, force_n, displacement_m=None))]
+    fn feed(&mut self, time_s: f64, force_n: f64, displacement_m: Option<f64>) -> PyResult<Observation> {
+        let seen = self.watcher.feed(time_s, displacement_m, force_n);
+        seen.map(Observation::from).map_err(|error| refused_at("", &error))
+    }
+
+    /// Takes the readings of many ticks, one after the other; all of them, or none if one cannot be taken.
+    ///
+    /// Parameters
+    /// ----------
+    /// time_s, force_n : array_like, shape (N,)
+    ///     As for `feed`.
+    /// displacement_m : array_like, shape (N,), optional
+    ///     As for `feed`.
+    ///
+    /// Returns
+    /// -------
+    /// Table
+    ///     A row a tick, a column for each attribute of `Observation`: arrays of numbers, NaN where one is not known, and lists of words.
+    ///
+    /// Raises
+    /// ------
+    /// RecordError, ModelError
+    ///     As for `feed`, with the index of the tick; columns of different lengths. The observer stays as it was.
+    #[pyo3(signature = (time_s, force_n, displacement_m=None))]
+    fn feed_many(
+        &mut self,
+        py: Python<'_>,
+        time_s: &Bound<'_, PyAny>,
+        force_n: &Bound<'_, PyAny>,
+        displacement_m: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Table> {
+        let (time, force) = (doubles(time_s, "time_s")?, doubles(force_n, "force_n")?);
+        let displacement = displacement_m.map(|column| doubles(column, "displacement_m")).transpose()?;
+        same_lengths(&time, &force, displacement.as_deref())?;
+        let mut watcher = self.watcher.clone();
+        let watched = at_length(py, move || {
+            let mut all = Vec::with_capacity(time.len());
+            for (index, (time, force)) in time.iter().zip(&force).enumerate() {
+                let place = displacement.as_ref().map(|column| column[index]);
+                all.push(watcher.feed(*time, place, *force).map_err(|error| (index, error))?);
+            }
+            Ok((watcher, all))
+        })?;
+        let (watcher, all) =
+            watched.map_err(|(index, error): (usize, ObserveError)| refused_at(&format!("tick {index}: "), &error))?;
+        self.watcher = watcher;
+        columns(&all)
+    }
+
+    /// The calibrated body, if one was given.
+    #[getter]
+    fn material(&self) -> Option<Material> {
+        self.material.clone()
+    }
+
+    /// Force at and below which what is held slips, N, if one was given.
+    #[getter]
+    fn slip_force_n(&self) -> Option<f64> {
+        self.watcher.options().slip_force
+    }
+
+    /// How long before slip to warn, s.
+    #[getter]
+    fn warn_before_s(&self) -> f64 {
+        self.watcher.options().warn_before
+    }
+
+    /// Coverage of the intervals.
+    #[getter]
+    fn confidence(&self) -> f64 {
+        self.watcher.options().confidence
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.watcher.options() == other.watcher.options() && self.watcher.to_bytes() == other.watcher.to_bytes()
+    }
+
+    fn __copy__(&self) -> Self {
+        Self {
+            watcher: self.watcher.clone(),
+            material: self.material.clone(),
+        }
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyDict>) -> Self {
+        self.__copy__()
+    }
+
+    #[classmethod]
+    fn _from_parts(_class: &Bound<'_, PyType>, options: &str, material: Option<&str>, state: &[u8]) -> PyResult<Self> {
+        let told: Told = serde_json::from_str(options).map_err(refused_plainly::<PalpateError>)?;
+        let material = material.map(Material::parsed).transpose()?;
+        let watcher = Watcher::from_bytes(told.options(material.as_ref()), state);
+        let watcher = watcher.map_err(|error| refused_at("", &error))?;
+        Ok(Self { watcher, material })
+    }
+
+    #[expect(clippy::type_complexity, reason = "what pickle asks for")]
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String, Option<String>, Bound<'py, PyBytes>)>> {
+        let options = serde_json::to_string(&Told::of(self.watcher.options()));
+        let options = options.map_err(refused_plainly::<PalpateError>)?;
+        let (material, state) = (self.material.as_ref().map(Material::to_toml), self.watcher.to_bytes());
+        let make = py.get_type::<Self>().getattr("_from_parts")?;
+        Ok((make, (options, material, PyBytes::new(py, &state))))
+    }
+
+    fn __repr__(&self) -> String {
+        let law = self.material.as_ref().map_or_else(
+            || format!("exponent {}", self.watcher.options().exponent),
+            |material| format!("material of law {}", material.law()),
+        );
+        format!("<palpate.Observer: {law}>")
+    }
+}
