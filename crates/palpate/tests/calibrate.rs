@@ -3,7 +3,7 @@
 
 use palpate::analysis::Geometry;
 use palpate::calibrate::{
-    CalibrateError, CalibrationData, Candidate, EquilibriumLaw, Extrapolation, RateLaw, calibrate,
+    CalibrateError, Calibration, CalibrationData, Candidate, EquilibriumLaw, Extrapolation, RateLaw, calibrate, profile,
 };
 use palpate::contact::{RateDependence, Shape, Sides};
 use palpate::simulate::{Motion, ProtocolStep, Sampling, Separation, VaryingContact, protocol, simulate_force};
@@ -135,6 +135,60 @@ fn a_constant_rate_is_not_said_to_vary() {
         assert!(low < 1.0 && high > 1.0, "{rate:?}: {low} to {high}");
         let plain = calibrate(&data, candidate("latency", EVEN), 0.95).unwrap();
         assert!(found.criteria.bic > plain.criteria.bic, "{rate:?}");
+    }
+}
+
+/// z² is the rise of the squared residual by its own definition: with the number held by another way, a law of a given exponent.
+#[test]
+fn the_profile_of_the_exponent_is_that_of_fits_with_it_given() {
+    let data = measured(&paper_test_a(), 2, 0.2);
+    let found = calibrate(&data, candidate("latency", EVEN), 0.95).unwrap();
+    let profiles = profile(&data, &found).unwrap();
+    let names: Vec<&str> = profiles.iter().map(|number| number.name.as_str()).collect();
+    assert_eq!(names, ["modulus", "exponent", "rate_coefficient", "layer_thickness"]);
+    let square = |made: &Calibration| made.rmse.powi(2) * data.fitted() as f64;
+    let estimate = found.material.estimate("exponent").unwrap();
+    let half = (estimate.interval.unwrap().1 / estimate.value).ln();
+    let target = half * estimate.value / estimate.standard_error.unwrap();
+    let exponent = profiles[1].interval;
+    for end in [exponent.low.unwrap(), exponent.high.unwrap()] {
+        let given = calibrate(&data, candidate(&format!("latency:{end}"), EVEN), 0.95).unwrap();
+        let z = ((square(&given) / square(&found) - 1.0) * (data.fitted() - 4) as f64).sqrt();
+        assert!((z / target - 1.0).abs() < 5e-3, "{end}: {z} {target}");
+    }
+    // Where the residual square is nearly a parabola both intervals are the same, but for its bend.
+    for (number, profile) in found.material.numbers.iter().zip(&profiles) {
+        let (low, high) = number.estimate.interval.unwrap();
+        let (below, above) = (profile.interval.low.unwrap(), profile.interval.high.unwrap());
+        let width = (high / low).ln();
+        assert!(
+            (below / low).ln().abs() < 0.1 * width && (above / high).ln().abs() < 0.1 * width,
+            "{}: {low} to {high}, {below} to {above}",
+            number.name
+        );
+    }
+}
+
+#[test]
+fn a_profile_is_open_where_the_record_leaves_a_number_open() {
+    // Without noise to speak of but too short for the law: of a single slow term the end is out of sight.
+    let step = ProtocolStep {
+        to: 0.010,
+        rate: PAPER_RATE,
+        hold: 3.0,
+    };
+    let data = measured(&protocol(&[step]).unwrap(), 6, 0.4);
+    let found = calibrate(&data, candidate("latency", EVEN), 0.95).unwrap();
+    let profiles = profile(&data, &found).unwrap();
+    assert!(
+        profiles.iter().any(|number| number.interval.low.is_none() || number.interval.high.is_none()),
+        "{profiles:?}"
+    );
+    for (number, profile) in found.material.numbers.iter().zip(&profiles) {
+        let value = number.estimate.value;
+        assert!(
+            profile.interval.low.is_none_or(|low| low < value) && profile.interval.high.is_none_or(|high| high > value)
+        );
     }
 }
 

@@ -44,6 +44,8 @@ pub struct Calibration {
     pub termination: Termination,
     /// Simulations it took.
     pub simulations: u64,
+    /// The searched numbers.
+    pub(super) theta: Vec<f64>,
 }
 
 /// Fits a law of the layer and one of the relaxed force to a whole record: one set of numbers for all ramps and holds.
@@ -91,6 +93,7 @@ pub fn calibrate(data: &CalibrationData, candidate: Candidate, confidence: f64) 
         motion: data.motion(),
         times: &data.times()[..data.fitted()],
         forces: &data.forces()[..data.fitted()],
+        held: None,
     };
     let contact = prepared.contact(&found.theta).ok_or(CalibrateError::NoStiffness)?;
     let simulated = simulate_force(data.motion(), &contact, data.times())?;
@@ -166,6 +169,7 @@ pub fn calibrate(data: &CalibrationData, candidate: Candidate, confidence: f64) 
         foretold,
         termination: found.termination,
         simulations: found.simulations,
+        theta: found.theta,
     })
 }
 

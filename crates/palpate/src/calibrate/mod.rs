@@ -6,6 +6,7 @@
 //! | `candidate.rs` | a law of the layer and one of the relaxed force, and the numbers that are searched | (10), (11) |
 //! | `starts.rs`, `search.rs` | a grid, then damped steps | |
 //! | `fit.rs` | from there to numbers with intervals | |
+//! | `profile.rs` | intervals by the profile of what is left over | |
 //! | `material.rs` | the body with its numbers | |
 //! | `predict.rs` | what it does under any drive, with intervals | |
 //! | `error.rs` | why one could not be made | |
@@ -16,6 +17,7 @@ mod error;
 mod fit;
 mod material;
 mod predict;
+mod profile;
 mod search;
 mod starts;
 
@@ -25,3 +27,4 @@ pub use error::CalibrateError;
 pub use fit::{Calibration, Foretold, calibrate};
 pub use material::{Body, CalibratedContact, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, Shown};
 pub use predict::{Extrapolation, Prediction};
+pub use profile::{NumberProfile, profile};

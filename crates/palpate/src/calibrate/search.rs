@@ -5,16 +5,20 @@
 //! 10⁻¹².
 
 use super::candidate::Prepared;
+use super::profile::Held;
 use super::{CalibrateError, CalibrationData};
 use crate::identify::{Cholesky, Termination};
 use crate::simulate::{Motion, simulate_force};
 
 /// Residuals of a candidate on some samples.
+#[derive(Clone, Copy)]
 pub(super) struct Problem<'a> {
     pub(super) prepared: &'a Prepared,
     pub(super) motion: &'a Motion,
     pub(super) times: &'a [f64],
     pub(super) forces: &'a [f64],
+    /// A number that is held, which one of the searched follows.
+    pub(super) held: Option<Held>,
 }
 
 /// A point of the search.
@@ -31,8 +35,11 @@ pub(super) struct Found {
 impl Problem<'_> {
     /// Forces with these numbers; `None` where they cannot be simulated.
     pub(super) fn forces_with(&self, theta: &[f64]) -> Option<Vec<f64>> {
-        let contact = self.prepared.contact(theta)?;
-        simulate_force(self.motion, &contact, self.times).ok()
+        let contact = match self.held {
+            Some(held) => self.prepared.contact(&held.completed(self.prepared, theta)?),
+            None => self.prepared.contact(theta),
+        };
+        simulate_force(self.motion, &contact?, self.times).ok()
     }
 
     /// Measured less simulated.
@@ -50,6 +57,9 @@ impl Problem<'_> {
         /// Of the logarithm; the error of the difference is some 10⁻⁸ of the derivative.
         const STEP: f64 = 1e-4;
         let column = |i: usize| {
+            if self.follows(i) {
+                return Some(vec![0.0; self.times.len()]);
+            }
             let bounds = &self.prepared.searched[i];
             let moved = |by: f64| {
                 let mut beside = theta.to_vec();
@@ -61,6 +71,11 @@ impl Problem<'_> {
             Some(above.iter().zip(&below).map(|(a, b)| (a - b) * per_step).collect())
         };
         (0..theta.len()).map(column).collect()
+    }
+
+    /// Whether a searched number follows one that is held.
+    fn follows(&self, searched: usize) -> bool {
+        self.held.is_some_and(|held| held.searched == searched)
     }
 
     /// Damped steps from `start` to the nearest optimum inside the bounds; `None` where even the start cannot be simulated.
@@ -76,7 +91,8 @@ impl Problem<'_> {
             simulations += 2 * theta.len() as u64;
             let gradient: Vec<f64> = jacobian.iter().map(|column| dot(column, &residuals)).collect();
             let pinned = |i: usize| {
-                (theta[i] <= searched[i].low && gradient[i] < 0.0)
+                self.follows(i)
+                    || (theta[i] <= searched[i].low && gradient[i] < 0.0)
                     || (theta[i] >= searched[i].high && gradient[i] > 0.0)
             };
             let free: Vec<usize> = (0..theta.len()).filter(|i| !pinned(*i)).collect();
@@ -187,6 +203,7 @@ pub(super) fn search(prepared: &Prepared, data: &CalibrationData) -> Result<Foun
         motion,
         times,
         forces,
+        held: None,
     };
     // What the jaw does in less than a hundredth of the whole way moves no valley.
     let simple = data.motion().simplified(0.005 * prepared.scales.deepest);

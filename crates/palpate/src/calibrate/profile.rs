@@ -1,0 +1,239 @@
+//! Intervals from the profile of the residual square: one number is held, all others are fitted again.
+//!
+//! With χ²(v) what is left over when a number is held at v, the interval is where
+//!
+//! ```text
+//! z(v) = √((χ²(v)/χ²_min − 1)(N − p)) ≤ t √w
+//! ```
+//!
+//! as for single holds ([`profile_interval`](crate::identify::profile_interval)): t is Student's quantile, w the variance of the number for
+//! residuals that correlate as they do over that for white ones. Where χ² is a parabola of the logarithm this is the interval that stands
+//! beside the number; where it is not, the profile is the one to believe.
+
+use serde::{Deserialize, Serialize};
+
+use super::candidate::Prepared;
+use super::search::{Found, Problem};
+use super::{CalibrateError, Calibration, CalibrationData, Material, MaterialNumber};
+use crate::identify::Interval;
+
+/// The profile interval of a number of a material.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NumberProfile {
+    /// Name of the number.
+    pub name: String,
+    /// Its interval, whose ends the record may leave open.
+    pub interval: Interval,
+}
+
+/// A number that is held while the others are sought.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Held {
+    /// Place of the searched number that follows.
+    pub(super) searched: usize,
+    /// Place among the numbers of the material.
+    number: usize,
+    /// Natural logarithm of the value it is held at.
+    log: f64,
+}
+
+impl Held {
+    /// The searched numbers with the one that follows put in; `None` where none does.
+    pub(super) fn completed(&self, prepared: &Prepared, theta: &[f64]) -> Option<Vec<f64>> {
+        const STEP: f64 = 1e-6;
+        let mut theta = theta.to_vec();
+        let off = |theta: &[f64]| prepared.values(theta)[self.number].ln() - self.log;
+        for _ in 0..50 {
+            let now = off(&theta);
+            if now.abs() < 1e-12 {
+                return Some(theta);
+            }
+            let at = theta[self.searched];
+            theta[self.searched] = at + STEP;
+            let slope = (off(&theta) - now) / STEP;
+            // Straight for all but the layer thickness, of which the logarithm bends once.
+            theta[self.searched] = at - (now / slope).clamp(-3.0, 3.0);
+            if !theta[self.searched].is_finite() {
+                return None;
+            }
+        }
+        (off(&theta).abs() < 1e-9).then_some(theta)
+    }
+}
+
+/// Distance from the best value, as a logarithm, beyond which an end counts as open: a factor of a million.
+const FARTHEST: f64 = 14.0;
+
+/// Accuracy of an end in shares of its distance.
+const CLOSE: f64 = 1e-3;
+
+/// Steps of a search with a number held.
+const MOST_STEPS: usize = 40;
+
+/// Profile intervals of the numbers of a calibration, in their order; those that were given have none.
+///
+/// Ends are searched to a thousandth of their distance. An end is open (`None`) if the profile stays below its bound as far as a factor
+/// of a million, or as far as numbers are sought.
+///
+/// ```
+/// use palpate::analysis::Geometry;
+/// use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, calibrate, profile};
+/// use palpate::simulate::{Separation, simulate_force};
+/// use palpate::test_problems::{Noise, paper_ball, paper_test_a};
+/// let (motion, model) = (paper_test_a(), paper_ball(Separation::Unilateral));
+/// let mut noise = Noise::new(1);
+/// let times: Vec<f64> = (0..=220).map(|i| 0.3 * f64::from(i)).collect();
+/// let forces = simulate_force(&motion, &model, &times)?.iter().map(|force| force + 0.2 * noise.normal()).collect();
+/// let ball = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None };
+/// let data = CalibrationData::new(ball, model.separation, motion, times, forces, &[])?;
+/// let found = calibrate(&data, Candidate::new("latency".parse()?, EquilibriumLaw::EvenStrain), 0.95)?;
+/// let exponent = profile(&data, &found)?.into_iter().find(|number| number.name == "exponent").unwrap();
+/// assert!(exponent.interval.low.unwrap() < 5.0 && 5.0 < exponent.interval.high.unwrap());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`CalibrateError`] as for [`calibrate`](super::calibrate), of data that are not those of the calibration.
+pub fn profile(data: &CalibrationData, calibration: &Calibration) -> Result<Vec<NumberProfile>, CalibrateError> {
+    let material = &calibration.material;
+    let prepared = Prepared::new(material.candidate, data)?;
+    let best = &calibration.theta;
+    let problem = Problem {
+        prepared: &prepared,
+        motion: data.motion(),
+        times: &data.times()[..data.fitted()],
+        forces: &data.forces()[..data.fitted()],
+        held: None,
+    };
+    let least = super::search::sum_of_squares(&problem.residuals(best).ok_or(CalibrateError::NoStiffness)?);
+    let freedom = (data.fitted() - calibration.free_numbers) as f64;
+    let of = |(number, known): (usize, &MaterialNumber)| {
+        let open = Interval { low: None, high: None };
+        let (Some(error), Some((_, high))) = (known.estimate.standard_error, known.estimate.interval) else {
+            return None;
+        };
+        let half = (high / known.estimate.value).ln();
+        let profile = Profile {
+            problem: &problem,
+            best,
+            least,
+            freedom,
+            searched: follower(&prepared, material, best, number)?,
+            number,
+            log: known.estimate.value.ln(),
+            half,
+            target: half / (error / known.estimate.value),
+        };
+        let interval = if half > 0.0 && profile.target.is_finite() {
+            Interval {
+                low: profile.end(-1.0),
+                high: profile.end(1.0),
+            }
+        } else {
+            open
+        };
+        Some(NumberProfile {
+            name: known.name.clone(),
+            interval,
+        })
+    };
+    Ok(material.numbers.iter().enumerate().filter_map(of).collect())
+}
+
+/// The searched number that follows when a number of the material is held.
+fn follower(prepared: &Prepared, material: &Material, theta: &[f64], number: usize) -> Option<usize> {
+    let name = material.numbers[number].name.as_str();
+    let named = |wanted: &str| prepared.searched.iter().position(|searched| searched.name == wanted);
+    match name {
+        "rate_coefficient" => named("reference_rate"),
+        "layer_thickness" => named("overshoot"),
+        _ if name.starts_with("equilibrium_force") => Some(0),
+        _ if name.starts_with("time_") || name.starts_with("overshoot_") => {
+            // Terms stand in the order of their times; those that are searched in any.
+            let value = material.numbers[number].estimate.value;
+            let is_time = name.starts_with("time_");
+            let log = if is_time { -value.ln() } else { value.ln() };
+            let kind = if is_time { "rate_" } else { "overshoot_" };
+            let terms = prepared.searched.iter().enumerate().filter(|(_, searched)| searched.name.starts_with(kind));
+            terms
+                .map(|(index, _)| index)
+                .min_by(|a, b| (theta[*a] - log).abs().total_cmp(&(theta[*b] - log).abs()))
+        }
+        _ => named(name),
+    }
+}
+
+/// χ² over one number.
+struct Profile<'a> {
+    problem: &'a Problem<'a>,
+    best: &'a [f64],
+    least: f64,
+    freedom: f64,
+    searched: usize,
+    number: usize,
+    /// ln of the best value.
+    log: f64,
+    /// Half width of the usual interval, in logarithms.
+    half: f64,
+    /// z at an end.
+    target: f64,
+}
+
+impl Profile<'_> {
+    /// z with the number held at a distance, and the other numbers then; `None` beyond where numbers are sought.
+    fn at(&self, distance: f64, near: &[f64]) -> Option<(f64, Vec<f64>)> {
+        let held = Held {
+            searched: self.searched,
+            number: self.number,
+            log: self.log + distance,
+        };
+        let problem = Problem {
+            held: Some(held),
+            ..*self.problem
+        };
+        let found: Found = problem.descend(near, MOST_STEPS)?;
+        let more = (found.square / self.least - 1.0).max(0.0);
+        let theta = held.completed(self.problem.prepared, &found.theta)?;
+        let bounds = &self.problem.prepared.searched[self.searched];
+        let within = theta[self.searched] > bounds.low && theta[self.searched] < bounds.high;
+        within.then_some(((more * self.freedom).sqrt(), theta))
+    }
+
+    /// The end on one side, as a value; `None` where it is open.
+    fn end(&self, side: f64) -> Option<f64> {
+        let mut near = (0.0, 0.0, self.best.to_vec());
+        let mut distance = self.half;
+        // Outwards until the bound is passed.
+        let mut far = loop {
+            let (z, theta) = self.at(side * distance, &near.2)?;
+            if z >= self.target {
+                break (distance, z);
+            }
+            if distance >= FARTHEST {
+                return None;
+            }
+            let slope = z / distance;
+            near = (distance, z, theta);
+            distance = (1.1 * self.target / slope).clamp(1.3 * distance, 4.0 * distance).min(FARTHEST);
+        };
+        // z is nearly straight: false position, with a bisection where it would creep.
+        let mut stuck = 0;
+        while far.0 - near.0 > CLOSE * far.0 && stuck < 40 {
+            stuck += 1;
+            let width = far.0 - near.0;
+            let straight = near.0 + width * (self.target - near.1) / (far.1 - near.1);
+            let inside = straight.clamp(near.0 + 0.02 * width, far.0 - 0.02 * width);
+            let next = if stuck % 3 == 0 { near.0 + 0.5 * width } else { inside };
+            let (z, theta) = self.at(side * next, &near.2)?;
+            if (z - self.target).abs() < 0.5 * CLOSE * self.target {
+                return Some((self.log + side * next).exp());
+            }
+            if z < self.target {
+                near = (next, z, theta);
+            } else {
+                far = (next, z);
+            }
+        }
+        Some((self.log + 0.5 * side * (near.0 + far.0)).exp())
+    }
+}
