@@ -413,6 +413,9 @@ pub(crate) struct CalibrateArguments {
     /// Fit only up to this time of the record and foretell the rest
     #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
     pub(crate) fit_until: Option<f64>,
+    /// Add profile intervals: asymmetric, and open where the record leaves a number open
+    #[arg(long)]
+    pub(crate) profile: bool,
     /// Coverage of the intervals, between 0 and 1; 0.95 if nothing is said
     #[arg(long, value_name = "SHARE", value_parser = coverage, allow_hyphen_values = true)]
     pub(crate) confidence: Option<f64>,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use arrow_array::{ArrayRef, BooleanArray, Float64Array};
 use numpy::PyArray1;
 use palpate::analysis::AnalysisOptions;
-use palpate::calibrate::{CalibrateError, CalibrationData, Candidate, EquilibriumLaw, RateLaw, calibrate};
+use palpate::calibrate::{CalibrateError, CalibrationData, Candidate, EquilibriumLaw, RateLaw, calibrate, profile};
 use palpate::identify::Termination;
 use palpate::laws::Law;
 use palpate::record::Record as Measured;
@@ -34,6 +34,7 @@ pub(crate) struct Wanted {
     pub(crate) rate: RateLaw,
     pub(crate) fit_until: Option<f64>,
     pub(crate) confidence: f64,
+    pub(crate) profile: bool,
 }
 
 /// The law that is asked for, and its rivals.
@@ -130,7 +131,16 @@ fn calibrated(
         }
         rows.push((candidate, made));
     }
-    Ok(CalibratedRecord { input, data, rows })
+    let profiles = match rows.first() {
+        Some((_, Ok(made))) if wanted.profile => profile(&data, made)?,
+        _ => Vec::new(),
+    };
+    Ok(CalibratedRecord {
+        input,
+        data,
+        rows,
+        profiles,
+    })
 }
 
 /// One set of numbers for a whole record, ramps and holds alike: a material, what its law leaves over, and its rivals.
@@ -259,6 +269,32 @@ impl Calibration {
     #[getter]
     fn sentence(&self) -> Option<&str> {
         self.kept.sentence.as_deref()
+    }
+
+    /// The numbers of the law that was asked for, by name and unit as in `to_dict`: ``value``, ``standard_error``, ``low`` and ``high`` of
+    /// the interval and, where profiles were asked for, ``profile_low`` and ``profile_high``, NaN where the record leaves them open.
+    #[getter]
+    fn numbers(&self) -> PyResult<Table> {
+        let document = self.kept.document()?;
+        let laws = document.get("laws").map_or(&[][..], Document::entries);
+        let numbers = laws.first().and_then(|law| law.get("numbers")).map_or(&[][..], Document::entries);
+        let row = |number: &Document| {
+            let mut row = Fields::new();
+            for name in ["name", "value", "standard_error"] {
+                row.extend(number.get(name).map(|value| (name.to_owned(), value.clone())));
+            }
+            let ends = number.get("interval").map_or(&[][..], Document::entries);
+            for (name, end) in ["low", "high"].into_iter().zip(ends) {
+                row.insert(name.to_owned(), end.clone());
+            }
+            if let Some(profile) = number.get("profile") {
+                for name in ["low", "high"] {
+                    row.extend(profile.get(name).map(|end| (format!("profile_{name}"), end.clone())));
+                }
+            }
+            row
+        };
+        Table::of_documents(&numbers.iter().map(row).collect::<Vec<_>>())
     }
 
     /// What the numbers alone do not tell, in sentences.

@@ -541,6 +541,8 @@ impl Record {
     ///     Fit only up to this time of the record, s, and foretell the rest.
     /// confidence : float, optional
     ///     Coverage of the intervals, between 0 and 1; that of the description, or 0.95, if left out.
+    /// profile : bool
+    ///     Add profile intervals, which are asymmetric, and open where the record leaves a number open.
     ///
     /// Returns
     /// -------
@@ -582,7 +584,7 @@ impl Record {
     /// >>> prediction = calibration.material.predict([{"to": "8 mm", "rate": "500 mm/min", "hold": "20 s"}], at_s=[10.0])
     /// >>> round(float(prediction.force_n[0]), 2)
     /// 3.45
-    #[pyo3(signature = (*, law="latency", test=None, rivals=None, equilibrium="even-strain", poisson_ratio=None, rate="constant", fit_until_s=None, confidence=None))]
+    #[pyo3(signature = (*, law="latency", test=None, rivals=None, equilibrium="even-strain", poisson_ratio=None, rate="constant", fit_until_s=None, confidence=None, profile=false))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn calibrate(
         &self,
@@ -595,12 +597,14 @@ impl Record {
         rate: &str,
         fit_until_s: Option<f64>,
         confidence: Option<f64>,
+        profile: bool,
     ) -> PyResult<Calibration> {
         let (input, options) = self.described_by(test)?;
         let wanted = Wanted {
             laws: laws(law, rivals)?,
             equilibrium: equilibrium_law(equilibrium, poisson_ratio)?,
             rate: rate_law(rate)?,
+            profile,
             fit_until: fit_until_s,
             confidence: coverage(confidence.unwrap_or(options.fit.confidence))?,
         };

@@ -1,6 +1,6 @@
 //! What a calibration of a record is shown with.
 
-use palpate::calibrate::{CalibrateError, Calibration, CalibrationData, Candidate};
+use palpate::calibrate::{CalibrateError, Calibration, CalibrationData, Candidate, NumberProfile};
 
 use crate::document::Input;
 
@@ -13,6 +13,8 @@ pub struct CalibratedRecord {
     pub data: CalibrationData,
     /// Each candidate with what was found, or why nothing was.
     pub rows: Vec<(Candidate, Result<Calibration, CalibrateError>)>,
+    /// Profile intervals of what is asked for; none if they were not.
+    pub profiles: Vec<NumberProfile>,
 }
 
 impl CalibratedRecord {

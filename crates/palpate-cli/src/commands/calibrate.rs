@@ -1,7 +1,7 @@
 //! `palpate calibrate`: a whole record to one set of numbers.
 
 use palpate::analysis::AnalysisOptions;
-use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, RateLaw, calibrate};
+use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, RateLaw, calibrate, profile};
 use palpate_files::description::{MaterialFile, MaterialOrigin, TestDescription};
 use palpate_report::calibrated::CalibratedRecord;
 use palpate_report::document::CalibrationDocument;
@@ -61,7 +61,15 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Outcome, Failure> {
         }
         rows.push((candidate, made));
     }
+    let profiles = match rows.first() {
+        Some((_, Ok(made))) if arguments.profile => {
+            let _working = Working::new("following the profiles".to_owned());
+            profile(&data, made).map_err(refused)?
+        }
+        _ => Vec::new(),
+    };
     let record = CalibratedRecord {
+        profiles,
         input: input(&file, opened.name(part), arguments.test.as_deref(), test.as_ref())?,
         data,
         rows,

@@ -1,6 +1,6 @@
 //! `palpate.calibration/1`: laws calibrated on a whole record.
 
-use palpate::calibrate::{CalibrateError, Calibration, MaterialNumber, MaterialUnit};
+use palpate::calibrate::{CalibrateError, Calibration, MaterialNumber, MaterialUnit, NumberProfile};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -19,6 +19,18 @@ pub struct CalibratedNumberDocument {
     pub standard_error: Option<f64>,
     /// Confidence interval.
     pub interval: Option<[f64; 2]>,
+    /// Profile interval; left out where none was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile: Option<ProfileDocument>,
+}
+
+/// A profile interval; an end that the record leaves open is `null`.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ProfileDocument {
+    /// Lower end.
+    pub low: Option<f64>,
+    /// Upper end.
+    pub high: Option<f64>,
 }
 
 /// How well what was not fitted is foretold.
@@ -81,8 +93,9 @@ impl CalibrationDocument {
     #[must_use]
     pub fn new(record: &CalibratedRecord, confidence: f64) -> Self {
         let least = record.made().map(|made| made.criteria.bic).fold(f64::INFINITY, f64::min);
-        let law = |(candidate, made): &(_, Result<Calibration, CalibrateError>)| {
+        let law = |(index, (candidate, made)): (usize, &(_, Result<Calibration, CalibrateError>))| {
             let candidate: &palpate::calibrate::Candidate = candidate;
+            let profiles = if index == 0 { &record.profiles[..] } else { &[] };
             let good = made.as_ref().ok();
             CalibratedLawDocument {
                 law: candidate.to_string(),
@@ -95,7 +108,7 @@ impl CalibrationDocument {
                     relative: foretold.relative,
                     samples: foretold.samples,
                 }),
-                numbers: good.map_or_else(Vec::new, |made| made.material.numbers.iter().map(number).collect()),
+                numbers: good.map_or_else(Vec::new, |made| numbers(made, profiles)),
                 log_covariance: good
                     .and_then(|made| made.material.uncertainty.as_ref())
                     .map(|uncertainty| uncertainty.covariance.clone()),
@@ -109,10 +122,22 @@ impl CalibrationDocument {
             input: record.input.clone(),
             fitted: record.data.fitted(),
             confidence,
-            laws: record.rows.iter().map(law).collect(),
+            laws: record.rows.iter().enumerate().map(law).collect(),
             remarks: calibration_remarks(record),
         }
     }
+}
+
+fn numbers(made: &Calibration, profiles: &[NumberProfile]) -> Vec<CalibratedNumberDocument> {
+    let profile = |name: &str| profiles.iter().find(|profile| profile.name == name);
+    let with = |known: &MaterialNumber| CalibratedNumberDocument {
+        profile: profile(&known.name).map(|found| ProfileDocument {
+            low: found.interval.low,
+            high: found.interval.high,
+        }),
+        ..number(known)
+    };
+    made.material.numbers.iter().map(with).collect()
 }
 
 fn number(number: &MaterialNumber) -> CalibratedNumberDocument {
@@ -129,5 +154,6 @@ fn number(number: &MaterialNumber) -> CalibratedNumberDocument {
         value: number.estimate.value,
         standard_error: number.estimate.standard_error,
         interval: number.estimate.interval.map(|(low, high)| [low, high]),
+        profile: None,
     }
 }

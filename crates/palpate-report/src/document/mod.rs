@@ -23,7 +23,9 @@ mod signals;
 pub(crate) use analysis::after_word;
 pub use analysis::mode_word;
 pub use analysis::{AnalysisDocument, FindingDocument, HoldDocument, Input, TableRow};
-pub use calibration::{CalibratedLawDocument, CalibratedNumberDocument, CalibrationDocument, ForetoldDocument};
+pub use calibration::{
+    CalibratedLawDocument, CalibratedNumberDocument, CalibrationDocument, ForetoldDocument, ProfileDocument,
+};
 pub(crate) use comparison::certainty_word;
 pub use comparison::{
     ComparedHoldDocument, ComparedRecordDocument, ComparisonDocument, ComparisonSettingsDocument,

@@ -1,7 +1,7 @@
 //! A whole record calibrated: tables, text and figure.
 
-use palpate::calibrate::{Calibration, Material, MaterialUnit};
-use palpate::identify::Termination;
+use palpate::calibrate::{Calibration, Material, MaterialUnit, NumberProfile};
+use palpate::identify::{Interval, Termination};
 
 use super::StudyError;
 use super::findings::wrapped;
@@ -77,6 +77,12 @@ fn laws(record: &CalibratedRecord) -> Table {
 /// The numbers of a material with their intervals.
 #[must_use]
 pub fn material_table(material: &Material) -> Table {
+    numbers_table(material, &[])
+}
+
+/// The same with profile intervals, where there are any.
+fn numbers_table(material: &Material, profiles: &[NumberProfile]) -> Table {
+    const LEFT_OPEN: &str = "the record leaves it open";
     const OPEN: &str = "the record leaves it open, or it was given";
     let share = material.uncertainty.as_ref().map_or(0.95, |uncertainty| uncertainty.confidence);
     let mut table = Table::new("numbers", format!("Numbers of the law {}.", material.candidate))
@@ -85,6 +91,13 @@ pub fn material_table(material: &Material) -> Table {
         .column(TableColumn::new("Value", "value", ""))
         .column(TableColumn::new(format!("{} from", percent(share)), "low", ""))
         .column(TableColumn::new("to", "high", ""));
+    if !profiles.is_empty() {
+        table = table.column(TableColumn::new("profile from", "profile_low", "")).column(TableColumn::new(
+            "to",
+            "profile_high",
+            "",
+        ));
+    }
     for number in &material.numbers {
         let ((factor, unit), estimate) = (for_people(number.unit), number.estimate);
         let value = match estimate.standard_error {
@@ -92,13 +105,22 @@ pub fn material_table(material: &Material) -> Table {
             None => Cell::number(factor * estimate.value, 4),
         };
         let end = |pick: fn((f64, f64)) -> f64| Cell::number_or(estimate.interval.map(|i| factor * pick(i)), 4, OPEN);
-        table = table.row(vec![
+        let mut row = vec![
             Cell::text(number.name.replace('_', " ")),
             Cell::text(unit),
             value,
             end(|interval| interval.0),
             end(|interval| interval.1),
-        ]);
+        ];
+        if !profiles.is_empty() {
+            let profile = profiles.iter().find(|profile| profile.name == number.name);
+            let end = |pick: fn(Interval) -> Option<f64>| match profile {
+                Some(found) => Cell::number_or(pick(found.interval).map(|end| factor * end), 4, LEFT_OPEN),
+                None => Cell::number_or(None, 4, OPEN),
+            };
+            row.extend([end(|interval| interval.low), end(|interval| interval.high)]);
+        }
+        table = table.row(row);
     }
     table
 }
@@ -159,7 +181,7 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
 pub fn calibration_text(record: &CalibratedRecord) -> String {
     let mut text = format!("{}\n\n{}", record.input.called(), laws(record).to_plain_text());
     if let Some(chosen) = record.chosen() {
-        text.push_str(&format!("\n{}", material_table(&chosen.material).to_plain_text()));
+        text.push_str(&format!("\n{}", numbers_table(&chosen.material, &record.profiles).to_plain_text()));
     }
     text.push('\n');
     calibration_remarks(record).iter().for_each(|remark| text.push_str(&wrapped(remark)));
@@ -173,7 +195,7 @@ pub fn calibration_text(record: &CalibratedRecord) -> String {
 pub fn calibration_page(record: &CalibratedRecord) -> Result<Page, StudyError> {
     let mut section = Section::new(&record.input.title).block(Block::Table(laws(record)));
     if let Some(chosen) = record.chosen() {
-        section = section.block(Block::Table(material_table(&chosen.material)));
+        section = section.block(Block::Table(numbers_table(&chosen.material, &record.profiles)));
     }
     section = section
         .block(Block::List(calibration_remarks(record)))
