@@ -58,8 +58,11 @@ def material(calibration: palpate.Calibration) -> palpate.Material:
             ["--law", "standard-linear-solid", "--equilibrium", "hertz", "--poisson-ratio", "0.4", "--no-rivals", "--confidence", "0.9"],
             {"law": "standard-linear-solid", "equilibrium": "hertz", "poisson_ratio": 0.4, "rivals": [], "confidence": 0.9},
         ),
+        (["--rate", "by-strain", "--no-rivals"], {"rate": "by-strain", "rivals": []}),
+        (["--rate", "by-direction", "--rivals", "prony:2"], {"rate": "by-direction", "rivals": ["prony:2"]}),
+        (["--profile", "--no-rivals"], {"profile": True, "rivals": []}),
     ],
-    ids=["usual", "foretold", "table", "hertz"],
+    ids=["usual", "foretold", "table", "hertz", "by strain", "by direction", "profile"],
 )
 def test_a_calibration_is_that_of_the_command_line_to_the_last_bit(
     record: palpate.Record, flags: list[str], keywords: dict[str, Any], tmp_path: Path
@@ -207,6 +210,32 @@ def test_every_law_makes_a_material_that_can_be_kept(record: palpate.Record, law
     else:
         with pytest.raises(palpate.ModelError, match="latency law alone"):
             palpate.ContactState(material)
+
+
+@pytest.mark.parametrize(("rate", "factor"), [("by-strain", "strain_factor"), ("by-direction", "unloading_factor")])
+def test_a_rate_coefficient_that_varies_is_one_more_number(record: palpate.Record, rate: str, factor: str, tmp_path: Path) -> None:
+    calibration = record.calibrate(rate=rate, rivals=["prony:2"])
+    material = calibration.material
+    low, high = material.estimates[factor].interval or (np.nan, np.nan)
+    assert low < 1.0 < high  # the ball's coefficient is constant
+    assert len(calibration.laws["law"]) == 4  # the other rates are rivals, too
+    material.write(tmp_path / "material.toml")
+    assert palpate.Material.read(tmp_path / "material.toml") == material == pickle.loads(pickle.dumps(material))
+    force = palpate.simulate({"material": material, "step": SQUEEZE}).force_n
+    assert np.array_equal(material.predict(SQUEEZE).force_n, force)
+
+
+def test_profile_intervals_stand_beside_the_others(record: palpate.Record) -> None:
+    asked = record.calibrate(rivals=[], profile=True)
+    numbers = polars.DataFrame(asked.numbers)
+    assert numbers["name"].to_list() == ["modulus_pa", "exponent", "rate_coefficient_per_s", "layer_thickness_m"]
+    value, low, high = (numbers[name].to_numpy() for name in ("value", "profile_low", "profile_high"))
+    assert (low < value).all() and (value < high).all()
+    # The record tells all four: χ² is nearly a parabola of the logarithms, and both intervals nearly agree.
+    for end in ("low", "high"):
+        np.testing.assert_allclose(np.log(numbers[f"profile_{end}"] / value), np.log(numbers[end] / value), rtol=0.1)
+    assert "profile from" in asked.report() and pickle.loads(pickle.dumps(asked)) == asked
+    assert "profile_low" not in polars.DataFrame(record.calibrate(rivals=[]).numbers).columns
 
 
 def test_all_of_it_comes_back(calibration: palpate.Calibration, material: palpate.Material) -> None:
