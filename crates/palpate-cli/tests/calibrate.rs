@@ -196,3 +196,25 @@ fn silicone_steps_are_foretold_from_their_first_part() {
     let foretold = row(&text, "latency")[5];
     assert!(foretold < 3.0, "{foretold} % of the peak: {text}");
 }
+
+/// Where much is left over the bottom is steeper than the first derivatives say; the search went from one side of it to the other until its
+/// steps were spent. And the ends of intervals of 80 decades were numbers.
+#[test]
+fn a_record_that_the_law_does_not_describe_ends_at_an_optimum_with_its_numbers_left_open() {
+    let Some(record) = data("vhb4910/relax_3d0.csv") else {
+        return;
+    };
+    let (record, test) =
+        (record.display().to_string(), root().join("validation/records/vhb4910.toml").display().to_string());
+    let arguments = ["calibrate", &record, "--test", &test, "--fit-until", "600 s", "--no-rivals", "--format", "json"];
+    let document: Value = serde_json::from_str(&done(Path::new("."), &arguments)).unwrap();
+    let law = &document["laws"][0];
+    assert_eq!(law["termination"], "converged");
+    assert!(law["foretold"]["relative"].as_f64().unwrap() < 0.003, "{law}");
+    for number in law["numbers"].as_array().unwrap() {
+        if let Some(ends) = number["interval"].as_array() {
+            assert!(ends[1].as_f64().unwrap() / ends[0].as_f64().unwrap() < 1e13, "{number}");
+        }
+    }
+    assert!(law["numbers"][0]["interval"].is_null() && !law["numbers"][0]["standard_error"].is_null(), "{law}");
+}

@@ -149,7 +149,12 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
         && open.estimate.standard_error.is_some()
     {
         let name = open.name.replace('_', " ");
-        remarks.push(format!("The record says little about the {name}: its interval spans more than two decades. Holds of different excess strain would tell it."));
+        let how = match open.estimate.interval {
+            Some(_) => "says little about the {}: its interval spans more than two decades",
+            None => "leaves the {} open",
+        };
+        let how = how.replace("{}", &name);
+        remarks.push(format!("The record {how}. Holds of different excess strain would tell it."));
     }
     let (correlation, _) = match made.noise {
         palpate::identify::NoiseModel::White => (0.0, 0.0),

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::candidate::Prepared;
 use super::material::names;
+use super::profile::FARTHEST;
 use super::search::{Problem, search};
 use super::{CalibrateError, CalibrationData, Candidate, Material, MaterialNumber, MaterialUncertainty, Shown};
 use crate::choose::{Criteria, criteria};
@@ -54,7 +55,7 @@ pub struct Calibration {
 /// table): the holds carry n and v, the ramps ℓ, since the excess at their end is that of ẋ = u̇₁ (m − 1)/depth − v sgn(x)|x|ⁿ with
 /// m = depth/ℓ, and the relaxed levels the stiffness S(u) of F = S(u)(u/depth + x), equations (10) and (11). No starting values: a grid is
 /// searched first. Intervals are those of the logarithms of the numbers, for residuals that correlate as they do; `confidence` is their
-/// coverage.
+/// coverage. A number that the record leaves open over more than a factor of a million either way has none.
 ///
 /// ```
 /// use palpate::analysis::Geometry;
@@ -117,7 +118,12 @@ pub fn calibrate(data: &CalibrationData, candidate: Candidate, confidence: f64) 
     let is_found = found.termination == Termination::Converged;
     let estimate = |index: usize, name: &str| match &assessed {
         Some(assessed) if is_found && !Material::is_given(candidate, name) => {
-            assessed.estimate(values[index], &gradients[index], Scale::Log)
+            let estimate = assessed.estimate(values[index], &gradients[index], Scale::Log);
+            let told = |(_, high): &(f64, f64)| (high / values[index]).ln() < FARTHEST;
+            Estimate {
+                interval: estimate.interval.filter(told),
+                ..estimate
+            }
         }
         _ => Estimate::fixed(values[index]),
     };

@@ -62,7 +62,7 @@ impl Held {
 }
 
 /// Distance from the best value, as a logarithm, beyond which an end counts as open: a factor of a million.
-const FARTHEST: f64 = 14.0;
+pub(super) const FARTHEST: f64 = 14.0;
 
 /// Accuracy of an end in shares of its distance.
 const CLOSE: f64 = 1e-3;

@@ -140,9 +140,21 @@ impl Problem<'_> {
                     && let Some(trial) = trial
                 {
                     let gain = square - trial_square;
+                    let taken: Vec<f64> = free.iter().map(|i| next[*i] - theta[*i]).collect();
+                    let foretold: f64 = taken
+                        .iter()
+                        .zip(normal.chunks(size))
+                        .zip(&free)
+                        .map(|((by, row), i)| by * (2.0 * gradient[*i] - dot(row, &taken)))
+                        .sum();
                     (theta, residuals) = (next, trial);
                     square = trial_square;
-                    damping = (damping * 0.1).max(1e-12);
+                    // Where much is left over the bottom is steeper than the model says: undamped steps would go from one side to the other.
+                    damping = match gain / foretold {
+                        share if share > 0.75 => (damping * 0.1).max(1e-12),
+                        share if share > 0.25 => damping,
+                        _ => (damping * 8.0).max(1e-6),
+                    };
                     if gain <= GAIN * square && moved < 1e-4 {
                         termination = Termination::Converged;
                         break 'search;
