@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes docs/validation.md: every law on every hold of the real records in a folder.
+# Writes docs/validation/holds.md: every law on every hold of the real records in a folder.
 #
 #   validation/real_records.sh DATA [PALPATE]
 #
@@ -45,7 +45,7 @@ square error there, averaged over the three, **in % of the change of the signal 
 brackets: a fit to the whole hold that ended at the edge of its range, or whose terms merge. Δ: the hold is too short to
 foretell, and the column is the excess of BIC. *Law to use* is the one with the fewest numbers among those that do as well as
 the best, *sure* says how clear that is, *as good* how many others do as well. What the columns and findings mean:
-[Choose a law](guides/choose-a-law.md), [Read the report](guides/reading-the-report.md#findings).
+[Choose a law](../guides/choose-a-law.md), [Read the report](../guides/reading-the-report.md#findings).
 
 The errors contain the noise of the samples that are foretold: no law can be better than that. The records themselves are not
 part of this repository.
@@ -67,6 +67,6 @@ part "Polymer in shear" "Stress after a step of shear, sampled every 10 ms: most
 part "Formats that are not read yet" "Spreadsheets, atomic force microscopy, compliance without a force, repeated time stamps." \
     afm-jpk zwick-indentation creep/CM3_Creep.creep creep/CM3_CreepRecovery.creep creep/creep_perihepatic_data.csv
 
-mv "$page" "$root/docs/validation.md"
-chmod 644 "$root/docs/validation.md"
+mv "$page" "$root/docs/validation/holds.md"
+chmod 644 "$root/docs/validation/holds.md"
 trap - EXIT

@@ -1,0 +1,135 @@
+"""Whole real records: laws calibrated on the first part of each, and how well they foretell the rest.
+
+    python validation/whole_records.py DATA [--palpate PALPATE]     writes docs/validation/whole-records.md
+
+DATA is the folder of public records (the one that PALPATE_DATA names for the tests). PALPATE is the command, by default the one in the
+path. Records of others are not part of this repository. Needs nothing but Python and palpate; takes some minutes, nearly all
+for the record of 24 holds.
+"""
+
+import argparse
+import json
+import pathlib
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs" / "validation" / "whole-records.md"
+LAWS = "standard-linear-solid,prony:2,prony:3,fung:2,fung:3"
+
+# Record, description, times to fit until, and what happens before and after.
+RECORDS = [
+    (
+        "Silicone strip in steps, one level",
+        "silicone-steps/2_7-5_E2pin_20mm_capac_relax.csv",
+        "examples/tests/silicone-steps.toml",
+        {
+            "62 s": "the first stretch and its hold; foretold: all unloading and four more stretches",
+            "160 s": "two and a half cycles; foretold: the next two and a half",
+        },
+    ),
+    (
+        "Silicone strip in steps, three levels",
+        "silicone-steps/1_7-5_Epin_20mm_v1.csv",
+        "examples/tests/silicone-steps.toml",
+        {
+            "200 s": "three stretches to 4 mm; foretold: stretches to 8 mm and 12 mm, up to 1400 s",
+            "560 s": "stretches to 4 mm and 8 mm; foretold: stretches to 8 mm and 12 mm, up to 1400 s",
+        },
+    ),
+    (
+        "Soft foam in compression",
+        "foam/XtraSoft.csv",
+        "validation/records/foam.toml",
+        {"35 s": "the only ramp and half of its hold; foretold: the other half, and the way back"},
+    ),
+    (
+        "VHB 4910 tape in tension, stretched 2.5 times",
+        "vhb4910/relax_2d5.csv",
+        "validation/records/vhb4910.toml",
+        {
+            "60 s": "the ramp and 50 s of its hold; foretold: 30 minutes",
+            "200 s": "the ramp and 190 s of its hold; foretold: 30 minutes",
+            "600 s": "the ramp and ten minutes of its hold; foretold: another twenty",
+        },
+    ),
+    (
+        "VHB 4910 tape in tension, stretched 3 times",
+        "vhb4910/relax_3d0.csv",
+        "validation/records/vhb4910.toml",
+        {
+            "60 s": "the ramp and 50 s of its hold; foretold: 30 minutes",
+            "200 s": "the ramp and 190 s of its hold; foretold: 30 minutes",
+            "600 s": "the ramp and ten minutes of its hold; foretold: another twenty",
+        },
+    ),
+]
+
+HEAD = """# Whole real records
+
+Records of others, each calibrated on its first part, ramps and holds alike, and held against the rest of it. Written by one command:
+
+```sh
+python validation/whole_records.py "$PALPATE_DATA"
+```
+
+*Left over* is the root mean square of measured less simulated force over what was fitted, *foretold* that over all that came later, both
+**in % of the largest force of the record** and with the noise of the samples in them; the smallest foretold is bold. *p* is how many
+numbers a law has, *ΔBIC* how far it stands behind the best of the fits. In brackets: the search for the numbers did not converge, or
+they lie at a bound. What is fitted and how: [Calibration of a whole record](../theory/calibration.md).
+
+The records are not part of this repository. Sections that their authors did not give are assumed; they scale the modulus and nothing
+that stands here.
+"""
+
+
+def calibrated(palpate, data, record, test, until):
+    """The JSON document of one calibration."""
+    command = [palpate, "calibrate", str(data / record), "--test", str(ROOT / test), "--fit-until", until]
+    command += ["--rate", "by-strain", "--rivals", LAWS, "--format", "json"]
+    made = subprocess.run(command, capture_output=True, text=True, check=False)
+    if made.returncode not in (0, 1):
+        raise SystemExit(f"{' '.join(command)}\n{made.stderr}")
+    return json.loads(made.stdout)
+
+
+def percent(share):
+    return f"{100 * share:#.2g}".rstrip(".")
+
+
+def rows(document):
+    """A row for each law; those that could not be fitted say why."""
+    known = [law["foretold"]["relative"] for law in document["laws"] if law["foretold"]]
+    for law in document["laws"]:
+        if not law["foretold"]:
+            yield f"| {law['law']} | | | | {law['error']} |"
+            continue
+        foretold = percent(law["foretold"]["relative"])
+        if law["foretold"]["relative"] == min(known):
+            foretold = f"**{foretold}**"
+        if law["termination"] != "converged" or law["log_covariance"] is None:
+            foretold = f"({foretold})"
+        behind = law["delta_bic"]
+        yield f"| {law['law']} | {law['parameters']} | {percent(law['relative'])} | {behind:.0f} | {foretold} |"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("data", type=pathlib.Path)
+    parser.add_argument("--palpate", default="palpate")
+    asked = parser.parse_args()
+    page = [HEAD]
+    for title, record, test, parts in RECORDS:
+        page.append(f"\n## {title}\n")
+        for until, what in parts.items():
+            document = calibrated(asked.palpate, asked.data.resolve(), record, test, until)
+            samples = next(law["foretold"]["samples"] for law in document["laws"] if law["foretold"])
+            page.append(f"\nFitted up to {until}: {what}. {document['fitted']} samples fitted, {samples} foretold.\n\n")
+            page.append(f"<!-- palpate calibrate {record} --test {test} --fit-until \"{until}\" --rate by-strain --rivals {LAWS} -->\n\n")
+            page.append("| Law | p | Left over (%) | ΔBIC | Foretold (%) |\n| --- | --: | --: | --: | --: |\n")
+            page.extend(f"{row}\n" for row in rows(document))
+            print(f"{record}, {until}", flush=True)
+    PAGE.write_text("".join(page), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
