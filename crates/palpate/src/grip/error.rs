@@ -36,7 +36,8 @@ pub enum GripError {
     },
     /// No squeeze within the limits holds.
     #[error(
-        "no squeeze within the limits holds: {needed:.4} N are needed, and {reached:.4} N are there after {duration} s at the most ({by})"
+        "no squeeze within the limits holds: {needed:.4} N are needed, and {reached:.4} N are there {when} at the most ({by})",
+        when = when(*duration)
     )]
     NoSqueeze {
         /// Force that is needed, N.
@@ -101,6 +102,10 @@ impl GripError {
             Self::Number { .. } | Self::Simulate(_) => "",
         }
     }
+}
+
+fn when(duration: f64) -> String {
+    if duration.is_finite() { format!("after {duration} s") } else { "once relaxed".to_owned() }
 }
 
 pub(super) fn at_least(name: &'static str, found: f64, least: f64, unit: &'static str) -> Result<(), GripError> {
