@@ -61,7 +61,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("holds a minute, assured {assured}: {:.3} mm", 1e3 * least.displacement);
     }
 
-    let backed = grip.back_off(Some(9e-3), 60.0)?;
+    let backed = grip.back_off(Some(9e-3), 60.0, false)?;
     println!(
         "9 mm over {:.2} mm: {:+.4} N in a minute; squeezed plainly {:+.4} N",
         1e3 * backed.over,

@@ -162,7 +162,7 @@ fn the_least_squeeze_holds_as_long_as_was_asked_and_less_does_not() {
 fn after_a_retreat_the_force_stays_where_it_is() {
     let material = ball(Some([0.02, 0.01, 0.05, 0.01]));
     let grip = grip(&material, 0.25);
-    let found = grip.back_off(None, 3600.0).unwrap();
+    let found = grip.back_off(None, 3600.0, false).unwrap();
     assert!(found.over > found.backed.displacement && found.backed.displacement == found.plain.displacement);
     assert!(found.drift.abs() < 1e-9 * found.backed.start_force, "{}", found.drift);
     assert!(found.plain_drift < -0.5 * found.backed.start_force, "{}", found.plain_drift);
@@ -192,10 +192,32 @@ fn after_a_retreat_the_force_stays_where_it_is() {
     // One linear term has one excess, which can be made to vanish; of three the sum can, and a drift is left.
     let [one, three] = [linear(1), linear(3)].map(|material| {
         let grip = self::grip(&material, 0.25);
-        let found = grip.back_off(Some(0.008), 60.0).unwrap();
+        let found = grip.back_off(Some(0.008), 60.0, false).unwrap();
         found.drift / found.backed.start_force
     });
     assert!(one.abs() < 1e-9 && three.abs() > 1e-3, "{one} {three}");
+}
+
+/// Half of the numbers that go with the record slip from the least squeeze whose relaxed force is enough.
+#[test]
+fn an_assured_retreat_holds_with_the_lower_edge_of_its_band() {
+    let material = ball(Some([0.02, 0.01, 0.05, 0.01]));
+    let grip = grip(&material, 0.25);
+    let [best, assured] = [false, true].map(|assured| grip.back_off(None, 3600.0, assured).unwrap());
+    assert_eq!(best.backed.interval.unwrap().0, Lasts::For(0.0));
+    assert!(grip.holding(&assured.backed.plan).unwrap().interval.unwrap().0.covers(3600.0), "{assured:?}");
+    let less = grip.back_off(Some(assured.backed.displacement * (1.0 - 1e-5)), 3600.0, false).unwrap();
+    assert!(!less.backed.interval.unwrap().0.covers(3600.0), "{less:?}");
+    // Not more than a few standard errors of the relaxed force, which rises with the square of the squeeze.
+    let more = assured.backed.displacement / best.backed.displacement - 1.0;
+    assert!((0.01..0.1).contains(&more), "{more}");
+    let limits = Limits {
+        stroke: Some(best.over * 1.001),
+        ..Limits::new(SPEED).unwrap()
+    };
+    let short = Grip::new(&material, *grip.grasp(), limits, 0.95).unwrap();
+    assert!(short.back_off(None, 3600.0, false).is_ok());
+    assert!(matches!(short.back_off(None, 3600.0, true), Err(GripError::NoBackOff { .. })));
 }
 
 #[test]
@@ -261,7 +283,7 @@ fn impossible_grasps_are_answers_and_wrong_numbers_are_not() {
     let hour = careful.least(Objective::PeakForce, 3600.0, false).unwrap_err();
     assert!(hour.to_string().contains("largest force of 2.500 N"), "{hour}");
     assert!(matches!(
-        careful.back_off(None, 60.0),
+        careful.back_off(None, 60.0, false),
         Err(GripError::NoBackOff { .. } | GripError::BeyondLimit { .. })
     ));
     assert!(matches!(careful.holding(&Plan::squeeze(0.008, SPEED)), Err(GripError::BeyondLimit { .. })));

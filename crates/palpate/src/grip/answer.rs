@@ -130,7 +130,7 @@ impl Grip<'_> {
         };
         let neighbours = squeeze.as_ref().map(around).unwrap_or_default();
         let same = question.squeeze.filter(|place| self.relaxed_force(*place) >= self.needed_force(*place));
-        let back_off = self.back_off(same, shown);
+        let back_off = self.back_off(same, shown, question.assured);
         let pressed = self.pressed(question.force, shown);
         let schedule = question.band.map(|band| self.regrip(band, question.regrip, shown));
         if let Some(Err(error)) = &schedule

@@ -2,10 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::holding::ALWAYS;
 use super::least::{bisected, check_duration};
 use super::{Grip, GripError, Holding, Plan};
 use crate::number::significant;
-use crate::simulate::step_ends;
+use crate::simulate::{Sampling, step_ends};
 
 /// What a number of the material does to a squeeze that is to begin relaxed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -40,8 +41,9 @@ pub struct BackOff {
 }
 
 impl Grip<'_> {
-    /// Squeezes over and goes back to `displacement` (m; the least whose relaxed force is enough if not given) at the speed of the gripper, so that
-    /// the hold begins with no excess strain: the force at its start is the relaxed one and stays.
+    /// Squeezes over and goes back to `displacement` (m) at the speed of the gripper, so that the hold begins with no excess strain: the force at its
+    /// start is the relaxed one and stays. Without a displacement it is the least whose relaxed force is enough; with `assured` the least
+    /// at which the lower edge of the band of the force is, at the start of the hold and after `duration`.
     ///
     /// The turning point is found to the last bits as the one from which the force at the end of the retreat is F_e: farther, and it rises
     /// during the hold; nearer, and it falls. `duration` (s) is the time over which drifts are told. A linear law of several terms has
@@ -50,11 +52,12 @@ impl Grip<'_> {
     /// # Errors
     /// [`GripError::NoSqueeze`] if no relaxed force within the limits is enough; [`GripError::NoBackOff`] if they end before the turning point;
     /// [`GripError::BeyondLimit`] for a displacement beyond them.
-    pub fn back_off(&self, displacement: Option<f64>, duration: f64) -> Result<BackOff, GripError> {
+    pub fn back_off(&self, displacement: Option<f64>, duration: f64, assured: bool) -> Result<BackOff, GripError> {
         check_duration(duration)?;
         let (deepest, by) = self.limits.deepest(self.contact.specimen());
         let displacement = match displacement {
             Some(displacement) => displacement,
+            None if assured => self.assured_squeeze(self.relaxed_squeeze(deepest, by)?, duration)?,
             None => self.relaxed_squeeze(deepest, by)?,
         };
         let speed = self.limits.speed;
@@ -89,6 +92,34 @@ impl Grip<'_> {
         }
         // A hair more, for rounding in the force at the end of the retreat.
         Ok((bisected(0.0, deepest, |d| Ok(is_enough(d)))?.1 * (1.0 + 1e-9)).min(deepest))
+    }
+
+    /// The least displacement from `least` (m) on at which the lower edge of the band is enough all through the hold.
+    fn assured_squeeze(&self, least: f64, duration: f64) -> Result<f64, GripError> {
+        /// By how much a squeeze is larger than the one tried before.
+        const MORE: f64 = 1.02;
+        /// To which the least is found, as a share.
+        const CLOSE: f64 = 1e-6;
+        // What the numbers leave of an excess fades, and the band with it: between its ends it is no lower than there.
+        let is_assured = |displacement: f64| -> Result<bool, GripError> {
+            let plan = Plan::back_off(self.turning_point(displacement)?, displacement, self.limits.speed);
+            let start = self.ends(&plan.steps)?.last().map_or(0.0, |end| end.time);
+            let at = Sampling::Times(vec![start, start + duration.min(ALWAYS)]);
+            let predicted = self.material.predict(&plan.held(duration.min(ALWAYS)), &at, self.confidence)?;
+            let needed = self.needed_force(displacement);
+            Ok((0..2).all(|i| predicted.force_interval(i).0 >= needed))
+        };
+        let (mut short, mut enough) = (least, least);
+        // The limits end it: there is no turning point beyond them.
+        while !is_assured(enough)? {
+            short = enough;
+            enough *= MORE;
+        }
+        while enough - short > CLOSE * enough {
+            let middle = 0.5 * (short + enough);
+            if is_assured(middle)? { enough = middle } else { short = middle }
+        }
+        Ok(enough)
     }
 
     /// Where the jaw turns so that the hold begins relaxed, m.
