@@ -138,8 +138,21 @@ pub fn calibration_remarks(record: &CalibratedRecord) -> Vec<String> {
 fn remarks_of(made: &Calibration) -> Vec<String> {
     let mut remarks = Vec::new();
     if made.termination != Termination::Converged {
-        let how = termination(made.termination).replace('_', " ");
-        remarks.push(format!("The search ended otherwise than at an optimum ({how}): the numbers have no intervals."));
+        let how = match made.termination {
+            Termination::TermsMerged => {
+                "Terms of the series came together: their times cannot be told apart, and fewer terms say as much."
+                    .to_owned()
+            }
+            Termination::Singular => {
+                "The record does not tell the numbers apart; holds of different excess strain would.".to_owned()
+            }
+            Termination::IterationLimit => "The search used up its steps on the way to an optimum.".to_owned(),
+            at_bound => format!(
+                "The search ended at the edge of what is sought ({}): the record leaves a number open.",
+                termination(at_bound).replace('_', " ")
+            ),
+        };
+        remarks.push(format!("{how} The numbers have no intervals."));
     } else if let Some(open) = made
         .material
         .numbers

@@ -113,9 +113,17 @@ pub fn calibrate(data: &CalibrationData, candidate: Candidate, confidence: f64) 
         let columns: Vec<Vec<f64>> = open.iter().map(|i| jacobian[*i].clone()).collect();
         Assessed::of_columns(columns, found.residuals.clone(), confidence)
     });
+    let is_told = assessed.as_ref().is_some_and(|assessed| assessed.uncertainty.is_some());
+    let termination = match found.termination {
+        Termination::Converged if !is_told && prepared.searched.iter().any(|searched| searched.name == "rate_2") => {
+            Termination::TermsMerged
+        }
+        Termination::Converged if !is_told => Termination::Singular,
+        other => other,
+    };
     let gradients = gradients(&prepared, &found.theta, &open);
     let values = prepared.values(&found.theta);
-    let is_found = found.termination == Termination::Converged;
+    let is_found = termination == Termination::Converged;
     let estimate = |index: usize, name: &str| match &assessed {
         Some(assessed) if is_found && !Material::is_given(candidate, name) => {
             let estimate = assessed.estimate(values[index], &gradients[index], Scale::Log);
@@ -173,7 +181,7 @@ pub fn calibrate(data: &CalibrationData, candidate: Candidate, confidence: f64) 
         noise,
         criteria: criteria(found.square, data.fitted() as f64, free as f64),
         foretold,
-        termination: found.termination,
+        termination,
         simulations: found.simulations,
         theta: found.theta,
     })
