@@ -595,9 +595,9 @@ pub(crate) struct GripperArguments {
     /// The largest force that gripper and body bear
     #[arg(long, value_name = "FORCE", value_parser = force, allow_hyphen_values = true)]
     pub(crate) most_force: Option<f64>,
-    /// How long closing may take
-    #[arg(long, value_name = "TIME", value_parser = time, default_value = "2 s", allow_hyphen_values = true)]
-    pub(crate) close_within: f64,
+    /// How long closing may take; any time if not given
+    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
+    pub(crate) close_within: Option<f64>,
 }
 
 /// What the gripper holds.

@@ -311,8 +311,8 @@ impl Material {
     ///     The fastest that the jaws go, m/s; the fastest ramp of the test if left out.
     /// stroke_m, most_force_n : float, optional
     ///     How far the jaws may squeeze, m, and the largest force that gripper and body bear, N.
-    /// close_within_s : float
-    ///     How long closing may take, s.
+    /// close_within_s : float, optional
+    ///     How long closing may take, s; any time if left out.
     /// control : str
     ///     What the gripper holds once it has closed: "position" (the force relaxes) or "force" (the body creeps).
     /// squeeze_m : float, optional
@@ -374,7 +374,7 @@ impl Material {
     #[pyo3(signature = (
         *, mass_kg, friction, safety=1.0, acceleration_up_m_per_s2=0.0, acceleration_across_m_per_s2=0.0,
         acceleration_closing_m_per_s2=0.0, torque_n_m=0.0, off_centre_m=0.0, gravity_m_per_s2=9.80665, speed_m_per_s=None,
-        stroke_m=None, most_force_n=None, close_within_s=2.0, control="position", squeeze_m=None, force_n=None, hold_s=None,
+        stroke_m=None, most_force_n=None, close_within_s=None, control="position", squeeze_m=None, force_n=None, hold_s=None,
         objective=None, assured=false, band_n=None, regrip=None, shortest_pause_s=None, confidence=0.95,
     ))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -393,7 +393,7 @@ impl Material {
         speed_m_per_s: Option<f64>,
         stroke_m: Option<f64>,
         most_force_n: Option<f64>,
-        close_within_s: f64,
+        close_within_s: Option<f64>,
         control: &str,
         squeeze_m: Option<f64>,
         force_n: Option<f64>,

@@ -147,7 +147,7 @@ fn the_least_squeeze_holds_as_long_as_was_asked_and_less_does_not() {
             assert!(work.work <= least.work && work.work <= peak.work * (1.0 + 1e-9));
             for found in [&peak, &work] {
                 assert!(found.lasts.covers(duration.min(3.1e8) * (1.0 - 1e-6)), "{found:?}");
-                assert!(found.closing <= grip.limits().closing * (1.0 + 1e-9));
+                assert!(found.closing <= 2.0 * (1.0 + 1e-9));
             }
         }
     }
@@ -336,4 +336,84 @@ fn a_material_without_errors_predicts_with_the_noise_alone() {
     assert!((found.factor - 1.959_963_984_540_054).abs() < 1e-12 && found.force_deviation.iter().all(|d| *d == 0.0));
     let (low, high) = found.reading_interval(1);
     assert!((high - low - 2.0 * 0.05 * found.factor).abs() < 1e-12);
+}
+
+/// A gripper that could not close in time was told to hold.
+#[test]
+fn the_time_to_close_is_a_limit_of_every_grip() {
+    let material = ball(None);
+    let within = |closing: f64| {
+        let limits = Limits {
+            closing: Some(closing),
+            ..Limits::new(SPEED).unwrap()
+        };
+        Grip::new(&material, Grasp::new(0.25, 0.6).unwrap(), limits, 0.95).unwrap()
+    };
+    let free = grip(&material, 0.25);
+    let (squeeze, retreat, held) = (
+        free.least(Objective::Squeeze, 60.0, false).unwrap(),
+        free.back_off(None, 60.0, false).unwrap(),
+        free.pressed(None, 60.0).unwrap(),
+    );
+    for (closing, gets) in [(squeeze.closing, true), (0.9 * squeeze.displacement / SPEED, false)] {
+        assert_eq!(within(closing * 1.001).least(Objective::Squeeze, 60.0, false).is_ok(), gets, "{closing}");
+    }
+    let late = within(0.99 * retreat.backed.closing);
+    assert!(within(1.01 * retreat.backed.closing).back_off(None, 60.0, false).is_ok());
+    let refused = late.back_off(Some(retreat.backed.displacement), 60.0, false).unwrap_err();
+    assert!(matches!(&refused, GripError::NoBackOff { by, .. } if by.starts_with("closed within")), "{refused}");
+    assert!(within(1.01 * held.closing).pressed(Some(held.force), 60.0).is_ok());
+    let refused = within(0.99 * held.closing).pressed(Some(held.force), 60.0).unwrap_err();
+    assert!(
+        matches!(
+            refused,
+            GripError::BeyondLimit {
+                name: "time to close",
+                ..
+            }
+        ),
+        "{refused}"
+    );
+    let refused = within(0.1).least(Objective::Squeeze, 60.0, false).unwrap_err();
+    assert!(refused.is_answer() && refused.to_string().contains("closed within 0.1"), "{refused}");
+}
+
+/// A schedule that let the body slip was called one that keeps the force.
+#[test]
+fn a_band_that_begins_below_the_needed_force_is_refused() {
+    let material = ball(None);
+    let refused = grip(&material, 0.25).regrip(Band { low: 1.0, high: 3.0 }, Regrip::FewestMoves, 3600.0).unwrap_err();
+    assert!(
+        matches!(refused, GripError::BandSlips { low: 1.0, needed } if (needed - 2.043).abs() < 1e-3),
+        "{refused}"
+    );
+    assert!(refused.is_answer());
+}
+
+/// What lies beyond the body was no answer but an error of a simulation, and 0 N were said to be there at the most.
+#[test]
+fn forces_and_squeezes_beyond_the_body_are_answers() {
+    let material = ball(None);
+    let grip = grip(&material, 0.25);
+    for force in [115.0, 1000.0] {
+        let refused = grip.pressed(Some(force), 60.0).unwrap_err();
+        assert!(matches!(refused, GripError::BeyondLimit { name: "force", limit, .. } if limit > 100.0), "{refused}");
+    }
+    let refused = grip.holding(&Plan::squeeze(0.08, SPEED)).unwrap_err();
+    assert_eq!(refused.to_string(), "a squeeze of 80.00 mm is beyond the limit of 70.00 mm");
+    let heavy = self::grip(&material, 250.0).pressed(None, 60.0).unwrap_err();
+    assert!(matches!(heavy, GripError::NoSqueeze { reached, .. } if reached > 100.0), "{heavy}");
+    assert!(heavy.to_string().contains("when the jaws stop"), "{heavy}");
+}
+
+/// The least squeeze for ten years was said to hold for any time, and the best guess to be assured.
+#[test]
+fn more_than_ten_years_and_assurance_without_intervals_are_refused() {
+    let material = ball(None);
+    let grip = grip(&material, 0.25);
+    assert!(matches!(grip.least(Objective::Squeeze, 4e8, false), Err(GripError::Number { .. })));
+    assert!(grip.least(Objective::Squeeze, f64::INFINITY, false).is_ok());
+    assert_eq!(grip.least(Objective::Squeeze, 60.0, true), Err(GripError::NoIntervals));
+    assert_eq!(grip.back_off(None, 60.0, true), Err(GripError::NoIntervals));
+    assert!(!GripError::NoIntervals.is_answer());
 }

@@ -276,7 +276,7 @@ class Material:
         speed_m_per_s: float | None = None,
         stroke_m: float | None = None,
         most_force_n: float | None = None,
-        close_within_s: float = 2.0,
+        close_within_s: float | None = None,
         control: Literal["position", "force"] = "position",
         squeeze_m: float | None = None,
         force_n: float | None = None,

@@ -46,8 +46,8 @@ pub struct GripLimitsDocument {
     pub stroke_m: Option<f64>,
     /// The largest force, N.
     pub force_n: Option<f64>,
-    /// How long closing may take, s.
-    pub closing_s: f64,
+    /// How long closing may take, s; `null` where any time may.
+    pub closing_s: Option<f64>,
 }
 
 /// How long something holds.

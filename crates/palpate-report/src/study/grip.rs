@@ -6,7 +6,7 @@ use palpate::grip::{BackOff, Control, Grasp, Holding, Lasts, Objective, PlanKind
 use super::findings::wrapped;
 use super::prediction::percent;
 use crate::gripped::GrippedBody;
-use crate::number::{counted, significant};
+use crate::number::significant;
 use crate::table::{Cell, Table, TableColumn};
 
 /// A time as people say it.
@@ -125,7 +125,10 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
             Cell::number(1e3 * found.displacement_end, 4),
             Cell::number(found.force, 4),
             Cell::number(found.force, 4),
-            Cell::number(found.force, 4),
+            match found.stroke_ends {
+                None => Cell::number(found.force, 4),
+                Some(_) => Cell::missing("the stroke ends before"),
+            },
             Cell::number(found.needed_force, 4),
             lasts,
             Cell::missing("a force that is held does not fall"),
@@ -141,7 +144,7 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
 pub fn neighbour_table(body: &GrippedBody<'_>) -> Option<Table> {
     let answer = &body.answer;
     let squeeze = answer.squeeze.as_ref().ok().filter(|_| answer.neighbours.len() > 1)?;
-    let speed = significant(1e3 * body.grip.limits().speed, 3);
+    let speed = significant(1e3 * squeeze.found.plan.speed(), 3);
     let mut table = Table::new("neighbours", format!("Squeezes beside it, at {speed} mm/s."))
         .column(TableColumn::new("Squeeze", "displacement_mm", "mm"))
         .column(TableColumn::new("beside it", "change_percent", "%"))
@@ -245,9 +248,14 @@ fn of_squeeze(body: &GrippedBody<'_>, found: &Holding, holds: bool) -> String {
             newton(found.needed_force),
             newton(found.start_force)
         ),
-        Lasts::Always => {
+        Lasts::Always if found.relaxed_force >= found.needed_force => {
             format!("{what} holds always{interval}: the relaxed force of {} is enough.", newton(found.relaxed_force))
         }
+        Lasts::Always => format!(
+            "{what} holds for more than ten years{interval}, and not for good: it relaxes to {}, and {} are needed.",
+            newton(found.relaxed_force),
+            newton(found.needed_force)
+        ),
         Lasts::For(time) => {
             let until = body.answer.question.duration.filter(|_| !holds).map_or_else(String::new, |wanted| {
                 if wanted.is_finite() {
@@ -280,10 +288,15 @@ fn of_pressed(found: &Pressed, holds: bool) -> String {
 pub fn grip_remarks(body: &GrippedBody<'_>) -> Vec<String> {
     let answer = &body.answer;
     let mut remarks = Vec::new();
+    if body.grip.material().uncertainty.is_none() {
+        remarks.push("The calibration left a number open: nothing is said of how sure this is.".to_owned());
+    }
     if let Ok(squeeze) = &answer.squeeze {
         remarks.extend(on_squeeze(&squeeze.found));
     }
-    if let (Ok(squeeze), Ok(pressed)) = (&answer.squeeze, &answer.pressed) {
+    if let (Ok(squeeze), Ok(pressed)) = (&answer.squeeze, &answer.pressed)
+        && pressed.found.holds
+    {
         remarks.push(both_ways(&squeeze.found, &pressed.found, answer.shown));
     }
     if let Ok(back_off) = &answer.back_off {
@@ -318,14 +331,20 @@ fn on_squeeze(found: &Holding) -> Option<String> {
 
 fn both_ways(squeeze: &Holding, pressed: &Pressed, shown: f64) -> String {
     let surplus = 100.0 * (squeeze.peak_force / squeeze.needed_force - 1.0);
-    let creep = pressed.displacement_relaxed.map_or_else(String::new, |end| format!(", to {} in the end", mm(end)));
+    let standing = if surplus > 0.0 {
+        format!("they squeeze {} % harder than is needed, and wait", significant(surplus, 2))
+    } else {
+        "these have too little from the start".to_owned()
+    };
+    let (from, to) = (mm(pressed.displacement_start), mm(pressed.displacement_end));
+    let creep = match (pressed.stroke_ends, pressed.displacement_relaxed) {
+        (Some(time), _) => format!("from {from} to the end of the stroke at {to} after {}", lasted(time)),
+        (None, Some(end)) => format!("from {from} to {to} in {}, to {} in the end", lasted(shown), mm(end)),
+        (None, None) => format!("from {from} to {to} in {}", lasted(shown)),
+    };
     format!(
-        "Jaws that stand lose force: they squeeze {} % harder than is needed, and wait. A force that is held stays, and {} do: the body gives way instead, from {} to {} in {}{creep}.",
-        significant(surplus.max(0.0), 2),
+        "Jaws that stand lose force: {standing}. A force that is held stays, and {} do: the body gives way instead, {creep}.",
         newton(pressed.force),
-        mm(pressed.displacement_start),
-        mm(pressed.displacement_end),
-        lasted(shown),
     )
 }
 
@@ -360,8 +379,12 @@ fn on_schedule(found: &Schedule) -> String {
         Regrip::LeastWork { .. } => "least work",
     };
     format!(
-        "{} keep the force between {} and {} for {} ({least}), with {} mJ of work; the jaws end at {}.",
-        counted(found.moves.len(), "squeeze"),
+        "{} the force between {} and {} for {} ({least}), with {} mJ of work; the jaws end at {}.",
+        if found.moves.len() == 1 {
+            "1 squeeze keeps".to_owned()
+        } else {
+            format!("{} squeezes keep", found.moves.len())
+        },
         newton(found.band.low),
         newton(found.band.high),
         lasted(found.duration),
@@ -375,10 +398,8 @@ fn on_schedule(found: &Schedule) -> String {
 pub fn grip_question(body: &GrippedBody<'_>) -> String {
     let question = &body.answer.question;
     let limits = body.grip.limits();
-    let mut bounds = vec![
-        format!("Jaws at up to {} mm/s", significant(1e3 * limits.speed, 3)),
-        format!("closed within {}", lasted(limits.closing)),
-    ];
+    let mut bounds = vec![format!("Jaws at up to {} mm/s", significant(1e3 * limits.speed, 3))];
+    bounds.extend(limits.closing.map(|closing| format!("closed within {}", lasted(closing))));
     bounds.extend(limits.stroke.map(|stroke| format!("stroke of {}", mm(stroke))));
     bounds.extend(limits.force.map(|force| format!("at most {}", newton(force))));
     let wanted = match (question.control, question.squeeze, question.force) {
@@ -395,7 +416,7 @@ pub fn grip_question(body: &GrippedBody<'_>) -> String {
         (Control::Force, _, None) => "least force, held".to_owned(),
     };
     let time = question.duration.map_or_else(String::new, |time| {
-        if time.is_finite() { format!(" for {}", lasted(time)) } else { " for always".to_owned() }
+        if time.is_finite() { format!(" for {}", lasted(time)) } else { " for good".to_owned() }
     });
     format!("{}. {}; {wanted}{time}.", load(body.grip.grasp()), bounds.join(", "))
 }

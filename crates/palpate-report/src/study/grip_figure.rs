@@ -38,7 +38,7 @@ pub fn grip_figure(body: &GrippedBody<'_>, name: &str) -> Figure {
             })
         })
         .collect();
-    let closing = answer.squeeze.as_ref().map_or(body.grip.limits().closing, |made| made.found.closing);
+    let closing = answer.squeeze.as_ref().map_or(body.grip.limits().closing.unwrap_or(2.0), |made| made.found.closing);
     // A hold that is long beside the squeeze is told by its logarithm.
     let axis = || {
         if answer.shown > 30.0 * closing {

@@ -116,6 +116,7 @@ impl Grip<'_> {
     pub fn answer(&self, question: &Question) -> Result<Answer, GripError> {
         let wanted = question.duration.unwrap_or(MINUTE);
         check_duration(wanted)?;
+        self.check_assured(question.assured)?;
         let squeeze = match question.squeeze {
             Some(displacement) => {
                 super::error::above_zero("squeeze", displacement, " m")?;
@@ -126,7 +127,7 @@ impl Grip<'_> {
         let shown = shown(question, squeeze.as_ref().ok());
         let around = |found: &Holding| {
             let places = [0.9, 0.95, 1.0, 1.05, 1.1].map(|share| share * found.displacement);
-            self.neighbours(&places, self.limits.speed)
+            self.neighbours(&places, found.plan.speed())
         };
         let neighbours = squeeze.as_ref().map(around).unwrap_or_default();
         let same = question.squeeze.filter(|place| self.relaxed_force(*place) >= self.needed_force(*place));

@@ -54,6 +54,7 @@ impl Grip<'_> {
     /// [`GripError::BeyondLimit`] for a displacement beyond them.
     pub fn back_off(&self, displacement: Option<f64>, duration: f64, assured: bool) -> Result<BackOff, GripError> {
         check_duration(duration)?;
+        self.check_assured(assured)?;
         let (deepest, by) = self.limits.deepest(self.contact.specimen());
         let displacement = match displacement {
             Some(displacement) => displacement,
@@ -125,6 +126,14 @@ impl Grip<'_> {
     /// Where the jaw turns so that the hold begins relaxed, m.
     fn turning_point(&self, displacement: f64) -> Result<f64, GripError> {
         let (mut farthest, mut by) = self.limits.deepest(self.contact.specimen());
+        if let Some(closing) = self.limits.closing {
+            // There and back.
+            let in_time = 0.5 * (self.limits.speed * closing + displacement);
+            if in_time < farthest {
+                farthest = in_time;
+                by = format!("closed within {} s", significant(closing, 3));
+            }
+        }
         if let Some(limit) = self.limits.force {
             let is_over = |d: f64| Ok(self.force_of(d, d, None) > limit);
             if is_over(farthest)? {

@@ -1,5 +1,6 @@
 //! Why there is no grip.
 
+use crate::number::significant;
 use crate::simulate::SimulateError;
 
 /// Why there is no grip.
@@ -23,7 +24,7 @@ pub enum GripError {
     )]
     Bonded,
     /// A squeeze that is beyond what the gripper may do.
-    #[error("{name} of {found}{unit} is asked for, the limit is {limit}{unit}")]
+    #[error("a {name} of {found} is beyond the limit of {limit}", found = told(*found, unit), limit = told(*limit, unit))]
     BeyondLimit {
         /// What goes too far.
         name: &'static str,
@@ -44,13 +45,17 @@ pub enum GripError {
         needed: f64,
         /// The most there is at the end, N.
         reached: f64,
-        /// How long it should hold, s; infinite for relaxed forces.
+        /// How long it should hold, s; infinite for relaxed forces, 0 for forces that are held.
         duration: f64,
         /// Which limit stops it.
         by: String,
     },
     /// A retreat that no squeeze within the limits prepares.
-    #[error("to begin the hold at {displacement:.6} m relaxed, the jaw would have to go beyond {limit:.6} m ({by})")]
+    #[error(
+        "to begin the hold at {displacement} relaxed, the jaw would have to go beyond {limit} ({by})",
+        displacement = told(*displacement, " m"),
+        limit = told(*limit, " m")
+    )]
     NoBackOff {
         /// Where the jaw is to hold, m.
         displacement: f64,
@@ -73,6 +78,17 @@ pub enum GripError {
         /// Upper edge, N.
         high: f64,
     },
+    /// A band whose lower edge does not carry the load.
+    #[error("a band from {low:.4} N on lets the body slip: {needed:.4} N are needed")]
+    BandSlips {
+        /// Lower edge, N.
+        low: f64,
+        /// Force that is needed, N.
+        needed: f64,
+    },
+    /// Nothing to be assured by.
+    #[error("the calibration left its numbers open and has no intervals: nothing can be assured")]
+    NoIntervals,
     /// A simulation that could not be run.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
@@ -84,7 +100,11 @@ impl GripError {
     pub fn is_answer(&self) -> bool {
         matches!(
             self,
-            Self::NoSqueeze { .. } | Self::NoBackOff { .. } | Self::BeyondLimit { .. } | Self::TooManyMoves { .. }
+            Self::NoSqueeze { .. }
+                | Self::NoBackOff { .. }
+                | Self::BeyondLimit { .. }
+                | Self::TooManyMoves { .. }
+                | Self::BandSlips { .. }
         )
     }
 
@@ -97,14 +117,25 @@ impl GripError {
             }
             Self::NoBackOff { .. } => "allow a larger stroke or force, close faster, or hold at a smaller squeeze",
             Self::BeyondLimit { .. } => "ask for less, or raise the limit",
-            Self::TooManyMoves { .. } => "widen the band, allow longer pauses, or hold the force",
+            Self::TooManyMoves { .. } => "widen the band, allow shorter pauses, or hold the force",
+            Self::BandSlips { .. } => "raise the lower edge of the band",
+            Self::NoIntervals => "ask for the best guess, or calibrate on a test that tells all numbers",
             Self::Bonded => "calibrate on a test with separation = true in [contact]",
             Self::Number { .. } | Self::Simulate(_) => "",
         }
     }
 }
 
+/// A number with its unit, lengths in mm.
+fn told(number: f64, unit: &str) -> String {
+    let (number, unit) = if unit == " m" { (1e3 * number, " mm") } else { (number, unit) };
+    format!("{}{unit}", significant(number, 4))
+}
+
 fn when(duration: f64) -> String {
+    if duration == 0.0 {
+        return "when the jaws stop".to_owned();
+    }
     if duration.is_finite() { format!("after {duration} s") } else { "once relaxed".to_owned() }
 }
 

@@ -179,6 +179,10 @@ impl<'a> Grip<'a> {
     /// # Errors
     /// [`GripError::BeyondLimit`] for a plan that the gripper may not take, [`GripError::Simulate`] for one that cannot be simulated.
     pub fn holding(&self, plan: &Plan) -> Result<Holding, GripError> {
+        let (deepest, _) = self.limits.deepest(self.contact.specimen());
+        if plan.farthest() > deepest {
+            return Err(beyond("squeeze", plan.farthest(), deepest, " m"));
+        }
         let ends = self.ends(&plan.steps)?;
         let (Some(end), peak_force) = (ends.last(), peak(&ends)) else {
             return Err(SimulateError::EmptyProgram.into());
@@ -243,14 +247,12 @@ impl<'a> Grip<'a> {
     fn within_limits(&self, ends: &[StepEnd]) -> Result<(), GripError> {
         let (deepest, _) = self.limits.deepest(self.contact.specimen());
         let far = ends.iter().map(|end| end.displacement).fold(0.0, f64::max);
-        let beyond = |name, found, limit, unit| GripError::BeyondLimit {
-            name,
-            found,
-            limit,
-            unit,
-        };
         if far > deepest {
             return Err(beyond("squeeze", far, deepest, " m"));
+        }
+        let closed = ends.last().map_or(0.0, |end| end.time);
+        if let Some(closing) = self.limits.closing.filter(|closing| closed > closing * (1.0 + 1e-9)) {
+            return Err(beyond("time to close", closed, closing, " s"));
         }
         let peak = peak(ends);
         match self.limits.force {
@@ -303,6 +305,15 @@ impl<'a> Grip<'a> {
             (time > 0.0).then(|| time.ln())
         };
         Some((log(STEP)? - log(-STEP)?) / (2.0 * STEP * displacement))
+    }
+}
+
+pub(super) fn beyond(name: &'static str, found: f64, limit: f64, unit: &'static str) -> GripError {
+    GripError::BeyondLimit {
+        name,
+        found,
+        limit,
+        unit,
     }
 }
 

@@ -33,7 +33,8 @@ impl Grip<'_> {
     /// [`GripError::NoSqueeze`] if none holds, [`GripError::Number`] for a duration that is not above zero.
     pub fn least(&self, objective: Objective, duration: f64, assured: bool) -> Result<Holding, GripError> {
         check_duration(duration)?;
-        let closing = |i: f64| self.limits.closing * 10f64.powf(2.0 * (i / f64::from(TRIED - 1) - 1.0));
+        self.check_assured(assured)?;
+        let closing = |i: f64| self.limits.slowest_closing() * 10f64.powf(2.0 * (i / f64::from(TRIED - 1) - 1.0));
         let mut best: Option<(f64, f64, Plan)> = None;
         let mut none = None;
         for i in 0..TRIED {
@@ -90,7 +91,7 @@ impl Grip<'_> {
     /// The least squeeze that closes within a time (s).
     fn squeeze_within(&self, closing: f64, duration: f64, assured: bool) -> Result<Plan, GripError> {
         let plan = |displacement: f64| Plan::squeeze(displacement, (displacement / closing).min(self.limits.speed));
-        let (mut high, mut by) = self.limits.deepest(self.contact.specimen());
+        let (mut high, mut by) = self.limits.reach(self.contact.specimen());
         if let Some(limit) = self.limits.force {
             let is_allowed = |displacement: f64| -> Result<bool, GripError> {
                 Ok(peak(&self.ends(&plan(displacement).steps)?) <= limit)
@@ -117,7 +118,7 @@ impl Grip<'_> {
         // What cannot be simulated, since no displacement carries it, is beyond the limits as well.
         let plan = |force: f64| -> Option<Plan> {
             let ends = self.ends(&Plan::settle(force, self.limits.speed, 0.0).steps).ok()?;
-            let settling = self.limits.closing - ends.last()?.time;
+            let settling = self.limits.slowest_closing() - ends.last()?.time;
             let plan = Plan::settle(force, self.limits.speed, settling.max(0.0));
             let end = *self.ends(&plan.steps).ok()?.last()?;
             (settling >= 0.0 && end.displacement <= deepest && self.limits.force.is_none_or(|limit| force <= limit))
@@ -159,6 +160,11 @@ impl Grip<'_> {
         Ok(force - self.needed_force(end.displacement))
     }
 
+    /// Whether there are intervals to be assured by.
+    pub(super) fn check_assured(&self, assured: bool) -> Result<(), GripError> {
+        if assured && self.material.uncertainty.is_none() { Err(GripError::NoIntervals) } else { Ok(()) }
+    }
+
     fn no_squeeze(&self, reached: f64, duration: f64, by: String) -> GripError {
         let (deepest, _) = self.limits.deepest(self.contact.specimen());
         GripError::NoSqueeze {
@@ -171,12 +177,12 @@ impl Grip<'_> {
 }
 
 pub(super) fn check_duration(duration: f64) -> Result<(), GripError> {
-    if duration > 0.0 {
+    if duration > 0.0 && (duration <= ALWAYS || duration.is_infinite()) {
         Ok(())
     } else {
         Err(GripError::Number {
             name: "time to hold",
-            expected: "above 0",
+            expected: "above 0 and ten years at most, or always",
             found: duration,
             unit: " s",
         })

@@ -15,12 +15,12 @@ pub struct Limits {
     pub stroke: Option<f64>,
     /// The largest force that body and gripper bear, N.
     pub force: Option<f64>,
-    /// How long the squeeze may take until the hold begins, s.
-    pub closing: f64,
+    /// How long the squeeze may take until the hold begins, s. Where not given any time may, and slower squeezes are tried up to two seconds.
+    pub closing: Option<f64>,
 }
 
 impl Limits {
-    /// A gripper that closes at `speed` (m/s) and has two seconds to do so.
+    /// A gripper that closes at `speed` (m/s).
     ///
     /// # Errors
     /// [`GripError::Number`] for a speed that is not above zero.
@@ -29,7 +29,7 @@ impl Limits {
             speed,
             stroke: None,
             force: None,
-            closing: 2.0,
+            closing: None,
         };
         limits.check()?;
         Ok(limits)
@@ -41,9 +41,27 @@ impl Limits {
     /// [`GripError::Number`] with the first that describes no gripper.
     pub fn check(&self) -> Result<(), GripError> {
         above_zero("speed of the jaws", self.speed, " m/s")?;
-        above_zero("time to close", self.closing, " s")?;
+        self.closing.map_or(Ok(()), |closing| above_zero("time to close", closing, " s"))?;
         self.stroke.map_or(Ok(()), |stroke| above_zero("stroke", stroke, " m"))?;
         self.force.map_or(Ok(()), |force| above_zero("largest force", force, " N"))
+    }
+
+    /// The slowest closing that is tried, s.
+    pub(super) fn slowest_closing(&self) -> f64 {
+        const USUAL: f64 = 2.0;
+        self.closing.unwrap_or(USUAL)
+    }
+
+    /// As far as the jaw gets in the time to close, m, and what sets that: the time, the stroke or the body.
+    pub(super) fn reach(&self, body: &Specimen) -> (f64, String) {
+        let (deepest, by) = self.deepest(body);
+        match self.closing {
+            Some(closing) if self.speed * closing < deepest => {
+                let told = [closing, 1e3 * self.speed].map(|number| crate::number::significant(number, 3));
+                (self.speed * closing, format!("closed within {} s at {} mm/s", told[0], told[1]))
+            }
+            _ => (deepest, by),
+        }
     }
 
     /// The deepest squeeze (m) within the limits, and what sets it. Of a body it stays a hair short of the end.

@@ -84,6 +84,23 @@ impl Plan {
         }
     }
 
+    /// Its speed, m/s.
+    #[must_use]
+    pub fn speed(&self) -> f64 {
+        match self.kind {
+            PlanKind::Squeeze { speed, .. } | PlanKind::Settle { speed, .. } | PlanKind::BackOff { speed, .. } => speed,
+        }
+    }
+
+    /// How far it goes, m, as far as it says so itself.
+    pub(super) fn farthest(&self) -> f64 {
+        match self.kind {
+            PlanKind::Squeeze { displacement, .. } => displacement,
+            PlanKind::BackOff { over, .. } => over,
+            PlanKind::Settle { .. } => 0.0,
+        }
+    }
+
     /// The steps with a hold of `duration` (s) behind them.
     #[must_use]
     pub fn held(&self, duration: f64) -> Vec<ProgramStep> {

@@ -1,9 +1,11 @@
 //! The same grasp with the force held.
 
+use super::holding::beyond;
 use super::least::{bisected, check_duration};
-use super::{Grip, GripError};
+use super::{Grip, GripError, Plan};
 use crate::calibrate::Prediction;
-use crate::simulate::ProgramStep;
+use crate::number::significant;
+use crate::simulate::{ProgramStep, SimulateError};
 
 /// A grasp whose force is held: it does not relax, the body creeps.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +22,7 @@ pub struct Pressed {
     pub closing: f64,
     /// Displacement of the jaw when the hold begins, m.
     pub displacement_start: f64,
-    /// Displacement when it ends, m.
+    /// Displacement when it ends, or where the stroke does, m.
     pub displacement_end: f64,
     /// Displacement that it tends to, m; `None` if no displacement of the body carries the force relaxed.
     pub displacement_relaxed: Option<f64>,
@@ -49,7 +51,7 @@ impl Grip<'_> {
         }
         let force = match force {
             Some(force) => force,
-            None => self.least_force(duration)?,
+            None => self.least_force()?,
         };
         if let Some(limit) = self.limits.force.filter(|limit| force > *limit) {
             return Err(GripError::BeyondLimit {
@@ -66,7 +68,7 @@ impl Grip<'_> {
             },
             ProgramStep::HoldForce { duration },
         ];
-        let ends = self.ends(&steps)?;
+        let ends = self.ends(&steps).map_err(|error| self.not_carried(force, error))?;
         let (start, end) = (ends[0], ends[1]);
         let (deepest, _) = self.limits.deepest(self.contact.specimen());
         if start.displacement > deepest {
@@ -76,6 +78,9 @@ impl Grip<'_> {
                 limit: deepest,
                 unit: " m",
             });
+        }
+        if let Some(closing) = self.limits.closing.filter(|closing| start.time > closing * (1.0 + 1e-9)) {
+            return Err(beyond("time to close", start.time, closing, " s"));
         }
         let needed_force = self.needed_force(start.displacement);
         let until = |time: f64| -> Result<f64, GripError> {
@@ -93,7 +98,7 @@ impl Grip<'_> {
             needed_force,
             closing: start.time,
             displacement_start: start.displacement,
-            displacement_end: end.displacement,
+            displacement_end: end.displacement.min(deepest),
             displacement_relaxed: self.relaxed_under(force),
             // A force that was found to be enough is so to rounding.
             holds: force >= needed_force * (1.0 - 1e-12),
@@ -112,39 +117,44 @@ impl Grip<'_> {
     }
 
     /// The least force that carries the load as soon as it is reached.
-    fn least_force(&self, duration: f64) -> Result<f64, GripError> {
-        let (deepest, by) = self.limits.deepest(self.contact.specimen());
-        let none = |reached: f64| GripError::NoSqueeze {
-            needed: self.needed_force(deepest),
-            reached,
-            duration,
-            by: by.clone(),
-        };
-        let at = |force: f64| -> Option<f64> {
+    fn least_force(&self) -> Result<f64, GripError> {
+        let (deepest, mut by) = self.limits.reach(self.contact.specimen());
+        let mut most = self.ends(&Plan::squeeze(deepest, self.limits.speed).steps)?.last().map_or(0.0, |end| end.force);
+        if let Some(limit) = self.limits.force.filter(|limit| *limit < most) {
+            most = limit;
+            by = format!("largest force of {} N", significant(limit, 4));
+        }
+        let least = self.needed_force(deepest);
+        // Where the jaw stops when it has met a force; as far as it gets where rounding lets it meet none.
+        let is_enough = |force: f64| -> Result<bool, GripError> {
             let step = ProgramStep::MoveToForce {
                 force,
                 rate: self.limits.speed,
             };
-            let end = *self.ends(&[step]).ok()?.last()?;
-            (end.displacement <= deepest).then_some(end.displacement)
+            let met = self.ends(&[step]).ok().and_then(|ends| Some(ends.last()?.displacement));
+            Ok(force >= self.needed_force(met.unwrap_or(deepest)))
         };
-        let mut high = self.needed_force(deepest);
-        let (least, mut reached) = (high, 0.0);
-        loop {
-            if let Some(limit) = self.limits.force.filter(|limit| high > *limit) {
-                return Err(none(limit));
-            }
-            let Some(displacement) = at(high) else {
-                return Err(none(reached));
-            };
-            if high >= self.needed_force(displacement) {
-                break;
-            }
-            reached = high;
-            high *= 1.25;
+        if most < least || !is_enough(most)? {
+            return Err(GripError::NoSqueeze {
+                needed: least,
+                reached: most,
+                duration: 0.0,
+                by,
+            });
         }
-        let is_enough = |force: f64| Ok(at(force).is_none_or(|displacement| force >= self.needed_force(displacement)));
-        if is_enough(least)? { Ok(least) } else { Ok(bisected(least, high, is_enough)?.1) }
+        if is_enough(least)? { Ok(least) } else { Ok(bisected(least, most, is_enough)?.1) }
+    }
+
+    /// Why a force is not met, or not carried by a body that creeps, in words of the grip.
+    fn not_carried(&self, force: f64, error: SimulateError) -> GripError {
+        match error {
+            SimulateError::Unreachable { most, .. } => beyond("force", force, most, " N"),
+            SimulateError::Force { .. } => {
+                let (deepest, _) = self.limits.deepest(self.contact.specimen());
+                beyond("force", force, self.relaxed_force(deepest), " N")
+            }
+            other => other.into(),
+        }
     }
 
     fn relaxed_under(&self, force: f64) -> Option<f64> {

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::error::above_zero;
+use super::holding::beyond;
 use super::least::{bisected, check_duration};
 use super::{Grip, GripError};
 use crate::calibrate::Prediction;
@@ -82,7 +83,7 @@ impl Grip<'_> {
     ///
     /// # Errors
     /// [`GripError::Number`] for edges that are none, [`GripError::BeyondLimit`] where band or squeeze go beyond the limits,
-    /// [`GripError::TooManyMoves`] beyond 60 moves.
+    /// [`GripError::BandSlips`] where less is allowed than is needed, [`GripError::TooManyMoves`] beyond 60 moves.
     pub fn regrip(&self, band: Band, objective: Regrip, duration: f64) -> Result<Schedule, GripError> {
         check_duration(duration)?;
         above_zero("lower edge of the band", band.low, " N")?;
@@ -102,12 +103,6 @@ impl Grip<'_> {
                 unit: " s",
             });
         }
-        let beyond = |name, found, limit, unit| GripError::BeyondLimit {
-            name,
-            found,
-            limit,
-            unit,
-        };
         if let Some(limit) = self.limits.force.filter(|limit| band.high > *limit) {
             return Err(beyond("force", band.high, limit, " N"));
         }
@@ -130,6 +125,10 @@ impl Grip<'_> {
         let (deepest, _) = self.limits.deepest(self.contact.specimen());
         if found.end_displacement > deepest {
             return Err(beyond("squeeze", found.end_displacement, deepest, " m"));
+        }
+        let needed = found.moves.iter().map(|made| self.needed_force(made.to)).fold(0.0, f64::max);
+        if band.low < needed * (1.0 - 1e-9) {
+            return Err(GripError::BandSlips { low: band.low, needed });
         }
         Ok(found)
     }
