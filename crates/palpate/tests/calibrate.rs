@@ -123,6 +123,24 @@ fn a_rate_that_depends_on_strain_or_direction_is_found_and_chosen() {
 }
 
 #[test]
+fn depths_that_were_held_are_counted_up_to_where_the_fit_ends() {
+    let a = measured(&paper_test_a(), 1, 0.0);
+    assert_eq!(a.depths_held(), 5);
+    assert_eq!(a.clone().fitted_until(10.0).unwrap().depths_held(), 1);
+    assert_eq!(a.fitted_until(20.0).unwrap().depths_held(), 2);
+}
+
+/// The largest force of all of the record was said to have been shown by its first part.
+#[test]
+fn what_was_not_fitted_is_not_said_to_be_shown() {
+    let a = measured(&paper_test_a(), 1, 0.0).fitted_until(10.0).unwrap();
+    let first = a.forces()[..a.fitted()].iter().copied().fold(0.0, f64::max);
+    let found = calibrate(&a, candidate("latency:5", EVEN), 0.95).unwrap();
+    assert_eq!(found.material.shown.largest_force, first);
+    assert!(first < 0.5 * a.forces().iter().copied().fold(0.0, f64::max));
+}
+
+#[test]
 fn a_constant_rate_is_not_said_to_vary() {
     let data = measured(&there_and_back(), 4, 0.2);
     for rate in [RateLaw::ByStrain, RateLaw::ByDirection] {

@@ -251,6 +251,12 @@ fn value(key: &str, expected: &str, found: &str) -> String {
     if expected.contains(BELIEVABLE) {
         return format!("check the number and the unit of {key}");
     }
+    if expected.contains("calibrated no more") {
+        return format!("put back {}, or calibrate again", expected.split(", ").next().unwrap_or(expected));
+    }
+    if expected.contains("calibrate again") {
+        return "calibrate again with this version of palpate".to_owned();
+    }
     let names = expected.split('"').skip(1).step_by(2).map(str::to_owned);
     let names: Vec<String> =
         names.filter(|name| !found.contains(name.as_str()) || found.trim_matches('"') == name).collect();

@@ -135,7 +135,8 @@ struct NumberTable {
     /// Standard error, in its unit.
     standard_error: Option<f64>,
     /// Lower and upper end of the confidence interval, in its unit.
-    interval: Option<[f64; 2]>,
+    #[schemars(extend("minItems" = 2, "maxItems" = 2))]
+    interval: Option<Vec<f64>>,
 }
 
 /// What the test has shown.
@@ -195,7 +196,12 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
         candidate,
         numbers: numbers(source, &table.number)?,
         uncertainty: uncertainty(source, table)?,
-        noise: source.si("calibration.residual", &table.residual, Dimension::Force)?,
+        noise: source.number(
+            "calibration.residual",
+            source.si("calibration.residual", &table.residual, Dimension::Force)?,
+            "0 N or more",
+            |noise| noise >= 0.0,
+        )?,
         shown: shown(source, &table.shown)?,
     };
     if !material.is_whole() {
@@ -204,6 +210,15 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
         return Err(source.value("calibration.number", expected, &names.join(", ")));
     }
     if let Some((key, there, here)) = disagreement(&model, &material.contact()) {
+        let unit = match key.rsplit('.').next().unwrap_or_default() {
+            "modulus" => " Pa",
+            "layer_thickness" => " m",
+            "rate_coefficient" => " /s",
+            "time" => " s",
+            row if row.starts_with("equilibrium_forces") => " N",
+            _ => "",
+        };
+        let (there, here) = (format!("{there}{unit}"), format!("{here}{unit}"));
         let expected = format!("{here}, the number of [calibration]; what was changed by hand is calibrated no more");
         return Err(source.value(key, expected, &there));
     }
@@ -251,13 +266,19 @@ fn equilibrium(source: &Source<'_>, name: EquilibriumName, model: &Model) -> Res
             poisson_ratio: *poisson_ratio,
         }),
         (EquilibriumName::Table, Equilibrium::Measured { .. }) => Ok(EquilibriumLaw::Table),
-        (_, other) => {
-            let found = match other {
-                Equilibrium::EvenStrain => "even strain",
-                Equilibrium::Hertz { .. } => "hertz",
-                Equilibrium::Measured { .. } => "equilibrium_forces",
+        (written, other) => {
+            let of_body = match other {
+                Equilibrium::EvenStrain => "\"even strain\"",
+                Equilibrium::Hertz { .. } => "\"hertz\"",
+                Equilibrium::Measured { .. } => "\"table\"",
             };
-            Err(source.value("calibration.equilibrium", "the law of the relaxed force of [specimen]", found))
+            let written = match written {
+                EquilibriumName::EvenStrain => "\"even strain\"",
+                EquilibriumName::Hertz => "\"hertz\"",
+                EquilibriumName::Table => "\"table\"",
+            };
+            let expected = format!("{of_body} as in [specimen], what was changed by hand is calibrated no more");
+            Err(source.value("calibration.equilibrium", expected, written))
         }
     }
 }
@@ -310,7 +331,12 @@ fn numbers(source: &Source<'_>, tables: &[NumberTable]) -> Result<Vec<MaterialNu
             source.value(key("unit"), "Pa, N, m, s or /s, or none", table.unit.as_deref().unwrap_or_default())
         })?;
         let value = above("value", table.value)?;
-        if let Some([low, high]) = table.interval {
+        let interval = match table.interval.as_deref() {
+            None => None,
+            Some(&[low, high]) => Some((low, high)),
+            Some(other) => return Err(source.value(key("interval"), "two numbers", &format!("{other:?}"))),
+        };
+        if let Some((low, high)) = interval {
             above("interval", low)?;
             source.number(&key("interval"), high, "an upper end that is not below the lower", |high| high >= low)?;
             let within = format!("a value within its interval, {low} to {high}");
@@ -325,7 +351,7 @@ fn numbers(source: &Source<'_>, tables: &[NumberTable]) -> Result<Vec<MaterialNu
             estimate: Estimate {
                 value,
                 standard_error: table.standard_error,
-                interval: table.interval.map(|[low, high]| (low, high)),
+                interval,
             },
         })
     };
@@ -349,12 +375,16 @@ fn uncertainty(source: &Source<'_>, table: &CalibrationTable) -> Result<Option<M
             && (entry(i, j) - entry(j, i)).abs() <= 1e-9 * bound
     };
     if !square || !pairs().all(sound) {
-        let expected = format!("a symmetric covariance of {size} rows of {size} finite numbers");
+        let expected = format!("{size} rows of {size} finite numbers, symmetric, with correlations up to 1");
         return Err(source.value(key, expected, "another list"));
     }
     let within = |share: f64| share > 0.0 && share < 1.0;
     let confidence = table.confidence.ok_or_else(|| source.missing("calibration.confidence", "the coverage, 0.95"))?;
     let confidence = source.number("calibration.confidence", confidence, "a number between 0 and 1", within)?;
+    for (index, number) in table.number.iter().enumerate() {
+        let deviation = entry(index, index).sqrt();
+        agrees_with(source, number, index, deviation, confidence)?;
+    }
     let freedom = table.freedom.unwrap_or(f64::INFINITY);
     if freedom.is_nan() || freedom <= 0.0 {
         return Err(source.value("calibration.freedom", "a number above 0", &freedom));
@@ -366,27 +396,62 @@ fn uncertainty(source: &Source<'_>, table: &CalibrationTable) -> Result<Option<M
     }))
 }
 
+/// Whether standard error and interval of a number are such as the deviation of its logarithm has.
+///
+/// The deviation is that for residuals that correlate, so the standard error for white ones is no larger; and an interval of half the coverage or more is
+/// wider than the deviation.
+fn agrees_with(
+    source: &Source<'_>,
+    number: &NumberTable,
+    index: usize,
+    deviation: f64,
+    confidence: f64,
+) -> Result<(), DescriptionError> {
+    /// Room for residuals that alternate, and for rounding.
+    const ROOM: f64 = 0.5;
+    const HAND: &str = "what was changed by hand is calibrated no more";
+    let key = |name: &str| format!("calibration.number[{}].{name}", index + 1);
+    if let Some(error) = number.standard_error.filter(|error| ROOM * error / number.value > deviation) {
+        let expected = format!("an error of {} at most by the covariance, {HAND}", deviation * number.value);
+        return Err(source.value(key("standard_error"), expected, &error));
+    }
+    if let Some(&[low, high]) = number.interval.as_deref()
+        && confidence >= 0.5
+        && (high / low).ln() < ROOM * deviation
+    {
+        let expected = format!("an interval as wide as the covariance says, {HAND}");
+        return Err(source.value(key("interval"), expected, &format!("{low} to {high}")));
+    }
+    Ok(())
+}
+
 fn shown(source: &Source<'_>, table: &ShownTable) -> Result<Shown, DescriptionError> {
     let quantity = |name: &str, written: &QuantityText, dimension| {
         let key = format!("calibration.shown.{name}");
         let value = source.si(&key, written, dimension)?;
         source.number(&key, value, "0 or more", |value| value >= 0.0)
     };
-    Ok(Shown {
+    let shown = Shown {
         longest_hold: quantity("longest_hold", &table.longest_hold, Dimension::Time)?,
         deepest: quantity("deepest", &table.deepest, Dimension::Length)?,
         fastest: quantity("fastest", &table.fastest, Dimension::Speed)?,
         slowest: quantity("slowest", &table.slowest, Dimension::Speed)?,
         largest_force: quantity("largest_force", &table.largest_force, Dimension::Force)?,
-    })
+    };
+    if shown.slowest > shown.fastest {
+        let expected = format!("no more than the fastest, {} m/s", shown.fastest);
+        return Err(source.value("calibration.shown.slowest", expected, &format!("{} m/s", shown.slowest)));
+    }
+    Ok(shown)
 }
 
 /// Numbers of the latency law and its layers, there and here.
 fn latency_pairs(there: &ContactModel, here: &ContactModel) -> [(String, f64, f64); 3] {
+    let thickness = |model: &ContactModel| model.specimen.depth() / model.layers.count();
     [
         ("law.exponent".to_owned(), there.law.exponent(), here.law.exponent()),
         ("law.rate_coefficient".to_owned(), there.law.rate_coefficient(), here.law.rate_coefficient()),
-        ("contact.layer_thickness".to_owned(), there.layers.count(), here.layers.count()),
+        ("contact.layer_thickness".to_owned(), thickness(there), thickness(here)),
     ]
 }
 

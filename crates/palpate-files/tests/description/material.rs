@@ -256,6 +256,26 @@ fn what_is_no_material_is_refused_with_its_place() {
         ("covariance = [\n  [", "covariance = [\n  [1.0],\n  [", "calibration.covariance", "4 rows of 4"),
         ("covariance = [\n  [3.", "covariance = [\n  [-3.", "calibration.covariance", "4 rows of 4"),
         ("residual = \"", "residual = \"x", "calibration.residual", "a force such as"),
+        ("residual = \"", "residual = \"-", "calibration.residual", "0 N or more"),
+        (
+            "interval = [4.9, 5.1]",
+            "interval = [4.9, 5.1, 5.3]",
+            "calibration.number[2].interval",
+            "two numbers",
+        ),
+        (
+            "standard_error = 0.05\n",
+            "standard_error = 50.0\n",
+            "calibration.number[2].standard_error",
+            "calibrated no more",
+        ),
+        (
+            "covariance = [\n  [",
+            "covariance = [\n  [100",
+            "calibration.number[1].interval",
+            "calibrated no more",
+        ),
+        ("slowest = \"", "slowest = \"900", "calibration.shown.slowest", "no more than the fastest"),
         ("sha256 = \"ab12\"\n", "", "calibration.sha256", "missing"),
     ];
     for (from, to, key, told) in cases {

@@ -1,6 +1,6 @@
 //! A whole record calibrated: tables, text and figure.
 
-use palpate::calibrate::{Calibration, Material, MaterialUnit, NumberProfile};
+use palpate::calibrate::{Calibration, Material, MaterialUnit, NumberProfile, RateLaw};
 use palpate::identify::{Interval, Termination};
 
 use super::StudyError;
@@ -130,6 +130,9 @@ fn numbers_table(material: &Material, profiles: &[NumberProfile]) -> Table {
 pub fn calibration_remarks(record: &CalibratedRecord) -> Vec<String> {
     let mut remarks: Vec<String> = record.sentence().into_iter().collect();
     if let Some(chosen) = record.chosen() {
+        if chosen.material.candidate.rate == RateLaw::ByStrain && record.data.depths_held() < 2 {
+            remarks.push("One depth was held: how v differs with strain rests on the ramps alone, and any fault of the law in them is taken for it. Holds at several depths would tell it.".to_owned());
+        }
         remarks.extend(remarks_of(chosen));
     }
     remarks
@@ -178,7 +181,7 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
     };
     if correlation > 0.9 && made.relative > 5e-3 {
         remarks.push(format!(
-            "What is left over ({} % of the peak) follows a course of its own: the law does not describe all of the record. The intervals are widened for that; how far it foretells, --fit-until shows.",
+            "What is left over ({} % of the peak) follows a course of its own: the law does not describe all of the record. The intervals are widened for that, ± is not; how far it foretells, --fit-until shows.",
             significant(100.0 * made.relative, 2)
         ));
     }

@@ -144,6 +144,25 @@ impl CalibrationData {
         &self.geometry
     }
 
+    /// At how many depths the jaw stands in the fitted part; first touch is one where the jaw can pull.
+    #[must_use]
+    pub fn depths_held(&self) -> usize {
+        /// Depths nearer to each other than this share of the deepest are one.
+        const NEAR: f64 = 0.05;
+        let until = self.times[self.fitted - 1];
+        let deepest = self.motion.displacements().iter().copied().fold(0.0, f64::max);
+        let motion = self.motion.simplified(0.01 * deepest);
+        let mut depths: Vec<f64> = Vec::new();
+        for (times, knots) in motion.times().windows(2).zip(motion.displacements().windows(2)) {
+            let stands = times[0] < until && (knots[1] - knots[0]).abs() <= 0.02 * deepest;
+            let is_pressed = knots[0] > NEAR * deepest || (self.separation == Separation::Bonded && !depths.is_empty());
+            if stands && is_pressed && depths.iter().all(|depth| (depth - knots[0]).abs() > NEAR * deepest) {
+                depths.push(knots[0]);
+            }
+        }
+        depths.len()
+    }
+
     /// Whether the jaw can pull.
     #[must_use]
     pub fn separation(&self) -> Separation {

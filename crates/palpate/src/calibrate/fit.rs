@@ -172,7 +172,7 @@ pub fn calibrate(data: &CalibrationData, candidate: Candidate, confidence: f64) 
             numbers,
             uncertainty,
             noise: (found.square / (data.fitted() - free) as f64).sqrt(),
-            shown: shown(data, largest),
+            shown: shown(data),
         },
         simulated,
         free_numbers: free,
@@ -219,7 +219,8 @@ fn rms(measured: &[f64], simulated: &[f64]) -> f64 {
 }
 
 /// What the fitted part of the record has shown.
-fn shown(data: &CalibrationData, largest_force: f64) -> Shown {
+fn shown(data: &CalibrationData) -> Shown {
+    let largest_force = data.forces()[..data.fitted()].iter().fold(0.0, |most: f64, force| most.max(force.abs()));
     let until = data.times()[data.fitted() - 1];
     let deepest = |motion: &Motion| motion.displacements().iter().copied().fold(0.0, f64::max);
     let motion = data.motion().simplified(0.01 * deepest(data.motion()));

@@ -13,7 +13,7 @@ use crate::simulate::{Sampling, step_ends};
 pub struct Sensitivity {
     /// Name of the number.
     pub name: String,
-    /// Its relative standard error; `None` where it has none.
+    /// Its relative standard deviation, for residuals that correlate as they do; `None` where it has none.
     pub error: Option<f64>,
     /// By how much the force at the start of the hold misses the relaxed one (N) if the number is 1 % larger and the jaw moves as planned.
     pub missed: f64,
@@ -197,7 +197,8 @@ impl Grip<'_> {
             let turned = |by: f64| self.turned(displacement, deepest, Some(&factors(by)));
             let per_cent = |high: f64, low: f64| (high - low) / (2.0 * STEP) / 100.0;
             let number = &numbers[index];
-            let error = number.estimate.standard_error.map(|error| error / number.estimate.value);
+            let variance = self.material.uncertainty.as_ref().map(|uncertainty| uncertainty.covariance[index][index]);
+            let error = variance.map(f64::sqrt).filter(|_| number.estimate.standard_error.is_some());
             Some(Sensitivity {
                 name: number.name.clone(),
                 error,
