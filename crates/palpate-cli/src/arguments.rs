@@ -732,7 +732,7 @@ pub(crate) enum TableFormat {
 pub(crate) enum Format {
     /// Tables for people
     Text,
-    /// One JSON object a record (see `palpate schema analysis`)
+    /// One JSON object a record or question (`palpate schema` prints what is in it)
     Json,
 }
 

@@ -1,6 +1,6 @@
 //! `palpate predict`: what a calibrated body does under a protocol.
 
-use palpate::simulate::Sampling;
+use palpate::simulate::{Sampling, SimulateError};
 use palpate_files::description::{DescriptionError, read_material, read_protocol_of};
 use palpate_report::study::{prediction_figure, prediction_table, write_prediction};
 
@@ -24,9 +24,11 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<Outcome, Failure> {
     let sampling = if at.is_empty() { protocol.sampling.clone() } else { Sampling::Times(at.clone()) };
     let working = Working::new("predicting");
     let predict = |sampling: &Sampling| {
-        material
-            .predict(protocol.drive(), sampling, arguments.confidence)
-            .map_err(|error| Failure::of_file(&arguments.protocol, error, None))
+        material.predict(protocol.drive(), sampling, arguments.confidence).map_err(|error| {
+            let hint = matches!(error, SimulateError::SampleTime { .. })
+                .then(|| "ask for times inside the protocol, or lengthen its last hold".to_owned());
+            Failure::of_file(&arguments.protocol, error, hint)
+        })
     };
     let predicted = predict(&sampling)?;
     // Single times make no curve.

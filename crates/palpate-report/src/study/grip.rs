@@ -362,11 +362,19 @@ fn on_back_off(found: &BackOff) -> String {
             significant(missed, 2)
         )
     });
+    // The excesses of several linear terms cancel, and part again.
+    let how = if found.drift.abs() < 1e-3 * found.backed.start_force {
+        format!("the hold begins relaxed, and {} stay", newton(found.backed.start_force))
+    } else {
+        format!(
+            "the hold begins with the relaxed force of {}, and drifts, for each term goes its own way",
+            newton(found.backed.start_force)
+        )
+    };
     format!(
-        "Squeeze to {} and go back to {}: the hold begins relaxed, and {} stay ({} N in {}; {lost} N after a plain squeeze to the same place).{open}",
+        "Squeeze to {} and go back to {}: {how} ({} N in {}; {lost} N after a plain squeeze to the same place).{open}",
         mm(found.over),
         mm(found.backed.displacement),
-        newton(found.backed.start_force),
         // A drift of rounding alone is none.
         significant(if found.drift.abs() < 1e-9 * found.backed.start_force { 0.0 } else { found.drift }, 3),
         lasted(found.duration),
