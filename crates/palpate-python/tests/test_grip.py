@@ -224,7 +224,7 @@ def test_a_question_that_is_none_has_the_words_of_the_command_line(
         ({"stroke_m": -1e-3}, "stroke must be finite and above 0, found -0.001 m"),
         ({"squeeze_m": -1e-3}, "squeeze must be finite and above 0, found -0.001 m"),
         ({"speed_m_per_s": 0.0}, "speed of the jaws must be finite and above 0, found 0 m/s"),
-        ({"hold_s": -1.0}, "time to hold must be above 0, found -1 s"),
+        ({"hold_s": -1.0}, "time to hold must be above 0 and ten years at most, or always, found -1 s"),
         ({"torque_n_m": math.inf}, "torque must be finite, found inf N m"),
         ({"mass_kg": math.nan}, "mass must be finite and above 0, found NaN kg"),
     ],
