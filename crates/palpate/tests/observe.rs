@@ -535,3 +535,67 @@ fn an_observer_goes_on_elsewhere_to_the_last_bit() {
         }
     }
 }
+
+/// A material that never saw the jaw said that there is no force, and that what is held slips.
+#[test]
+fn a_material_says_nothing_where_no_displacement_is_read() {
+    let (course, mut noise) = (squeeze(10.0), Noise::new(5));
+    let forces: Vec<(f64, f64)> = course.iter().map(|tick| (tick.0, tick.2 + 0.02 * noise.normal())).collect();
+    let informed = ObserverOptions {
+        material: Some(material(1.0)),
+        ..slipping_at(0.5)
+    };
+    let [mut with, mut without] = [informed, slipping_at(0.5)].map(|options| Observer::new(options).unwrap());
+    for (time, force) in forces {
+        let (a, b) = (with.feed(time, None, force).unwrap(), without.feed(time, None, force).unwrap());
+        // What it knows of the exponent goes into the fit of the force alone.
+        assert!((a.force - b.force).abs() < 0.02 * (0.5 + b.force.abs()), "{time}: {a:?} {b:?}");
+        assert!(a.excess_strain.is_none() && a.slip != Slip::Slipping || time < 0.5, "{time}: {a:?}");
+    }
+}
+
+/// The last tick of a hold told of the place where the jaw was by then.
+#[test]
+fn a_hold_is_told_of_where_it_was_held_to_its_last_tick() {
+    let model = model();
+    let (mut contact, mut noise) = (ContactState::default(), Noise::new(6));
+    let options = ObserverOptions {
+        material: Some(material(1.0)),
+        ..ObserverOptions::default()
+    };
+    let mut observer = Observer::new(options).unwrap();
+    let mut held: Option<Observation> = None;
+    for tick in 1..=200 {
+        // At 20 Hz, 5 mm until 5 s, then on: a tick goes 0.4 mm.
+        let time = 0.05 * f64::from(tick);
+        let place = if time <= 5.0 { (8.3e-3 * time).min(5e-3) } else { 5e-3 + 8.3e-3 * (time - 5.0) };
+        let force = contact.step(&model, 0.05, place.min(20e-3)).unwrap();
+        let seen = observer.feed(time, Some(place.min(20e-3) + 1e-6 * noise.normal()), force + 0.01 * noise.normal());
+        let seen = seen.unwrap();
+        if time > 1.5 && time < 5.5 && seen.phase == Phase::Holding {
+            if let Some(before) = held {
+                let equilibrium = |seen: &Observation| seen.equilibrium_force.unwrap().value;
+                assert!((equilibrium(&seen) / equilibrium(&before) - 1.0).abs() < 0.01, "{time}: {seen:?}");
+                assert!((seen.force / before.force - 1.0).abs() < 0.03, "{time}: {seen:?} {before:?}");
+            }
+            held = Some(seen);
+        }
+    }
+    assert!(held.unwrap().time > 4.9);
+}
+
+/// At its edge a warning came and went with the noise.
+#[test]
+fn a_warning_does_not_flutter() {
+    let course = squeeze(30.0);
+    let mut changes = 0;
+    for seed in 0..20 {
+        let seen = watched(&course, seed, &slipping_at(1.7));
+        let held = seen.iter().filter(|seen| seen.phase == Phase::Holding && seen.time > 1.0);
+        let slips: Vec<Slip> = held.map(|seen| seen.slip).collect();
+        changes += slips.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        assert_eq!(slips.last(), Some(&Slip::Slipping));
+    }
+    // One from none to soon, and one from soon to slipping.
+    assert!(changes <= 2 * 20 + 4, "{changes}");
+}

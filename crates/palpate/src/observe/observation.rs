@@ -77,6 +77,17 @@ pub enum Slip {
     Slipping,
 }
 
+impl Kept for Slip {
+    fn keep(&self, into: &mut Vec<u8>) {
+        (*self as u8).keep(into);
+    }
+
+    fn read(from: &mut &[u8]) -> Option<Self> {
+        let number = u8::read(from)?;
+        [Self::None, Self::Soon, Self::Slipping].into_iter().find(|slip| *slip as u8 == number)
+    }
+}
+
 /// What an observer says after a tick; SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Observation {

@@ -9,7 +9,7 @@ use super::kept::{Kept, kept};
 use super::noise::NoiseMeter;
 use super::smooth::Smooth;
 use super::stand::{Change, Stand};
-use super::{Held, Observation, ObserveError, ObserverOptions, Uncertain};
+use super::{Held, Observation, ObserveError, ObserverOptions, Slip, Uncertain};
 use crate::statistics::coverage_factor;
 
 /// Noise (standard deviations of one reading) within which a signal stands.
@@ -44,8 +44,10 @@ pub(super) struct Hold {
     /// Time since the hold began at which the next fit is due, s.
     pub(super) due: f64,
     pub(super) readings: u32,
+    /// The warning after the last tick.
+    pub(super) slip: Slip,
 }
-kept!(Hold: held, since, fit, crossing, creep, due, readings);
+kept!(Hold: held, since, fit, crossing, creep, due, readings, slip);
 
 impl Hold {
     fn new(held: Held, since: f64) -> Self {
@@ -57,6 +59,7 @@ impl Hold {
             creep: None,
             due: 0.0,
             readings: 0,
+            slip: Slip::None,
         }
     }
 }
@@ -82,6 +85,8 @@ pub struct Observer {
     pub(super) alone: Alone,
     pub(super) hold: Option<Hold>,
     pub(super) believed: Option<Believed>,
+    /// Readings off a place that the jaw has perhaps not left, kept from the material until the next tells: time (s), and displacement (m) and force (N).
+    pub(super) doubted: Option<(f64, (f64, f64))>,
 }
 
 impl Observer {
@@ -95,6 +100,7 @@ impl Observer {
         let believed = options.material.as_ref().map(|material| Believed::new(material, &options)).transpose()?;
         Ok(Self {
             believed,
+            doubted: None,
             options,
             last: None,
             displacement_noise: NoiseMeter::new(noise.map(|noise| noise.0)),
@@ -132,13 +138,40 @@ impl Observer {
             self.displacement_noise.feed(time, displacement);
             reach(&mut self.reached[0], displacement);
             self.displacement_seen = true;
-            if let Some(believed) = &mut self.believed {
-                believed.feed(time, displacement, force);
-            }
         }
         let began = self.follow(time, displacement, force);
-        self.fit(time);
-        Ok(self.say(time, began))
+        if let Some(displacement) = displacement {
+            self.believe(time, displacement, force);
+        }
+        if !self.jaw.is_doubtful() {
+            self.fit(time);
+        }
+        let said = self.say(time, began);
+        if let Some(hold) = &mut self.hold {
+            hold.slip = said.slip;
+        }
+        Ok(said)
+    }
+
+    /// What a material says of readings, but for one that is off the place where the jaw stands: the hold is told of from there until the next
+    /// reading says whether it was left.
+    fn believe(&mut self, time: f64, displacement: f64, force: f64) {
+        let Some(believed) = &mut self.believed else { return };
+        if self.jaw.is_doubtful() {
+            self.doubted = Some((time, (displacement, force)));
+            return;
+        }
+        if let Some((time, (displacement, force))) = self.doubted.take()
+            && !self.jaw.stands()
+        {
+            believed.feed(time, displacement, force);
+        }
+        believed.feed(time, displacement, force);
+    }
+
+    /// The material, once it has seen where the jaw is.
+    pub(super) fn informed(&self) -> Option<&Believed> {
+        self.believed.as_ref().filter(|believed| self.displacement_seen && believed.is_met())
     }
 
     /// What it was told before the first tick.
@@ -180,6 +213,7 @@ impl Observer {
         self.displacement_seen.keep(into);
         self.alone.keep(into);
         self.hold.keep(into);
+        self.doubted.keep(into);
         if let Some(believed) = &self.believed {
             believed.keep(into);
         }
@@ -199,6 +233,7 @@ impl Observer {
         self.displacement_seen = Kept::read(from)?;
         self.alone = Kept::read(from)?;
         self.hold = Kept::read(from)?;
+        self.doubted = Kept::read(from)?;
         self.believed.as_mut().map_or(Some(()), |believed| believed.read(from))
     }
 
@@ -254,7 +289,7 @@ impl Observer {
             // The first reading at a place may still belong to the way there.
             self.relaxation.clear();
             self.relaxes_from = time;
-        } else {
+        } else if !self.jaw.is_doubtful() {
             self.relaxation.push(time - self.relaxes_from, force);
         }
         let told = force_tolerance.is_some_and(|tolerance| self.smooth.level().abs() > PLAIN * tolerance);
@@ -312,7 +347,7 @@ impl Observer {
     }
 
     fn fit(&mut self, time: f64) {
-        let Some(hold) = &mut self.hold else { return };
+        let Some(mut hold) = self.hold else { return };
         let from = if hold.held == Held::Displacement { self.relaxes_from } else { self.grip.start() };
         let elapsed = time - from;
         if elapsed < hold.due {
@@ -321,11 +356,11 @@ impl Observer {
         if hold.held == Held::Force {
             hold.creep = self.creep.late_slope();
             hold.due = (1.0 + AGAIN) * elapsed;
+            self.hold = Some(hold);
             return;
         }
         let slip = self.options.slip_force;
-        let believed = self.believed.as_ref().filter(|believed| believed.is_met());
-        let by_material = believed.zip(slip).map(|(believed, slip)| {
+        let by_material = self.informed().zip(slip).map(|(believed, slip)| {
             let factor = coverage_factor(self.options.confidence, believed.freedom);
             Crossing::find(elapsed, slip, |time| {
                 let force = believed.force_after(time - elapsed);
@@ -364,6 +399,7 @@ impl Observer {
             (Some(material), Some(itself)) if itself.width(elapsed) < material.width(elapsed) => Some(itself),
             (material, itself) => material.or(itself),
         };
+        self.hold = Some(hold);
     }
 }
 

@@ -7,6 +7,9 @@ use super::{Held, Observation, Observer, Phase, Slip, TimeToSlip, Uncertain};
 /// of a hold nothing can be excluded.
 const FALSE_ALARM: f64 = 4.0;
 
+/// How many times longer the time to slip has to be for a warning to be taken back.
+const STAYS: f64 = 2.0;
+
 impl Observer {
     /// What is said after the tick at `time` (s).
     pub(super) fn say(&self, time: f64, began: bool) -> Observation {
@@ -60,9 +63,7 @@ impl Observer {
 
     /// What a material tells of a hold, where the forces are its.
     fn say_believed(&self, said: &mut Observation, held: Held) {
-        let Some(believed) = self.believed.as_ref().filter(|believed| believed.is_met()) else {
-            return;
-        };
+        let Some(believed) = self.informed() else { return };
         said.excess_strain = Some(believed.excess_strain());
         let equilibrium = believed.equilibrium();
         let sharper = said.equilibrium_force.is_none_or(|itself| equilibrium.deviation <= itself.deviation);
@@ -89,15 +90,23 @@ impl Observer {
             return Slip::None;
         }
         let noise = self.force_noise.deviation().unwrap_or(0.0) * Smooth::kept();
+        let before = self.hold.map_or(Slip::None, |hold| hold.slip);
+        // A warning stays until there is clearly no cause for it any more.
+        let early = if before == Slip::None { 1.0 } else { STAYS };
+        let margin = if before == Slip::Slipping { 3.0 * noise } else { 0.0 };
         match said.time_to_slip {
-            _ if said.force <= slip => Slip::Slipping,
+            _ if said.force <= slip + margin => Slip::Slipping,
             Some(TimeToSlip::After {
                 value: Some(value),
                 low,
                 ..
-            }) if low <= self.options.warn_before && value <= FALSE_ALARM * self.options.warn_before => Slip::Soon,
+            }) if low <= early * self.options.warn_before
+                && value <= early * FALSE_ALARM * self.options.warn_before =>
+            {
+                Slip::Soon
+            }
             // Before the first fit there is the margin alone.
-            Some(TimeToSlip::Unknown) if said.force - 3.0 * noise <= slip => Slip::Soon,
+            Some(TimeToSlip::Unknown) if said.force - 3.0 * early * noise <= slip => Slip::Soon,
             _ => Slip::None,
         }
     }

@@ -119,6 +119,11 @@ impl Stand {
         }
     }
 
+    /// Whether the stand was told, and the last reading is off its place: a dropout, or the first of a motion.
+    pub(super) fn is_doubtful(&self) -> bool {
+        self.stands && self.outside > 0
+    }
+
     /// Whether the stand was told.
     pub(super) fn stands(&self) -> bool {
         self.stands
