@@ -9,6 +9,7 @@
 //! | module | what |
 //! |---|---|
 //! | [`units`] | quantities as people write them, turned into SI |
+//! | [`watch`] | progress of long work, and its cancellation |
 //! | [`number`] | numbers written for people and for machines |
 //! | [`record`] | a measured record, checked |
 //! | [`segment`] | its phases: loading, hold, unloading; first touch; Type I and II |
@@ -101,6 +102,8 @@ pub mod test_problems;
 pub mod units;
 #[cfg(feature = "std")]
 mod vector;
+#[cfg(feature = "std")]
+pub mod watch;
 
 /// The README's example, compiled and run with the other ones.
 #[cfg(doctest)]

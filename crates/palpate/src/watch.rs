@@ -1,0 +1,84 @@
+//! Progress of long work and its cancellation, in one trait.
+//!
+//! Whoever starts long work passes a [`Watch`]; the work reports to it how far it is, between steps that take a fraction of a second,
+//! and ends with [`Cancelled`] once the watch says so. Nothing else is shared: the library has no threads to stop and no clock.
+//!
+//! ```
+//! use palpate::watch::{Cancelled, Progress, Unwatched, Watch};
+//!
+//! fn sum(values: &[f64], watch: &mut dyn Watch) -> Result<f64, Cancelled> {
+//!     let mut sum = 0.0;
+//!     for (done, value) in values.iter().enumerate() {
+//!         watch.report(Progress::counted("adding", done, values.len()))?;
+//!         sum += value;
+//!     }
+//!     Ok(sum)
+//! }
+//!
+//! assert_eq!(sum(&[1.0, 2.0], &mut Unwatched), Ok(3.0));
+//! let mut patience = |progress: Progress<'_>| if progress.done < 1 { Ok(()) } else { Err(Cancelled) };
+//! assert_eq!(sum(&[1.0, 2.0], &mut patience), Err(Cancelled));
+//! ```
+
+/// Work that was ended before it was done, because its watch asked for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("cancelled")]
+pub struct Cancelled;
+
+/// How far a step of long work is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Progress<'a> {
+    /// What is being done, such as "calibrating latency".
+    pub task: &'a str,
+    /// How much of it is done.
+    pub done: u64,
+    /// How much there is to do, where that is known beforehand.
+    pub total: Option<u64>,
+}
+
+impl<'a> Progress<'a> {
+    /// Of work of unknown length.
+    #[must_use]
+    pub fn open(task: &'a str, done: usize) -> Self {
+        Self {
+            task,
+            done: done as u64,
+            total: None,
+        }
+    }
+
+    /// Of work that is counted.
+    #[must_use]
+    pub fn counted(task: &'a str, done: usize, total: usize) -> Self {
+        Self {
+            task,
+            done: done as u64,
+            total: Some(total as u64),
+        }
+    }
+}
+
+/// Hears of the progress of long work and may end it.
+pub trait Watch {
+    /// Hears how far the work is.
+    ///
+    /// # Errors
+    /// [`Cancelled`] ends the work.
+    fn report(&mut self, progress: Progress<'_>) -> Result<(), Cancelled>;
+}
+
+impl<F: FnMut(Progress<'_>) -> Result<(), Cancelled>> Watch for F {
+    fn report(&mut self, progress: Progress<'_>) -> Result<(), Cancelled> {
+        self(progress)
+    }
+}
+
+/// Nobody watches: the work goes on to its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Unwatched;
+
+impl Watch for Unwatched {
+    fn report(&mut self, _: Progress<'_>) -> Result<(), Cancelled> {
+        Ok(())
+    }
+}
