@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use palpate::identify::SampleChoice;
+use palpate::fit::SampleChoice;
 use palpate::laws::Law;
 use palpate::segment::{ContactChoice, HoldStart};
 use palpate::units::{Dimension, parse, split_number};

@@ -6,7 +6,7 @@ use arrow_array::{ArrayRef, BooleanArray, Float64Array};
 use numpy::PyArray1;
 use palpate::analysis::AnalysisOptions;
 use palpate::calibrate::{CalibrateError, CalibrationData, Candidate, EquilibriumLaw, RateLaw, calibrate, profile};
-use palpate::identify::Termination;
+use palpate::fit::Termination;
 use palpate::laws::Law;
 use palpate::record::Record as Measured;
 use palpate_report::calibrated::CalibratedRecord;

@@ -1,7 +1,7 @@
 //! Laws compared on one hold by what they foretell.
 
-use palpate::choose::{CompareOptions, compare_laws};
-use palpate::identify::{LawOptions, Samples};
+use palpate::fit::{LawOptions, Samples};
+use palpate::forecast::{CompareOptions, compare_laws};
 use palpate::laws::{Law, Response};
 use palpate_report::compared::Quantity;
 use palpate_report::document::HoldComparisonDocument;

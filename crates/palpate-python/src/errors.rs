@@ -46,8 +46,8 @@ pub(crate) fn refused_plainly<E: PyTypeInfo>(message: impl Display) -> PyErr {
 }
 
 /// Why there is no fit: because of what was asked, or of the samples.
-pub(crate) fn unfitted(error: palpate::identify::FitError) -> PyErr {
-    use palpate::identify::FitError as Refused;
+pub(crate) fn unfitted(error: palpate::fit::FitError) -> PyErr {
+    use palpate::fit::FitError as Refused;
     match error {
         Refused::NoForm { .. }
         | Refused::UnknownNumber { .. }

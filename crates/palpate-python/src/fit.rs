@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use numpy::{PyArray1, PyArray2};
-use palpate::identify::{
+use palpate::fit::{
     Estimate, LawFit, LawOptions, Loss, NoiseChoice, NumberUnit, SampleChoice, Samples, Termination, fit_law,
 };
 use palpate::laws::{Law, Response};
@@ -441,7 +441,7 @@ pub(crate) fn fitted(
     values: &[f64],
     deviations: Option<&[f64]>,
     asked: &Asked,
-) -> Result<LawFit, palpate::identify::FitError> {
+) -> Result<LawFit, palpate::fit::FitError> {
     let samples = Samples::new(times, values);
     let samples = deviations.map_or(samples, |deviations| samples.with_deviations(deviations));
     fit_law(&samples, asked.law, &asked.options)

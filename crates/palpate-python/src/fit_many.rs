@@ -11,7 +11,7 @@ use arrow_buffer::ScalarBuffer;
 use arrow_cast::cast;
 use arrow_schema::{DataType, Field};
 use numpy::{PyArray1, PyArrayMethods};
-use palpate::identify::{LawFit, LawNumber, LawOptions, NumberUnit, Samples, fit_law};
+use palpate::fit::{LawFit, LawNumber, LawOptions, NumberUnit, Samples, fit_law};
 use palpate::laws::Response;
 use pyo3::prelude::*;
 use pyo3_arrow::PyChunkedArray;

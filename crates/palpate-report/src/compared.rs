@@ -1,8 +1,8 @@
 //! Laws compared on the holds of a record, of relaxation and of creep alike.
 
 use palpate::analysis::{Analysis, CreepHold, Finding, HoldAnalysis, Signal};
-use palpate::choose::Comparison;
-use palpate::identify::NumberUnit;
+use palpate::fit::NumberUnit;
+use palpate::forecast::Comparison;
 use palpate::laws::Response;
 use palpate::segment::After;
 

@@ -1,7 +1,7 @@
 //! Speed of what users wait for: `cargo bench -p palpate`. Ratios against SciPy: `validation/peers.py`.
 
 use divan::{Bencher, black_box};
-use palpate::identify::{ExponentChoice, FitOptions, fit_hold};
+use palpate::fit::{ExponentChoice, FitOptions, fit_hold};
 use palpate::latency::decay_many;
 use palpate::simulate::{Sampling, Separation, simulate, simulate_force, strain_wave};
 use palpate::test_problems::{noisy_hold, paper_ball, paper_test_a};

@@ -1,6 +1,6 @@
 //! Fits the law to a noisy hold: exponents given, exponent free, and which one the data ask for.
 
-use palpate::identify::{ExponentChoice, FitOptions, fit_hold, select_order};
+use palpate::fit::{ExponentChoice, FitOptions, fit_hold, select_order};
 use palpate::test_problems::noisy_hold;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -5,7 +5,7 @@
 #[path = "../tests/common/titin.rs"]
 mod titin;
 
-use palpate::identify::{EquilibriumChoice, ExponentChoice, FitOptions, LawOptions, RampHold, fit_law, fit_ramps};
+use palpate::fit::{EquilibriumChoice, ExponentChoice, FitOptions, LawOptions, RampHold, fit_law, fit_ramps};
 use palpate::laws::Loading;
 use titin::{Record, records};
 
@@ -71,7 +71,7 @@ fn print_latency(
         })
         .collect();
     let fit = fit_ramps(&holds, ExponentChoice::Free, EquilibriumChoice::Each, &FitOptions::default())?;
-    let error = |estimate: palpate::identify::Estimate| estimate.standard_error.unwrap_or(f64::NAN);
+    let error = |estimate: palpate::fit::Estimate| estimate.standard_error.unwrap_or(f64::NAN);
     println!("latency, loading {name}: {:?}", fit.termination);
     println!("  n {:.2} ± {:.2}", fit.exponent.value, error(fit.exponent));
     println!("  amplitude of a step {:.2} ± {:.2}", fit.step_amplitude.value, error(fit.step_amplitude));

@@ -1,7 +1,7 @@
 //! Which law to use: every law fitted to the first part of a hold and held against the rest.
 
-use palpate::choose::{CompareOptions, compare_laws};
-use palpate::identify::{LawOptions, Samples, fit_law, profile_interval};
+use palpate::fit::{LawOptions, Samples, fit_law, profile_interval};
+use palpate::forecast::{CompareOptions, compare_laws};
 use palpate::laws::Law;
 use palpate::test_problems::noisy_hold;
 

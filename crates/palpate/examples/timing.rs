@@ -7,9 +7,9 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use palpate::batch::Batch;
-use palpate::choose::{CompareOptions, compare_laws};
 use palpate::contact::{Layers, Shape, Sides, Specimen};
-use palpate::identify::{ExponentChoice, FitOptions, LawOptions, Samples, fit_hold, fit_law};
+use palpate::fit::{ExponentChoice, FitOptions, LawOptions, Samples, fit_hold, fit_law};
+use palpate::forecast::{CompareOptions, compare_laws};
 use palpate::latency::LatencyLaw;
 use palpate::laws::Law;
 use palpate::simulate::{

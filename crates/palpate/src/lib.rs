@@ -17,8 +17,8 @@
 //! | [`latency`] | the law and its closed form, equations (1) to (5) and (10) |
 //! | [`laws`] | every law of relaxation and creep |
 //! | [`special`] | Mittag-Leffler, exponential integral and their kin |
-//! | [`identify`] | laws fitted to holds, with standard errors and a reason to end |
-//! | [`choose`] | which law to use, by what each foretells |
+//! | [`fit`] | laws fitted to holds, with standard errors and a reason to end |
+//! | [`forecast`] | which law to use, by what each foretells |
 //! | [`contact`] | the body, its layers and its contact, equations (7) and (11) |
 //! | [`simulate`] | from a motion of the jaw to the force |
 //! | [`batch`] | thousands of contacts at once |
@@ -34,7 +34,7 @@
 //!
 //! ```
 //! use palpate::contact::{Layers, Shape, Sides, Specimen};
-//! use palpate::identify::{ExponentChoice, FitOptions, fit_hold};
+//! use palpate::fit::{ExponentChoice, FitOptions, fit_hold};
 //! use palpate::latency::LatencyLaw;
 //! use palpate::simulate::{ContactModel, ProtocolStep, Sampling, Separation, protocol, simulate};
 //!
@@ -67,13 +67,13 @@ pub mod analysis;
 pub mod batch;
 #[cfg(feature = "std")]
 pub mod calibrate;
-#[cfg(feature = "std")]
-pub mod choose;
 pub mod contact;
 #[cfg(feature = "std")]
-pub mod grip;
+pub mod fit;
 #[cfg(feature = "std")]
-pub mod identify;
+pub mod forecast;
+#[cfg(feature = "std")]
+pub mod grip;
 pub mod latency;
 #[cfg(feature = "std")]
 pub mod laws;

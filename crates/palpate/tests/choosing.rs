@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::choose::{Certainty, CompareOptions, Comparison, Ranking, compare_laws};
-use palpate::identify::{LawOptions, Samples, foretell};
+use palpate::fit::{LawOptions, Samples, foretell};
+use palpate::forecast::{Certainty, CompareOptions, Comparison, Ranking, compare_laws};
 use palpate::laws::Law;
 use palpate::test_problems::Noise;
 
@@ -60,7 +60,7 @@ fn a_forecast_is_that_of_the_samples_and_not_only_of_their_nodes() {
     let options = LawOptions::default();
     let forecast = foretell(&Samples::new(&times, &values), law, &options, 20.0).unwrap();
     let first = forecast.fitted;
-    let fit = palpate::identify::fit_law(&Samples::new(&times[..first], &values[..first]), law, &options).unwrap();
+    let fit = palpate::fit::fit_law(&Samples::new(&times[..first], &values[..first]), law, &options).unwrap();
     let errors: Vec<f64> = times[first..].iter().zip(&values[first..]).map(|(t, y)| fit.predict(*t) - y).collect();
     let rmse = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
     println!("forecast {:e}, samples {rmse:e}", forecast.rmse);

@@ -6,7 +6,7 @@
 mod common;
 
 use common::reference;
-use palpate::identify::{ExponentChoice, FitError, FitOptions, LatencyFit, Termination, fit_hold, fit_rates};
+use palpate::fit::{ExponentChoice, FitError, FitOptions, LatencyFit, Termination, fit_hold, fit_rates};
 use serde::Deserialize;
 
 #[derive(Deserialize)]

@@ -8,8 +8,8 @@ mod common;
 use std::collections::BTreeMap;
 
 use common::reference;
-use palpate::choose::criteria;
-use palpate::identify::{ConstantChoice, LawFit, LawOptions, Loss, Samples, Termination, fit_law};
+use palpate::fit::{ConstantChoice, LawFit, LawOptions, Loss, Samples, Termination, fit_law};
+use palpate::forecast::criteria;
 use palpate::laws::{ExponentChoice, Law, Response};
 use serde::Deserialize;
 

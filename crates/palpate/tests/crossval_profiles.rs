@@ -5,7 +5,7 @@
 mod common;
 
 use common::reference;
-use palpate::identify::{LawOptions, NoiseChoice, Samples, fit_law, profile_interval};
+use palpate::fit::{LawOptions, NoiseChoice, Samples, fit_law, profile_interval};
 use palpate::laws::{ExponentChoice, Law};
 use serde::Deserialize;
 

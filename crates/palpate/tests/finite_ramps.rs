@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::identify::{LawFit, LawOptions, Samples, fit_law};
+use palpate::fit::{LawFit, LawOptions, Samples, fit_law};
 use palpate::laws::{ExponentChoice, Law, LawCurve, Loading, LoadingError, Response, Shape, Term};
 use palpate::test_problems::Noise;
 

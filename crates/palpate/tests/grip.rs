@@ -5,8 +5,8 @@ use palpate::calibrate::{
     Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, Shown,
 };
 use palpate::contact::{Shape, Sides};
+use palpate::fit::Estimate;
 use palpate::grip::{Band, Grasp, Grip, GripError, Lasts, Limits, Objective, Plan, PlanKind, Regrip};
-use palpate::identify::Estimate;
 use palpate::simulate::{ProgramStep, Sampling, Separation, step_ends};
 
 const SPEED: f64 = 0.5 / 60.0;

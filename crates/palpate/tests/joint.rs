@@ -5,7 +5,7 @@
 mod common;
 
 use common::reference;
-use palpate::identify::{
+use palpate::fit::{
     ExponentChoice, FitError, HoldWeights, JointComparison, JointFit, JointOptions, Samples, Termination, TrendVerdict,
     compare_joint, fit_joint,
 };

@@ -5,7 +5,7 @@
 mod any_hold;
 
 use any_hold::{LAWS, fit_any, is_whole};
-use palpate::identify::{FitError, LawOptions, Loss, Samples, Termination, fit_law};
+use palpate::fit::{FitError, LawOptions, Loss, Samples, Termination, fit_law};
 use palpate::laws::{Law, Response};
 use palpate::test_problems::Noise;
 use proptest::prelude::*;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::identify::{ConstantChoice, LawFit, LawOptions, NumberUnit, Samples, Termination, fit_law};
+use palpate::fit::{ConstantChoice, LawFit, LawOptions, NumberUnit, Samples, Termination, fit_law};
 use palpate::laws::{Law, Response};
 use palpate::test_problems::Noise;
 

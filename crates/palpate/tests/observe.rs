@@ -346,7 +346,7 @@ fn material(stiffer: f64) -> palpate::calibrate::Material {
     use palpate::calibrate::{
         Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, Shown,
     };
-    use palpate::identify::Estimate;
+    use palpate::fit::Estimate;
     use palpate::laws::{ExponentChoice, Law};
     let model = model();
     let thickness = model.layers.thickness(model.specimen.depth());
@@ -448,7 +448,7 @@ fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
 #[test]
 fn a_material_whose_rate_depends_on_the_strain_is_watched_by_that() {
     use palpate::calibrate::{CalibratedContact, MaterialNumber, MaterialUnit, RateLaw};
-    use palpate::identify::Estimate;
+    use palpate::fit::Estimate;
     use palpate::simulate::{Motion, Sampling, simulate};
     let mut varying = material(1.0);
     varying.candidate.rate = RateLaw::ByStrain;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::identify::{LawFit, LawOptions, Loss, Samples, Termination, fit_law};
+use palpate::fit::{LawFit, LawOptions, Loss, Samples, Termination, fit_law};
 use palpate::laws::Law;
 use palpate::test_problems::Noise;
 

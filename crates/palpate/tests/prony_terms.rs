@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::identify::{Ghost, LawOptions, Samples, Termination, fit_law, fit_prony};
+use palpate::fit::{Ghost, LawOptions, Samples, Termination, fit_law, fit_prony};
 use palpate::laws::Law;
 use palpate::test_problems::Noise;
 

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
 use palpate::contact::{Layers, Shape, Sides, Specimen};
-use palpate::identify::{ExponentChoice, FitOptions, LatencyFit, Termination, fit_hold, fit_rates};
+use palpate::fit::{ExponentChoice, FitOptions, LatencyFit, Termination, fit_hold, fit_rates};
 use palpate::latency::{LatencyLaw, decay, decay_with_gradient, decay_with_gradient_many};
 use palpate::record::Record;
 use palpate::segment::{

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::identify::{
+use palpate::fit::{
     EquilibriumChoice, ExponentChoice, FitError, FitOptions, RampFit, RampHold, Samples, Termination, fit_ramps,
 };
 use palpate::laws::Loading;
@@ -139,7 +139,7 @@ fn one_ramp_alone_leaves_the_step_open() {
     let values = vec![excess(&loading[0], 2.0, 0.4, 3.0).iter().map(|x| 1.0 + x + 0.005 * noise.normal()).collect()];
     let alone = fit(&loading, &values, ExponentChoice::Fixed(3.0), EquilibriumChoice::Each);
     let hold =
-        palpate::identify::fit_hold(&times(), &values[0], ExponentChoice::Fixed(3.0), &FitOptions::default()).unwrap();
+        palpate::fit::fit_hold(&times(), &values[0], ExponentChoice::Fixed(3.0), &FitOptions::default()).unwrap();
     assert!((alone.holds[0].amplitude.value / hold.amplitude.value - 1.0).abs() < 1e-6);
     assert!((alone.rate_coefficient.value / hold.rate_coefficient.value - 1.0).abs() < 1e-4);
     assert!((alone.rmse / hold.rmse - 1.0).abs() < 1e-9);

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
 use palpate::analysis::{AnalysisOptions, analyze};
-use palpate::identify::{ExponentChoice, FitOptions, fit_hold, fit_rates};
+use palpate::fit::{ExponentChoice, FitOptions, fit_hold, fit_rates};
 use palpate::record::Record;
 use palpate::strain::{RateWindow, strain_rates};
 use palpate::test_problems::Noise;

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
 use palpate::contact::{Layers, Shape, Sides, Specimen};
-use palpate::identify::{ExponentChoice, FitOptions, LatencyFit, Termination, fit_hold};
+use palpate::fit::{ExponentChoice, FitOptions, LatencyFit, Termination, fit_hold};
 use palpate::latency::{LatencyLaw, decay, decay_many};
 use palpate::simulate::{ContactModel, Motion, ProtocolStep, Sampling, Separation, protocol, simulate};
 use palpate::strain::contact_strain;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::identify::{FitError, Smoothing, SpectrumFit, SpectrumOptions, fit_spectrum};
+use palpate::fit::{FitError, Smoothing, SpectrumFit, SpectrumOptions, fit_spectrum};
 use palpate::latency::decay;
 use palpate::test_problems::Noise;
 

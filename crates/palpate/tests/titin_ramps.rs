@@ -6,7 +6,7 @@
 #[path = "common/titin.rs"]
 mod titin;
 
-use palpate::identify::{
+use palpate::fit::{
     EquilibriumChoice, ExponentChoice, FitOptions, LawFit, LawOptions, RampHold, Termination, fit_law, fit_ramps,
 };
 use palpate::laws::{Law, Loading};

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::identify::{LawOptions, Samples, Termination, fit_law};
+use palpate::fit::{LawOptions, Samples, Termination, fit_law};
 use palpate::test_problems::noisy_hold;
 
 /// Law, grid points, evaluations over condensed samples and over all samples: at most so many.

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use palpate::analysis::{AnalysisOptions, analyze, corrected, creep_holds};
-use palpate::choose::{CompareOptions, RampChoice};
-use palpate::identify::Loss;
+use palpate::fit::Loss;
+use palpate::forecast::{CompareOptions, RampChoice};
 use palpate::laws::Response;
 use palpate_files::description::TestDescription;
 use palpate_report::compared::{ComparedRecord, LeftOut};

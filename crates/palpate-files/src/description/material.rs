@@ -11,7 +11,7 @@ use palpate::{
         MaterialUnit, RateLaw, Shown,
     },
     contact::{Equilibrium, RateDependence, Shape, Sides},
-    identify::Estimate,
+    fit::Estimate,
     latency::LatencyLaw,
     laws::Law,
     number::{exact, significant},

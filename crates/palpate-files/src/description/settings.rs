@@ -1,7 +1,7 @@
 //! Checks of the settings in `[contact]`, `[phases]` and `[fit]` of a test.
 
 use palpate::{
-    identify::FitOptions,
+    fit::FitOptions,
     segment::{ContactChoice, GivenHold, HoldMode, SegmentOptions},
     units::Dimension,
 };

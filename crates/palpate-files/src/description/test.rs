@@ -5,7 +5,7 @@ use std::path::Path;
 use palpate::{
     analysis::{AnalysisOptions, Geometry, LayersChoice},
     contact::{Shape, Sides},
-    identify::FitOptions,
+    fit::FitOptions,
     record::CorrectionOptions,
     segment::{ContactChoice, GivenHold, SegmentOptions},
     simulate::Separation,

@@ -7,7 +7,7 @@ use palpate::calibrate::{
     Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, RateLaw, Shown,
 };
 use palpate::contact::{Curve, Shape, Sides};
-use palpate::identify::Estimate;
+use palpate::fit::Estimate;
 use palpate::simulate::Separation;
 use palpate_files::description::{
     MaterialFile, MaterialOrigin, parse_material, parse_protocol, parse_test, read_protocol, read_protocol_of,

@@ -1,7 +1,7 @@
 //! `palpate.analysis/1`: one analysed record.
 
 use palpate::analysis::{Analysis, Finding, HoldAnalysis, JointAnalysis, JointHolds, Severity, Signal};
-use palpate::identify::{Estimate, ExponentChoice, TrendVerdict};
+use palpate::fit::{Estimate, ExponentChoice, TrendVerdict};
 use palpate::segment::{After, HoldMode, Phase, RelaxationType};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

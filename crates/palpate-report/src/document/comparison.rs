@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use palpate::choose::{Certainty, CompareOptions, Comparison, RampChoice, Ranking, Row, Verdict};
-use palpate::identify::{Estimate, Forecast, LawFit, Loss, SampleChoice, SpectrumFit};
+use palpate::fit::{Estimate, Forecast, LawFit, Loss, SampleChoice, SpectrumFit};
+use palpate::forecast::{Certainty, CompareOptions, Comparison, RampChoice, Ranking, Row, Verdict};
 use palpate::laws::Response;
 use palpate::segment::HoldStart;
 use schemars::JsonSchema;
@@ -376,7 +376,7 @@ fn law(row: &Row, change: f64, lowest_aicc: f64, quantity: Quantity) -> LawDocum
 }
 
 fn numbers(fit: &LawFit, quantity: Quantity) -> BTreeMap<String, NumberDocument> {
-    let named = |number: &palpate::identify::LawNumber| {
+    let named = |number: &palpate::fit::LawNumber| {
         let suffix = quantity.suffix(number.unit)?;
         Some((format!("{}{suffix}", number.name), NumberDocument::from(&number.estimate)))
     };

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use palpate::analysis::{HoldAnalysis, Prediction, Signal};
-use palpate::identify::{Domain, Estimate, ExponentChoice, LatencyFit, Termination};
+use palpate::fit::{Domain, Estimate, ExponentChoice, LatencyFit, Termination};
 use schemars::JsonSchema;
 use serde::Serialize;
 

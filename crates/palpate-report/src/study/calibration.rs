@@ -1,7 +1,7 @@
 //! A whole record calibrated: tables, text and figure.
 
 use palpate::calibrate::{Calibration, Material, MaterialUnit, NumberProfile, RateLaw};
-use palpate::identify::{Interval, Termination};
+use palpate::fit::{Interval, Termination};
 
 use super::StudyError;
 use super::findings::wrapped;
@@ -173,11 +173,9 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
         remarks.push(format!("The record {how}. Holds of different excess strain would tell it."));
     }
     let (correlation, _) = match made.noise {
-        palpate::identify::NoiseModel::White => (0.0, 0.0),
-        palpate::identify::NoiseModel::Autoregressive { correlation } => (correlation, 1.0),
-        palpate::identify::NoiseModel::WhiteAndAutoregressive { correlation, share } => {
-            (correlation * share.sqrt(), share)
-        }
+        palpate::fit::NoiseModel::White => (0.0, 0.0),
+        palpate::fit::NoiseModel::Autoregressive { correlation } => (correlation, 1.0),
+        palpate::fit::NoiseModel::WhiteAndAutoregressive { correlation, share } => (correlation * share.sqrt(), share),
     };
     if correlation > 0.9 && made.relative > 5e-3 {
         remarks.push(format!(

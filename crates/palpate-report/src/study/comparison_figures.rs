@@ -1,7 +1,7 @@
 //! Figures of compared laws.
 
-use palpate::choose::{Comparison, Row, name_in_words};
-use palpate::identify::SpectrumFit;
+use palpate::fit::SpectrumFit;
+use palpate::forecast::{Comparison, Row, name_in_words};
 use palpate::laws::Law;
 
 use super::record_figures::MOST_PANELS;
@@ -211,8 +211,8 @@ pub(super) fn chosen(record: &ComparedRecord) -> String {
 
 #[cfg(test)]
 mod tests {
-    use palpate::choose::{CompareOptions, compare_laws};
-    use palpate::identify::Samples;
+    use palpate::fit::Samples;
+    use palpate::forecast::{CompareOptions, compare_laws};
     use palpate::test_problems::noisy_hold;
 
     use super::*;

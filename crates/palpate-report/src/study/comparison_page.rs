@@ -1,6 +1,6 @@
 //! The page of compared laws.
 
-use palpate::choose::Comparison;
+use palpate::forecast::Comparison;
 
 use super::record_figures::MOST_PANELS;
 use super::{Bundle, Pictures, StudyError, comparison_figures, comparison_markdown, comparison_tables, findings};

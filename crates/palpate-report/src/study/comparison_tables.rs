@@ -1,6 +1,6 @@
 //! Tables of compared laws.
 
-use palpate::choose::{Certainty, Comparison, Ranking, Row, Verdict};
+use palpate::forecast::{Certainty, Comparison, Ranking, Row, Verdict};
 use palpate::laws::Law;
 
 use super::findings;

@@ -1,7 +1,7 @@
 //! Figures of an analysed record.
 
 use palpate::analysis::{Analysis, HoldAnalysis, Signal};
-use palpate::identify::{ExponentChoice, LatencyFit, Termination};
+use palpate::fit::{ExponentChoice, LatencyFit, Termination};
 use palpate::segment::{After, Phase};
 
 use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};

@@ -3,7 +3,7 @@
 use std::slice;
 
 use palpate::analysis::{Analysis, JointHolds};
-use palpate::identify::TrendVerdict;
+use palpate::fit::TrendVerdict;
 use palpate::segment::{After, Phase};
 
 use super::{

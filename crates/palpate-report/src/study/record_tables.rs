@@ -1,7 +1,7 @@
 //! Tables of an analysed record.
 
 use palpate::analysis::{Analysis, HoldAnalysis, JointHolds, Signal};
-use palpate::identify::{Domain, Estimate, ExponentChoice, LatencyFit, Termination, TrendVerdict};
+use palpate::fit::{Domain, Estimate, ExponentChoice, LatencyFit, Termination, TrendVerdict};
 use palpate::record::Correction;
 use palpate::segment::{After, RelaxationType};
 

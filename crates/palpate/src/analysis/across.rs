@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::joint::{JointAnalysis, joint};
 use super::{AnalysisOptions, HoldAnalysis};
-use crate::identify::LatencyFit;
+use crate::fit::LatencyFit;
 use crate::segment::After;
 use crate::statistics::coverage_factor;
 

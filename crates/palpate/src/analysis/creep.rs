@@ -1,8 +1,8 @@
 //! Holds of constant force: the displacement creeps.
 
 use super::{Finding, comparison_findings};
-use crate::choose::{CompareOptions, Comparison, compare_laws};
-use crate::identify::Samples;
+use crate::fit::Samples;
+use crate::forecast::{CompareOptions, Comparison, compare_laws};
 use crate::laws::Response;
 use crate::record::{Record, RecordError};
 use crate::segment::{
@@ -126,7 +126,7 @@ fn force_held(
 ///
 /// ```
 /// use palpate::analysis::creep_holds;
-/// use palpate::choose::CompareOptions;
+/// use palpate::forecast::CompareOptions;
 /// use palpate::record::Record;
 /// use palpate::segment::SegmentOptions;
 /// // 6 N reached in 1 s and held, while the jaw goes on by 0.3 mm with a time of 5 s

@@ -10,7 +10,7 @@ mod seen;
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::TrendVerdict;
+use crate::fit::TrendVerdict;
 use crate::laws::Law;
 use crate::record::Column;
 use crate::segment::{Ripple, Rupture, TouchMethod};

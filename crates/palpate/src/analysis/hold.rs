@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 use super::behaviour::not_a_hold;
 use super::rate_bias::{RateBias, rate_bias};
 use super::{AnalysisOptions, Finding};
-use crate::choose::{Comparison, RampChoice, compare_laws};
 use crate::contact::Specimen;
-use crate::identify::{
+use crate::fit::{
     ExponentChoice, FitError, LatencyFit, LawFit, OrderSelection, Samples, Termination, fit_hold, fit_rates,
     select_order,
 };
+use crate::forecast::{Comparison, RampChoice, compare_laws};
 use crate::laws::{Law, Loading};
 use crate::record::Record;
 use crate::segment::{After, HoldMode, Relaxation, RelaxationType, Segment, classify_relaxation};

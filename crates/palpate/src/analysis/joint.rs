@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::hold::Signal;
 use super::{AnalysisOptions, Finding, HoldAnalysis};
-use crate::identify::{
+use crate::fit::{
     ExponentChoice, HoldWeights, JointComparison, JointFit, JointOptions, Samples, TrendVerdict, compare_joint,
     fit_joint,
 };

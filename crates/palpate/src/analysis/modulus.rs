@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{AnalysisOptions, Geometry};
 use crate::contact::Specimen;
-use crate::identify::{ExponentChoice, LatencyFit, fit_hold, select_order};
+use crate::fit::{ExponentChoice, LatencyFit, fit_hold, select_order};
 use crate::record::Record;
 use crate::segment::{After, Phase, Segment, Segmentation};
 use crate::statistics::{median, noise};

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::choose::CompareOptions;
 use crate::contact::{Layers, LayersError, Shape, Sides};
-use crate::identify::FitOptions;
+use crate::fit::FitOptions;
+use crate::forecast::CompareOptions;
 use crate::record::CorrectionOptions;
 use crate::segment::{ContactChoice, GivenHold, SegmentOptions};
 use crate::simulate::Separation;

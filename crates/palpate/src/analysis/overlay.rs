@@ -2,7 +2,7 @@
 
 use super::{AnalysisOptions, HoldAnalysis};
 use crate::contact::{Layers, Specimen};
-use crate::identify::LatencyFit;
+use crate::fit::LatencyFit;
 use crate::latency::LatencyLaw;
 use crate::record::Record;
 use crate::segment::{After, Segmentation};

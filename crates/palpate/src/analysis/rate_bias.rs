@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::HoldAnalysis;
-use crate::identify::{ExponentChoice, FitOptions, LatencyFit, fit_rates};
+use crate::fit::{ExponentChoice, FitOptions, LatencyFit, fit_rates};
 use crate::random::Noise;
 use crate::statistics::{noise_in_time, quantile};
 use crate::strain::{RateWindow, strain_rates};

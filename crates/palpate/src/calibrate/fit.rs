@@ -7,8 +7,8 @@ use super::material::names;
 use super::profile::FARTHEST;
 use super::search::{Problem, search};
 use super::{CalibrateError, CalibrationData, Candidate, Material, MaterialNumber, MaterialUncertainty, Shown};
-use crate::choose::{Criteria, criteria};
-use crate::identify::{Assessed, Estimate, NoiseModel, Scale, Termination};
+use crate::fit::{Assessed, Estimate, NoiseModel, Scale, Termination};
+use crate::forecast::{Criteria, criteria};
 use crate::simulate::{Motion, simulate_force};
 
 /// How well a calibration foretells what it was not fitted to.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Candidate, EquilibriumLaw, RateLaw};
 use crate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
-use crate::identify::Estimate;
+use crate::fit::Estimate;
 use crate::latency::LatencyLaw;
 use crate::laws::{ExponentChoice, Law};
 use crate::simulate::{

@@ -6,7 +6,7 @@
 //! z(v) = √((χ²(v)/χ²_min − 1)(N − p)) ≤ t √w
 //! ```
 //!
-//! as for single holds ([`profile_interval`](crate::identify::profile_interval)): t is Student's quantile, w the variance of the number for
+//! as for single holds ([`profile_interval`](crate::fit::profile_interval)): t is Student's quantile, w the variance of the number for
 //! residuals that correlate as they do over that for white ones. Where χ² is a parabola of the logarithm this is the interval that stands
 //! beside the number; where it is not, the profile is the one to believe.
 
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::candidate::Prepared;
 use super::search::{Found, Problem};
 use super::{CalibrateError, Calibration, CalibrationData, Material, MaterialNumber};
-use crate::identify::Interval;
+use crate::fit::Interval;
 
 /// The profile interval of a number of a material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

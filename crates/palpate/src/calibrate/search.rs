@@ -7,7 +7,7 @@
 use super::candidate::Prepared;
 use super::profile::Held;
 use super::{CalibrateError, CalibrationData};
-use crate::identify::{Cholesky, Termination};
+use crate::fit::{Cholesky, Termination};
 use crate::simulate::{Motion, simulate_force};
 
 /// Residuals of a candidate on some samples.

@@ -42,7 +42,7 @@ pub(super) const ALWAYS: f64 = 3.156e8;
 /// use palpate::calibrate::{Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUnit, Shown};
 /// use palpate::contact::{Shape, Sides};
 /// use palpate::grip::{Grasp, Grip, Lasts, Limits, Plan};
-/// use palpate::identify::Estimate;
+/// use palpate::fit::Estimate;
 /// use palpate::simulate::Separation;
 ///
 /// // The paper's ball, its numbers without errors.

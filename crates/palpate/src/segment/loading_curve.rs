@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::Segment;
 use crate::contact::{Shape, Sides};
-use crate::identify::{ExponentChoice, FitOptions, LatencyFit, fit_hold};
+use crate::fit::{ExponentChoice, FitOptions, LatencyFit, fit_hold};
 use crate::record::Record;
 use crate::statistics::{effective_count, lag_one_correlation, median, noise};
 

@@ -1,6 +1,6 @@
 //! Bytes read as a law, options and columns: shared by the property test of inputs and the fuzz target `fit_law`.
 
-use palpate::identify::{LawFit, LawOptions, Loss, Samples, Termination, fit_law};
+use palpate::fit::{LawFit, LawOptions, Loss, Samples, Termination, fit_law};
 use palpate::laws::{Law, Response};
 
 /// The laws that are tried.

@@ -1,6 +1,6 @@
 //! How often intervals contain the truth: simulated holds with noise, fitted many times.
 
-use palpate::identify::{BootstrapOptions, LawOptions, Samples, bootstrap, fit_law, profile_interval};
+use palpate::fit::{BootstrapOptions, LawOptions, Samples, bootstrap, fit_law, profile_interval};
 use palpate::laws::{ExponentChoice, Law, LawCurve, Response, Shape, Term};
 use palpate::test_problems::Noise;
 

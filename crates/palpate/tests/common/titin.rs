@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use palpate::identify::Samples;
+use palpate::fit::Samples;
 use palpate::laws::Loading;
 
 /// A ramp and the hold after it.

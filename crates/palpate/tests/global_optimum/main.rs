@@ -9,7 +9,7 @@ mod brute;
 mod double_double;
 
 use brute::{Subject, free_numbers, has_reference};
-use palpate::identify::{LawFit, LawOptions, Samples, Termination, fit_law};
+use palpate::fit::{LawFit, LawOptions, Samples, Termination, fit_law};
 use palpate::laws::{Law, LawCurve, Response, Shape, Term};
 use palpate::test_problems::Noise;
 

@@ -17,7 +17,7 @@ use std::thread;
 use std::time::Instant;
 
 use palpate::analysis::AnalysisOptions;
-use palpate::choose::CompareOptions;
+use palpate::forecast::CompareOptions;
 use palpate::number::counted;
 use palpate_files::description::TestDescription;
 use palpate_report::document::Software;

@@ -1,7 +1,7 @@
 //! What a finding may mean, and what helps.
 
 use super::Finding;
-use crate::identify::TrendVerdict;
+use crate::fit::TrendVerdict;
 
 impl Finding {
     /// What it may mean.

@@ -1,0 +1,94 @@
+//! The restricted likelihood of a noise, and of AR(1) at every ρ.
+
+use super::minimum::minimise;
+use super::{Noise, NoiseModel};
+use crate::fit::linear_algebra::{Cholesky, Few, Square};
+use crate::statistics::dot;
+use crate::vector::products::cross_products;
+
+/// Value of the restricted likelihood: −2 ln L up to a constant, and the variance that belongs to it.
+#[derive(Clone, Copy)]
+pub(super) struct Likelihood {
+    pub(super) deviance: f64,
+    pub(super) variance: f64,
+}
+
+impl Likelihood {
+    /// From ZᵀR⁻¹Z with Z = (J, r), and ln |R|:
+    /// −2 ln L = (N − p) ln σ² + ln |R| + ln |JᵀR⁻¹J|, σ² = (rᵀR⁻¹r − what J takes up)/(N − p).
+    pub(super) fn of(product: &[f64], log_determinant: f64, samples: usize) -> Option<Self> {
+        let size = product.len().isqrt();
+        let numbers = size - 1;
+        let block: Square = (0..numbers * numbers).map(|i| product[i / numbers * size + i % numbers]).collect();
+        let factor = Cholesky::new(&block, numbers)?;
+        let right = &product[numbers * size..numbers * size + numbers];
+        let mut taken = Few::from_slice(right);
+        factor.solve(&mut taken);
+        let left = product[size * size - 1] - dot(right, &taken);
+        let freedom = (samples - numbers) as f64;
+        let variance = left / freedom;
+        let deviance = freedom * variance.ln() + log_determinant + factor.log_determinant();
+        deviance.is_finite().then_some(Self { deviance, variance })
+    }
+}
+
+/// ρ from ln of how many samples count as one, κ = ln((1 + ρ)/(1 − ρ)): the scale on which ρ is searched.
+pub(super) fn correlation_of(kappa: f64) -> f64 {
+    (0.5 * kappa).tanh()
+}
+
+/// AR(1): its R⁻¹ has three diagonals, so products of neighbours, formed once, give the likelihood at every ρ.
+pub(super) struct Neighbours {
+    samples: usize,
+    size: usize,
+    /// ZᵀZ.
+    same: Vec<f64>,
+    /// Σ z_i z_{i+1}ᵀ, made symmetric.
+    next: Vec<f64>,
+    /// Products of the first and of the last row.
+    ends: Vec<f64>,
+}
+
+impl Neighbours {
+    pub(super) fn new(jacobian: &[&[f64]], residuals: &[f64]) -> Self {
+        let all: Vec<&[f64]> = jacobian.iter().copied().chain([residuals]).collect();
+        let (samples, size) = (residuals.len(), all.len());
+        let early: Vec<&[f64]> = all.iter().map(|column| &column[..samples - 1]).collect();
+        let late: Vec<&[f64]> = all.iter().map(|column| &column[1..]).collect();
+        let mut same = vec![0.0; size * size];
+        let mut shifted = vec![0.0; size * size];
+        cross_products(&all, &all, &mut same);
+        cross_products(&early, &late, &mut shifted);
+        let pairs = || (0..size).flat_map(|i| (0..size).map(move |j| (i, j)));
+        Self {
+            samples,
+            size,
+            same,
+            next: pairs().map(|(i, j)| shifted[i * size + j] + shifted[j * size + i]).collect(),
+            ends: pairs().map(|(i, j)| all[i][0] * all[j][0] + all[i][samples - 1] * all[j][samples - 1]).collect(),
+        }
+    }
+
+    /// R⁻¹ has 1 + ρ² on its diagonal (1 at the ends) and −ρ beside it, over 1 − ρ²; |R| = (1 − ρ²)^(N−1).
+    pub(super) fn likelihood(&self, kappa: f64) -> Option<Likelihood> {
+        let rho = correlation_of(kappa);
+        let square = rho * rho;
+        let entry =
+            |i: usize| ((1.0 + square) * self.same[i] - square * self.ends[i] - rho * self.next[i]) / (1.0 - square);
+        let product: Square = (0..self.size * self.size).map(entry).collect();
+        Likelihood::of(&product, (self.samples - 1) as f64 * (1.0 - square).ln(), self.samples)
+    }
+
+    /// The best ρ, between white noise and noise that is one sample in all.
+    pub(super) fn noise(&self) -> Option<(f64, Noise)> {
+        let model = |kappa: f64| NoiseModel::Autoregressive {
+            correlation: correlation_of(kappa),
+        };
+        let most = (self.samples as f64).ln();
+        let evaluate = |x: &[f64]| if x[0] < 0.0 || x[0] > most { None } else { self.likelihood(x[0]) };
+        let last = self.same.len() - 1;
+        let start = 2.0 * (0.5 * self.next[last] / self.same[last]).clamp(-0.999, 0.999).atanh();
+        let found = minimise(&evaluate, &[start.clamp(0.1, most - 0.1)])?;
+        Some(found.noise(&evaluate, |x| model(x[0])))
+    }
+}

@@ -1,0 +1,203 @@
+//! The samples of a hold, checked and brought to units in which every hold looks alike.
+
+use super::FitError;
+use super::separable::Target;
+use crate::vector::columns::{all_finite, extremes, multiply, rises, shifted};
+
+/// A hold to be fitted: times in s, values in their unit, and how far each may be off.
+///
+/// Times rise strictly; the first is the zero of the law. Standard deviations weigh samples by their inverse square; only
+/// their ratios matter for the estimates, an infinite one leaves its sample out.
+///
+/// ```
+/// use palpate::fit::{Samples, fit_law, LawOptions};
+/// use palpate::laws::Law;
+/// let times: Vec<f64> = (0..50).map(f64::from).collect();
+/// let values: Vec<f64> = times.iter().map(|t| 2.0 + 3.0 * (-t / 8.0).exp()).collect();
+/// let fit = fit_law(&Samples::new(&times, &values), Law::StandardLinearSolid, &LawOptions::default())?;
+/// assert!((fit.value("time").unwrap() - 8.0).abs() < 1e-9);
+/// # Ok::<(), palpate::fit::FitError>(())
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct Samples<'a> {
+    pub(super) times: &'a [f64],
+    pub(super) values: &'a [f64],
+    pub(super) deviations: Option<&'a [f64]>,
+}
+
+impl<'a> Samples<'a> {
+    /// Samples of equal weight.
+    #[must_use]
+    pub fn new(times: &'a [f64], values: &'a [f64]) -> Self {
+        Self {
+            times,
+            values,
+            deviations: None,
+        }
+    }
+
+    /// The same with a standard deviation for each.
+    #[must_use]
+    pub fn with_deviations(self, deviations: &'a [f64]) -> Self {
+        Self {
+            deviations: Some(deviations),
+            ..self
+        }
+    }
+
+    /// Times, s.
+    #[must_use]
+    pub fn times(&self) -> &'a [f64] {
+        self.times
+    }
+
+    /// Values.
+    #[must_use]
+    pub fn values(&self) -> &'a [f64] {
+        self.values
+    }
+
+    /// Whether a law with so many numbers can be fitted to these samples at all.
+    pub(super) fn check(&self, parameters: usize) -> Result<(), FitError> {
+        if self.times.len() != self.values.len() {
+            return Err(FitError::Lengths {
+                abscissas: self.times.len(),
+                values: self.values.len(),
+            });
+        }
+        if self.deviations.is_some_and(|deviations| deviations.len() != self.times.len()) {
+            return Err(FitError::Lengths {
+                abscissas: self.times.len(),
+                values: self.deviations.map_or(0, <[f64]>::len),
+            });
+        }
+        let deviations = self.deviations.unwrap_or(&[]);
+        if let Some(index) = deviations.iter().position(|deviation| deviation.is_nan() || *deviation <= 0.0) {
+            return Err(FitError::Deviation {
+                index,
+                found: deviations[index],
+            });
+        }
+        let found = match self.deviations {
+            Some(deviations) => deviations.iter().filter(|deviation| deviation.is_finite()).count(),
+            None => self.times.len(),
+        };
+        if found < parameters + 2 {
+            return Err(FitError::TooFewSamples {
+                parameters,
+                needed: parameters + 2,
+                found,
+            });
+        }
+        if all_finite(self.times) && all_finite(self.values) && rises(self.times) {
+            return Ok(());
+        }
+        match not_finite([("time", self.times), ("value", self.values)]) {
+            Some(error) => Err(error),
+            None => {
+                let rising = self.times.windows(2).take_while(|pair| pair[0] < pair[1]).count();
+                Err(FitError::TimeNotRising { index: rising + 1 })
+            }
+        }
+    }
+
+    /// These without the samples that may be off by anything, which say nothing; `None` if there is no such sample.
+    fn certain(&self) -> Option<[Vec<f64>; 3]> {
+        let deviations = self.deviations.filter(|deviations| !all_finite(deviations))?;
+        let counts = |i: &usize| deviations[*i].is_finite();
+        let kept = |column: &[f64]| (0..column.len()).filter(counts).map(|i| column[i]).collect();
+        Some([self.times, self.values, deviations].map(kept))
+    }
+}
+
+/// A hold in units of its own duration and range.
+#[derive(Debug, Clone)]
+pub(super) struct Scaled {
+    pub(super) times: Vec<f64>,
+    /// (y − center)/range, times `roots`.
+    pub(super) values: Vec<f64>,
+    /// Square roots of the weights, one at the root mean square; `None` if all are alike.
+    pub(super) roots: Option<Vec<f64>>,
+    /// Root mean square of 1/σ: what the roots were divided by; 1 without deviations.
+    pub(super) precision: f64,
+    pub(super) duration: f64,
+    pub(super) center: f64,
+    pub(super) range: f64,
+}
+
+impl Scaled {
+    /// Scales checked samples; `constant` is the constant of the law if it is given.
+    pub(super) fn new(samples: &Samples<'_>, constant: Option<f64>) -> Result<Self, FitError> {
+        // Of a sample that says nothing only its time counts, if it is the first or the last.
+        let start = samples.times[0];
+        let duration = samples.times[samples.times.len() - 1] - start;
+        let certain = samples.certain();
+        let samples = certain
+            .as_ref()
+            .map_or(*samples, |[times, values, deviations]| Samples::new(times, values).with_deviations(deviations));
+        let (times, values) = (samples.times, samples.values);
+        let (low, high) = extremes(values);
+        if low == high {
+            return Err(FitError::Constant {
+                value: low,
+                samples: values.len(),
+            });
+        }
+        let center = constant.unwrap_or(low + 0.5 * (high - low));
+        let range = if constant.is_some() { (high - center).abs().max((low - center).abs()) } else { high - low };
+        let first = times.iter().map(|t| (t - start) / duration).find(|t| *t > 0.0).unwrap_or(1.0);
+        let invertible = |span: f64| span.is_finite() && (1.0 / span).is_finite();
+        if !(invertible(range) && invertible(duration) && first > f64::MIN_POSITIVE * 1e6) {
+            return Err(FitError::OutOfRange);
+        }
+        let (per_duration, per_range) = (1.0 / duration, 1.0 / range);
+        let (roots, precision) = samples.deviations.map_or((None, 1.0), |deviations| {
+            let (roots, precision) = roots_of(deviations);
+            (Some(roots), precision)
+        });
+        let mut scaled = shifted(values, center, per_range);
+        if let Some(roots) = &roots {
+            multiply(&mut scaled, roots);
+        }
+        Ok(Self {
+            times: shifted(times, start, per_duration),
+            values: scaled,
+            roots,
+            precision,
+            duration,
+            center,
+            range,
+        })
+    }
+
+    pub(super) fn target(&self) -> Target<'_> {
+        Target::new(&self.values, self.roots.as_deref())
+    }
+
+    /// ln λ, in the units of the fit, from the slowest to the fastest rate that such a hold can show: 10⁻³ per duration to
+    /// 10³ per first sample step.
+    pub(super) fn log_rates(&self) -> (f64, f64) {
+        let first = self.times.iter().copied().find(|t| *t > 0.0).unwrap_or(1.0);
+        (1e-3f64.ln(), (1e3 / first).ln())
+    }
+}
+
+/// The first sample of which a number is none, if there is one.
+pub(super) fn not_finite(columns: [(&'static str, &[f64]); 2]) -> Option<FitError> {
+    let first = |(what, column): (&'static str, &[f64])| {
+        let index = column.iter().position(|value| !value.is_finite())?;
+        let found = column[index];
+        Some((index, FitError::NotFinite { index, what, found }))
+    };
+    columns.into_iter().filter_map(first).min_by_key(|(index, _)| *index).map(|(_, error)| error)
+}
+
+/// 1/σ over its root mean square, and that, with care for σ near the limits of double precision.
+fn roots_of(deviations: &[f64]) -> (Vec<f64>, f64) {
+    let least = deviations.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut roots: Vec<f64> = deviations.iter().map(|deviation| least / deviation).collect();
+    let mean_square = roots.iter().map(|root| root * root).sum::<f64>() / roots.len() as f64;
+    let size = mean_square.sqrt();
+    roots.iter_mut().for_each(|root| *root /= size);
+    (roots, size / least)
+}

@@ -1,0 +1,288 @@
+//! All laws on one hold, ranked.
+
+use serde::{Deserialize, Serialize};
+
+use super::criteria::{Criteria, criteria};
+use super::forward::ForwardScore;
+use super::verdict::{Verdict, judge};
+use crate::fit::{FitError, LawFit, LawOptions, Samples, SpectrumFit, SpectrumOptions, fit_law, fit_spectrum};
+use crate::laws::{ExponentChoice, Law, Response};
+use crate::statistics::{mean, noise_in_time};
+
+/// What linear laws take the loading before a hold for. The latency law needs no choice: all that it remembers of a loading is
+/// the excess at its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RampChoice {
+    /// A step at the start of the fit, as is usual: right where the ramp is short beside all times of the law.
+    #[default]
+    Step,
+    /// What was measured, by the hereditary integral; of use to [`analyze`](crate::analysis::analyze), which knows the ramp.
+    Measured,
+}
+
+/// What may be asked of [`compare_laws`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct CompareOptions {
+    /// Laws that are compared; if empty, all that suit the response.
+    pub laws: Vec<Law>,
+    /// Options of every fit.
+    pub fit: LawOptions,
+    /// What linear laws take the loading before a hold for.
+    pub ramps: RampChoice,
+    /// Cut points as shares of the duration of the hold, each between 0 and 1.
+    pub cuts: Vec<f64>,
+}
+
+impl Default for CompareOptions {
+    fn default() -> Self {
+        Self {
+            laws: Vec::new(),
+            fit: LawOptions::default(),
+            ramps: RampChoice::default(),
+            cuts: vec![0.25, 1.0 / 3.0, 0.5],
+        }
+    }
+}
+
+impl CompareOptions {
+    /// The laws that will be compared.
+    #[must_use]
+    pub fn laws(&self) -> Vec<Law> {
+        if !self.laws.is_empty() {
+            return self.laws.clone();
+        }
+        let latency = |exponent| Law::Latency { exponent };
+        let all = [
+            latency(ExponentChoice::Free),
+            latency(ExponentChoice::Fixed(5.0)),
+            Law::StandardLinearSolid,
+            Law::Prony { terms: 2 },
+            Law::Prony { terms: 3 },
+            Law::Spectrum,
+            Law::Stretched,
+            Law::FractionalZener,
+            Law::FungContinuous,
+            Law::Power,
+            Law::Logarithmic,
+            Law::Diffusion,
+        ];
+        let creep = [Law::KelvinVoigt, Law::Burgers];
+        let extra = creep.into_iter().filter(|_| self.fit.response == Response::Creep);
+        all.into_iter().chain(extra).filter(|law| law.describes(self.fit.response)).collect()
+    }
+}
+
+/// By what laws were ranked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ranking {
+    /// By the forward score.
+    Forward,
+    /// By BIC at the effective number of samples: the hold is too short, or too noisy, to foretell anything.
+    Information,
+}
+
+/// One law on one hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// The law.
+    pub law: Law,
+    /// Its fit to the whole hold (for the spectrum see `spectrum`).
+    pub fit: Result<LawFit, FitError>,
+    /// The spectrum, if that is the law.
+    pub spectrum: Option<SpectrumFit>,
+    /// Numbers that the data determine; not a whole one for a smoothed spectrum.
+    pub numbers: f64,
+    /// Root mean square residual, in the unit of the signal.
+    pub rmse: f64,
+    /// Criteria as textbooks define them, at the number of samples.
+    pub criteria: Option<Criteria>,
+    /// BIC at the effective number of samples, less the lowest.
+    pub delta_bic: Option<f64>,
+    /// What it foretells.
+    pub forward: ForwardScore,
+}
+
+impl Row {
+    /// Whether the law was fitted, to an optimum inside its range.
+    #[must_use]
+    pub fn is_good(&self) -> bool {
+        self.spectrum.is_some() || self.fit.as_ref().is_ok_and(|fit| fit.termination.is_good())
+    }
+}
+
+/// Laws compared on one hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// One row a law, best first.
+    pub rows: Vec<Row>,
+    /// By what they are ranked.
+    pub ranking: Ranking,
+    /// Cut points, s after the first sample.
+    pub cuts: Vec<f64>,
+    /// Time from the first to the last sample, s.
+    pub duration: f64,
+    /// Change of the signal over the hold, in its unit: forward errors are shares of it.
+    pub change: f64,
+    /// Standard deviation of the noise, in the unit of the signal.
+    pub noise: f64,
+    /// Samples.
+    pub samples: usize,
+    /// Samples that count as independent, by the residuals of the closest fit.
+    pub effective_samples: f64,
+    /// Which law to use; `None` if none could be fitted.
+    pub verdict: Option<Verdict>,
+}
+
+/// Fits laws to a hold, lets each foretell the last part from the first, and ranks them.
+///
+/// Laws are ranked by their forward score: the error over the rest of the hold of a fit to its first quarter, third and half, as a share of
+/// the change of the signal. Where the signal changes too little after the first cut to be seen above its noise, or the
+/// first part has too few samples, the rank is by BIC at the effective number of samples.
+///
+/// ```
+/// use palpate::forecast::{CompareOptions, compare_laws};
+/// use palpate::fit::Samples;
+/// use palpate::test_problems::noisy_hold;
+/// let (times, values) = noisy_hold(500, 5.0, 1e-3);
+/// let comparison = compare_laws(&Samples::new(&times, &values), &CompareOptions::default())?;
+/// assert!(comparison.rows[0].forward.score.unwrap() < 0.01);
+/// # Ok::<(), palpate::fit::FitError>(())
+/// ```
+///
+/// # Errors
+/// [`FitError`] for samples that no law can be fitted to.
+pub fn compare_laws(samples: &Samples<'_>, options: &CompareOptions) -> Result<Comparison, FitError> {
+    let mut rows: Vec<Row> = Vec::new();
+    for law in options.laws() {
+        rows.push(row(samples, law, options)?);
+    }
+    let (times, values) = (samples.times(), samples.values());
+    let duration = times[times.len() - 1] - times[0];
+    let change = change(values);
+    let noise = noise_in_time(times, values);
+    let mut cuts = cuts(samples, options, duration, noise);
+    let foretell_from = |rows: &mut [Row], cuts: &[f64]| {
+        for row in rows {
+            row.forward = ForwardScore::of(samples, row.law, &options.fit, cuts, change);
+        }
+    };
+    foretell_from(&mut rows, &cuts);
+    // A first part that no law can be fitted to (a force that has not changed by a digit yet) is no cut.
+    let told: Vec<bool> =
+        (0..cuts.len()).map(|cut| rows.iter().any(|row| row.forward.forecasts[cut].is_some())).collect();
+    if told.contains(&false) {
+        cuts = cuts.into_iter().zip(told).filter(|(_, told)| *told).map(|(cut, _)| cut).collect();
+        foretell_from(&mut rows, &cuts);
+    }
+    let closest = rows
+        .iter()
+        .filter_map(|row| row.fit.as_ref().ok())
+        .min_by(|a, b| a.residual_square.total_cmp(&b.residual_square));
+    let effective = closest.map_or(values.len() as f64, LawFit::effective_samples);
+    weigh(&mut rows, effective, values.len(), change);
+    let ranking = if cuts.is_empty() { Ranking::Information } else { Ranking::Forward };
+    let key = |row: &Row| match ranking {
+        Ranking::Forward => row.forward.score.unwrap_or(f64::INFINITY),
+        Ranking::Information => row.delta_bic.unwrap_or(f64::INFINITY),
+    };
+    rows.sort_by(|a, b| key(a).total_cmp(&key(b)));
+    let mut comparison = Comparison {
+        rows,
+        ranking,
+        cuts,
+        duration,
+        change,
+        noise,
+        samples: values.len(),
+        effective_samples: effective,
+        verdict: None,
+    };
+    comparison.verdict = judge(&comparison);
+    Ok(comparison)
+}
+
+fn row(samples: &Samples<'_>, law: Law, options: &CompareOptions) -> Result<Row, FitError> {
+    let mut row = Row {
+        law,
+        fit: Err(FitError::NoDecay),
+        spectrum: None,
+        numbers: 0.0,
+        rmse: f64::NAN,
+        criteria: None,
+        delta_bic: None,
+        forward: ForwardScore::default(),
+    };
+    if law == Law::Spectrum {
+        let fit = fit_spectrum(samples.times(), samples.values(), None, &SpectrumOptions::default())?;
+        row.numbers = fit.effective_parameters;
+        row.rmse = fit.rmse();
+        row.spectrum = Some(fit);
+        return Ok(row);
+    }
+    row.fit = fit_law(samples, law, &options.fit);
+    match &row.fit {
+        Ok(fit) => {
+            row.numbers = fit.free_numbers() as f64;
+            row.rmse = fit.rmse;
+        }
+        // A law may ask for more samples than there are; what no law can be fitted to is an error of the whole.
+        Err(FitError::TooFewSamples { .. } | FitError::NoForm { .. } | FitError::NoDecay) => {}
+        Err(error) => return Err(error.clone()),
+    }
+    Ok(row)
+}
+
+/// Change of the signal over the hold: first sample to the mean of the last hundredth.
+fn change(values: &[f64]) -> f64 {
+    let tail = (values.len() / 100).max(1);
+    (values[0] - mean(&values[values.len() - tail..])).abs()
+}
+
+/// Cut points at which there is something to foretell: enough samples before, and a change after that shows above the noise.
+fn cuts(samples: &Samples<'_>, options: &CompareOptions, duration: f64, noise: f64) -> Vec<f64> {
+    /// Least samples in the first part.
+    const FEWEST: usize = 30;
+    /// Least change after the cut, in standard deviations of the noise of the means that show it.
+    const SEEN: f64 = 5.0;
+    let (times, values) = (samples.times(), samples.values());
+    let tells = |cut: &f64| {
+        let first = times.partition_point(|t| t - times[0] <= *cut);
+        let rest = &values[first..];
+        if first < FEWEST || rest.len() < FEWEST / 3 {
+            return false;
+        }
+        let part = (rest.len() / 10).max(1);
+        let moved = (mean(&rest[..part]) - mean(&rest[rest.len() - part..])).abs();
+        moved > SEEN * noise * (2.0 / part as f64).sqrt()
+    };
+    options
+        .cuts
+        .iter()
+        .map(|share| share * duration)
+        .filter(|cut| *cut > 0.0 && *cut < duration)
+        .filter(tells)
+        .collect()
+}
+
+/// Fills the criteria of every row.
+fn weigh(rows: &mut [Row], effective: f64, samples: usize, change: f64) {
+    // Noise-free records leave rounding only; below this share of the signal all residuals are equal.
+    let floor = (1e-9 * change).powi(2) * samples as f64;
+    let square = |row: &Row| match (&row.fit, &row.spectrum) {
+        (_, Some(spectrum)) => Some(spectrum.residual_square.max(floor)),
+        (Ok(fit), None) => Some(fit.residual_square.max(floor)),
+        _ => None,
+    };
+    let count = samples as f64;
+    for row in rows.iter_mut() {
+        row.criteria = square(row).map(|square| criteria(square, count, row.numbers));
+        row.delta_bic = square(row).map(|square| criteria(square * effective / count, effective, row.numbers).bic);
+    }
+    let lowest = rows.iter().filter_map(|row| row.delta_bic).fold(f64::INFINITY, f64::min);
+    for row in rows {
+        row.delta_bic = row.delta_bic.map(|bic| bic - lowest);
+    }
+}

@@ -1,0 +1,225 @@
+//! A verdict in one sentence.
+
+use super::compare::{Comparison, Ranking};
+use super::verdict::{Certainty, Verdict};
+use crate::laws::{ExponentChoice, Law};
+
+/// Beyond this many times a cost is no longer told exactly.
+const MOST_TIMES: f64 = 1000.0;
+
+impl Comparison {
+    /// Which law to use, how sure that is, and what another would cost, in one sentence; `None` without a verdict.
+    ///
+    /// ```
+    /// use palpate::forecast::{CompareOptions, compare_laws};
+    /// use palpate::fit::Samples;
+    /// use palpate::laws::{ExponentChoice, Law};
+    /// let times: Vec<f64> = (0..400).map(|i| 0.1 * f64::from(i)).collect();
+    /// let values: Vec<f64> = times.iter().map(|t| 1.0 + 2.0 / (1.0 + 0.5 * t)).collect();
+    /// let laws = vec![Law::Latency { exponent: ExponentChoice::Fixed(2.0) }, Law::StandardLinearSolid];
+    /// let options = CompareOptions { laws, ..CompareOptions::default() };
+    /// let sentence = compare_laws(&Samples::new(&times, &values), &options)?.sentence().unwrap();
+    /// assert!(sentence.starts_with("Use the nonlinear latency law with n = 2 (3 numbers); that is clear."));
+    /// # Ok::<(), palpate::fit::FitError>(())
+    /// ```
+    #[must_use]
+    pub fn sentence(&self) -> Option<String> {
+        let verdict = self.verdict.as_ref()?;
+        let row = self.rows.iter().find(|row| row.law == verdict.law)?;
+        let mut text = format!("Use {} ({} numbers); ", name_in_words(row.law), rounded(row.numbers));
+        text.push_str(match verdict.certainty {
+            Certainty::Clear => "that is clear",
+            Certainty::Likely => "that is likely",
+            Certainty::Open => "that is open, since most laws do as well",
+        });
+        match self.ranking {
+            Ranking::Forward => text.push_str(&self.foretold(verdict)),
+            Ranking::Information => text.push_str(
+                ". The hold is too short, or changes too little, to tell what a law foretells: laws are ranked by how closely they fit for their numbers (BIC)",
+            ),
+        }
+        let rest: Vec<String> =
+            verdict.alike.iter().filter(|law| **law != verdict.law).map(|law| name_in_words(*law)).collect();
+        if !rest.is_empty() {
+            let verb = if rest.len() == 1 { "does" } else { "do" };
+            text.push_str(&format!("; {} {verb} as well", listed(&rest)));
+        }
+        text.push_str(&self.cost_of_others(verdict));
+        if !row.is_good() {
+            text.push_str("; no law found an optimum inside its range, so its numbers mean little");
+        }
+        text.push('.');
+        Some(text)
+    }
+
+    /// What the chosen law foretells, and where it is best.
+    fn foretold(&self, verdict: &Verdict) -> String {
+        let row = self.rows.iter().find(|row| row.law == verdict.law);
+        let score = row.and_then(|row| row.forward.score).unwrap_or(f64::NAN);
+        let parts: Vec<String> = self.cuts.iter().map(|cut| part_in_words(cut / self.duration)).collect();
+        let (won, all) = (verdict.cuts_won, self.cuts.len());
+        let won = match (won, all) {
+            (1, 1) => "where it is best or as good".to_owned(),
+            (0, _) => "though it is the best at no single cut point".to_owned(),
+            _ => format!("best or as good at {won} of {all} cut points"),
+        };
+        format!(
+            ". Fitted to the first {} of the hold it foretells the rest to {} of the change, {won}",
+            listed(&parts),
+            percent(score)
+        )
+    }
+
+    /// Whether what a law costs says anything: what it foretells always, how closely it fits only at an optimum.
+    fn counts(&self, law: Law) -> bool {
+        self.ranking == Ranking::Forward || self.rows.iter().any(|row| row.law == law && row.is_good())
+    }
+
+    /// The next law that is not alike, and the familiar standard linear solid or, failing that, the worst.
+    fn cost_of_others(&self, verdict: &Verdict) -> String {
+        let least = if self.ranking == Ranking::Forward { 1.0 } else { 0.0 };
+        let others: Vec<(Law, f64)> = verdict
+            .costs
+            .iter()
+            .copied()
+            .filter(|(law, cost)| !verdict.alike.contains(law) && *cost > least && self.counts(*law))
+            .collect();
+        let Some(next) = others.first().copied() else {
+            return String::new();
+        };
+        let familiar = others.iter().find(|(law, _)| *law == Law::StandardLinearSolid).or(others.last());
+        let mut told = vec![next];
+        told.extend(familiar.copied().filter(|(law, _)| *law != next.0));
+        let told: Vec<String> = told
+            .into_iter()
+            .map(|(law, cost)| match self.ranking {
+                Ranking::Forward => format!("{} is {} times", name_in_words(law), times(cost)),
+                Ranking::Information => format!("{} lies {} behind", name_in_words(law), rounded(cost)),
+            })
+            .collect();
+        let unit = if self.ranking == Ranking::Forward { " as far off" } else { "" };
+        format!("; {}{unit}", told.join(", ").replacen(", ", " and ", 1))
+    }
+}
+
+/// A law as a sentence names it: "the nonlinear latency law with n = 5".
+///
+/// ```
+/// use palpate::forecast::name_in_words;
+/// use palpate::laws::Law;
+/// assert_eq!(name_in_words(Law::Prony { terms: 2 }), "the Prony series of 2 terms");
+/// ```
+#[must_use]
+pub fn name_in_words(law: Law) -> String {
+    let title = law.description().title;
+    match law {
+        Law::Latency {
+            exponent: ExponentChoice::Fixed(n),
+        } if n != 1.0 => format!("the nonlinear latency law with n = {n}"),
+        Law::Prony { terms } => format!("the {title} of {terms} {}", if terms == 1 { "term" } else { "terms" }),
+        Law::Fung { terms } => format!("Fung's series of {terms} {}", if terms == 1 { "term" } else { "terms" }),
+        Law::FungContinuous => "Fung's continuous spectrum".to_owned(),
+        Law::StandardLinearSolid | Law::Spectrum | Law::Stretched | Law::Power => format!("the {title}"),
+        _ => format!("the {title} law"),
+    }
+}
+
+/// A share of the hold in words.
+fn part_in_words(share: f64) -> String {
+    let words = [(0.25, "quarter"), (1.0 / 3.0, "third"), (0.5, "half"), (0.75, "three quarters")];
+    let word = words.iter().find(|(value, _)| (value - share).abs() < 5e-3);
+    word.map_or_else(|| percent(share), |(_, word)| (*word).to_owned())
+}
+
+/// Two significant digits of a share, in per cent.
+fn percent(share: f64) -> String {
+    if share < 1e-5 { "less than 0.001 %".to_owned() } else { format!("{} %", rounded(100.0 * share)) }
+}
+
+fn times(ratio: f64) -> String {
+    if ratio > MOST_TIMES { format!("more than {MOST_TIMES}") } else { rounded(ratio) }
+}
+
+/// Two significant digits, without a decimal part that is zero.
+fn rounded(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let places = (1.0 - value.abs().log10().floor()) as i32;
+    if places <= 0 {
+        let step = 10f64.powi(-places);
+        return format!("{:.0}", (value / step).round() * step);
+    }
+    let text = format!("{value:.*}", places as usize);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// "a", "a and b", "a, b and c".
+fn listed(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::Samples;
+    use crate::forecast::{CompareOptions, compare_laws};
+    use crate::test_problems::noisy_hold;
+
+    fn sentence(samples: usize, laws: &[&str]) -> String {
+        let (times, values) = noisy_hold(samples, 5.0, 1e-3);
+        let laws = laws.iter().map(|law| law.parse().unwrap()).collect();
+        let options = CompareOptions {
+            laws,
+            ..CompareOptions::default()
+        };
+        compare_laws(&Samples::new(&times, &values), &options).unwrap().sentence().unwrap()
+    }
+
+    #[test]
+    fn a_clear_verdict_says_what_others_cost() {
+        let text = sentence(800, &["latency", "sls", "prony:2", "spectrum", "diffusion"]);
+        for words in [
+            "Use the nonlinear latency law (4 numbers)",
+            "Fitted to the first quarter, third and half of the hold it foretells the rest to",
+            "at 3 of 3 cut points",
+            "the standard linear solid is",
+            "times as far off.",
+        ] {
+            assert!(text.contains(words), "`{words}` is not in: {text}");
+        }
+    }
+
+    #[test]
+    fn a_short_hold_is_ranked_by_information_and_says_so() {
+        let text = sentence(20, &["latency:5", "sls", "diffusion"]);
+        assert!(text.contains("too short") && text.contains("BIC") && !text.contains("foretells the rest"), "{text}");
+    }
+
+    #[test]
+    fn numbers_are_rounded_for_people() {
+        let told: Vec<String> = [0.001_54, 0.15, 2.94, 52.3, 467.0, 1e3].into_iter().map(rounded).collect();
+        assert_eq!(told, ["0.0015", "0.15", "2.9", "52", "470", "1000"]);
+        assert_eq!((times(2.0), times(1e7)), ("2".to_owned(), "more than 1000".to_owned()));
+        assert_eq!((percent(0.0015), percent(1e-9)), ("0.15 %".to_owned(), "less than 0.001 %".to_owned()));
+        assert_eq!((part_in_words(0.332), part_in_words(0.2)), ("third".to_owned(), "20 %".to_owned()));
+    }
+
+    #[test]
+    fn every_law_has_words() {
+        for (name, words) in [
+            ("latency:2", "the nonlinear latency law with n = 2"),
+            ("spectrum", "the dense spectrum"),
+            ("power", "the power law"),
+            ("fung-continuous", "Fung's continuous spectrum"),
+            ("stretched", "the stretched exponential"),
+            ("diffusion", "the diffusion law"),
+        ] {
+            assert_eq!(name_in_words(name.parse().unwrap()), words);
+        }
+    }
+}
