@@ -4,7 +4,7 @@
 
 Runs `cargo run --release -p palpate --example coverage_study`, which simulates the holds, and writes
 validation/results/coverage.md and coverage.svg. Not a reference: nothing in the tests reads it; the fast version that the
-tests run is crates/palpate/tests/coverage.rs. Needs matplotlib for the figure.
+tests run is crates/palpate/tests/fits/coverage.rs. Needs matplotlib for the figure.
 """
 
 import json

@@ -5,15 +5,15 @@
 
 #![allow(unreachable_pub, dead_code, reason = "these modules are those of the test")]
 
-#[path = "../tests/segmentation_suite/others.rs"]
+#[path = "../tests/records/segmentation_suite/others.rs"]
 mod others;
-#[path = "../tests/segmentation_suite/protocols.rs"]
+#[path = "../tests/records/segmentation_suite/protocols.rs"]
 mod protocols;
-#[path = "../tests/segmentation_suite/record.rs"]
+#[path = "../tests/records/segmentation_suite/record.rs"]
 mod record;
-#[path = "../tests/segmentation_suite/score.rs"]
+#[path = "../tests/records/segmentation_suite/score.rs"]
 mod score;
-#[path = "../tests/segmentation_suite/suite.rs"]
+#[path = "../tests/records/segmentation_suite/suite.rs"]
 mod suite;
 
 use score::{Scored, rows, scored, table};

@@ -6,7 +6,7 @@
 mod tables;
 mod xls;
 #[allow(dead_code, reason = "other tests use the rest of it")]
-#[path = "../../spreadsheet/xls_book.rs"]
+#[path = "../../reading/spreadsheet/xls_book.rs"]
 mod xls_book;
 
 /// Name of a file of the corpus, and its bytes.

@@ -1,0 +1,236 @@
+//! `palpate batch`: many records to one table, whatever some of them are like, and however often it is stopped.
+#![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::common::{done, file, palpate, ramp_and_hold, refused};
+use palpate_files::parquet_table::{TableReader, Values};
+
+/// A folder of so many records, each a little different.
+fn records(folder: &Path, count: usize) {
+    fs::create_dir_all(folder.join("curves/deep")).unwrap();
+    for i in 0..count {
+        let name = format!("curves/{}c{i:03}.csv", if i % 3 == 0 { "deep/" } else { "" });
+        file(folder, &name, ramp_and_hold(5.0 + i as f64 / 10.0, 20.0));
+    }
+}
+
+fn lines(folder: &Path, name: &str) -> Vec<String> {
+    let text = fs::read_to_string(folder.join(name)).unwrap();
+    text.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect()
+}
+
+/// The cells of one column, by its name.
+fn column(table: &[String], name: &str) -> Vec<String> {
+    let index = table[0].split(',').position(|column| column == name).unwrap();
+    table[1..].iter().map(|line| line.split(',').nth(index).unwrap().to_owned()).collect()
+}
+
+#[test]
+fn a_folder_becomes_one_table_of_holds_and_laws() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    records(folder, 4);
+    done(folder, &["batch", "curves", "--out", "holds.csv"]);
+    let table = lines(folder, "holds.csv");
+    // Five exponents given and one free, in four records of one hold.
+    assert_eq!(table.len(), 1 + 4 * 6, "{table:?}");
+    let laws = column(&table, "law");
+    assert_eq!(laws[..6], ["latency:1", "latency:2", "latency:3", "latency:5", "latency:7", "latency"]);
+    let paths = column(&table, "record");
+    assert_eq!((paths[0].as_str(), paths[12].as_str()), ("curves/c001.csv", "curves/deep/c000.csv"));
+    // The record is (1 + 4 t)^(-1/4) above 1 N: n = 5, and λ = 1/s.
+    let number = |name: &str, row: usize| column(&table, name)[row].parse::<f64>().unwrap();
+    assert!((number("exponent", 5) - 5.0).abs() < 0.02, "{}", number("exponent", 5));
+    assert!((number("equilibrium_force_n", 3) - 1.0).abs() < 1e-3);
+    assert!((number("relative_rate_per_s", 3) - 1.0).abs() < 1e-2);
+    assert!(number("exponent_low", 5) < number("exponent", 5) && number("exponent", 5) < number("exponent_high", 5));
+    let text = fs::read_to_string(folder.join("holds.csv")).unwrap();
+    assert!(
+        text.starts_with("# palpate_batch: {") && text.contains("\"software\":\"palpate "),
+        "{}",
+        &text[..200]
+    );
+}
+
+#[test]
+fn a_hold_without_a_fit_has_its_row_and_says_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut text = "Time (s),Displacement (mm),Force (N)\n".to_owned();
+    for i in 0..400 {
+        let (t, later) = (0.1 * f64::from(i), (0.1 * f64::from(i) - 20.0).max(0.0));
+        let displacement = t.min(2.0) + later.min(2.0);
+        let relaxing = if (2.0..20.0).contains(&t) { 2.0 * (-(t - 2.0) / 3.0).exp() } else { 0.0 };
+        text.push_str(&format!("{t:.1},{displacement:.4},{:.5}\n", 5.0 * displacement + relaxing));
+    }
+    file(folder, "two.csv", text);
+    done(folder, &["batch", "two.csv", "--out", "holds.csv"]);
+    let table = lines(folder, "holds.csv");
+    assert_eq!(column(&table, "hold"), ["1", "1", "1", "1", "1", "1", "2"]);
+    let last = |name: &str| column(&table, name)[6].clone();
+    assert_eq!((last("law"), last("exponent"), last("start_s")), (String::new(), String::new(), "22.0".to_owned()));
+    assert!(last("findings").contains("no_relaxation"), "{}", last("findings"));
+}
+
+/// A record of nothing but creep had no row at all.
+#[test]
+fn a_record_of_creep_has_a_row_for_each_hold() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut text = "Time (s),Displacement (mm),Force (N)\n".to_owned();
+    for i in 0..1300 {
+        let t = 0.05 * f64::from(i);
+        let force = if t < 2.0 { 5.0 * t } else { 10.0 };
+        let creep = if t < 2.0 { 0.0 } else { 0.8 * (1.0 - (-(t - 2.0) / 8.0).exp()) };
+        text.push_str(&format!("{t:.2},{:.5},{force:.4}\n", 0.2 * force + creep));
+    }
+    file(folder, "creep.csv", text);
+    done(folder, &["batch", "creep.csv", "--out", "holds.csv"]);
+    let table = lines(folder, "holds.csv");
+    assert_eq!(
+        (table.len(), column(&table, "law"), column(&table, "mode")),
+        (2, vec![String::new()], vec!["force".to_owned()])
+    );
+    let findings = column(&table, "findings");
+    assert!(findings[0].contains("feedback_controlled"), "{findings:?}");
+}
+
+/// A file named by itself and by its folder was in the table twice, and a second batch read the table and the journal of the first.
+#[test]
+fn every_record_is_analysed_once_and_tables_are_no_records() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    records(folder, 2);
+    done(folder, &["batch", "curves", "--out", "curves/a.csv"]);
+    done(folder, &["batch", "curves", "--out", "curves/b.parquet"]);
+    let named = ["batch", "curves/c001.csv", "curves", "curves/*.csv", "curves/**/*", "--out", "c.csv"];
+    let error = String::from_utf8(palpate(folder, &named).stderr).unwrap();
+    assert!(error.contains("12 rows of 2 tests in 2 files"), "{error}");
+    assert_eq!(lines(folder, "c.csv").len(), 1 + 2 * 6);
+}
+
+#[test]
+fn parquet_holds_what_csv_holds() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    records(folder, 3);
+    done(folder, &["batch", "curves", "--out", "holds.csv", "--laws", "maxwell,standard-linear-solid"]);
+    done(
+        folder,
+        &["batch", "curves/**/*.csv", "--out", "holds.parquet", "--laws", "maxwell,standard-linear-solid"],
+    );
+    let table = lines(folder, "holds.csv");
+    let parquet = TableReader::new(fs::File::open(folder.join("holds.parquet")).unwrap()).unwrap();
+    assert_eq!(parquet.rows() as usize, table.len() - 1);
+    let names: Vec<&str> = parquet.fields().iter().map(|field| field.name.as_str()).collect();
+    assert_eq!(names.join(","), table[0]);
+    assert!(parquet.mark("palpate_batch").unwrap().contains("options"));
+    let rmse = names.iter().position(|name| *name == "relative_rmse").unwrap();
+    let Values::Number(stored) = parquet.values(0, rmse).unwrap() else {
+        panic!("no numbers")
+    };
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(folder.join("holds.csv")).unwrap();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    for (row, value) in rows.iter().zip(&stored) {
+        assert_eq!(row[rmse].parse().ok(), *value);
+    }
+    let others = rows.iter().filter(|row| row.iter().any(|cell| cell == "standard-linear-solid")).count();
+    assert_eq!(others, 3);
+}
+
+#[test]
+fn bad_records_are_listed_and_do_not_stop_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    records(folder, 3);
+    file(folder, "curves/empty.csv", "");
+    file(folder, "curves/picture.csv", b"\x89PNG\r\n\x1a\n");
+    file(folder, "curves/still.csv", "time_s,displacement_mm,force_n\n0,0,0\n1,0,0.5\n2,0,0\n");
+    let output = palpate(folder, &["batch", "curves", "--out", "holds.csv"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{error}");
+    assert_eq!(error.lines().filter(|line| line.starts_with("failed: curves/")).count(), 3, "{error}");
+    assert!(error.contains("failed: curves/empty.csv: the file is empty"), "{error}");
+    assert!(error.contains("18 rows of 3 tests in 6 files, 3 of 6 tests failed"), "{error}");
+    assert_eq!(lines(folder, "holds.csv").len(), 1 + 3 * 6);
+    // Mended, it is the only one that is read anew; so is a file that changed.
+    file(folder, "curves/empty.csv", ramp_and_hold(3.0, 20.0));
+    file(folder, "curves/c001.csv", ramp_and_hold(3.0, 30.0));
+    let output = palpate(folder, &["batch", "curves", "--out", "holds.csv"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(error.contains("24 rows of 4 tests in 6 files (4 were done before), 2 of 6 tests failed"), "{error}");
+}
+
+#[test]
+fn the_table_does_not_depend_on_threads_or_on_being_killed() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    records(folder, 60);
+    done(folder, &["batch", "curves", "--out", "whole.csv", "--threads", "1"]);
+    let whole = fs::read(folder.join("whole.csv")).unwrap();
+    let mut kept = 0;
+    for round in 0..40 {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_palpate"))
+            .args(["batch", "curves", "--out", "killed.csv", "--threads", "3"])
+            .current_dir(folder)
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let until = Instant::now() + Duration::from_millis(20 + 15 * round);
+        while Instant::now() < until && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        if child.try_wait().unwrap().is_some() {
+            break;
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert!(!folder.join("killed.csv").exists(), "half a table");
+        let journal = fs::read_to_string(folder.join("killed.csv.journal/results.jsonl")).unwrap_or_default();
+        let entries = journal.lines().count().saturating_sub(1);
+        assert!(entries + 1 >= kept, "{entries} results after {kept}");
+        kept = entries;
+    }
+    done(folder, &["batch", "curves", "--out", "killed.csv"]);
+    assert!(fs::read(folder.join("killed.csv")).unwrap() == whole);
+    // Nothing temporary stays.
+    let both = fs::read_dir(folder).unwrap().chain(fs::read_dir(folder.join("killed.csv.journal")).unwrap());
+    let left: Vec<String> = both
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .filter(|name| name.starts_with(".palpate"))
+        .collect();
+    assert!(left.is_empty(), "{left:?}");
+}
+
+#[test]
+fn other_options_are_another_batch() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    records(folder, 2);
+    let test = file(folder, "t.toml", "[fit]\nexponents = [2, 5]\n");
+    done(folder, &["batch", "curves", "--out", "holds.csv"]);
+    let output = palpate(folder, &["batch", "curves", "--out", "holds.csv", "--test", &test]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(error.starts_with("6 rows of 2 tests in 2 files, "), "{error}");
+}
+
+#[test]
+fn bad_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    records(folder, 1);
+    let error = refused(folder, &["batch", "curves", "--out", "holds.xlsx"]);
+    assert!(error.contains("expected a table ending in .parquet or .csv"), "{error}");
+    let error = refused(folder, &["batch", "nothing/*.csv", "--out", "holds.csv"]);
+    assert!(error.contains("expected a pattern that matches files, found none"), "{error}");
+    fs::create_dir(folder.join("bare")).unwrap();
+    let error = refused(folder, &["batch", "bare", "--out", "holds.csv"]);
+    assert!(error.contains("expected a folder with records, found none"), "{error}");
+    let error = refused(folder, &["batch", "nowhere", "--out", "holds.csv"]);
+    assert!(error.contains("nowhere: no such file"), "{error}");
+    assert!(!folder.join("holds.csv").exists());
+}

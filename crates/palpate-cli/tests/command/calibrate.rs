@@ -1,0 +1,218 @@
+//! `palpate calibrate` and `palpate predict`: from a record to a material, and from that to any other squeeze.
+#![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
+
+use std::path::Path;
+
+use crate::common::{data, done, file, palpate, refused, root};
+use serde_json::Value;
+use tempfile::{TempDir, tempdir};
+
+/// A folder with the material of the example record.
+fn calibrated() -> (TempDir, String) {
+    let folder = tempdir().unwrap();
+    let text = calibrate(folder.path(), &["--no-rivals", "--out", "ball.toml"]);
+    (folder, text)
+}
+
+fn example(name: &str) -> String {
+    root().join("examples").join(name).display().to_string()
+}
+
+fn calibrate(folder: &Path, more: &[&str]) -> String {
+    let (record, test) = (example("records/ball.csv"), example("records/ball.toml"));
+    done(folder, &[&["calibrate", &record, "--test", &test], more].concat())
+}
+
+const HOLD: &str = "[[step]]\nto = \"12 mm\"\nrate = \"500 mm/min\"\nhold = \"60 s\"\n";
+
+/// The numbers of a row of a table, behind its first cell.
+fn row(text: &str, start: &str) -> Vec<f64> {
+    let line = text.lines().find(|line| line.starts_with(start)).unwrap_or_else(|| panic!("{start}: {text}"));
+    line[start.len()..].split_whitespace().filter_map(|cell| cell.parse().ok()).collect()
+}
+
+#[test]
+fn one_record_gives_numbers_with_intervals_and_rivals_beside_them() {
+    let folder = tempdir().unwrap();
+    let more = ["--rivals", "standard-linear-solid,prony:2", "--figure", "cal.svg", "--format", "json"];
+    let document: Value = serde_json::from_str(&calibrate(folder.path(), &more)).unwrap();
+    assert_eq!(document["schema"], "palpate.calibration/1");
+    let laws = document["laws"].as_array().unwrap();
+    assert_eq!(
+        laws.iter().map(|law| law["law"].as_str().unwrap()).collect::<Vec<_>>(),
+        ["latency", "standard-linear-solid", "prony:2"]
+    );
+    // Simulated with E = 28 kPa, n = 5, ℓ = 4.375 mm and 0.05 N of noise.
+    for (index, (name, truth)) in [("modulus_pa", 28e3), ("exponent", 5.0), ("layer_thickness_m", 0.035 / 8.0)]
+        .into_iter()
+        .enumerate()
+    {
+        let number = &laws[0]["numbers"][if index < 2 { index } else { 3 }];
+        assert_eq!(number["name"], name);
+        let (value, error) = (number["value"].as_f64().unwrap(), number["standard_error"].as_f64().unwrap());
+        assert!((value - truth).abs() < 4.5 * error && error < 0.01 * truth, "{name} {value} ± {error}");
+    }
+    assert!((laws[0]["rmse_n"].as_f64().unwrap() - 0.05).abs() < 0.002);
+    assert!(laws[1]["rmse_n"].as_f64().unwrap() > 0.2 && laws[1]["delta_bic"].as_f64().unwrap() > 1000.0);
+    let figure = std::fs::read_to_string(folder.path().join("cal.svg")).unwrap();
+    assert!(figure.contains("measured") && figure.contains("standard-linear-solid"));
+    assert!(!folder.path().join("ball.toml").exists());
+}
+
+#[test]
+fn calibrated_on_the_loading_the_unloading_is_foretold() {
+    let folder = tempdir().unwrap();
+    let text = calibrate(folder.path(), &["--fit-until", "61 s"]);
+    let (latency, solid) = (row(&text, "latency"), row(&text, "standard-linear-solid"));
+    // p, RMSE, of peak, ΔBIC, foretold to, of peak: the noise of 0.05 N is met, and no more.
+    assert!(latency[4] < 0.06 && solid[4] > 5.0 * latency[4], "{text}");
+    assert!(text.contains("latency foretells the rest of the record best"), "{text}");
+}
+
+#[test]
+fn a_material_predicts_and_every_command_takes_it() {
+    let (folder, _) = calibrated();
+    let folder = folder.path();
+    file(folder, "hold.toml", HOLD);
+    let output = palpate(
+        folder,
+        &[
+            "predict",
+            "ball.toml",
+            "--protocol",
+            "hold.toml",
+            "--at",
+            "61.44 s",
+            "--at",
+            "2 s",
+            "--figure",
+            "p.svg",
+            "--out",
+            "p.csv",
+        ],
+    );
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.contains("beyond the test: a hold of 60.0 s is asked for; the test has shown 20.0 s"), "{told}");
+    assert!(std::fs::read_to_string(folder.join("p.csv")).unwrap().lines().count() == 3);
+    assert!(folder.join("p.svg").exists());
+    // The truth, by the protocol that the record was simulated with.
+    let truth = format!(
+        "specimen = {{ shape = \"ball\", radius = \"35 mm\", modulus = \"28 kPa\" }}\nlaw = {{ name = \"latency\", exponent = 5, rate_coefficient = \"2e4 /s\" }}\noutput = {{ times = [\"2 s\", \"61.44 s\"] }}\n{HOLD}"
+    );
+    file(folder, "truth.toml", truth);
+    let simulated = done(folder, &["simulate", "truth.toml"]);
+    let forces: Vec<f64> =
+        simulated.lines().skip(1).map(|line| line.split(',').nth(3).unwrap().parse().unwrap()).collect();
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .map(|line| line.split_whitespace().filter_map(|cell| cell.parse().ok()).collect())
+        .filter(|row: &Vec<f64>| row.len() == 7)
+        .collect();
+    assert_eq!(rows.len(), 2, "{text}");
+    for (row, truth) in rows.iter().zip(forces) {
+        let (low, high) = (row[3], row[4]);
+        assert!((row[2] - truth).abs() < 2.0 * (high - low), "{row:?} {truth}");
+        assert!(row[5] < low && high < row[6] && (row[6] - row[5] - 4.0 * 0.05).abs() < 0.02, "{row:?}");
+    }
+    // The body of a protocol, of a driven simulation, of a sweep and of an analysis.
+    file(folder, "named.toml", format!("material = \"ball.toml\"\noutput = {{ times = [\"2 s\"] }}\n{HOLD}"));
+    let named = done(folder, &["simulate", "named.toml"]);
+    let force: f64 = named.lines().nth(1).unwrap().split(',').nth(3).unwrap().parse().unwrap();
+    assert!((force - rows[0][2]).abs() < 1e-3 * force, "{force} {rows:?}");
+    let record = example("records/ball.csv");
+    assert!(done(folder, &["simulate", "ball.toml", "--drive", &record]).lines().count() > 2000);
+    file(folder, "sweep.toml", format!("material = \"ball.toml\"\n{HOLD}[sweep]\nlaw.exponent = \"4, 5\"\n"));
+    done(folder, &["sweep", "sweep.toml", "--out", "sweep.parquet"]);
+    let analysis = done(folder, &["analyze", &record, "--test", "ball.toml", "--no-compare"]);
+    assert!(analysis.contains("1/s") && analysis.contains("2.24") || analysis.contains("×10⁴"), "{analysis}");
+}
+
+#[test]
+fn what_cannot_be_calibrated_or_predicted_is_said_and_nothing_is_written() {
+    let (folder, _) = calibrated();
+    let folder = folder.path();
+    file(folder, "hold.toml", HOLD);
+    let record = example("records/ball.csv");
+    let told = refused(folder, &["calibrate", &record, "--out", "new.toml"]);
+    assert!(told.contains("needs the geometry of the body") && told.contains("[specimen]"), "{told}");
+    let test = example("records/ball.toml");
+    for (more, expected) in [
+        (&["--law", "power"][..], "no law of a whole contact"),
+        (&["--law", "latency:-1"], "latency:-1"),
+        (&["--poisson-ratio", "0.3"], "Hertz"),
+        (&["--equilibrium", "hertz", "--poisson-ratio", "0.7"], "Poisson"),
+        (&["--fit-until", "200 s"], "inside the record"),
+        (&["--confidence", "95"], "between 0 and 1"),
+        (&["--figure", "x.pdf"], ".svg"),
+    ] {
+        let told = refused(
+            folder,
+            &[&["calibrate", &record, "--test", &test, "--no-rivals", "--out", "new.toml"], more].concat(),
+        );
+        assert!(told.contains(expected), "{more:?}: {told}");
+    }
+    assert!(!folder.join("new.toml").exists());
+    let text = std::fs::read_to_string(folder.join("ball.toml")).unwrap();
+    file(folder, "edited.toml", text.replacen("radius = \"0.035 m\"", "radius = \"-1 m\"", 1));
+    file(folder, "later.toml", text.replacen("version = 1", "version = 7", 1));
+    file(folder, "deep.toml", HOLD.replace("12 mm", "80 mm"));
+    for (material, protocol, more, expected) in [
+        ("edited.toml", "hold.toml", &[][..], "specimen.radius"),
+        ("later.toml", "hold.toml", &[], "calibrate again"),
+        ("none.toml", "hold.toml", &[], "no such file"),
+        ("ball.toml", "none.toml", &[], "no such file"),
+        ("hold.toml", "hold.toml", &[], "calibration: missing"),
+        ("ball.toml", "deep.toml", &[], "step[1].to"),
+        ("ball.toml", "hold.toml", &["--at", "99 s"], "99"),
+        ("ball.toml", "hold.toml", &["--out", "ball.toml"], "another file"),
+    ] {
+        let told = refused(folder, &[&["predict", material, "--protocol", protocol], more].concat());
+        assert!(told.contains(expected), "{material} {protocol} {more:?}: {told}");
+    }
+    assert_eq!(std::fs::read_to_string(folder.join("ball.toml")).unwrap(), text);
+}
+
+#[test]
+fn silicone_steps_are_foretold_from_their_first_part() {
+    let Some(folder) = data("silicone-steps") else { return };
+    let Some(record) = std::fs::read_dir(folder)
+        .unwrap()
+        .flatten()
+        .map(|entry| entry.path())
+        .find(|path| path.to_string_lossy().contains("2_7-5"))
+    else {
+        return;
+    };
+    let own = tempdir().unwrap();
+    let test = std::fs::read_to_string(example("tests/silicone-steps.toml")).unwrap();
+    let test = file(own.path(), "test.toml", test.replace("length = \"20 mm\"", "length = \"40 mm\""));
+    let record = record.display().to_string();
+    let text =
+        done(own.path(), &["calibrate", &record, "--test", &test, "--fit-until", "160 s", "--rivals", "prony:2"]);
+    let foretold = row(&text, "latency")[5];
+    assert!(foretold < 3.0, "{foretold} % of the peak: {text}");
+}
+
+/// Where much is left over the bottom is steeper than the first derivatives say; the search went from one side of it to the other until its
+/// steps were spent. And the ends of intervals of 80 decades were numbers.
+#[test]
+fn a_record_that_the_law_does_not_describe_ends_at_an_optimum_with_its_numbers_left_open() {
+    let Some(record) = data("vhb4910/relax_3d0.csv") else {
+        return;
+    };
+    let (record, test) =
+        (record.display().to_string(), root().join("validation/records/vhb4910.toml").display().to_string());
+    let arguments = ["calibrate", &record, "--test", &test, "--fit-until", "600 s", "--no-rivals", "--format", "json"];
+    let document: Value = serde_json::from_str(&done(Path::new("."), &arguments)).unwrap();
+    let law = &document["laws"][0];
+    assert_eq!(law["termination"], "converged");
+    assert!(law["foretold"]["relative"].as_f64().unwrap() < 0.003, "{law}");
+    for number in law["numbers"].as_array().unwrap() {
+        if let Some(ends) = number["interval"].as_array() {
+            assert!(ends[1].as_f64().unwrap() / ends[0].as_f64().unwrap() < 1e13, "{number}");
+        }
+    }
+    assert!(law["numbers"][0]["interval"].is_null() && !law["numbers"][0]["standard_error"].is_null(), "{law}");
+}

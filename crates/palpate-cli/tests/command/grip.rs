@@ -1,0 +1,115 @@
+//! `palpate grip`: verdicts and their exit codes, documents, reports, bad input.
+#![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
+
+use crate::common::{done, file, palpate, refused, root};
+use serde_json::Value;
+use tempfile::tempdir;
+
+fn ball() -> String {
+    root().join("examples/records/ball-material.toml").display().to_string()
+}
+
+/// A quarter of a kilogram with μ = 0.6 needs 2.043 N.
+fn load(ball: &str) -> Vec<&str> {
+    vec!["grip", ball, "--mass", "250g", "--friction", "0.6"]
+}
+
+fn json(more: &[&str]) -> (Option<i32>, Value) {
+    let (folder, ball) = (tempdir().unwrap(), ball());
+    let output = palpate(folder.path(), &[&load(&ball), more, &["--format", "json"]].concat());
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    (output.status.code(), serde_json::from_str(&text).unwrap_or_else(|_| panic!("{more:?}: {output:?}")))
+}
+
+fn number(value: &Value, name: &str) -> f64 {
+    value[name].as_f64().unwrap_or_else(|| panic!("{name} in {value}"))
+}
+
+#[test]
+fn the_verdict_is_the_exit_code() {
+    let (code, found) = json(&["--squeeze", "5 mm"]);
+    assert_eq!(
+        (code, found["schema"].as_str(), found["holds"].as_bool()),
+        (Some(0), Some("palpate.grip/1"), Some(true))
+    );
+    let time = number(&found["squeeze"]["lasts"], "seconds");
+    // The ball was simulated with n = 5 and 2e4 /s, with which the closed form says 0.611 s.
+    assert!((time - 0.611).abs() < 0.03, "{time}");
+    assert!(number(&found["squeeze"]["interval"][0], "seconds") < time);
+    let (code, found) = json(&["--squeeze", "5 mm", "--hold", "10 s"]);
+    assert_eq!((code, found["holds"].as_bool()), (Some(1), Some(false)));
+    let (code, found) = json(&["--hold", "10 s"]);
+    assert_eq!(code, Some(0));
+    assert!((number(&found["squeeze"]["lasts"], "seconds") / 10.0 - 1.0).abs() < 1e-6);
+    let (code, found) = json(&["--hold", "always", "--objective", "peak-force"]);
+    assert_eq!((code, found["squeeze"]["lasts"]["always"].as_bool()), (Some(0), Some(true)));
+    let (code, found) = json(&["--hold", "10 s", "--most-force", "2.5 N", "--close-within", "0.5 s"]);
+    assert_eq!((code, found["holds"].as_bool()), (Some(1), Some(false)));
+    assert!(found["verdict"].as_str().unwrap().starts_with("No: no squeeze within the limits holds"), "{found}");
+}
+
+#[test]
+fn both_ways_of_control_give_opposite_advice() {
+    let (code, found) = json(&["--control", "force", "--hold", "100 s"]);
+    assert_eq!(code, Some(0));
+    let (held, squeeze) = (&found["force_held"], &found["squeeze"]);
+    assert!(number(held, "force_n") < 0.6 * number(squeeze, "start_force_n"));
+    assert!(number(held, "displacement_end_m") > 1.5 * number(held, "displacement_start_m"));
+    assert!(found["extrapolations"].to_string().contains("a force is held"));
+    let (code, short) = json(&["--control", "force", "--hold", "100 s", "--stroke", "5 mm"]);
+    assert_eq!(code, Some(1));
+    assert!(short["verdict"].as_str().unwrap().contains("come to the end of their stroke"), "{short}");
+}
+
+#[test]
+fn the_report_has_all_of_it() {
+    let (folder, ball) = (tempdir().unwrap(), ball());
+    let more = ["--hold", "1 h", "--band", "2.1..3 N", "--out", "plan", "--figure", "grip.svg"];
+    let text = done(folder.path(), &[&load(&ball)[..], &more].concat());
+    for words in [
+        "Yes: a squeeze of",
+        "Squeeze to",
+        "6 squeezes keep the force between 2.100 N and 3.000 N",
+        "Beyond the test",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    for name in ["report.html", "grip.json", "figures/grip.svg", "tables/schedule.csv", "series/force_held.csv"] {
+        assert!(folder.path().join("plan").join(name).exists(), "{name}");
+    }
+    let document: Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("plan/grip.json")).unwrap()).unwrap();
+    let back_off = &document["back_off"];
+    assert!(number(back_off, "drift_n").abs() < 1e-6 && number(back_off, "plain_drift_n") < -1.0, "{back_off}");
+    assert_eq!(document["schedule"]["moves"].as_array().unwrap().len(), 6);
+    assert!(!document.to_string().contains("NaN"));
+    assert!(folder.path().join("grip.svg").exists());
+}
+
+#[test]
+fn numbers_that_make_no_grip_are_told_by_name() {
+    let (folder, ball) = (tempdir().unwrap(), ball());
+    for (arguments, words) in [
+        (&["--mass", "250g", "--friction", "0"][..], "friction must be finite and above 0, found 0"),
+        (&["--mass", "250", "--friction", "0.6"], "expected a unit after the number"),
+        (&["--mass", "-1 kg", "--friction", "0.6"], "expected a mass above 0"),
+        (&["--mass", "250g", "--friction", "NaN"], "friction must be finite"),
+        (
+            &["--mass", "250g", "--friction", "0.6", "--safety", "0.5"],
+            "safety factor must be finite and not below 1",
+        ),
+        (&["--mass", "250g", "--friction", "0.6", "--band", "3..2 N"], "upper edge of the band"),
+        (&["--mass", "250g", "--friction", "0.6", "--band", "3 N"], "expected two forces"),
+        (&["--mass", "250g", "--friction", "0.6", "--force", "3 N"], "--force is for a force that is held"),
+        (&["--mass", "250g", "--friction", "0.6", "--hold", "0 s"], "expected a time above 0"),
+    ] {
+        let error = refused(folder.path(), &[&["grip", &ball][..], arguments].concat());
+        assert!(error.contains(words), "{arguments:?}: {error}");
+    }
+    let text = std::fs::read_to_string(&ball).unwrap();
+    let version = text.replacen("version = 1", "version = 2", 1);
+    assert_ne!(version, text);
+    let name = file(folder.path(), "later.toml", version);
+    let error = refused(folder.path(), &load(&name));
+    assert!(error.contains("version"), "{error}");
+}

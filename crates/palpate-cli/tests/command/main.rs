@@ -1,0 +1,13 @@
+//! The command as it is run: its words, files and exit codes.
+
+mod bad_input;
+mod batch;
+mod calibrate;
+mod commands;
+mod common;
+mod compare;
+mod grip;
+mod inspect;
+mod several_tests;
+mod sweep;
+mod watch;

@@ -1,0 +1,5 @@
+//! The tree itself: what documents say of the sources, and which source may use which.
+
+mod documents;
+mod sources;
+mod structure;

@@ -1,0 +1,243 @@
+//! Descriptions of tests.
+
+use palpate::{
+    analysis::LayersChoice,
+    contact::{Shape, Sides},
+    segment::{ContactChoice, GivenHold, HoldMode, HoldStart},
+    simulate::Separation,
+};
+use palpate_files::{
+    description::{ColumnRef, TestDescription},
+    text::{DecimalMark, Delimiter, Encoding},
+};
+
+use super::{says, test};
+
+#[test]
+fn nothing_said_is_the_default() {
+    let nothing = test("").unwrap();
+    assert_eq!(nothing, TestDescription::default());
+    assert_eq!(nothing.exponents, [1.0, 2.0, 3.0, 5.0, 7.0]);
+    assert_eq!((nothing.touch, nothing.free_exponent), (ContactChoice::AsRecorded, true));
+}
+
+#[test]
+fn everything_said() {
+    let text = r#"
+        about = { title = "a", source = "b", note = "c" }
+        file = { delimiter = "semicolon", decimal = "comma", encoding = "gbk", skip_lines = 2, header = false }
+        [columns]
+        time = { column = 5, unit = "ms" }
+        displacement = { column = "Weg", unit = "mm", sign = -1, clock = { column = 4, unit = "s" } }
+        force = { unit = "kN" }
+        [specimen]
+        shape = "ball"
+        radius = "35 mm"
+        modulus = "28 kPa"
+        [contact]
+        squeezed_from = "one side"
+        separation = false
+        layer_thickness = "5 mm"
+        touch = "2.5 mm"
+        [phases]
+        tolerance = "0.05 mm"
+        minimum_hold = "2 s"
+        still_below = 0.03
+        hold_start = "peak + 0.5 s"
+        [fit]
+        exponents = [1, 2.5]
+        free_exponent = false
+        exponent_range = [0.5, 9]
+        confidence = 0.9
+        until = "10 min"
+    "#;
+    let all = test(text).unwrap();
+    assert_eq!(all.about.note.as_deref(), Some("c"));
+    assert_eq!(
+        (all.reading.layout.delimiter, all.reading.layout.decimal),
+        (Some(Delimiter::Semicolon), Some(DecimalMark::Comma))
+    );
+    assert_eq!((all.reading.layout.encoding, all.reading.layout.header), (Some(Encoding::Gbk), Some(false)));
+    assert_eq!(all.reading.layout.skip_lines, Some(2));
+    let displacement = all.columns.displacement.unwrap();
+    assert_eq!(displacement.column, Some(ColumnRef::Name("Weg".to_owned())));
+    assert_eq!((displacement.sign, displacement.unit.as_deref()), (-1.0, Some("mm")));
+    assert_eq!(displacement.clock.unwrap().column, ColumnRef::Number(4));
+    assert_eq!(all.columns.force.unwrap().column, None);
+    let body = all.geometry.unwrap();
+    assert_eq!((&body.shape, body.sides), (&Shape::Ball { radius: 0.035 }, Sides::One));
+    assert_eq!(body.modulus, Some(28e3));
+    assert_eq!((all.separation, all.layers), (Separation::Bonded, Some(LayersChoice::Thickness(0.005))));
+    assert_eq!(LayersChoice::Thickness(0.005).layers(body.shape.depth(body.sides)).unwrap().count(), 0.035 / 0.005);
+    assert_eq!(all.touch, ContactChoice::Displacement(0.0025));
+    assert_eq!((all.segment.tolerance, all.segment.minimum_hold), (Some(5e-5), Some(2.0)));
+    assert_eq!((all.segment.still_below, all.segment.hold_start), (Some(0.03), HoldStart::AfterPeak(0.5)));
+    assert_eq!((all.exponents, all.free_exponent), (vec![1.0, 2.5], false));
+    assert_eq!((all.fit.exponent_range, all.fit.confidence), ((0.5, 9.0), 0.9));
+    assert_eq!(all.until, Some(600.0));
+}
+
+#[test]
+fn the_shape_sets_what_is_usual() {
+    let ball = test("[specimen]\nshape = \"ball\"\nradius = \"35 mm\"").unwrap();
+    assert_eq!((ball.touch, ball.separation), (ContactChoice::Auto, Separation::Unilateral));
+    assert_eq!(ball.geometry.unwrap().sides, Sides::Two);
+    let block = test("[specimen]\nshape = \"block\"\narea = \"1 cm^2\"\nlength = \"2 cm\"").unwrap();
+    assert_eq!((block.touch, block.separation), (ContactChoice::AsRecorded, Separation::Bonded));
+    let body = block.geometry.unwrap();
+    assert_eq!((body.sides, body.shape.depth(body.sides), body.modulus), (Sides::One, 0.02, None));
+    assert_eq!(test("[specimen]\nshape = \"none\"").unwrap().geometry, None);
+}
+
+#[test]
+fn wrong_values_name_their_keys() {
+    for (text, key, message) in [
+        (
+            "columns.force.column = 0",
+            "columns.force.column",
+            "the number of a column, from 1, or its name in quotes, found 0",
+        ),
+        (
+            "columns.force.column = 1.5",
+            "columns.force.column",
+            "the number of a column, from 1, or its name in quotes, found 1.5",
+        ),
+        (
+            "columns.force.unit = \"mm\"",
+            "columns.force.unit",
+            "\"mm\" is not a unit of force (accepted: N, kN",
+        ),
+        ("columns.time.unit = \"mm\"", "columns.time.unit", "\"mm\" is not a unit of time (accepted: s,"),
+        ("columns.force.sign = -2", "columns.force.sign", "1 or -1, found -2"),
+        (
+            "columns.force.clock = { column = 1, unit = \"N\" }",
+            "columns.force.clock.unit",
+            "\"N\" is not a unit of time",
+        ),
+        (
+            "columns.force.clock = { unit = \"s\" }",
+            "columns.force.clock.column",
+            "missing, expected the number of a column, from 1",
+        ),
+        ("[columns]\nforce = {}\nstress = {}", "columns.force", "either this or columns.stress, found both"),
+        (
+            "specimen = { shape = \"ball\", radius = \"1 m\" }\ncolumns.stress = {}",
+            "columns.stress",
+            "not used for a body whose contact area changes",
+        ),
+        (
+            "specimen = { shape = \"none\", length = \"1 m\" }",
+            "specimen.length",
+            "not used with shape = \"none\", which has no sizes",
+        ),
+        (
+            "specimen = { shape = \"none\", modulus = \"1 Pa\" }",
+            "specimen.modulus",
+            "not used without a [specimen] that has a shape",
+        ),
+        (
+            "specimen = { shape = \"strip\", width = \"1 m\", length = \"1 m\" }",
+            "specimen.thickness",
+            "the thickness of a strip",
+        ),
+        ("specimen = { shape = \"block\", length = \"1 m\" }", "specimen.area", "such as \"40 mm^2\""),
+        (
+            "contact.squeezed_from = \"one side\"",
+            "contact.squeezed_from",
+            "not used without a [specimen] that has a shape",
+        ),
+        ("contact.layers = 8", "contact.layers", "not used without a [specimen] that has a shape"),
+        (
+            "contact.layer_thickness = \"1 mm\"",
+            "contact.layer_thickness",
+            "not used without a [specimen] that has a shape",
+        ),
+        (
+            "contact.touch = \"first\"",
+            "contact.touch",
+            "\"ratio of variances\") or a displacement such as \"2.5 mm\", found \"first\"",
+        ),
+        ("contact.touch = \"2.5\"", "contact.touch", "expected a unit after the number"),
+        ("contact.touch = 2.5", "contact.touch", "text in quotes, found 2.5"),
+        (
+            "phases.hold_start = \"top\"",
+            "phases.hold_start",
+            "\"settled\" or a time after the peak such as \"peak + 0.5 s\", found \"top\"",
+        ),
+        (
+            "phases.hold_start = \"peak + 2\"",
+            "phases.hold_start",
+            "such as \"peak + 0.5 s\", found \"peak + 2\"",
+        ),
+        ("phases.tolerance = \"0 mm\"", "phases.tolerance", "a length above 0 m"),
+        ("phases.tolerance = 0.05", "phases.tolerance", "expected a unit"),
+        ("phases.minimum_hold = \"-2 s\"", "phases.minimum_hold", "a time above 0 s"),
+        ("phases.still_below = 1", "phases.still_below", "between 0 and 1, found 1"),
+        (
+            "[[phases.hold]]\nfrom = \"9 s\"\nto = \"4 s\"",
+            "phases.hold[1].to",
+            "a time after its start (from = \"9 s\"), found \"4 s\"",
+        ),
+        (
+            "[[phases.hold]]\nfrom = \"1 s\"\nto = \"4 s\"\n[[phases.hold]]\nfrom = \"3 s\"\nto = \"6 s\"",
+            "phases.hold[2].from",
+            "does not overlap hold 1",
+        ),
+        ("[[phases.hold]]\nfrom = \"1 mm\"\nto = \"4 s\"", "phases.hold[1].from", "mm"),
+        (
+            "[[phases.hold]]\nfrom = \"1 s\"\nto = \"4 s\"\nmode = \"jaw\"",
+            "phases.hold[1].mode",
+            "displacement",
+        ),
+        ("fit.exponents = [1, 0]", "fit.exponents[2]", "a number above 0, found 0"),
+        ("fit.exponents = []\nfit.free_exponent = false", "fit.exponents", "one exponent or more"),
+        ("fit.exponents = 5", "fit.exponents", "a list in square brackets, found 5"),
+        ("fit.exponent_range = [3, 1]", "fit.exponent_range", "the smaller first, found [3, 1]"),
+        (
+            "fit.exponent_range = [3]",
+            "fit.exponent_range",
+            "two numbers in square brackets, found a list of 1",
+        ),
+        ("fit.confidence = 95", "fit.confidence", "between 0 and 1, such as 0.95, found 95"),
+        ("fit.until = \"0 s\"", "fit.until", "a time above 0 s"),
+        ("fit.free_exponent = 1", "fit.free_exponent", "true or false, found 1"),
+        (
+            "file.delimiter = \"pipe\"",
+            "file.delimiter",
+            "\"tab\", \"semicolon\", \"comma\" or \"blanks\", found \"pipe\"",
+        ),
+        ("file.skip_lines = -1", "file.skip_lines", "a whole number, found -1"),
+        ("about.title = 3", "about.title", "text in quotes, found 3"),
+    ] {
+        says(test(text), key, message, "");
+    }
+}
+
+#[test]
+fn likely_slips_have_a_hint() {
+    let hint = |text: &str| test(text).unwrap_err().hint().unwrap_or_default();
+    let ball = |radius: &str, modulus: &str| {
+        format!("specimen = {{ shape = \"ball\", radius = \"{radius}\", modulus = \"{modulus}\" }}")
+    };
+    for (radius, modulus, help) in [
+        ("0 mm", "28 kPa", "radius must be above zero"),
+        ("35 mm", "-28 kPa", "modulus must be above zero"),
+        ("35,0 mm", "28 kPa", "write a decimal point: radius = \"35.0 mm\""),
+        ("35 mm", "28 kpa", "did you mean kPa?"),
+        ("1e300 m", "28 kPa", "check the number and the unit of radius"),
+        ("35 mm", "28e30 GPa", "check the number and the unit of modulus"),
+    ] {
+        let found = hint(&ball(radius, modulus));
+        assert!(found.contains(help), "{radius}, {modulus}: {found}");
+    }
+    assert!(hint("specimen = { shape = \"potato\" }").contains("\"block\""));
+}
+
+#[test]
+fn holds_can_be_given() {
+    let text = "[[phases.hold]]\nfrom = \"500 ms\"\nto = \"2 s\"\n\n[[phases.hold]]\nfrom = \"1 min\"\nto = \"62 s\"\nmode = \"force\"";
+    let test = test(text).unwrap();
+    let hold = |from, to, mode| GivenHold { from, to, mode };
+    assert_eq!(test.given_holds, [hold(0.5, 2.0, None), hold(60.0, 62.0, Some(HoldMode::ForceHeld))]);
+    assert_eq!(test.analysis_options().given_holds, test.given_holds);
+}

@@ -1,0 +1,4 @@
+//! Figures and pages as others see them.
+
+mod figures;
+mod pages;

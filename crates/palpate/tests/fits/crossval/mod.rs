@@ -1,0 +1,5 @@
+//! Fits against numbers from other software.
+
+mod fits;
+mod laws;
+mod profiles;

@@ -1,0 +1,8 @@
+//! What laws take, how they meet in their limits, and which of them is chosen.
+
+mod choosing;
+mod inputs;
+mod limits;
+mod options;
+mod prony_terms;
+mod spectrum;

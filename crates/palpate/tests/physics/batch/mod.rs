@@ -1,0 +1,4 @@
+//! Many contacts at once against one at a time.
+
+mod accuracy;
+mod single;

@@ -1,0 +1,4 @@
+//! The law and the contact against numbers from other software.
+
+mod contact;
+mod latency;
