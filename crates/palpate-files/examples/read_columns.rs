@@ -8,7 +8,7 @@
 
 use std::{error::Error, path::PathBuf, time::Instant};
 
-use palpate_files::contents::{Contents, ReadOptions};
+use palpate_files::{open::Contents, table::ReadOptions};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);

@@ -1,29 +1,30 @@
 //! File formats of palpate: from bytes on a disk to columns of numbers with names and units, to records and
 //! to descriptions of tests.
 //!
-//! - [`input`] is where bytes come from: a disk or memory, as they are or unpacked.
-//! - [`contents`] looks into a file of any format and reads columns of the tests in it ([`contents::Contents`]).
-//! - [`text`] reads delimited text: it finds out how a file is written ([`text::detect`]) and streams chosen
-//!   columns out of it ([`text::read_columns`]).
-//! - Force curves of atomic force microscopes are read by a module of their own, through [`contents`].
-//! - `robot_log` reads logs of robots (MCAP), whose topics have clocks of their own.
-//! - [`description`] reads what people write in TOML: protocols to simulate ([`description::read_protocol`])
-//!   and tests to evaluate ([`description::read_test`]).
-//! - [`parquet_table`] writes tables of many rows as Parquet and reads them back.
-//! - [`record_file`] puts text and descriptions together: a file becomes a checked record in SI ([`record_file::read_record`]).
+//! A module uses only modules that stand above it in this table.
+//!
+//! | module | what |
+//! |---|---|
+//! | [`cell`] | the text of one cell: numbers, dates, decimal marks, names with units |
+//! | [`naming`] | what names and units of columns stand for, in the languages of headers |
+//! | `error` | what can be wrong with a file, and what would help ([`FileError`]) |
+//! | [`input`] | where bytes come from: a disk or memory, as they are or unpacked; their lines |
+//! | [`table`] | columns with names and units, parts, header, blocks of rows: what every format gives |
+//! | [`formats`] | bytes to tables, one folder a format; none knows another |
+//! | [`description`] | what people write in TOML: tests, protocols, materials and sweeps, as types of the library |
+//! | [`open`] | a path or bytes to the format that it is ([`open::Contents`]) |
+//! | [`record`] | columns and a description joined to a checked record in SI ([`record::read_record`]) |
+//! | [`parquet_table`] | tables of many rows, written as Parquet and read back |
 
-mod afm;
-mod arrow_file;
-pub mod contents;
+pub mod cell;
 pub mod description;
 mod error;
-mod hint;
+pub mod formats;
 pub mod input;
+pub mod naming;
+pub mod open;
 pub mod parquet_table;
-pub mod record_file;
-mod robot_log;
-mod shown;
-mod spreadsheet;
-pub mod text;
+pub mod record;
+pub mod table;
 
-pub use error::{CellPlace, DecimalDoubt, FileError};
+pub use crate::error::{CellPlace, DecimalDoubt, FileError, Foreign};

@@ -6,7 +6,7 @@ use std::io;
 use palpate::analysis::Finding;
 use palpate_files::FileError;
 use palpate_files::description::DescriptionError;
-use palpate_files::record_file::ReadError;
+use palpate_files::record::ReadError;
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::{PyTypeInfo, create_exception};

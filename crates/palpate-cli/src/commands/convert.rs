@@ -7,7 +7,7 @@ use palpate::analysis::{corrected, suspicious_signs};
 use palpate::record::CorrectionOptions;
 use palpate_files::description::TestDescription;
 use palpate_files::parquet_table::{Field, Kind, Rows, TableError, TableWriter, Values};
-use palpate_files::record_file::RecordFile;
+use palpate_files::record::RecordFile;
 use palpate_report::document::Software;
 
 use super::record::{Opened, description, input, one_part, tell_skipped};

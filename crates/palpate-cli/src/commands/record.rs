@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use palpate_files::contents::{Contents, SkippedPart};
 use palpate_files::description::{TestDescription, read_test};
-use palpate_files::record_file::{ReadError, RecordFile, Tests, read_part, tests};
+use palpate_files::open::Contents;
+use palpate_files::record::{ReadError, RecordFile, Tests, read_part, tests};
+use palpate_files::table::SkippedPart;
 
 use palpate_report::document::Input;
 

@@ -1,53 +1,30 @@
-//! Descriptions that people write in TOML: protocols to simulate, and tests to evaluate.
+//! What people write in TOML, to types of the library and back: tests to evaluate, protocols to simulate, calibrated
+//! materials, and sweeps.
 //!
 //! A quantity is a text with a unit (`"35 mm"`, `"28 kPa"`, `"500 mm/min"`); what comes out is checked and in SI.
 //! Nothing is passed over: an unknown key, a missing unit or a size that no body has is a [`DescriptionError`]
-//! that names the file, the line, the key and what would be accepted.
+//! that names the file, the line, the key and what would be accepted. A folder uses only folders above it in this table;
+//! `tables.rs` of a folder is what stands in the file, `convert.rs` makes types of the library of it.
 //!
-//! | file | what |
+//! | folder | what |
 //! |---|---|
-//! | `protocol.rs` | a protocol: body, law and steps of the jaw ([`Protocol`]) |
-//! | `test.rs`, `test_tables.rs`, `settings.rs` | a test: its record, its body, how to evaluate it ([`TestDescription`]) |
-//! | `machine.rs`, `machines/` | grippers and machines whose conventions are known ([`machines`]) |
-//! | `material.rs` | a calibrated body with its intervals ([`MaterialFile`]) |
-//! | `law.rs` | the law of a protocol, with its body a [`Model`] |
-//! | `specimen.rs`, `contact.rs`, `columns.rs`, `column_tables.rs`, `corrections.rs` | tables that they are made of |
-//! | `choices.rs` | choices that a command line offers too |
+//! | `text/` | a description as it is written: quantities, places, what is wrong in plain words |
+//! | `body/` | the tables of a body and its contact, and the [`Model`] that they make |
+//! | `test/` | a test: its record, its body, how to evaluate it ([`TestDescription`]); known machines ([`machines`]) |
+//! | `material/` | a calibrated body with its intervals ([`MaterialFile`]), read and written |
+//! | `protocol/` | a protocol: body, law and steps of the jaw ([`Protocol`]) |
 //! | `sweep/` | numbers of a protocol replaced by many ([`Sweep`]) |
-//! | `numbers.rs` | the numbers of a protocol that can be replaced |
-//! | `quantity.rs` | a quantity as written |
-//! | `source.rs`, `places.rs`, `words.rs`, `error.rs` | what is wrong, where, and in plain words |
 //! | `schema.rs` | JSON Schemas for editors |
 
-mod choices;
-mod column_tables;
-mod columns;
-mod contact;
-mod corrections;
-mod error;
-mod file;
-mod law;
-mod machine;
+mod body;
 mod material;
-mod numbers;
-mod places;
 mod protocol;
-mod quantity;
 mod schema;
-mod settings;
-mod source;
-mod specimen;
 mod sweep;
 mod test;
-mod test_tables;
-mod words;
+mod text;
 
-pub use choices::{ChoiceError, parse_hold_start, parse_touch};
-pub use columns::{ClockChoice, ColumnChoice, ColumnChoices, ColumnRef};
-pub use error::{DescriptionError, KeyPlace};
-pub use law::Model;
-pub(crate) use machine::contradicts;
-pub use machine::{Machine, machines, machines_of};
+pub use body::Model;
 pub use material::{MATERIAL_VERSION, MaterialFile, MaterialOrigin, parse_material, read_material};
 pub use protocol::{
     Protocol, parse_protocol, parse_protocol_of, parse_scene, read_protocol, read_protocol_of, read_scene,
@@ -55,4 +32,9 @@ pub use protocol::{
 };
 pub use schema::{schema_material, schema_protocol, schema_test};
 pub use sweep::{Plan, Spacing, Sweep, SweptNumber, parse_runs, parse_sweep, read_sweep};
-pub use test::{About, TestDescription, parse_test, read_test};
+pub(crate) use test::contradicts;
+pub use test::{
+    About, ChoiceError, ClockChoice, ColumnChoice, ColumnChoices, Machine, TestDescription, machines, machines_of,
+    parse_hold_start, parse_test, parse_touch, read_test,
+};
+pub use text::{DescriptionError, KeyPlace};

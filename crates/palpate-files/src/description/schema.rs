@@ -2,21 +2,23 @@
 
 use serde_json::Value;
 
-use super::{material::MaterialTables, protocol::ProtocolTables, test_tables::TestTables};
+use crate::description::{
+    material::tables::MaterialTables, protocol::tables::ProtocolTables, test::tables::TestTables,
+};
 
-/// The JSON Schema of a protocol, see [`read_protocol`](super::read_protocol).
+/// The JSON Schema of a protocol, see [`read_protocol`](crate::description::protocol::convert::read_protocol).
 #[must_use]
 pub fn schema_protocol() -> Value {
     schemars::schema_for!(ProtocolTables).to_value()
 }
 
-/// The JSON Schema of a material file, see [`read_material`](super::read_material).
+/// The JSON Schema of a material file, see [`read_material`](crate::description::material::convert::read_material).
 #[must_use]
 pub fn schema_material() -> Value {
     schemars::schema_for!(MaterialTables).to_value()
 }
 
-/// The JSON Schema of a test description, see [`read_test`](super::read_test).
+/// The JSON Schema of a test description, see [`read_test`](crate::description::test::convert::read_test).
 #[must_use]
 pub fn schema_test() -> Value {
     schemars::schema_for!(TestTables).to_value()

@@ -6,7 +6,7 @@ use std::{
     sync::Once,
 };
 
-use super::Input;
+use super::source::Input;
 use crate::error::FileError;
 
 thread_local! {
@@ -19,14 +19,8 @@ static SILENCE: Once = Once::new();
 /// What `read` gives. The readers of some formats take some counts in a file at their word and then panic: such a file
 /// is damaged.
 pub(crate) fn contained<T>(input: &Input, read: impl FnOnce() -> Result<T, FileError>) -> Result<T, FileError> {
-    caught(read).unwrap_or_else(|| {
-        Err(FileError::Damaged {
-            path: input.name().to_owned(),
-            place: "the file".to_owned(),
-            expected: "what the format has there".to_owned(),
-            found: "numbers out of bounds".to_owned(),
-        })
-    })
+    let torn = || input.damaged("the file", "what the format has there", "numbers out of bounds");
+    caught(read).unwrap_or_else(|| Err(torn()))
 }
 
 /// What `read` gives, if it does not panic.

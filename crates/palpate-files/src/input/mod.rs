@@ -1,265 +1,29 @@
-//! Where the bytes of a file come from: a disk or memory, as they are or unpacked.
+//! Where the bytes of a file come from: a disk or memory, as they are or unpacked; and the lines in them.
 //!
 //! One file that is packed by gzip, or alone in a zip archive, is read as if it were unpacked. Packed bytes are
 //! unpacked as they are needed, and never beyond a stated limit, so that a small file cannot fill a memory.
 //!
 //! | file | what |
 //! |---|---|
+//! | `source.rs` | bytes under a name for messages ([`Input`]) |
 //! | `packing.rs` | telling packed files by their content, and unpacking them |
-//! | `contained.rs` | readers of other crates that panic on damaged files |
 //! | `counting.rs` | how far a reader has got |
-//! | `foreign.rs` | files that hold no record in any format known here |
+//! | `contained.rs` | readers of other crates that panic on damaged files |
+//! | `encoding.rs` | bytes as letters ([`Encoding`]) |
+//! | `feed.rs`, `lines.rs` | a file line by line, in UTF-8 |
 
 mod contained;
 mod counting;
-mod foreign;
+pub(crate) mod encoding;
+mod feed;
+pub(crate) mod lines;
 mod packing;
+mod source;
 
-use std::{
-    fmt,
-    fs::File,
-    io::{self, Cursor, Read, Seek},
-    path::{Path, PathBuf},
-    sync::Arc,
-};
-
-use crate::error::FileError;
 pub(crate) use contained::{caught, contained};
-use counting::Counting;
-pub use foreign::Foreign;
-pub(crate) use foreign::{mostly_control, recognise as recognise_foreign};
-pub use packing::Packing;
+pub use encoding::{Encoding, UnknownEncoding};
+pub(crate) use lines::{LONGEST_LINE, LineReader};
 pub(crate) use packing::is_zip;
-
-/// Most bytes that a packed file may unpack to where its rows are streamed (64 GiB).
-pub const MOST_UNPACKED: u64 = 64 << 30;
-
-/// Most bytes of a file that is held in memory as a whole: a workbook, a force curve, a packed table (2 GiB).
-pub const MOST_IN_MEMORY: u64 = 2 << 30;
-
-/// How many times the size of a packed file it may unpack to in memory, beyond [`ALWAYS_UNPACKED`].
-pub const MOST_TIMES: u64 = 256;
-
-/// What any packed file may unpack to in memory (16 MiB).
-pub const ALWAYS_UNPACKED: u64 = 16 << 20;
-
-/// How much of a file is looked at to tell its format.
-const BEGINNING: u64 = 64 * 1024;
-
-/// Bytes to read a record from, under a name for messages.
-#[derive(Debug, Clone)]
-pub struct Input {
-    name: PathBuf,
-    place: Place,
-    packing: Packing,
-    beginning: Vec<u8>,
-    size: u64,
-}
-
-#[derive(Clone)]
-enum Place {
-    Disk,
-    Memory(Arc<[u8]>),
-}
-
-impl fmt::Debug for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Disk => f.write_str("Disk"),
-            Self::Memory(bytes) => write!(f, "Memory({} bytes)", bytes.len()),
-        }
-    }
-}
-
-/// Bytes that can be read from any place in them.
-pub(crate) trait Seekable: Read + Seek + Send {}
-
-impl<T: Read + Seek + Send> Seekable for T {}
-
-impl Input {
-    /// The file at `path`, which is looked into to see whether it is packed.
-    ///
-    /// # Errors
-    /// [`FileError`] where it cannot be read, or is a packed file that holds no file, or several.
-    pub fn open(path: &Path) -> Result<Self, FileError> {
-        let failed = |error| FileError::from_io(path, error);
-        let about = std::fs::metadata(path).map_err(failed)?;
-        if about.is_dir() {
-            return Err(FileError::Directory { path: path.to_owned() });
-        }
-        if !about.is_file() {
-            return Err(FileError::NoFile { path: path.to_owned() });
-        }
-        Self::of(path.to_owned(), Place::Disk, about.len())
-    }
-
-    /// Bytes in memory. `name` is what messages call them.
-    ///
-    /// # Errors
-    /// As for [`open`](Self::open), less those of the disk.
-    pub fn from_bytes(name: impl Into<PathBuf>, bytes: impl Into<Arc<[u8]>>) -> Result<Self, FileError> {
-        let bytes = bytes.into();
-        let size = bytes.len() as u64;
-        Self::of(name.into(), Place::Memory(bytes), size)
-    }
-
-    fn of(name: PathBuf, place: Place, size: u64) -> Result<Self, FileError> {
-        let mut input = Self {
-            name,
-            place,
-            packing: Packing::None,
-            beginning: Vec::new(),
-            size,
-        };
-        input.beginning = input.first_bytes()?;
-        input.packing = packing::recognise(&input)?;
-        if input.packing != Packing::None {
-            input.beginning = input.first_bytes()?;
-        }
-        Ok(input)
-    }
-
-    fn first_bytes(&self) -> Result<Vec<u8>, FileError> {
-        let mut bytes = Vec::new();
-        let reader = self.reader()?;
-        reader.take(BEGINNING).read_to_end(&mut bytes).map_err(|error| self.failed(error))?;
-        Ok(bytes)
-    }
-
-    /// What messages call it: its path, on a disk.
-    #[must_use]
-    pub fn name(&self) -> &Path {
-        &self.name
-    }
-
-    /// How it is packed.
-    #[must_use]
-    pub fn packing(&self) -> &Packing {
-        &self.packing
-    }
-
-    /// Its size in bytes, packed as it is.
-    #[must_use]
-    pub fn size(&self) -> u64 {
-        self.size
-    }
-
-    /// Its first bytes, unpacked: all of it, or 64 KiB.
-    #[must_use]
-    pub fn beginning(&self) -> &[u8] {
-        &self.beginning
-    }
-
-    /// Its bytes from the first on, unpacked.
-    pub(crate) fn reader(&self) -> Result<InputReader, FileError> {
-        let counting = Counting::of(self.stored()?);
-        let count = counting.count();
-        let bytes = packing::unpacked(counting, &self.packing).map_err(|error| self.failed(error))?;
-        Ok(InputReader {
-            bytes,
-            count,
-            size: self.size,
-        })
-    }
-
-    /// Its bytes in any order, unpacked. A packed file is unpacked into memory.
-    pub(crate) fn seekable(&self) -> Result<Box<dyn Seekable>, FileError> {
-        if self.packing == Packing::None {
-            return self.stored();
-        }
-        Ok(Box::new(Cursor::new(self.bytes()?)))
-    }
-
-    /// All of its bytes, unpacked, up to [`MOST_IN_MEMORY`] and to what its size warrants.
-    pub(crate) fn bytes(&self) -> Result<Vec<u8>, FileError> {
-        let mut bytes = Vec::new();
-        let warranted = if self.packing == Packing::None { u64::MAX } else { self.warranted() };
-        let most = MOST_IN_MEMORY.min(warranted);
-        let read = self.reader()?.take(most + 1).read_to_end(&mut bytes);
-        read.map_err(|error| self.failed(error))?;
-        match bytes.len() as u64 {
-            length if length <= most => Ok(bytes),
-            _ if most < MOST_IN_MEMORY => Err(self.swells()),
-            _ => Err(self.too_large("the file", most)),
-        }
-    }
-
-    /// Most bytes that what is packed here may unpack to in memory: [`MOST_TIMES`] as many as there are, and at least
-    /// [`ALWAYS_UNPACKED`].
-    pub(crate) fn warranted(&self) -> u64 {
-        self.size.saturating_mul(MOST_TIMES).max(ALWAYS_UNPACKED)
-    }
-
-    /// What is packed here unpacks to more than is [`warranted`](Self::warranted).
-    pub(crate) fn swells(&self) -> FileError {
-        FileError::Swells {
-            path: self.name.clone(),
-            most_times: MOST_TIMES,
-        }
-    }
-
-    /// The bytes as they lie there, packed or not.
-    fn stored(&self) -> Result<Box<dyn Seekable>, FileError> {
-        Ok(match &self.place {
-            Place::Disk => Box::new(File::open(&self.name).map_err(|error| self.failed(error))?),
-            Place::Memory(bytes) => Box::new(Cursor::new(Arc::clone(bytes))),
-        })
-    }
-
-    /// What the operating system, or an unpacker, says about this file.
-    pub(crate) fn failed(&self, error: io::Error) -> FileError {
-        if error.kind() == io::ErrorKind::FileTooLarge {
-            return self.too_large("the unpacked file", MOST_UNPACKED);
-        }
-        if self.packing == Packing::None || error.raw_os_error().is_some() {
-            return FileError::from_io(&self.name, error);
-        }
-        let found = match error.kind() {
-            io::ErrorKind::UnexpectedEof => "their end, or others".to_owned(),
-            io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => format!("others than were packed ({error})"),
-            _ => error.to_string(),
-        };
-        FileError::Damaged {
-            path: self.name.clone(),
-            place: self.packing.to_string(),
-            expected: "bytes that can be unpacked".to_owned(),
-            found,
-        }
-    }
-
-    /// A limit that the file goes beyond.
-    pub(crate) fn too_large(&self, what: &'static str, most_bytes: u64) -> FileError {
-        FileError::TooLarge {
-            path: self.name.clone(),
-            what,
-            most_bytes,
-        }
-    }
-}
-
-/// The bytes of an input in order, and how far they have been read.
-pub(crate) struct InputReader {
-    bytes: Box<dyn Read + Send>,
-    count: counting::Count,
-    size: u64,
-}
-
-impl InputReader {
-    /// Bytes of the stored file taken in so far, and its size.
-    pub(crate) fn progress(&self) -> (u64, u64) {
-        let done = self.count.get();
-        (done, self.size.max(done))
-    }
-}
-
-impl Read for InputReader {
-    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        self.bytes.read(into)
-    }
-}
-
-impl fmt::Debug for InputReader {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("InputReader").field("progress", &self.progress()).finish_non_exhaustive()
-    }
-}
+pub use packing::{MOST_UNPACKED, Packing};
+pub use source::{ALWAYS_UNPACKED, Input, MOST_IN_MEMORY, MOST_TIMES};
+pub(crate) use source::{InputReader, Seekable};

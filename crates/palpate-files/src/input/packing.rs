@@ -3,13 +3,16 @@
 use std::{
     fmt,
     io::{self, Read, Seek},
+    path::Path,
 };
 
 use flate2::read::MultiGzDecoder;
 use zip::{ZipArchive, result::ZipError};
 
-use super::{Input, MOST_UNPACKED};
 use crate::error::FileError;
+
+/// Most bytes that a packed file may unpack to where its rows are streamed (64 GiB).
+pub const MOST_UNPACKED: u64 = 64 << 30;
 
 /// How a file is packed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,7 +33,7 @@ impl fmt::Display for Packing {
         match self {
             Self::None => f.write_str("not packed"),
             Self::Gzip => f.write_str("packed by gzip"),
-            Self::Zip { member } => write!(f, "packed in a zip archive as {}", crate::shown::shown(member)),
+            Self::Zip { member } => write!(f, "packed in a zip archive as {}", crate::error::shown(member)),
         }
     }
 }
@@ -46,20 +49,23 @@ const EMPTY: &[u8] = b"PK\x05\x06";
 /// Members by which formats that are zip archives are known.
 const FORMATS: [&str; 4] = ["[Content_Types].xml", "xl/workbook.xml", "header.properties", "mimetype"];
 
-/// How `input`, of which nothing is known but its stored bytes, is packed.
-pub(super) fn recognise(input: &Input) -> Result<Packing, FileError> {
-    let beginning = input.beginning();
+/// How a file that begins like this is packed; an archive is looked into as it is stored.
+pub(super) fn recognise<R: Read + Seek>(
+    name: &Path,
+    beginning: &[u8],
+    stored: impl FnOnce() -> Result<R, FileError>,
+) -> Result<Packing, FileError> {
     if beginning.starts_with(b"\x1F\x8B") {
         return Ok(Packing::Gzip);
     }
     if is_zip(beginning) {
-        return archive(input);
+        return archive(name, stored()?);
     }
     Ok(Packing::None)
 }
 
-fn archive(input: &Input) -> Result<Packing, FileError> {
-    let mut archive = ZipArchive::new(input.stored()?).map_err(|error| damaged(input, &error))?;
+fn archive(path: &Path, stored: impl Read + Seek) -> Result<Packing, FileError> {
+    let mut archive = ZipArchive::new(stored).map_err(|error| damaged(path, &error))?;
     let names: Vec<String> = archive.file_names().filter_map(|name| Some(name.ok()?.into_owned())).collect();
     if names.iter().any(|name| FORMATS.contains(&name.as_str())) {
         return Ok(Packing::None);
@@ -73,29 +79,23 @@ fn archive(input: &Input) -> Result<Packing, FileError> {
             let index = archive.index_for_name(&member);
             let encrypted = index.and_then(|index| Some(archive.by_index_raw(index).ok()?.encrypted()));
             match encrypted {
-                Some(true) => Err(FileError::Encrypted {
-                    path: input.name().to_owned(),
-                }),
+                Some(true) => Err(FileError::Encrypted { path: path.to_owned() }),
                 _ => Ok(Packing::Zip { member }),
             }
         }
         _ => Err(FileError::Archive {
-            path: input.name().to_owned(),
+            path: path.to_owned(),
             members: files,
         }),
     }
 }
 
-fn damaged(input: &Input, error: &ZipError) -> FileError {
-    FileError::Damaged {
-        path: input.name().to_owned(),
-        place: "zip archive".to_owned(),
-        expected: "a whole archive".to_owned(),
-        found: match error {
-            ZipError::InvalidArchive(_) => "one that is cut off or overwritten".to_owned(),
-            other => other.to_string(),
-        },
-    }
+fn damaged(path: &Path, error: &ZipError) -> FileError {
+    let found = match error {
+        ZipError::InvalidArchive(_) => "one that is cut off or overwritten".to_owned(),
+        other => other.to_string(),
+    };
+    FileError::damaged(path, "zip archive", "a whole archive", found)
 }
 
 /// The unpacked bytes behind `stored`; more than [`MOST_UNPACKED`] of them are an error of the reader.

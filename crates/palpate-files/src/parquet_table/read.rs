@@ -10,10 +10,13 @@ use parquet::{
     file::{reader::FileReader, serialized_reader::SerializedFileReader},
 };
 
-use super::{Field, Kind, Rows, TableError, Values};
+use super::{
+    error::TableError,
+    rows::{Field, Kind, Rows, Values},
+};
 use crate::input::caught;
 
-/// A table that [`TableWriter`](super::TableWriter) wrote.
+/// A table that [`TableWriter`](super::write::TableWriter) wrote.
 pub struct TableReader {
     reader: SerializedFileReader<File>,
     fields: Vec<Field>,

@@ -14,7 +14,10 @@ use parquet::{
     schema::types::Type,
 };
 
-use super::{Field, Kind, Rows, TableError, Values};
+use super::{
+    error::TableError,
+    rows::{Field, Kind, Rows, Values},
+};
 
 /// Rows that are held back until they make a row group.
 const GROUP: usize = 1 << 16;

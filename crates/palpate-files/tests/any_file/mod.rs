@@ -11,11 +11,12 @@ mod pack;
 use std::{collections::HashMap, io::Write};
 
 use palpate_files::{
-    contents::{Clock, ColumnKind, Columns, Contents, Format, Part, ReadOptions},
     description::{TestDescription, parse_test},
     input::Input,
+    open::{Contents, Format},
     parquet_table::{TableError, TableReader},
-    record_file::{ReadError, describe, read_part, tests},
+    record::{ReadError, describe, read_part, tests},
+    table::{Clock, ColumnKind, Columns, Part, ReadOptions},
 };
 
 pub(crate) use description::{DescriptionKind, describe_any, read_description};

@@ -14,9 +14,10 @@ use arrow_ipc::{
 use arrow_schema::{Field, Schema};
 use palpate_files::{
     FileError,
-    contents::{ColumnKind, Columns, Contents, Format, ReadOptions},
     input::Input,
-    record_file,
+    open::{Contents, Format},
+    record,
+    table::{ColumnKind, Columns, ReadOptions},
 };
 use parquet::{arrow::ArrowWriter, basic::Compression, file::properties::WriterProperties};
 
@@ -107,7 +108,7 @@ fn a_wide_table_is_one_test_in_every_format_and_packing() {
         let columns = read(&contents, 0, &[3, 1, 3]).expect("columns");
         assert_eq!((columns.rows(), columns.values[0][19], columns.values[1][13]), (20, 19.0, 1.3));
         assert_eq!(columns.values[0], columns.values[2]);
-        let file = record_file::read_part(&contents, 0, None, &mut |_, _| {}).expect("a record");
+        let file = record::read_part(&contents, 0, None, &mut |_, _| {}).expect("a record");
         assert_eq!((file.record.force()[19], file.record.displacement().map(|all| all[19])), (9.5, Some(0.019)));
     }
 }
@@ -186,7 +187,7 @@ fn a_row_without_values_is_passed_over_and_one_value_missing_is_an_error() {
 
 fn read_all(bytes: &[u8]) -> Result<usize, FileError> {
     let contents = open(bytes)?;
-    let numbers = |part: &palpate_files::contents::Part| -> Vec<usize> {
+    let numbers = |part: &palpate_files::table::Part| -> Vec<usize> {
         part.columns
             .iter()
             .filter(|column| column.kind == ColumnKind::Number)

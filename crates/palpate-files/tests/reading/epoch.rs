@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use palpate_files::{
-    contents::{Contents, ReadOptions},
     description::parse_test,
     input::Input,
-    record_file::{ColumnError, ReadError, RecordFile, read_part, read_record},
+    open::Contents,
+    record::{ColumnError, ReadError, RecordFile, read_part, read_record},
+    table::ReadOptions,
 };
 
 fn record(text: &str, test: &str) -> Result<RecordFile, ReadError> {

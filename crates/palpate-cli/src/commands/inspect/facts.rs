@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 
 use palpate::record::{SignalReport, Stamps, Values};
-use palpate_files::contents::{ColumnKind, Format, Part};
-use palpate_files::record_file::{RecordFile, Role};
+use palpate_files::open::Format;
+use palpate_files::record::{RecordFile, Role};
+use palpate_files::table::{ColumnKind, Part};
 use palpate_report::number::significant;
 use palpate_report::table::{Cell, Table, TableColumn};
 

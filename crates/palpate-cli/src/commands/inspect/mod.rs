@@ -11,10 +11,10 @@ mod facts;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use palpate_files::contents::Contents;
 use palpate_files::description::{TestDescription, machines};
 use palpate_files::input::Packing;
-use palpate_files::record_file::describe;
+use palpate_files::open::Contents;
+use palpate_files::record::describe;
 use palpate_report::table::{Cell, Table, TableColumn};
 
 use super::picture::{check_picture, picture};

@@ -3,8 +3,8 @@
 use std::io::{Cursor, Write};
 
 use palpate_files::{
-    contents::Format,
-    record_file::{ReadError, read_record},
+    open::Format,
+    record::{ReadError, read_record},
 };
 use zip::{CompressionMethod, ZipWriter, write::SimpleFileOptions};
 

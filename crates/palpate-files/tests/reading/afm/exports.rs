@@ -4,9 +4,9 @@ use std::path::Path;
 
 use palpate::record::Correction;
 use palpate_files::{
-    contents::Format,
     description::parse_test,
-    record_file::{ColumnError, ReadError, RecordFile, read_record},
+    open::Format,
+    record::{ColumnError, ReadError, RecordFile, read_record},
 };
 
 use super::{column, damage, labels, metadata, names, near, open, opened, read_all, refusal};

@@ -8,8 +8,9 @@ mod tabs;
 
 use palpate_files::{
     FileError,
-    contents::{Contents, Part, ReadOptions},
     input::Input,
+    open::Contents,
+    table::{Part, ReadOptions},
 };
 
 /// Looks into `bytes`.

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use palpate_files::{
-    contents::{Contents, Part, ReadOptions},
     input::Packing,
-    record_file::{RecordFile, read_record},
+    open::Contents,
+    record::{RecordFile, read_record},
+    table::{Part, ReadOptions},
 };
 
 use super::{column, labels, metadata};

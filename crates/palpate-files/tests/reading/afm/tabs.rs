@@ -1,6 +1,6 @@
 //! The text format of afmformats.
 
-use palpate_files::{contents::Format, record_file::read_record};
+use palpate_files::{open::Format, record::read_record};
 
 use super::{column, damage, labels, metadata, names, near, open, opened, read_all, refusal};
 

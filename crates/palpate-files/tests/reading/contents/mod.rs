@@ -2,11 +2,7 @@
 
 mod packed;
 
-use palpate_files::{
-    FileError,
-    contents::{Contents, ReadOptions},
-    input::Input,
-};
+use palpate_files::{FileError, input::Input, open::Contents, table::ReadOptions};
 
 const TABLE: &str = "Time (s),Displacement (mm),Force (N)\n0,0,0.5\n1,5,12\n2,5,9\n";
 

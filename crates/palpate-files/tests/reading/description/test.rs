@@ -7,8 +7,10 @@ use palpate::{
     simulate::Separation,
 };
 use palpate_files::{
-    description::{ColumnRef, TestDescription},
-    text::{DecimalMark, Delimiter, Encoding},
+    cell::{DecimalMark, Delimiter},
+    description::TestDescription,
+    input::Encoding,
+    table::ColumnRef,
 };
 
 use super::{says, test};

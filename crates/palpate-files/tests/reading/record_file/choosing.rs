@@ -1,7 +1,7 @@
 //! Columns from a header or a description, and what is made of them.
 
 use palpate::record::{Clock, Correction};
-use palpate_files::record_file::{Quantity, Role};
+use palpate_files::{naming::Quantity, record::Role};
 
 use super::read;
 

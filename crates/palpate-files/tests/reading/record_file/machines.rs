@@ -1,9 +1,10 @@
 //! Machines whose conventions are known, each with a small file as it writes them.
 
 use palpate_files::{
-    contents::{Contents, ReadOptions},
     description::{machines, machines_of},
     input::Input,
+    open::Contents,
+    table::ReadOptions,
 };
 
 use super::read;

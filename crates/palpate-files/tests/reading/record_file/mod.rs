@@ -9,7 +9,7 @@ use std::path::Path;
 
 use palpate_files::{
     description::{TestDescription, parse_test},
-    record_file::{ReadError, RecordFile, read_record},
+    record::{ReadError, RecordFile, read_record},
 };
 
 fn described(text: &str) -> TestDescription {

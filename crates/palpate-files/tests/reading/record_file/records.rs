@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use palpate::segment::{After, HoldMode, SegmentError, SegmentOptions, Segmentation, find_phases};
 use palpate_files::{
     description::{TestDescription, read_test},
-    record_file::{ReadError, RecordFile, read_record},
+    record::{ReadError, RecordFile, read_record},
 };
 
 use super::described;

@@ -9,10 +9,11 @@ use std::path::Path;
 
 use palpate_files::{
     FileError,
-    contents::{Contents, ReadOptions},
     description::parse_test,
     input::Input,
-    record_file::{ReadError, RecordFile, read_part, tests},
+    open::Contents,
+    record::{ReadError, RecordFile, read_part, tests},
+    table::ReadOptions,
 };
 
 fn look(bytes: &[u8]) -> Result<Contents, FileError> {

@@ -2,9 +2,11 @@
 
 use mcap::{Compression, WriteOptions};
 use palpate_files::{
-    contents::{ColumnKind, Format},
     input::Input,
-    record_file::{ColumnError, Quantity, ReadError, Role},
+    naming::Quantity,
+    open::Format,
+    record::{ColumnError, ReadError, Role},
+    table::ColumnKind,
 };
 
 use super::{
@@ -96,7 +98,7 @@ fn a_packed_log_is_unpacked() {
     let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
     packer.write_all(&gripper(Log::packed(None))).unwrap();
     let input = Input::from_bytes("log.mcap.gz", packer.finish().unwrap()).unwrap();
-    let contents = palpate_files::contents::Contents::of(input, &Default::default()).unwrap();
+    let contents = palpate_files::open::Contents::of(input, &Default::default()).unwrap();
     assert_eq!(contents.format(), Format::RobotLog);
 }
 

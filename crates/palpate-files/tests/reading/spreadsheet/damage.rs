@@ -1,6 +1,6 @@
 //! Files that are cut off, overwritten, encrypted, or swell.
 
-use palpate_files::contents::{Format, Part};
+use palpate_files::{open::Format, table::Part};
 
 use super::{
     message, open, read, read_all,

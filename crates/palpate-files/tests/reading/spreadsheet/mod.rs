@@ -9,8 +9,9 @@ mod xlsx_book;
 
 use palpate_files::{
     FileError,
-    contents::{Columns, Contents, Part, ReadOptions},
     input::Input,
+    open::Contents,
+    table::{Columns, Part, ReadOptions},
 };
 
 /// Looks into a workbook in memory.
@@ -33,7 +34,7 @@ fn read_all(bytes: &[u8]) -> Result<Vec<Columns>, FileError> {
 }
 
 fn names(part: &Part) -> Vec<(&str, &str)> {
-    let name = |column: &'_ palpate_files::contents::ColumnInfo| {
+    let name = |column: &'_ palpate_files::table::ColumnInfo| {
         (
             column.name.clone().unwrap_or_default().leak() as &str,
             column.unit.clone().unwrap_or_default().leak() as &str,

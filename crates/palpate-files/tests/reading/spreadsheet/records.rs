@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use palpate_files::{
-    contents::{Contents, Format, ReadOptions},
     description::TestDescription,
-    record_file,
+    open::{Contents, Format},
+    record,
+    table::ReadOptions,
 };
 
 use super::{message, names, open};
@@ -34,10 +35,10 @@ fn every_test_of_two_workbooks_becomes_a_record() {
         for part in contents.skipped() {
             println!("{name}: {} skipped: {}", part.name, part.reason);
         }
-        let tests = record_file::tests(&contents, &TestDescription::default()).expect("tests");
+        let tests = record::tests(&contents, &TestDescription::default()).expect("tests");
         for &index in &tests.parts {
             let part = &contents.parts()[index];
-            let file = record_file::read_part(&contents, index, None, &mut |_, _| {});
+            let file = record::read_part(&contents, index, None, &mut |_, _| {});
             let file = file.unwrap_or_else(|error| panic!("{}: {error}", part.title()));
             println!(
                 "{}: {} rows; {:?}; {}",

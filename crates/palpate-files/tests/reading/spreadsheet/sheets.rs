@@ -1,9 +1,6 @@
 //! Finding the tables.
 
-use palpate_files::{
-    contents::{Format, Part},
-    record_file,
-};
+use palpate_files::{open::Format, record, table::Part};
 
 use super::{
     message, names, open, read,
@@ -62,7 +59,7 @@ fn every_sheet_with_a_test_is_a_part_and_the_others_are_told() {
     let columns = read(&contents, 1, &[2, 1]).expect("columns");
     assert_eq!((columns.rows(), columns.values[0][2], columns.values[1][19]), (20, 3.0, 1.9));
     assert_eq!(columns.line_of(0), Some(4));
-    let file = record_file::read_part(&contents, 0, None, &mut |_, _| {}).expect("a record");
+    let file = record::read_part(&contents, 0, None, &mut |_, _| {}).expect("a record");
     assert_eq!(file.record.displacement().map(|all| all[19]), Some(0.019));
 }
 
@@ -172,7 +169,7 @@ fn a_mean_beside_tests_is_none_and_alone_is_one() {
     assert_eq!((contents.parts().len(), contents.parts()[0].title()), (1, "Eprouvette 1"));
     assert_eq!(contents.skipped()[0].reason, "a mean of tests, by its name");
     assert_eq!(read(&contents, 0, &[1]).expect("columns").values, [[0.0, 1.0, 2.0, 3.0, 4.0]]);
-    let file = record_file::read_part(&contents, 0, None, &mut |_, _| {}).expect("a record");
+    let file = record::read_part(&contents, 0, None, &mut |_, _| {}).expect("a record");
     assert_eq!((file.rows, file.columns.len()), (5, 3));
     let alone = open(&Book::of(&[("Eprouvette moyenne", &table)]).bytes()).expect("a workbook");
     assert_eq!(alone.parts().len(), 1);

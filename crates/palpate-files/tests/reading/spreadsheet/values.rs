@@ -1,10 +1,11 @@
 //! What cells hold.
 
 use palpate_files::{
-    contents::{Contents, ReadOptions},
+    cell::DecimalMark,
     input::Input,
-    record_file::read_record,
-    text::{DecimalMark, LayoutOptions},
+    open::Contents,
+    record::read_record,
+    table::{LayoutOptions, ReadOptions},
 };
 
 use super::{

@@ -1,9 +1,11 @@
 //! Every error, with the place it names and what it suggests.
 
 use palpate_files::{
-    DecimalDoubt, FileError,
-    input::{Foreign, Input},
-    text::{DecimalMark, Delimiter, LayoutOptions, detect},
+    DecimalDoubt, FileError, Foreign,
+    cell::{DecimalMark, Delimiter},
+    formats::text::detect,
+    input::Input,
+    table::LayoutOptions,
 };
 
 use super::{layout_with, read, written};
@@ -235,6 +237,6 @@ fn file_gone_between_looking_and_reading() {
     let input = Input::open(&file.path).expect("a file");
     let layout = detect(&input, &LayoutOptions::default()).expect("a layout");
     std::fs::write(&file.path, "").expect("emptied");
-    let error = palpate_files::text::read_columns(&input, &layout, &[1], &mut |_, _| {});
+    let error = palpate_files::formats::text::read_columns(&input, &layout, &[1], &mut |_, _| {});
     assert!(matches!(error, Err(FileError::NoDataRows { .. })));
 }

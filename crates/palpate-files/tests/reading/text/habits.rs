@@ -1,9 +1,10 @@
 //! The many ways in which machines write the same table.
 
 use palpate_files::FileError;
-use palpate_files::contents::ColumnKind;
-use palpate_files::input::Input;
-use palpate_files::text::{DecimalMark, Delimiter, Encoding, LayoutOptions, read_columns};
+use palpate_files::cell::{DecimalMark, Delimiter};
+use palpate_files::formats::text::read_columns;
+use palpate_files::input::{Encoding, Input};
+use palpate_files::table::{ColumnKind, LayoutOptions};
 
 use super::{layout, layout_with, names, read, units, written};
 

@@ -7,9 +7,9 @@ mod records;
 use std::path::PathBuf;
 
 use palpate_files::FileError;
-use palpate_files::contents::Columns;
+use palpate_files::formats::text::{detect, read_columns};
 use palpate_files::input::Input;
-use palpate_files::text::{Layout, LayoutOptions, detect, read_columns};
+use palpate_files::table::{Columns, Layout, LayoutOptions};
 
 /// A file on disk for as long as this lives.
 struct Written {

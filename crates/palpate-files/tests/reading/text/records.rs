@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use palpate_files::contents::Columns;
-use palpate_files::input::Input;
-use palpate_files::text::{DecimalMark, Delimiter, Encoding, Layout, LayoutOptions, detect, read_columns};
+use palpate_files::cell::{DecimalMark, Delimiter};
+use palpate_files::formats::text::{detect, read_columns};
+use palpate_files::input::{Encoding, Input};
+use palpate_files::table::{Columns, Layout, LayoutOptions};
 
 use super::{names, units};
 

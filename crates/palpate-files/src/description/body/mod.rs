@@ -1,0 +1,17 @@
+//! A body and its contact, as protocols and materials describe them, and tests in part.
+//!
+//! | file | what |
+//! |---|---|
+//! | `tables.rs` | the tables `[specimen]`, `[law]` and `[contact]` as they stand |
+//! | `specimen.rs` | shape, size and stiffness, to `Specimen` |
+//! | `law.rs` | the law with its numbers |
+//! | `contact.rs` | layers and separation |
+//! | `model.rs` | all of it, to a [`Model`] |
+
+pub(super) mod contact;
+mod law;
+pub(super) mod model;
+pub(super) mod specimen;
+pub(super) mod tables;
+
+pub use model::Model;

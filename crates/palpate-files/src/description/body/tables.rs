@@ -1,0 +1,244 @@
+//! The tables `[specimen]`, `[law]` and `[contact]` of a body, as they stand in a protocol or a material.
+
+use palpate::contact::Sides;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::description::text::quantity::QuantityText;
+
+/// Shape, size and stiffness of the body. Give the sizes that its shape needs: a ball takes radius; a pad takes
+/// radius and thickness; a strip takes width, thickness and length; a cylinder takes diameter and length; a block takes area and length;
+/// a profile takes depth and areas.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Specimen")]
+pub(crate) struct SpecimenTable {
+    /// The shape of the body.
+    pub(crate) shape: ShapeName,
+    /// Radius of a ball; outer radius of a pad.
+    pub(crate) radius: Option<QuantityText>,
+    /// Diameter of a cylinder that is loaded along its axis.
+    pub(crate) diameter: Option<QuantityText>,
+    /// Width of the section of a strip.
+    pub(crate) width: Option<QuantityText>,
+    /// Thickness of the section of a strip; of the soft layer of a pad, at most its radius.
+    pub(crate) thickness: Option<QuantityText>,
+    /// Area of the section of a block, which carries the force.
+    pub(crate) area: Option<QuantityText>,
+    /// Free length along the force, from grip to grip or plate to plate: of a strip, a cylinder or a block.
+    pub(crate) length: Option<QuantityText>,
+    /// Depth of a profile, from the undeformed contact to the plane that does not move.
+    pub(crate) depth: Option<QuantityText>,
+    /// Contact area of a profile: rows of contact displacement and area, from first touch on, such as ["1 mm", "40 mm^2"].
+    pub(crate) areas: Option<Vec<(QuantityText, QuantityText)>>,
+    /// Young's modulus.
+    pub(crate) modulus: Option<QuantityText>,
+    /// Law of the force once relaxation is over, in a protocol: even strain (the paper's, if nothing is said) or hertz.
+    pub(crate) equilibrium: Option<EquilibriumName>,
+    /// Poisson's ratio of a body with hertz, from 0 to 0.5.
+    pub(crate) poisson_ratio: Option<f64>,
+    /// Measured force once relaxation is over, in a protocol: rows of contact displacement and force, from first touch on, such as
+    /// ["1 mm", "0.2 N"]. In place of modulus and equilibrium.
+    pub(crate) equilibrium_forces: Option<Vec<(QuantityText, QuantityText)>>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[schemars(rename = "Equilibrium")]
+pub(crate) enum EquilibriumName {
+    /// Force = modulus × displacement/depth × contact area.
+    #[serde(rename = "even strain")]
+    EvenStrain,
+    /// Force = 4/3 modulus/(1 − ν²) √radius displacement^(3/2).
+    #[serde(rename = "hertz")]
+    Hertz,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum ShapeName {
+    /// A ball between flat plates; the contact grows with the squeeze.
+    Ball,
+    /// A spherical fingertip: a soft pad over a rigid core.
+    Pad,
+    /// A strip of rectangular section, pulled or pressed along its length.
+    Strip,
+    /// A cylinder, pulled or pressed along its axis.
+    Cylinder,
+    /// Any body of constant section.
+    Block,
+    /// Any other body, by a table of its contact area.
+    Profile,
+    /// Nothing is known: forces stay forces, no strain is computed.
+    None,
+}
+
+impl ShapeName {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Ball => "ball",
+            Self::Pad => "pad",
+            Self::Strip => "strip",
+            Self::Cylinder => "cylinder",
+            Self::Block => "block",
+            Self::Profile => "profile",
+            Self::None => "none",
+        }
+    }
+
+    /// The sizes that describe it.
+    pub(crate) fn sizes(self) -> &'static [&'static str] {
+        match self {
+            Self::Ball => &["radius"],
+            Self::Pad => &["radius", "thickness"],
+            Self::Strip => &["width", "thickness", "length"],
+            Self::Cylinder => &["diameter", "length"],
+            Self::Block => &["area", "length"],
+            Self::Profile => &["depth", "areas"],
+            Self::None => &[],
+        }
+    }
+}
+
+/// The law that strain follows. Give the numbers that it needs: latency takes exponent and rate_coefficient, and may take strain_factor or
+/// unloading_factor; standard-linear-solid takes
+/// overshoot and time; prony takes terms; fung takes shares; fractional-zener takes overshoot, time and order.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Law")]
+pub(crate) struct LawTable {
+    pub(crate) name: LawName,
+    /// Exponent n of the latency law, any number above 0.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) exponent: Option<f64>,
+    /// Rate coefficient v of the latency law, such as "2e4 /s".
+    pub(crate) rate_coefficient: Option<QuantityText>,
+    /// Factor by which v changes with every 0.1 of equilibrium strain; rate_coefficient is then that at first touch.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) strain_factor: Option<f64>,
+    /// How many times v the rate coefficient is while strain rises to equilibrium, after unloading.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) unloading_factor: Option<f64>,
+    /// By how much a sudden squeeze overshoots equilibrium, as a multiple of it.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) overshoot: Option<f64>,
+    /// Relaxation time, such as "2 s".
+    pub(crate) time: Option<QuantityText>,
+    /// Order of a fractional law, from 0.05 to below 1.
+    pub(crate) order: Option<f64>,
+    /// Terms of a Prony series: G = 1 + sum of overshoot exp(-t/time).
+    #[schemars(extend("minItems" = 1))]
+    pub(crate) terms: Option<Vec<TermTable>>,
+    /// Terms of Fung's reduced relaxation function: g = c0 + sum of share exp(-rate t), all shares and c0 together 1.
+    #[schemars(extend("minItems" = 1))]
+    pub(crate) shares: Option<Vec<ShareTable>>,
+    /// What a linear law remembers: strain, or the relaxed force (quasi-linear). Strain if nothing is said, but force with fung.
+    pub(crate) memory: Option<MemoryName>,
+}
+
+/// A term of a Prony series.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Term")]
+pub(crate) struct TermTable {
+    /// By how much a sudden squeeze overshoots equilibrium by this term, as a multiple of it.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) overshoot: f64,
+    /// Its relaxation time, such as "2 s".
+    pub(crate) time: QuantityText,
+}
+
+/// A term of Fung's reduced relaxation function.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Share")]
+pub(crate) struct ShareTable {
+    /// c, its share of the force right after a sudden squeeze.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub(crate) share: f64,
+    /// Its rate ν, such as "0.5 /s".
+    pub(crate) rate: QuantityText,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum LawName {
+    /// The nonlinear latency law: strain rate = −v · sign(excess strain) · |excess strain|ⁿ.
+    Latency,
+    /// One relaxation time beside a spring (Zener).
+    StandardLinearSolid,
+    /// Several relaxation times beside a spring.
+    Prony,
+    /// Fung's reduced relaxation function of several terms.
+    Fung,
+    /// A fractional element beside a spring, good from a millionth of its time to a million times it.
+    FractionalZener,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum MemoryName {
+    /// Strain: the area is that of the moment.
+    Strain,
+    /// The relaxed force, Fung's quasi-linear viscoelasticity.
+    Force,
+}
+
+impl LawName {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Latency => "latency",
+            Self::StandardLinearSolid => "standard-linear-solid",
+            Self::Prony => "prony",
+            Self::Fung => "fung",
+            Self::FractionalZener => "fractional-zener",
+        }
+    }
+
+    /// The numbers that it needs.
+    pub(crate) fn numbers(self) -> &'static [&'static str] {
+        match self {
+            Self::Latency => &["exponent", "rate_coefficient"],
+            Self::StandardLinearSolid => &["overshoot", "time"],
+            Self::Prony => &["terms"],
+            Self::Fung => &["shares"],
+            Self::FractionalZener => &["overshoot", "time", "order"],
+        }
+    }
+}
+
+/// How the jaw meets the body.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Contact", extend("not" = { "required": ["layers", "layer_thickness"] }))]
+pub(crate) struct ContactTable {
+    /// Number of layers, any number of 1 or more; 8 unless layer_thickness is given.
+    #[schemars(extend("minimum" = 1))]
+    pub(crate) layers: Option<f64>,
+    /// Thickness of one layer, instead of their number.
+    pub(crate) layer_thickness: Option<QuantityText>,
+    /// Two sides for a ball, one side for other shapes, unless said otherwise.
+    pub(crate) squeezed_from: Option<SidesName>,
+    /// true (the default): the jaw can only push and leaves the body when the force reaches zero.
+    /// false: body and jaw are bonded, and the force may become tension.
+    pub(crate) separation: Option<bool>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[schemars(rename = "Sides")]
+pub(crate) enum SidesName {
+    /// Both jaws meet the body: each contact takes half the travel of the jaw.
+    #[serde(rename = "two sides")]
+    Two,
+    /// One jaw presses or pulls: its contact takes the whole travel.
+    #[serde(rename = "one side")]
+    One,
+}
+
+impl From<SidesName> for Sides {
+    fn from(name: SidesName) -> Self {
+        match name {
+            SidesName::Two => Self::Two,
+            SidesName::One => Self::One,
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! The tables of a material file as they stand in it.
+
+use palpate::calibrate::MaterialUnit;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::description::{
+    body::tables::{ContactTable, LawTable, SpecimenTable},
+    text::quantity::QuantityText,
+};
+
+/// A calibrated body: a protocol's specimen, law and contact, and the same numbers with their errors.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "palpate material", rename = "Material")]
+pub(crate) struct MaterialTables {
+    pub(crate) specimen: SpecimenTable,
+    pub(crate) law: LawTable,
+    #[serde(default)]
+    pub(crate) contact: ContactTable,
+    pub(crate) calibration: CalibrationTable,
+}
+
+/// What was calibrated, from what, and how sure it is.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Calibration")]
+pub(crate) struct CalibrationTable {
+    /// Version of this table: 1.
+    #[serde(rename = "version")]
+    pub(crate) _version: u64,
+    /// The record that was calibrated on.
+    pub(crate) record: String,
+    /// SHA-256 of its file.
+    pub(crate) sha256: String,
+    /// Its test description.
+    pub(crate) test: Option<String>,
+    /// Version of palpate that calibrated.
+    pub(crate) palpate: String,
+    /// Samples that were fitted.
+    pub(crate) samples: usize,
+    /// The law as it was fitted: latency (n found), latency:5 (n given), standard-linear-solid, prony:K or fung:K.
+    pub(crate) law: String,
+    /// The law of the relaxed force as it was fitted.
+    pub(crate) equilibrium: CalibratedEquilibriumName,
+    /// Standard deviation of what the model left of the measured force.
+    pub(crate) residual: QuantityText,
+    /// Coverage of the intervals, between 0 and 1.
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
+    pub(crate) confidence: Option<f64>,
+    /// Degrees of freedom of the residual variance.
+    pub(crate) freedom: Option<f64>,
+    /// The numbers in order.
+    #[schemars(extend("minItems" = 1))]
+    pub(crate) number: Vec<NumberTable>,
+    /// Covariance of the natural logarithms of the numbers, row by row in their order.
+    pub(crate) covariance: Option<Vec<Vec<f64>>>,
+    /// What the test has shown: questions beyond it are extrapolations.
+    pub(crate) shown: ShownTable,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[schemars(rename = "CalibratedEquilibrium")]
+pub(crate) enum CalibratedEquilibriumName {
+    /// Force = modulus × displacement/depth × contact area.
+    #[serde(rename = "even strain")]
+    EvenStrain,
+    /// Hertz's law.
+    #[serde(rename = "hertz")]
+    Hertz,
+    /// The rows of specimen.equilibrium_forces.
+    #[serde(rename = "table")]
+    Table,
+}
+
+/// One number with its errors; a number that was given has none.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "CalibratedNumber")]
+pub(crate) struct NumberTable {
+    /// Its name, such as modulus, exponent, rate_coefficient, layer_thickness or time_1.
+    pub(crate) name: String,
+    /// Its unit; none of a pure number.
+    pub(crate) unit: Option<String>,
+    /// The best value, in its unit.
+    pub(crate) value: f64,
+    /// Standard error, in its unit.
+    pub(crate) standard_error: Option<f64>,
+    /// Lower and upper end of the confidence interval, in its unit.
+    #[schemars(extend("minItems" = 2, "maxItems" = 2))]
+    pub(crate) interval: Option<Vec<f64>>,
+}
+
+/// What the test has shown.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Shown")]
+pub(crate) struct ShownTable {
+    /// The longest hold.
+    pub(crate) longest_hold: QuantityText,
+    /// The deepest squeeze, as travel of the jaw since first touch.
+    pub(crate) deepest: QuantityText,
+    /// The fastest ramp.
+    pub(crate) fastest: QuantityText,
+    /// The slowest ramp.
+    pub(crate) slowest: QuantityText,
+    /// The largest force.
+    pub(crate) largest_force: QuantityText,
+}
+
+/// The unit that is written so.
+pub(crate) fn unit_of(name: Option<&str>) -> Option<MaterialUnit> {
+    UNITS.iter().find(|(_, symbol)| *symbol == name).map(|(unit, _)| *unit)
+}
+
+/// Units of numbers as they are written.
+pub(crate) const UNITS: [(MaterialUnit, Option<&str>); 6] = [
+    (MaterialUnit::One, None),
+    (MaterialUnit::Second, Some("s")),
+    (MaterialUnit::PerSecond, Some("/s")),
+    (MaterialUnit::Metre, Some("m")),
+    (MaterialUnit::Newton, Some("N")),
+    (MaterialUnit::Pascal, Some("Pa")),
+];

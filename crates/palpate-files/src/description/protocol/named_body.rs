@@ -1,0 +1,52 @@
+//! The body of a material file, named by a protocol.
+
+use std::path::Path;
+
+use serde::{Deserialize, de::DeserializeOwned};
+
+use crate::description::{
+    material::parse_material,
+    text::{
+        error::DescriptionError,
+        source::{self, Source},
+    },
+};
+
+/// The tables of a protocol whose body may be that of a material file: `material = "file"` stands for specimen, law and contact.
+pub(crate) fn protocol_tables<T: DeserializeOwned>(source: &Source<'_>) -> Result<T, DescriptionError> {
+    #[derive(Deserialize)]
+    struct Named {
+        material: Option<toml::Value>,
+    }
+    let named: Named = source.tables()?;
+    let Some(named) = named.material else {
+        return source.tables();
+    };
+    let toml::Value::String(name) = &named else {
+        return Err(source.value("material", "the path of a material file", &named.to_string()));
+    };
+    let tables: toml::Table = source.tables()?;
+    if let Some(key) = BODY.into_iter().find(|key| tables.contains_key(*key)) {
+        return Err(source.both(key, "material"));
+    }
+    let path = source.path.parent().unwrap_or(Path::new("")).join(name);
+    let text = source::read(&path, source::LONGEST)?;
+    parse_material(&text, &path)?;
+    tables_with(source, &text)
+}
+
+/// The tables of a protocol with the body of a material that was checked already.
+pub(crate) fn tables_with<T: DeserializeOwned>(source: &Source<'_>, material: &str) -> Result<T, DescriptionError> {
+    let path = Path::new("material");
+    let mut body: toml::Table = Source { path, text: material }.tables()?;
+    let mut tables: toml::Table = source.tables()?;
+    tables.remove("material");
+    for key in BODY {
+        tables.remove(key);
+        tables.extend(body.remove_entry(key));
+    }
+    source.unplaced(tables)
+}
+
+/// The tables that say what a body is.
+const BODY: [&str; 3] = ["specimen", "law", "contact"];

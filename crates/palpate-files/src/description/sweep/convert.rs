@@ -1,0 +1,413 @@
+//! A sweep: a protocol whose numbers are replaced by many, every run checked as a protocol of its own.
+
+use std::path::{Path, PathBuf};
+
+use palpate::units::Dimension;
+
+use super::{
+    plan::{At, Plan, of_grid},
+    table::{self, Entry, Table, Written},
+    values::{self, Value, Values, Wrong},
+};
+use crate::description::{
+    protocol::{
+        convert::{Protocol, check},
+        named_body::protocol_tables,
+        numbers::{Slot, numbers},
+        sweep_schema::Method,
+        tables::ProtocolTables,
+    },
+    text::{
+        error::DescriptionError,
+        places::Places,
+        quantity::QuantityText,
+        source::{self, Source},
+    },
+};
+
+/// Most runs of a sweep.
+const MOST_RUNS: u64 = 10_000_000;
+/// Seed of a latin hypercube where none is given.
+const USUAL_SEED: u64 = 1;
+
+/// A protocol with numbers to replace.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    path: PathBuf,
+    text: String,
+    tables: ProtocolTables,
+    base: Protocol,
+    numbers: Vec<SweptNumber>,
+    plan: Plan,
+    runs: u64,
+}
+
+/// A number that takes many values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweptNumber {
+    /// Its path, such as `specimen.radius` or `step[2].rate`.
+    pub path: String,
+    /// Its name in tables, such as `specimen_radius_m`.
+    pub column: String,
+    /// Symbol of its SI unit; empty of a pure number.
+    pub unit: &'static str,
+    /// How its values are spaced.
+    pub spacing: Spacing,
+    values: Values,
+}
+
+/// How values are spaced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Spacing {
+    /// As listed.
+    Listed,
+    /// By equal differences.
+    Linear,
+    /// By equal ratios.
+    Logarithmic,
+}
+
+impl SweptNumber {
+    /// All its values in a grid, SI, in the order of the runs; `None` of a range that is drawn from.
+    #[must_use]
+    pub fn grid(&self) -> Option<Vec<f64>> {
+        match &self.values {
+            Values::List(list) => Some(list.iter().map(|value| value.si).collect()),
+            Values::Range(range) => {
+                let count = range.count?;
+                Some((0..count).map(|place| of_grid(range, place, count)).collect())
+            }
+        }
+    }
+
+    fn new(path: String, dimension: Option<Dimension>, values: Values) -> Self {
+        let unit = dimension.map_or("", |dimension| dimension.units()[0].0);
+        let plain: String = path.replace(']', "").replace(['[', '.'], "_");
+        Self {
+            column: [plain.as_str(), suffix(dimension)].concat(),
+            path,
+            unit,
+            spacing: match &values {
+                Values::List(_) => Spacing::Listed,
+                Values::Range(range) if range.logarithmic => Spacing::Logarithmic,
+                Values::Range(_) => Spacing::Linear,
+            },
+            values,
+        }
+    }
+
+    /// The value at a place, and the same as a protocol writes it.
+    fn value(&self, at: &At) -> (f64, QuantityText) {
+        match (at, &self.values) {
+            (At::Entry(place), Values::List(list)) => (list[*place].si, QuantityText::of(list[*place].text.clone())),
+            (At::Number(si), _) => (*si, QuantityText::of(format!("{si} {}", self.unit))),
+            (At::Entry(_), Values::Range(range)) => {
+                (range.first, QuantityText::of(format!("{} {}", range.first, self.unit)))
+            }
+        }
+    }
+}
+
+/// End of a column's name.
+fn suffix(dimension: Option<Dimension>) -> &'static str {
+    match dimension {
+        None => "",
+        Some(Dimension::Length) => "_m",
+        Some(Dimension::Area) => "_m2",
+        Some(Dimension::Time) => "_s",
+        Some(Dimension::Force) => "_n",
+        Some(Dimension::Pressure) => "_pa",
+        Some(Dimension::Speed) => "_m_per_s",
+        Some(Dimension::Rate) => "_per_s",
+        Some(Dimension::Frequency) => "_hz",
+        Some(Dimension::ForceRate) => "_n_per_s",
+        Some(Dimension::Compliance) => "_m_per_n",
+        Some(Dimension::Voltage) => "_v",
+        Some(Dimension::Mass) => "_kg",
+        Some(Dimension::Acceleration) => "_m_per_s2",
+        Some(Dimension::Torque) => "_n_m",
+    }
+}
+
+impl Sweep {
+    /// The protocol without its sweep.
+    #[must_use]
+    pub fn base(&self) -> &Protocol {
+        &self.base
+    }
+
+    /// The text of the file.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// How many `[[step]]` tables the protocol has.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.tables.step.len()
+    }
+
+    /// The swept numbers in the order of the file.
+    #[must_use]
+    pub fn numbers(&self) -> &[SweptNumber] {
+        &self.numbers
+    }
+
+    /// How runs are put together.
+    #[must_use]
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// How many runs there are.
+    #[must_use]
+    pub fn runs(&self) -> u64 {
+        self.runs
+    }
+
+    /// The values of a run, from 0, in SI, and its protocol with these values in it.
+    ///
+    /// # Errors
+    /// Beside the values: as for [`parse_protocol`](crate::description::protocol::convert::parse_protocol), where they make no protocol.
+    pub fn run(&self, run: u64) -> (Vec<f64>, Result<Protocol, DescriptionError>) {
+        let values: Vec<&Values> = self.numbers.iter().map(|number| &number.values).collect();
+        let places = self.plan.of(run, &values);
+        let mut tables = self.tables.clone();
+        let mut found = Vec::with_capacity(places.len());
+        let mut slots = numbers(&mut tables);
+        for (number, at) in self.numbers.iter().zip(&places) {
+            let (si, text) = number.value(at);
+            found.push(si);
+            match slots.iter_mut().find(|slot| slot.path == number.path).map(|found| &mut found.slot) {
+                Some(Slot::Bare(slot)) => **slot = si,
+                Some(Slot::Quantity(slot, _)) => **slot = text,
+                None => {}
+            }
+        }
+        drop(slots);
+        let source = Source {
+            path: &self.path,
+            text: &self.text,
+        };
+        (found, check(&source, &tables))
+    }
+}
+
+/// Reads and checks the protocol in the file at `path` and its table `[sweep]`.
+///
+/// # Errors
+/// As for [`read_protocol`](crate::description::protocol::convert::read_protocol), and where the sweep names no number of the protocol, or values that are none.
+pub fn read_sweep(path: &Path) -> Result<Sweep, DescriptionError> {
+    parse_sweep(&source::read(path, source::LONGEST)?, path)
+}
+
+/// Likewise for a text that was read already; `path` is used in messages alone.
+///
+/// ```
+/// use std::path::Path;
+/// use palpate_files::description::parse_sweep;
+/// let text = r#"
+///     specimen = { shape = "ball", radius = "35 mm", modulus = "28 kPa" }
+///     law = { name = "latency", exponent = 5, rate_coefficient = "2e4 /s" }
+///     step = [{ to = "5 mm", rate = "500 mm/min", hold = "10 s" }]
+///     [sweep]
+///     law.rate_coefficient = "log 1e3..1e5 /s, 3"
+///     specimen.radius = "30, 35 mm"
+/// "#;
+/// let sweep = parse_sweep(text, Path::new("squeeze.toml"))?;
+/// assert_eq!(sweep.runs(), 6);
+/// let (values, protocol) = sweep.run(3);
+/// assert_eq!(values, [1e4, 0.035]);
+/// assert_eq!(protocol?.model.latency().map(|model| model.law.rate_coefficient()), Some(1e4));
+/// assert_eq!(sweep.numbers()[0].column, "law_rate_coefficient_per_s");
+/// # Ok::<(), palpate_files::description::DescriptionError>(())
+/// ```
+///
+/// # Errors
+/// As for [`read_sweep`], less those of the file.
+pub fn parse_sweep(text: &str, path: &Path) -> Result<Sweep, DescriptionError> {
+    let source = Source { path, text };
+    let mut tables: ProtocolTables = protocol_tables(&source)?;
+    let base = check(&source, &tables)?;
+    let table = table::table(&source)?;
+    if table.entries.is_empty() {
+        return Err(source.missing("sweep", "a number and its values, such as law.exponent = \"1, 2, 5\""));
+    }
+    let known = known(&mut tables);
+    let mut swept: Vec<SweptNumber> = Vec::with_capacity(table.entries.len());
+    for entry in &table.entries {
+        let number = swept_number(&source, entry, &known, table.method)?;
+        if let Some(before) = swept.iter().position(|before| before.path == number.path) {
+            return Err(source.both(&entry.key, &table.entries[before].key));
+        }
+        swept.push(number);
+    }
+    let plan = plan(&source, &table, &swept)?;
+    let runs = plan.runs().filter(|runs| *runs <= MOST_RUNS).ok_or_else(|| {
+        let found = plan.runs().map_or_else(|| "far more".to_owned(), |runs| runs.to_string());
+        source.value("sweep", format!("at most {MOST_RUNS} runs"), &found)
+    })?;
+    Ok(Sweep {
+        path: path.to_owned(),
+        text: text.to_owned(),
+        tables,
+        base,
+        numbers: swept,
+        plan,
+        runs,
+    })
+}
+
+/// A sweep whose numbers come as columns of one length instead of a table `[sweep]`: run i takes the value i of each.
+///
+/// Numbers are named by their paths, such as `specimen.radius` or `step[2].rate`, and given in SI. A table `[sweep]` in the text is
+/// left aside.
+///
+/// ```
+/// use std::path::Path;
+/// use palpate_files::description::parse_runs;
+/// let text = r#"
+///     specimen = { shape = "ball", radius = "35 mm", modulus = "28 kPa" }
+///     law = { name = "latency", exponent = 5, rate_coefficient = "2e4 /s" }
+///     step = [{ to = "5 mm", rate = "500 mm/min", hold = "10 s" }]
+/// "#;
+/// let columns = [("law.exponent", vec![5.0, 3.0]), ("specimen.radius", vec![0.03, 0.04])];
+/// let runs = parse_runs(text, Path::new("squeeze.toml"), &columns)?;
+/// assert_eq!((runs.runs(), runs.run(1).0), (2, vec![3.0, 0.04]));
+/// # Ok::<(), palpate_files::description::DescriptionError>(())
+/// ```
+///
+/// # Errors
+/// As for [`parse_sweep`], and for columns of different lengths.
+pub fn parse_runs(text: &str, path: &Path, columns: &[(&str, Vec<f64>)]) -> Result<Sweep, DescriptionError> {
+    let source = Source { path, text };
+    let mut tables: ProtocolTables = protocol_tables(&source)?;
+    let base = check(&source, &tables)?;
+    let known = known(&mut tables);
+    let runs = columns.first().map_or(0, |(_, values)| values.len());
+    let mut swept = Vec::with_capacity(columns.len());
+    for (path, values) in columns {
+        let Some((_, dimension)) = known.iter().find(|(known, _)| known == path) else {
+            return Err(DescriptionError::UnknownNumber {
+                place: source.place(*path),
+                number: (*path).to_owned(),
+                accepted: known.iter().map(|(path, _)| path.clone()).collect(),
+            });
+        };
+        if values.len() != runs {
+            let expected = format!("{runs} values, as the other numbers have");
+            return Err(source.value(*path, expected, &values.len().to_string()));
+        }
+        let unit = dimension.map_or("", |dimension| dimension.units()[0].0);
+        let value = |si: &f64| Value {
+            si: *si,
+            text: format!("{si} {unit}"),
+        };
+        swept.push(SweptNumber::new((*path).to_owned(), *dimension, Values::List(values.iter().map(value).collect())));
+    }
+    let runs = runs as u64;
+    if runs > MOST_RUNS {
+        return Err(source.value("runs", format!("at most {MOST_RUNS} runs"), &runs.to_string()));
+    }
+    Ok(Sweep {
+        path: path.to_owned(),
+        text: text.to_owned(),
+        tables,
+        base,
+        numbers: swept,
+        plan: Plan::Together { runs },
+        runs,
+    })
+}
+
+/// Paths and dimensions of the numbers that stand in the protocol.
+fn known(tables: &mut ProtocolTables) -> Vec<(String, Option<Dimension>)> {
+    let dimension = |slot: &Slot<'_>| match slot {
+        Slot::Bare(_) => None,
+        Slot::Quantity(_, dimension) => Some(*dimension),
+    };
+    numbers(tables).into_iter().map(|number| (number.path, dimension(&number.slot))).collect()
+}
+
+fn swept_number(
+    source: &Source<'_>,
+    entry: &Entry,
+    known: &[(String, Option<Dimension>)],
+    method: Method,
+) -> Result<SweptNumber, DescriptionError> {
+    let Some((_, dimension)) = known.iter().find(|(path, _)| *path == entry.path) else {
+        let accepted: Vec<String> = known.iter().map(|(path, _)| path.clone()).collect();
+        let stands = Places::of(source.text).start_exactly(&entry.path).is_some();
+        if stands {
+            let expected = format!("a number of the protocol ({})", accepted.join(", "));
+            return Err(source.value(&entry.key, expected, &format!("{}, which is none", entry.path)));
+        }
+        return Err(DescriptionError::UnknownNumber {
+            place: source.place(&entry.key),
+            number: entry.path.clone(),
+            accepted,
+        });
+    };
+    let (values, found) = match &entry.written {
+        Written::Text(text) => (values::parse(text, *dimension), format!("\"{text}\"")),
+        Written::List(list) => {
+            let parts: Vec<&str> = list.iter().map(String::as_str).collect();
+            (values::list(&parts, *dimension), format!("[{}]", list.join(", ")))
+        }
+    };
+    let values = values.map_err(|wrong| match wrong {
+        Wrong::Expected(expected) => source.value(&entry.key, expected, &found),
+        Wrong::Quantity(quantity, error) => DescriptionError::Quantity {
+            place: source.place(&entry.key),
+            found: format!("\"{quantity}\""),
+            source: error,
+        },
+    })?;
+    if let Values::Range(range) = &values {
+        match (method, range.count) {
+            (Method::Grid, None) => {
+                let expected = "the number of values after a comma, as in \"log 1e3..1e6 /s, 50\"";
+                return Err(source.value(&entry.key, expected, &found));
+            }
+            (Method::LatinHypercube, Some(_)) => {
+                let expected = "a range without a number of values: a latin hypercube has samples of its own";
+                return Err(source.value(&entry.key, expected, &found));
+            }
+            _ => {}
+        }
+    }
+    Ok(SweptNumber::new(entry.path.clone(), *dimension, values))
+}
+
+fn plan(source: &Source<'_>, table: &Table, numbers: &[SweptNumber]) -> Result<Plan, DescriptionError> {
+    match table.method {
+        Method::Grid => {
+            for (key, given) in [("samples", table.samples), ("seed", table.seed)] {
+                if let Some(given) = given {
+                    let reason = format!("by a grid, whose runs are counted by its values (found {given})");
+                    let remedy = format!("remove {key}, or set method = \"latin hypercube\"");
+                    return Err(source.unused(&format!("sweep.{key}"), &reason, &remedy));
+                }
+            }
+            let count = |number: &SweptNumber| match &number.values {
+                Values::List(list) => list.len(),
+                Values::Range(range) => range.count.unwrap_or(1),
+            };
+            Ok(Plan::Grid {
+                counts: numbers.iter().map(count).collect(),
+            })
+        }
+        Method::LatinHypercube => {
+            let expected = "the number of runs, such as 1000";
+            match table.samples {
+                None => Err(source.missing("sweep.samples", expected)),
+                Some(0) => Err(source.value("sweep.samples", "a number of runs of 1 or more", "0")),
+                Some(samples) => Ok(Plan::LatinHypercube {
+                    samples,
+                    seed: table.seed.unwrap_or(USUAL_SEED),
+                }),
+            }
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! The tables `[columns.…]` of a test, as they stand in the file.
+
+use palpate::units::{Dimension, UnitError};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::columns::{ClockChoice, ColumnChoice, ColumnChoices};
+use crate::{
+    description::text::{error::DescriptionError, quantity::QuantityText, source::Source},
+    naming::Quantity,
+    table::{ColumnRef, EPOCH},
+};
+
+/// Which columns hold what. What is left out is recognised by the header of the file.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Columns", extend("not" = { "required": ["force", "stress"] }))]
+pub(crate) struct ColumnsTable {
+    /// Time. Not needed where displacement and force have clocks of their own.
+    time: Option<TimeTable>,
+    /// Travel of the jaw. A record without it is cut into phases by its force.
+    displacement: Option<DisplacementTable>,
+    /// Force.
+    force: Option<ColumnTable>,
+    /// Stress instead of force; the section of the specimen turns it into force.
+    stress: Option<ColumnTable>,
+    /// Deflection of the cantilever of an AFM: taken off the displacement, which is then that of the cantilever's base.
+    deflection: Option<DeflectionTable>,
+}
+
+/// The column of the time.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "TimeColumn")]
+struct TimeTable {
+    /// Number of the column, from 1, or its name.
+    column: Option<ColumnRef>,
+    /// Unit, such as "s"; not needed where the header gives it.
+    unit: Option<String>,
+}
+
+/// The column of a measured quantity.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Column")]
+struct ColumnTable {
+    /// Number of the column, from 1, or its name.
+    column: Option<ColumnRef>,
+    /// Unit, such as "mm" or "N"; not needed where the header gives it.
+    unit: Option<String>,
+    /// What a volt stands for, such as "12.5 N/V"; the unit is then "V" or "mV".
+    scale: Option<String>,
+    /// What is added to the values, such as "0.2 N": value × scale + offset, then the sign.
+    offset: Option<QuantityText>,
+    /// -1 where the file counts loading as negative; 1 otherwise.
+    #[schemars(extend("enum" = [1, -1]))]
+    sign: Option<f64>,
+    /// Time stamps of this quantity alone, where it has its own.
+    clock: Option<ClockTable>,
+}
+
+/// The column of the travel of the jaw.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "DisplacementColumn", extend("not" = { "required": ["unit", "travel_per_unit"] }))]
+struct DisplacementTable {
+    /// Number of the column, from 1, or its name.
+    column: Option<ColumnRef>,
+    /// Unit, such as "mm"; not needed where the header gives it.
+    unit: Option<String>,
+    /// What a volt stands for, such as "12.5 mm/V"; the unit is then "V" or "mV".
+    scale: Option<String>,
+    /// What is added to the values, such as "0.2 mm": value × scale + offset, then the sign.
+    offset: Option<QuantityText>,
+    /// -1 where the file counts loading as negative, such as the opening of a gripper; 1 otherwise.
+    #[schemars(extend("enum" = [1, -1]))]
+    sign: Option<f64>,
+    /// A column that is added to it, where each finger of a gripper has its own.
+    also: Option<ColumnRef>,
+    /// true: the column holds the travel of one of two fingers that move alike.
+    doubled: Option<bool>,
+    /// Instead of a unit: travel while the column rises by one, where it counts an angle or a share of the stroke.
+    travel_per_unit: Option<QuantityText>,
+    /// Time stamps of this quantity alone, where it has its own.
+    clock: Option<ClockTable>,
+}
+
+/// The column of the deflection of a cantilever.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "DeflectionColumn")]
+struct DeflectionTable {
+    /// Number of the column, from 1, or its name.
+    column: ColumnRef,
+    /// Unit, such as "nm"; not needed where the header gives it.
+    unit: Option<String>,
+    /// Sensitivity, such as "52 nm/V", where the column holds volts; the unit is then "V" or "mV".
+    scale: Option<String>,
+    /// -1 where the file counts the deflection as negative when the sample pushes; 1 otherwise.
+    #[schemars(extend("enum" = [1, -1]))]
+    sign: Option<f64>,
+}
+
+/// The time stamps of one quantity alone.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Clock")]
+struct ClockTable {
+    /// Number of the column, from 1, or its name.
+    column: ColumnRef,
+    /// Unit, such as "s"; not needed where the header gives it.
+    unit: Option<String>,
+}
+
+impl ColumnsTable {
+    pub(super) fn checked(self, source: &Source<'_>) -> Result<ColumnChoices, DescriptionError> {
+        if self.force.is_some() && self.stress.is_some() {
+            return Err(source.both("columns.force", "columns.stress"));
+        }
+        // What a header calls a displacement may be one of which the deflection is off already.
+        let names_height = self.displacement.as_ref().is_some_and(|table| table.column.is_some());
+        let measured = |table: Option<ColumnTable>, key, quantity| {
+            table.map(|table| table.checked(source, key, quantity)).transpose()
+        };
+        let time = self.time.map(|table| {
+            check_unit(source, "columns.time.unit", table.unit.as_deref(), Dimension::Time)?;
+            Ok(ColumnChoice {
+                column: table.column,
+                unit: table.unit,
+                unit_by: None,
+                scale: None,
+                offset: 0.0,
+                sign: 1.0,
+                also: None,
+                doubled: false,
+                travel_per_unit: None,
+                clock: None,
+            })
+        });
+        Ok(ColumnChoices {
+            time: time.transpose()?,
+            displacement: self.displacement.map(|table| table.checked(source)).transpose()?,
+            force: measured(self.force, "force", Quantity::Force)?,
+            stress: measured(self.stress, "stress", Quantity::Stress)?,
+            deflection: match self.deflection {
+                Some(_) if !names_height => return Err(source.missing("columns.displacement", HEIGHT)),
+                deflection => deflection.map(|table| table.checked(source)).transpose()?,
+            },
+        })
+    }
+}
+
+/// What a deflection is taken off.
+const HEIGHT: &str = "the column of the height, such as { column = \"measuredHeight\", sign = -1 }";
+
+impl DeflectionTable {
+    fn checked(self, source: &Source<'_>) -> Result<ColumnChoice, DescriptionError> {
+        let plain = ColumnTable {
+            column: Some(self.column),
+            unit: self.unit,
+            scale: self.scale,
+            offset: None,
+            sign: self.sign,
+            clock: None,
+        };
+        plain.checked(source, "deflection", Quantity::Displacement)
+    }
+}
+
+impl DisplacementTable {
+    fn checked(self, source: &Source<'_>) -> Result<ColumnChoice, DescriptionError> {
+        let key = "columns.displacement.travel_per_unit";
+        if self.unit.is_some() && self.travel_per_unit.is_some() {
+            return Err(source.both(key, "columns.displacement.unit"));
+        }
+        if self.also.is_some() && self.doubled == Some(true) {
+            return Err(source.both("columns.displacement.doubled", "columns.displacement.also"));
+        }
+        let travel = self.travel_per_unit.map(|travel| source.positive(key, &travel, Dimension::Length)).transpose()?;
+        let plain = ColumnTable {
+            column: self.column,
+            unit: self.unit,
+            scale: self.scale,
+            offset: self.offset,
+            sign: self.sign,
+            clock: self.clock,
+        };
+        Ok(ColumnChoice {
+            also: self.also,
+            doubled: self.doubled.unwrap_or(false),
+            travel_per_unit: travel,
+            ..plain.checked(source, "displacement", Quantity::Displacement)?
+        })
+    }
+}
+
+impl ColumnTable {
+    /// Of the table `[columns.…]` called `name`.
+    fn checked(self, source: &Source<'_>, name: &str, quantity: Quantity) -> Result<ColumnChoice, DescriptionError> {
+        let key = |rest: &str| format!("columns.{name}.{rest}");
+        let scale = self.scale.as_deref().map(|scale| checked_scale(source, &key("scale"), scale, quantity));
+        let scale = scale.transpose()?;
+        let measured = if scale.is_some() { Dimension::Voltage } else { quantity.dimension() };
+        check_unit(source, &key("unit"), self.unit.as_deref(), measured)?;
+        let offset = self.offset.as_ref().map(|offset| source.si(&key("offset"), offset, quantity.dimension()));
+        let sign = self.sign.unwrap_or(1.0);
+        let sign = source.number(&key("sign"), sign, "1 or -1", |sign| sign.abs() == 1.0)?;
+        if let Some(clock) = &self.clock {
+            let key = key("clock.unit");
+            check_unit(source, &key, clock.unit.as_deref(), Dimension::Time)?;
+        }
+        Ok(ColumnChoice {
+            column: self.column,
+            unit: self.unit,
+            unit_by: None,
+            scale,
+            offset: offset.transpose()?.unwrap_or(0.0),
+            sign,
+            also: None,
+            doubled: false,
+            travel_per_unit: None,
+            clock: self.clock.map(|clock| ClockChoice {
+                column: clock.column,
+                unit: clock.unit,
+            }),
+        })
+    }
+}
+
+fn checked_scale(source: &Source<'_>, key: &str, scale: &str, quantity: Quantity) -> Result<f64, DescriptionError> {
+    crate::naming::volts_are(scale, quantity.dimension()).ok_or_else(|| {
+        let symbol = quantity.dimension().units()[0].0;
+        let expected = format!("a {quantity} per volt other than 0, such as \"12.5 {symbol}/V\"");
+        source.value(key, expected, &format!("\"{scale}\""))
+    })
+}
+
+fn check_unit(
+    source: &Source<'_>,
+    key: &str,
+    unit: Option<&str>,
+    dimension: Dimension,
+) -> Result<(), DescriptionError> {
+    match unit {
+        Some(unit) if dimension == Dimension::Time && unit.trim().eq_ignore_ascii_case(EPOCH) => Ok(()),
+        Some(unit) if crate::naming::unit_factor(unit, dimension).is_none() => Err(DescriptionError::Quantity {
+            place: source.place(key),
+            found: format!("\"{unit}\""),
+            source: UnitError::UnknownUnit {
+                dimension,
+                unit: unit.to_owned(),
+            },
+        }),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,78 @@
+//! Which column of a file holds what.
+
+use crate::{naming::Quantity, table::ColumnRef};
+
+/// What is said about one quantity; what is left out is taken from the header of the file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColumnChoice {
+    /// The column.
+    pub column: Option<ColumnRef>,
+    /// Its unit, one that its quantity takes.
+    pub unit: Option<String>,
+    /// The machine whose conventions say that unit, where the description itself does not.
+    pub unit_by: Option<String>,
+    /// What a volt stands for, in SI, where the column holds volts.
+    pub scale: Option<f64>,
+    /// What is added to the scaled values, in SI, before the sign.
+    pub offset: f64,
+    /// 1, or −1 where the file counts the other way round.
+    pub sign: f64,
+    /// A column that is added to it, where each finger of a gripper has its own.
+    pub also: Option<ColumnRef>,
+    /// The column holds the travel of one of two fingers: the travel is twice as long.
+    pub doubled: bool,
+    /// Travel in m while the column rises by one, where it does not count a length.
+    pub travel_per_unit: Option<f64>,
+    /// A clock of its own.
+    pub clock: Option<ClockChoice>,
+}
+
+/// The time stamps of one quantity alone.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ClockChoice {
+    /// The column of the clock.
+    pub column: ColumnRef,
+    /// Its unit.
+    pub unit: Option<String>,
+}
+
+/// Which columns of a file hold what; `None`: recognised by the header of the file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ColumnChoices {
+    /// Time.
+    pub time: Option<ColumnChoice>,
+    /// Displacement.
+    pub displacement: Option<ColumnChoice>,
+    /// Force; never together with stress.
+    pub force: Option<ColumnChoice>,
+    /// Stress, to be turned into force by the section of the specimen.
+    pub stress: Option<ColumnChoice>,
+    /// Deflection of the cantilever, to be taken off the displacement.
+    pub deflection: Option<ColumnChoice>,
+}
+
+impl ColumnChoices {
+    /// What is said about each column of which anything is, and what it measures.
+    pub(crate) fn all(&self) -> Vec<(Quantity, &ColumnChoice)> {
+        let said = [
+            (Quantity::Time, &self.time),
+            (Quantity::Displacement, &self.displacement),
+            (Quantity::Force, &self.force),
+            (Quantity::Stress, &self.stress),
+            (Quantity::Displacement, &self.deflection),
+        ];
+        said.into_iter().filter_map(|(quantity, choice)| Some((quantity, choice.as_ref()?))).collect()
+    }
+
+    /// The same with their keys in `[columns]`, to be changed.
+    pub(crate) fn all_mut(&mut self) -> Vec<(&'static str, &mut ColumnChoice)> {
+        let said = [
+            ("time", &mut self.time),
+            ("displacement", &mut self.displacement),
+            ("force", &mut self.force),
+            ("stress", &mut self.stress),
+            ("deflection", &mut self.deflection),
+        ];
+        said.into_iter().filter_map(|(key, choice)| Some((key, choice.as_mut()?))).collect()
+    }
+}

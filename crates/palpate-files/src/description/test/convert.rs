@@ -1,0 +1,148 @@
+//! A test: what its record holds, what body was tested, and how to evaluate it.
+
+use std::path::Path;
+
+use palpate::{
+    analysis::{Geometry, LayersChoice},
+    contact::{Shape, Sides},
+    segment::ContactChoice,
+};
+
+use super::{
+    corrections,
+    description::{About, TestDescription},
+    preset, settings,
+    tables::{ContactTable, TestTables},
+};
+use crate::description::{
+    body::{contact, specimen},
+    text::{
+        error::DescriptionError,
+        source::{self, Source},
+    },
+};
+
+/// Reads and checks the description in the file at `path`.
+///
+/// # Errors
+/// [`DescriptionError`] where the file cannot be read, is no TOML, or holds a key or value that makes no
+/// sense; it names the key.
+pub fn read_test(path: &Path) -> Result<TestDescription, DescriptionError> {
+    parse_test(&source::read(path, source::LONGEST)?, path)
+}
+
+/// Checks a description that was read already; `path` is used in messages alone.
+///
+/// ```
+/// use std::path::Path;
+/// use palpate_files::description::parse_test;
+/// let text = r#"
+///     specimen = { shape = "ball", radius = "35 mm", modulus = "28 kPa" }
+///     columns.force = { column = 3, unit = "N" }
+///     phases.hold_start = "peak + 0.5 s"
+/// "#;
+/// let test = parse_test(text, Path::new("ball.toml"))?;
+/// assert_eq!(test.geometry.map(|body| body.shape.depth(body.sides)), Some(0.035));
+/// # Ok::<(), palpate_files::description::DescriptionError>(())
+/// ```
+///
+/// # Errors
+/// As for [`read_test`], less those of the file.
+pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, DescriptionError> {
+    let source = Source { path, text };
+    let tables = preset::over_preset(&source, source.tables()?)?;
+    if tables.law.is_some() && tables.calibration.is_none() {
+        let reason = "in a test, whose laws are found from its record";
+        return Err(source.unused("law", reason, "remove [law], or keep it for a protocol"));
+    }
+    let geometry = geometry(&source, &tables)?;
+    let mut columns = tables.columns.checked(&source)?;
+    if let Some(name) = &tables.machine.preset {
+        preset::mark_units(&source, name, &mut columns);
+    }
+    let grows = geometry.as_ref().is_some_and(|body| !matches!(body.shape, Shape::Prism { .. }));
+    if grows && columns.stress.is_some() {
+        let reason = "for a body whose contact area changes with the squeeze";
+        return Err(source.unused("columns.stress", reason, "give columns.force"));
+    }
+    let contact = &tables.contact;
+    let touch = match &contact.touch {
+        Some(text) => settings::touch(&source, text)?,
+        None if grows => ContactChoice::Auto,
+        None => ContactChoice::AsRecorded,
+    };
+    let (fit, exponents) = settings::fit(&source, &tables.fit)?;
+    let layers = layers(&source, contact, geometry.as_ref())?;
+    Ok(TestDescription {
+        about: About {
+            title: tables.about.title,
+            source: tables.about.source,
+            note: tables.about.note,
+        },
+        reading: tables.file.checked(),
+        columns,
+        geometry,
+        separation: contact::separation(contact.separation.unwrap_or(grows)),
+        layers,
+        corrections: corrections::checked(&source, &tables.clock, &tables.force, &tables.machine)?,
+        touch,
+        segment: settings::segment(&source, &tables.phases)?,
+        given_holds: settings::given_holds(&source, &tables.phases)?,
+        fit,
+        exponents,
+        free_exponent: tables.fit.free_exponent.unwrap_or(true),
+        until: settings::until(&source, &tables.fit)?,
+    })
+}
+
+fn geometry(source: &Source<'_>, tables: &TestTables) -> Result<Option<Geometry>, DescriptionError> {
+    let sides = tables.contact.squeezed_from.map(Sides::from);
+    let shape = match &tables.specimen {
+        Some(specimen) => {
+            if tables.calibration.is_none() {
+                specimen.no_equilibrium(source)?;
+            }
+            specimen.shape(source)?
+        }
+        None => None,
+    };
+    let modulus = match &tables.specimen {
+        Some(specimen) => specimen.modulus(source)?,
+        None => None,
+    };
+    let Some(shape) = shape else {
+        if sides.is_some() {
+            return Err(needs_body(source, "contact.squeezed_from"));
+        }
+        if modulus.is_some() {
+            return Err(needs_body(source, "specimen.modulus"));
+        }
+        return Ok(None);
+    };
+    Ok(Some(Geometry {
+        sides: sides.unwrap_or_else(|| specimen::usual_sides(&shape)),
+        shape,
+        modulus,
+    }))
+}
+
+fn layers(
+    source: &Source<'_>,
+    contact: &ContactTable,
+    geometry: Option<&Geometry>,
+) -> Result<Option<LayersChoice>, DescriptionError> {
+    let thickness = contact.layer_thickness.as_ref();
+    match geometry {
+        Some(body) => contact::layers(source, contact.layers, thickness, body.shape.depth(body.sides)),
+        None if contact.layers.is_some() => Err(needs_body(source, "contact.layers")),
+        None if thickness.is_some() => Err(needs_body(source, "contact.layer_thickness")),
+        None => Ok(None),
+    }
+}
+
+/// A key that says something about a body that is not described.
+fn needs_body(source: &Source<'_>, key: &str) -> DescriptionError {
+    let reason = "without a [specimen] that has a shape";
+    let remedy = format!("remove {key}, or give the shape and sizes of the body in [specimen]");
+    source.unused(key, reason, &remedy)
+}

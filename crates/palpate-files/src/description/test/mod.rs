@@ -1,0 +1,31 @@
+//! A test: what its record holds, what body was tested, and how to evaluate it.
+//!
+//! | file | what |
+//! |---|---|
+//! | `tables.rs`, `column_tables.rs`, `file.rs` | the tables as they stand |
+//! | `description.rs` | a checked description ([`TestDescription`]) |
+//! | `convert.rs` | the one to the other |
+//! | `columns.rs` | which column of a file holds what ([`ColumnChoices`]) |
+//! | `corrections.rs`, `settings.rs` | corrections of the record; settings of phases and fit |
+//! | `choices.rs` | choices that a command line offers too |
+//! | `preset.rs`, `machines/`, `machines.rs` | grippers and machines whose conventions are known, and telling them by a file |
+
+mod choices;
+mod column_tables;
+mod columns;
+mod convert;
+mod corrections;
+mod description;
+mod file;
+mod machines;
+mod preset;
+mod settings;
+pub(super) mod tables;
+
+pub use choices::{ChoiceError, parse_hold_start, parse_touch};
+pub use columns::{ClockChoice, ColumnChoice, ColumnChoices};
+pub use convert::{parse_test, read_test};
+pub use description::{About, TestDescription};
+pub(crate) use machines::contradicts;
+pub use machines::machines_of;
+pub use preset::{Machine, machines};

@@ -1,0 +1,142 @@
+//! Grippers and machines whose conventions are known: parts of a test description under a name.
+//!
+//! `[machine] preset = "franka-hand"` in a test stands for the lines of that name. What the test says itself goes before.
+
+use serde::Deserialize;
+use toml::{Table, Value};
+
+use super::{columns::ColumnChoices, tables::TestTables};
+use crate::description::text::{error::DescriptionError, places::Places, source::Source, words};
+
+/// A part of a test description that belongs to a gripper or machine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Machine {
+    /// The name by which a test description refers to it.
+    pub name: &'static str,
+    /// The lines that it stands for, with where they are known from.
+    pub text: &'static str,
+}
+
+impl Machine {
+    /// What it is, in one line.
+    #[must_use]
+    pub fn about(&self) -> &'static str {
+        self.text.lines().next().unwrap_or("").trim_start_matches(['#', ' '])
+    }
+}
+
+/// The machines of the folder `machines/`, by name.
+macro_rules! machines {
+    ($($name:literal),* $(,)?) => {
+        &[$(Machine { name: $name, text: include_str!(concat!("machines/", $name, ".toml")) }),*]
+    };
+}
+
+pub(super) const MACHINES: &[Machine] = machines![
+    "aurora-600a",
+    "franka-hand",
+    "franka-hand-fr3",
+    "instron-bluehill",
+    "instron-bluehill-compressive",
+    "instron-bluehill-tension",
+    "jpk-afm",
+    "jpk-afm-tip-position",
+    "robotiq-2f85",
+    "ros2-gripper-command",
+    "ros2-two-fingers",
+    "shimadzu-trapezium",
+    "ta-xtplus",
+    "ta-xtplus-grams",
+    "wsg-50",
+    "zwick-testxpert",
+    "zwick-testxpert-french",
+    "zwick-testxpert-german",
+];
+
+/// The grippers and machines whose conventions are known, by name.
+///
+/// ```
+/// use palpate_files::description::machines;
+/// assert!(machines().iter().any(|machine| machine.name == "franka-hand"));
+/// ```
+#[must_use]
+pub fn machines() -> &'static [Machine] {
+    MACHINES
+}
+
+/// Remembers which units of the columns the machine says and not the test itself.
+pub(super) fn mark_units(source: &Source<'_>, machine: &str, columns: &mut ColumnChoices) {
+    let places = Places::of(source.text);
+    for (key, choice) in columns.all_mut() {
+        let own = places.start_exactly(&format!("columns.{key}.unit")).is_some();
+        if choice.unit.is_some() && !own {
+            choice.unit_by = Some(machine.to_owned());
+        }
+    }
+}
+
+/// Keys that exclude each other: where the test says one, the other of the preset falls away.
+const EXCLUSIVE: [(&str, &str); 3] = [
+    ("columns.force", "columns.stress"),
+    ("columns.displacement.unit", "columns.displacement.travel_per_unit"),
+    ("columns.displacement.also", "columns.displacement.doubled"),
+];
+
+/// The tables of a test laid over those of its machine, if it names one.
+pub(super) fn over_preset(source: &Source<'_>, own: TestTables) -> Result<TestTables, DescriptionError> {
+    const KEY: &str = "machine.preset";
+    let Some(name) = own.machine.preset.as_deref() else {
+        return Ok(own);
+    };
+    let Some(machine) = MACHINES.iter().find(|machine| machine.name == name) else {
+        let names: Vec<String> = MACHINES.iter().map(|machine| format!("\"{}\"", machine.name)).collect();
+        return Err(source.value(KEY, words::any_of(&names), &format!("\"{name}\"")));
+    };
+    let other = |message: String| DescriptionError::Other {
+        place: source.place(KEY),
+        message,
+    };
+    let said: Table = source.text.parse().map_err(|error: toml::de::Error| other(error.message().to_owned()))?;
+    let mut tables: Table = machine.text.parse().map_err(|error: toml::de::Error| other(error.message().to_owned()))?;
+    for (one, another) in EXCLUSIVE {
+        for (kept, dropped) in [(one, another), (another, one)] {
+            if at(&said, kept).is_some() {
+                remove(&mut tables, dropped);
+            }
+        }
+    }
+    lay_over(&mut tables, said);
+    TestTables::deserialize(Value::Table(tables)).map_err(|error| other(error.message().to_owned()))
+}
+
+fn at<'t>(table: &'t Table, path: &str) -> Option<&'t Value> {
+    match path.split_once('.') {
+        None => table.get(path),
+        Some((first, rest)) => at(table.get(first)?.as_table()?, rest),
+    }
+}
+
+fn remove(table: &mut Table, path: &str) {
+    match path.split_once('.') {
+        None => {
+            table.remove(path);
+        }
+        Some((first, rest)) => {
+            if let Some(Value::Table(inner)) = table.get_mut(first) {
+                remove(inner, rest);
+            }
+        }
+    }
+}
+
+/// Puts every value of `upper` in place of that of `lower`; tables are laid over one another.
+fn lay_over(lower: &mut Table, upper: Table) {
+    for (key, value) in upper {
+        match (lower.get_mut(&key), value) {
+            (Some(Value::Table(below)), Value::Table(above)) => lay_over(below, above),
+            (_, value) => {
+                lower.insert(key, value);
+            }
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! The text of a description: reading it, and saying where in it something is wrong.
+
+use std::{fs, io, ops::Range, path::Path};
+
+use palpate::units::{self, Dimension};
+use serde::de::DeserializeOwned;
+
+use super::{
+    error::{BELIEVABLE, DescriptionError, KeyPlace},
+    places::Places,
+    quantity::QuantityText,
+    words,
+};
+
+/// The longest description that is read, in bytes.
+pub(crate) const LONGEST: u64 = 1 << 20;
+
+/// The text of the file at `path`, which may have `longest` bytes.
+pub(crate) fn read(path: &Path, longest: u64) -> Result<String, DescriptionError> {
+    let failed = |source: io::Error| {
+        let path = path.to_owned();
+        match source.kind() {
+            io::ErrorKind::NotFound => DescriptionError::NotFound { path, source },
+            io::ErrorKind::IsADirectory => DescriptionError::Directory { path },
+            _ => DescriptionError::Unreadable { path, source },
+        }
+    };
+    let about = fs::metadata(path).map_err(failed)?;
+    if about.is_dir() {
+        return Err(DescriptionError::Directory { path: path.to_owned() });
+    }
+    if about.len() > longest {
+        return Err(DescriptionError::TooLong {
+            path: path.to_owned(),
+            bytes: about.len(),
+            limit: longest,
+        });
+    }
+    let bytes = fs::read(path).map_err(failed)?;
+    String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        DescriptionError::NotText {
+            path: path.to_owned(),
+            line: 1 + good.iter().filter(|&&byte| byte == b'\n').count(),
+        }
+    })
+}
+
+/// A description's text and the file it came from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Source<'t> {
+    pub(crate) path: &'t Path,
+    pub(crate) text: &'t str,
+}
+
+impl Source<'_> {
+    /// The tables of the text, unchecked.
+    pub(crate) fn tables<T: DeserializeOwned>(&self) -> Result<T, DescriptionError> {
+        let deserializer = toml::Deserializer::parse(self.text).map_err(|error| self.syntax(&error))?;
+        T::deserialize(deserializer).map_err(|error| self.unfit(&error))
+    }
+
+    /// Tables that were put together from several texts, unchecked.
+    pub(crate) fn unplaced<T: DeserializeOwned>(&self, tables: toml::Table) -> Result<T, DescriptionError> {
+        T::deserialize(tables).map_err(|error| self.unfit(&error))
+    }
+
+    pub(crate) fn place(&self, key: impl Into<String>) -> KeyPlace {
+        let key = key.into();
+        let start = Places::of(self.text).start_of(&key);
+        KeyPlace {
+            path: self.path.to_owned(),
+            line: start.map(|start| self.line_and_column(start).0),
+            key,
+        }
+    }
+
+    pub(crate) fn missing(&self, key: impl Into<String>, expected: &str) -> DescriptionError {
+        DescriptionError::Missing {
+            place: self.place(key),
+            expected: expected.to_owned(),
+        }
+    }
+
+    pub(crate) fn value(
+        &self,
+        key: impl Into<String>,
+        expected: impl Into<String>,
+        found: &(impl ToString + ?Sized),
+    ) -> DescriptionError {
+        DescriptionError::Value {
+            place: self.place(key),
+            expected: expected.into(),
+            found: found.to_string(),
+        }
+    }
+
+    pub(crate) fn unused(&self, key: &str, reason: &str, remedy: &str) -> DescriptionError {
+        DescriptionError::Unused {
+            place: self.place(key),
+            reason: reason.to_owned(),
+            remedy: remedy.to_owned(),
+        }
+    }
+
+    pub(crate) fn both(&self, key: &str, other: &str) -> DescriptionError {
+        DescriptionError::Both {
+            place: self.place(key),
+            other: other.to_owned(),
+        }
+    }
+
+    /// A quantity in SI.
+    pub(crate) fn si(&self, key: &str, quantity: &QuantityText, dimension: Dimension) -> Result<f64, DescriptionError> {
+        units::parse(&quantity.text, dimension).map_err(|source| DescriptionError::Quantity {
+            place: self.place(key),
+            found: quantity.to_string(),
+            source,
+        })
+    }
+
+    /// A quantity in SI that must be above zero.
+    pub(crate) fn positive(
+        &self,
+        key: &str,
+        quantity: &QuantityText,
+        dimension: Dimension,
+    ) -> Result<f64, DescriptionError> {
+        let si = self.si(key, quantity, dimension)?;
+        if si > 0.0 {
+            return self.believable(key, quantity, si, dimension);
+        }
+        let expected = format!("a {} above 0 {}", dimension.name(), dimension.units()[0].0);
+        Err(self.value(key, expected, quantity))
+    }
+
+    /// Refuses sizes and moduli that no body has: a slip of the exponent or of the unit.
+    fn believable(
+        &self,
+        key: &str,
+        quantity: &QuantityText,
+        si: f64,
+        dimension: Dimension,
+    ) -> Result<f64, DescriptionError> {
+        let (limits, words) = match dimension {
+            Dimension::Length => (1e-9..=1e3, "a length from 1 nm to 1000 m"),
+            Dimension::Area => (1e-18..=1e6, "an area from 1e-12 mm^2 to 1e6 m^2"),
+            Dimension::Pressure => (1.0..=1e13, "a modulus from 1 Pa to 1e4 GPa"),
+            _ => return Ok(si),
+        };
+        if !key.starts_with("specimen.") || limits.contains(&si) {
+            return Ok(si);
+        }
+        Err(self.value(key, format!("{words}, {BELIEVABLE}"), quantity))
+    }
+
+    /// A bare number that `accepts` must accept.
+    pub(crate) fn number(
+        &self,
+        key: &str,
+        number: f64,
+        expected: &str,
+        accepts: impl Fn(f64) -> bool,
+    ) -> Result<f64, DescriptionError> {
+        if number.is_finite() && accepts(number) {
+            Ok(number)
+        } else {
+            Err(self.value(key, expected, &number))
+        }
+    }
+
+    /// Line and character, both from 1, of a place in the text.
+    fn line_and_column(&self, place: usize) -> (usize, usize) {
+        let before = self.text.get(..place).unwrap_or(self.text);
+        let line = before.rsplit('\n').next().unwrap_or("");
+        (1 + before.matches('\n').count(), 1 + line.chars().count())
+    }
+
+    fn syntax(&self, error: &toml::de::Error) -> DescriptionError {
+        let start = error.span().map_or(0, |span| span.start);
+        let (line, column) = self.line_and_column(start);
+        let text = self.text.lines().nth(line - 1).unwrap_or("");
+        DescriptionError::Syntax {
+            path: self.path.to_owned(),
+            line,
+            column,
+            message: error.message().trim().replace('\n', ", "),
+            text: crate::error::shorten(text),
+        }
+    }
+
+    /// TOML that does not have the shape of the description.
+    fn unfit(&self, error: &toml::de::Error) -> DescriptionError {
+        let span = error.span().unwrap_or(0..0);
+        let place = self.place_at(&span);
+        words::explain(error.message().trim(), place, |place, key| {
+            let parent = std::mem::take(&mut place.key);
+            let path = if parent.is_empty() { key.to_owned() } else { format!("{parent}.{key}") };
+            *place = self.place(path);
+        })
+    }
+
+    fn place_at(&self, span: &Range<usize>) -> KeyPlace {
+        let key = Places::of(self.text).key_at(span);
+        let line = (!key.is_empty()).then(|| self.line_and_column(span.start).0);
+        KeyPlace {
+            path: self.path.to_owned(),
+            line,
+            key,
+        }
+    }
+}

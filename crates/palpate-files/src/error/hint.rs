@@ -1,0 +1,101 @@
+//! What would help against an error, in words that go with any front end.
+
+use super::{
+    file_error::{DecimalDoubt, FileError, allowed},
+    foreign::Foreign,
+};
+use crate::cell::{Cell, DecimalMark, number};
+
+impl FileError {
+    /// What would help, if that is known.
+    #[must_use]
+    pub fn hint(&self) -> Option<String> {
+        match self {
+            Self::NotFound { .. } => Some("check the spelling of the path".to_owned()),
+            Self::Directory { .. } => Some("name one file inside it".to_owned()),
+            Self::NoFile { .. } => Some("write what comes through the pipe to a file first".to_owned()),
+            Self::Unreadable { source, .. } => allowed(source),
+            Self::Empty { .. } => Some("export the record again".to_owned()),
+            Self::Foreign { looks_like, .. } => Some(foreign(*looks_like).to_owned()),
+            Self::Archive { members, .. } if members.is_empty() => Some("pack the record again".to_owned()),
+            Self::Archive { .. } => Some("unpack it and name the files one by one, or their folder".to_owned()),
+            Self::Damaged { .. } => Some("copy or export the file again; it may be cut off".to_owned()),
+            Self::BadCell { hint, .. } | Self::Unfit { hint, .. } => Some((*hint).to_owned()),
+            Self::Encrypted { .. } => Some("open it where it was made and save it without a password".to_owned()),
+            Self::TooLarge { .. } => Some("split the file, or export less of it".to_owned()),
+            Self::Swells { .. } => Some(
+                "copy or export it again; if you trust it, unpack it, or write it anew without compression".to_owned(),
+            ),
+            Self::NoParts { .. } => Some("a test needs a table of numbers with time and force side by side".to_owned()),
+            Self::LineTooLong { .. } => Some("check that the file has line ends and the right encoding".to_owned()),
+            Self::OneColumn { delimiter, .. } => Some(match delimiter {
+                Some(delimiter) => format!("the delimiter was fixed to {delimiter}: leave it to be found out"),
+                None => "a record needs a time and a force side by side, separated by tab, semicolon, comma or blanks"
+                    .to_owned(),
+            }),
+            Self::NoDataRows {
+                header_line: Some(line),
+                ..
+            } => Some(format!("line {line} looks like names of columns, but no numbers follow")),
+            Self::NoDataRows { header_line: None, .. } => {
+                Some("check that this is the record itself, or skip the lines before it".to_owned())
+            }
+            Self::AmbiguousDecimal { doubt, .. } => Some(doubtful(*doubt).to_owned()),
+            Self::NoSuchColumn { .. } => Some("columns count from 1 at the left".to_owned()),
+            Self::TextInNumbers { found, decimal, .. } => Some(hint_of_text(found, *decimal)),
+            Self::NotFinite { .. } | Self::EmptyCell { .. } => {
+                Some("remove the row, or choose another column".to_owned())
+            }
+            Self::TooFewCells { .. } => Some("the row is cut off or lacks a cell: complete it or remove it".to_owned()),
+            Self::TooManyCells { .. } => {
+                Some("look for a delimiter inside a cell, such as a decimal comma, that wants quotes".to_owned())
+            }
+            Self::Interrupted { .. } => {
+                Some("where the file holds several records, split it into one file each".to_owned())
+            }
+        }
+    }
+}
+
+fn foreign(looks_like: Foreign) -> &'static str {
+    match looks_like {
+        Foreign::Markup => "open it in a spreadsheet program and save the sheet as CSV",
+        Foreign::OpenDocument => "save it as an Excel workbook (.xlsx), or the sheet as CSV",
+        Foreign::Sqlite => "export the record as delimited text; `ros2 bag convert` turns a bag of ROS 2 into MCAP",
+        Foreign::Zip | Foreign::Compressed => "unpack it first, or export the record as text",
+        Foreign::Picture | Foreign::Pdf => "a record of numbers is needed, not a document",
+        Foreign::Binary => "export the record as text, or fix its encoding if it is text",
+        _ => "export the record as delimited text",
+    }
+}
+
+fn doubtful(doubt: DecimalDoubt) -> &'static str {
+    match doubt {
+        DecimalDoubt::CommaSplitsNumbers => {
+            "export with semicolons or tabs between cells; if the commas only separate whole numbers, fix the decimal mark to point"
+        }
+        DecimalDoubt::Thousands => "fix the decimal mark to comma, or export without marks between thousands",
+        DecimalDoubt::PointThousands => "fix the decimal mark to point, or export without marks between thousands",
+        DecimalDoubt::Mixed => "export with one decimal mark, or fix the decimal mark",
+    }
+}
+
+/// What would help against a text where a number should stand.
+pub(crate) fn hint_of_text(found: &str, decimal: DecimalMark) -> String {
+    let cell = found.as_bytes();
+    let gaps = |letter: char| matches!(letter, '\u{a0}' | '\u{202f}' | '\u{2009}' | '\'' | '\u{2019}' | ' ');
+    match (number::classify(cell), decimal) {
+        _ if found.contains('\u{2212}') => "the minus sign is U+2212: replace it by a hyphen",
+        (Cell::Comma | Cell::Point, _) if number::has_thousands(cell) => {
+            "export without marks between thousands; if the mark sets off decimals, fix the decimal mark to it"
+        }
+        (Cell::Comma, DecimalMark::Point) => "fix the decimal mark to comma",
+        (Cell::Point, DecimalMark::Comma) => "fix the decimal mark to point",
+        _ if number::has_thousands(cell) || number::looks_numeric(found) && found.contains(gaps) => {
+            "export without marks between thousands"
+        }
+        _ if number::looks_numeric(found) => "these are numbers kept as texts: export them as numbers",
+        _ => "mend or remove the line; where the data begin further down, set skip_lines",
+    }
+    .to_owned()
+}

@@ -1,0 +1,20 @@
+//! What can be wrong with a file, and what would help.
+//!
+//! | file | what |
+//! |---|---|
+//! | `file_error.rs` | one variant a cause, with the place, what was expected and what was found ([`FileError`]) |
+//! | `hint.rs` | what would help |
+//! | `foreign.rs` | files that hold no record in any format known here ([`Foreign`]) |
+//! | `shown.rs` | words out of a file, fit to be shown to people |
+
+mod file_error;
+mod foreign;
+mod hint;
+mod shown;
+
+pub use file_error::{CellPlace, DecimalDoubt, FileError};
+pub(crate) use file_error::{allowed, reason, shorten};
+pub use foreign::Foreign;
+pub(crate) use foreign::{mostly_control, recognise_foreign};
+pub(crate) use hint::hint_of_text;
+pub(crate) use shown::{is_plain, plain, shown};

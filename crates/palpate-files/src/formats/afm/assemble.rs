@@ -1,0 +1,284 @@
+//! Which columns the segments of a curve make together.
+
+use super::curve::{Curve, Formula, Line, Segment};
+use crate::{
+    error::shorten,
+    formats::afm::{UNCALIBRATED, metadata},
+    table::{ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart},
+};
+
+/// Names of heights, the best first: what a sensor measured before what the piezo was told, as it was before smoothed.
+const HEIGHTS: [&str; 11] = [
+    "measuredHeight",
+    "capacitiveSensorHeight",
+    "strainGaugeHeight",
+    "height (measured)",
+    "smoothedMeasuredHeight",
+    "smoothedCapacitiveSensorHeight",
+    "smoothedStrainGaugeHeight",
+    "height",
+    "head-height",
+    "cellhesion-height",
+    "height (piezo)",
+];
+
+/// Names of height + deflection, where a program has added them up already.
+const TIPS: [&str; 2] = ["verticalTipPosition", "tip position"];
+
+/// A channel of a segment.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Channel {
+    pub(super) name: String,
+    pub(super) unit: Option<String>,
+    pub(super) line: Line,
+}
+
+/// The bending of the cantilever, as far as the file is calibrated.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Load {
+    /// As the file has it.
+    pub(super) raw: Option<Line>,
+    pub(super) raw_unit: Option<String>,
+    /// In N.
+    pub(super) force: Option<Line>,
+    /// In m.
+    pub(super) deflection: Option<Line>,
+}
+
+/// A segment as the file has it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Draft {
+    /// Its number in the file, from 0.
+    pub(super) number: usize,
+    /// What the cantilever does: `extend`, `pause`, `retract`.
+    pub(super) style: String,
+    pub(super) rows: usize,
+    pub(super) channels: Vec<Channel>,
+    pub(super) load: Load,
+    pub(super) clock: Option<Formula>,
+    /// What the channels hold in the first row, where that was looked at.
+    pub(super) first: Option<Vec<f64>>,
+}
+
+/// What is known of a curve beside its segments.
+#[derive(Debug, Clone, Default)]
+pub(super) struct About {
+    pub(super) name: Option<String>,
+    pub(super) written: String,
+    pub(super) metadata: Vec<Metadata>,
+}
+
+/// A column, with its formula in every segment.
+struct Column {
+    name: String,
+    unit: Option<String>,
+    formulas: Vec<Formula>,
+}
+
+impl Draft {
+    fn channel(&self, name: &str) -> Option<&Channel> {
+        self.channels.iter().find(|channel| channel.name == name)
+    }
+
+    /// The line of a channel in m.
+    fn in_metres(&self, name: &str) -> Option<Line> {
+        let channel = self.channel(name)?;
+        (channel.unit.as_deref() == Some("m")).then_some(channel.line)
+    }
+}
+
+/// Puts the segments of a curve together; what had to be left out is said, with why.
+///
+/// Nothing comes back where no segment has rows.
+pub(super) fn assemble(drafts: Vec<Draft>, mut about: About) -> (Option<Curve>, Vec<SkippedPart>) {
+    let labels = titles(&drafts);
+    let (kept, skipped) = sort_out(drafts, &labels);
+    let Some((_, first)) = kept.first() else {
+        return (None, skipped);
+    };
+    let segments: Vec<&Draft> = kept.iter().map(|(_, draft)| draft).collect();
+    let mut columns = derived(&segments, &mut about.metadata);
+    let left_out = add_channels(&segments, &mut columns);
+    if !left_out.is_empty() {
+        let value = format!("{} (not in every segment)", left_out.join(", "));
+        about.metadata.push(metadata("channels left out", &value));
+    }
+    let sample = |column: &Column| match (&first.first, column.formulas.first()) {
+        (Some(stored), Some(formula)) => shorten(&format!("{:?}", formula.at(0, stored))),
+        _ => "…".to_owned(),
+    };
+    let info = |(index, column): (usize, &Column)| ColumnInfo {
+        number: index + 1,
+        name: Some(column.name.clone()),
+        unit: column.unit.clone(),
+        kind: ColumnKind::Number,
+        sample: sample(column),
+    };
+    let part = Part {
+        name: about.name,
+        written: about.written,
+        rows: Some(segments.iter().map(|draft| draft.rows as u64).sum()),
+        columns: columns.iter().enumerate().map(info).collect(),
+        metadata: about.metadata,
+        labels: in_rows(&kept),
+        clocks: Vec::new(),
+    };
+    let segment = |(place, draft): (usize, &&Draft)| Segment {
+        number: draft.number,
+        rows: draft.rows,
+        formulas: columns.iter().map(|column| column.formulas[place]).collect(),
+    };
+    let segments = segments.iter().enumerate().map(segment).collect();
+    (Some(Curve { part, segments }), skipped)
+}
+
+/// What the segments are called: their style, and its how many-th where there are several of that style.
+fn titles(drafts: &[Draft]) -> Vec<String> {
+    let title = |(index, draft): (usize, &Draft)| {
+        let same = |other: &&Draft| other.style == draft.style;
+        match (drafts.iter().filter(same).count(), drafts[..=index].iter().filter(same).count()) {
+            (1, _) => draft.style.clone(),
+            (_, nth) => format!("{} ({nth})", draft.style),
+        }
+    };
+    drafts.iter().enumerate().map(title).collect()
+}
+
+/// Takes out segments that hold nothing, or lack what makes a test of the others.
+fn sort_out(drafts: Vec<Draft>, titles: &[String]) -> (Vec<(String, Draft)>, Vec<SkippedPart>) {
+    let bends = drafts.iter().any(|draft| draft.rows > 0 && draft.load.raw.is_some());
+    let usable = |draft: &&Draft| draft.rows > 0 && (draft.load.raw.is_some() || !bends);
+    let height = height_of(&drafts.iter().filter(usable).collect::<Vec<_>>());
+    let mut skipped = Vec::new();
+    let mut kept = Vec::new();
+    for (draft, title) in drafts.into_iter().zip(titles) {
+        let reason = if draft.rows == 0 {
+            Some("it has no rows".to_owned())
+        } else if bends && draft.load.raw.is_none() {
+            Some("it lacks the deflection of the cantilever".to_owned())
+        } else {
+            height.filter(|name| draft.in_metres(name).is_none()).map(|name| format!("it lacks {name}"))
+        };
+        match reason {
+            None => kept.push((title.clone(), draft)),
+            Some(reason) => skipped.push(SkippedPart {
+                name: format!("segment {} ({title})", draft.number),
+                reason,
+            }),
+        }
+    }
+    (kept, skipped)
+}
+
+/// The best height that all segments have, or else that any has.
+fn height_of(drafts: &[&Draft]) -> Option<&'static str> {
+    let has = |draft: &Draft, name: &str| draft.in_metres(name).is_some();
+    let in_all = |name: &&&str| !drafts.is_empty() && drafts.iter().all(|draft| has(draft, name));
+    let in_any = |name: &&&str| drafts.iter().any(|draft| has(draft, name));
+    HEIGHTS.iter().find(in_all).or_else(|| HEIGHTS.iter().find(in_any)).copied()
+}
+
+/// Where the segments lie among the rows.
+fn in_rows(kept: &[(String, Draft)]) -> Vec<Label> {
+    let mut start = 0;
+    let label = |(title, draft): &(String, Draft)| {
+        let end = start + draft.rows;
+        Label {
+            name: title.clone(),
+            start: std::mem::replace(&mut start, end),
+            end,
+        }
+    };
+    kept.iter().map(label).collect()
+}
+
+/// Time, force, indentation and deflection, as far as every segment gives them.
+fn derived(segments: &[&Draft], about: &mut Vec<Metadata>) -> Vec<Column> {
+    let mut columns = Vec::new();
+    let mut add = |name: &str, unit: Option<&str>, formulas: Option<Vec<Formula>>| {
+        if let Some(formulas) = formulas {
+            columns.push(Column {
+                name: name.to_owned(),
+                unit: unit.map(str::to_owned),
+                formulas,
+            });
+            return true;
+        }
+        false
+    };
+    let lines = |pick: &dyn Fn(&Draft) -> Option<Line>| -> Option<Vec<Formula>> {
+        segments.iter().map(|draft| pick(draft).map(Formula::Line)).collect()
+    };
+    add("time", Some("s"), segments.iter().map(|draft| draft.clock).collect());
+    if !add("force", Some("N"), lines(&|draft| draft.load.force)) {
+        let unit = segments.first().and_then(|draft| draft.load.raw_unit.as_deref());
+        let same = segments.iter().all(|draft| draft.load.raw_unit.as_deref() == unit);
+        if add(UNCALIBRATED, unit.filter(|_| same), lines(&|draft| draft.load.raw)) {
+            about.push(metadata("force", "not calibrated: the file lacks a sensitivity or a spring constant"));
+        }
+    }
+    let (formulas, how) = indentation(segments);
+    add("indentation", Some("m"), formulas);
+    about.push(metadata("indentation", &how));
+    add("cantilever deflection", Some("m"), lines(&|draft| draft.load.deflection));
+    columns
+}
+
+/// −(height + deflection) in every segment, and how it was had, or why not.
+fn indentation(segments: &[&Draft]) -> (Option<Vec<Formula>>, String) {
+    let from_height = height_of(segments).and_then(|name| {
+        let formula = |draft: &&Draft| {
+            let (height, deflection) = (draft.in_metres(name)?, Some(draft.load.deflection?));
+            Some(Formula::Indentation { height, deflection })
+        };
+        let formulas: Option<Vec<Formula>> = segments.iter().map(formula).collect();
+        Some((formulas?, format!("−({name} + deflection)")))
+    });
+    let from_tip = || {
+        TIPS.iter().find_map(|name| {
+            let formula = |draft: &&Draft| {
+                let (height, deflection) = (draft.in_metres(name)?, None);
+                Some(Formula::Indentation { height, deflection })
+            };
+            let formulas: Option<Vec<Formula>> = segments.iter().map(formula).collect();
+            Some((formulas?, format!("−{name}")))
+        })
+    };
+    match from_height.or_else(from_tip) {
+        Some((formulas, how)) => (Some(formulas), how),
+        None => (None, "none: it needs a height and a deflection in m".to_owned()),
+    }
+}
+
+/// Adds the channels that every segment has; the others come back by name.
+fn add_channels(segments: &[&Draft], columns: &mut Vec<Column>) -> Vec<String> {
+    let mut left_out: Vec<String> = Vec::new();
+    let names = segments.iter().flat_map(|draft| &draft.channels);
+    let mut done: Vec<&str> = Vec::new();
+    for Channel { name, unit, .. } in names {
+        if done.contains(&name.as_str()) {
+            continue;
+        }
+        done.push(name);
+        let line = |draft: &&Draft| {
+            let channel = draft.channel(name).filter(|channel| channel.unit == *unit)?;
+            Some(Formula::Line(channel.line))
+        };
+        let lines: Option<Vec<Formula>> = segments.iter().map(line).collect();
+        let Some(formulas) = lines else {
+            left_out.push(name.clone());
+            continue;
+        };
+        let taken = columns.iter().find(|column| column.name == *name);
+        if taken.is_some_and(|column| column.formulas == formulas && column.unit == *unit) {
+            continue;
+        }
+        let name = if taken.is_some() { format!("{name} (as in the file)") } else { name.clone() };
+        columns.push(Column {
+            name,
+            unit: unit.clone(),
+            formulas,
+        });
+    }
+    left_out
+}

@@ -1,0 +1,156 @@
+//! The members of the archive, within limits.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt,
+    io::Read,
+};
+
+use zip::{ZipArchive, result::ZipError};
+
+use crate::{
+    error::FileError,
+    input::{Input, Seekable},
+};
+
+/// Most bytes of a list of properties, unpacked.
+pub(super) const MOST_PROPERTIES: u64 = 4 << 20;
+
+/// Most bytes of one channel of one segment, unpacked.
+pub(super) const MOST_CHANNEL: u64 = 64 << 20;
+
+/// Most members of an archive: a map of a quarter of a million curves.
+const MOST_MEMBERS: usize = 1 << 22;
+
+/// Most segments of a curve.
+const MOST_SEGMENTS: usize = 4096;
+
+/// The name by which the archive of a curve, or of a map of curves, is known.
+pub(super) const HEADER: &str = "header.properties";
+
+/// An archive whose members are known by name.
+pub(super) struct Archive<'a> {
+    input: &'a Input,
+    zip: ZipArchive<Box<dyn Seekable>>,
+    members: BTreeMap<String, usize>,
+}
+
+impl fmt::Debug for Archive<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Archive").field("members", &self.members.len()).finish_non_exhaustive()
+    }
+}
+
+/// A curve of an archive.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Place {
+    /// What its members begin with: nothing, or `index/7/`.
+    pub(super) folder: String,
+    /// Its segments are numbered from 0 to one less than this.
+    pub(super) segments: usize,
+}
+
+impl<'a> Archive<'a> {
+    pub(super) fn open(input: &'a Input) -> Result<Self, FileError> {
+        let broken = |error: &ZipError| input.damaged("zip archive", "a whole archive", error.to_string());
+        let zip = ZipArchive::new(input.seekable()?).map_err(|error| broken(&error))?;
+        if zip.len() > MOST_MEMBERS {
+            return Err(input.damaged("zip archive", format!("at most {MOST_MEMBERS} members"), zip.len().to_string()));
+        }
+        let mut members = BTreeMap::new();
+        for index in 0..zip.len() {
+            if let Some(Ok(name)) = zip.name_for_index(index) {
+                members.insert(name.into_owned(), index);
+            }
+        }
+        Ok(Self { input, zip, members })
+    }
+
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.members.contains_key(name)
+    }
+
+    /// The first bytes of a member, no more than `most` of them.
+    pub(super) fn beginning(&mut self, name: &str, most: u64) -> Result<Vec<u8>, FileError> {
+        let input = self.input;
+        let Some(&index) = self.members.get(name) else {
+            return Err(input.damaged(name, "a member of the archive", "none of that name"));
+        };
+        let broken = |error: String| input.damaged(name, "a member that can be unpacked", error);
+        let member = self.zip.by_index(index).map_err(|error| broken(error.to_string()))?;
+        let mut bytes = Vec::new();
+        member.take(most).read_to_end(&mut bytes).map_err(|error| broken(error.to_string()))?;
+        Ok(bytes)
+    }
+
+    /// A whole member of at most `most` bytes.
+    pub(super) fn whole(&mut self, name: &str, what: &'static str, most: u64) -> Result<Vec<u8>, FileError> {
+        let bytes = self.beginning(name, most + 1)?;
+        if bytes.len() as u64 > most {
+            return Err(self.input.too_large(what, most));
+        }
+        Ok(bytes)
+    }
+
+    /// The curves, in the order of their numbers.
+    pub(super) fn curves(&self) -> Result<Vec<Place>, FileError> {
+        let mut found: BTreeMap<Option<u64>, BTreeSet<usize>> = BTreeMap::new();
+        for name in self.members.keys() {
+            if let Some((index, segment)) = numbered(name) {
+                found.entry(index).or_default().insert(segment);
+            }
+        }
+        found.into_iter().map(|(index, segments)| self.place(index, &segments)).collect()
+    }
+
+    fn place(&self, index: Option<u64>, segments: &BTreeSet<usize>) -> Result<Place, FileError> {
+        let folder = index.map_or_else(String::new, |index| format!("index/{index}/"));
+        let place = || format!("{folder}segments");
+        if segments.len() > MOST_SEGMENTS {
+            let found = segments.len().to_string();
+            return Err(self.input.damaged(place(), format!("at most {MOST_SEGMENTS} segments"), found));
+        }
+        if let Some(gap) = segments.iter().enumerate().find_map(|(at, number)| (at != *number).then_some(at)) {
+            let found = format!("no segment {gap} but later ones");
+            return Err(self.input.damaged(place(), "segments numbered from 0 without a gap", found));
+        }
+        Ok(Place {
+            folder,
+            segments: segments.len(),
+        })
+    }
+}
+
+/// The numbers of curve and segment that the header of a segment has in its name.
+fn numbered(name: &str) -> Option<(Option<u64>, usize)> {
+    let inner = name.strip_suffix("/segment-header.properties")?;
+    let (index, inner) = match inner.strip_prefix("index/") {
+        Some(rest) => {
+            let (index, inner) = rest.split_once('/')?;
+            (Some(plain(index)?), inner)
+        }
+        None => (None, inner),
+    };
+    let segment = plain(inner.strip_prefix("segments/")?)?;
+    Some((index, usize::try_from(segment).ok()?))
+}
+
+/// A number that is written in one way only.
+fn plain(text: &str) -> Option<u64> {
+    let number: u64 = text.parse().ok()?;
+    (number.to_string() == text).then_some(number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_segments() {
+        assert_eq!(numbered("segments/3/segment-header.properties"), Some((None, 3)));
+        assert_eq!(numbered("index/12/segments/0/segment-header.properties"), Some((Some(12), 0)));
+        for name in ["header.properties", "index/1/header.properties", "segments/03/segment-header.properties"] {
+            assert_eq!(numbered(name), None, "{name}");
+        }
+    }
+}

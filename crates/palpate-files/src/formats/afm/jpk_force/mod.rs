@@ -1,0 +1,288 @@
+//! JPK's binary force curves (`.jpk-force`) and maps of them (`.jpk-force-map`, `.jpk-qi-data`).
+//!
+//! They are zip archives of lists of properties and of channels, one folder a segment: `segments/0/…`, in maps
+//! `index/7/segments/0/…`. A channel is a row of big-endian numbers; the properties say how these become volts, metres
+//! and newtons, often by reference to `shared-data/header.properties`.
+//!
+//! | file | what |
+//! |---|---|
+//! | `archive.rs` | the members, within limits; which curves there are |
+//! | `properties.rs` | lists of properties, and what they share |
+//! | `segment.rs` | what the header of a segment says |
+//! | `stored.rs` | kinds of stored numbers |
+//! | `scaling.rs` | from stored numbers to quantities |
+
+mod archive;
+mod properties;
+mod scaling;
+mod segment;
+mod stored;
+
+use crate::{
+    error::FileError,
+    formats::afm::{
+        assemble::{About, assemble},
+        curve::{Curve, Segment},
+        metadata,
+    },
+    input::{Input, MOST_IN_MEMORY, is_zip},
+    table::{Columns, Found, Metadata, Part, ReadOptions, ReadPart, SkippedPart},
+};
+use archive::{Archive, HEADER, MOST_CHANNEL, MOST_PROPERTIES, Place};
+use properties::List;
+use segment::{StoredChannel, StoredSegment};
+use stored::{Kind, Stored};
+
+/// The list that the segments refer to.
+const SHARED: &str = "shared-data/header.properties";
+
+/// Of a map of more curves than this the first values are not looked at.
+const MOST_SAMPLED: usize = 256;
+
+/// Whether a file is an archive of force curves.
+pub(crate) fn recognise(input: &Input) -> bool {
+    let beginning = input.beginning();
+    is_zip(beginning)
+        && Archive::open(input)
+            .is_ok_and(|archive| archive.has(HEADER) && !archive.curves().is_ok_and(|all| all.is_empty()))
+}
+
+/// An archive of force curves.
+#[derive(Debug)]
+struct JpkForce {
+    input: Input,
+    shared: List,
+    /// One a part.
+    places: Vec<Place>,
+}
+
+/// Looks into an archive: into the headers of all segments, and the first value of each channel.
+pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, FileError> {
+    let mut archive = Archive::open(input)?;
+    let shared = match archive.has(SHARED) {
+        true => properties::read(&archive.whole(SHARED, "a list of properties", MOST_PROPERTIES)?),
+        false => List::new(),
+    };
+    let curves = archive.curves()?;
+    let several = curves.len() > 1;
+    let sampled = curves.len() <= MOST_SAMPLED;
+    let (mut parts, mut places, mut skipped): (Vec<Part>, Vec<Place>, Vec<SkippedPart>) = Default::default();
+    for place in curves {
+        let name = place.folder.trim_end_matches('/').to_owned();
+        match curve(input, &mut archive, &shared, &place, sampled) {
+            Ok((found, without)) => {
+                let inside = |part: SkippedPart| SkippedPart {
+                    name: if several { format!("{name}, {}", part.name) } else { part.name },
+                    reason: part.reason,
+                };
+                skipped.extend(without.into_iter().map(inside));
+                if let Some((curve, _)) = found {
+                    parts.push(curve.part);
+                    places.push(place);
+                }
+            }
+            Err(error) if several => skipped.push(SkippedPart {
+                name,
+                reason: without_path(input, &error),
+            }),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(Found {
+        parts,
+        skipped,
+        reader: Box::new(JpkForce {
+            input: input.clone(),
+            shared,
+            places,
+        }),
+    })
+}
+
+/// The message of an error less the file it is about.
+fn without_path(input: &Input, error: &FileError) -> String {
+    let text = error.to_string();
+    let short = text.strip_prefix(&format!("{}: ", input.name().display())).map(str::to_owned);
+    short.unwrap_or(text)
+}
+
+/// Where the channels of each segment are stored.
+type Members = Vec<Vec<StoredChannel>>;
+
+/// A curve, where its channels are stored, and what was left out of it.
+type Understood = (Option<(Curve, Members)>, Vec<SkippedPart>);
+
+/// Understands the headers of one curve.
+fn curve(
+    input: &Input,
+    archive: &mut Archive<'_>,
+    shared: &List,
+    place: &Place,
+    sampled: bool,
+) -> Result<Understood, FileError> {
+    let mut segments = Vec::new();
+    for number in 0..place.segments {
+        segments.push(segment::read(input, archive, shared, place, number)?);
+    }
+    let clock = segment::set_clocks(&mut segments);
+    if sampled {
+        for segment in &mut segments {
+            segment.draft.first = first_row(archive, segment)?;
+        }
+    }
+    let mut about = About {
+        name: (!place.folder.is_empty()).then(|| place.folder.trim_end_matches('/').to_owned()),
+        written: format!("JPK force curve, {} segments", place.segments),
+        metadata: of_header(archive, place)?,
+    };
+    about.metadata.extend(segments.iter().flat_map(|segment| segment.metadata.clone()));
+    about.metadata.push(metadata("time", clock));
+    let (members, drafts): (Members, Vec<_>) =
+        segments.into_iter().map(|segment| (segment.channels, segment.draft)).unzip();
+    let (curve, skipped) = assemble(drafts, about);
+    Ok((curve.map(|curve| (curve, members)), skipped))
+}
+
+/// The entries of the header of a curve.
+fn of_header(archive: &mut Archive<'_>, place: &Place) -> Result<Vec<Metadata>, FileError> {
+    let member = format!("{}{HEADER}", place.folder);
+    if !archive.has(&member) {
+        return Ok(Vec::new());
+    }
+    let list = properties::read(&archive.whole(&member, "a list of properties", MOST_PROPERTIES)?);
+    let entry = |(key, value): (&String, &String)| metadata(key, value);
+    Ok(list.iter().filter(|(_, value)| !value.is_empty()).map(entry).collect())
+}
+
+/// What the channels of a segment hold in the first row; `None` where one holds nothing.
+fn first_row(archive: &mut Archive<'_>, segment: &StoredSegment) -> Result<Option<Vec<f64>>, FileError> {
+    let mut row = Vec::new();
+    for channel in &segment.channels {
+        let first = match channel.stored {
+            Stored::Constant(value) => Some(value),
+            Stored::Raster { start, .. } => Some(start),
+            Stored::Numbers(kind) => {
+                let bytes = archive.beginning(&channel.member, kind.width() as u64)?;
+                kind.number(&bytes, 0)
+            }
+        };
+        let Some(first) = first else { return Ok(None) };
+        row.push(first);
+    }
+    Ok(Some(row))
+}
+
+impl ReadPart for JpkForce {
+    fn read(&self, part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
+        let mut archive = Archive::open(&self.input)?;
+        let nothing = || self.input.damaged("segments", "the curve that was there before", "none");
+        let place = self.places.get(part).ok_or_else(nothing)?;
+        let (found, _) = curve(&self.input, &mut archive, &self.shared, place, false)?;
+        let (curve, members) = found.ok_or_else(nothing)?;
+        let mut read = Columns::of(columns.len());
+        let total = self.input.size();
+        for (done, segment) in curve.segments.iter().enumerate() {
+            progress(total * done as u64 / curve.segments.len() as u64, total);
+            self.read_segment(&mut archive, segment, &members[segment.number], columns, &mut read)?;
+        }
+        progress(total, total);
+        read.finish();
+        Ok(read)
+    }
+}
+
+/// The numbers of a channel, at hand.
+enum Taken {
+    Numbers { kind: Kind, bytes: Vec<u8> },
+    Constant(f64),
+    Raster { start: f64, step: f64 },
+}
+
+impl Taken {
+    fn bytes(&self) -> u64 {
+        match self {
+            Self::Numbers { bytes, .. } => bytes.len() as u64,
+            _ => 0,
+        }
+    }
+
+    fn at(&self, row: usize) -> f64 {
+        match self {
+            Self::Numbers { kind, bytes } => kind.number(bytes, row).unwrap_or(f64::NAN),
+            Self::Constant(value) => *value,
+            Self::Raster { start, step } => start + step * row as f64,
+        }
+    }
+}
+
+impl JpkForce {
+    fn read_segment(
+        &self,
+        archive: &mut Archive<'_>,
+        segment: &Segment,
+        channels: &[StoredChannel],
+        columns: &[usize],
+        read: &mut Columns,
+    ) -> Result<(), FileError> {
+        let chosen = segment.choose(columns);
+        let mut wanted = chosen.channels();
+        let stored = |index: &usize| matches!(channels[*index].stored, Stored::Numbers(_));
+        if !wanted.iter().any(stored) {
+            // That there are as many rows as the header says is seen from the bytes of a channel only.
+            let proof = (0..channels.len()).find(stored).ok_or_else(|| {
+                self.input.damaged(format!("segment {}", segment.number), "a channel of numbers", "rules only")
+            })?;
+            wanted.push(proof);
+        }
+        let mut taken = Vec::new();
+        let mut bytes = 0;
+        for index in wanted {
+            let channel = self.take(archive, &channels[index], segment.rows)?;
+            bytes += channel.bytes();
+            if bytes > MOST_IN_MEMORY {
+                return Err(self.input.too_large("the channels of a segment", MOST_IN_MEMORY));
+            }
+            if bytes > self.input.warranted() {
+                return Err(self.input.swells());
+            }
+            taken.push((index, channel));
+        }
+        let mut row = vec![0.0; columns.len()];
+        let mut numbers = vec![0.0; channels.len()];
+        for index in 0..segment.rows {
+            for (channel, taken) in &taken {
+                numbers[*channel] = taken.at(index);
+            }
+            chosen.fill(index, &numbers, &mut row).map_err(|place| {
+                let place = format!("segment {}, row {}, column {}", segment.number, index + 1, columns[place]);
+                let hint = "export the curve again, or choose another column";
+                FileError::bad_cell(self.input.name(), place, "a finite number", "none, or an infinite one", hint)
+            })?;
+            read.push_values(&row);
+        }
+        Ok(())
+    }
+
+    /// The numbers of a channel; of those with bytes there must be as many as rows.
+    fn take(&self, archive: &mut Archive<'_>, channel: &StoredChannel, rows: usize) -> Result<Taken, FileError> {
+        let kind = match channel.stored {
+            Stored::Constant(value) => return Ok(Taken::Constant(value)),
+            Stored::Raster { start, step } => return Ok(Taken::Raster { start, step }),
+            Stored::Numbers(kind) => kind,
+        };
+        let most = (rows as u64).saturating_mul(kind.width() as u64);
+        if most > MOST_CHANNEL {
+            return Err(self.input.too_large("a channel of a segment", MOST_CHANNEL));
+        }
+        let bytes = archive.beginning(&channel.member, most + 1)?;
+        if bytes.len() as u64 == most {
+            return Ok(Taken::Numbers { kind, bytes });
+        }
+        let found = match bytes.len() as u64 > most {
+            true => "more".to_owned(),
+            false => format!("{} bytes", bytes.len()),
+        };
+        let expected = format!("{most} bytes for {rows} numbers of {} bytes", kind.width());
+        Err(self.input.damaged(channel.member.as_str(), expected, found))
+    }
+}

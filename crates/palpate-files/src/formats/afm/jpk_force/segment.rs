@@ -1,0 +1,288 @@
+//! What the header of a segment says.
+
+use super::{
+    archive::{Archive, MOST_CHANNEL, MOST_PROPERTIES, Place},
+    properties::{self, List, Properties},
+    scaling::{BadProperty, Scalings, Slot},
+    stored::{Kind, Stored},
+};
+use crate::{
+    error::FileError,
+    formats::afm::{
+        assemble::{Channel, Draft, Load},
+        curve::Formula,
+        metadata,
+    },
+    input::Input,
+    table::Metadata,
+};
+
+/// Most channels of a segment.
+const MOST_CHANNELS: usize = 256;
+
+/// Most rows of a segment: those that a channel of the narrowest numbers may have.
+const MOST_ROWS: usize = (MOST_CHANNEL / 2) as usize;
+
+/// The channel that the cantilever's bending is written to.
+const BENDING: &str = "vDeflection";
+
+/// A segment and where its channels are stored.
+#[derive(Debug)]
+pub(super) struct StoredSegment {
+    pub(super) draft: Draft,
+    pub(super) channels: Vec<StoredChannel>,
+    /// Duration in s, where the header has it.
+    pub(super) duration: Option<f64>,
+    pub(super) metadata: Vec<Metadata>,
+}
+
+/// Where a channel is stored.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct StoredChannel {
+    /// Its member of the archive; for rules, what messages call it.
+    pub(super) member: String,
+    pub(super) stored: Stored,
+}
+
+/// A header that is being understood.
+struct Header<'a> {
+    input: &'a Input,
+    /// Its member of the archive.
+    member: String,
+    properties: &'a Properties<'a>,
+}
+
+/// Reads the header of segment `number` of the curve at `place`.
+pub(super) fn read(
+    input: &Input,
+    archive: &mut Archive<'_>,
+    shared: &List,
+    place: &Place,
+    number: usize,
+) -> Result<StoredSegment, FileError> {
+    let folder = format!("{}segments/{number}/", place.folder);
+    let member = format!("{folder}segment-header.properties");
+    let own = properties::read(&archive.whole(&member, "a list of properties", MOST_PROPERTIES)?);
+    let properties = Properties::of(own, shared);
+    let header = Header {
+        input,
+        member,
+        properties: &properties,
+    };
+    let names: Vec<&str> = properties
+        .value("channels.list")
+        .unwrap_or_default()
+        .split_whitespace()
+        .take(MOST_CHANNELS + 1)
+        .collect();
+    if names.len() > MOST_CHANNELS {
+        let found = "more".to_owned();
+        return Err(header.bad("channels.list", &format!("at most {MOST_CHANNELS} channels"), found));
+    }
+    let rows = header.rows(&names)?;
+    let mut channels = Vec::new();
+    for name in names.iter().filter(|_| rows > 0) {
+        channels.push(header.channel(archive, &folder, name)?);
+    }
+    let text = |key: &str| properties.value(&format!("force-segment-header.{key}"));
+    let style = text("settings.style").or_else(|| text("settings.segment-settings.style"));
+    let draft = Draft {
+        number,
+        style: style.or_else(|| text("name.name")).unwrap_or("segment").to_owned(),
+        rows,
+        channels: if rows > 0 { header.shown(&names)? } else { Vec::new() },
+        load: if rows > 0 { header.load(&names)? } else { Load::default() },
+        clock: None,
+        first: None,
+    };
+    Ok(StoredSegment {
+        channels,
+        duration: header.duration()?,
+        metadata: header.about(number),
+        draft,
+    })
+}
+
+impl Header<'_> {
+    fn bad(&self, key: &str, expected: &str, found: String) -> FileError {
+        self.input.damaged(format!("{}, {key}", self.member), expected, found)
+    }
+
+    fn bad_property(&self, bad: BadProperty) -> FileError {
+        self.bad(&bad.key, bad.expected, bad.found)
+    }
+
+    fn number(&self, key: &str) -> Result<Option<f64>, FileError> {
+        match self.properties.value(key).map(|text| (text, text.parse::<f64>())) {
+            None => Ok(None),
+            Some((_, Ok(value))) if value.is_finite() => Ok(Some(value)),
+            Some((text, _)) => Err(self.bad(key, "a finite number", text.to_owned())),
+        }
+    }
+
+    fn count(&self, key: &str) -> Result<Option<usize>, FileError> {
+        match self.properties.value(key).map(|text| (text, text.parse::<usize>())) {
+            None => Ok(None),
+            Some((_, Ok(count))) if count <= MOST_ROWS => Ok(Some(count)),
+            Some((text, _)) => Err(self.bad(key, &format!("a number of points up to {MOST_ROWS}"), text.to_owned())),
+        }
+    }
+
+    /// The number of rows, which the header and all channels agree on.
+    fn rows(&self, names: &[&str]) -> Result<usize, FileError> {
+        let mut rows = self.count("force-segment-header.num-points")?;
+        for name in names {
+            let key = format!("channel.{name}.data.num-points");
+            match (rows, self.count(&key)?) {
+                (Some(rows), Some(own)) if own != rows => {
+                    return Err(self.bad(&key, &format!("{rows} points, as in the segment"), own.to_string()));
+                }
+                (None, own) => rows = own,
+                _ => {}
+            }
+        }
+        rows.ok_or_else(|| self.bad("force-segment-header.num-points", "a number of points", "nothing".to_owned()))
+    }
+
+    fn duration(&self) -> Result<Option<f64>, FileError> {
+        let own = self.number("force-segment-header.duration")?;
+        let duration = match own {
+            Some(_) => own,
+            None => self.number("force-segment-header.settings.segment-settings.duration")?,
+        };
+        Ok(duration.filter(|duration| *duration > 0.0))
+    }
+
+    /// How a channel is stored.
+    fn channel(&self, archive: &Archive<'_>, folder: &str, name: &str) -> Result<StoredChannel, FileError> {
+        let keys = |end: &str| [format!("channel.{name}.data.{end}"), format!("channel.{name}.{end}")];
+        let text = |end: &str| self.properties.first(&keys(end));
+        let number = |end: &str| {
+            let [first, second] = keys(end);
+            let found = match self.number(&first)? {
+                Some(value) => Some(value),
+                None => self.number(&second)?,
+            };
+            found.ok_or_else(|| self.bad(&first, "a number", "nothing".to_owned()))
+        };
+        let kind = text("type").unwrap_or("nothing");
+        let stored = match kind {
+            "constant-data" | "constant" => Stored::Constant(number("value")?),
+            "raster-data" | "raster" => Stored::Raster {
+                start: number("start")?,
+                step: number("step")?,
+            },
+            _ => {
+                let encoder = text("encoder.type");
+                let known = Kind::of(kind, encoder).ok_or_else(|| {
+                    let found = format!("{kind}, encoder {}", encoder.unwrap_or("none"));
+                    self.bad(&format!("channel.{name}.type"), "short, integer, long, float or double data", found)
+                })?;
+                Stored::Numbers(known)
+            }
+        };
+        let file = text("file.name").map_or_else(|| format!("channels/{name}.dat"), str::to_owned);
+        let member = format!("{folder}{file}");
+        if matches!(stored, Stored::Numbers(_)) && !archive.has(&member) {
+            return Err(self.bad(&format!("channel.{name}"), &format!("a member {member}"), "none".to_owned()));
+        }
+        Ok(StoredChannel { member, stored })
+    }
+
+    /// The channels in the units that the file shows them in; heights in m if they are calibrated at all.
+    fn shown(&self, names: &[&str]) -> Result<Vec<Channel>, FileError> {
+        let mut shown = Vec::new();
+        for (index, name) in names.iter().enumerate() {
+            let slot = self.shown_as(name, index).map_err(|bad| self.bad_property(bad))?;
+            shown.push(Channel {
+                name: (*name).to_owned(),
+                unit: slot.unit,
+                line: slot.line,
+            });
+        }
+        Ok(shown)
+    }
+
+    fn shown_as(&self, name: &str, index: usize) -> Result<Slot, BadProperty> {
+        let scalings = Scalings::of(self.properties, name);
+        let usual = scalings.usual(index)?;
+        let in_metres = |slot: &Slot| slot.unit.as_deref() == Some("m");
+        if in_metres(&usual) || !name.to_lowercase().contains("height") {
+            return Ok(usual);
+        }
+        for better in ["calibrated", "nominal", "absolute"] {
+            if let Some(slot) = scalings.slot(better, index)?.filter(in_metres) {
+                return Ok(slot);
+            }
+        }
+        Ok(usual)
+    }
+
+    /// Force and deflection, as far as the channel of bending is calibrated.
+    fn load(&self, names: &[&str]) -> Result<Load, FileError> {
+        let Some(index) = names.iter().position(|name| *name == BENDING) else {
+            return Ok(Load::default());
+        };
+        let scalings = Scalings::of(self.properties, BENDING);
+        let slot = |name: &str, unit: &str| {
+            let slot = scalings.slot(name, index).map_err(|bad| self.bad_property(bad))?;
+            Ok::<_, FileError>(slot.filter(|slot| slot.unit.as_deref() == Some(unit)).map(|slot| slot.line))
+        };
+        let raw = scalings.usual(index).map_err(|bad| self.bad_property(bad))?;
+        Ok(Load {
+            force: slot("force", "N")?,
+            deflection: slot("distance", "m")?,
+            raw: Some(raw.line),
+            raw_unit: raw.unit,
+        })
+    }
+
+    /// Calibration and kind of the segment, for people.
+    fn about(&self, number: usize) -> Vec<Metadata> {
+        let conversion = |slot: &str| {
+            let key = format!("channel.{BENDING}.conversion-set.conversion.{slot}.scaling.multiplier");
+            self.properties.value(&key)
+        };
+        let setting =
+            |key: &str| self.properties.value(&format!("force-segment-header.settings.segment-settings.{key}"));
+        let mut all = Vec::new();
+        let mut add = |name: &str, value: Option<&str>| all.extend(value.map(|value| metadata(name, value)));
+        if number == 0 {
+            add("spring constant", conversion("force"));
+            add("sensitivity", conversion("distance"));
+            add("time-stamp", self.properties.value("force-segment-header.time-stamp"));
+            add("approach-id", self.properties.value("force-segment-header.approach-id"));
+        }
+        add(&format!("segment {number}"), setting("type"));
+        add(&format!("segment {number} setpoint"), setting("setpoint").filter(|value| *value != "NaN"));
+        all
+    }
+}
+
+/// Puts the segments one behind the other by their durations, and says how.
+pub(super) fn set_clocks(segments: &mut [StoredSegment]) -> &'static str {
+    let in_series = |segment: &StoredSegment| {
+        let channel = segment.draft.channels.iter().find(|channel| channel.name == "seriesTime")?;
+        (channel.unit.as_deref() == Some("s")).then_some(channel.line)
+    };
+    let with_rows = |segment: &&StoredSegment| segment.draft.rows > 0;
+    if segments.iter().filter(with_rows).all(|segment| in_series(segment).is_some()) {
+        for segment in segments {
+            segment.draft.clock = in_series(segment).map(Formula::Line);
+        }
+        return "seriesTime of the file";
+    }
+    let mut start = 0.0;
+    for segment in segments {
+        match segment.duration {
+            Some(duration) => {
+                let step = duration / segment.draft.rows.max(1) as f64;
+                segment.draft.clock = Some(Formula::Even { start, step });
+                start += duration;
+            }
+            None if segment.draft.rows == 0 => {}
+            None => return "none: a segment lacks its duration",
+        }
+    }
+    "made of the durations and numbers of points of the segments, one behind the other"
+}

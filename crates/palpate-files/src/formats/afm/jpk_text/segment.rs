@@ -1,0 +1,178 @@
+//! What the header of a block says about its columns.
+
+use super::scan::{Block, cells};
+use crate::{
+    cell::{DecimalMark, number},
+    error::FileError,
+    formats::afm::{
+        assemble::{Channel, Draft, Load},
+        curve::{Formula, Line},
+    },
+    input::Input,
+};
+
+/// The channel that the cantilever's bending is written to.
+const BENDING: &str = "vDeflection";
+
+/// The segments of a file.
+pub(super) fn drafts(input: &Input, blocks: &[Block]) -> Result<Vec<Draft>, FileError> {
+    let mut drafts = Vec::new();
+    for (number, block) in blocks.iter().enumerate() {
+        drafts.push(draft(input, block, &blocks[0], number)?);
+    }
+    set_clocks(blocks, &mut drafts);
+    Ok(drafts)
+}
+
+fn draft(input: &Input, block: &Block, first: &Block, number: usize) -> Result<Draft, FileError> {
+    let units: Option<Vec<&str>> = block.value("units").map(|units| units.split_whitespace().collect());
+    if let Some(units) = &units
+        && block.rows > 0
+        && units.len() != block.columns.len()
+    {
+        let place = format!("segment {number}, the header above line {}", block.first_line);
+        let expected = format!("a unit for each of {} columns", block.columns.len());
+        return Err(input.damaged(place, expected, units.len().to_string()));
+    }
+    if let Some(count) = block.value("recorded-num-points").and_then(|count| count.parse::<usize>().ok())
+        && count != block.rows
+    {
+        let expected = format!("{count} rows (recorded-num-points)");
+        return Err(input.damaged(format!("segment {number}"), expected, block.rows.to_string()));
+    }
+    let unit = |index: usize| Some((*units.as_ref()?.get(index)?).to_owned());
+    let channel = |(index, name): (usize, &String)| Channel {
+        name: name.clone(),
+        unit: unit(index),
+        line: Line::of(index),
+    };
+    Ok(Draft {
+        number,
+        style: block.value("segment").unwrap_or("segment").to_owned(),
+        rows: block.rows,
+        channels: block.columns.iter().enumerate().map(channel).collect(),
+        load: load(input, (block, first), number, &unit)?,
+        clock: None,
+        first: numbers(&block.first),
+    })
+}
+
+/// Force and deflection out of the one column of bending, as far as its unit and the constants lead. Constants that a
+/// segment does not repeat are those above the first.
+fn load(
+    input: &Input,
+    (block, first): (&Block, &Block),
+    number: usize,
+    unit: &dyn Fn(usize) -> Option<String>,
+) -> Result<Load, FileError> {
+    let Some(index) = block.columns.iter().position(|name| name == BENDING) else {
+        return Ok(Load::default());
+    };
+    let constant =
+        |key: &str| match block.value(key).or_else(|| first.value(key)).map(|text| (text, text.parse::<f64>())) {
+            None => Ok(None),
+            // JPK writes NaN where it knows none.
+            Some((_, Ok(value))) if value.is_nan() => Ok(None),
+            Some((_, Ok(value))) if value.is_normal() => Ok(Some(value)),
+            Some((text, _)) => {
+                Err(input.damaged(format!("segment {number}, {key}"), "a number other than 0", text.to_owned()))
+            }
+        };
+    let (spring, sensitivity) = (constant("springConstant")?, constant("sensitivity")?);
+    let (raw, raw_unit) = (Line::of(index), unit(index));
+    let deflection = match raw_unit.as_deref() {
+        Some("N") => spring.map(|spring| raw.then(1.0 / spring, 0.0)),
+        Some("m") => Some(raw),
+        Some("V") => sensitivity.map(|sensitivity| raw.then(sensitivity, 0.0)),
+        _ => None,
+    };
+    let force = match raw_unit.as_deref() {
+        Some("N") => Some(raw),
+        _ => deflection.zip(spring).map(|(deflection, spring)| deflection.then(spring, 0.0)),
+    };
+    Ok(Load {
+        raw: Some(raw),
+        raw_unit,
+        force,
+        deflection,
+    })
+}
+
+/// Time: of the whole series where the file has it, else of each segment, put one behind the other, else of the
+/// durations that were asked for.
+fn set_clocks(blocks: &[Block], drafts: &mut [Draft]) {
+    let in_seconds = |draft: &Draft, name: &str| {
+        let channel = draft.channels.iter().find(|channel| channel.name == name)?;
+        (channel.unit.as_deref() == Some("s")).then_some(channel.line)
+    };
+    let all = |drafts: &[Draft], name: &str| {
+        drafts.iter().filter(|draft| draft.rows > 0).all(|draft| in_seconds(draft, name).is_some())
+    };
+    if all(drafts, "seriesTime") {
+        for draft in drafts {
+            draft.clock = in_seconds(draft, "seriesTime").map(Formula::Line);
+        }
+        return;
+    }
+    let by_segment = all(drafts, "time");
+    let mut start = 0.0;
+    for (block, draft) in blocks.iter().zip(drafts).filter(|(block, _)| block.rows > 0) {
+        let rows = block.rows as f64;
+        if by_segment && let Some(line) = in_seconds(draft, "time") {
+            let at = |row: &[u8]| numbers(row).and_then(|row| row.get(line.channel).copied());
+            let (Some(first), Some(last)) = (at(&block.first), at(&block.last)) else {
+                return;
+            };
+            draft.clock = Some(Formula::Line(line.then(1.0, start)));
+            // Behind its last row a segment goes on for one more step.
+            let step = if rows > 1.0 { (last - first) / (rows - 1.0) } else { last };
+            start += last + step;
+        } else {
+            // Without it for one segment, there is no time for those behind it either.
+            let Some(step) = step(block) else { return };
+            draft.clock = Some(Formula::Even { start, step });
+            start += step * rows;
+        }
+    }
+}
+
+/// The time between two rows, going by what was asked for: a segment may have ended early.
+fn step(block: &Block) -> Option<f64> {
+    let number = |key: &str| block.value(key)?.parse::<f64>().ok().filter(|value| *value > 0.0 && value.is_finite());
+    let index = block.value("segmentIndex")?;
+    let asked = |key: &str| number(&format!("force-settings.segment.{index}.{key}"));
+    if let Some(duration) = asked("duration") {
+        return Some(duration / asked("num-points").unwrap_or(block.rows as f64));
+    }
+    let key = match block.value("segment")? {
+        "extend" | "trace" => "traceScanTime",
+        "retract" | "retrace" => "retraceScanTime",
+        _ => return None,
+    };
+    Some(number(key)? / block.rows as f64)
+}
+
+/// Where the time of a file comes from, for people.
+pub(super) fn clock_of(drafts: &[Draft]) -> &'static str {
+    let clocks: Vec<&Draft> = drafts.iter().filter(|draft| draft.rows > 0).collect();
+    let read = |name: &str| {
+        clocks.iter().all(|draft| match draft.clock {
+            Some(Formula::Line(line)) => draft.channels.get(line.channel).is_some_and(|channel| channel.name == name),
+            _ => false,
+        })
+    };
+    if clocks.iter().any(|draft| draft.clock.is_none()) {
+        "none: the file has neither a column of it nor the durations of all segments"
+    } else if read("seriesTime") {
+        "seriesTime of the file"
+    } else if read("time") {
+        "time of the file, the segments one behind the other"
+    } else {
+        "made of the durations and numbers of points that were asked for, the segments one behind the other"
+    }
+}
+
+/// The numbers of a row, if it holds nothing else.
+fn numbers(row: &[u8]) -> Option<Vec<f64>> {
+    cells(row).map(|cell| number::parse(cell, DecimalMark::Point)).collect()
+}

@@ -1,0 +1,81 @@
+//! The comment lines above the rows: metadata as JSON, and the names of the columns.
+
+use serde_json::{Map, Value};
+
+use crate::{
+    error::{FileError, shorten},
+    input::{Encoding, Input, LineReader},
+};
+
+/// What stands before and behind the metadata.
+pub(super) const BEGIN: &str = "# BEGIN METADATA";
+const END: &str = "# END METADATA";
+
+/// Most bytes of comment lines.
+const MOST_HEADER: usize = 16 << 20;
+
+/// Most columns.
+const MOST_COLUMNS: usize = 256;
+
+/// The lines above the rows.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Header {
+    pub(super) metadata: Map<String, Value>,
+    pub(super) columns: Vec<String>,
+    pub(super) delimiter: u8,
+}
+
+/// The comment lines: metadata, and the names of the columns in the last of them.
+pub(super) fn read(input: &Input) -> Result<Header, FileError> {
+    let mut lines = LineReader::open(input, Encoding::Utf8)?;
+    let (mut json, mut names, mut bytes) = (None::<String>, Vec::new(), 0);
+    let mut inside = false;
+    while let Some(line) = lines.next_line()? {
+        let Some(comment) = line.strip_prefix(b"#") else {
+            if line.trim_ascii().is_empty() {
+                continue;
+            }
+            break;
+        };
+        bytes += line.len();
+        if bytes > MOST_HEADER {
+            return Err(input.too_large("the header", MOST_HEADER as u64));
+        }
+        let text = String::from_utf8_lossy(line);
+        match text.trim_end() {
+            BEGIN => (json, inside) = (Some(String::new()), true),
+            END => inside = false,
+            _ if inside => {
+                if let Some(json) = &mut json {
+                    json.push_str(&String::from_utf8_lossy(comment));
+                    json.push('\n');
+                }
+            }
+            _ => names = comment.to_vec(),
+        }
+    }
+    if inside {
+        return Err(input.damaged("metadata", format!("a line `{END}`"), "none"));
+    }
+    let metadata = match json {
+        None => Map::new(),
+        Some(json) => serde_json::from_str(&json)
+            .map_err(|error| input.damaged("metadata", "an object in JSON", error.to_string()))?,
+    };
+    let delimiter = if names.contains(&b'\t') { b'\t' } else { b',' };
+    let names = String::from_utf8_lossy(&names).into_owned();
+    let columns: Vec<String> = names
+        .split(char::from(delimiter))
+        .map(|name| name.trim().to_owned())
+        .take(MOST_COLUMNS + 1)
+        .collect();
+    if columns.len() > MOST_COLUMNS || columns.iter().any(String::is_empty) {
+        let expected = format!("a line of 1 to {MOST_COLUMNS} names above the rows");
+        return Err(input.damaged("header", expected, shorten(&names)));
+    }
+    Ok(Header {
+        metadata,
+        columns,
+        delimiter,
+    })
+}

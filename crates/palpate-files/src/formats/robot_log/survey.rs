@@ -1,0 +1,273 @@
+//! Looking through a log: its topics, their fields, and how many messages there are.
+//!
+//! The messages of one topic may differ in their fields: two drivers may write the joints of an arm and those of a
+//! gripper to one topic. Messages with the same fields form a series; each series is a clock of its own.
+
+use std::collections::HashMap;
+
+use super::{
+    channel::{Decoder, Definition},
+    container,
+    fields::Fields,
+    record::Entry,
+};
+use crate::{error::FileError, input::Input, table::SkippedPart};
+
+/// Most different sets of fields, and orders of them, that the messages of a topic may have.
+const MOST_SERIES: usize = 16;
+
+/// A field of a series.
+#[derive(Debug, Clone)]
+pub(super) struct FieldSeen {
+    /// Its name in the message.
+    pub(super) name: String,
+    /// Its first value that is a finite number.
+    pub(super) sample: Option<f64>,
+}
+
+/// Messages of one topic with the same fields.
+#[derive(Debug, Clone)]
+pub(super) struct Series {
+    pub(super) topic: String,
+    /// Type of the messages.
+    pub(super) kind: String,
+    pub(super) fields: Vec<FieldSeen>,
+    pub(super) messages: u64,
+    /// Every message has a time stamp of its own.
+    pub(super) stamped: bool,
+}
+
+/// The series a message belongs to, and for each of its numbers the place among the fields of the series.
+#[derive(Debug, Clone)]
+pub(super) struct Belongs {
+    pub(super) series: usize,
+    pub(super) places: Vec<usize>,
+}
+
+/// A channel that can be read.
+#[derive(Debug, Clone)]
+pub(super) struct Channel {
+    topic: String,
+    kind: String,
+    pub(super) decoder: Decoder,
+    pub(super) known: HashMap<Vec<u8>, Belongs>,
+}
+
+/// What is in a log.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Survey {
+    pub(super) profile: String,
+    /// When the first message was written down, ns.
+    pub(super) start: Option<u64>,
+    pub(super) messages: u64,
+    pub(super) series: Vec<Series>,
+    pub(super) channels: HashMap<u16, Channel>,
+    pub(super) skipped: Vec<SkippedPart>,
+}
+
+/// Looks through all of a log.
+pub(super) fn survey(input: &Input) -> Result<Survey, FileError> {
+    let mut surveyor = Surveyor {
+        input,
+        survey: Survey::default(),
+        definitions: HashMap::new(),
+        refused: HashMap::new(),
+    };
+    container::walk(input, &mut |_, _| {}, &mut |entry| surveyor.entry(entry))?;
+    Ok(surveyor.finish())
+}
+
+struct Surveyor<'a> {
+    input: &'a Input,
+    survey: Survey,
+    definitions: HashMap<u16, Definition>,
+    /// Topics of channels that cannot be read.
+    refused: HashMap<u16, String>,
+}
+
+impl Surveyor<'_> {
+    fn entry(&mut self, entry: &Entry<'_>) -> Result<(), FileError> {
+        match entry {
+            Entry::Header { profile } => (*profile).clone_into(&mut self.survey.profile),
+            Entry::Schema {
+                id,
+                name,
+                encoding,
+                text,
+            } => {
+                let definition = Definition {
+                    name: (*name).to_owned(),
+                    encoding: (*encoding).to_owned(),
+                    text: text.to_vec(),
+                };
+                let known = self.definitions.entry(*id).or_insert_with(|| definition.clone());
+                if *known != definition {
+                    return Err(self.input.damaged(format!("schema {id}"), "one definition", "two that differ"));
+                }
+            }
+            Entry::Channel {
+                id,
+                schema,
+                topic,
+                encoding,
+            } => self.channel(*id, *schema, topic, encoding)?,
+            Entry::Message {
+                channel,
+                log_time,
+                data,
+            } => self.message(*channel, *log_time, data)?,
+        }
+        Ok(())
+    }
+
+    fn channel(&mut self, id: u16, schema: u16, topic: &str, encoding: &str) -> Result<(), FileError> {
+        let before = self.survey.channels.get(&id).map(|channel| &channel.topic).or_else(|| self.refused.get(&id));
+        if let Some(before) = before {
+            if before == topic {
+                return Ok(());
+            }
+            return Err(self.input.damaged(
+                format!("channel {id}"),
+                format!("topic {before}"),
+                format!("topic {topic}"),
+            ));
+        }
+        let definition = self.definitions.get(&schema);
+        if schema != 0 && definition.is_none() {
+            return Err(self.input.damaged(format!("channel {topic}"), format!("schema {schema} before it"), "none"));
+        }
+        match Decoder::of(encoding, definition) {
+            Ok(decoder) => {
+                let channel = Channel {
+                    topic: topic.to_owned(),
+                    kind: definition.map(|definition| definition.name.clone()).unwrap_or_default(),
+                    decoder,
+                    known: HashMap::new(),
+                };
+                self.survey.channels.insert(id, channel);
+            }
+            Err(reason) => self.refuse(id, topic.to_owned(), reason),
+        }
+        Ok(())
+    }
+
+    fn refuse(&mut self, id: u16, topic: String, reason: String) {
+        self.survey.skipped.push(SkippedPart {
+            name: topic.clone(),
+            reason,
+        });
+        self.refused.insert(id, topic);
+    }
+
+    fn message(&mut self, id: u16, log_time: u64, data: &[u8]) -> Result<(), FileError> {
+        let survey = &mut self.survey;
+        survey.messages += 1;
+        survey.start = Some(survey.start.map_or(log_time, |start| start.min(log_time)));
+        let Some(channel) = survey.channels.get_mut(&id) else {
+            if self.refused.contains_key(&id) {
+                return Ok(());
+            }
+            let place = format!("message {}", survey.messages);
+            return Err(self.input.damaged(place, format!("a channel {id} before it"), "none"));
+        };
+        let read = channel.decoder.read(data, false).and_then(|fields| match channel.known.get(&fields.signature) {
+            Some(belongs) => Ok((fields, Some(belongs.clone()))),
+            None => channel.decoder.read(data, true).map(|fields| (fields, None)),
+        });
+        let reason = match read {
+            Ok((fields, Some(belongs))) => {
+                survey.series[belongs.series].add(&fields, &belongs.places);
+                return Ok(());
+            }
+            Ok((fields, None)) if channel.known.len() < MOST_SERIES => {
+                let belongs = place(&mut survey.series, channel, &fields);
+                survey.series[belongs.series].add(&fields, &belongs.places);
+                channel.known.insert(fields.signature, belongs);
+                return Ok(());
+            }
+            Ok(_) => format!("its messages have more than {MOST_SERIES} different sets of fields"),
+            Err(fault) => {
+                let at = fault.at.map_or_else(String::new, |at| format!(", byte {at}"));
+                let (expected, found) = (fault.expected, fault.found);
+                format!("message {} of the log{at}: expected {expected}, found {found}", survey.messages)
+            }
+        };
+        if let Some(channel) = self.survey.channels.remove(&id) {
+            self.refuse(id, channel.topic, reason);
+        }
+        Ok(())
+    }
+
+    /// Drops what cannot be read: series of topics that were refused, and those without fields.
+    fn finish(self) -> Survey {
+        let mut survey = self.survey;
+        let refused: Vec<&String> = self.refused.values().collect();
+        for series in &mut survey.series {
+            if refused.contains(&&series.topic) {
+                series.fields.clear();
+                series.messages = 0;
+            }
+        }
+        survey.channels.retain(|_, channel| !refused.contains(&&channel.topic));
+        let mut bare: Vec<&Channel> = survey.channels.values().collect();
+        bare.retain(|channel| {
+            !survey.series.iter().any(|series| series.topic == channel.topic && !series.fields.is_empty())
+        });
+        let mut bare: Vec<SkippedPart> = bare
+            .into_iter()
+            .map(|channel| SkippedPart {
+                name: channel.topic.clone(),
+                reason: "no message of it holds a number".to_owned(),
+            })
+            .collect();
+        bare.sort_by(|one, other| one.name.cmp(&other.name));
+        bare.dedup();
+        survey.skipped.extend(bare);
+        survey
+    }
+}
+
+/// The series for a message whose fields were not seen in this order before: one with the same, or a new one.
+fn place(all: &mut Vec<Series>, channel: &Channel, fields: &Fields) -> Belongs {
+    let names = fields.names.as_deref().unwrap_or_default();
+    let places_in = |series: &Series| -> Option<Vec<usize>> {
+        if series.topic != channel.topic || series.kind != channel.kind || series.fields.len() != names.len() {
+            return None;
+        }
+        names.iter().map(|name| series.fields.iter().position(|field| field.name == *name)).collect()
+    };
+    if let Some((series, places)) = all.iter().enumerate().find_map(|(index, series)| Some((index, places_in(series)?)))
+    {
+        return Belongs { series, places };
+    }
+    all.push(Series {
+        topic: channel.topic.clone(),
+        kind: channel.kind.clone(),
+        fields: names
+            .iter()
+            .map(|name| FieldSeen {
+                name: name.clone(),
+                sample: None,
+            })
+            .collect(),
+        messages: 0,
+        stamped: true,
+    });
+    Belongs {
+        series: all.len() - 1,
+        places: (0..names.len()).collect(),
+    }
+}
+
+impl Series {
+    fn add(&mut self, fields: &Fields, places: &[usize]) {
+        self.messages += 1;
+        self.stamped &= fields.stamp.is_some();
+        for (place, value) in places.iter().zip(&fields.values) {
+            let field = &mut self.fields[*place];
+            if field.sample.is_none() && value.is_finite() {
+                field.sample = Some(*value);
+            }
+        }
+    }
+}

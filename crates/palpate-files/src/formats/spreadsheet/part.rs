@@ -1,0 +1,186 @@
+//! A workbook as a file that holds several tests.
+
+use super::{
+    book::Book,
+    read,
+    sample::Sample,
+    stacked,
+    table::{self, FoundTables, Table},
+    xls::{self, Xls},
+    xlsx::{self, Xlsx},
+};
+use crate::{
+    error::FileError,
+    input::{Input, Packing},
+    table::{ColumnKind, Columns, Found, Part, ReadOptions, ReadPart, SkippedPart},
+};
+
+/// How a workbook is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Make {
+    /// Office Open XML.
+    Xlsx,
+    /// A compound file, as of Excel 97 to 2003; perhaps an encrypted workbook of today.
+    Xls,
+}
+
+/// Whether a file is a workbook, and of which make.
+pub(crate) fn recognise(input: &Input) -> Option<Make> {
+    let beginning = input.beginning();
+    if beginning.starts_with(xls::SIGNATURE) {
+        return Some(Make::Xls);
+    }
+    let is_zip = beginning.starts_with(b"PK\x03\x04");
+    (is_zip && xlsx::has_part(input, "[content_types].xml")).then_some(Make::Xlsx)
+}
+
+/// A table and the sheet it is in.
+#[derive(Debug)]
+struct Place {
+    sheet: usize,
+    table: Table,
+}
+
+#[derive(Debug)]
+struct Workbook {
+    input: Input,
+    book: Box<dyn Book>,
+    places: Vec<Place>,
+}
+
+/// Looks for tests in every sheet of a workbook.
+pub(crate) fn look_into(input: &Input, make: Make, options: &ReadOptions) -> Result<Found, FileError> {
+    // What is packed once more is unpacked once, not for every sheet.
+    let input = match input.packing() {
+        Packing::None => input.clone(),
+        _ => Input::from_bytes(input.name(), input.bytes()?)?,
+    };
+    let book: Box<dyn Book> = match make {
+        Make::Xlsx => Box::new(Xlsx::open(&input)?),
+        Make::Xls => Box::new(Xls::open(&input)?),
+    };
+    let skip = u32::try_from(options.layout.skip_lines.unwrap_or(0)).unwrap_or(u32::MAX);
+    let (mut looked, mut skipped) = (Vec::new(), Vec::new());
+    for (index, sheet) in book.sheets().iter().enumerate() {
+        let mut pass = |reason: &str| {
+            let name = sheet.name.clone();
+            let reason = reason.to_owned();
+            skipped.push((index, SkippedPart { name, reason }));
+        };
+        if let Some(other) = sheet.other {
+            pass(other);
+            continue;
+        }
+        let sample = Sample::take(book.as_ref(), index, skip)?;
+        if sample.rows.is_empty() {
+            pass("empty");
+            continue;
+        }
+        let numbers = |table: &Table| table.columns.iter().filter(|column| column.kind == ColumnKind::Number).count();
+        let holds = |found: &FoundTables| found.tables.iter().any(|table| numbers(table) >= 2);
+        let mut stacked = stacked::find(&sample, &options.layout);
+        stacked.retain(holds);
+        let is_stack = !stacked.is_empty();
+        let all = if is_stack { stacked } else { vec![table::find(&sample, &options.layout)] };
+        if !all.iter().any(holds) {
+            pass("no table of numbers");
+            continue;
+        }
+        for (found, number) in all.into_iter().zip(1..) {
+            let several = found.tables.len() > 1;
+            let name = if is_stack { format!("{}, table {number}", sheet.name) } else { sheet.name.clone() };
+            for table in found.tables {
+                let whole = sample.whole || table.end.is_some();
+                let part = part((&sheet.name, &name), &table, several, found.beside, whole);
+                looked.push((Place { sheet: index, table }, part));
+            }
+        }
+    }
+    Ok(chosen(input, book, looked, skipped))
+}
+
+/// Words in the name of a sheet that holds the mean of the tests beside it.
+const MEANS: [&str; 8] = ["moyenne", "moyen", "mean", "average", "mittelwert", "mittelwertkurve", "media", "promedio"];
+
+fn names_mean(sheet: &str) -> bool {
+    let lower = sheet.to_lowercase();
+    lower.split(|letter: char| !letter.is_alphabetic()).any(|word| MEANS.contains(&word))
+}
+
+/// Why a table is no test, given that others name a time.
+fn no_test(sheet: &str, table: &Table) -> Option<&'static str> {
+    match table.names_time() {
+        false if table.has_names() => Some("no column of time"),
+        _ if names_mean(sheet) => Some("a mean of tests, by its name"),
+        _ => None,
+    }
+}
+
+/// Where some tables name a time, those that name their columns and no time among them are no tests, nor are means.
+fn chosen(
+    input: Input,
+    book: Box<dyn Book>,
+    looked: Vec<(Place, Part)>,
+    mut skipped: Vec<(usize, SkippedPart)>,
+) -> Found {
+    let name = |place: &Place| book.sheets().get(place.sheet).map_or("", |sheet| sheet.name.as_str());
+    let timed = looked.iter().any(|(place, _)| place.table.names_time() && !names_mean(name(place)));
+    let (mut places, mut parts) = (Vec::new(), Vec::new());
+    for (place, part) in looked {
+        match no_test(name(&place), &place.table).filter(|_| timed) {
+            Some(reason) => {
+                let name = part.title().to_owned();
+                let reason = reason.to_owned();
+                skipped.push((place.sheet, SkippedPart { name, reason }));
+            }
+            None => {
+                places.push(place);
+                parts.push(part);
+            }
+        }
+    }
+    skipped.sort_by_key(|(sheet, _)| *sheet);
+    Found {
+        parts,
+        skipped: skipped.into_iter().map(|(_, part)| part).collect(),
+        reader: Box::new(Workbook { input, book, places }),
+    }
+}
+
+fn part((sheet, name): (&str, &str), table: &Table, several: bool, beside: usize, whole: bool) -> Part {
+    let first = u64::from(table.first_row) + 1;
+    let rows = match whole {
+        true => format!("rows {first} to {}", u64::from(table.last_row) + 1),
+        false => format!("data from row {first}"),
+    };
+    let beside = match beside {
+        0 => String::new(),
+        1 => ", 1 cell beside passed over".to_owned(),
+        count => format!(", {count} cells beside passed over"),
+    };
+    Part {
+        name: Some(if several { format!("{name}, {}", table.range()) } else { name.to_owned() }),
+        written: format!("sheet {sheet}, {}, {rows}{beside}", table.range()),
+        rows: None,
+        columns: table.columns.clone(),
+        metadata: table.metadata.clone(),
+        labels: Vec::new(),
+        clocks: Vec::new(),
+    }
+}
+
+impl ReadPart for Workbook {
+    fn read(&self, part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
+        let Some(Place { sheet, table }) = self.places.get(part) else {
+            return Ok(Columns::of(columns.len()));
+        };
+        let name = self.book.sheets().get(*sheet).map_or("", |sheet| sheet.name.as_str());
+        // The bytes of the sheet as a share of those of the file.
+        let size = self.input.size();
+        let mut share = |done: u64, total: u64| {
+            let share = done as f64 / total.max(1) as f64;
+            progress((share * size as f64) as u64, size);
+        };
+        read::read(self.input.name(), self.book.as_ref(), (*sheet, name, table), columns, &mut share)
+    }
+}

@@ -1,0 +1,203 @@
+//! Reading chosen columns of a table.
+
+use std::{ops::ControlFlow, path::Path};
+
+use super::{
+    book::Book,
+    cell::{Cell, Value, letters},
+    table::Table,
+};
+use crate::{
+    cell::{DecimalMark, number},
+    error::{FileError, shorten},
+    table::{Columns, Doubt, Footer},
+};
+
+/// Most rows behind the data that pass for remarks. More are a part of the record that cannot be read.
+const LONGEST_FOOTER: usize = 50;
+/// How many rows go by between two reports of progress.
+const ROWS_A_REPORT: usize = 4096;
+
+/// Reads columns (numbers from 1) of a table.
+pub(super) fn read(
+    path: &Path,
+    book: &dyn Book,
+    (sheet, name, table): (usize, &str, &Table),
+    columns: &[usize],
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Columns, FileError> {
+    let mut reading = Reading {
+        path,
+        name,
+        table,
+        chosen: columns.iter().map(|column| column - 1).collect(),
+        days_to_epoch: book.days_to_epoch(),
+        row: vec![None; table.places.len()],
+        number: None,
+        out: vec![0.0; columns.len()],
+        read: Columns::of(columns.len()),
+        last: None,
+        suspect: None,
+    };
+    let mut ends = (0, 0);
+    book.visit(sheet, &mut |cell, done, total| {
+        if cell.row < table.first_row {
+            return Ok(ControlFlow::Continue(()));
+        }
+        if table.end.is_some_and(|end| cell.row >= end) {
+            return Ok(ControlFlow::Break(()));
+        }
+        if let Ok(place) = table.places.binary_search(&cell.column) {
+            if reading.number.is_some_and(|number| number != cell.row) {
+                reading.end_row()?;
+                if reading.read.rows().is_multiple_of(ROWS_A_REPORT) {
+                    progress(done.min(total), total);
+                }
+            }
+            reading.take(place, cell);
+        }
+        ends = (total, total);
+        Ok(ControlFlow::Continue(()))
+    })?;
+    reading.end_row()?;
+    progress(ends.0, ends.1);
+    reading.finish()
+}
+
+/// What has been read, and the row that is being read.
+struct Reading<'a> {
+    path: &'a Path,
+    name: &'a str,
+    table: &'a Table,
+    /// Indices of the chosen columns in the table.
+    chosen: Vec<usize>,
+    days_to_epoch: f64,
+    row: Vec<Option<Value>>,
+    number: Option<u32>,
+    out: Vec<f64>,
+    read: Columns,
+    /// The last row of data.
+    last: Option<u32>,
+    /// Rows that may turn out to be remarks below the table.
+    suspect: Option<(Footer, FileError)>,
+}
+
+impl Reading<'_> {
+    fn take(&mut self, place: usize, cell: Cell) {
+        self.number = Some(cell.row);
+        self.row[place] = Some(cell.value);
+    }
+
+    fn end_row(&mut self) -> Result<(), FileError> {
+        let Some(number) = self.number.take() else {
+            return Ok(());
+        };
+        let mut fault = None;
+        for (place, &column) in self.chosen.iter().enumerate() {
+            match self.value(column, number) {
+                Ok(value) => self.out[place] = value,
+                Err(error) => {
+                    fault = Some(error);
+                    break;
+                }
+            }
+        }
+        let leading = self.row[self.table.leading].as_ref();
+        let is_data = leading.is_some_and(|value| value.class().is_numeric());
+        let sample = self.row.iter().flatten().next().map_or_else(String::new, |value| shorten(&value.text()));
+        self.row.fill(None);
+        match fault {
+            None => self.push(number),
+            Some(error) if is_data => Err(error),
+            Some(error) => self.suspect(number, sample, error),
+        }
+    }
+
+    fn push(&mut self, number: u32) -> Result<(), FileError> {
+        if let Some((footer, error)) = self.suspect.take() {
+            return Err(FileError::Interrupted {
+                path: self.path.to_owned(),
+                line: footer.first_line,
+                found: footer.sample,
+                resumes: number as usize + 1,
+                source: Box::new(error),
+            });
+        }
+        let gap = self.last.map_or(0, |last| number - last - 1);
+        self.read.ignored.blank += gap as usize;
+        self.last = Some(number);
+        self.read.push(&self.out, number as usize + 1);
+        Ok(())
+    }
+
+    fn suspect(&mut self, number: u32, sample: String, error: FileError) -> Result<(), FileError> {
+        let (mut footer, error) = self.suspect.take().unwrap_or_else(|| {
+            let footer = Footer {
+                first_line: number as usize + 1,
+                lines: 0,
+                sample,
+            };
+            (footer, error)
+        });
+        footer.lines += 1;
+        if footer.lines > LONGEST_FOOTER {
+            return Err(error);
+        }
+        self.suspect = Some((footer, error));
+        Ok(())
+    }
+
+    /// The number in a column of the row.
+    fn value(&self, column: usize, row: u32) -> Result<f64, FileError> {
+        let place = self.table.places[column];
+        let wrong = |expected: &str, found: &str, hint: &'static str| {
+            let cell = format!("sheet {}, cell {}{}", self.name, letters(place), u64::from(row) + 1);
+            FileError::bad_cell(self.path, cell, expected, found, hint)
+        };
+        const MEND: &str = "mend or empty the row, or choose another column";
+        let quoted = |text: &str| format!("`{}`", shorten(text));
+        match &self.row[column] {
+            // A number that a spreadsheet took for a date, 12.3 for the 12th of March, is lost.
+            Some(Value::Moment(_) | Value::Duration(_)) if !self.table.moments[column] => Err(wrong(
+                "a number",
+                "a date or a time of day",
+                "write the number again, in a cell formatted as a number",
+            )),
+            Some(Value::Number(number)) => Ok(*number),
+            Some(Value::Duration(days)) => Ok(days * 86_400.0),
+            Some(Value::Moment(days)) if self.table.dated[column] => Ok((days - self.days_to_epoch) * 86_400.0),
+            Some(Value::Moment(days)) => Ok(days * 86_400.0),
+            Some(Value::Text(text)) => {
+                match (&self.table.decimal, number::parse(text.trim().as_bytes(), DecimalMark::Point)) {
+                    // Whole numbers are the same under both marks.
+                    (Err(_), Some(number)) if !text.contains('.') => Ok(number),
+                    (Err(Doubt { doubt, .. }), _) => Err(wrong(
+                        "a number with one clear decimal mark",
+                        &format!("{} ({doubt})", quoted(text)),
+                        "fix the decimal mark in a test description, or make the texts numbers",
+                    )),
+                    (Ok(mark), _) => number::parse(text.trim().as_bytes(), *mark)
+                        .ok_or_else(|| wrong(&format!("a number with a decimal {mark}"), &quoted(text), MEND)),
+                }
+            }
+            Some(Value::Fault(fault)) => Err(wrong("a number", fault, MEND)),
+            Some(Value::Truth(truth)) => Err(wrong("a number", if *truth { "TRUE" } else { "FALSE" }, MEND)),
+            None => Err(wrong("a number", "an empty cell", MEND)),
+        }
+    }
+
+    fn finish(mut self) -> Result<Columns, FileError> {
+        if self.read.rows() == 0 {
+            return match self.suspect {
+                Some((_, error)) => Err(error),
+                None => Err(FileError::NoParts {
+                    path: self.path.to_owned(),
+                    parts: vec![(self.name.to_owned(), "no rows".to_owned())],
+                }),
+            };
+        }
+        self.read.ignored.footer = self.suspect.take().map(|(footer, _)| footer);
+        self.read.finish();
+        Ok(self.read)
+    }
+}

@@ -1,0 +1,226 @@
+//! Finding the tables in the beginning of a sheet, as a person would.
+
+use super::{
+    cell::{Value, letters},
+    sample::{Row, Sample},
+};
+use crate::{
+    cell::{Cell, DecimalMark},
+    error::shorten,
+    table::{ColumnInfo, ColumnKind, Doubt, LayoutOptions, Metadata, block, decimal, header, metadata, names_time},
+};
+
+/// A table in a sheet.
+#[derive(Debug)]
+pub(super) struct Table {
+    /// Columns of the sheet, from 0, in their order.
+    pub(super) places: Vec<u32>,
+    pub(super) columns: Vec<ColumnInfo>,
+    /// First row of data, from 0.
+    pub(super) first_row: u32,
+    /// Last row of data in the sample, from 0.
+    pub(super) last_row: u32,
+    /// Row, from 0, on which what belongs to the next table below begins.
+    pub(super) end: Option<u32>,
+    /// Index in `columns` of the first one of numbers, which tells rows of data from other rows.
+    pub(super) leading: usize,
+    /// Columns of moments: dates, times of day or durations.
+    pub(super) moments: Vec<bool>,
+    /// Columns of dates, whose days count from the epoch.
+    pub(super) dated: Vec<bool>,
+    /// Decimal mark of the numbers that are texts; an error where it is not clear.
+    pub(super) decimal: Result<DecimalMark, Doubt>,
+    pub(super) metadata: Vec<Metadata>,
+}
+
+impl Table {
+    /// Its columns as people name them: `columns A–D` or `columns A–C, E`.
+    pub(super) fn range(&self) -> String {
+        let mut ranges: Vec<(u32, u32)> = Vec::new();
+        for &place in &self.places {
+            match ranges.last_mut() {
+                Some((_, end)) if *end + 1 == place => *end = place,
+                _ => ranges.push((place, place)),
+            }
+        }
+        let range = |&(start, end): &(u32, u32)| match start == end {
+            true => letters(start),
+            false => format!("{}–{}", letters(start), letters(end)),
+        };
+        let ranges: Vec<String> = ranges.iter().map(range).collect();
+        format!("columns {}", ranges.join(", "))
+    }
+
+    pub(super) fn names_time(&self) -> bool {
+        names_time(&self.columns)
+    }
+
+    pub(super) fn has_names(&self) -> bool {
+        self.columns.iter().any(|column| column.name.is_some())
+    }
+}
+
+/// What was found in a sheet.
+#[derive(Debug, Default)]
+pub(super) struct FoundTables {
+    pub(super) tables: Vec<Table>,
+    /// How many cells stand beside the tables.
+    pub(super) beside: usize,
+}
+
+/// The tables in a sample: one, or several side by side where each has a time of its own.
+pub(super) fn find(sample: &Sample, options: &LayoutOptions) -> FoundTables {
+    let groups = groups(&columns_of_data(sample));
+    let mut found: Vec<Table> = groups.iter().filter_map(|group| table(sample, group, options)).collect();
+    let timed = found.iter().filter(|table| table.names_time()).count();
+    if timed >= 2 {
+        found.retain(Table::names_time);
+    } else if let Some(joined) = joined(&found) {
+        // Empty columns between those of one table.
+        found = match table(sample, &joined, options) {
+            Some(table) => vec![table],
+            None => found.into_iter().take(1).collect(),
+        };
+    }
+    let first = found.iter().map(|table| table.first_row).min().unwrap_or(0);
+    let mut places: Vec<u32> = found.iter().flat_map(|table| table.places.iter().copied()).collect();
+    places.sort_unstable();
+    let below = sample.rows.iter().filter(|row| row.number >= first);
+    let beside = below.flat_map(|row| &row.cells).filter(|(column, _)| places.binary_search(column).is_err()).count();
+    FoundTables {
+        beside: if found.is_empty() { 0 } else { beside },
+        tables: found,
+    }
+}
+
+/// The columns that hold anything from the first row of numbers on. What stands further to the right above the numbers,
+/// such as the unit of a named value, does not join two tables.
+fn columns_of_data(sample: &Sample) -> Vec<u32> {
+    let all = sample.columns(0);
+    let class = |row: &Row| -> Vec<Cell> {
+        all.iter().map(|&place| row.value(place).map_or(Cell::Empty, Value::class)).collect()
+    };
+    let block = block::of_rows(sample.rows.iter().map(class).collect());
+    block.map_or_else(Vec::new, |block| sample.columns(block.first))
+}
+
+/// Columns without an empty one between them.
+fn groups(columns: &[u32]) -> Vec<Vec<u32>> {
+    let mut groups: Vec<Vec<u32>> = Vec::new();
+    for &column in columns {
+        match groups.last_mut() {
+            Some(group) if group.last().is_some_and(|last| last + 1 == column) => group.push(column),
+            _ => groups.push(vec![column]),
+        }
+    }
+    groups
+}
+
+/// The columns of the longest table and of those that begin beside it and are at least half as long.
+fn joined(tables: &[Table]) -> Option<Vec<u32>> {
+    let length = |table: &Table| table.last_row - table.first_row;
+    let mut longest = tables.first()?;
+    for table in tables {
+        if length(table) > length(longest) {
+            longest = table;
+        }
+    }
+    let belongs = |table: &&Table| table.first_row == longest.first_row && 2 * length(table) >= length(longest);
+    Some(tables.iter().filter(belongs).flat_map(|table| table.places.iter().copied()).collect())
+}
+
+/// The table in some columns of a sample, if there are two rows of numbers or more.
+fn table(sample: &Sample, places: &[u32], options: &LayoutOptions) -> Option<Table> {
+    let held = |row: &Row| places.iter().any(|&place| row.value(place).is_some());
+    let rows: Vec<&Row> = sample.rows.iter().filter(|row| held(row)).collect();
+    let class = |row: &&Row| -> Vec<Cell> {
+        places.iter().map(|&place| row.value(place).map_or(Cell::Empty, Value::class)).collect()
+    };
+    let mut block = block::of_rows(rows.iter().map(class).collect())?;
+    let texts = |index: usize, _: &block::Block| -> Vec<String> {
+        places.iter().map(|&place| rows[index].value(place).map_or_else(String::new, Value::text)).collect()
+    };
+    let header = header::find_in_rows(&texts, 0, &mut block, options.header);
+    let data: Vec<&Row> = rows.iter().skip(block.first).copied().collect();
+    let leading = block::first_number(&block.kinds)?;
+    let leads = |row: &&&Row| row.value(places[leading]).is_some_and(|value| value.class().is_numeric());
+    let last_row = data.iter().rfind(leads)?.number;
+    let first_row = data.first()?.number;
+    if data.iter().filter(leads).count() < 2 {
+        return None;
+    }
+    let first_value = |place: u32| data.iter().find_map(|row| row.value(place));
+    let labelled = places.iter().zip(&header.labels).zip(&block.kinds).enumerate();
+    let columns = labelled.map(|(index, ((&place, label), &kind))| column(index + 1, kind, label, first_value(place)));
+    let columns = columns.collect();
+    let above = rows.iter().take(block.first).enumerate();
+    let above = above.filter(|(index, _)| header.names_line != Some(*index) && header.units_line != Some(*index));
+    Some(Table {
+        columns,
+        first_row,
+        last_row,
+        end: None,
+        leading,
+        moments: places
+            .iter()
+            .map(|&place| matches!(first_value(place), Some(Value::Moment(_) | Value::Duration(_))))
+            .collect(),
+        dated: places
+            .iter()
+            .map(|&place| matches!(first_value(place), Some(Value::Moment(days)) if *days >= 1.0))
+            .collect(),
+        decimal: decimal(&data, places, &block.kinds, options.decimal),
+        metadata: above.flat_map(|(_, row)| named_values(row)).collect(),
+        places: places.to_vec(),
+    })
+}
+
+/// A column by its number, its name and unit in the header, and its first value.
+fn column(
+    number: usize,
+    kind: ColumnKind,
+    label: &(Option<String>, Option<String>),
+    first: Option<&Value>,
+) -> ColumnInfo {
+    let (name, unit) = label;
+    let is_time = matches!(first, Some(Value::Moment(_) | Value::Duration(_)));
+    ColumnInfo {
+        number,
+        name: name.clone(),
+        unit: if is_time { Some("s".to_owned()) } else { unit.clone() },
+        kind,
+        sample: first.map_or_else(String::new, |value| shorten(&value.text())),
+    }
+}
+
+fn named_values(row: &Row) -> Vec<Metadata> {
+    let texts: Vec<String> = row.cells.iter().map(|(_, value)| value.text()).collect();
+    let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
+    metadata::in_cells(&texts)
+}
+
+/// The decimal mark of the numbers that are kept as texts.
+fn decimal(
+    data: &[&Row],
+    places: &[u32],
+    kinds: &[ColumnKind],
+    fixed: Option<DecimalMark>,
+) -> Result<DecimalMark, Doubt> {
+    if let Some(fixed) = fixed {
+        return Ok(fixed);
+    }
+    let (mut points, mut commas) = (Vec::new(), Vec::new());
+    for row in data {
+        let numbers = places.iter().zip(kinds).filter(|(_, kind)| **kind == ColumnKind::Number);
+        for (&place, _) in numbers {
+            if let Some(Value::Text(text)) = row.value(place) {
+                match row.value(place).map(Value::class) {
+                    Some(Cell::Point) => points.push((row.number as usize, text.trim())),
+                    Some(Cell::Comma) => commas.push((row.number as usize, text.trim())),
+                    _ => {}
+                }
+            }
+        }
+    }
+    decimal::weigh_texts(&points, &commas)
+}

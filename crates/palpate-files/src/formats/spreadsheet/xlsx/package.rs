@@ -1,0 +1,170 @@
+//! The parts of the archive, and reading their XML.
+
+use std::{
+    collections::BTreeMap,
+    io::{BufReader, Read},
+};
+
+use quick_xml::{
+    Reader,
+    events::{BytesStart, Event},
+};
+use zip::ZipArchive;
+
+use crate::{
+    error::{FileError, shown},
+    input::{Input, MOST_IN_MEMORY},
+};
+
+/// Most bytes that a part which is kept in memory may unpack to (256 MiB): texts, styles, names of sheets.
+pub(super) const MOST_KEPT: u64 = 256 << 20;
+/// Most bytes that a sheet may unpack to: they are streamed, and one cell can hold all of them.
+pub(super) const MOST_OF_SHEET: u64 = MOST_IN_MEMORY;
+
+/// A zip archive of parts that are known by their paths.
+#[derive(Debug)]
+pub(super) struct Package {
+    pub(super) input: Input,
+    /// Names in the archive by their paths in lower case and with `/` between folders.
+    names: BTreeMap<String, String>,
+}
+
+/// Whether the archive has a part of this path.
+pub(crate) fn has_part(input: &Input, path: &str) -> bool {
+    let archive = input.seekable().ok().and_then(|bytes| ZipArchive::new(bytes).ok());
+    archive.is_some_and(|archive| archive.file_names().flatten().any(|name| same_path(&name) == path))
+}
+
+fn same_path(name: &str) -> String {
+    name.replace('\\', "/").trim_start_matches('/').to_lowercase()
+}
+
+impl Package {
+    pub(super) fn open(input: &Input) -> Result<Self, FileError> {
+        let archive = ZipArchive::new(input.seekable()?).map_err(|error| broken(input, "zip archive", &error))?;
+        let mut names = BTreeMap::new();
+        for name in archive.file_names().flatten() {
+            if let Some(twin) = names.insert(same_path(&name), name.into_owned()) {
+                return Err(input.damaged("zip archive", "parts of different names", shown(&twin)));
+            }
+        }
+        Ok(Self {
+            input: input.clone(),
+            names,
+        })
+    }
+
+    /// Paths of the parts that hold XML: first the texts that all sheets share, then what says which part is which.
+    pub(super) fn parts(&self) -> Vec<&str> {
+        let xml = |path: &&str| path.ends_with(".xml") || path.ends_with(".rels");
+        let mut paths: Vec<&str> = self.names.keys().map(String::as_str).filter(xml).collect();
+        paths.sort_by_key(|path| (!path.ends_with("sharedstrings.xml"), *path != "_rels/.rels"));
+        paths
+    }
+
+    /// Goes through the XML of a part of at most `most` bytes. `step` is told the element that begins, text, or the
+    /// element that ends, with the bytes done, and says whether to go on.
+    pub(super) fn read(
+        &self,
+        path: &str,
+        most: u64,
+        step: &mut dyn FnMut(Step<'_>, u64) -> Result<bool, FileError>,
+    ) -> Result<(), FileError> {
+        let Some(name) = self.names.get(&same_path(path)) else {
+            return Err(self.damaged(path, "a part of the archive", "none of that name"));
+        };
+        let stored = BufReader::with_capacity(1 << 16, self.input.seekable()?);
+        let mut archive = ZipArchive::new(stored).map_err(|error| broken(&self.input, "zip archive", &error))?;
+        let member = archive.by_name(name).map_err(|error| broken(&self.input, path, &error))?;
+        // One byte more tells whether there is more.
+        let mut xml = Reader::from_reader(BufReader::with_capacity(1 << 16, member.take(most + 1)));
+        xml.config_mut().check_end_names = false;
+        xml.config_mut().expand_empty_elements = true;
+        let mut buffer = Vec::new();
+        loop {
+            buffer.clear();
+            let event = xml.read_event_into(&mut buffer);
+            let done = xml.buffer_position();
+            if xml.get_ref().get_ref().limit() == 0 {
+                return Err(self.input.too_large("a part of the workbook", most));
+            }
+            let event = event.map_err(|error| self.damaged(path, "XML", &error.to_string()))?;
+            let goes_on = match &event {
+                Event::Start(element) => step(Step::Begin(element), done)?,
+                Event::End(element) => step(Step::End(element.local_name().as_ref()), done)?,
+                Event::Text(text) => step(Step::Text(&text.xml10_content()), done)?,
+                Event::GeneralRef(entity) => {
+                    let letter = entity.resolve_char_ref().ok().flatten().map(String::from);
+                    let known = || quick_xml::escape::resolve_xml_entity(entity.as_ref()).map(str::to_owned);
+                    if letter.or_else(known).is_none() {
+                        return Err(self.damaged(path, "XML", &format!("&{};", entity.as_ref())));
+                    }
+                    step(Step::Entity, done)?
+                }
+                Event::Eof => {
+                    step(Step::Eof, done)?;
+                    return Ok(());
+                }
+                _ => step(Step::Aside, done)?,
+            };
+            if !goes_on {
+                return Ok(());
+            }
+        }
+    }
+
+    pub(super) fn damaged(&self, place: &str, expected: &str, found: &str) -> FileError {
+        self.input.damaged(place, expected, shown(found))
+    }
+}
+
+/// What comes next in the XML of a part.
+#[derive(Debug)]
+pub(super) enum Step<'a> {
+    Begin(&'a BytesStart<'a>),
+    Text(&'a str),
+    /// A letter by its name or number.
+    Entity,
+    /// What is neither element nor text: a remark, an instruction, a section of raw text.
+    Aside,
+    End(&'a str),
+    /// The end of the part.
+    Eof,
+}
+
+fn broken(input: &Input, place: &str, error: &zip::result::ZipError) -> FileError {
+    input.damaged(place, "a part that can be unpacked", shown(&error.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Cursor, Write};
+
+    use super::*;
+
+    #[test]
+    fn a_part_that_unpacks_to_more_than_its_limit_is_refused_whatever_it_says() {
+        let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        for path in ["[Content_Types].xml", "a.xml"] {
+            zip.start_file(path, zip::write::SimpleFileOptions::default()).expect("a member");
+            zip.write_all(b"<a>").expect("bytes");
+            zip.write_all(&b"<b>text</b>".repeat(100_000)).expect("bytes");
+            zip.write_all(b"</a>").expect("bytes");
+        }
+        let bytes = zip.finish().expect("an archive").into_inner();
+        assert!(bytes.len() < 20_000);
+        let package = Package::open(&Input::from_bytes("book", bytes).expect("bytes")).expect("a package");
+        let mut texts = 0;
+        let mut count = |step: Step<'_>, _| {
+            texts += usize::from(matches!(step, Step::Text(_)));
+            Ok(!matches!(step, Step::End("a")))
+        };
+        let most = package.read("/A.xml", 1_100_000, &mut count);
+        assert_eq!(
+            most.map_err(|error| error.to_string()),
+            Err("book: a part of the workbook has more than 1 MiB, which is the most that is read".to_owned())
+        );
+        assert!((90_000..100_001).contains(&texts), "{texts}");
+        assert!(package.read("a.xml", 1_100_007, &mut |step, _| Ok(!matches!(step, Step::End("a")))).is_ok());
+    }
+}

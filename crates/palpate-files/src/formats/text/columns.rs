@@ -1,0 +1,198 @@
+//! Streaming chosen columns out of a file.
+
+use std::path::Path;
+
+use super::{
+    row::{Fault, RowPlan},
+    rows_ahead::{RowsAhead, Stop},
+};
+use crate::{
+    cell::{DecimalMark, Delimiter},
+    error::{DecimalDoubt, FileError},
+    input::{Input, LineReader},
+    table::{Columns, Footer, Layout, decimal},
+};
+
+/// Most lines behind the data that pass for a footer. More are a part of the record that cannot be read.
+const LONGEST_FOOTER: usize = 50;
+
+/// How many blocks may hold something else than rows of plain numbers before blocks are no longer tried.
+const TRIES: usize = 3;
+
+/// A faulty line that may turn out to start a footer.
+#[derive(Debug)]
+struct Suspect {
+    footer: Footer,
+    error: FileError,
+}
+
+/// Reads the chosen columns (numbers from 1, in any order) of a file laid out as `layout` says.
+///
+/// The file is streamed: memory is 8 bytes for each cell of the chosen columns and a few megabytes besides, and
+/// no more than [`MOST_ROWS`](crate::table::MOST_ROWS) rows are kept: of a longer file successive rows are averaged. `progress` is told the bytes done and the bytes there are,
+/// once for every quarter of a mebibyte or so for each processor and once at the end.
+///
+/// Blank lines are passed over and counted. Lines at the very end that do not start like data are
+/// passed over as a footer, up to 50 of them. Every other line must be a full row.
+///
+/// # Errors
+///
+/// Where the file cannot be read, a column does not exist, or a row is faulty: the first fault is reported with
+/// its line and column. A file without any row gives [`FileError::NoDataRows`].
+pub fn read_columns(
+    input: &Input,
+    layout: &Layout,
+    columns: &[usize],
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Columns, FileError> {
+    let path = input.name();
+    let mut distinct = columns.to_vec();
+    distinct.sort_unstable();
+    distinct.dedup();
+    let plan = RowPlan::new(path, layout, &distinct)?;
+    let mut reader = LineReader::open(input, layout.encoding)?;
+    let mut read = Columns::of(distinct.len());
+    let mut row = vec![0.0; distinct.len()];
+    let mut suspect: Option<Suspect> = None;
+    let (mut told, mut reserved) = (0, false);
+    let mut blocks = RowsAhead::new(distinct.len());
+    let mut tries = if plan.may_be_plain() && !distinct.is_empty() { TRIES } else { 0 };
+    let mut by_lines_until = layout.first_data_line;
+    loop {
+        let (done, total) = reader.progress();
+        let number = reader.line() + 1;
+        if done != told && number > 1 {
+            progress(done, total);
+            if told > 0 && !reserved {
+                // The rows so far came from the pieces before this one.
+                read.reserve(told, total);
+                reserved = true;
+            }
+            told = done;
+        }
+        if tries > 0 && number >= by_lines_until && suspect.is_none() {
+            match blocks.read(&mut reader, &plan, &mut read, progress)? {
+                Stop::End => tries = 0,
+                Stop::Odd(lines) => (tries, by_lines_until) = (tries - 1, reader.line() + 1 + lines),
+            }
+            reserved |= read.rows() > 0;
+            continue;
+        }
+        let Some(line) = reader.next_line()? else {
+            break;
+        };
+        if number < layout.first_data_line {
+            continue;
+        }
+        match plan.read(line, &mut row) {
+            Ok(()) => {
+                if let Some(suspect) = suspect {
+                    return Err(interrupted(path, suspect, number));
+                }
+                read.push(&row, number);
+            }
+            Err(_) if is_blank(line, layout.delimiter) => read.ignored.blank += 1,
+            Err(fault) => suspect = Some(suspected(&plan, suspect, fault, line, number)?),
+        }
+    }
+    let (done, total) = reader.progress();
+    progress(done, total);
+    read.bytes = total;
+    let mut read = finish(path, read, suspect, reader.line())?;
+    if layout.undecided && layout.decimal == DecimalMark::Point && read.averaged == 1 {
+        refuse_thousands(path, &read)?;
+    }
+    if distinct != columns {
+        read.values = arranged(read.values, &distinct, columns);
+    }
+    Ok(read)
+}
+
+/// Whether a line holds nothing but blanks and marks between cells: what spreadsheets leave below a table.
+fn is_blank(line: &[u8], delimiter: Delimiter) -> bool {
+    line.iter().all(|byte| byte.is_ascii_whitespace() || Some(*byte) == delimiter.byte())
+}
+
+/// An error where points that come late set off thousands.
+fn refuse_thousands(path: &Path, read: &Columns) -> Result<(), FileError> {
+    let late = read.values.iter().find_map(|values| Some((values, decimal::falls_to_a_thousandth(values)?)));
+    match late {
+        Some((values, row)) => Err(FileError::AmbiguousDecimal {
+            path: path.to_owned(),
+            line: read.line_of(row).unwrap_or(row + 1),
+            found: format!("{:.3}` after `{}", values[row], values[row - 1]),
+            doubt: DecimalDoubt::PointThousands,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Puts the columns read into the order they were chosen in, and copies those chosen more than once.
+fn arranged(values: Vec<Vec<f64>>, read: &[usize], chosen: &[usize]) -> Vec<Vec<f64>> {
+    let mut left: Vec<Option<Vec<f64>>> = values.into_iter().map(Some).collect();
+    let mut arranged: Vec<Vec<f64>> = Vec::with_capacity(chosen.len());
+    for (place, column) in chosen.iter().enumerate() {
+        let taken = read.binary_search(column).ok().and_then(|index| left[index].take());
+        let values = taken.unwrap_or_else(|| {
+            let before = chosen[..place].iter().position(|other| other == column);
+            before.map_or_else(Vec::new, |index| arranged[index].clone())
+        });
+        arranged.push(values);
+    }
+    arranged
+}
+
+/// Takes a faulty line into the footer, or says that it cannot be part of one.
+fn suspected(
+    plan: &RowPlan<'_>,
+    before: Option<Suspect>,
+    fault: Fault,
+    line: &[u8],
+    number: usize,
+) -> Result<Suspect, FileError> {
+    if plan.is_data(line) {
+        return Err(plan.error(fault, line, number));
+    }
+    let Some(mut suspect) = before else {
+        return Ok(Suspect {
+            footer: Footer {
+                first_line: number,
+                lines: 1,
+                sample: plan.text(line),
+            },
+            error: plan.error(fault, line, number),
+        });
+    };
+    suspect.footer.lines += 1;
+    if suspect.footer.lines > LONGEST_FOOTER {
+        return Err(suspect.error);
+    }
+    Ok(suspect)
+}
+
+fn interrupted(path: &Path, suspect: Suspect, resumes: usize) -> FileError {
+    FileError::Interrupted {
+        path: path.to_owned(),
+        line: suspect.footer.first_line,
+        found: suspect.footer.sample,
+        resumes,
+        source: Box::new(suspect.error),
+    }
+}
+
+fn finish(path: &Path, mut read: Columns, suspect: Option<Suspect>, lines: usize) -> Result<Columns, FileError> {
+    match suspect {
+        Some(suspect) if read.rows() == 0 => return Err(suspect.error),
+        Some(suspect) => read.ignored.footer = Some(suspect.footer),
+        None if read.rows() == 0 => {
+            return Err(FileError::NoDataRows {
+                path: path.to_owned(),
+                lines,
+                header_line: None,
+            });
+        }
+        None => {}
+    }
+    read.finish();
+    Ok(read)
+}

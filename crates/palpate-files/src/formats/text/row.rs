@@ -1,0 +1,327 @@
+//! Reading the chosen cells of one row, and saying what is wrong where that fails.
+
+use std::path::Path;
+
+use crate::{
+    cell::{Cell, Fields, date, number},
+    error::{CellPlace, FileError, shorten},
+    table::{ColumnKind, Layout, block},
+};
+
+/// How to read the rows of one file.
+#[derive(Debug)]
+pub(crate) struct RowPlan<'a> {
+    path: &'a Path,
+    layout: &'a Layout,
+    /// What to do with the cell of each column.
+    tasks: Vec<Task>,
+    /// Fewest cells a row must have.
+    fewest: usize,
+    /// Index of the first column of numbers, which tells rows of data from other lines.
+    leading: usize,
+    /// Delimiter and decimal mark, where rows can be read in one pass.
+    plain: Option<(u8, u8)>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Task {
+    /// Pass over it.
+    Pass,
+    /// See that it could be a number: a line with a word in the leading column is no row of data.
+    Check,
+    /// Read it into this place of the output.
+    Read(usize),
+    /// Read a date with its time of day into this place.
+    ReadDate(usize),
+}
+
+/// What is wrong with a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Fault {
+    /// A cell, by index, holds no number.
+    Cell(usize),
+    /// There are too few cells; so many were found.
+    TooFew(usize),
+    /// There are cells beyond the last column.
+    TooMany,
+}
+
+impl<'a> RowPlan<'a> {
+    /// Plans to read `columns` (numbers from 1, each once) of every row.
+    pub(crate) fn new(path: &'a Path, layout: &'a Layout, columns: &[usize]) -> Result<Self, FileError> {
+        let kinds: Vec<ColumnKind> = layout.columns.iter().map(|column| column.kind).collect();
+        let mut tasks = vec![Task::Pass; kinds.len()];
+        let leading = block::first_number(&kinds).unwrap_or(0);
+        if let Some(task) = tasks.get_mut(leading) {
+            *task = Task::Check;
+        }
+        for (place, &column) in columns.iter().enumerate() {
+            let task = column.checked_sub(1).and_then(|index| tasks.get_mut(index));
+            let Some(task) = task else {
+                return Err(FileError::NoSuchColumn {
+                    path: path.to_owned(),
+                    column,
+                    columns: kinds.len(),
+                });
+            };
+            let is_date = kinds.get(column - 1) == Some(&ColumnKind::DateTime);
+            *task = if is_date { Task::ReadDate(place) } else { Task::Read(place) };
+        }
+        // Remarks at the end of a row may be left out; numbers may not.
+        let last_number = kinds.iter().rposition(|&kind| kind == ColumnKind::Number);
+        let last_read = columns.iter().copied().max().unwrap_or(0);
+        Ok(Self {
+            path,
+            layout,
+            tasks,
+            fewest: last_read.max(last_number.map_or(0, |index| index + 1)),
+            leading,
+            plain: layout
+                .delimiter
+                .byte()
+                .zip(Some(layout.decimal.byte()))
+                .filter(|(delimiter, mark)| delimiter != mark),
+        })
+    }
+
+    /// Whether rows can be rows of plain numbers.
+    pub(super) fn may_be_plain(&self) -> bool {
+        self.plain.is_some() && !self.tasks.iter().any(|task| matches!(task, Task::ReadDate(_)))
+    }
+
+    /// Reads the row of plain numbers that some bytes begin with in one pass over it, up to its LF or to their end. How many
+    /// bytes it has, its end included; `None` is no verdict.
+    #[inline]
+    pub(super) fn read_plain(&self, bytes: &[u8], row: &mut [f64]) -> Option<usize> {
+        let (delimiter, mark) = self.plain?;
+        let mut at = 0;
+        for (count, task) in self.tasks.iter().enumerate() {
+            while bytes.get(at) == Some(&b' ') {
+                at += 1;
+            }
+            let rest = &bytes[at..];
+            at += match task {
+                Task::Read(place) => {
+                    let (value, end) = number::leading(rest, mark)?;
+                    row[*place] = value;
+                    end
+                }
+                Task::Pass if rest.first() != Some(&b'"') => cell_end(rest, delimiter),
+                Task::Check if rest.first().is_some_and(u8::is_ascii_digit) => cell_end(rest, delimiter),
+                _ => return None,
+            };
+            let is_last = count + 1 == self.tasks.len();
+            match bytes.get(at..).unwrap_or_default() {
+                [byte, ..] if *byte == delimiter && !is_last => at += 1,
+                [] if is_last => return Some(at),
+                [b'\n', ..] if is_last => return Some(at + 1),
+                [b'\r', b'\n', ..] if is_last => return Some(at + 2),
+                _ => return None,
+            }
+        }
+        None
+    }
+
+    /// Reads the chosen cells of a line into `row`, which has one place for each.
+    #[inline]
+    pub(crate) fn read(&self, line: &[u8], row: &mut [f64]) -> Result<(), Fault> {
+        match self.read_plain(line, row) {
+            Some(_) => Ok(()),
+            None => self.read_any(line, row),
+        }
+    }
+
+    fn read_any(&self, line: &[u8], row: &mut [f64]) -> Result<(), Fault> {
+        let mut count = 0;
+        for cell in Fields::of(line, self.layout.delimiter) {
+            match self.tasks.get(count) {
+                Some(&Task::Read(place)) => match number::parse(cell, self.layout.decimal) {
+                    Some(value) => row[place] = value,
+                    None => return Err(Fault::Cell(count)),
+                },
+                Some(&Task::ReadDate(place)) => match date::parse(cell) {
+                    Some(value) => row[place] = value,
+                    None => return Err(Fault::Cell(count)),
+                },
+                Some(Task::Pass) => {}
+                Some(Task::Check) => {
+                    let digit = cell.first().is_some_and(u8::is_ascii_digit);
+                    if !digit && number::classify(cell) == Cell::Text {
+                        return Err(Fault::Cell(count));
+                    }
+                }
+                None if cell.is_empty() => {}
+                None => return Err(Fault::TooMany),
+            }
+            count += 1;
+        }
+        if count < self.fewest {
+            return Err(Fault::TooFew(count));
+        }
+        Ok(())
+    }
+
+    /// Whether a faulty line is a row of data all the same, going by its cell in the leading column of numbers.
+    pub(crate) fn is_data(&self, line: &[u8]) -> bool {
+        Fields::of(line, self.layout.delimiter)
+            .nth(self.leading)
+            .is_some_and(|cell| number::classify(cell).is_numeric())
+    }
+
+    /// The error for a fault of `line`, which is line `number` of the file.
+    #[cold]
+    pub(crate) fn error(&self, fault: Fault, line: &[u8], number: usize) -> FileError {
+        let path = self.path.to_owned();
+        match fault {
+            Fault::TooFew(found) => FileError::TooFewCells {
+                path,
+                line: number,
+                expected: self.fewest,
+                found,
+            },
+            Fault::TooMany => FileError::TooManyCells {
+                path,
+                line: number,
+                expected: self.tasks.len(),
+                found: Fields::of(line, self.layout.delimiter).count(),
+            },
+            Fault::Cell(index) => self.cell_error(index, line, number),
+        }
+    }
+
+    fn cell_error(&self, index: usize, line: &[u8], number: usize) -> FileError {
+        let place = CellPlace {
+            path: self.path.to_owned(),
+            line: number,
+            column: index + 1,
+            name: self.layout.columns.get(index).and_then(|column| column.name.clone()),
+        };
+        let cell = Fields::of(line, self.layout.delimiter).nth(index);
+        let cell = cell.unwrap_or_default();
+        let found = self.text(cell);
+        let kind = self.layout.columns.get(index).map(|column| column.kind);
+        if kind == Some(ColumnKind::DateTime) && !cell.is_empty() {
+            let place = format!("line {number}, column {}", index + 1);
+            return FileError::damaged(
+                self.path,
+                place,
+                "a date and time such as 2024-08-24T21:09:40.123",
+                format!("`{found}`"),
+            );
+        }
+        match number::classify(cell) {
+            Cell::Empty => FileError::EmptyCell { place },
+            Cell::NotFinite => FileError::NotFinite { place, found },
+            _ => FileError::TextInNumbers {
+                place,
+                found,
+                decimal: self.layout.decimal,
+            },
+        }
+    }
+
+    /// Bytes of the file as shortened text for a message.
+    pub(crate) fn text(&self, bytes: &[u8]) -> String {
+        let encoding = self.layout.encoding;
+        if encoding.splits_like_ascii() {
+            let (text, _) = encoding.codec().decode_without_bom_handling(bytes);
+            shorten(&text)
+        } else {
+            // Such a file was decoded as a whole before it was split.
+            shorten(&String::from_utf8_lossy(bytes))
+        }
+    }
+}
+
+/// Where a cell ends that is passed over.
+fn cell_end(rest: &[u8], delimiter: u8) -> usize {
+    rest.iter().position(|byte| *byte == delimiter || *byte == b'\n').unwrap_or(rest.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cell::{DecimalMark, Delimiter};
+    use crate::input::Encoding;
+    use crate::table::ColumnInfo;
+
+    /// Whatever a row is like: what is read in one pass is what the general way reads, to the last bit.
+    #[test]
+    fn rows_read_in_one_pass_are_the_same() {
+        const CELLS: [&str; 24] = [
+            "0",
+            "1.5",
+            "-0.25",
+            "+2",
+            "1e5",
+            ".5",
+            "5.",
+            ".",
+            "-",
+            "",
+            " 7",
+            "7 ",
+            "\"8\"",
+            "\"9",
+            "1,5",
+            "-0",
+            "1.2.3",
+            "123456789012345678",
+            "1234567890123456789",
+            "9007199254740993",
+            "x",
+            "NaN",
+            "\t3",
+            "0.000000000000000001",
+        ];
+        let kinds = [ColumnKind::Number, ColumnKind::Text, ColumnKind::Number];
+        for (delimiter, mark) in [
+            (Delimiter::Comma, DecimalMark::Point),
+            (Delimiter::Semicolon, DecimalMark::Comma),
+            (Delimiter::Tab, DecimalMark::Point),
+            (Delimiter::Comma, DecimalMark::Comma),
+        ] {
+            for columns in [vec![1, 3], vec![3]] {
+                let column = |(index, kind): (usize, &ColumnKind)| ColumnInfo {
+                    number: index + 1,
+                    name: None,
+                    unit: None,
+                    kind: *kind,
+                    sample: String::new(),
+                };
+                let layout = Layout {
+                    undecided: false,
+                    encoding: Encoding::Utf8,
+                    delimiter,
+                    decimal: mark,
+                    header_line: None,
+                    units_line: None,
+                    first_data_line: 1,
+                    metadata: Vec::new(),
+                    columns: kinds.iter().enumerate().map(column).collect(),
+                };
+                let plan = RowPlan::new(Path::new("x.csv"), &layout, &columns).expect("a plan");
+                let byte = char::from(delimiter.byte().expect("a byte"));
+                let mut in_one_pass = 0;
+                for (first, second, third) in triples(&CELLS) {
+                    for end in ["", &byte.to_string(), " "] {
+                        let line = format!("{first}{byte}{second}{byte}{third}{end}");
+                        let (mut plain, mut any) = (vec![0.5; columns.len()], vec![0.5; columns.len()]);
+                        if plan.read_plain(line.as_bytes(), &mut plain).is_some() {
+                            in_one_pass += 1;
+                            assert_eq!(plan.read_any(line.as_bytes(), &mut any), Ok(()), "{line:?}");
+                            let bits = |row: &[f64]| row.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+                            assert_eq!(bits(&plain), bits(&any), "{line:?}");
+                        }
+                    }
+                }
+                assert_eq!(in_one_pass > 300, plan.plain.is_some(), "{delimiter} {mark}: {in_one_pass}");
+            }
+        }
+    }
+
+    fn triples<'a>(cells: &'a [&'a str]) -> impl Iterator<Item = (&'a str, &'a str, &'a str)> {
+        let pairs = cells.iter().flat_map(|first| cells.iter().map(move |second| (*first, *second)));
+        pairs.flat_map(|(first, second)| cells.iter().map(move |third| (first, second, *third)))
+    }
+}

@@ -1,0 +1,73 @@
+//! Looking at the beginning of a file.
+
+use std::io::Read;
+
+use crate::{
+    error::{FileError, Foreign, mostly_control, recognise_foreign},
+    input::{Encoding, Input, LONGEST_LINE, encoding, lines},
+};
+
+/// Most lines looked at; what they do not show of a layout, more would not either.
+const MOST_LINES: usize = 4000;
+
+/// The beginning of a file, decoded.
+#[derive(Debug)]
+pub(crate) struct Sample {
+    pub(crate) encoding: Encoding,
+    text: String,
+    /// The file goes on behind the sample.
+    cut: bool,
+}
+
+impl Sample {
+    /// Reads the beginning of a file and decodes it, as `fixed` or as what it looks like.
+    pub(crate) fn take(input: &Input, fixed: Option<Encoding>) -> Result<Self, FileError> {
+        let bytes = beginning(input)?;
+        let cut = bytes.len() > LONGEST_LINE;
+        let foreign = |looks_like| FileError::Foreign {
+            path: input.name().to_owned(),
+            looks_like,
+        };
+        if let Some(looks_like) = recognise_foreign(&bytes) {
+            return Err(foreign(looks_like));
+        }
+        let encoding = fixed.or_else(|| encoding::recognise(&bytes)).ok_or_else(|| foreign(Foreign::Binary))?;
+        let body = &bytes[encoding.mark_length(&bytes)..];
+        let (text, _) = encoding.codec().decode_without_bom_handling(body);
+        if mostly_control(&text) {
+            return Err(foreign(Foreign::Binary));
+        }
+        if text.trim().is_empty() && !cut {
+            return Err(FileError::Empty {
+                path: input.name().to_owned(),
+            });
+        }
+        let text = text.into_owned();
+        if cut && memchr::memchr2(b'\n', b'\r', text.as_bytes()).is_none() {
+            return Err(FileError::LineTooLong {
+                path: input.name().to_owned(),
+                line: 1,
+                limit: LONGEST_LINE,
+            });
+        }
+        Ok(Self { encoding, text, cut })
+    }
+
+    /// The lines that are in the sample from end to end.
+    pub(crate) fn lines(&self) -> Vec<&str> {
+        let mut lines = lines::of_text(&self.text);
+        if self.cut && lines.len() > 1 {
+            lines.pop();
+        }
+        lines.truncate(MOST_LINES);
+        lines
+    }
+}
+
+/// Up to one byte more than the sample wants, which tells whether there is more.
+fn beginning(input: &Input) -> Result<Vec<u8>, FileError> {
+    let mut bytes = Vec::new();
+    let reader = input.reader()?;
+    reader.take(LONGEST_LINE as u64 + 1).read_to_end(&mut bytes).map_err(|error| input.failed(error))?;
+    Ok(bytes)
+}

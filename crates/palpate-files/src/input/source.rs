@@ -1,0 +1,274 @@
+//! Bytes to read a record from, under a name for messages.
+
+use std::{
+    fmt,
+    fs::File,
+    io::{self, Cursor, Read, Seek},
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use super::{
+    counting::{Count, Counting},
+    packing::{self, MOST_UNPACKED, Packing},
+};
+use crate::error::FileError;
+
+/// Most bytes of a file that is held in memory as a whole: a workbook, a force curve, a packed table (2 GiB).
+pub const MOST_IN_MEMORY: u64 = 2 << 30;
+
+/// How many times the size of a packed file it may unpack to in memory, beyond [`ALWAYS_UNPACKED`].
+pub const MOST_TIMES: u64 = 256;
+
+/// What any packed file may unpack to in memory (16 MiB).
+pub const ALWAYS_UNPACKED: u64 = 16 << 20;
+
+/// How much of a file is looked at to tell its format.
+const BEGINNING: u64 = 64 * 1024;
+
+/// Bytes to read a record from, under a name for messages.
+#[derive(Debug, Clone)]
+pub struct Input {
+    name: PathBuf,
+    place: Place,
+    packing: Packing,
+    beginning: Vec<u8>,
+    size: u64,
+}
+
+#[derive(Clone)]
+enum Place {
+    Disk,
+    Memory(Arc<[u8]>),
+}
+
+impl fmt::Debug for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Disk => f.write_str("Disk"),
+            Self::Memory(bytes) => write!(f, "Memory({} bytes)", bytes.len()),
+        }
+    }
+}
+
+/// Bytes that can be read from any place in them.
+pub(crate) trait Seekable: Read + Seek + Send {}
+
+impl<T: Read + Seek + Send> Seekable for T {}
+
+impl Input {
+    /// The file at `path`, which is looked into to see whether it is packed.
+    ///
+    /// # Errors
+    /// [`FileError`] where it cannot be read, or is a packed file that holds no file, or several.
+    pub fn open(path: &Path) -> Result<Self, FileError> {
+        let failed = |error| FileError::from_io(path, error);
+        let about = std::fs::metadata(path).map_err(failed)?;
+        if about.is_dir() {
+            return Err(FileError::Directory { path: path.to_owned() });
+        }
+        if !about.is_file() {
+            return Err(FileError::NoFile { path: path.to_owned() });
+        }
+        Self::of(path.to_owned(), Place::Disk, about.len())
+    }
+
+    /// Bytes in memory. `name` is what messages call them.
+    ///
+    /// # Errors
+    /// As for [`open`](Self::open), less those of the disk.
+    pub fn from_bytes(name: impl Into<PathBuf>, bytes: impl Into<Arc<[u8]>>) -> Result<Self, FileError> {
+        let bytes = bytes.into();
+        let size = bytes.len() as u64;
+        Self::of(name.into(), Place::Memory(bytes), size)
+    }
+
+    fn of(name: PathBuf, place: Place, size: u64) -> Result<Self, FileError> {
+        let mut input = Self {
+            name,
+            place,
+            packing: Packing::None,
+            beginning: Vec::new(),
+            size,
+        };
+        input.beginning = input.first_bytes()?;
+        input.packing = packing::recognise(&input.name, &input.beginning, || input.stored())?;
+        if input.packing != Packing::None {
+            input.beginning = input.first_bytes()?;
+        }
+        Ok(input)
+    }
+
+    fn first_bytes(&self) -> Result<Vec<u8>, FileError> {
+        let mut bytes = Vec::new();
+        let reader = self.reader()?;
+        reader.take(BEGINNING).read_to_end(&mut bytes).map_err(|error| self.failed(error))?;
+        Ok(bytes)
+    }
+
+    /// What messages call it: its path, on a disk.
+    #[must_use]
+    pub fn name(&self) -> &Path {
+        &self.name
+    }
+
+    /// How it is packed.
+    #[must_use]
+    pub fn packing(&self) -> &Packing {
+        &self.packing
+    }
+
+    /// Its size in bytes, packed as it is.
+    #[must_use]
+    pub fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// Its first bytes, unpacked: all of it, or 64 KiB.
+    #[must_use]
+    pub fn beginning(&self) -> &[u8] {
+        &self.beginning
+    }
+
+    /// Its bytes from the first on, unpacked.
+    pub(crate) fn reader(&self) -> Result<InputReader, FileError> {
+        let counting = Counting::of(self.stored()?);
+        let count = counting.count();
+        let bytes = packing::unpacked(counting, &self.packing).map_err(|error| self.failed(error))?;
+        Ok(InputReader {
+            bytes,
+            count,
+            size: self.size,
+        })
+    }
+
+    /// Its bytes in any order, unpacked. A packed file is unpacked into memory.
+    pub(crate) fn seekable(&self) -> Result<Box<dyn Seekable>, FileError> {
+        if self.packing == Packing::None {
+            return self.stored();
+        }
+        Ok(Box::new(Cursor::new(self.bytes()?)))
+    }
+
+    /// All of its bytes, unpacked, up to [`MOST_IN_MEMORY`] and to what its size warrants.
+    pub(crate) fn bytes(&self) -> Result<Vec<u8>, FileError> {
+        let mut bytes = Vec::new();
+        let warranted = if self.packing == Packing::None { u64::MAX } else { self.warranted() };
+        let most = MOST_IN_MEMORY.min(warranted);
+        let read = self.reader()?.take(most + 1).read_to_end(&mut bytes);
+        read.map_err(|error| self.failed(error))?;
+        match bytes.len() as u64 {
+            length if length <= most => Ok(bytes),
+            _ if most < MOST_IN_MEMORY => Err(self.swells()),
+            _ => Err(self.too_large("the file", most)),
+        }
+    }
+
+    /// Most bytes that what is packed here may unpack to in memory: [`MOST_TIMES`] as many as there are, and at least
+    /// [`ALWAYS_UNPACKED`].
+    pub(crate) fn warranted(&self) -> u64 {
+        self.size.saturating_mul(MOST_TIMES).max(ALWAYS_UNPACKED)
+    }
+
+    /// What is packed here unpacks to more than is [`warranted`](Self::warranted).
+    pub(crate) fn swells(&self) -> FileError {
+        FileError::Swells {
+            path: self.name.clone(),
+            most_times: MOST_TIMES,
+        }
+    }
+
+    /// The bytes as they lie there, packed or not.
+    fn stored(&self) -> Result<Box<dyn Seekable>, FileError> {
+        Ok(match &self.place {
+            Place::Disk => Box::new(File::open(&self.name).map_err(|error| self.failed(error))?),
+            Place::Memory(bytes) => Box::new(Cursor::new(Arc::clone(bytes))),
+        })
+    }
+
+    /// What the operating system, or an unpacker, says about this file.
+    pub(crate) fn failed(&self, error: io::Error) -> FileError {
+        if error.kind() == io::ErrorKind::FileTooLarge {
+            return self.too_large("the unpacked file", MOST_UNPACKED);
+        }
+        if self.packing == Packing::None || error.raw_os_error().is_some() {
+            return FileError::from_io(&self.name, error);
+        }
+        let found = match error.kind() {
+            io::ErrorKind::UnexpectedEof => "their end, or others".to_owned(),
+            io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => format!("others than were packed ({error})"),
+            _ => error.to_string(),
+        };
+        self.damaged(self.packing.to_string(), "bytes that can be unpacked", found)
+    }
+
+    /// A part of it is not as its format has it.
+    pub(crate) fn damaged(
+        &self,
+        place: impl Into<String>,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+    ) -> FileError {
+        FileError::damaged(&self.name, place, expected, found)
+    }
+
+    /// It is whole, and of a kind that is not read.
+    pub(crate) fn unfit(
+        &self,
+        place: impl Into<String>,
+        expected: &'static str,
+        found: impl Into<String>,
+        hint: &'static str,
+    ) -> FileError {
+        FileError::Unfit {
+            path: self.name.clone(),
+            place: place.into(),
+            expected,
+            found: found.into(),
+            hint,
+        }
+    }
+
+    /// It can be read with a password only.
+    pub(crate) fn encrypted(&self) -> FileError {
+        FileError::Encrypted {
+            path: self.name.clone(),
+        }
+    }
+
+    /// A limit that the file goes beyond.
+    pub(crate) fn too_large(&self, what: &'static str, most_bytes: u64) -> FileError {
+        FileError::TooLarge {
+            path: self.name.clone(),
+            what,
+            most_bytes,
+        }
+    }
+}
+
+/// The bytes of an input in order, and how far they have been read.
+pub(crate) struct InputReader {
+    bytes: Box<dyn Read + Send>,
+    count: Count,
+    size: u64,
+}
+
+impl InputReader {
+    /// Bytes of the stored file taken in so far, and its size.
+    pub(crate) fn progress(&self) -> (u64, u64) {
+        let done = self.count.get();
+        (done, self.size.max(done))
+    }
+}
+
+impl Read for InputReader {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        self.bytes.read(into)
+    }
+}
+
+impl fmt::Debug for InputReader {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("InputReader").field("progress", &self.progress()).finish_non_exhaustive()
+    }
+}

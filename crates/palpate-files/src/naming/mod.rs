@@ -1,0 +1,18 @@
+//! What names and units of columns stand for, in the languages of headers.
+//!
+//! | file | what |
+//! |---|---|
+//! | `quantity.rs` | what a column of a record can hold ([`Quantity`]) |
+//! | `vocabulary.rs` | the words that headers use for it |
+//! | `unit_words.rs` | units as machines and people write them |
+//! | `names.rs` | a name, weighed against the words |
+
+mod names;
+mod quantity;
+mod unit_words;
+mod vocabulary;
+
+pub(crate) use names::{measured, measures_another, names_quantity, rank_of_name, topic_and_field, words};
+pub use quantity::Quantity;
+pub(crate) use unit_words::{unit_factor, volts_are};
+pub(crate) use vocabulary::{BENDING, OTHER, OTHER_CHARACTERS, SIGNS_OF_LENGTH, STRAINS, VOCABULARY, is_listed};

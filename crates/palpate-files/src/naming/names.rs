@@ -1,0 +1,135 @@
+//! What the name of a column stands for.
+
+use palpate::units::Dimension;
+
+use super::{
+    quantity::Quantity,
+    unit_words::unit_factor,
+    vocabulary::{BENDING, COMMANDED, OTHER, OTHER_CHARACTERS, VOCABULARY, Vocabulary, is_listed},
+};
+
+/// The topic and the field in the name of a column of a robot's log, such as `/gripper/ft.wrench.force.z`.
+pub(crate) fn topic_and_field(name: &str) -> Option<(&str, &str)> {
+    name.split_once('.').filter(|(topic, _)| topic.starts_with('/'))
+}
+
+/// Whether a name says any quantity.
+pub(crate) fn names_quantity(name: &str) -> bool {
+    VOCABULARY.iter().any(|vocabulary| rank_of_name(name, vocabulary).is_some())
+}
+
+/// Whether a unit is one of another kind of quantity.
+pub(crate) fn measures_another(unit: &str, quantity: Quantity) -> bool {
+    let others = [
+        Dimension::Time,
+        Dimension::Length,
+        Dimension::Force,
+        Dimension::Pressure,
+        Dimension::Speed,
+        Dimension::Frequency,
+        Dimension::Area,
+    ];
+    let ratio = matches!(unit, "-" | "%" | "1" | "mm/mm" | "m/m");
+    let other = |dimension: &Dimension| *dimension != quantity.dimension() && unit_factor(unit, *dimension).is_some();
+    ratio || others.iter().any(other)
+}
+
+/// How well a name stands for the quantity of a vocabulary; 0 is best.
+pub(crate) fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
+    let name = measured(name);
+    let words = words(name);
+    let has = |known: &str| words.iter().any(|word| is_listed(word, known));
+    let is = |known: &str| matches!(words.as_slice(), [only] if is_listed(only, known));
+    let contains = |parts: &str| parts.split_whitespace().any(|part| name.contains(part));
+    let commanded =
+        |word: &String| COMMANDED.split_whitespace().any(|start| word.len() > start.len() && word.starts_with(start));
+    if has(OTHER) || contains(OTHER_CHARACTERS) || words.iter().any(commanded) || is_scaled(name) {
+        return None;
+    }
+    if vocabulary.quantity == Quantity::Displacement && BENDING.contains(&name.trim()) {
+        return None;
+    }
+    // The sign for force is a part of the word for stress.
+    let stress = contains("应力 応力");
+    if stress && vocabulary.quantity != Quantity::Stress {
+        return None;
+    }
+    let ends = |word: &String| vocabulary.endings.split_whitespace().any(|end| word.ends_with(end));
+    if is(vocabulary.plain) || is_listed(name.trim(), vocabulary.characters) {
+        Some(0)
+    } else if has(vocabulary.plain) || words.iter().any(ends) || contains(vocabulary.characters) {
+        Some(1)
+    } else if is(vocabulary.loose) {
+        Some(2)
+    } else if has(vocabulary.loose) && !named_otherwise(&words, vocabulary) {
+        Some(3)
+    } else if vocabulary.letter == Some(name.trim()) {
+        Some(4)
+    } else {
+        None
+    }
+}
+
+/// Whether a name says that its values are multiples: `Force x1000`, `Weg*10`, `Load ×10^3`.
+fn is_scaled(name: &str) -> bool {
+    let mut rest = name.char_indices().peekable();
+    let mut before = ' ';
+    while let Some((_, letter)) = rest.next() {
+        let times = matches!(letter, '×' | '*') || (matches!(letter, 'x' | 'X') && !before.is_alphanumeric());
+        if times && rest.peek().is_some_and(|(_, next)| *next == '1') {
+            return true;
+        }
+        before = letter;
+    }
+    false
+}
+
+/// Whether a word means another quantity and nothing else: a "compression force" is no compression.
+fn named_otherwise(words: &[String], vocabulary: &Vocabulary) -> bool {
+    let mut others = VOCABULARY.iter().filter(|other| other.quantity != vocabulary.quantity);
+    others.any(|other| words.iter().any(|word| is_listed(word, other.plain)))
+}
+
+/// The part of a name that says what is measured. Of a log of a robot that is the field less the names of joints, since
+/// topics are named after devices and commands (`/gripper_cmd/feedback`); where the field is called `data`, as in
+/// `std_msgs/Float64`, the topic alone can say it.
+pub(crate) fn measured(name: &str) -> &str {
+    match topic_and_field(name) {
+        Some((topic, "data")) => topic,
+        Some((_, field)) => field.split('[').next().unwrap_or(field),
+        None => name,
+    }
+}
+
+/// The words of a name in lower case: `GoalForce`, `goal_force` and `Goal force` have the same two.
+pub(crate) fn words(name: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut before = ' ';
+    for letter in name.chars() {
+        let starts = letter.is_uppercase() && before.is_lowercase();
+        if starts || !letter.is_alphabetic() {
+            words.push(String::new());
+        }
+        if let Some(word) = words.last_mut()
+            && letter.is_alphabetic()
+        {
+            word.extend(letter.to_lowercase());
+        }
+        before = letter;
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_of_names() {
+        assert_eq!(words("GoalForce"), ["goal", "force"]);
+        assert_eq!(words("now_pos 2"), ["now", "pos"]);
+        assert_eq!(words("Tensile strain (Extension)"), ["tensile", "strain", "extension"]);
+        assert_eq!(words("FORCE"), ["force"]);
+    }
+}

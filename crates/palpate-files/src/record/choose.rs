@@ -1,0 +1,360 @@
+//! Choosing the columns of a file: from a description, else by the header.
+
+use std::path::Path;
+
+use palpate::contact::Shape;
+
+use super::{
+    column_use::{ColumnUse, Role},
+    error::ColumnError,
+    named::NamedColumn,
+};
+use crate::{
+    cell::number,
+    description::{ClockChoice, ColumnChoice, TestDescription},
+    naming::Quantity,
+    table::{ColumnInfo, ColumnRef, Part, epoch, recognise},
+};
+
+/// The columns to read and how to make a record of them.
+#[derive(Debug)]
+pub(super) struct Plan {
+    /// Columns in the order to read them.
+    pub(super) columns: Vec<ColumnUse>,
+    /// What turns force or stress (SI) into N: the section in m² where it is stress, else 1.
+    pub(super) section: f64,
+    /// Stress without a section: the record is that of 1 m².
+    pub(super) per_unit_area: bool,
+}
+
+/// A column that was found, before its unit is looked at.
+pub(super) struct Found<'a> {
+    pub(super) role: Role,
+    pub(super) column: &'a ColumnInfo,
+    pub(super) unit: Option<&'a str>,
+    pub(super) choice: Option<&'a ColumnChoice>,
+}
+
+impl Found<'_> {
+    /// The key of a description that says its unit.
+    pub(super) fn key(&self) -> String {
+        match self.role {
+            Role::Values(quantity) | Role::Added(quantity) => format!("columns.{quantity}.unit"),
+            Role::Deflection => "columns.deflection.unit".to_owned(),
+            Role::ClockOf(quantity) => format!("columns.{quantity}.clock.unit"),
+        }
+    }
+}
+
+impl Found<'_> {
+    pub(super) fn used(&self, unit: String, factor: f64) -> ColumnUse {
+        let doubled = self.choice.is_some_and(|choice| choice.doubled);
+        ColumnUse {
+            role: self.role,
+            number: self.column.number,
+            name: self.column.name.clone(),
+            unit,
+            sign: self.choice.map_or(1.0, |choice| choice.sign),
+            // Of two columns that are added the sum is shifted, not each.
+            offset: match self.role {
+                Role::Added(_) => 0.0,
+                _ => self.choice.map_or(0.0, |choice| choice.offset),
+            },
+            factor: if doubled { 2.0 * factor } else { factor },
+            epoch: self.role.measured() == Quantity::Time && epoch::counts(self.column, factor),
+        }
+    }
+}
+
+/// In names of columns of which the deflection of the cantilever is off already.
+const INDENTATIONS: [&str; 4] = ["indentation", "tip position", "tipposition", "separation"];
+
+#[derive(Clone, Copy)]
+pub(super) struct Chooser<'a> {
+    pub(super) path: &'a Path,
+    columns: &'a [ColumnInfo],
+    part: &'a Part,
+}
+
+/// Chooses the columns of one test in the file at `path`.
+pub(super) fn choose(path: &Path, part: &Part, test: &TestDescription) -> Result<Plan, ColumnError> {
+    let chooser = Chooser {
+        path,
+        columns: &part.columns,
+        part,
+    };
+    let said = &test.columns;
+    let (load, load_said) = chooser.force_or_stress(test)?;
+    let displacement = chooser.find(Quantity::Displacement, said.displacement.as_ref())?;
+    let may_be_there = displacement.is_none() && load_said.is_none_or(|load| load.column.is_none());
+    let clocks = [
+        (Quantity::Displacement, said.displacement.as_ref(), displacement.as_ref()),
+        (load.role.measured(), load_said, Some(&load)),
+    ];
+    let one_time = said.time.as_ref().is_some_and(|time| time.column.is_some());
+    let mut found = Vec::new();
+    let mut needs_time = false;
+    for (quantity, choice, values) in clocks {
+        let own = values.filter(|_| !one_time).and_then(|values| chooser.own_clock(quantity, values));
+        match (choice.and_then(|choice| choice.clock.as_ref()), own) {
+            (Some(clock), _) => found.push(chooser.clock(quantity, clock)?),
+            (None, Some(own)) => found.push(own),
+            (None, None) => needs_time |= values.is_some(),
+        }
+    }
+    let added = displacement.as_ref().map(|displacement| chooser.added(displacement)).transpose()?.flatten();
+    let deflection = match (&displacement, &said.deflection) {
+        (Some(height), Some(choice)) => Some(chooser.deflection(height, choice)?),
+        _ => None,
+    };
+    if needs_time {
+        let time = chooser.find(Quantity::Time, said.time.as_ref())?;
+        found.push(time.ok_or_else(|| chooser.missing(Quantity::Time))?);
+    }
+    found.extend(displacement);
+    found.extend(added);
+    found.extend(deflection);
+    found.push(load);
+    chooser.refuse_twice(&found)?;
+    let (section, per_unit_area) = chooser.section(test, &found)?;
+    let columns = chooser.with_units(&found)?;
+    if may_be_there {
+        chooser.refuse_unclear(&columns)?;
+    }
+    Ok(Plan {
+        columns,
+        section,
+        per_unit_area,
+    })
+}
+
+impl<'a> Chooser<'a> {
+    /// The column of force, or that of stress where the description says so or there is no force.
+    fn force_or_stress(&self, test: &'a TestDescription) -> Result<(Found<'a>, Option<&'a ColumnChoice>), ColumnError> {
+        let said = &test.columns;
+        let missing = || self.missing(Quantity::Force);
+        if let Some(stress) = &said.stress {
+            let found = self.find(Quantity::Stress, Some(stress))?;
+            return Ok((found.ok_or_else(|| self.missing(Quantity::Stress))?, Some(stress)));
+        }
+        if let Some(force) = &said.force {
+            let found = self.find(Quantity::Force, Some(force))?;
+            return Ok((found.ok_or_else(missing)?, Some(force)));
+        }
+        let found = match self.find(Quantity::Force, None)? {
+            Some(force) => Some(force),
+            None => self.find(Quantity::Stress, None)?,
+        };
+        Ok((found.ok_or_else(missing)?, None))
+    }
+
+    /// The column of a quantity; `None` if nothing says which.
+    fn find(&self, quantity: Quantity, choice: Option<&'a ColumnChoice>) -> Result<Option<Found<'a>>, ColumnError> {
+        let named = choice.and_then(|choice| choice.column.as_ref());
+        let column = match named {
+            Some(named) => Some(self.named(&format!("columns.{quantity}.column"), named)?),
+            None => match recognise::candidates(self.columns, quantity)[..] {
+                [] => None,
+                [only] => Some(only),
+                ref several => {
+                    return Err(ColumnError::Ambiguous {
+                        path: self.path.to_owned(),
+                        quantity,
+                        candidates: several.iter().map(|column| NamedColumn::from(*column)).collect(),
+                    });
+                }
+            },
+        };
+        if choice.is_some() && column.is_none() {
+            return Err(self.missing(quantity));
+        }
+        Ok(column.map(|column| Found {
+            role: Role::Values(quantity),
+            column,
+            unit: choice.and_then(|choice| choice.unit.as_deref()),
+            choice,
+        }))
+    }
+
+    /// The clock that the file itself gives the column of a quantity.
+    fn own_clock(&self, quantity: Quantity, values: &Found<'a>) -> Option<Found<'a>> {
+        let clock = self.part.clock_of(values.column.number)?;
+        Some(Found {
+            role: Role::ClockOf(quantity),
+            column: self.columns.get(clock.column.wrapping_sub(1))?,
+            unit: None,
+            choice: None,
+        })
+    }
+
+    /// The column that is added to one, which must have the same clock.
+    fn added(&self, values: &Found<'a>) -> Result<Option<Found<'a>>, ColumnError> {
+        let Some(also) = values.choice.and_then(|choice| choice.also.as_ref()) else {
+            return Ok(None);
+        };
+        let quantity = values.role.measured();
+        let column = self.named(&format!("columns.{quantity}.also"), also)?;
+        if self.part.clock_of(column.number) != self.part.clock_of(values.column.number) {
+            return Err(ColumnError::ClocksDiffer {
+                path: self.path.to_owned(),
+                columns: (values.column.into(), column.into()),
+            });
+        }
+        if column.number == values.column.number {
+            return Err(ColumnError::Twice {
+                path: self.path.to_owned(),
+                column: column.into(),
+                quantities: (quantity, quantity),
+            });
+        }
+        Ok(Some(Found {
+            role: Role::Added(quantity),
+            column,
+            ..*values
+        }))
+    }
+
+    /// The column of the deflection of a cantilever whose base stands at `height`; both must have the same clock.
+    fn deflection(&self, height: &Found<'a>, choice: &'a ColumnChoice) -> Result<Found<'a>, ColumnError> {
+        let name = height.column.name.as_deref().unwrap_or("").to_lowercase();
+        if INDENTATIONS.iter().any(|known| name.contains(known)) {
+            return Err(ColumnError::NoHeight {
+                path: self.path.to_owned(),
+                column: height.column.into(),
+            });
+        }
+        // A description without the column is refused when it is checked.
+        let named = choice.column.as_ref().unwrap_or(&ColumnRef::Number(0));
+        let column = self.named("columns.deflection.column", named)?;
+        if self.part.clock_of(column.number) != self.part.clock_of(height.column.number) {
+            return Err(ColumnError::ClocksDiffer {
+                path: self.path.to_owned(),
+                columns: (height.column.into(), column.into()),
+            });
+        }
+        if column.number == height.column.number {
+            return Err(ColumnError::Twice {
+                path: self.path.to_owned(),
+                column: column.into(),
+                quantities: (Quantity::Displacement, Quantity::Displacement),
+            });
+        }
+        Ok(Found {
+            role: Role::Deflection,
+            column,
+            unit: choice.unit.as_deref(),
+            choice: Some(choice),
+        })
+    }
+
+    fn clock(&self, quantity: Quantity, clock: &'a ClockChoice) -> Result<Found<'a>, ColumnError> {
+        let key = format!("columns.{quantity}.clock.column");
+        Ok(Found {
+            role: Role::ClockOf(quantity),
+            column: self.named(&key, &clock.column)?,
+            unit: clock.unit.as_deref(),
+            choice: None,
+        })
+    }
+
+    fn named(&self, key: &str, named: &ColumnRef) -> Result<&'a ColumnInfo, ColumnError> {
+        self.part.column_of(named).ok_or_else(|| ColumnError::NoSuchColumn {
+            path: self.path.to_owned(),
+            key: key.to_owned(),
+            found: named.clone(),
+            columns: self.columns.to_vec(),
+        })
+    }
+
+    /// No column holds a quantity; perhaps one is named after it, but its unit is one of another.
+    fn missing(&self, quantity: Quantity) -> ColumnError {
+        if let Some((column, unit)) = recognise::misfits(self.columns, quantity).next() {
+            return self.unknown_unit(column, quantity, format!("columns.{quantity}.unit"), unit);
+        }
+        if let Some(column) = recognise::text_named(self.columns, quantity) {
+            return self.as_text(column, quantity);
+        }
+        ColumnError::Missing {
+            path: self.path.to_owned(),
+            quantity,
+            columns: self.columns.to_vec(),
+        }
+    }
+
+    /// A column that is named after a quantity, but holds texts.
+    fn as_text(&self, column: &ColumnInfo, quantity: Quantity) -> ColumnError {
+        let (path, named, found) = (self.path.to_owned(), NamedColumn::from(column), column.sample.clone());
+        let is_clock = quantity == Quantity::Time && !number::looks_numeric(&found);
+        match is_clock {
+            true => ColumnError::TimeAsText {
+                path,
+                column: named,
+                found,
+            },
+            false => ColumnError::NotNumbers {
+                path,
+                column: named,
+                found,
+            },
+        }
+    }
+
+    /// A record without displacement is one thing, a displacement that is not recognised another. Who names the column of
+    /// the force, but none of the displacement, has no displacement.
+    fn refuse_unclear(&self, used: &[ColumnUse]) -> Result<(), ColumnError> {
+        let free = |column: &&ColumnInfo| used.iter().all(|used| used.number != column.number);
+        let possible = recognise::possible_displacements(self.columns).filter(free);
+        let candidates: Vec<NamedColumn> = possible.map(NamedColumn::from).collect();
+        let text = recognise::text_named(self.columns, Quantity::Displacement);
+        match text {
+            _ if !candidates.is_empty() => {}
+            // What begins with a digit was meant as a number.
+            Some(column) if number::looks_numeric(&column.sample) => {
+                return Err(self.as_text(column, Quantity::Displacement));
+            }
+            _ => return Ok(()),
+        }
+        Err(ColumnError::Unclear {
+            path: self.path.to_owned(),
+            candidates,
+            columns: self.columns.to_vec(),
+        })
+    }
+
+    /// Two clocks may be one column, two measured quantities may not.
+    fn refuse_twice(&self, found: &[Found<'_>]) -> Result<(), ColumnError> {
+        let values = |found: &Found<'_>| match found.role {
+            Role::Values(quantity) | Role::Added(quantity) => Some((quantity, found.column.number)),
+            // The bending of a cantilever may be the force as well, by another scale.
+            Role::ClockOf(_) | Role::Deflection => None,
+        };
+        let values: Vec<(Quantity, usize)> = found.iter().filter_map(values).collect();
+        for (index, (first, number)) in values.iter().enumerate() {
+            let same = values[index + 1..].iter().find(|(_, other)| other == number);
+            if let Some((second, _)) = same {
+                return Err(ColumnError::Twice {
+                    path: self.path.to_owned(),
+                    column: NamedColumn::from(&self.columns[number - 1]),
+                    quantities: (*first, *second),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// What turns the load into N, and whether it is that of 1 m².
+    fn section(&self, test: &TestDescription, found: &[Found<'_>]) -> Result<(f64, bool), ColumnError> {
+        let stress = found.iter().find(|found| found.role == Role::Values(Quantity::Stress));
+        let Some(stress) = stress else {
+            return Ok((1.0, false));
+        };
+        match test.geometry.as_ref().map(|body| &body.shape) {
+            None => Ok((1.0, true)),
+            Some(Shape::Prism { area, .. }) => Ok((*area, false)),
+            Some(Shape::Ball { .. } | Shape::Pad { .. } | Shape::Profile { .. }) => Err(ColumnError::NoSection {
+                path: self.path.to_owned(),
+                column: NamedColumn::from(stress.column),
+            }),
+        }
+    }
+}

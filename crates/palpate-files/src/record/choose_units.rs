@@ -1,0 +1,157 @@
+//! The units of the columns that were chosen: from the description, else from the header.
+
+use palpate::units::Dimension;
+
+use super::{
+    choose::{Chooser, Found},
+    column_use::ColumnUse,
+    error::{ColumnError, MachineUnit},
+};
+use crate::{
+    cell::unit,
+    description::contradicts,
+    naming::{Quantity, unit_factor},
+    table::{ColumnInfo, ColumnKind, epoch},
+};
+
+impl Chooser<'_> {
+    pub(super) fn unknown_unit(&self, column: &ColumnInfo, quantity: Quantity, key: String, unit: &str) -> ColumnError {
+        ColumnError::UnknownUnit {
+            path: self.path.to_owned(),
+            column: column.into(),
+            quantity,
+            key,
+            unit: unit.to_owned(),
+        }
+    }
+
+    /// A column whose unit is none that a header could give: a travel said for each unit of it, or a time since 1970.
+    fn without_plain_unit(&self, found: &Found<'_>) -> Result<Option<ColumnUse>, ColumnError> {
+        if let Some(travel) = found.choice.and_then(|choice| choice.travel_per_unit) {
+            return Ok(Some(found.used(format!("{} mm each", travel * 1e3), travel)));
+        }
+        if found.role.measured() != Quantity::Time {
+            return Ok(None);
+        }
+        if found.column.kind == ColumnKind::DateTime {
+            // A time of day is not counted from 1970.
+            let is_dated = epoch::is_date(&found.column.sample);
+            let date = found.used(if is_dated { "date and time" } else { "time of day" }.to_owned(), 1.0);
+            return Ok(Some(ColumnUse {
+                epoch: is_dated,
+                ..date
+            }));
+        }
+        let is_said = found.unit.is_some_and(|unit| unit.trim().eq_ignore_ascii_case(epoch::EPOCH));
+        let is_named = found.unit.or(found.column.unit.as_deref()).is_none() && epoch::is_named(found.column);
+        match epoch::unit(found.column) {
+            Some((unit, factor)) if is_said || is_named => Ok(Some(found.used(format!("{unit} since 1970"), factor))),
+            None if is_said => Err(ColumnError::NoEpoch {
+                path: self.path.to_owned(),
+                column: found.column.into(),
+                found: found.column.sample.clone(),
+            }),
+            _ => Ok(None),
+        }
+    }
+
+    /// A unit that nobody wrote down for this file, but the conventions of a machine, gives way to none in the header.
+    fn refuse_contradiction(&self, found: &Found<'_>) -> Result<(), ColumnError> {
+        let Some(choice) = found.choice else { return Ok(()) };
+        match (&choice.unit_by, &choice.unit, &found.column.unit) {
+            (Some(machine), Some(said), Some(written)) if contradicts(found.role.measured(), choice, found.column) => {
+                Err(ColumnError::OtherUnit {
+                    path: self.path.to_owned(),
+                    column: found.column.into(),
+                    key: found.key(),
+                    units: Box::new(MachineUnit {
+                        machine: machine.clone(),
+                        said: said.clone(),
+                        written: written.clone(),
+                    }),
+                })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A unit in the name of a column and another one in the row of units, or beside the column in a typed file: nobody knows which holds.
+    fn refuse_two_units(&self, found: &Found<'_>) -> Result<(), ColumnError> {
+        let dimension = found.role.measured().dimension();
+        let (Some(name), Some(beside), None) = (&found.column.name, &found.column.unit, found.unit) else {
+            return Ok(());
+        };
+        let Some(in_name) = unit::split(name).1 else {
+            return Ok(());
+        };
+        match (unit_factor(&in_name, dimension), unit_factor(beside, dimension)) {
+            (Some(one), Some(other)) if (one / other - 1.0).abs() > 1e-9 => Err(ColumnError::TwoUnits {
+                path: self.path.to_owned(),
+                column: found.column.into(),
+                key: found.key(),
+                units: Box::new((in_name, beside.clone())),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Units from the description, else from the header.
+    pub(super) fn with_units(&self, found: &[Found<'_>]) -> Result<Vec<ColumnUse>, ColumnError> {
+        let mut used = Vec::new();
+        let mut without = Vec::new();
+        for found in found {
+            let quantity = found.role.measured();
+            if let Some(used_as) = self.without_plain_unit(found)? {
+                used.push(used_as);
+                continue;
+            }
+            self.refuse_contradiction(found)?;
+            self.refuse_two_units(found)?;
+            let Some(unit) = found.unit.or(found.column.unit.as_deref()) else {
+                without.push((found.key(), quantity.usual_unit(), found.column.into()));
+                continue;
+            };
+            let volts = found.choice.and_then(|choice| choice.scale);
+            let factor = match volts {
+                Some(scale) => match unit_factor(unit, Dimension::Voltage) {
+                    Some(volts) => Some(volts * scale),
+                    None => {
+                        return Err(ColumnError::ScaleOfNoVolts {
+                            path: self.path.to_owned(),
+                            column: found.column.into(),
+                            key: found.key(),
+                            unit: unit.to_owned(),
+                        });
+                    }
+                },
+                None => unit_factor(unit, quantity.dimension()),
+            };
+            let factor = factor.ok_or_else(|| self.unknown_unit(found.column, quantity, found.key(), unit))?;
+            used.push(found.used(unit.to_owned(), factor));
+        }
+        if without.is_empty() {
+            return Ok(used);
+        }
+        // What stands in brackets behind the one name without a unit was meant as one.
+        let bare = |found: &&Found<'_>| {
+            let given = found.unit.or(found.column.unit.as_deref());
+            given.is_none() && matches!(self.without_plain_unit(found), Ok(None))
+        };
+        if let ([_], Some(found)) = (&without[..], found.iter().find(bare))
+            && let Some(unit) = found.column.name.as_deref().and_then(in_brackets)
+        {
+            return Err(self.unknown_unit(found.column, found.role.measured(), found.key(), unit));
+        }
+        Err(ColumnError::NoUnit {
+            path: self.path.to_owned(),
+            columns: without,
+        })
+    }
+}
+
+/// The one word in brackets at the end of a name, as in `Force (furlong)`.
+fn in_brackets(name: &str) -> Option<&str> {
+    let (_, word) = name.trim_end().strip_suffix(')')?.rsplit_once('(')?;
+    let word = word.trim();
+    (!word.is_empty() && !word.contains(char::is_whitespace)).then_some(word)
+}

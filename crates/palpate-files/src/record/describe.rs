@@ -1,0 +1,291 @@
+//! A first description of a test, from what its file says of itself.
+
+use std::fmt::Write as _;
+
+use palpate::{
+    segment::{HoldMode, Phase, Segmentation},
+    units::Dimension,
+};
+
+use super::{
+    column_use::{ColumnUse, Role},
+    read::RecordFile,
+};
+use crate::{
+    description::machines_of,
+    naming::{Quantity, unit_factor},
+    open::Contents,
+    table::{ColumnInfo, ColumnKind, EPOCH, Part, epoch, recognise},
+};
+
+/// What stands where the file does not tell; reading with it is an error that names the key.
+const ASK: &str = "?";
+
+/// A test description (TOML) for one part of a file, with every guess commented.
+///
+/// With `file`, the record as it was read, the description gives the same record again. Without it, because the file
+/// does not say enough, what is missing stands as `"?"`, so that nothing is read before a person has answered. What
+/// was found out about the phases is added as comments.
+#[must_use]
+pub fn describe(
+    contents: &Contents,
+    part: usize,
+    file: Option<&RecordFile>,
+    found: Option<(&RecordFile, &Segmentation)>,
+) -> String {
+    let about = &contents.parts()[part];
+    let mut out = String::new();
+    let name = contents.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let _ = writeln!(out, "# A first test description of {name}, from what the file says of itself.");
+    let _ = writeln!(out, "# Check the lines marked \"guessed\" and answer those with \"{ASK}\".\n");
+    let title = contents.path().file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let title = about.name.as_ref().map_or_else(|| title.clone(), |part| format!("{title}, {part}"));
+    let _ = writeln!(out, "[about]\ntitle = {}\n", quoted(&title));
+    write_machines(&mut out, about);
+    write_file(&mut out, contents, about);
+    match file {
+        Some(file) => write_columns(&mut out, about, &file.columns),
+        None => write_questions(&mut out, about),
+    }
+    write_body(&mut out, about);
+    if let Some((file, segmentation)) = found {
+        write_phases(&mut out, file, segmentation);
+    }
+    out
+}
+
+/// A text as TOML writes it.
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
+/// Machines that name their columns so: a person knows which it was, the file does not.
+fn write_machines(out: &mut String, part: &Part) {
+    let machines = machines_of(part);
+    if machines.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        out,
+        "# The columns are named as a machine names them that is known. If it was that one, its line can stand"
+    );
+    let _ = writeln!(out, "# in place of the tables [columns.…] below:");
+    let _ = writeln!(out, "# [machine]");
+    for machine in machines {
+        let _ = writeln!(out, "# preset = {}    # {}", quoted(machine.name), machine.about());
+    }
+    out.push('\n');
+}
+
+fn write_file(out: &mut String, contents: &Contents, part: &Part) {
+    let several = contents.parts().len() > 1;
+    let layout = contents.layout();
+    if !several && layout.is_none() {
+        return;
+    }
+    let _ = writeln!(out, "[file]");
+    if let (true, Some(name)) = (several, &part.name) {
+        let _ = writeln!(out, "part = {}", quoted(name));
+    }
+    if let Some(layout) = layout {
+        let _ = writeln!(out, "encoding = \"{}\"    # guessed from the bytes", layout.encoding);
+        let _ = writeln!(out, "delimiter = \"{}\"    # guessed: it cuts all rows alike", layout.delimiter);
+        let _ = writeln!(out, "decimal = \"{}\"    # guessed from the numbers", layout.decimal);
+        let header = layout.header_line;
+        let why = header.map_or("no line of names was seen".to_owned(), |line| format!("line {line} looks like names"));
+        let _ = writeln!(out, "header = {}    # guessed: {why}", header.is_some());
+    }
+    out.push('\n');
+}
+
+/// How a description names a column: by its name if only one has it, else by its number.
+fn reference(part: &Part, column: &ColumnInfo) -> String {
+    let by_name = column.name.as_deref().filter(|name| {
+        let found = part.column_named(name);
+        found.is_some_and(|found| found.number == column.number)
+    });
+    by_name.map_or_else(|| column.number.to_string(), quoted)
+}
+
+fn write_columns(out: &mut String, part: &Part, columns: &[ColumnUse]) {
+    let clock = |quantity| columns.iter().find(|column| column.role == Role::ClockOf(quantity));
+    for column in columns {
+        let quantity = column.role.measured();
+        let table = match column.role {
+            Role::Values(quantity) => quantity.to_string(),
+            Role::Deflection => "deflection".to_owned(),
+            Role::Added(_) | Role::ClockOf(_) => continue,
+        };
+        let info = &part.columns[column.number - 1];
+        let _ = writeln!(out, "[columns.{table}]");
+        let why = if info.name.is_some() { "guessed by its name" } else { "as described" };
+        let _ = writeln!(out, "column = {}    # {why}; starts with {}", reference(part, info), one_line(&info.sample));
+        write_unit(out, column, info);
+        if column.offset != 0.0 {
+            let _ = writeln!(out, "offset = \"{} {}\"", column.offset, quantity.dimension().units()[0].0);
+        }
+        if column.sign < 0.0 {
+            let _ = writeln!(out, "sign = -1");
+        }
+        let added = columns.iter().find(|other| other.role == Role::Added(quantity));
+        if let Some(added) = added.filter(|_| column.role == Role::Values(quantity)) {
+            let _ = writeln!(out, "also = {}", reference(part, &part.columns[added.number - 1]));
+        }
+        if let Some(clock) = clock(quantity).filter(|_| column.role == Role::Values(quantity)) {
+            let info = &part.columns[clock.number - 1];
+            let _ = writeln!(out, "clock = {{ column = {}, unit = {} }}", reference(part, info), quoted(&clock.unit));
+        }
+        out.push('\n');
+    }
+}
+
+/// What a column counts in, with what the description said beside the unit.
+fn write_unit(out: &mut String, column: &ColumnUse, info: &ColumnInfo) {
+    let (dimension, factor) = (column.role.measured().dimension(), column.factor);
+    let symbol = dimension.units()[0].0;
+    let source = if info.unit.as_ref() == Some(&column.unit) { "from the file" } else { "as described" };
+    let unit = |out: &mut String, unit: &str| {
+        let _ = writeln!(out, "unit = {}    # {source}", quoted(unit));
+    };
+    match (unit_factor(&column.unit, dimension), unit_factor(&column.unit, Dimension::Voltage)) {
+        _ if column.epoch && epoch::counts(info, factor) => unit(out, EPOCH),
+        _ if column.epoch && info.kind == ColumnKind::Number => unit(out, &column.unit),
+        _ if info.kind == ColumnKind::DateTime => {}
+        (Some(plain), _) if factor == plain => unit(out, &column.unit),
+        (Some(_), _) => {
+            unit(out, &column.unit);
+            let _ = writeln!(out, "doubled = true");
+        }
+        (None, Some(volts)) => {
+            unit(out, &column.unit);
+            let _ = writeln!(out, "scale = \"{} {symbol}/V\"", factor / volts);
+        }
+        (None, None) => {
+            let _ = writeln!(out, "travel_per_unit = \"{factor} {symbol}\"");
+        }
+    }
+}
+
+fn write_questions(out: &mut String, part: &Part) {
+    let _ = writeln!(out, "# The columns of the file:");
+    for column in &part.columns {
+        let name = column.name.as_deref().unwrap_or("(no name)");
+        let unit = column.unit.as_deref().map_or(String::new(), |unit| format!(" in {unit}"));
+        let sample = one_line(&column.sample);
+        let _ = writeln!(out, "#   {}: {}{unit}, starts with {sample}", column.number, one_line(name));
+    }
+    out.push('\n');
+    for quantity in [Quantity::Time, Quantity::Displacement, Quantity::Force] {
+        let candidates = recognise::candidates(&part.columns, quantity);
+        let _ = writeln!(out, "[columns.{quantity}]");
+        match candidates[..] {
+            [only] => {
+                let _ = writeln!(out, "column = {}    # guessed by its name", reference(part, only));
+                match only.unit.as_deref().filter(|unit| unit_factor(unit, quantity.dimension()).is_some()) {
+                    Some(unit) => {
+                        let _ = writeln!(out, "unit = {}    # from the file", quoted(unit));
+                    }
+                    None => ask_unit(out, quantity, &[only]),
+                }
+            }
+            [] => {
+                let optional =
+                    if quantity == Quantity::Displacement { "; remove the table if there is none" } else { "" };
+                let _ = writeln!(out, "column = \"{ASK}\"    # no name says which{optional}");
+                ask_unit(out, quantity, &[]);
+            }
+            ref several => {
+                let numbers: Vec<String> = several.iter().map(|column| column.number.to_string()).collect();
+                let _ = writeln!(out, "column = \"{ASK}\"    # {} could all hold it", numbers.join(", "));
+                ask_unit(out, quantity, several);
+            }
+        }
+        out.push('\n');
+    }
+}
+
+/// The unit that all columns have which could hold a quantity, or a question for it.
+fn ask_unit(out: &mut String, quantity: Quantity, possible: &[&ColumnInfo]) {
+    let accepted = quantity.dimension().accepted();
+    let mut units: Vec<Option<&str>> = possible.iter().map(|column| column.unit.as_deref()).collect();
+    units.dedup();
+    let _ = match units[..] {
+        [Some(unit)] if unit_factor(unit, quantity.dimension()).is_some() => {
+            writeln!(out, "unit = {}    # from the file", quoted(unit))
+        }
+        [Some(unit)] => {
+            let meant = quantity.unit_meant(unit);
+            writeln!(
+                out,
+                "unit = \"{ASK}\"    # the file says {}, no unit of {quantity}; \"{meant}\", or one of {accepted}",
+                quoted(unit)
+            )
+        }
+        _ => writeln!(out, "unit = \"{ASK}\"    # the file does not say; one of {accepted}"),
+    };
+}
+
+/// Line breaks in a cell would end a comment.
+fn one_line(text: &str) -> String {
+    let line: String = text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
+    line.trim().to_owned()
+}
+
+fn write_body(out: &mut String, part: &Part) {
+    let _ = writeln!(out, "# The body is needed for strains and for v in 1/s; without it forces are fitted.");
+    for entry in part.metadata.iter().filter(|entry| entry.unit.is_some()) {
+        let unit = entry.unit.as_deref().unwrap_or_default();
+        let _ = writeln!(out, "#   the file says: {} = {} {unit}", one_line(&entry.name), one_line(&entry.value));
+    }
+    let _ = writeln!(out, "# [specimen]\n# shape = \"ball\"\n# radius = \"35 mm\"\n# modulus = \"28 kPa\"\n");
+}
+
+fn write_phases(out: &mut String, file: &RecordFile, segmentation: &Segmentation) {
+    let _ = writeln!(out, "# If the holds below are not what you see, say what a hold is:");
+    let _ = writeln!(out, "# [phases]");
+    if segmentation.settings.from_displacement {
+        let _ = writeln!(out, "# tolerance = \"{} mm\"", short(1e3 * segmentation.settings.tolerance));
+    }
+    let _ = writeln!(out, "# minimum_hold = \"{} s\"\n", short(segmentation.settings.minimum_hold));
+    let holds: Vec<_> = segmentation.segments.iter().filter(|segment| segment.phase == Phase::Hold).collect();
+    let _ = writeln!(
+        out,
+        "# Holds found: {}. To correct a limit, uncomment the tables of all of them: where any is",
+        holds.len()
+    );
+    let _ = writeln!(out, "# given, no others are sought.");
+    let time = file.record.time();
+    let places = decimals(file.record.sample_interval());
+    for hold in holds {
+        // Outwards, so that the first and the last sample stay inside.
+        let (from, to) = (time[hold.start], time[hold.end - 1]);
+        let from = rounded(from, places, f64::floor).max(time[0]);
+        let to = rounded(to, places, f64::ceil).min(time[time.len() - 1]);
+        let _ = writeln!(out, "# [[phases.hold]]\n# from = \"{from} s\"\n# to = \"{to} s\"");
+        let held = match hold.mode {
+            Some(HoldMode::DisplacementHeld) => "displacement",
+            Some(HoldMode::ForceHeld) => "force",
+            Some(HoldMode::Neither) => "neither",
+            None => continue,
+        };
+        let _ = writeln!(out, "# mode = \"{held}\"    # seen from the record: what the machine held");
+    }
+}
+
+/// Decimal places that tell a hundredth of a time between samples.
+fn decimals(interval: f64) -> i32 {
+    (2.0 - interval.log10().floor()).clamp(0.0, 12.0) as i32
+}
+
+/// A time to some decimal places, towards one side.
+fn rounded(time: f64, places: i32, towards: fn(f64) -> f64) -> f64 {
+    let scale = 10f64.powi(places);
+    let near = (time * scale).round() / scale;
+    // A time that was written with so many places is that one.
+    if (near - time).abs() <= 1e-9 / scale { near } else { towards(time * scale) / scale }
+}
+
+/// A number with five digits, for people.
+fn short(value: f64) -> f64 {
+    format!("{value:.4e}").parse().unwrap_or(value)
+}

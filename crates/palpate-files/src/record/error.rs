@@ -1,0 +1,413 @@
+//! What can be wrong between a file and a record.
+
+use std::{fmt, path::PathBuf};
+
+use palpate::{record::RecordError, units::Dimension};
+
+use super::{named::NamedColumn, snippet};
+use crate::{
+    cell::DecimalMark,
+    error::FileError,
+    formats::afm::UNCALIBRATED,
+    naming::{Quantity, unit_factor},
+    table::{ColumnInfo, ColumnRef},
+};
+
+/// A unit that the conventions of a machine say, and another in the header of a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MachineUnit {
+    /// The machine.
+    pub machine: String,
+    /// Its unit.
+    pub said: String,
+    /// The unit in the header.
+    pub written: String,
+}
+
+/// Why it is not clear which column holds what.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ColumnError {
+    /// No column was found for a quantity that a record needs.
+    #[error("{}: expected a column of {quantity}, found {}", path.display(), snippet::described(columns))]
+    Missing {
+        /// The record.
+        path: PathBuf,
+        /// What is missing.
+        quantity: Quantity,
+        /// All columns of the file.
+        columns: Vec<ColumnInfo>,
+    },
+    /// A column is named as the time, but holds texts.
+    #[error("{}: {column}: expected a time, found texts such as \"{found}\"", path.display())]
+    TimeAsText {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// What it begins with.
+        found: String,
+    },
+    /// A column is named after a quantity, but some of its cells are no numbers.
+    #[error("{}: {column}: expected numbers in every row, found `{found}`", path.display())]
+    NotNumbers {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// The first of them that is none, as far as known.
+        found: String,
+    },
+    /// Several columns could hold a quantity.
+    #[error("{}: expected one column of {quantity}, found {}", path.display(), listed(candidates))]
+    Ambiguous {
+        /// The record.
+        path: PathBuf,
+        /// What they could hold.
+        quantity: Quantity,
+        /// The columns.
+        candidates: Vec<NamedColumn>,
+    },
+    /// No column is named as the displacement, but some could hold it.
+    #[error("{}: expected a name that says whether {} {}, found none that is known", path.display(), listed(candidates), is_displacement(candidates))]
+    Unclear {
+        /// The record.
+        path: PathBuf,
+        /// The columns that could hold the displacement.
+        candidates: Vec<NamedColumn>,
+        /// All columns of the file.
+        columns: Vec<ColumnInfo>,
+    },
+    /// The units of some columns are written nowhere.
+    #[error("{}: expected a unit for {}, found {}", path.display(), units_of(columns), none(columns))]
+    NoUnit {
+        /// The record.
+        path: PathBuf,
+        /// Keys of the description that would say the unit, a usual unit, and the columns.
+        columns: Vec<(String, &'static str, NamedColumn)>,
+    },
+    /// A header gives a unit that is not understood.
+    #[error("{}: {column}: \"{unit}\" is not a unit of {quantity} (accepted: {})", path.display(), quantity.dimension().accepted())]
+    UnknownUnit {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// What it holds.
+        quantity: Quantity,
+        /// Key of the description that would say the unit.
+        key: String,
+        /// The unit in the header.
+        unit: String,
+    },
+    /// The conventions of a machine say one unit, the header another.
+    #[error("{}: {column}: expected {}, the unit of machine.preset = \"{}\", found {} in the header", path.display(), units.said, units.machine, units.written)]
+    OtherUnit {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// Key of the description that would say the unit.
+        key: String,
+        /// The two units.
+        units: Box<MachineUnit>,
+    },
+    /// A scale is given for a column that is not in volts.
+    #[error("{}: {column}: expected volts, which `scale` is for, found {unit}", path.display())]
+    ScaleOfNoVolts {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// Key of the description that would say the unit.
+        key: String,
+        /// The unit.
+        unit: String,
+    },
+    /// The file says two units for one column.
+    #[error("{}: {column}: expected one unit, found {} in its name and {} beside it", path.display(), units.0, units.1)]
+    TwoUnits {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// Key of the description that would say the unit.
+        key: String,
+        /// The unit in the name, and the other one.
+        units: Box<(String, String)>,
+    },
+    /// The description names a column that the file does not have, or has more than once.
+    #[error("{}: {key}: expected {}, found {found} in the description", path.display(), snippet::choices(columns))]
+    NoSuchColumn {
+        /// The record.
+        path: PathBuf,
+        /// Key of the description.
+        key: String,
+        /// What it says.
+        found: ColumnRef,
+        /// All columns of the file.
+        columns: Vec<ColumnInfo>,
+    },
+    /// One column is said to hold two quantities.
+    #[error("{}: {column}: expected one quantity in a column, found {} and {}", path.display(), quantities.0, quantities.1)]
+    Twice {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// What it is said to hold.
+        quantities: (Quantity, Quantity),
+    },
+    /// A column is to be added to one that was stamped by another clock.
+    #[error("{}: expected two columns of one clock to add up, found {} and {}", path.display(), columns.0, columns.1)]
+    ClocksDiffer {
+        /// The record.
+        path: PathBuf,
+        /// The columns.
+        columns: (NamedColumn, NamedColumn),
+    },
+    /// The description says that a time counts from 1970, but in no unit does it lie in our days.
+    #[error("{}: {column}: expected a time since 1970 (of 2000 to 2100, in s, ms, us or ns), found {found}", path.display())]
+    NoEpoch {
+        /// The record.
+        path: PathBuf,
+        /// The column.
+        column: NamedColumn,
+        /// Its first value.
+        found: String,
+    },
+    /// A deflection is to be taken off a column of which it is off already.
+    #[error("{}: {column}: expected the height of the cantilever's base, of which its deflection is taken off, found a column that is named as if it were off already", path.display())]
+    NoHeight {
+        /// The record.
+        path: PathBuf,
+        /// The column of the displacement.
+        column: NamedColumn,
+    },
+    /// Stress on a ball, which has no section that would turn it into force.
+    #[error("{}: {column}: expected force for a ball, whose contact area changes, found stress", path.display())]
+    NoSection {
+        /// The record.
+        path: PathBuf,
+        /// The column of stress.
+        column: NamedColumn,
+    },
+}
+
+impl ColumnError {
+    /// What would help; where that is a description, lines to paste into it.
+    #[must_use]
+    pub fn hint(&self) -> String {
+        match self {
+            Self::Missing { columns, .. } => {
+                format!("say which column holds what in a test description:\n{}", snippet::of_columns(columns))
+            }
+            Self::TimeAsText { .. } => {
+                "write seconds, or 2024-03-12 10:11:12.5, 12.03.2024 10:11:12.5 or 10:11:12.5 in every row".to_owned()
+            }
+            Self::NotNumbers { found, .. } => crate::error::hint_of_text(found, DecimalMark::Point),
+            Self::Ambiguous {
+                quantity, candidates, ..
+            } => {
+                let first = candidates.first().map_or(1, |column| column.number);
+                format!("choose one in a test description:\n[columns.{quantity}]\ncolumn = {first}")
+            }
+            Self::Unclear {
+                candidates, columns, ..
+            } => snippet::of_unclear(candidates, columns),
+            Self::NoUnit { columns, .. } => {
+                let lines = columns.iter().map(|(key, unit, column)| snippet::of_unit(key, unit, column));
+                let lines: Vec<String> = lines.collect();
+                format!("say it in a test description:\n{}", lines.join("\n"))
+            }
+            Self::UnknownUnit { key, column, unit, .. }
+                if key == "columns.force.unit"
+                    && column.name.as_deref() == Some(UNCALIBRATED)
+                    && unit_factor(unit, Dimension::Voltage).is_some() =>
+            {
+                snippet::of_bending(column, unit)
+            }
+            Self::UnknownUnit {
+                key,
+                quantity,
+                column,
+                unit,
+                ..
+            } if unit_factor(unit, Dimension::Voltage).is_some() => {
+                let table = key.rsplit_once('.').map_or("columns", |(table, _)| table);
+                format!(
+                    "say what a volt stands for in a test description:\n[{table}]\nunit = \"{unit}\"\nscale = \"1 {}/V\"\ncolumn = {}",
+                    quantity.usual_unit(),
+                    column.number
+                )
+            }
+            Self::UnknownUnit {
+                key,
+                quantity,
+                column,
+                unit,
+                ..
+            } => format!(
+                "if another unit is meant, say it in a test description:\n{}",
+                snippet::of_unit_and_column(key, quantity.unit_meant(unit), column)
+            ),
+            Self::OtherUnit { key, column, units, .. } => format!(
+                "choose another of `palpate inspect --machines`, or say in the test description:\n{}",
+                snippet::of_unit(key, &units.written, column)
+            ),
+            Self::ScaleOfNoVolts { key, column, .. } => format!(
+                "remove `scale`; if the header is wrong and the column holds volts, say so:\n{}",
+                snippet::of_unit_and_column(key, "V", column)
+            ),
+            Self::TwoUnits { key, column, units, .. } => {
+                format!(
+                    "say which one holds in a test description:\n{}",
+                    snippet::of_unit_and_column(key, &units.1, column)
+                )
+            }
+            Self::NoSuchColumn { .. } => "columns count from 1 at the left; a name may go without its unit".to_owned(),
+            Self::Twice { quantities, .. } => {
+                format!("correct columns.{} or columns.{}", quantities.0, quantities.1)
+            }
+            Self::ClocksDiffer { .. } => "name two columns of one topic".to_owned(),
+            Self::NoEpoch { .. } => "give the unit that the time has, such as \"s\"".to_owned(),
+            Self::NoHeight { .. } => {
+                "remove [columns.deflection], or name the column of the height in columns.displacement".to_owned()
+            }
+            Self::NoSection { .. } => {
+                "choose a column of force, or describe the body as a strip, cylinder or block".to_owned()
+            }
+        }
+    }
+}
+
+fn listed(columns: &[NamedColumn]) -> String {
+    let columns: Vec<String> = columns.iter().map(ToString::to_string).collect();
+    columns.join(" and ")
+}
+
+fn is_displacement(columns: &[NamedColumn]) -> &'static str {
+    if columns.len() == 1 { "is the displacement" } else { "is the displacement, if any" }
+}
+
+/// What the header says instead of units: nothing, or something in brackets that is none.
+fn none(columns: &[(String, &'static str, NamedColumn)]) -> &'static str {
+    let bracketed = |name: &str| name.trim_end().ends_with(')');
+    if columns.iter().any(|(_, _, column)| column.name.as_deref().is_some_and(bracketed)) {
+        "none that is understood in the header"
+    } else {
+        "none in the header"
+    }
+}
+
+fn units_of(columns: &[(String, &'static str, NamedColumn)]) -> String {
+    let columns: Vec<String> = columns.iter().map(|(_, _, column)| column.to_string()).collect();
+    columns.join(", ")
+}
+
+/// Where a row stands in a file, from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Counted {
+    /// A line of a text.
+    Line(usize),
+    /// A row of a sheet or a table.
+    Row(usize),
+}
+
+impl fmt::Display for Counted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Row(row) => write!(f, "row {row}"),
+        }
+    }
+}
+
+/// Why a file gives no record.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// It is not clear which column holds what.
+    #[error(transparent)]
+    Column(#[from] ColumnError),
+    /// The numbers make no record.
+    #[error("{}{}{}: {}", path.display(), in_part(part.as_deref()), at_line(*line), said(source, line.is_some()))]
+    Record {
+        /// The file.
+        path: PathBuf,
+        /// The part of the file, where it has several.
+        part: Option<String>,
+        /// Where in the file, where one row is to blame.
+        line: Option<Counted>,
+        /// What is wrong.
+        source: RecordError,
+    },
+    /// The file holds several tests and none was chosen.
+    #[error("{}: expected one test, found {}: {}", path.display(), parts.len(), first(parts))]
+    SeveralParts {
+        /// The file.
+        path: PathBuf,
+        /// Their names.
+        parts: Vec<String>,
+    },
+    /// The file holds no test of the name that was given.
+    #[error("{}: expected one of {}, found \"{found}\"", path.display(), first(parts))]
+    NoSuchPart {
+        /// The file.
+        path: PathBuf,
+        /// What was asked for.
+        found: String,
+        /// The names there are.
+        parts: Vec<String>,
+    },
+}
+
+impl ReadError {
+    /// What would help, if that is known.
+    #[must_use]
+    pub fn hint(&self) -> Option<String> {
+        match self {
+            Self::File(error) => error.hint(),
+            Self::Column(error) => Some(error.hint()),
+            Self::Record { source, .. } => Some(source.hint().to_owned()),
+            Self::SeveralParts { parts, .. } => {
+                let first = parts.first().map_or("1", String::as_str);
+                Some(format!(
+                    "choose one by its name or number: --part \"{first}\", or in a test description:\n[file]\npart = \"{first}\""
+                ))
+            }
+            Self::NoSuchPart { .. } => {
+                Some("name a part as the file does, or give its number, counted from 1".to_owned())
+            }
+        }
+    }
+}
+
+fn in_part(part: Option<&str>) -> String {
+    part.map_or_else(String::new, |part| format!(", {part}"))
+}
+
+fn at_line(line: Option<Counted>) -> String {
+    line.map_or_else(String::new, |line| format!(", {line}"))
+}
+
+/// The first few names of parts.
+fn first(parts: &[String]) -> String {
+    const MOST: usize = 5;
+    let named: Vec<String> = parts.iter().take(MOST).map(|part| format!("\"{part}\"")).collect();
+    let more = if parts.len() > MOST { ", …" } else { "" };
+    format!("{}{more}", named.join(", "))
+}
+
+/// The message of a record error; less its row where a line of the file is known, which says more. Records count their
+/// rows from 0, files from 1.
+fn said(error: &RecordError, placed: bool) -> String {
+    let message = error.to_string();
+    let row = error.row().and_then(|row| Some((message.strip_suffix(&format!(" in row {row}"))?, row + 1)));
+    match (row, placed) {
+        (Some((short, _)), true) => short.to_owned(),
+        (Some((short, row)), false) => format!("{short} in row {row}"),
+        (None, _) => message,
+    }
+}

@@ -1,0 +1,235 @@
+//! Reading a record.
+
+use std::path::{Path, PathBuf};
+
+use palpate::{
+    record::{Correction, RawColumns, Record, SignalReport},
+    units,
+};
+
+use super::{
+    choose,
+    column_use::{ColumnUse, Role},
+    error::{Counted, ReadError},
+    parts,
+};
+use crate::{
+    description::TestDescription,
+    input::Packing,
+    naming::Quantity,
+    open::{Contents, Format},
+    table::{IgnoredLines, Part, epoch},
+};
+
+/// A record and where it came from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordFile {
+    /// The file.
+    pub path: PathBuf,
+    /// The record, in SI, loading positive.
+    pub record: Record,
+    /// What its columns were like before anything was done to them; [`Record::corrections`] says what was.
+    pub signals: SignalReport,
+    /// Which columns it was made of.
+    pub columns: Vec<ColumnUse>,
+    /// How the file is written.
+    pub format: Format,
+    /// How the file is packed.
+    pub packing: Packing,
+    /// The part of the file that is this test.
+    pub part: Part,
+    /// When the time of the record is zero, in s since 1970, where the file counts from there.
+    pub start: Option<f64>,
+    /// Rows of the test. Where displacement and force have clocks of their own, the record can have fewer.
+    pub rows: usize,
+    /// How many successive rows each sample of the record is the mean of; 1 unless the file is very long.
+    pub averaged: usize,
+    /// Lines of the file that were passed over.
+    pub ignored: IgnoredLines,
+    /// The file holds stress and no section is known: the force of the record is that on 1 m².
+    pub per_unit_area: bool,
+    /// Size of the file in bytes.
+    pub bytes: u64,
+}
+
+/// Reads the record in the file at `path`, of any format.
+///
+/// The columns and units are those that `description` says; what it leaves open is told by the header, which
+/// is understood in English, German, French, Spanish, Chinese and Japanese. What neither tells is an error that
+/// asks; a unit is never guessed. Commands and limits (`GoalForce`, `Force max`) are no measurements, and
+/// stress is used only where there is no force or the description asks for it.
+///
+/// `progress` is told the bytes done and the bytes there are.
+///
+/// ```
+/// use palpate_files::record::read_record;
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("press.csv");
+/// std::fs::write(&path, "Time (s),Weg (mm),Kraft (N)\n0,0,0\n1,5,12\n2,5,9\n")?;
+/// let file = read_record(&path, None, &mut |_done, _total| {})?;
+/// assert_eq!(file.record.displacement(), Some([0.0, 0.005, 0.005].as_slice()));
+/// assert_eq!(file.columns[1].name.as_deref(), Some("Weg"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`ReadError`] where the file cannot be read or holds several tests of which none is chosen, where it is not clear
+/// which column holds what, or where the numbers make no record, with the line.
+pub fn read_record(
+    path: &Path,
+    description: Option<&TestDescription>,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<RecordFile, ReadError> {
+    let usual = TestDescription::default();
+    let test = description.unwrap_or(&usual);
+    let contents = Contents::open(path, &test.reading)?;
+    let tests = parts::tests(&contents, test)?;
+    match tests.parts[..] {
+        [only] => read_part(&contents, only, description, progress),
+        ref several => Err(ReadError::SeveralParts {
+            path: path.to_owned(),
+            parts: several.iter().map(|part| contents.parts()[*part].title().to_owned()).collect(),
+        }),
+    }
+}
+
+/// Reads the record in the part of a file with index `part`, as [`read_record`] does.
+///
+/// # Errors
+/// As for [`read_record`].
+pub fn read_part(
+    contents: &Contents,
+    part: usize,
+    description: Option<&TestDescription>,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<RecordFile, ReadError> {
+    let usual = TestDescription::default();
+    let test = description.unwrap_or(&usual);
+    let path = contents.path();
+    let about = &contents.parts()[part];
+    let mut plan = choose::choose(path, about, test)?;
+    let numbers: Vec<usize> = plan.columns.iter().map(|column| column.number).collect();
+    let mut read = contents.read(part, &numbers, progress)?;
+    let mut values = std::mem::take(&mut read.values);
+    for (column, values) in plan.columns.iter_mut().zip(&values) {
+        // The dates of a workbook are seen only now.
+        let first = values.first().map_or(0.0, |first| first * column.factor);
+        column.epoch |= column.role.measured() == Quantity::Time && epoch::is_of_our_days(first);
+    }
+    let dated = |column: &ColumnUse| !epoch::counts(&about.columns[column.number - 1], column.factor);
+    let start = count_from_start(&plan.columns, &mut values, &dated);
+    let series = plan.columns.iter().zip(values).map(|(column, mut values)| {
+        let section = if column.role.measured() == Quantity::Stress { plan.section } else { 1.0 };
+        to_si(&mut values, column, section);
+        (column.role, values)
+    });
+    let (raw, bent) = assemble(series.collect());
+    let signals = raw.report();
+    let averaged = (read.averaged > 1).then(|| Correction::RowsAveraged {
+        rows: read.rows(),
+        averaged: read.averaged,
+    });
+    let of_stress = plan.per_unit_area.then_some(Correction::StressAsForce);
+    let bent = bent.map(|largest| Correction::DeflectionRemoved { largest });
+    let done = of_stress.into_iter().chain(averaged).chain(bent);
+    let record = raw.into_record().map(|record| record.corrected_before(done)).map_err(|source| ReadError::Record {
+        path: path.to_owned(),
+        part: about.name.clone(),
+        line: source.row().and_then(|row| read.line_of(row)).map(|line| counted(contents.format(), line)),
+        source,
+    })?;
+    Ok(RecordFile {
+        path: path.to_owned(),
+        record,
+        signals,
+        columns: plan.columns,
+        start,
+        format: contents.format(),
+        packing: contents.packing().clone(),
+        part: about.clone(),
+        rows: read.rows(),
+        averaged: read.averaged,
+        ignored: read.ignored,
+        per_unit_area: plan.per_unit_area,
+        bytes: read.bytes,
+    })
+}
+
+/// What a format tells a row by.
+fn counted(format: Format, line: usize) -> Counted {
+    match format {
+        Format::Text | Format::JpkText | Format::AfmTab => Counted::Line(line),
+        _ => Counted::Row(line),
+    }
+}
+
+/// Makes times counted from 1970 relative to the first of them, which comes back in s.
+///
+/// Of numbers nothing is lost that was written; differences of dates are those of what was written.
+fn count_from_start(columns: &[ColumnUse], values: &mut [Vec<f64>], dated: &dyn Fn(&ColumnUse) -> bool) -> Option<f64> {
+    let firsts = columns.iter().zip(&*values).filter(|(column, _)| column.epoch);
+    let firsts = firsts.filter_map(|(column, values)| Some((*values.first()?, column.factor)));
+    let (first, factor) = firsts.min_by(|one, other| (one.0 * one.1).total_cmp(&(other.0 * other.1)))?;
+    for (column, values) in columns.iter().zip(values).filter(|(column, _)| column.epoch) {
+        let origin = if column.factor == factor { first } else { first * factor / column.factor };
+        let dated = column.factor == 1.0 && dated(column);
+        values.iter_mut().for_each(|value| {
+            *value = if dated { epoch::since(*value, origin) } else { *value - origin };
+        });
+    }
+    Some(first * factor)
+}
+
+fn to_si(values: &mut [f64], column: &ColumnUse, section: f64) {
+    for value in values {
+        *value = units::scale(*value, column.factor);
+        // Not always: 0 + -0 is 0.
+        if column.offset != 0.0 {
+            *value += column.offset;
+        }
+        *value *= section;
+        // Not by a product with the sign, which makes -0 of 0.
+        if column.sign < 0.0 && *value != 0.0 {
+            *value = -*value;
+        }
+    }
+}
+
+/// Tells columns in SI by their roles; the second is the largest deflection that was taken off the displacement.
+fn assemble(mut series: Vec<(Role, Vec<f64>)>) -> (RawColumns, Option<f64>) {
+    let mut take = |wanted: &dyn Fn(Role) -> bool| {
+        let index = series.iter().position(|(role, _)| wanted(*role))?;
+        Some(series.swap_remove(index).1)
+    };
+    let is_load = |quantity| matches!(quantity, Quantity::Force | Quantity::Stress);
+    let time = take(&|role| role == Role::Values(Quantity::Time));
+    let mut displacement = take(&|role| role == Role::Values(Quantity::Displacement));
+    let added = take(&|role| role == Role::Added(Quantity::Displacement));
+    for (value, more) in displacement.iter_mut().flatten().zip(added.iter().flatten()) {
+        *value += more;
+    }
+    let deflection = take(&|role| role == Role::Deflection);
+    for (value, deflection) in displacement.iter_mut().flatten().zip(deflection.iter().flatten()) {
+        *value -= deflection;
+    }
+    let larger = |most: f64, next: &f64| if next.abs() > most.abs() { *next } else { most };
+    let bent = deflection.map(|deflection| deflection.iter().fold(0.0, larger));
+    let load = take(&|role| matches!(role, Role::Values(quantity) if is_load(quantity)));
+    let displacement_clock = take(&|role| role == Role::ClockOf(Quantity::Displacement));
+    let load_clock = take(&|role| matches!(role, Role::ClockOf(quantity) if is_load(quantity)));
+    let (time, force_time) = match (displacement_clock, load_clock, time) {
+        (_, load_clock, time) if displacement.is_none() => (load_clock.or(time), None),
+        (Some(own), Some(other), _) | (Some(own), None, Some(other)) | (None, Some(other), Some(own)) => {
+            let differs = own != other;
+            (Some(own), differs.then_some(other))
+        }
+        (own, other, time) => (own.or(other).or(time), None),
+    };
+    let raw = RawColumns {
+        time: time.unwrap_or_default(),
+        displacement,
+        force: load.unwrap_or_default(),
+        force_time,
+    };
+    (raw, bent)
+}

@@ -1,0 +1,242 @@
+//! Deciding between the decimal point and the decimal comma.
+
+use super::{block::Block, part::ColumnKind};
+use crate::{
+    cell::{Cell, DecimalMark, Delimiter, cells},
+    error::DecimalDoubt,
+};
+
+/// Where the decimal mark is uncertain, and why.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Doubt {
+    /// Index of the line.
+    pub(crate) line: usize,
+    /// The text in doubt.
+    pub(crate) found: String,
+    pub(crate) doubt: DecimalDoubt,
+}
+
+/// The decimal mark of the numbers in `block`. One that is `fixed` settles every doubt but this: a comma that
+/// also stands between the cells cannot be a decimal mark.
+pub(crate) fn decide(lines: &[&str], block: &Block, fixed: Option<DecimalMark>) -> Result<DecimalMark, Doubt> {
+    if fixed != Some(DecimalMark::Point) && comma_splits_numbers(lines, block) {
+        return Err(Doubt {
+            line: block.first,
+            found: lines[block.first].to_owned(),
+            doubt: DecimalDoubt::CommaSplitsNumbers,
+        });
+    }
+    match fixed {
+        Some(mark) => Ok(mark),
+        None => weigh(lines, block),
+    }
+}
+
+/// Whether no number has a mark at all.
+pub(crate) fn is_unseen(block: &Block) -> bool {
+    places(block, Cell::Point).is_empty() && places(block, Cell::Comma).is_empty()
+}
+
+/// The first value that is a thousandth of what comes next to it, in a column that began with whole numbers: 996 and then 1.003, whose
+/// point sets off thousands.
+pub(crate) fn falls_to_a_thousandth(values: &[f64]) -> Option<usize> {
+    let is_whole = |value: f64| value == value.trunc();
+    let first = values.iter().position(|value| !is_whole(*value))?;
+    let small = |value: f64| {
+        let thousandths = 1e3 * value;
+        (thousandths - thousandths.round()).abs() < 1e-6 * thousandths.abs().max(1.0)
+    };
+    let (before, here) = (*values.get(first.checked_sub(1)?)?, values[first]);
+    let jumps = before.abs() >= 100.0 && (0.5..2.0).contains(&(1e3 * here / before));
+    (small(here) && jumps).then_some(first)
+}
+
+fn weigh(lines: &[&str], block: &Block) -> Result<DecimalMark, Doubt> {
+    let texts = |wanted| -> Vec<(usize, &str)> {
+        places(block, wanted).into_iter().map(|place| (place.0, text_at(lines, block, place))).collect()
+    };
+    let (points, commas) = (texts(Cell::Point), texts(Cell::Comma));
+    match points.first() {
+        Some(&(line, found)) if commas.is_empty() && points_set_off_thousands(block, &points) => Err(Doubt {
+            line,
+            found: found.to_owned(),
+            doubt: DecimalDoubt::PointThousands,
+        }),
+        _ => weigh_texts(&points, &commas),
+    }
+}
+
+/// Whether every point of a file without decimal commas could set off thousands, and something speaks for it.
+///
+/// Who prints three decimals prints them in every row: whole numbers in a column with such points speak for
+/// thousands. So do semicolons between the cells, which are written where the comma marks decimals.
+fn points_set_off_thousands(block: &Block, points: &[(usize, &str)]) -> bool {
+    if !points.iter().all(|(_, text)| looks_like_thousands(text, '.')) {
+        return false;
+    }
+    let pointed: Vec<usize> = places(block, Cell::Point).into_iter().map(|(_, column)| column).collect();
+    let whole = places(block, Cell::Whole).into_iter().any(|(_, column)| pointed.contains(&column));
+    whole || block.delimiter == Delimiter::Semicolon
+}
+
+/// The decimal mark of numbers with a point and numbers with a comma, each with the index of its line.
+pub(crate) fn weigh_texts(points: &[(usize, &str)], commas: &[(usize, &str)]) -> Result<DecimalMark, Doubt> {
+    let doubt = |(line, found): (usize, &str), doubt| Doubt {
+        line,
+        found: found.to_owned(),
+        doubt,
+    };
+    // A few odd cells are for the reading of the columns to report, one by one.
+    let rare = |few: &[(usize, &str)], many: &[(usize, &str)]| few.len() * 50 <= many.len();
+    match (points.first(), commas.first()) {
+        (_, None) => Ok(DecimalMark::Point),
+        (Some(_), Some(_)) if rare(commas, points) => Ok(DecimalMark::Point),
+        (Some(_), Some(_)) if rare(points, commas) => Ok(DecimalMark::Comma),
+        (Some(&point), Some(&comma)) => Err(doubt(if comma.0 >= point.0 { comma } else { point }, DecimalDoubt::Mixed)),
+        (None, Some(&comma)) => {
+            if commas.iter().all(|(_, text)| looks_like_thousands(text, ',')) {
+                Err(doubt(comma, DecimalDoubt::Thousands))
+            } else {
+                Ok(DecimalMark::Comma)
+            }
+        }
+    }
+}
+
+/// Line and column indices of the cells of one kind in the columns of numbers.
+fn places(block: &Block, wanted: Cell) -> Vec<(usize, usize)> {
+    block
+        .rows()
+        .flat_map(|(line, row)| row.iter().enumerate().map(move |(column, cell)| (line, column, *cell)))
+        .filter(|&(_, column, cell)| cell == wanted && block.kinds[column] == ColumnKind::Number)
+        .map(|(line, column, _)| (line, column))
+        .collect()
+}
+
+fn text_at<'a>(lines: &[&'a str], block: &Block, (line, column): (usize, usize)) -> &'a str {
+    let row = cells(lines[line], block.delimiter);
+    row.get(column).copied().unwrap_or_default()
+}
+
+/// One mark with one to three digits before, the first no zero, and three behind it.
+fn looks_like_thousands(cell: &str, mark: char) -> bool {
+    let bare = cell.trim_start_matches(['+', '-']);
+    let digits = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
+    bare.split_once(mark).is_some_and(|(before, behind)| {
+        (1..=3).contains(&before.len())
+            && digits(before)
+            && !before.starts_with('0')
+            && behind.len() == 3
+            && digits(behind)
+    })
+}
+
+/// Whether commas between cells seem to cut numbers in two as well: "0,010,0,52" for 0.010 and 0.52.
+///
+/// Signs of it, given whole numbers only: half as many names as cells, cells that start with a zero like the digits
+/// behind a mark, blanks behind every other comma, or rows of whole numbers that vary in length.
+fn comma_splits_numbers(lines: &[&str], block: &Block) -> bool {
+    let width = block.kinds.len();
+    let all_whole = block.rows().all(|(_, row)| row.iter().all(|cell| !matches!(cell, Cell::Point | Cell::Comma)));
+    if block.delimiter != Delimiter::Comma || !all_whole {
+        return false;
+    }
+    let row = cells(lines[block.first], Delimiter::Comma);
+    let spaced = lines[block.first].matches(", ").count();
+    let spaced = width > 2 && spaced > 0 && spaced + 1 < row.len();
+    half_as_many_names(lines, block) || spaced || fractions(lines, block) || varying(block)
+}
+
+/// Whether the nearest line above the data that could hold names holds half as many as there are cells.
+fn half_as_many_names(lines: &[&str], block: &Block) -> bool {
+    let above = lines[..block.first].iter().rev();
+    let mut names = above
+        .map(|line| cells(line, Delimiter::Comma))
+        .filter(|row| row.iter().any(|name| !name.is_empty()))
+        .skip_while(|row| row.iter().all(|name| name.starts_with(['(', '['])));
+    names.next().is_some_and(|names| 2 * names.len() == block.kinds.len())
+}
+
+fn fractions(lines: &[&str], block: &Block) -> bool {
+    let digits = |cell: &&str| !cell.is_empty() && cell.bytes().all(|byte| byte.is_ascii_digit());
+    block.rows().any(|(line, _)| {
+        let row = cells(lines[line], Delimiter::Comma);
+        row.windows(2).any(|pair| {
+            pair[1].len() > 1
+                && pair[1].starts_with('0')
+                && digits(&pair[1])
+                && digits(&pair[0].trim_start_matches('-'))
+        })
+    })
+}
+
+fn varying(block: &Block) -> bool {
+    let width = block.kinds.len();
+    let rows = block.cells[block.first..].iter();
+    let whole = rows.filter(|row| !row.is_empty() && row.iter().all(|cell| *cell == Cell::Whole));
+    let (mut same, mut other) = (0_usize, 0_usize);
+    for row in whole {
+        if row.len() == width {
+            same += 1;
+        } else {
+            other += 1;
+        }
+    }
+    other >= 2 && other * 10 > same
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn decided(lines: &[&str], fixed: Option<DecimalMark>) -> Result<DecimalMark, DecimalDoubt> {
+        let block = super::super::block::find(lines, 0, &Delimiter::ALL).expect("a block");
+        decide(lines, &block, fixed).map_err(|doubt| doubt.doubt)
+    }
+
+    #[test]
+    fn clear_cases() {
+        assert_eq!(decided(&["1;2", "3;4"], None), Ok(DecimalMark::Point));
+        assert_eq!(decided(&["1.5;2", "3;4"], None), Ok(DecimalMark::Point));
+        assert_eq!(decided(&["1,5;2", "3;4"], None), Ok(DecimalMark::Comma));
+        assert_eq!(decided(&["0,001;1,234"], None), Ok(DecimalMark::Comma));
+        assert_eq!(decided(&["\"1,5\",\"2,25\""], None), Ok(DecimalMark::Comma));
+        assert_eq!(decided(&["1,2", "3,4"], None), Ok(DecimalMark::Point));
+    }
+
+    /// Whole numbers of µm and mN from a German machine were read as a thousandth of what they are.
+    #[test]
+    fn points_between_thousands_are_no_decimals() {
+        let doubt = Err(DecimalDoubt::PointThousands);
+        assert_eq!(decided(&["0;0;3", "1;1.000;18.002", "2;2.000;20.110"], None), doubt);
+        assert_eq!(decided(&["0\t999", "1\t1.001", "2\t1.012"], None), doubt);
+        assert_eq!(decided(&["1;1.000;18.002"], None), doubt);
+        assert_eq!(decided(&["0;0;3", "1;1.000;18.002"], Some(DecimalMark::Point)), Ok(DecimalMark::Point));
+        // Three decimals in every row, a zero in front, or another number of decimals in some row.
+        for plain in [["0\t1.000", "1\t1.001"], ["0;0.999", "1;1.001"], ["0;1", "1;1.25"], ["0.5;1", "1;1.001"]] {
+            assert_eq!(decided(&plain, None), Ok(DecimalMark::Point), "{plain:?}");
+        }
+    }
+
+    /// Thousands that begin after the lines a layout is found out from: 1.003 N was read for 1003 N.
+    #[test]
+    fn a_column_of_whole_numbers_that_falls_to_a_thousandth_has_points_between_thousands() {
+        assert_eq!(falls_to_a_thousandth(&[980.0, 989.0, 996.0, 1.003, 1.01]), Some(3));
+        assert_eq!(falls_to_a_thousandth(&[980.0, 989.0, 996.0, 997.5, 1000.25]), None);
+        assert_eq!(falls_to_a_thousandth(&[0.0, 0.0, 1.003]), None);
+        assert_eq!(falls_to_a_thousandth(&[100.0, 200.0, 300.0]), None);
+    }
+
+    #[test]
+    fn doubts() {
+        let split = Err(DecimalDoubt::CommaSplitsNumbers);
+        assert_eq!(decided(&["0,010,0,52", "0,020,0,53"], None), split);
+        assert_eq!(decided(&["t,F", "0,1,3,52", "0,2,3,53"], None), split);
+        assert_eq!(decided(&["0,1, 3,52", "0,2, 3,53"], None), split);
+        assert_eq!(decided(&["0,010,0,52"], Some(DecimalMark::Comma)), split);
+        assert_eq!(decided(&["0,010,0,52"], Some(DecimalMark::Point)), Ok(DecimalMark::Point));
+        assert_eq!(decided(&["1,234;5,678"], None), Err(DecimalDoubt::Thousands));
+        assert_eq!(decided(&["1.5;5,67"], None), Err(DecimalDoubt::Mixed));
+        assert_eq!(decided(&["1.5;5,67"], Some(DecimalMark::Comma)), Ok(DecimalMark::Comma));
+    }
+}

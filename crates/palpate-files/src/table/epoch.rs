@@ -1,0 +1,96 @@
+//! Times counted from 1970, as the clocks of computers count them.
+//!
+//! Such a time is large: in seconds it leaves `f64` steps of 0.2 µs, and every later difference would carry the rounding of
+//! its unit. It is made relative to the first row before anything is computed, in the unit it is written in, which is
+//! exact.
+
+use super::part::ColumnInfo;
+
+/// The unit in a description that says: seconds, or parts of them, since 1970.
+pub(crate) const EPOCH: &str = "epoch";
+
+/// First second of 2000 and of 2100, counted from 1970.
+const YEARS: std::ops::Range<f64> = 946_684_800.0..4_102_444_800.0;
+
+/// Units that clocks count in. Each is a thousand times the next, and the years above differ by less than a factor of
+/// five, so that a time lies in these years in one unit at most.
+const UNITS: [(&str, f64); 4] = [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
+
+/// Words that mean such a time when they name a column.
+const NAMES: [&str; 7] = ["timestamp", "time stamp", "epoch", "unix time", "unixtime", "unix timestamp", "epoch time"];
+
+/// The unit in which the first cell of a column is a time between 2000 and 2100, and its factor.
+pub(crate) fn unit(column: &ColumnInfo) -> Option<(&'static str, f64)> {
+    let first = first(column)?;
+    UNITS.into_iter().find(|(_, factor)| YEARS.contains(&(first * factor)))
+}
+
+/// Whether the first cell of a column with this factor is a time between 2000 and 2100.
+pub(crate) fn counts(column: &ColumnInfo, factor: f64) -> bool {
+    first(column).is_some_and(|first| is_of_our_days(first * factor))
+}
+
+/// Whether a time in s lies between 2000 and 2100, counted from 1970.
+pub(crate) fn is_of_our_days(seconds: f64) -> bool {
+    YEARS.contains(&seconds)
+}
+
+/// A date in s less another, both counted from 1970: to the µs, which is the most that dates are written to. What is beyond
+/// that is rounding.
+pub(crate) fn since(seconds: f64, first: f64) -> f64 {
+    ((seconds - first) * 1e6).round() / 1e6
+}
+
+/// Whether a column without a unit is named as such a time.
+pub(crate) fn is_named(column: &ColumnInfo) -> bool {
+    let name = column.name.as_deref().unwrap_or("").trim().to_lowercase().replace('_', " ");
+    NAMES.contains(&name.as_str())
+}
+
+/// Whether a cell that is read as a time begins with a date.
+pub(crate) fn is_date(cell: &str) -> bool {
+    // Of a time of day only the fraction of its seconds has a point or a comma.
+    let before = cell.split(':').next().unwrap_or("");
+    before.len() > 2
+}
+
+fn first(column: &ColumnInfo) -> Option<f64> {
+    column.sample.replace(',', ".").parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::part::ColumnKind;
+
+    fn column(name: &str, sample: &str) -> ColumnInfo {
+        ColumnInfo {
+            number: 1,
+            name: Some(name.to_owned()),
+            unit: None,
+            kind: ColumnKind::Number,
+            sample: sample.to_owned(),
+        }
+    }
+
+    #[test]
+    fn one_unit_or_none() {
+        for (sample, expected) in [
+            ("1724504945.1984644", Some("s")),
+            ("1724504945,1984644", Some("s")),
+            ("1724504945198", Some("ms")),
+            ("1724504945198464", Some("us")),
+            ("1724504945198464400", Some("ns")),
+            ("946684800", Some("s")),
+            ("946684799", None),
+            ("4102444799999", Some("ms")),
+            ("4102444800", None),
+            ("0.01", None),
+            ("x", None),
+        ] {
+            assert_eq!(unit(&column("t", sample)).map(|(unit, _)| unit), expected, "{sample}");
+        }
+        assert!(is_named(&column("Timestamp", "")) && is_named(&column("unix_time", "")));
+        assert!(!is_named(&column("Time", "")) && !is_named(&column("force timestamp", "")));
+    }
+}

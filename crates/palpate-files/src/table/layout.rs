@@ -1,0 +1,65 @@
+//! What is known about how a file is written, and what a caller may fix in advance.
+
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::part::{ColumnInfo, Metadata};
+use crate::{
+    cell::{DecimalMark, Delimiter},
+    input::Encoding,
+};
+
+/// What the beginning of a file says about all of it.
+///
+/// Line numbers start at 1 and count every line of the file, blank ones included.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Layout {
+    /// Character encoding.
+    pub encoding: Encoding,
+    /// What stands between two cells.
+    pub delimiter: Delimiter,
+    /// The decimal mark of the numbers.
+    pub decimal: DecimalMark,
+    /// Line with the names of the columns, if there is one.
+    pub header_line: Option<usize>,
+    /// Line with the units of the columns, if they have a line of their own.
+    pub units_line: Option<usize>,
+    /// First line with data.
+    pub first_data_line: usize,
+    /// Named values found above the data, in file order.
+    pub metadata: Vec<Metadata>,
+    /// The columns, left to right.
+    pub columns: Vec<ColumnInfo>,
+    /// No number seen so far had a mark, and nobody said which it is: a point further down could set off thousands.
+    #[serde(skip)]
+    pub undecided: bool,
+}
+
+/// What the caller knows about a file better than its bytes do. Everything left `None` is found out.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub struct LayoutOptions {
+    /// What stands between two cells.
+    pub delimiter: Option<Delimiter>,
+    /// The decimal mark of the numbers.
+    pub decimal: Option<DecimalMark>,
+    /// Character encoding.
+    pub encoding: Option<Encoding>,
+    /// Lines at the top to pass over unread: neither metadata nor names are looked for in them.
+    pub skip_lines: Option<usize>,
+    /// `true`: the columns have a line of names, even where it looks like data.
+    /// `false`: they have none, even where a line looks like it.
+    pub header: Option<bool>,
+}
+
+impl fmt::Display for Layout {
+    /// One line for people: `utf-8 encoding, fields separated by comma, decimal point, data from line 3`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} encoding, fields separated by {}, decimal {}, data from line {}",
+            self.encoding, self.delimiter, self.decimal, self.first_data_line
+        )
+    }
+}

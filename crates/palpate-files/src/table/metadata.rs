@@ -1,0 +1,110 @@
+//! Named values in the lines above the data.
+
+use super::part::Metadata;
+use crate::cell::{Cell, Delimiter, cells, number, unit};
+
+/// The named values in one line: `name,"value",unit`, `name: value`, `name = value` or `a=1;b=2;`. A line that
+/// holds none is a title or a remark and gives nothing.
+pub(crate) fn in_line(text: &str, delimiter: Delimiter) -> Vec<Metadata> {
+    let text = without_comment_mark(text);
+    let row = match delimiter {
+        // Blanks occur inside names; here they tell nothing apart.
+        Delimiter::Blanks => vec![text],
+        other => cells(text, other),
+    };
+    let row: Vec<&str> = row.into_iter().filter(|cell| !cell.is_empty()).collect();
+    in_cells(&row)
+}
+
+/// The named values in the cells of a line or row, those that are empty left out.
+pub(crate) fn in_cells(row: &[&str]) -> Vec<Metadata> {
+    if let Some(pairs) = equations(row) {
+        let entry = |(name, value)| entry(name, value, None);
+        return pairs.into_iter().filter_map(entry).collect();
+    }
+    let found = match *row {
+        [name, value] => entry(name, value, None),
+        [name, value, unit] => entry(name, value, Some(unit)),
+        [single] => single.split_once(':').and_then(|(name, value)| entry(name, value, None)),
+        _ => None,
+    };
+    found.into_iter().collect()
+}
+
+/// `text` less a mark that makes it a comment in other programs.
+pub(crate) fn without_comment_mark(text: &str) -> &str {
+    let bare = text.trim_start();
+    let inside = bare.strip_prefix("//").unwrap_or_else(|| bare.trim_start_matches(['#', '%']));
+    if inside.len() == bare.len() { text } else { inside.trim_start_matches(' ') }
+}
+
+/// The two sides of every `name=value` of a line that holds nothing else.
+fn equations<'a>(row: &[&'a str]) -> Option<Vec<(&'a str, &'a str)>> {
+    let parts = row.iter().flat_map(|cell| cell.split(';'));
+    let pairs: Option<Vec<_>> = parts.filter(|part| !part.trim().is_empty()).map(|part| part.split_once('=')).collect();
+    pairs.filter(|pairs| !pairs.is_empty())
+}
+
+fn entry(name: &str, value: &str, unit: Option<&str>) -> Option<Metadata> {
+    let named = name.trim().trim_end_matches([':', '=']).trim_end();
+    let value = value.trim();
+    if named.is_empty() || value.is_empty() || number::classify(named.as_bytes()).is_numeric() {
+        return None;
+    }
+    let own = unit.and_then(unit::alone);
+    let (name, value, unit) = match (own, value.split_once(' ')) {
+        (Some(unit), _) => (named.to_owned(), value, Some(unit)),
+        // "Length: 12.5 mm"
+        (None, Some((number, behind))) if is_number(number) && unit::is_known(behind) => {
+            (named.to_owned(), number, unit::alone(behind))
+        }
+        (None, _) => {
+            let (name, unit) = unit::split(named);
+            (name.unwrap_or_else(|| named.to_owned()), value, unit)
+        }
+    };
+    Some(Metadata {
+        name,
+        value: value.to_owned(),
+        unit,
+    })
+}
+
+fn is_number(text: &str) -> bool {
+    matches!(number::classify(text.as_bytes()), Cell::Whole | Cell::Point | Cell::Comma)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn only(text: &str, delimiter: Delimiter) -> (String, String, Option<String>) {
+        let found = in_line(text, delimiter);
+        assert_eq!(found.len(), 1, "{text}");
+        let Metadata { name, value, unit, .. } = found[0].clone();
+        (name, value, unit)
+    }
+
+    #[test]
+    fn forms() {
+        let expected =
+            |name: &str, value: &str, unit: Option<&str>| (name.to_owned(), value.to_owned(), unit.map(str::to_owned));
+        assert_eq!(
+            only("Properties : Diameter,\"0.399\",mm", Delimiter::Comma),
+            expected("Properties : Diameter", "0.399", Some("mm"))
+        );
+        assert_eq!(only("Test:\tstep 3", Delimiter::Tab), expected("Test", "step 3", None));
+        assert_eq!(only("# Length (mm): 12,5", Delimiter::Semicolon), expected("Length", "12,5", Some("mm")));
+        assert_eq!(only("Probe radius: 5.0 mm", Delimiter::Blanks), expected("Probe radius", "5.0", Some("mm")));
+    }
+
+    #[test]
+    fn several_in_a_line_and_none() {
+        let found = in_line("chem=PE;T=150;", Delimiter::Tab);
+        assert_eq!(found.len(), 2);
+        assert_eq!((found[1].name.as_str(), found[1].value.as_str()), ("T", "150"));
+        assert!(in_line("A title", Delimiter::Comma).is_empty());
+        assert!(in_line("1,2", Delimiter::Comma).is_empty());
+        assert!(in_line("", Delimiter::Comma).is_empty());
+    }
+}

@@ -1,0 +1,39 @@
+//! Columns with names and units, parts, header, blocks of rows: what every format gives, whatever it is.
+//!
+//! A format looks into a file and tells its tests ([`Part`]s) with their columns; chosen columns of one of them are then
+//! read as `f64`, as they are written ([`Columns`]). Units and signs are matters of [`record`](crate::record).
+//!
+//! | file | what |
+//! |---|---|
+//! | `part.rs` | one test in a file: columns, named values, labels |
+//! | `column_ref.rs` | a column as people name it |
+//! | `columns.rs` | columns of numbers as they were read, in bounded memory |
+//! | `layout.rs` | how a text is written, and what a caller may fix in advance |
+//! | `reader.rs` | what every format can do |
+//! | `block.rs`, `decimal.rs` | the rows of numbers among other lines, and their decimal mark |
+//! | `header.rs`, `metadata.rs` | names and units above them, and named values |
+//! | `recognise.rs`, `epoch.rs` | which column holds a quantity; times counted from 1970 |
+
+pub(crate) mod block;
+mod column_ref;
+mod columns;
+pub(crate) mod decimal;
+pub(crate) mod epoch;
+pub(crate) mod header;
+mod layout;
+pub(crate) mod metadata;
+mod part;
+mod reader;
+pub(crate) mod recognise;
+
+pub(crate) use block::Block;
+pub use column_ref::ColumnRef;
+pub use columns::{Columns, Footer, IgnoredLines, MOST_ROWS};
+pub(crate) use decimal::Doubt;
+pub(crate) use epoch::EPOCH;
+pub(crate) use header::Header;
+pub use layout::{Layout, LayoutOptions};
+pub use part::{Clock, ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart};
+pub use reader::ReadOptions;
+pub(crate) use reader::{Found, ReadPart};
+pub(crate) use recognise::names_time;

@@ -1,0 +1,218 @@
+//! Which column holds a quantity, going by its name and unit.
+
+use palpate::units::Dimension;
+
+use super::part::{ColumnInfo, ColumnKind};
+use crate::naming::{
+    BENDING, OTHER, OTHER_CHARACTERS, Quantity, SIGNS_OF_LENGTH, STRAINS, VOCABULARY, is_listed, measured,
+    measures_another, rank_of_name, unit_factor, words,
+};
+
+/// The columns that name `quantity` best: one if it is clear, several if it is not, none if none does.
+pub(crate) fn candidates(columns: &[ColumnInfo], quantity: Quantity) -> Vec<&ColumnInfo> {
+    let ranked: Vec<(u8, &ColumnInfo)> =
+        columns.iter().filter_map(|column| Some((rank(column, quantity)?, column))).collect();
+    let best = ranked.iter().map(|(rank, _)| *rank).min();
+    let tied = ranked.into_iter().filter(|(rank, _)| Some(*rank) == best);
+    tied.map(|(_, column)| column).collect()
+}
+
+/// Whether one of the columns is named as a time.
+pub(crate) fn names_time(columns: &[ColumnInfo]) -> bool {
+    !candidates(columns, Quantity::Time).is_empty()
+}
+
+/// A column of texts that is named after `quantity`.
+pub(crate) fn text_named(columns: &[ColumnInfo], quantity: Quantity) -> Option<&ColumnInfo> {
+    let vocabulary = VOCABULARY.iter().find(|words| words.quantity == quantity)?;
+    let named = |column: &&ColumnInfo| {
+        let name = column.name.as_deref();
+        column.kind == ColumnKind::Text && name.is_some_and(|name| rank_of_name(name, vocabulary).is_some())
+    };
+    columns.iter().find(named)
+}
+
+/// Names of columns that hold dates with times of day, beside the words for time.
+const DATES: [&str; 3] = ["date", "datetime", "datum"];
+
+/// How well a column names a quantity; 0 is best.
+fn rank(column: &ColumnInfo, quantity: Quantity) -> Option<u8> {
+    let is_date = column.kind == ColumnKind::DateTime && quantity == Quantity::Time;
+    if column.kind != ColumnKind::Number && !is_date {
+        return None;
+    }
+    let vocabulary = VOCABULARY.iter().find(|words| words.quantity == quantity)?;
+    let name = column.name.as_deref()?;
+    if is_date {
+        // The clock on the wall serves where no column of numbers does.
+        let called_so = || words(name).iter().any(|word| DATES.contains(&word.as_str()));
+        return Some(20 + rank_of_name(name, vocabulary).or_else(|| called_so().then_some(5))?);
+    }
+    let by_name = rank_of_name(name, vocabulary)?;
+    match column.unit.as_deref() {
+        None => Some(by_name),
+        Some(unit) if unit_factor(unit, quantity.dimension()).is_some() => Some(by_name),
+        Some(unit) if measures_another(unit, quantity) => None,
+        // Perhaps a unit that is not understood: better one with a good unit, but better this than none.
+        Some(_) => Some(by_name + 10),
+    }
+}
+
+/// Columns that are named after `quantity` but have the unit of another, and that unit.
+pub(crate) fn misfits(columns: &[ColumnInfo], quantity: Quantity) -> impl Iterator<Item = (&ColumnInfo, &str)> {
+    let vocabulary = VOCABULARY.iter().find(|words| words.quantity == quantity);
+    columns.iter().filter(|column| column.kind == ColumnKind::Number).filter_map(move |column| {
+        let (name, unit) = (column.name.as_deref()?, column.unit.as_deref()?);
+        let plainly = rank_of_name(name, vocabulary?).is_some_and(|rank| rank < 2);
+        (plainly && measures_another(unit, quantity)).then_some((column, unit))
+    })
+}
+
+/// Columns that may well hold a displacement, though no word of theirs says so: those with a unit of length, and those
+/// without a unit whose name is a letter that usually stands for one.
+pub(crate) fn possible_displacements(columns: &[ColumnInfo]) -> impl Iterator<Item = &ColumnInfo> {
+    let possible = |column: &&ColumnInfo| {
+        let (true, Some(name)) = (column.kind == ColumnKind::Number, column.name.as_deref()) else {
+            return false;
+        };
+        let words = words(measured(name));
+        // What is said per finger is a displacement all the same.
+        let other = words.iter().any(|word| is_listed(word, OTHER) && !is_listed(word, STRAINS) && word != "per")
+            || OTHER_CHARACTERS.split_whitespace().any(|part| name.contains(part))
+            || BENDING.contains(&name.trim());
+        let sign = || SIGNS_OF_LENGTH.split_whitespace().any(|sign| sign.to_lowercase() == name.trim().to_lowercase());
+        match column.unit.as_deref() {
+            Some(unit) => !other && unit_factor(unit, Dimension::Length).is_some(),
+            None => sign(),
+        }
+    };
+    columns.iter().filter(possible)
+}
+
+/// Whether a column is the bending of a cantilever.
+pub(crate) fn is_bending(column: &ColumnInfo) -> bool {
+    column.name.as_deref().is_some_and(|name| BENDING.contains(&name.trim()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn columns(header: &[(&str, Option<&str>)]) -> Vec<ColumnInfo> {
+        let column = |(index, (name, unit)): (usize, &(&str, Option<&str>))| ColumnInfo {
+            number: index + 1,
+            name: Some((*name).to_owned()),
+            unit: unit.map(str::to_owned),
+            kind: ColumnKind::Number,
+            sample: "0".to_owned(),
+        };
+        header.iter().enumerate().map(column).collect()
+    }
+
+    fn found(header: &[(&str, Option<&str>)], quantity: Quantity) -> Vec<usize> {
+        let columns = columns(header);
+        let found = candidates(&columns, quantity);
+        found.into_iter().map(|column| column.number).collect()
+    }
+
+    #[test]
+    fn every_language() {
+        for header in [
+            ["Time", "Displacement", "Force"],
+            ["TIME", "Crosshead", "Load"],
+            ["Prüfzeit", "Standardweg", "Standardkraft"],
+            ["Zeit", "Weg", "Kraft"],
+            ["Temps", "Déplacement", "Force"],
+            ["Tiempo", "Desplazamiento", "Fuerza"],
+            ["时间", "位移", "力"],
+            ["试验时间", "位移", "试验力"],
+            ["時間", "変位", "荷重"],
+            ["t", "Stroke", "F"],
+        ] {
+            let named = header.map(|name| (name, None));
+            assert_eq!(found(&named, Quantity::Time), [1], "{header:?}");
+            assert_eq!(found(&named, Quantity::Displacement), [2], "{header:?}");
+            assert_eq!(found(&named, Quantity::Force), [3], "{header:?}");
+            assert!(found(&named, Quantity::Stress).is_empty(), "{header:?}");
+        }
+        for name in ["Tensile stress", "Spannung", "应力", "Contrainte"] {
+            assert_eq!(found(&[(name, None)], Quantity::Stress), [1], "{name}");
+            assert!(found(&[(name, None)], Quantity::Force).is_empty(), "{name}");
+        }
+    }
+
+    #[test]
+    fn commands_and_derived_quantities_are_no_measurements() {
+        let gripper = [("Time", None), ("Force", None), ("GoalForce", None), ("goal_force", None)];
+        assert_eq!(found(&gripper, Quantity::Force), [2]);
+        let foam = [("Size", Some("mm")), ("Displacement", Some("mm")), ("Displacement rate", None)];
+        assert_eq!(found(&foam, Quantity::Displacement), [2]);
+        let bluehill = [
+            ("Extension", Some("mm")),
+            ("Tensile extension", Some("mm")),
+            ("Tensile strain (Extension)", Some("mm/mm")),
+        ];
+        assert_eq!(found(&bluehill, Quantity::Displacement), [1]);
+        let both = [("Extension", Some("mm")), ("Displacement", Some("mm"))];
+        assert_eq!(found(&both, Quantity::Displacement), [2]);
+    }
+
+    /// Setpoints of German machines, values a finger and multiples were taken for the measurement itself.
+    #[test]
+    fn words_that_change_what_a_name_means_are_not_passed_over() {
+        for name in [
+            "Sollkraft",
+            "Kraft (soll)",
+            "Force threshold",
+            "Force per finger",
+            "Force x1000",
+            "Kraft*10",
+            "Load ×10",
+        ] {
+            assert!(found(&[(name, Some("N"))], Quantity::Force).is_empty(), "{name}");
+        }
+        assert!(found(&[("Sollweg", Some("mm"))], Quantity::Displacement).is_empty());
+        assert_eq!(found(&[("Force x", Some("N"))], Quantity::Force), [1]);
+        assert_eq!(found(&[("Solenoid force", Some("N"))], Quantity::Force), [1]);
+    }
+
+    #[test]
+    fn units_decide_where_names_do_not() {
+        let clocks = [("Force time", Some("s")), ("Force", Some("N"))];
+        assert_eq!(found(&clocks, Quantity::Force), [2]);
+        assert_eq!(found(&clocks, Quantity::Time), [1]);
+        let pounds = [("Force", Some("lbs")), ("Force (filtered)", Some("N"))];
+        assert_eq!(found(&pounds, Quantity::Force), [2]);
+        assert_eq!(found(&pounds[..1], Quantity::Force), [1]);
+        assert!(found(&[("Weg", Some("%"))], Quantity::Displacement).is_empty());
+    }
+
+    #[test]
+    fn the_bending_of_a_cantilever_is_no_displacement() {
+        let curve = [("force", Some("N")), ("cantilever deflection", Some("m")), ("vDeflection", Some("V"))];
+        assert!(found(&curve, Quantity::Displacement).is_empty());
+        assert_eq!(found(&[("Beam deflection", Some("mm"))], Quantity::Displacement), [1]);
+    }
+
+    #[test]
+    fn fields_of_topics_tell_and_topics_do_not() {
+        let log = [
+            ("/gripper_cmd/feedback.feedback.position", None),
+            ("/gripper_cmd/feedback.feedback.reached_goal", None),
+            ("/force_torque.wrench.torque.z", None),
+            ("/load.data", None),
+            ("/load_target.data", None),
+        ];
+        assert_eq!(found(&log, Quantity::Displacement), [1]);
+        assert_eq!(found(&log, Quantity::Force), [4]);
+        let joints = [("/joint_states.position[force_joint]", None), ("/joint_states.velocity[force_joint]", None)];
+        assert!(found(&joints, Quantity::Force).is_empty());
+        assert_eq!(found(&joints, Quantity::Displacement), [1]);
+    }
+
+    #[test]
+    fn two_of_a_kind_are_both_reported() {
+        let two = [("Force 1", Some("N")), ("Force 2", Some("N"))];
+        assert_eq!(found(&two, Quantity::Force), [1, 2]);
+    }
+}
