@@ -761,6 +761,8 @@ pub(crate) enum SchemaName {
     Comparison,
     /// Result of `palpate grip --format json`
     Grip,
+    /// A line of `palpate watch --format jsonl`
+    Watch,
     /// summary.json of `palpate reproduce`
     Reproduction,
 }

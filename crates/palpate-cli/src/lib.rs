@@ -24,7 +24,7 @@ use std::path::Path;
 use clap::Parser;
 use palpate_files::description::{MaterialFile, Sweep};
 use palpate_files::parquet_table::{Field, Rows};
-use palpate_report::calibrated::CalibratedRecord;
+use palpate_report::result::CalibratedRecord;
 use palpate_report::study::Bundle;
 
 use crate::arguments::{Arguments, Command};

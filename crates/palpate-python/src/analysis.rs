@@ -5,7 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use palpate::analysis::{Analysis as Studied, AnalysisOptions, Severity, analyze};
 use palpate::record::Record as Measured;
-use palpate_report::document::{AnalysisDocument, Input};
+use palpate_report::document::AnalysisDocument;
+use palpate_report::result::Input;
 use palpate_report::study::{Pictures, analysis_bundle, analysis_text};
 use pyo3::prelude::*;
 use pyo3::types::PyType;

@@ -9,8 +9,8 @@ use palpate::calibrate::{CalibrateError, CalibrationData, Candidate, Equilibrium
 use palpate::fit::Termination;
 use palpate::laws::Law;
 use palpate::record::Record as Measured;
-use palpate_report::calibrated::CalibratedRecord;
-use palpate_report::document::{CalibrationDocument, Input};
+use palpate_report::document::CalibrationDocument;
+use palpate_report::result::{CalibratedRecord, Input};
 use palpate_report::study::{calibration_page, calibration_text};
 use pyo3::prelude::*;
 use pyo3::types::PyType;

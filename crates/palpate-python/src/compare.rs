@@ -3,8 +3,8 @@
 use palpate::fit::{LawOptions, Samples};
 use palpate::forecast::{CompareOptions, compare_laws};
 use palpate::laws::{Law, Response};
-use palpate_report::compared::Quantity;
 use palpate_report::document::HoldComparisonDocument;
+use palpate_report::result::Quantity;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 

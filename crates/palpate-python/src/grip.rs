@@ -6,10 +6,8 @@ use palpate::calibrate::Material as Body;
 use palpate::grip::{Band, Control, Grasp, Grip as Gripper, GripError, Lasts, Limits, Objective, Question, Regrip};
 use palpate_files::description::MaterialFile;
 use palpate_report::document::GripDocument;
-use palpate_report::gripped::GrippedBody;
-use palpate_report::study::{
-    Bundle, Pictures, StudyError, grip_bundle, grip_figure, grip_question, grip_remarks, grip_text, grip_verdict,
-};
+use palpate_report::result::GrippedBody;
+use palpate_report::study::{Bundle, Pictures, StudyError, grip_bundle, grip_figure, grip_text};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 use serde::{Deserialize, Serialize};
@@ -163,9 +161,9 @@ impl Kept {
             text: grip_text(&body),
             svg: grip_figure(&body, "grip").to_svg().map_err(StudyError::from)?,
             files: files.collect(),
-            question: grip_question(&body),
-            verdict: grip_verdict(&body),
-            remarks: grip_remarks(&body),
+            question: body.question(),
+            verdict: body.verdict(),
+            remarks: body.remarks(),
             extrapolations: body.extrapolations().iter().map(ToString::to_string).collect(),
             confidence: body.grip.confidence(),
             holds,

@@ -14,7 +14,7 @@ use palpate::segment::Segment;
 use palpate_files::description::{TestDescription, parse_test, read_test};
 use palpate_files::open::Contents;
 use palpate_files::record::{ReadError, RecordFile, read_part, tests};
-use palpate_report::document::Input;
+use palpate_report::result::Input;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use pyo3_arrow::PyTable;

@@ -1,25 +1,29 @@
 //! Figures, tables and self-contained report pages.
 //!
-//! Three layers know nothing of the mechanics they show:
+//! A module uses only those above it:
 //!
-//! * [`figure`] draws panels of lines, points, bands and heat maps as SVG and PNG,
-//! * [`table`] holds named columns once and writes them as CSV, plain text or HTML,
-//! * [`page`] gathers both into one HTML file that opens without a network.
+//! | module | what |
+//! |---|---|
+//! | [`number`] | how a value reads for a person and how it is stored for a machine |
+//! | [`sparkline`], `wrap`, `script`, `escape` | lines of a terminal; characters of SVG and HTML |
+//! | [`table`] | named columns once, written as CSV, plain text, Markdown or HTML |
+//! | [`figure`] | panels of lines, points, bands and heat maps as SVG and PNG |
+//! | [`page`] | both in one HTML file that opens without a network |
+//! | [`result`] | results of the library with where they come from and what they say in words |
+//! | [`document`] | results as JSON |
+//! | [`study`] | which figures, tables and sections a study has |
 //!
-//! [`number`] decides how a value reads for a person and how it is stored for a machine.
-//!
-//! On top of them, [`document`] holds results as JSON and [`study`] says which figures, tables and sections a study has.
+//! Those down to [`page`] know nothing of the mechanics they show.
 
-pub mod calibrated;
-pub mod compared;
 pub mod document;
 mod escape;
 pub mod figure;
-pub mod gripped;
 pub mod page;
+pub mod result;
 mod script;
 pub mod sparkline;
 pub mod study;
 pub mod table;
+mod wrap;
 
 pub use palpate::number;

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use palpate::analysis::{Analysis, AnalysisOptions, analyze};
 use palpate_files::description::TestDescription;
-use palpate_report::document::{AnalysisDocument, Input};
+use palpate_report::document::AnalysisDocument;
+use palpate_report::result::Input;
 use palpate_report::study::{Pictures, analysis_bundle, analysis_text};
 
 use super::inputs::records_of;

@@ -3,8 +3,8 @@
 use palpate::analysis::AnalysisOptions;
 use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, RateLaw, calibrate, profile};
 use palpate_files::description::{MaterialFile, MaterialOrigin, TestDescription};
-use palpate_report::calibrated::CalibratedRecord;
 use palpate_report::document::CalibrationDocument;
+use palpate_report::result::CalibratedRecord;
 use palpate_report::study::{calibration_figure, calibration_text};
 
 use super::picture::{check_picture, picture};

@@ -7,8 +7,8 @@ use palpate::fit::Loss;
 use palpate::forecast::{CompareOptions, RampChoice};
 use palpate::laws::Response;
 use palpate_files::description::TestDescription;
-use palpate_report::compared::{ComparedRecord, LeftOut};
 use palpate_report::document::{ComparisonDocument, ComparisonSettingsDocument};
+use palpate_report::result::{ComparedRecord, LeftOut};
 use palpate_report::study::{Pictures, comparison_bundle, comparison_markdown, comparison_text};
 
 use super::inputs::records_of;

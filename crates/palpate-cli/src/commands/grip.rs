@@ -4,7 +4,7 @@ use palpate::calibrate::Material;
 use palpate::grip::{Band, Control, Grasp, Grip, GripError, Limits, Objective, Question, Regrip};
 use palpate_files::description::read_material;
 use palpate_report::document::GripDocument;
-use palpate_report::gripped::GrippedBody;
+use palpate_report::result::GrippedBody;
 use palpate_report::study::{Pictures, grip_bundle, grip_figure, grip_text};
 
 use super::picture::{check_picture, picture};

@@ -7,7 +7,7 @@ use palpate_files::open::Contents;
 use palpate_files::record::{ReadError, RecordFile, Tests, read_part, tests};
 use palpate_files::table::SkippedPart;
 
-use palpate_report::document::Input;
+use palpate_report::result::Input;
 
 use crate::failure::Failure;
 use crate::files::sha256;

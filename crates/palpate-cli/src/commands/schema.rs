@@ -2,7 +2,7 @@
 
 use palpate_files::description::{schema_material, schema_protocol, schema_test};
 use palpate_report::document::{
-    AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument,
+    AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument, WatchDocument,
 };
 use schemars::schema_for;
 
@@ -19,6 +19,7 @@ pub(crate) fn run(arguments: &SchemaArguments) -> Result<Outcome, Failure> {
         SchemaName::Analysis => schema_for!(AnalysisDocument).to_value(),
         SchemaName::Comparison => schema_for!(ComparisonDocument).to_value(),
         SchemaName::Grip => schema_for!(GripDocument).to_value(),
+        SchemaName::Watch => schema_for!(WatchDocument).to_value(),
         SchemaName::Reproduction => schema_for!(ReproductionDocument).to_value(),
     };
     let text = serde_json::to_string_pretty(&schema).map_err(|error| Failure::new(error, None))?;

@@ -1,76 +1,21 @@
 //! `palpate.analysis/1`: one analysed record.
 
-use palpate::analysis::{Analysis, Finding, HoldAnalysis, JointAnalysis, JointHolds, Severity, Signal};
+use palpate::analysis::{Analysis, HoldAnalysis, JointAnalysis, JointHolds, Signal};
 use palpate::fit::{Estimate, ExponentChoice, TrendVerdict};
-use palpate::segment::{After, HoldMode, Phase, RelaxationType};
+use palpate::segment::{After, RelaxationType};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{
-    CorrectionDocument, FitDocument, HoldComparisonDocument, SettingsDocument, SignalsDocument, Software, TouchDocument,
-};
-
-/// Where a record came from.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct Input {
-    /// Path as given.
-    pub path: String,
-    /// The part of the file that is this record (a sheet, a curve, a `test_id`), where the file names it.
-    pub part: Option<String>,
-    /// SHA-256 of its bytes, hexadecimal.
-    pub sha256: String,
-    /// Rows of data.
-    pub rows: usize,
-    /// How many successive rows each sample is the mean of; 1 unless the file is very long.
-    pub rows_averaged: usize,
-    /// Path of the test description, if one was given.
-    pub test: Option<String>,
-    /// What the description says of the record (its title, or the file name).
-    pub title: String,
-}
-
-impl Input {
-    /// The file, and the part of it that is this record where the file names one.
-    #[must_use]
-    pub fn called(&self) -> String {
-        self.part.as_ref().map_or_else(|| self.path.clone(), |part| format!("{}, {part}", self.path))
-    }
-}
-
-/// A finding with its words.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct FindingDocument {
-    /// Stable code.
-    pub code: String,
-    /// `info`, `caution` or `warning`.
-    pub severity: String,
-    /// What was seen.
-    pub seen: String,
-    /// What it may mean.
-    pub meaning: String,
-    /// What helps.
-    pub remedy: String,
-}
-
-impl From<&Finding> for FindingDocument {
-    fn from(finding: &Finding) -> Self {
-        Self {
-            code: finding.code().to_owned(),
-            severity: match finding.severity() {
-                Severity::Info => "info",
-                Severity::Caution => "caution",
-                Severity::Warning => "warning",
-            }
-            .to_owned(),
-            seen: finding.seen(),
-            meaning: finding.meaning().to_owned(),
-            remedy: finding.remedy().to_owned(),
-        }
-    }
-}
+use super::comparison::HoldComparisonDocument;
+use super::finding::FindingDocument;
+use super::fit::FitDocument;
+use super::settings::SettingsDocument;
+use super::signals::{CorrectionDocument, SignalsDocument, TouchDocument};
+use super::software::Software;
+use crate::result::{Input, after_word, mode_word, phase_word};
 
 /// A stretch of the record in one phase.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SegmentDocument {
     /// `rest`, `loading`, `hold` or `unloading`.
     pub phase: String,
@@ -85,7 +30,7 @@ pub struct SegmentDocument {
 }
 
 /// One hold.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HoldDocument {
     /// Number of the hold, from 1.
     pub index: usize,
@@ -130,7 +75,7 @@ pub struct HoldDocument {
 }
 
 /// What the rate domain makes of simulated holds whose truth is the preferred fit in time, with the noise of the measured one.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RateBiasDocument {
     /// The exponent, given in all fits.
     pub exponent: f64,
@@ -145,7 +90,7 @@ pub struct RateBiasDocument {
 }
 
 /// A row of Table I or Table II: the paper's layout.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TableRow {
     /// Number of the hold.
     pub hold: usize,
@@ -162,7 +107,7 @@ pub struct TableRow {
 }
 
 /// Tables I and II of the paper for this record, at the common exponent.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TablesDocument {
     /// The lowest listed exponent that fits all holds best.
     pub common_exponent: Option<f64>,
@@ -177,7 +122,7 @@ pub struct TablesDocument {
 }
 
 /// The latency law with one v, and one n, for several holds, against a law for each hold.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct JointDocument {
     /// Holds after `loading`, or `all`.
     pub which: String,
@@ -206,7 +151,7 @@ pub struct JointDocument {
 }
 
 /// The record's own displacement simulated with the fitted numbers.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OverlayDocument {
     /// n.
     pub exponent: f64,
@@ -223,7 +168,7 @@ pub struct OverlayDocument {
 }
 
 /// One analysed record.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "palpate.analysis/1")]
 pub struct AnalysisDocument {
     /// `palpate.analysis/1`.
@@ -328,34 +273,6 @@ fn segments(analysis: &Analysis) -> Vec<SegmentDocument> {
         last_row: segment.end - 1,
     };
     analysis.segmentation.segments.iter().map(document).collect()
-}
-
-/// The word for a phase.
-fn phase_word(phase: Phase) -> &'static str {
-    match phase {
-        Phase::Rest => "rest",
-        Phase::Loading => "loading",
-        Phase::Hold => "hold",
-        Phase::Unloading => "unloading",
-    }
-}
-
-/// The word for what came before a hold.
-pub(crate) fn after_word(after: After) -> &'static str {
-    match after {
-        After::Loading => "loading",
-        After::Unloading => "unloading",
-    }
-}
-
-/// The word for what is held, as a description writes it.
-#[must_use]
-pub fn mode_word(mode: HoldMode) -> &'static str {
-    match mode {
-        HoldMode::DisplacementHeld => "displacement",
-        HoldMode::ForceHeld => "force",
-        HoldMode::Neither => "neither",
-    }
 }
 
 fn hold(hold: &HoldAnalysis) -> HoldDocument {

@@ -2,30 +2,27 @@
 
 use palpate::calibrate::{CalibrateError, Calibration, MaterialNumber, MaterialUnit, NumberProfile};
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::{Input, Software, termination};
-use crate::calibrated::CalibratedRecord;
-use crate::study::calibration_remarks;
+use super::comparison::NumberDocument;
+use super::software::Software;
+use crate::result::{CalibratedRecord, Input, termination_word};
 
 /// A number of a calibrated law, in the unit at the end of its name.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CalibratedNumberDocument {
     /// Name with its unit, such as `modulus_pa`, `exponent`, `rate_coefficient_per_s`, `layer_thickness_m`.
     pub name: String,
-    /// The best value.
-    pub value: f64,
-    /// Standard error; `null` where the record leaves the number open, or where it was given.
-    pub standard_error: Option<f64>,
-    /// Confidence interval.
-    pub interval: Option<[f64; 2]>,
+    /// Its value; no standard error where the record leaves it open, or where it was given.
+    #[serde(flatten)]
+    pub estimate: NumberDocument,
     /// Profile interval; left out where none was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub profile: Option<ProfileDocument>,
 }
 
 /// A profile interval; an end that the record leaves open is `null`.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ProfileDocument {
     /// Lower end.
     pub low: Option<f64>,
@@ -34,7 +31,7 @@ pub struct ProfileDocument {
 }
 
 /// How well what was not fitted is foretold.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ForetoldDocument {
     /// Root mean square error, N.
     pub rmse_n: f64,
@@ -45,7 +42,7 @@ pub struct ForetoldDocument {
 }
 
 /// One law on the record.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CalibratedLawDocument {
     /// Name of the law.
     pub law: String,
@@ -70,7 +67,7 @@ pub struct CalibratedLawDocument {
 }
 
 /// Laws calibrated on a whole record.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CalibrationDocument {
     /// Always `palpate.calibration/1`.
     pub schema: String,
@@ -112,7 +109,7 @@ impl CalibrationDocument {
                 log_covariance: good
                     .and_then(|made| made.material.uncertainty.as_ref())
                     .map(|uncertainty| uncertainty.covariance.clone()),
-                termination: good.map(|made| termination(made.termination).to_owned()),
+                termination: good.map(|made| termination_word(made.termination).to_owned()),
                 error: made.as_ref().err().map(ToString::to_string),
             }
         };
@@ -123,7 +120,7 @@ impl CalibrationDocument {
             fitted: record.data.fitted(),
             confidence,
             laws: record.rows.iter().enumerate().map(law).collect(),
-            remarks: calibration_remarks(record),
+            remarks: record.remarks(),
         }
     }
 }
@@ -151,9 +148,7 @@ fn number(number: &MaterialNumber) -> CalibratedNumberDocument {
     };
     CalibratedNumberDocument {
         name: format!("{}{suffix}", number.name),
-        value: number.estimate.value,
-        standard_error: number.estimate.standard_error,
-        interval: number.estimate.interval.map(|(low, high)| [low, high]),
+        estimate: NumberDocument::from(&number.estimate),
         profile: None,
     }
 }

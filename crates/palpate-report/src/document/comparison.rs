@@ -3,18 +3,21 @@
 use std::collections::BTreeMap;
 
 use palpate::fit::{Estimate, Forecast, LawFit, Loss, SampleChoice, SpectrumFit};
-use palpate::forecast::{Certainty, CompareOptions, Comparison, RampChoice, Ranking, Row, Verdict};
+use palpate::forecast::{CompareOptions, Comparison, RampChoice, Ranking, Row, Verdict};
 use palpate::laws::Response;
 use palpate::segment::HoldStart;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::settings::hold_start_word;
-use super::{FindingDocument, Input, Software, after_word, termination};
-use crate::compared::{ComparedHold, ComparedRecord, LeftOut, Quantity};
+use super::finding::FindingDocument;
+use super::software::Software;
+use crate::result::{
+    ComparedHold, ComparedRecord, Input, LeftOut, Quantity, after_word, certainty_word, hold_start_word,
+    termination_word,
+};
 
 /// A number of a law.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NumberDocument {
     /// The best value.
     pub value: f64,
@@ -25,7 +28,7 @@ pub struct NumberDocument {
 }
 
 /// What a law fitted to the first part of the hold says of the rest.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ForecastDocument {
     /// Time up to which was fitted, s after the start of the fit.
     pub cut_s: f64,
@@ -40,7 +43,7 @@ pub struct ForecastDocument {
 }
 
 /// A peak of the spectrum.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PeakDocument {
     /// Time, s.
     pub time_s: f64,
@@ -49,7 +52,7 @@ pub struct PeakDocument {
 }
 
 /// The dense spectrum.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SpectrumDocument {
     /// The constant, in the unit of the signal.
     pub equilibrium: f64,
@@ -66,7 +69,7 @@ pub struct SpectrumDocument {
 }
 
 /// One law on one hold.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LawDocument {
     /// Name of the law, as `--laws` takes it.
     pub law: String,
@@ -93,7 +96,7 @@ pub struct LawDocument {
 }
 
 /// Which law to use.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct VerdictDocument {
     /// The law with the fewest numbers among those that do best.
     pub law: String,
@@ -110,7 +113,7 @@ pub struct VerdictDocument {
 }
 
 /// Laws compared on one hold.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HoldComparisonDocument {
     /// What the laws were fitted to: `strain`, `force` or `displacement`.
     pub signal: String,
@@ -135,7 +138,7 @@ pub struct HoldComparisonDocument {
 }
 
 /// One hold of a compared record.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ComparedHoldDocument {
     /// Number of the hold, from 1.
     pub index: usize,
@@ -158,7 +161,7 @@ pub struct ComparedHoldDocument {
 }
 
 /// One compared record.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ComparedRecordDocument {
     /// The record.
     pub input: Input,
@@ -168,19 +171,8 @@ pub struct ComparedRecordDocument {
     pub findings: Vec<FindingDocument>,
 }
 
-/// A file on which nothing could be compared.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct LeftOutDocument {
-    /// Path as given.
-    pub path: String,
-    /// Why.
-    pub reason: String,
-    /// What would help.
-    pub hint: Option<String>,
-}
-
 /// What a comparison ran with.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ComparisonSettingsDocument {
     /// `relaxation` or `creep`.
     pub response: String,
@@ -203,7 +195,7 @@ pub struct ComparisonSettingsDocument {
 }
 
 /// Laws compared on the holds of records.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "palpate.comparison/1")]
 pub struct ComparisonDocument {
     /// `palpate.comparison/1`.
@@ -213,7 +205,7 @@ pub struct ComparisonDocument {
     /// The records.
     pub records: Vec<ComparedRecordDocument>,
     /// Files on which nothing could be compared.
-    pub left_out: Vec<LeftOutDocument>,
+    pub left_out: Vec<LeftOut>,
     /// What wrote this.
     pub software: Software,
 }
@@ -226,7 +218,7 @@ impl ComparisonDocument {
             schema: "palpate.comparison/1".to_owned(),
             settings,
             records: records.iter().map(ComparedRecordDocument::from).collect(),
-            left_out: left_out.iter().map(LeftOutDocument::from).collect(),
+            left_out: left_out.to_vec(),
             software: Software::this(),
         }
     }
@@ -262,16 +254,6 @@ impl ComparisonSettingsDocument {
             confidence: options.fit.confidence,
             fit_until_s: fit_until,
             hold_start: hold_start_word(hold_start),
-        }
-    }
-}
-
-impl From<&LeftOut> for LeftOutDocument {
-    fn from(file: &LeftOut) -> Self {
-        Self {
-            path: file.path.clone(),
-            reason: file.reason.clone(),
-            hint: file.hint.clone(),
         }
     }
 }
@@ -344,15 +326,6 @@ fn verdict(comparison: &Comparison, verdict: &Verdict) -> VerdictDocument {
     }
 }
 
-/// The word for how sure a verdict is.
-pub(crate) fn certainty_word(certainty: Certainty) -> &'static str {
-    match certainty {
-        Certainty::Clear => "clear",
-        Certainty::Likely => "likely",
-        Certainty::Open => "open",
-    }
-}
-
 fn finite(value: f64) -> Option<f64> {
     Some(value).filter(|value| value.is_finite())
 }
@@ -370,7 +343,7 @@ fn law(row: &Row, change: f64, lowest_aicc: f64, quantity: Quantity) -> LawDocum
         delta_bic: row.delta_bic.and_then(finite),
         forecasts: row.forward.forecasts.iter().map(|found| found.map(|found| forecast(&found, change))).collect(),
         forward_score: row.forward.score,
-        termination: fit.map(|fit| termination(fit.termination).to_owned()),
+        termination: fit.map(|fit| termination_word(fit.termination).to_owned()),
         error: without.map(ToString::to_string),
     }
 }

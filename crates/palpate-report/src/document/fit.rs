@@ -3,12 +3,14 @@
 use std::collections::BTreeMap;
 
 use palpate::analysis::{HoldAnalysis, Prediction, Signal};
-use palpate::fit::{Domain, Estimate, ExponentChoice, LatencyFit, Termination};
+use palpate::fit::{Domain, Estimate, ExponentChoice, LatencyFit};
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+
+use crate::result::termination_word;
 
 /// The latency law fitted to one hold.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FitDocument {
     /// Always `latency`.
     pub law: String,
@@ -79,7 +81,7 @@ impl FitDocument {
             samples: fit.samples,
             delta_bic,
             prediction_error: prediction.map(|prediction| prediction.relative),
-            termination: termination(fit.termination).to_owned(),
+            termination: termination_word(fit.termination).to_owned(),
         };
         document.note("exponent", fit.exponent, 1.0);
         document.note("equilibrium_force_n", fit.equilibrium, newtons);
@@ -100,19 +102,5 @@ impl FitDocument {
         if let Some((low, high)) = estimate.interval {
             self.confidence_interval.insert(name.to_owned(), [low * unit, high * unit]);
         }
-    }
-}
-
-/// The stable word for a reason to end.
-pub(crate) fn termination(termination: Termination) -> &'static str {
-    match termination {
-        Termination::Converged => "converged",
-        Termination::RateAtBound => "rate_at_bound",
-        Termination::ExponentAtBound => "exponent_at_bound",
-        Termination::EquilibriumAtBound => "equilibrium_at_bound",
-        Termination::AmplitudeAtBound => "amplitude_at_bound",
-        Termination::TermsMerged => "terms_merged",
-        Termination::Singular => "singular",
-        Termination::IterationLimit => "iteration_limit",
     }
 }

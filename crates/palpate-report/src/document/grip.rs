@@ -4,14 +4,13 @@ use palpate::grip::{
     BackOff, Control, Holding, Lasts, Move, Objective, PlanKind, Pressed, Regrip, Schedule, Sensitivity,
 };
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::Software;
-use crate::gripped::GrippedBody;
-use crate::study::{grip_remarks, grip_verdict};
+use super::software::Software;
+use crate::result::GrippedBody;
 
 /// The load and what holds it.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GraspDocument {
     /// Mass, kg.
     pub mass_kg: f64,
@@ -38,7 +37,7 @@ pub struct GraspDocument {
 }
 
 /// What the gripper can do.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GripLimitsDocument {
     /// The fastest that the jaws go, m/s.
     pub speed_m_per_s: f64,
@@ -51,7 +50,7 @@ pub struct GripLimitsDocument {
 }
 
 /// How long something holds.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LastsDocument {
     /// Longer than ten years.
     pub always: bool,
@@ -60,7 +59,7 @@ pub struct LastsDocument {
 }
 
 /// A grip with the displacement held.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HoldingDocument {
     /// `squeeze`, `settle` or `back_off`.
     pub kind: String,
@@ -95,7 +94,7 @@ pub struct HoldingDocument {
 }
 
 /// How long a squeeze to another displacement holds.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NeighbourDocument {
     /// Displacement, m.
     pub displacement_m: f64,
@@ -104,7 +103,7 @@ pub struct NeighbourDocument {
 }
 
 /// What 1 % more of a number of the material does to squeeze and back off.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SensitivityDocument {
     /// Name of the number.
     pub number: String,
@@ -117,7 +116,7 @@ pub struct SensitivityDocument {
 }
 
 /// Squeeze and back off.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BackOffDocument {
     /// The retreat.
     pub backed: HoldingDocument,
@@ -134,7 +133,7 @@ pub struct BackOffDocument {
 }
 
 /// The force held.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PressedDocument {
     /// The force, N.
     pub force_n: f64,
@@ -159,7 +158,7 @@ pub struct PressedDocument {
 }
 
 /// A squeeze of a schedule.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MoveDocument {
     /// When it begins, s since first touch.
     pub time_s: f64,
@@ -174,7 +173,7 @@ pub struct MoveDocument {
 }
 
 /// Squeezes that keep the force in a band.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ScheduleDocument {
     /// `fewest_moves` or `least_work`.
     pub objective: String,
@@ -193,7 +192,7 @@ pub struct ScheduleDocument {
 }
 
 /// A grip that there is not.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct RefusedDocument {
     /// Which.
     pub grip: String,
@@ -204,7 +203,7 @@ pub struct RefusedDocument {
 }
 
 /// A planned grip.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GripDocument {
     /// Always `palpate.grip/1`.
     pub schema: String,
@@ -412,7 +411,7 @@ impl GripDocument {
             objective: question.squeeze.is_none().then(|| objective.to_owned()),
             assured: question.assured,
             holds: answer.holds() == Ok(true),
-            verdict: grip_verdict(body),
+            verdict: body.verdict(),
             squeeze: answer.squeeze.as_ref().ok().map(|made| (&made.found).into()),
             neighbours: answer
                 .neighbours
@@ -427,7 +426,7 @@ impl GripDocument {
             schedule: answer.schedule.as_ref().and_then(|made| made.as_ref().ok()).map(|made| (&made.found).into()),
             refused: refused.collect(),
             extrapolations: body.extrapolations().iter().map(ToString::to_string).collect(),
-            remarks: grip_remarks(body),
+            remarks: body.remarks(),
         }
     }
 }

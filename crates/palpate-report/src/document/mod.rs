@@ -9,30 +9,32 @@
 //! | `calibration.rs` | `palpate.calibration/1`, laws calibrated on a whole record |
 //! | `comparison.rs` | `palpate.comparison/1`, laws compared on the holds of records |
 //! | `grip.rs` | `palpate.grip/1`, a planned grip |
+//! | `finding.rs`, `software.rs` | what stands in several of them |
+//! | `watch.rs` | `palpate.watch/1`, a watched contact, one object a line |
 //! | `reproduction.rs` | `palpate.reproduction/1`, the summary of the reproduced study |
 
 mod analysis;
 mod calibration;
 mod comparison;
+mod finding;
 mod fit;
 mod grip;
 mod reproduction;
 mod settings;
 mod signals;
+mod software;
+mod watch;
 
-pub(crate) use analysis::after_word;
-pub use analysis::mode_word;
-pub use analysis::{AnalysisDocument, FindingDocument, HoldDocument, Input, TableRow};
+pub use analysis::{AnalysisDocument, HoldDocument, TableRow};
 pub use calibration::{
     CalibratedLawDocument, CalibratedNumberDocument, CalibrationDocument, ForetoldDocument, ProfileDocument,
 };
-pub(crate) use comparison::certainty_word;
 pub use comparison::{
     ComparedHoldDocument, ComparedRecordDocument, ComparisonDocument, ComparisonSettingsDocument,
     HoldComparisonDocument, LawDocument, NumberDocument, VerdictDocument,
 };
+pub use finding::FindingDocument;
 pub use fit::FitDocument;
-pub(crate) use fit::termination;
 pub use grip::{
     BackOffDocument, GraspDocument, GripDocument, GripLimitsDocument, HoldingDocument, LastsDocument, MoveDocument,
     NeighbourDocument, PressedDocument, RefusedDocument, ScheduleDocument, SensitivityDocument,
@@ -42,26 +44,5 @@ pub use settings::SettingsDocument;
 pub use signals::{
     CorrectionDocument, SignalsDocument, SkewDocument, TouchDocument, TouchEstimateDocument, ValuesDocument,
 };
-
-use schemars::JsonSchema;
-use serde::Serialize;
-
-/// The software that wrote a document.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct Software {
-    /// Always `palpate`.
-    pub name: String,
-    /// Its version.
-    pub version: String,
-}
-
-impl Software {
-    /// This build.
-    #[must_use]
-    pub fn this() -> Self {
-        Self {
-            name: "palpate".to_owned(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-        }
-    }
-}
+pub use software::Software;
+pub use watch::{ObservationDocument, WatchDocument, WatchSummaryDocument, WatchedHoldDocument};

@@ -1,13 +1,13 @@
 //! `palpate.reproduction/1`: the summary of the reproduced study.
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::Software;
 use super::analysis::TableRow;
+use super::software::Software;
 
 /// One thing that the paper reports, checked.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct CheckDocument {
     /// What is checked.
     pub name: String,
@@ -20,7 +20,7 @@ pub struct CheckDocument {
 }
 
 /// The whole summary.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "palpate.reproduction/1")]
 pub struct ReproductionDocument {
     /// `palpate.reproduction/1`.

@@ -2,13 +2,15 @@
 
 use palpate::analysis::{Analysis, ModulusSource};
 use palpate::contact::{Shape, Sides};
-use palpate::segment::{ContactChoice, HoldStart};
+use palpate::segment::ContactChoice;
 use palpate::simulate::Separation;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+
+use crate::result::hold_start_word;
 
 /// Resolved settings.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SettingsDocument {
     /// `ball`, `pad`, `prism` or `none`.
     pub shape: String,
@@ -134,14 +136,5 @@ impl SettingsDocument {
             rate_window_samples: options.rate_window.samples,
             rate_window_share: options.rate_window.share,
         }
-    }
-}
-
-/// From where in a hold the laws are fitted, as it is written in a description.
-pub(super) fn hold_start_word(start: HoldStart) -> String {
-    match start {
-        HoldStart::Peak => "peak".to_owned(),
-        HoldStart::Settled => "settled".to_owned(),
-        HoldStart::AfterPeak(delay) => format!("peak + {delay} s"),
     }
 }

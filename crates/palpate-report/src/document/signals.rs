@@ -3,10 +3,10 @@
 use palpate::analysis::Analysis;
 use palpate::record::{Baseline, Clock, Column, Correction, Stamps, Values};
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The columns of a record as they came into the analysis.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SignalsDocument {
     /// Median time between samples, s.
     pub sample_interval_s: Option<f64>,
@@ -27,7 +27,7 @@ pub struct SignalsDocument {
 }
 
 /// A measured column; numbers in its own SI unit.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ValuesDocument {
     /// Single rows that stray alone.
     pub strays: usize,
@@ -40,7 +40,7 @@ pub struct ValuesDocument {
 }
 
 /// By how much the stamps of the force lag.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SkewDocument {
     /// Time that the force is stamped too late, s.
     pub skew_s: f64,
@@ -51,7 +51,7 @@ pub struct SkewDocument {
 }
 
 /// First touch, and what every rule says of it.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TouchDocument {
     /// Displacement of first touch as measured, m.
     pub displacement_m: f64,
@@ -66,7 +66,7 @@ pub struct TouchDocument {
 }
 
 /// What one rule says of first touch.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TouchEstimateDocument {
     /// The rule.
     pub method: String,
@@ -75,7 +75,7 @@ pub struct TouchEstimateDocument {
 }
 
 /// One thing that was done to the record, in order.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CorrectionDocument {
     /// Stable code.
     pub code: String,

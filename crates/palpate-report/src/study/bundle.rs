@@ -2,7 +2,7 @@
 
 use palpate::simulate::{SimulateError, Trajectory};
 
-use super::write_trajectory;
+use super::simulate::write_trajectory;
 use crate::figure::{Figure, FigureError};
 use crate::table::Table;
 

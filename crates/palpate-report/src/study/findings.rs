@@ -2,8 +2,9 @@
 
 use palpate::analysis::{Analysis, Finding as RecordFinding, HoldAnalysis, Severity as RecordSeverity};
 
-use crate::compared::ComparedRecord;
 use crate::page::{Finding, Severity};
+use crate::result::ComparedRecord;
+use crate::wrap::indented;
 
 /// Different words for one code that are written out; more are counted.
 pub(super) const MOST_LINES: usize = 6;
@@ -11,8 +12,6 @@ pub(super) const MOST_LINES: usize = 6;
 const MOST_PLAIN: usize = 2;
 /// Places before the further lines of a finding on a terminal.
 const INDENT: usize = 9;
-/// Width of a terminal.
-const WIDTH: usize = 100;
 /// A force below this share of the largest one of the record is none.
 const NO_FORCE: f64 = 0.01;
 
@@ -213,41 +212,11 @@ fn lines(findings: &[Gathered]) -> String {
         for (place, seen) in &finding.lines {
             let place = place.replacen("Hold", "hold", 1);
             let told = if place.is_empty() { seen.clone() } else { format!("{place}: {seen}") };
-            indented(&mut text, (&head, INDENT), &told, WIDTH);
+            indented(&mut text, (&head, INDENT), &told);
             head = " ".repeat(INDENT);
         }
     }
     text
-}
-
-/// A sentence in lines of a terminal.
-pub(super) fn wrapped(sentence: &str) -> String {
-    let mut text = String::new();
-    indented(&mut text, ("", 0), sentence, WIDTH);
-    text
-}
-
-/// A text behind `head`, its further lines set in.
-fn indented(out: &mut String, (head, indent): (&str, usize), text: &str, width: usize) {
-    let mut used = head.chars().count();
-    out.push_str(head);
-    let mut fresh = true;
-    for word in text.split_whitespace() {
-        let length = word.chars().count();
-        if !fresh && used + 1 + length > width {
-            out.push('\n');
-            out.push_str(&" ".repeat(indent));
-            (used, fresh) = (indent, true);
-        }
-        if !fresh {
-            out.push(' ');
-            used += 1;
-        }
-        out.push_str(word);
-        used += length;
-        fresh = false;
-    }
-    out.push('\n');
 }
 
 #[cfg(test)]
@@ -299,13 +268,5 @@ mod tests {
         assert_eq!(holds_named(&[]), "");
         assert_eq!(holds_named(&[4]), "Hold 4");
         assert_eq!(holds_named(&[7, 1, 2, 3, 9, 10]), "Holds 1–3, 7, 9, 10");
-    }
-
-    #[test]
-    fn terminal_lines_are_wrapped() {
-        let mut text = String::new();
-        indented(&mut text, ("info    code  ", INDENT), &"word ".repeat(40), 60);
-        assert!(text.lines().count() > 2 && text.lines().all(|line| line.chars().count() <= 60));
-        assert!(text.lines().skip(1).all(|line| line.starts_with("         w")));
     }
 }

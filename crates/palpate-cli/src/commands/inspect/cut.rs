@@ -6,9 +6,9 @@ use palpate::analysis::{AnalysisError, AnalysisOptions, Finding, corrected, susp
 use palpate::record::{Record, SignalReport};
 use palpate::segment::{Phase, SegmentError, Segmentation, TouchEstimate, find_contact_of};
 use palpate_files::description::TestDescription;
-use palpate_report::document::mode_word;
 use palpate_report::figure::Figure;
 use palpate_report::number::significant;
+use palpate_report::result::mode_word;
 use palpate_report::sparkline::{sparkline, strip};
 use palpate_report::study::cut_figure;
 use palpate_report::table::{Cell, Table, TableColumn};

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use palpate_files::description::{Plan, Spacing, Sweep, SweptNumber};
 use palpate_files::parquet_table::{TableError, TableReader, Values};
-use palpate_report::study::{MOST_PANELS, SweptAxis, SweptResult, sweep_grid_figure, sweep_points_figure};
+use palpate_report::figure::MOST_PANELS;
+use palpate_report::study::{SweptAxis, SweptResult, sweep_grid_figure, sweep_points_figure};
 
 use super::parts::table_failure;
 use super::rows::{ResultColumn, results};

@@ -1,31 +1,8 @@
 //! An observation in words.
 
 use palpate::number::{significant, with_error};
-use palpate::observe::{Held, Observation, Phase, Slip, TimeToSlip, Uncertain};
-
-pub(super) fn phase(phase: Phase) -> &'static str {
-    match phase {
-        Phase::Free => "free",
-        Phase::Loading => "loading",
-        Phase::Holding => "holding",
-        Phase::Unloading => "unloading",
-    }
-}
-
-pub(super) fn held(held: Held) -> &'static str {
-    match held {
-        Held::Displacement => "displacement",
-        Held::Force => "force",
-    }
-}
-
-pub(super) fn slip_word(slip: Slip) -> &'static str {
-    match slip {
-        Slip::None => "none",
-        Slip::Soon => "soon",
-        Slip::Slipping => "slipping",
-    }
-}
+use palpate::observe::{Observation, Slip, TimeToSlip, Uncertain};
+use palpate_report::result::{held_word, watched_phase_word};
 
 /// A value ± its standard deviation, to the digits that it has.
 pub(super) fn uncertain(number: Uncertain, unit: &str) -> String {
@@ -63,8 +40,8 @@ pub(super) fn slip(seen: &Observation) -> Option<String> {
 pub(super) fn state(seen: &Observation) -> String {
     match (seen.held, seen.held_since) {
         (Some(what), Some(since)) => {
-            format!("{} held since {} s", held(what), significant(since, 5))
+            format!("{} held since {} s", held_word(what), significant(since, 5))
         }
-        _ => phase(seen.phase).to_owned(),
+        _ => watched_phase_word(seen.phase).to_owned(),
     }
 }

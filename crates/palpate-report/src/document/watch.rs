@@ -1,0 +1,221 @@
+//! `palpate.watch/1`: what an observer reports while it watches a contact, one JSON object a line.
+
+use palpate::observe::{Held, Observation, Slip, TimeToSlip, Uncertain};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::result::{held_word, slip_word, slips_word, watched_phase_word};
+
+/// One line: a tick or an event, the end of a hold, or the holds of the whole log. What is not known is left out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(title = "palpate.watch/1")]
+#[serde(untagged)]
+pub enum WatchDocument {
+    /// The last line.
+    Summary(WatchSummaryDocument),
+    /// A hold that ended.
+    Hold(WatchedHoldDocument),
+    /// A tick, a hold that begins or changes, or a warning.
+    Observation(ObservationDocument),
+}
+
+/// The holds of a log.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WatchSummaryDocument {
+    /// Always `summary`.
+    pub event: String,
+    /// The holds in order.
+    pub holds: Vec<WatchedHoldDocument>,
+}
+
+/// A hold as it was watched.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WatchedHoldDocument {
+    /// Standard deviation of the speed of creep, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub creep_rate_deviation_m_per_s: Option<f64>,
+    /// The last speed of creep, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub creep_rate_m_per_s: Option<f64>,
+    /// When it was last seen, s.
+    pub end_s: f64,
+    /// Standard deviation of the equilibrium force, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub equilibrium_force_deviation_n: Option<f64>,
+    /// The last equilibrium force, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub equilibrium_force_n: Option<f64>,
+    /// `hold_ends`; left out in the summary.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub event: Option<String>,
+    /// Force when it was last seen, N.
+    pub force_end_n: f64,
+    /// Force when it began, N.
+    pub force_start_n: f64,
+    /// What was held for most of its ticks: `displacement` or `force`.
+    pub held: String,
+    /// First time at or below the force of slip, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slipped_s: Option<f64>,
+    /// When it began, s.
+    pub start_s: f64,
+    /// When its end was seen, s; left out in the summary.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_s: Option<f64>,
+    /// First warning, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub warned_s: Option<f64>,
+}
+
+/// What an observer says after a tick.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ObservationDocument {
+    /// Standard deviation of the speed of creep, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub creep_rate_deviation_m_per_s: Option<f64>,
+    /// Speed of the creep while the force is held, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub creep_rate_m_per_s: Option<f64>,
+    /// Standard deviation of the equilibrium force, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub equilibrium_force_deviation_n: Option<f64>,
+    /// The force that a hold of the displacement tends to, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub equilibrium_force_n: Option<f64>,
+    /// `tick`, `hold_begins`, `hold_changes` or `warning`.
+    pub event: String,
+    /// Standard deviation of the excess force, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub excess_force_deviation_n: Option<f64>,
+    /// Force in excess of equilibrium, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub excess_force_n: Option<f64>,
+    /// Strain in excess of equilibrium.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub excess_strain: Option<f64>,
+    /// Standard deviation of the excess strain.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub excess_strain_deviation: Option<f64>,
+    /// The force without its noise, N.
+    pub force_n: f64,
+    /// What is held: `displacement` or `force`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub held: Option<String>,
+    /// When the hold began, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub held_since_s: Option<f64>,
+    /// `free`, `loading`, `holding` or `unloading`.
+    pub phase: String,
+    /// Rate at which the excess falls now, in shares of itself, 1/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relative_rate_per_s: Option<f64>,
+    /// `not_known_yet`, `never`, `perhaps_never` or `after`; left out without a force of slip.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slips: Option<String>,
+    /// When, s.
+    pub time_s: f64,
+    /// Upper end of the interval of the time to slip, s; `null` where never lies inside.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_to_slip_high_s: Option<Option<f64>>,
+    /// Its lower end, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_to_slip_low_s: Option<f64>,
+    /// How long until the force has fallen to that of slip, s; `null` where that is never.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_to_slip_s: Option<Option<f64>>,
+    /// `none`, `soon` or `slipping`; left out without a force of slip.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub warning: Option<String>,
+}
+
+fn parted(number: Option<Uncertain>) -> (Option<f64>, Option<f64>) {
+    (number.map(|number| number.value), number.map(|number| number.deviation))
+}
+
+impl ObservationDocument {
+    /// The document of an observation, for an event.
+    #[must_use]
+    pub fn new(event: &str, seen: &Observation) -> Self {
+        let (creep, creep_deviation) = parted(seen.creep_rate);
+        let (equilibrium, equilibrium_deviation) = parted(seen.equilibrium_force);
+        let (excess, excess_deviation) = parted(seen.excess_force);
+        let (strain, strain_deviation) = parted(seen.excess_strain);
+        let hold = seen.held.zip(seen.held_since);
+        let times = match seen.time_to_slip {
+            Some(TimeToSlip::After { value, low, high }) => Some((value, low, high)),
+            _ => None,
+        };
+        Self {
+            creep_rate_deviation_m_per_s: creep_deviation,
+            creep_rate_m_per_s: creep,
+            equilibrium_force_deviation_n: equilibrium_deviation,
+            equilibrium_force_n: equilibrium,
+            event: event.to_owned(),
+            excess_force_deviation_n: excess_deviation,
+            excess_force_n: excess,
+            excess_strain: strain,
+            excess_strain_deviation: strain_deviation,
+            force_n: seen.force,
+            held: hold.map(|(held, _)| held_word(held).to_owned()),
+            held_since_s: hold.map(|(_, since)| since),
+            phase: watched_phase_word(seen.phase).to_owned(),
+            relative_rate_per_s: seen.relative_rate,
+            slips: seen.time_to_slip.map(|time| slips_word(time).to_owned()),
+            time_s: seen.time,
+            time_to_slip_high_s: times.map(|(_, _, high)| high),
+            time_to_slip_low_s: times.map(|(_, low, _)| low),
+            time_to_slip_s: times.map(|(value, _, _)| value),
+            warning: (seen.time_to_slip.is_some() || seen.slip != Slip::None).then(|| slip_word(seen.slip).to_owned()),
+        }
+    }
+}
+
+impl WatchedHoldDocument {
+    /// The document of a hold: what was held from when to when, and its force at both ends.
+    #[must_use]
+    pub fn new(held: Held, (start, end): (f64, f64), (force_start, force_end): (f64, f64)) -> Self {
+        Self {
+            creep_rate_deviation_m_per_s: None,
+            creep_rate_m_per_s: None,
+            end_s: end,
+            equilibrium_force_deviation_n: None,
+            equilibrium_force_n: None,
+            event: None,
+            force_end_n: force_end,
+            force_start_n: force_start,
+            held: held_word(held).to_owned(),
+            slipped_s: None,
+            start_s: start,
+            time_s: None,
+            warned_s: None,
+        }
+    }
+
+    /// The same with the last equilibrium force and speed of creep.
+    #[must_use]
+    pub fn with_last(mut self, equilibrium_force: Option<Uncertain>, creep_rate: Option<Uncertain>) -> Self {
+        (self.equilibrium_force_n, self.equilibrium_force_deviation_n) = parted(equilibrium_force);
+        (self.creep_rate_m_per_s, self.creep_rate_deviation_m_per_s) = parted(creep_rate);
+        self
+    }
+
+    /// The same as the line that tells of its end.
+    #[must_use]
+    pub fn ended(mut self, time: f64) -> Self {
+        (self.event, self.time_s) = (Some("hold_ends".to_owned()), Some(time));
+        self
+    }
+}
+
+impl WatchSummaryDocument {
+    /// The last line of a log.
+    #[must_use]
+    pub fn new(holds: Vec<WatchedHoldDocument>) -> Self {
+        Self {
+            event: "summary".to_owned(),
+            holds,
+        }
+    }
+}

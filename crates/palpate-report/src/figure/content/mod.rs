@@ -1,0 +1,28 @@
+//! What a figure shows, without a position on the page.
+//!
+//! The public types come in from the reports; `layout` and `draw` read them and never change them.
+//!
+//! | file | what |
+//! |---|---|
+//! | `figure.rs` | the figure, how its panels are arranged |
+//! | `panel.rs` | one set of axes and its layers |
+//! | `axis.rs` | quantity, unit, spacing and limits of an axis |
+//! | `layer.rs` | lines, points, bands, spans, reference lines and heat maps |
+//! | `role.rs` | what a layer stands for, and its colour, dash and marker |
+//! | `error.rs` | why a figure cannot be drawn |
+
+mod axis;
+mod error;
+mod figure;
+mod layer;
+mod panel;
+mod role;
+
+pub(super) use axis::shows;
+pub use axis::{Axis, Scale};
+pub use error::FigureError;
+pub use figure::{Arrangement, Figure, MOST_PANELS};
+pub use layer::{Layer, Map};
+pub use panel::Panel;
+pub use role::Role;
+pub(super) use role::{Marker, Style};

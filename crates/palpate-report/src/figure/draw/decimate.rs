@@ -1,0 +1,239 @@
+//! Reduction of long series to what the page can show.
+
+use crate::figure::layout::Position;
+
+/// Series up to this length are drawn as they are.
+pub(crate) const PLAIN: usize = 2000;
+
+/// Columns per unit of page width into which a long line is gathered.
+const COLUMNS_PER_UNIT: f64 = 1.5;
+
+/// Most stretches into which a line that runs back and forth is cut.
+const STRETCHES: usize = 1200;
+
+/// A line as unbroken pieces; positions that are not numbers break it.
+///
+/// A long line keeps, for every narrow column of the page, its first, lowest, highest and last
+/// position, so that no peak is lost. `width` is the width of the plot.
+pub(crate) fn line<F>(count: usize, width: f64, position: F) -> Vec<Vec<Position>>
+where
+    F: Fn(usize) -> Position,
+{
+    if count <= PLAIN {
+        return gather(count, position, |_| false);
+    }
+    let most = (width * COLUMNS_PER_UNIT).ceil() as usize;
+    let column = |p: Position| (p.0 * COLUMNS_PER_UNIT).floor();
+    let mut last = f64::NAN;
+    let mut runs = 0usize;
+    for i in 0..count {
+        let here = column(position(i));
+        runs += usize::from(here != last);
+        last = here;
+    }
+    if runs <= 2 * most.max(100) {
+        let mut last = f64::NAN;
+        return gather(count, &position, |i| {
+            let here = column(position(i));
+            std::mem::replace(&mut last, here) == here
+        });
+    }
+    let length = count.div_ceil(STRETCHES);
+    gather(count, position, |i| i % length != 0)
+}
+
+/// Collects positions into pieces; `continues(i)` says that `i` falls into the bucket before it.
+fn gather<F, C>(count: usize, position: F, mut continues: C) -> Vec<Vec<Position>>
+where
+    F: Fn(usize) -> Position,
+    C: FnMut(usize) -> bool,
+{
+    let mut pieces = Vec::new();
+    let mut piece = Vec::new();
+    let mut bucket = Bucket::default();
+    for i in 0..count {
+        let here = position(i);
+        let same = continues(i);
+        if !(here.0.is_finite() && here.1.is_finite()) {
+            bucket.empty_into(&mut piece);
+            if !piece.is_empty() {
+                pieces.push(std::mem::take(&mut piece));
+            }
+            continue;
+        }
+        if !same {
+            bucket.empty_into(&mut piece);
+        }
+        bucket.add(i, here);
+    }
+    bucket.empty_into(&mut piece);
+    if !piece.is_empty() {
+        pieces.push(piece);
+    }
+    pieces
+}
+
+/// First, extreme and last positions of neighbours that share a place on the page.
+#[derive(Default)]
+struct Bucket {
+    kept: Option<[(usize, Position); 6]>,
+}
+
+impl Bucket {
+    fn add(&mut self, index: usize, here: Position) {
+        let Some([_, last, left, right, low, high]) = &mut self.kept else {
+            self.kept = Some([(index, here); 6]);
+            return;
+        };
+        *last = (index, here);
+        let replace = |slot: &mut (usize, Position), better: bool| {
+            if better {
+                *slot = (index, here);
+            }
+        };
+        replace(left, here.0 < left.1.0 - 1.0);
+        replace(right, here.0 > right.1.0 + 1.0);
+        replace(low, here.1 < low.1.1);
+        replace(high, here.1 > high.1.1);
+    }
+
+    fn empty_into(&mut self, piece: &mut Vec<Position>) {
+        if let Some(mut kept) = self.kept.take() {
+            kept.sort_unstable_by_key(|(index, _)| *index);
+            let mut before = None;
+            for (index, position) in kept {
+                if before.replace(index) != Some(index) {
+                    piece.push(position);
+                }
+            }
+        }
+    }
+}
+
+/// Lower and upper edge of a band, one pair for each narrow column once it is long.
+pub(crate) fn band<F>(count: usize, edges: F) -> Vec<Vec<(f64, f64, f64)>>
+where
+    F: Fn(usize) -> (f64, f64, f64),
+{
+    let mut pieces: Vec<Vec<(f64, f64, f64)>> = vec![Vec::new()];
+    let mut last_column = f64::NAN;
+    for (x, low, high) in (0..count).map(edges) {
+        if !(x.is_finite() && low.is_finite() && high.is_finite()) {
+            pieces.push(Vec::new());
+            last_column = f64::NAN;
+            continue;
+        }
+        let column = (x * COLUMNS_PER_UNIT).floor();
+        let same = count > PLAIN && column == last_column;
+        last_column = column;
+        let Some(piece) = pieces.last_mut() else {
+            continue;
+        };
+        match piece.last_mut().filter(|_| same) {
+            // Page coordinates grow downwards.
+            Some(last) => *last = (last.0, last.1.max(low), last.2.min(high)),
+            None => piece.push((x, low, high)),
+        }
+    }
+    pieces.retain(|piece| !piece.is_empty());
+    pieces
+}
+
+/// Separate points without those that would lie on another one; all extremes stay.
+pub(crate) fn points(positions: Vec<Position>) -> Vec<Position> {
+    if positions.len() <= PLAIN {
+        return positions;
+    }
+    let mut extremes = Bucket::default();
+    for (i, p) in positions.iter().enumerate() {
+        extremes.add(i, *p);
+    }
+    let mut cell = 0.4;
+    loop {
+        let mut seen = std::collections::HashSet::new();
+        let mut kept: Vec<Position> = positions
+            .iter()
+            .copied()
+            .filter(|(x, y)| seen.insert(((x / cell) as i64, (y / cell) as i64)))
+            .collect();
+        if kept.len() <= 2 * PLAIN {
+            extremes.empty_into(&mut kept);
+            return kept;
+        }
+        cell *= 1.4;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn extremes(pieces: &[Vec<Position>]) -> (f64, f64) {
+        pieces
+            .iter()
+            .flatten()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p.1), high.max(p.1)))
+    }
+
+    #[test]
+    fn short_lines_stay_as_they_are() {
+        let pieces = line(5, 100.0, |i| (i as f64, 1.0));
+        assert_eq!(pieces, vec![(0..5).map(|i| (f64::from(i), 1.0)).collect::<Vec<_>>()]);
+    }
+
+    #[test]
+    fn a_long_record_keeps_single_sample_peaks_and_its_ends() {
+        let n = 1_000_000;
+        let at = |i: usize| {
+            let peak = if i == 123_457 { 50.0 } else { 0.0 };
+            let dip = if i == 777_777 { -40.0 } else { 0.0 };
+            (i as f64 * 400.0 / n as f64, (i as f64 * 0.37).sin() + peak + dip)
+        };
+        let pieces = line(n, 400.0, at);
+        let kept: usize = pieces.iter().map(Vec::len).sum();
+        assert!(kept <= 4 * 601, "{kept}");
+        let (low, high) = extremes(&pieces);
+        assert!(high == at(123_457).1 && low == at(777_777).1);
+        assert_eq!((pieces[0][0], *pieces[0].last().expect("a line")), (at(0), at(n - 1)));
+    }
+
+    #[test]
+    fn a_line_running_back_and_forth_is_bounded_too() {
+        let n = 300_000;
+        let at = |i: usize| (200.0 + 200.0 * (i as f64 * 0.9).sin(), (i as f64 * 0.11).cos());
+        let pieces = line(n, 400.0, at);
+        assert!(pieces.iter().map(Vec::len).sum::<usize>() <= 6 * (STRETCHES + 1));
+        let (low, high) = extremes(&pieces);
+        assert!(low < -0.999_99 && high > 0.999_99);
+    }
+
+    #[test]
+    fn gaps_break_lines_and_bands() {
+        let at = |i: usize| (i as f64 * 0.01, if i % 1000 == 500 { f64::NAN } else { 0.0 });
+        assert_eq!(line(3000, 30.0, at).len(), 4);
+        assert_eq!(band(3000, |i| (at(i).0, at(i).1, 1.0)).len(), 4);
+        assert!(line(3, 10.0, |_| (f64::NAN, 0.0)).is_empty());
+    }
+
+    #[test]
+    fn bands_keep_their_widest_place() {
+        let pieces = band(50_000, |i| {
+            let wide = if i == 31_000 { 9.0 } else { 1.0 };
+            (i as f64 * 0.01, 10.0 + wide, 10.0 - wide)
+        });
+        assert!(pieces[0].len() < 1000);
+        assert!(pieces[0].iter().any(|p| p.1 == 19.0 && p.2 == 1.0));
+    }
+
+    #[test]
+    fn crowded_points_are_thinned() {
+        let many = (0..200_000).map(|i| {
+            let t = f64::from(i);
+            (300.0 + 280.0 * (t * 0.77).sin(), 100.0 + 90.0 * (t * 0.31).cos())
+        });
+        let kept = points(many.clone().collect());
+        assert!(kept.len() <= 2 * PLAIN + 6);
+        let highest = many.fold(0.0, |high: f64, p| high.max(p.1));
+        assert!(kept.iter().any(|p| p.1 == highest));
+    }
+}

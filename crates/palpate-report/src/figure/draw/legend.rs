@@ -1,0 +1,178 @@
+//! Legends: what they list and where they cover nothing.
+
+use super::series;
+use super::svg::{Anchor, Font, Svg, polyline};
+use crate::figure::content::{Layer, Panel, Style};
+use crate::figure::layout::{CAPTION, LEGEND_ROW, Occupancy, Position, Rect, width};
+
+/// Width of the sample beside a legend text.
+const SAMPLE: f64 = 18.0;
+/// Distance between sample and text, and between neighbours in a row.
+const SPACE: f64 = 4.0;
+/// Distance from the axes.
+const INSET: f64 = 4.0;
+/// One line of a legend.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Entry {
+    label: String,
+    line: Option<Style>,
+    points: Option<Style>,
+    /// Whether the points are so many that they are drawn as dots.
+    crowd: bool,
+    band: Option<Style>,
+}
+
+/// The entries of a panel; layers with equal labels share one.
+pub(crate) fn entries(panel: &Panel) -> Vec<Entry> {
+    let mut entries: Vec<Entry> = Vec::new();
+    for layer in &panel.layers {
+        let (Layer::Line {
+            role,
+            label: Some(label),
+            ..
+        }
+        | Layer::Points {
+            role,
+            label: Some(label),
+            ..
+        }
+        | Layer::Band {
+            role,
+            label: Some(label),
+            ..
+        }) = layer
+        else {
+            continue;
+        };
+        if layer.is_empty(panel.x.scale, panel.y.scale) {
+            continue;
+        }
+        let index = entries.iter().position(|e| &e.label == label).unwrap_or_else(|| {
+            let label = label.clone();
+            entries.push(Entry {
+                label,
+                line: None,
+                points: None,
+                crowd: false,
+                band: None,
+            });
+            entries.len() - 1
+        });
+        let style = Some(role.style());
+        match layer {
+            Layer::Line { .. } => entries[index].line = style,
+            Layer::Points { x, .. } => {
+                entries[index].points = style;
+                entries[index].crowd = x.len() > series::CROWD;
+            }
+            _ => entries[index].band = style,
+        }
+    }
+    entries
+}
+
+/// Size of a legend that lists its entries below each other.
+fn block_size(entries: &[Entry]) -> (f64, f64) {
+    let widest = entries.iter().map(|e| width(&e.label, CAPTION)).fold(0.0, f64::max);
+    (SAMPLE + SPACE + widest + 4.0, entries.len() as f64 * LEGEND_ROW + 2.0)
+}
+
+/// How many rows the entries need when set one after the other.
+pub(crate) fn rows(entries: &[Entry], room: f64) -> usize {
+    row_positions(entries, room).last().map_or(0, |(row, _)| row + 1)
+}
+
+fn row_positions(entries: &[Entry], room: f64) -> Vec<(usize, f64)> {
+    let (mut row, mut x) = (0, 0.0);
+    entries
+        .iter()
+        .map(|entry| {
+            let needed = SAMPLE + SPACE + width(&entry.label, CAPTION);
+            if x > 0.0 && x + needed > room {
+                row += 1;
+                x = 0.0;
+            }
+            let here = (row, x);
+            x += needed + 3.0 * SPACE;
+            here
+        })
+        .collect()
+}
+
+/// A place for the legend inside the axes that covers nothing, corners first.
+pub(crate) fn free_place(entries: &[Entry], taken: &Occupancy) -> Option<Rect> {
+    let (w, h) = block_size(entries);
+    let area = taken.area;
+    let (room_x, room_y) = (area.w - w - 2.0 * INSET, area.h - h - 2.0 * INSET);
+    if room_x < 0.0 || room_y < 0.0 || w > 0.7 * area.w {
+        return None;
+    }
+    let at = |along: f64, down: f64| Rect {
+        x: area.x + INSET + along * room_x,
+        y: area.y + INSET + down * room_y,
+        w,
+        h,
+    };
+    let corners = [(1.0, 0.0), (0.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+    let steps = || (1..20).map(|i| f64::from(i) / 20.0);
+    let edges = steps()
+        .map(|s| (1.0, s))
+        .chain(steps().map(|s| (1.0 - s, 0.0)))
+        .chain(steps().map(|s| (1.0 - s, 1.0)))
+        .chain(steps().map(|s| (0.0, s)));
+    let free = |place: &Rect| {
+        let wide = Rect {
+            x: place.x - 3.0,
+            y: place.y - 3.0,
+            w: w + 6.0,
+            h: h + 6.0,
+        };
+        taken.covered(wide) == 0
+    };
+    corners.into_iter().chain(edges).map(|(along, down)| at(along, down)).find(free)
+}
+
+/// Draws the entries below each other.
+pub(crate) fn draw_block(svg: &mut Svg, entries: &[Entry], place: Rect) {
+    for (i, entry) in entries.iter().enumerate() {
+        let middle = place.y + 1.0 + (i as f64 + 0.5) * LEGEND_ROW;
+        draw_entry(svg, entry, place.x + 2.0, middle);
+    }
+}
+
+/// Draws the entries in rows that start at a corner.
+pub(crate) fn draw_rows(svg: &mut Svg, entries: &[Entry], (x, y): Position, room: f64) {
+    for (entry, (row, offset)) in entries.iter().zip(row_positions(entries, room)) {
+        draw_entry(svg, entry, x + offset, y + (row as f64 + 0.5) * LEGEND_ROW);
+    }
+}
+
+fn draw_entry(svg: &mut Svg, entry: &Entry, x: f64, middle: f64) {
+    if let Some(style) = entry.band {
+        let swatch = Rect {
+            x,
+            y: middle - 3.5,
+            w: SAMPLE,
+            h: 7.0,
+        };
+        svg.rect(swatch, &series::band_attributes(style));
+    }
+    if let Some(style) = entry.line {
+        let d = polyline(&[(x, middle), (x + SAMPLE, middle)], false);
+        svg.path(&d, &series::line_attributes(style));
+    }
+    if let Some(style) = entry.points.filter(|_| entry.crowd) {
+        let dots = [-4.5, 0.0, 4.5].map(|along| (x + SAMPLE / 2.0 + along, middle));
+        series::draw_dots(svg, &dots, style);
+    } else if let Some(style) = entry.points {
+        series::draw_markers(svg, &[(x + SAMPLE / 2.0, middle)], style, 2.0);
+    }
+    let font = Font {
+        size: CAPTION,
+        colour: "#222",
+        bold: false,
+        halo: false,
+    };
+    let baseline = middle + 0.36 * CAPTION;
+    svg.text(x + SAMPLE + SPACE, baseline, Anchor::Start, font, &entry.label);
+}

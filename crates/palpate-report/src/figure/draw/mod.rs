@@ -1,0 +1,143 @@
+//! Marks on the page: a figure in, SVG or PNG out.
+//!
+//! | file | what |
+//! |---|---|
+//! | `svg.rs` | a small writer of SVG elements |
+//! | `axes.rs` | frames, ticks, captions, colour bars |
+//! | `series.rs`, `decimate.rs` | lines, points and bands; long ones reduced to what a page shows |
+//! | `heatmap.rs` | heat maps as embedded pictures |
+//! | `reference.rs` | reference lines and shaded stretches with their names |
+//! | `legend.rs` | legends, and where they cover nothing |
+//! | `raster.rs` | SVG to PNG |
+
+mod axes;
+mod decimate;
+mod heatmap;
+mod legend;
+mod raster;
+mod reference;
+mod series;
+mod svg;
+
+use svg::Svg;
+
+use super::content::{Figure, FigureError, Layer};
+use super::layout::{Frame, LEGEND_ROW, Occupancy, Rect, arrange};
+
+impl Figure {
+    /// The figure as an SVG document with real text and no ids, fit for a file or for a page.
+    ///
+    /// # Errors
+    ///
+    /// When the columns of a layer differ in length, or a heat map cannot be encoded.
+    pub fn to_svg(&self) -> Result<String, FigureError> {
+        for layer in self.panels.iter().flat_map(|panel| &panel.layers) {
+            layer.check(&self.name)?;
+        }
+        let legends: Vec<_> = self.panels.iter().map(legend::entries).collect();
+        let frames = self.frames(&legends);
+        let mut svg = Svg::default();
+        for (frame, legend) in frames.iter().zip(&legends) {
+            self.draw_panel(&mut svg, frame)?;
+            draw_inner_text(&mut svg, frame, legend);
+        }
+        let (width, height) = self.size_points();
+        Ok(svg.finish(width, height, &self.caption))
+    }
+
+    /// The figure as a PNG picture with `dpi` picture elements per inch.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::to_svg`], and when the picture would be empty or far too large.
+    pub fn to_png(&self, dpi: f64) -> Result<Vec<u8>, FigureError> {
+        raster::png(&self.name, &self.to_svg()?, self.size_points(), dpi)
+    }
+
+    /// Places the panels; legends that would cover data get rows of their own above the axes.
+    fn frames(&self, legends: &[Vec<legend::Entry>]) -> Vec<Frame<'_>> {
+        let mut rows = vec![0; self.panels.len()];
+        loop {
+            let frames = arrange(self, &rows);
+            let before = rows.clone();
+            for ((rows, frame), legend) in rows.iter_mut().zip(&frames).zip(legends) {
+                if *rows == 0 && !legend.is_empty() && inner_text(frame, legend).1.is_none() {
+                    *rows = legend::rows(legend, frame.area.w);
+                }
+            }
+            if rows == before {
+                return frames;
+            }
+        }
+    }
+
+    fn draw_panel(&self, svg: &mut Svg, frame: &Frame<'_>) -> Result<(), FigureError> {
+        reference::draw_spans(svg, frame);
+        let empty = frame.panel.is_empty();
+        svg.open_clip(frame.area);
+        if !empty {
+            self.draw_map(svg, frame)?;
+        }
+        for layer in &frame.panel.layers {
+            if let Layer::Band { x, low, high, role, .. } = layer {
+                series::draw_band(svg, frame, (x, low, high), *role);
+            }
+        }
+        reference::draw_references(svg, frame);
+        svg.close_clip();
+        for layer in &frame.panel.layers {
+            match layer {
+                Layer::Line { x, y, role, .. } => {
+                    svg.open_clip(frame.area);
+                    series::draw_line(svg, frame, (x, y), *role);
+                    svg.close_clip();
+                }
+                Layer::Points { x, y, error, role, .. } => {
+                    series::draw_points(svg, frame, (x, y), error.as_deref(), *role);
+                }
+                _ => {}
+            }
+        }
+        if empty {
+            axes::draw_empty(svg, frame);
+        } else {
+            axes::draw_colour_bar(svg, frame);
+        }
+        axes::draw_axes(svg, frame);
+        reference::draw_span_names(svg, frame);
+        Ok(())
+    }
+
+    fn draw_map(&self, svg: &mut Svg, frame: &Frame<'_>) -> Result<(), FigureError> {
+        if let Some(map) = frame.panel.map() {
+            let picture = heatmap::picture(map, frame.area, |x| frame.x.at(x), |y| frame.y.at(y));
+            let data = picture.map_err(|reason| FigureError::Image {
+                figure: self.name.clone(),
+                reason,
+            })?;
+            svg.image(frame.area, &data);
+        }
+        Ok(())
+    }
+}
+
+/// Names of reference lines, and where the legend fits inside the axes without covering anything.
+fn inner_text<'a>(frame: &'a Frame<'_>, legend: &[legend::Entry]) -> (Vec<reference::Name<'a>>, Option<Rect>) {
+    let mut taken = Occupancy::new(frame.area);
+    series::occupy(frame, &mut taken);
+    let names = reference::reference_names(frame, &mut taken);
+    let place = legend::free_place(legend, &taken);
+    (names, place)
+}
+
+fn draw_inner_text(svg: &mut Svg, frame: &Frame<'_>, legend: &[legend::Entry]) {
+    let (names, place) = inner_text(frame, legend);
+    reference::draw_reference_names(svg, &names);
+    if frame.legend_rows > 0 {
+        let rise = frame.span_strip() + frame.legend_rows as f64 * LEGEND_ROW + 1.0;
+        let start = (frame.area.x, frame.area.y - rise);
+        legend::draw_rows(svg, legend, start, frame.area.w);
+    } else if let Some(place) = place {
+        legend::draw_block(svg, legend, place);
+    }
+}

@@ -1,0 +1,64 @@
+//! Pixels from a drawn figure.
+
+use std::sync::{Arc, LazyLock};
+
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::{Options, Tree, fontdb};
+
+use crate::figure::content::FigureError;
+
+/// Most picture elements along one side.
+const MOST: f64 = 16_000.0;
+
+/// The typeface of all figures, carried along so that pictures look alike on every machine.
+static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
+    let mut fonts = fontdb::Database::new();
+    fonts.load_font_data(include_bytes!("../../../fonts/Arimo-Regular-subset.ttf").to_vec());
+    fonts.load_font_data(include_bytes!("../../../fonts/Arimo-Bold-subset.ttf").to_vec());
+    fonts.set_sans_serif_family("Arimo");
+    fonts.set_serif_family("Arimo");
+    Arc::new(fonts)
+});
+
+/// PNG bytes of an SVG document at `scale` picture elements per point.
+pub(crate) fn png(name: &str, svg: &str, points: (f64, f64), dpi: f64) -> Result<Vec<u8>, FigureError> {
+    let fail = |reason: String| FigureError::Raster {
+        figure: name.to_owned(),
+        reason,
+    };
+    let scale = dpi / 72.0;
+    let (width, height) = ((points.0 * scale).round(), (points.1 * scale).round());
+    if !(width >= 1.0 && height >= 1.0 && width <= MOST && height <= MOST) {
+        return Err(fail(format!("{width} by {height} picture elements at {dpi} per inch")));
+    }
+    let options = Options {
+        fontdb: Arc::clone(&FONTS),
+        ..Options::default()
+    };
+    let tree = Tree::from_str(svg, &options).map_err(|error| fail(error.to_string()))?;
+    let mut pixmap =
+        Pixmap::new(width as u32, height as u32).ok_or_else(|| fail("no memory for the picture".to_owned()))?;
+    let size = tree.size();
+    let transform = Transform::from_scale(width as f32 / size.width(), height as f32 / size.height());
+    resvg::render(&tree, transform, &mut pixmap.as_mut());
+    encode(&pixmap, dpi).map_err(|error| fail(error.to_string()))
+}
+
+/// Opaque colours with the resolution written along.
+fn encode(pixmap: &Pixmap, dpi: f64) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, pixmap.width(), pixmap.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    let per_metre = (dpi / 0.0254).round() as u32;
+    encoder.set_pixel_dims(Some(png::PixelDimensions {
+        xppu: per_metre,
+        yppu: per_metre,
+        unit: png::Unit::Meter,
+    }));
+    let rgb: Vec<u8> = pixmap.pixels().iter().flat_map(|p| [p.red(), p.green(), p.blue()]).collect();
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&rgb)?;
+    writer.finish()?;
+    Ok(bytes)
+}

@@ -1,0 +1,162 @@
+//! Shaded stretches, reference lines, and their names.
+
+use super::axes::font;
+use super::series;
+use super::svg::{Anchor, Font, Svg, polyline};
+use crate::figure::content::{Layer, Role};
+use crate::figure::layout::{Frame, Occupancy, Rect, TICK, width};
+
+/// Height of a name.
+const HEIGHT: f64 = TICK + 1.5;
+
+/// Both ends of a reference line.
+type Ends = [(f64, f64); 2];
+
+/// A name with its place.
+pub(crate) struct Name<'a> {
+    pub(crate) place: Rect,
+    label: &'a str,
+}
+
+/// Shaded stretches, below everything else.
+pub(crate) fn draw_spans(svg: &mut Svg, frame: &Frame<'_>) {
+    for (from, to, role, _) in spans(frame) {
+        let attributes = format!("fill=\"{}\" fill-opacity=\"0.12\"", role.style().colour);
+        svg.rect(
+            Rect {
+                x: from,
+                w: to - from,
+                ..frame.area
+            },
+            &attributes,
+        );
+    }
+}
+
+/// Names of shaded stretches above the frame; a name without room is left out.
+pub(crate) fn draw_span_names(svg: &mut Svg, frame: &Frame<'_>) {
+    let mut named = spans(frame);
+    named.retain(|(.., label)| label.is_some());
+    // Wide stretches have the first claim to their name.
+    named.sort_by(|a, b| (b.1 - b.0).total_cmp(&(a.1 - a.0)));
+    let mut taken: Vec<(f64, f64)> = Vec::new();
+    for (from, to, _, label) in named {
+        let Some(label) = label else { continue };
+        let half = width(label, TICK) / 2.0;
+        let leftmost = frame.area.x + half;
+        let rightmost = leftmost.max(frame.area.right() - half);
+        let place = [0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9].into_iter().find_map(|shift| {
+            let middle = (f64::midpoint(from, to) + shift * half).clamp(leftmost, rightmost);
+            let (left, right) = (middle - half - 1.5, middle + half + 1.5);
+            let free = taken.iter().all(|(l, r)| right <= *l || left >= *r);
+            free.then_some((middle, left, right))
+        });
+        if let Some((middle, left, right)) = place {
+            taken.push((left, right));
+            let grey = Font {
+                colour: "#555",
+                ..font(TICK)
+            };
+            svg.text(middle, frame.area.y - 3.0, Anchor::Middle, grey, label);
+        }
+    }
+}
+
+/// Borders on the page, role and name of the stretches that reach into the panel.
+fn spans<'a>(frame: &'a Frame<'_>) -> Vec<(f64, f64, Role, Option<&'a str>)> {
+    let mut spans = Vec::new();
+    for layer in &frame.panel.layers {
+        if let Layer::Span { from, to, role, label } = layer {
+            let (a, b) = (frame.x.at(from.min(*to)), frame.x.at(from.max(*to)));
+            let (a, b) = (a.max(frame.area.x), b.min(frame.area.right()));
+            if a < b {
+                spans.push((a, b, *role, label.as_deref()));
+            }
+        }
+    }
+    spans
+}
+
+/// Levels and positions across the panel.
+pub(crate) fn draw_references(svg: &mut Svg, frame: &Frame<'_>) {
+    for (ends, role, _) in references(frame) {
+        svg.path(&polyline(&ends, false), &series::line_attributes(role.style()));
+    }
+}
+
+/// Ends, role and name of the reference lines within the axes.
+fn references<'a>(frame: &'a Frame<'_>) -> Vec<(Ends, Role, Option<&'a str>)> {
+    let Frame { area, .. } = frame;
+    let mut references = Vec::new();
+    for layer in &frame.panel.layers {
+        match layer {
+            Layer::Horizontal { at, role, label } if frame.y.contains(*at) => {
+                let y = frame.y.at(*at);
+                references.push(([(area.x, y), (area.right(), y)], *role, label.as_deref()));
+            }
+            Layer::Vertical { at, role, label } if frame.x.contains(*at) => {
+                let x = frame.x.at(*at);
+                references.push(([(x, area.y), (x, area.bottom())], *role, label.as_deref()));
+            }
+            _ => {}
+        }
+    }
+    references
+}
+
+/// Names beside their reference lines, at the end and on the side that cover least.
+pub(crate) fn reference_names<'a>(frame: &'a Frame<'_>, taken: &mut Occupancy) -> Vec<Name<'a>> {
+    let references = references(frame);
+    for (ends, ..) in &references {
+        taken.mark_line(ends);
+    }
+    let mut names = Vec::new();
+    for (ends, _, label) in references {
+        let Some(label) = label else { continue };
+        let places = places(frame.area, ends, width(label, TICK));
+        let covered = |place: &Rect| taken.covered(*place);
+        let Some(place) = places.into_iter().min_by_key(covered) else {
+            continue;
+        };
+        taken.mark_rect(place);
+        names.push(Name { place, label });
+    }
+    names
+}
+
+/// Places for a name of width `w` along a reference line, the usual ones first.
+fn places(area: Rect, [start, end]: Ends, w: f64) -> Vec<Rect> {
+    let horizontal = start.1 == end.1;
+    let (near, far) = if horizontal {
+        ([start.1 - HEIGHT - 0.8, start.1 + 1.6], [1.0, 0.0, 0.75, 0.5, 0.25])
+    } else {
+        ([start.0 + 3.0, start.0 - w - 3.0], [0.0, 1.0, 0.25, 0.5, 0.75])
+    };
+    let mut places = Vec::new();
+    for along in far {
+        for beside in near {
+            let (x, y) = if horizontal {
+                (area.x + 3.0 + along * (area.w - w - 6.0), beside)
+            } else {
+                (beside, area.y + 2.0 + along * (area.h - HEIGHT - 4.0))
+            };
+            let inside = x >= area.x && x + w <= area.right() && y >= area.y;
+            if inside && y + HEIGHT <= area.bottom() {
+                places.push(Rect { x, y, w, h: HEIGHT });
+            }
+        }
+    }
+    places
+}
+
+/// Draws the names of reference lines.
+pub(crate) fn draw_reference_names(svg: &mut Svg, names: &[Name<'_>]) {
+    for Name { place, label } in names {
+        let font = Font {
+            colour: "#555",
+            halo: true,
+            ..font(TICK)
+        };
+        svg.text(place.x, place.bottom() - 1.5, Anchor::Start, font, label);
+    }
+}

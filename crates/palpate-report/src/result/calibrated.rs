@@ -1,0 +1,134 @@
+//! What a calibration of a record is shown with.
+
+use palpate::calibrate::{CalibrateError, Calibration, CalibrationData, Candidate, NumberProfile, RateLaw};
+use palpate::fit::{NoiseModel, Termination};
+use palpate::number::significant;
+
+use super::input::Input;
+use super::words::termination_word;
+
+/// Candidates calibrated on one record; the first is the one that is asked for, the others are its rivals.
+#[derive(Debug)]
+pub struct CalibratedRecord {
+    /// The record.
+    pub input: Input,
+    /// What was fitted.
+    pub data: CalibrationData,
+    /// Each candidate with what was found, or why nothing was.
+    pub rows: Vec<(Candidate, Result<Calibration, CalibrateError>)>,
+    /// Profile intervals of what is asked for; none if they were not.
+    pub profiles: Vec<NumberProfile>,
+}
+
+impl CalibratedRecord {
+    /// The calibrations that were made, in the order of their candidates.
+    pub fn made(&self) -> impl Iterator<Item = &Calibration> {
+        self.rows.iter().filter_map(|(_, made)| made.as_ref().ok())
+    }
+
+    /// What was asked for, if it could be made.
+    #[must_use]
+    pub fn chosen(&self) -> Option<&Calibration> {
+        self.rows.first().and_then(|(_, made)| made.as_ref().ok())
+    }
+
+    /// The error by which candidates are ranked: of what was foretold, else by the information criterion; less is better.
+    #[must_use]
+    pub fn score(&self, calibration: &Calibration) -> f64 {
+        calibration.foretold.map_or(calibration.criteria.bic, |foretold| foretold.rmse)
+    }
+
+    /// What the table says in a sentence.
+    #[must_use]
+    pub fn sentence(&self) -> Option<String> {
+        let chosen = self.chosen().filter(|_| self.made().count() > 1)?;
+        // A law that found no optimum is none to recommend.
+        let sound = |made: &&Calibration| made.termination.is_good() || std::ptr::eq(*made, chosen);
+        let best = self.made().filter(sound).min_by(|a, b| self.score(a).total_cmp(&self.score(b)))?;
+        let (law, other) = (chosen.material.candidate, best.material.candidate);
+        let by = if chosen.foretold.is_some() {
+            "foretells the rest of the record best"
+        } else {
+            "has the lowest BIC"
+        };
+        Some(if law == other {
+            format!("Of the laws tried, {law} {by}.")
+        } else {
+            let cost = match (chosen.foretold, best.foretold) {
+                (Some(mine), Some(least)) => format!("{:.2} times its error", mine.rmse / least.rmse),
+                _ => format!("{:.0} more", self.score(chosen) - self.score(best)),
+            };
+            format!("Of the laws tried, {other} {by}; {law} has {cost}.")
+        })
+    }
+
+    /// What a calibration shows that its numbers alone do not tell.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<String> {
+        let mut remarks: Vec<String> = self.sentence().into_iter().collect();
+        if let Some(chosen) = self.chosen() {
+            if chosen.material.candidate.rate == RateLaw::ByStrain && self.data.depths_held() < 2 {
+                remarks.push("One depth was held: how v differs with strain rests on the ramps alone, and any fault of the law in them is taken for it. Holds at several depths would tell it.".to_owned());
+            }
+            remarks.extend(remarks_of(chosen));
+        }
+        remarks
+    }
+}
+
+fn remarks_of(made: &Calibration) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if made.termination != Termination::Converged {
+        let how = match made.termination {
+            Termination::TermsMerged => {
+                "Terms of the series came together: their times cannot be told apart, and fewer terms say as much."
+                    .to_owned()
+            }
+            Termination::Singular => {
+                "The record does not tell the numbers apart; holds of different excess strain would.".to_owned()
+            }
+            Termination::IterationLimit => "The search used up its steps on the way to an optimum.".to_owned(),
+            at_bound => format!(
+                "The search ended at the edge of what is sought ({}): the record leaves a number open.",
+                termination_word(at_bound).replace('_', " ")
+            ),
+        };
+        remarks.push(format!("{how} The numbers have no intervals."));
+    } else if let Some(open) = made
+        .material
+        .numbers
+        .iter()
+        .find(|number| number.estimate.interval.is_none_or(|(low, high)| high > 100.0 * low))
+        && made.material.uncertainty.is_some()
+        && open.estimate.standard_error.is_some()
+    {
+        let name = open.name.replace('_', " ");
+        let how = match open.estimate.interval {
+            Some(_) => "says little about the {}: its interval spans more than two decades",
+            None => "leaves the {} open",
+        };
+        let how = how.replace("{}", &name);
+        remarks.push(format!("The record {how}. Holds of different excess strain would tell it."));
+    }
+    let (correlation, _) = match made.noise {
+        NoiseModel::White => (0.0, 0.0),
+        NoiseModel::Autoregressive { correlation } => (correlation, 1.0),
+        NoiseModel::WhiteAndAutoregressive { correlation, share } => (correlation * share.sqrt(), share),
+    };
+    if correlation > 0.9 && made.relative > 5e-3 {
+        remarks.push(format!(
+            "What is left over ({} % of the peak) follows a course of its own: the law does not describe all of the record. The intervals are widened for that, ± is not; how far it foretells, --fit-until shows.",
+            significant(100.0 * made.relative, 2)
+        ));
+    }
+    let shown = &made.material.shown;
+    remarks.push(format!(
+        "Shown: holds of up to {} s, {} mm deep, ramps of {} to {} mm/s, forces of up to {} N. Predictions beyond are extrapolations, and say so.",
+        significant(shown.longest_hold, 3),
+        significant(1e3 * shown.deepest, 3),
+        significant(1e3 * shown.slowest, 3),
+        significant(1e3 * shown.fastest, 3),
+        significant(shown.largest_force, 3)
+    ));
+    remarks
+}

@@ -1,0 +1,223 @@
+//! Laws compared on the holds of a record, of relaxation and of creep alike.
+
+use palpate::analysis::{Analysis, CreepHold, Finding, HoldAnalysis, Signal};
+use palpate::fit::NumberUnit;
+use palpate::forecast::Comparison;
+use palpate::laws::Response;
+use palpate::segment::After;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::input::Input;
+use super::words::after_word;
+use crate::number::significant;
+
+/// What the laws were fitted to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Strain of the contact layer.
+    Strain,
+    /// Force, N.
+    Force,
+    /// Displacement, m.
+    Displacement,
+}
+
+/// One hold with the laws compared on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComparedHold {
+    /// Number of the hold in the record, from 1.
+    pub number: usize,
+    /// What came before.
+    pub after: Option<After>,
+    /// Time of its first sample, s.
+    pub start: f64,
+    /// Time of its last sample, s.
+    pub end: f64,
+    /// Time from which the laws are fitted, s.
+    pub fit_start: f64,
+    /// What was held: the displacement, m, or in creep the force, N.
+    pub level: Option<f64>,
+    /// What the laws were fitted to.
+    pub quantity: Quantity,
+    /// Times since the start of the fit, s.
+    pub times: Vec<f64>,
+    /// The quantity at those times.
+    pub values: Vec<f64>,
+    /// The comparison; `None` where nothing could be fitted.
+    pub comparison: Option<Comparison>,
+    /// What to know about this hold.
+    pub findings: Vec<Finding>,
+}
+
+/// One record with its holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComparedRecord {
+    /// Where it came from.
+    pub input: Input,
+    /// Relaxation or creep.
+    pub response: Response,
+    /// Its holds.
+    pub holds: Vec<ComparedHold>,
+    /// What to know about the record as a whole.
+    pub findings: Vec<Finding>,
+}
+
+/// A file on which nothing could be compared.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "LeftOutDocument")]
+pub struct LeftOut {
+    /// Path as given.
+    pub path: String,
+    /// Why.
+    pub reason: String,
+    /// What would help.
+    pub hint: Option<String>,
+}
+
+impl Quantity {
+    /// Name of the quantity in text and JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Strain => "strain",
+            Self::Force => "force",
+            Self::Displacement => "displacement",
+        }
+    }
+
+    /// Unit for people, and what turns SI into it.
+    pub(crate) fn for_people(self) -> (&'static str, f64) {
+        match self {
+            Self::Strain => ("", 1.0),
+            Self::Force => ("N", 1.0),
+            Self::Displacement => ("mm", 1e3),
+        }
+    }
+
+    /// What a name in JSON ends in for a number of this unit; `None` for one that has no unit of its own.
+    pub(crate) fn suffix(self, unit: NumberUnit) -> Option<&'static str> {
+        Some(match (unit, self) {
+            (NumberUnit::One, _) | (NumberUnit::Signal, Self::Strain) => "",
+            (NumberUnit::Second, _) => "_s",
+            (NumberUnit::PerSecond, _) | (NumberUnit::SignalPerSecond | NumberUnit::RateCoefficient, Self::Strain) => {
+                "_per_s"
+            }
+            (NumberUnit::Signal, Self::Force) => "_n",
+            (NumberUnit::Signal, Self::Displacement) => "_m",
+            (NumberUnit::SignalPerSecond, Self::Force) => "_n_per_s",
+            (NumberUnit::SignalPerSecond, Self::Displacement) => "_m_per_s",
+            // A power of time in s: what it is after one second.
+            (NumberUnit::SignalPerPower, Self::Strain) => "_at_1_s",
+            (NumberUnit::SignalPerPower, Self::Force) => "_n_at_1_s",
+            (NumberUnit::SignalPerPower, Self::Displacement) => "_m_at_1_s",
+            (NumberUnit::RateCoefficient, Self::Force | Self::Displacement) => return None,
+        })
+    }
+}
+
+impl From<Signal> for Quantity {
+    fn from(signal: Signal) -> Self {
+        match signal {
+            Signal::Strain => Self::Strain,
+            Signal::Force => Self::Force,
+        }
+    }
+}
+
+impl From<&HoldAnalysis> for ComparedHold {
+    fn from(hold: &HoldAnalysis) -> Self {
+        Self {
+            number: hold.number,
+            after: hold.after,
+            start: hold.start,
+            end: hold.end,
+            fit_start: hold.fit_start,
+            level: hold.displacement,
+            quantity: hold.signal.into(),
+            times: hold.times[..hold.fitted].to_vec(),
+            values: hold.values[..hold.fitted].to_vec(),
+            comparison: hold.comparison.clone(),
+            findings: hold.findings.clone(),
+        }
+    }
+}
+
+impl From<CreepHold> for ComparedHold {
+    fn from(hold: CreepHold) -> Self {
+        Self {
+            number: hold.number,
+            after: hold.after,
+            start: hold.start,
+            end: hold.end,
+            fit_start: hold.fit_start,
+            level: Some(hold.force),
+            quantity: Quantity::Displacement,
+            times: hold.times,
+            values: hold.displacement,
+            comparison: hold.comparison,
+            findings: hold.findings,
+        }
+    }
+}
+
+impl ComparedHold {
+    /// "Hold 2, after loading, 10.00 mm", or "…, 6.00 N" in creep.
+    pub(crate) fn title(&self) -> String {
+        let after = self.after.map_or(String::new(), |after| format!(", after {}", after_word(after)));
+        format!("Hold {}{after}{}", self.number, self.held())
+    }
+
+    /// The same for the narrow head of a panel: "Hold 2, 10.00 mm".
+    pub(crate) fn short_title(&self) -> String {
+        format!("Hold {}{}", self.number, self.held())
+    }
+
+    /// What was held, behind a comma.
+    fn held(&self) -> String {
+        self.level.map_or(String::new(), |level| match self.quantity {
+            Quantity::Displacement => format!(", {} N", significant(level, 3)),
+            _ => format!(", {} mm", significant(1e3 * level, 4)),
+        })
+    }
+}
+
+impl ComparedRecord {
+    /// The comparison in an analysis.
+    #[must_use]
+    pub fn of_analysis(analysis: &Analysis, input: Input) -> Self {
+        Self {
+            input,
+            response: Response::Relaxation,
+            holds: analysis.holds.iter().map(ComparedHold::from).collect(),
+            findings: analysis.findings.clone(),
+        }
+    }
+
+    /// Holds of creep.
+    #[must_use]
+    pub fn of_creep(holds: Vec<CreepHold>, input: Input) -> Self {
+        Self {
+            input,
+            response: Response::Creep,
+            holds: holds.into_iter().map(ComparedHold::from).collect(),
+            findings: Vec::new(),
+        }
+    }
+
+    /// Whether any law could be judged on any hold.
+    #[must_use]
+    pub fn has_verdict(&self) -> bool {
+        self.verdicts().next().is_some()
+    }
+
+    /// The holds on which laws could be judged.
+    pub(crate) fn verdicts(&self) -> impl Iterator<Item = (&ComparedHold, &Comparison)> {
+        let judged = |hold: &'_ ComparedHold| hold.comparison.as_ref().is_some_and(|found| found.verdict.is_some());
+        self.holds
+            .iter()
+            .filter(move |hold| judged(hold))
+            .filter_map(|hold| Some((hold, hold.comparison.as_ref()?)))
+    }
+}

@@ -1,0 +1,284 @@
+//! What a planned grip says, in sentences.
+
+use palpate::contact::Sides;
+use palpate::grip::{BackOff, Control, Grasp, Holding, Lasts, Objective, PlanKind, Pressed, Regrip, Schedule};
+use palpate::number::significant;
+
+use super::gripped::GrippedBody;
+use super::words::percent;
+
+impl GrippedBody<'_> {
+    /// What was asked, in a sentence.
+    #[must_use]
+    pub fn question(&self) -> String {
+        let question = &self.answer.question;
+        let limits = self.grip.limits();
+        let mut bounds = vec![format!("Jaws at up to {} mm/s", significant(1e3 * limits.speed, 3))];
+        bounds.extend(limits.closing.map(|closing| format!("closed within {}", lasted(closing))));
+        bounds.extend(limits.stroke.map(|stroke| format!("stroke of {}", mm(stroke))));
+        bounds.extend(limits.force.map(|force| format!("at most {}", newton(force))));
+        let wanted = match (question.control, question.squeeze, question.force) {
+            (Control::Position, Some(squeeze), _) => format!("how long does a squeeze of {} hold", mm(squeeze)),
+            (Control::Position, None, _) => format!(
+                "{} with the displacement held",
+                match question.objective {
+                    Objective::Squeeze => "least squeeze",
+                    Objective::PeakForce => "least peak force",
+                    Objective::Work => "least work",
+                }
+            ),
+            (Control::Force, _, Some(force)) => format!("does {} hold, force held", newton(force)),
+            (Control::Force, _, None) => "least force, held".to_owned(),
+        };
+        let time = question.duration.map_or_else(String::new, |time| {
+            if time.is_finite() { format!(" for {}", lasted(time)) } else { " for good".to_owned() }
+        });
+        format!("{}. {}; {wanted}{time}.", load(self.grip.grasp()), bounds.join(", "))
+    }
+
+    /// The verdict in a sentence.
+    #[must_use]
+    pub fn verdict(&self) -> String {
+        let answer = &self.answer;
+        let holds = match answer.holds() {
+            Ok(holds) => holds,
+            Err(error) => return format!("No: {error}."),
+        };
+        let word = if holds { "Yes" } else { "No" };
+        match answer.question.control {
+            Control::Position => match &answer.squeeze {
+                Ok(squeeze) => format!("{word}: {}", of_squeeze(self, &squeeze.found, holds)),
+                Err(error) => format!("No: {error}."),
+            },
+            Control::Force => match &answer.pressed {
+                Ok(pressed) => format!("{word}: {}", of_pressed(&pressed.found, holds)),
+                Err(error) => format!("No: {error}."),
+            },
+        }
+    }
+
+    /// What the tables mean, in sentences: the advice of both ways of control beside each other, retreat, schedule, limits of the test.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<String> {
+        let answer = &self.answer;
+        let mut remarks = Vec::new();
+        if self.grip.material().uncertainty.is_none() {
+            remarks.push("The calibration left a number open: nothing is said of how sure this is.".to_owned());
+        }
+        if let Ok(squeeze) = &answer.squeeze {
+            remarks.extend(on_squeeze(&squeeze.found));
+        }
+        if let (Ok(squeeze), Ok(pressed)) = (&answer.squeeze, &answer.pressed)
+            && pressed.found.holds
+        {
+            remarks.push(both_ways(&squeeze.found, &pressed.found, answer.shown));
+        }
+        if let Ok(back_off) = &answer.back_off {
+            remarks.push(on_back_off(&back_off.found));
+        }
+        if let Some(Ok(schedule)) = &answer.schedule {
+            remarks.push(on_schedule(&schedule.found));
+        }
+        for (name, error) in self.refused() {
+            if name != self.asked() {
+                remarks.push(format!("No {name}: {error}."));
+            }
+        }
+        if self.grip.material().body.sides == Sides::One {
+            remarks.push(
+                "The material was tested from one side: each of the two jaws moves as far as is said here, towards the other.".to_owned(),
+            );
+        }
+        remarks.extend(self.extrapolations().iter().map(|beyond| format!("Beyond the test: {beyond}.")));
+        remarks
+    }
+}
+
+/// A time as people say it.
+pub(crate) fn lasted(seconds: f64) -> String {
+    let (unit, length) = match seconds {
+        s if s < 300.0 => ("s", 1.0),
+        s if s < 3.0 * 3600.0 => ("min", 60.0),
+        s if s < 2.0 * 86_400.0 => ("h", 3600.0),
+        s if s < 2.0 * 31_557_600.0 => ("days", 86_400.0),
+        _ => ("years", 31_557_600.0),
+    };
+    format!("{} {unit}", significant(seconds / length, 3))
+}
+
+fn lasts(time: Lasts) -> String {
+    time.seconds().map_or_else(|| "always".to_owned(), lasted)
+}
+
+fn mm(metres: f64) -> String {
+    format!("{} mm", significant(1e3 * metres, 4))
+}
+
+fn newton(force: f64) -> String {
+    format!("{} N", significant(force, 4))
+}
+
+/// The load in a sentence.
+fn load(grasp: &Grasp) -> String {
+    let mass = if grasp.mass < 1.0 {
+        format!("{} g", significant(1e3 * grasp.mass, 4))
+    } else {
+        format!("{} kg", significant(grasp.mass, 4))
+    };
+    let mut parts = vec![format!("{mass} with μ = {}", significant(grasp.friction, 3))];
+    if grasp.safety != 1.0 {
+        parts.push(format!("safety factor {}", significant(grasp.safety, 3)));
+    }
+    for (name, value) in [
+        ("upwards", grasp.acceleration_up),
+        ("across", grasp.acceleration_across),
+        ("along the closing axis", grasp.acceleration_closing),
+    ] {
+        if value != 0.0 {
+            parts.push(format!("{} m/s² {name}", significant(value, 3)));
+        }
+    }
+    if grasp.torsion() > 0.0 {
+        parts.push(format!("{} N mm of torsion at each jaw", significant(1e3 * grasp.torsion(), 3)));
+    }
+    parts.join(", ")
+}
+
+fn of_squeeze(body: &GrippedBody<'_>, found: &Holding, holds: bool) -> String {
+    let what = match found.plan.kind {
+        PlanKind::Squeeze { displacement, speed } => {
+            format!("a squeeze of {} at {} mm/s", mm(displacement), significant(1e3 * speed, 3))
+        }
+        PlanKind::Settle { force, settling, .. } => {
+            format!("a force of {} that is kept for {} before the jaws are locked", newton(force), lasted(settling))
+        }
+        PlanKind::BackOff { over, displacement, .. } => {
+            format!("a squeeze of {} and back to {}", mm(over), mm(displacement))
+        }
+    };
+    let interval = found.interval.map_or_else(String::new, |(low, high)| {
+        let share = percent(body.grip.confidence());
+        format!(" ({share}: {} to {})", lasts(low), lasts(high))
+    });
+    match found.lasts {
+        Lasts::For(0.0) => format!(
+            "{what} slips at once: {} are needed, {} are there when the jaws stop.",
+            newton(found.needed_force),
+            newton(found.start_force)
+        ),
+        Lasts::Always if found.relaxed_force >= found.needed_force => {
+            format!("{what} holds always{interval}: the relaxed force of {} is enough.", newton(found.relaxed_force))
+        }
+        Lasts::Always => format!(
+            "{what} holds for more than ten years{interval}, and not for good: it relaxes to {}, and {} are needed.",
+            newton(found.relaxed_force),
+            newton(found.needed_force)
+        ),
+        Lasts::For(time) => {
+            let until = body.answer.question.duration.filter(|_| !holds).map_or_else(String::new, |wanted| {
+                if wanted.is_finite() {
+                    format!("; {} were asked for", lasted(wanted))
+                } else {
+                    "; always was asked for".to_owned()
+                }
+            });
+            format!("{what} holds for {}{interval}{until}.", lasted(time))
+        }
+    }
+}
+
+fn of_pressed(found: &Pressed, holds: bool) -> String {
+    if holds {
+        return format!("a force of {} that is held does not slip.", newton(found.force));
+    }
+    match found.stroke_ends {
+        Some(time) if found.holds => format!(
+            "a force of {} is enough, but the body creeps, and the jaws come to the end of their stroke after {}.",
+            newton(found.force),
+            lasted(time)
+        ),
+        _ => format!("a force of {} slips at once: {} are needed.", newton(found.force), newton(found.needed_force)),
+    }
+}
+
+fn on_squeeze(found: &Holding) -> Option<String> {
+    let sharpness = found.sharpness?;
+    let more = (sharpness * 0.01 * found.displacement).exp();
+    Some(if more < 2.0 {
+        format!("1 % more squeeze holds {} % longer.", significant(100.0 * (more - 1.0), 2))
+    } else {
+        format!("1 % more squeeze holds {} times as long.", significant(more, 2))
+    })
+}
+
+fn both_ways(squeeze: &Holding, pressed: &Pressed, shown: f64) -> String {
+    let surplus = 100.0 * (squeeze.peak_force / squeeze.needed_force - 1.0);
+    let standing = if surplus > 0.0 {
+        format!("they squeeze {} % harder than is needed, and wait", significant(surplus, 2))
+    } else {
+        "these have too little from the start".to_owned()
+    };
+    let (from, to) = (mm(pressed.displacement_start), mm(pressed.displacement_end));
+    let creep = match (pressed.stroke_ends, pressed.displacement_relaxed) {
+        (Some(time), _) => format!("from {from} to the end of the stroke at {to} after {}", lasted(time)),
+        (None, Some(end)) => format!("from {from} to {to} in {}, to {} in the end", lasted(shown), mm(end)),
+        (None, None) => format!("from {from} to {to} in {}", lasted(shown)),
+    };
+    format!(
+        "Jaws that stand lose force: {standing}. A force that is held stays, and {} do: the body gives way instead, {creep}.",
+        newton(pressed.force),
+    )
+}
+
+fn on_back_off(found: &BackOff) -> String {
+    let lost = significant(found.plain_drift, 3);
+    let worst = found
+        .sensitivities
+        .iter()
+        .filter_map(|one| Some((one, 100.0 * one.error? * one.missed.abs())))
+        .max_by(|a, b| a.1.total_cmp(&b.1));
+    let open = worst.map_or_else(String::new, |(one, missed)| {
+        format!(
+            " Of what is open the {} matters most: a standard error of it is {} N.",
+            one.name.replace('_', " "),
+            significant(missed, 2)
+        )
+    });
+    // The excesses of several linear terms cancel, and part again.
+    let how = if found.drift.abs() < 1e-3 * found.backed.start_force {
+        format!("the hold begins relaxed, and {} stay", newton(found.backed.start_force))
+    } else {
+        format!(
+            "the hold begins with the relaxed force of {}, and drifts, for each term goes its own way",
+            newton(found.backed.start_force)
+        )
+    };
+    format!(
+        "Squeeze to {} and go back to {}: {how} ({} N in {}; {lost} N after a plain squeeze to the same place).{open}",
+        mm(found.over),
+        mm(found.backed.displacement),
+        // A drift of rounding alone is none.
+        significant(if found.drift.abs() < 1e-9 * found.backed.start_force { 0.0 } else { found.drift }, 3),
+        lasted(found.duration),
+    )
+}
+
+fn on_schedule(found: &Schedule) -> String {
+    let least = match found.objective {
+        Regrip::FewestMoves => "fewest moves",
+        Regrip::LeastWork { .. } => "least work",
+    };
+    format!(
+        "{} the force between {} and {} for {} ({least}), with {} mJ of work; the jaws end at {}.",
+        if found.moves.len() == 1 {
+            "1 squeeze keeps".to_owned()
+        } else {
+            format!("{} squeezes keep", found.moves.len())
+        },
+        newton(found.band.low),
+        newton(found.band.high),
+        lasted(found.duration),
+        significant(1e3 * found.work, 3),
+        mm(found.end_displacement),
+    )
+}

@@ -1,0 +1,31 @@
+//! Where a record came from.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Where a record came from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Input {
+    /// Path as given.
+    pub path: String,
+    /// The part of the file that is this record (a sheet, a curve, a `test_id`), where the file names it.
+    pub part: Option<String>,
+    /// SHA-256 of its bytes, hexadecimal.
+    pub sha256: String,
+    /// Rows of data.
+    pub rows: usize,
+    /// How many successive rows each sample is the mean of; 1 unless the file is very long.
+    pub rows_averaged: usize,
+    /// Path of the test description, if one was given.
+    pub test: Option<String>,
+    /// What the description says of the record (its title, or the file name).
+    pub title: String,
+}
+
+impl Input {
+    /// The file, and the part of it that is this record where the file names one.
+    #[must_use]
+    pub fn called(&self) -> String {
+        self.part.as_ref().map_or_else(|| self.path.clone(), |part| format!("{}, {part}", self.path))
+    }
+}

@@ -1,0 +1,27 @@
+//! Results with what people need beside them: where they come from, and what they say in words.
+//!
+//! The jobs make them from results of the library. `document` writes them as JSON, `study` as tables, figures and pages; neither changes
+//! them.
+//!
+//! | file | what |
+//! |---|---|
+//! | `input.rs` | where a record came from |
+//! | `compared.rs` | laws compared on the holds of a record |
+//! | `calibrated.rs` | laws calibrated on a record, with remarks |
+//! | `gripped.rs`, `grip_sentences.rs` | a body in a gripper with an answer; the answer in sentences |
+//! | `words.rs` | the words for what the library says |
+
+mod calibrated;
+mod compared;
+mod grip_sentences;
+mod gripped;
+mod input;
+mod words;
+
+pub use calibrated::CalibratedRecord;
+pub use compared::{ComparedHold, ComparedRecord, LeftOut, Quantity};
+pub(crate) use grip_sentences::lasted;
+pub use gripped::GrippedBody;
+pub use input::Input;
+pub(crate) use words::{after_word, certainty_word, hold_start_word, percent, phase_word};
+pub use words::{held_word, mode_word, slip_word, slips_word, termination_word, watched_phase_word};

@@ -1,0 +1,190 @@
+//! A whole record calibrated: tables, text and figure.
+
+use palpate::calibrate::{Material, MaterialUnit, NumberProfile};
+use palpate::fit::Interval;
+
+use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
+use crate::number::{counted, significant};
+use crate::page::{Block, Page, Section};
+use crate::result::{CalibratedRecord, percent, termination_word};
+use crate::study::bundle::StudyError;
+use crate::table::{Cell, Table, TableColumn};
+use crate::wrap::wrapped;
+
+/// Factor and unit in which people read a number of a material.
+fn for_people(unit: MaterialUnit) -> (f64, &'static str) {
+    match unit {
+        MaterialUnit::One => (1.0, ""),
+        MaterialUnit::Second => (1.0, "s"),
+        MaterialUnit::PerSecond => (1.0, "1/s"),
+        MaterialUnit::Metre => (1e3, "mm"),
+        MaterialUnit::Newton => (1.0, "N"),
+        MaterialUnit::Pascal => (1e-3, "kPa"),
+    }
+}
+
+/// The laws on the record, in the order in which they were asked for.
+fn laws(record: &CalibratedRecord) -> Table {
+    let (fitted, all) = (record.data.fitted(), record.data.times().len());
+    let until = record.data.times()[fitted - 1] - record.data.times()[0];
+    let rest = if fitted < all { format!("; {} foretold", counted(all - fitted, "sample")) } else { String::new() };
+    let caption = format!("Calibrated on {} over {} s{rest}.", counted(fitted, "sample"), significant(until, 4));
+    let mut table = Table::new("laws", caption)
+        .column(TableColumn::new("Law", "law", ""))
+        .column(TableColumn::new("p", "parameters", ""))
+        .column(TableColumn::new("RMSE", "rmse_n", "N"))
+        .column(TableColumn::new("of peak", "rmse_percent", "%"))
+        .column(TableColumn::new("ΔBIC", "delta_bic", ""));
+    if fitted < all {
+        table = table.column(TableColumn::new("Foretold to", "foretold_rmse_n", "N")).column(TableColumn::new(
+            "of peak",
+            "foretold_percent",
+            "%",
+        ));
+    }
+    table = table.column(TableColumn::new("Ended", "termination", ""));
+    let least = record.made().map(|made| made.criteria.bic).fold(f64::INFINITY, f64::min);
+    for (candidate, made) in &record.rows {
+        let law = Cell::text(candidate.to_string());
+        let row = match made {
+            Ok(made) => {
+                let mut row = vec![
+                    law,
+                    Cell::Integer(made.free_numbers as i64),
+                    Cell::number(made.rmse, 3),
+                    Cell::number(100.0 * made.relative, 3),
+                    Cell::number(made.criteria.bic - least, 3),
+                ];
+                if let Some(foretold) = made.foretold {
+                    row.extend([Cell::number(foretold.rmse, 3), Cell::number(100.0 * foretold.relative, 3)]);
+                }
+                row.push(Cell::text(termination_word(made.termination).replace('_', " ")));
+                row
+            }
+            Err(error) => {
+                let mut row = vec![law];
+                row.resize(table.columns.len(), Cell::missing(error.to_string()));
+                row
+            }
+        };
+        table = table.row(row);
+    }
+    table
+}
+
+/// The numbers of a material with their intervals.
+#[must_use]
+pub fn material_table(material: &Material) -> Table {
+    numbers_table(material, &[])
+}
+
+/// The same with profile intervals, where there are any.
+fn numbers_table(material: &Material, profiles: &[NumberProfile]) -> Table {
+    const LEFT_OPEN: &str = "the record leaves it open";
+    const OPEN: &str = "the record leaves it open, or it was given";
+    let share = material.uncertainty.as_ref().map_or(0.95, |uncertainty| uncertainty.confidence);
+    let mut table = Table::new("numbers", format!("Numbers of the law {}.", material.candidate))
+        .column(TableColumn::new("Number", "number", ""))
+        .column(TableColumn::new("Unit", "unit", ""))
+        .column(TableColumn::new("Value", "value", ""))
+        .column(TableColumn::new(format!("{} from", percent(share)), "low", ""))
+        .column(TableColumn::new("to", "high", ""));
+    if !profiles.is_empty() {
+        table = table.column(TableColumn::new("profile from", "profile_low", "")).column(TableColumn::new(
+            "to",
+            "profile_high",
+            "",
+        ));
+    }
+    for number in &material.numbers {
+        let ((factor, unit), estimate) = (for_people(number.unit), number.estimate);
+        let value = match estimate.standard_error {
+            Some(error) => Cell::uncertain(factor * estimate.value, factor * error),
+            None => Cell::number(factor * estimate.value, 4),
+        };
+        let end = |pick: fn((f64, f64)) -> f64| Cell::number_or(estimate.interval.map(|i| factor * pick(i)), 4, OPEN);
+        let mut row = vec![
+            Cell::text(number.name.replace('_', " ")),
+            Cell::text(unit),
+            value,
+            end(|interval| interval.0),
+            end(|interval| interval.1),
+        ];
+        if !profiles.is_empty() {
+            let profile = profiles.iter().find(|profile| profile.name == number.name);
+            let end = |pick: fn(Interval) -> Option<f64>| match profile {
+                Some(found) => Cell::number_or(pick(found.interval).map(|end| factor * end), 4, LEFT_OPEN),
+                None => Cell::number_or(None, 4, OPEN),
+            };
+            row.extend([end(|interval| interval.low), end(|interval| interval.high)]);
+        }
+        table = table.row(row);
+    }
+    table
+}
+
+/// A calibration as text for a terminal.
+#[must_use]
+pub fn calibration_text(record: &CalibratedRecord) -> String {
+    let mut text = format!("{}\n\n{}", record.input.called(), laws(record).to_plain_text());
+    if let Some(chosen) = record.chosen() {
+        text.push_str(&format!("\n{}", numbers_table(&chosen.material, &record.profiles).to_plain_text()));
+    }
+    text.push('\n');
+    record.remarks().iter().for_each(|remark| text.push_str(&wrapped(remark)));
+    text
+}
+
+/// The same with the figure as a page.
+///
+/// # Errors
+/// [`StudyError`] when the figure cannot be drawn.
+pub fn calibration_page(record: &CalibratedRecord) -> Result<Page, StudyError> {
+    let mut section = Section::new(&record.input.title).block(Block::Table(laws(record)));
+    if let Some(chosen) = record.chosen() {
+        section = section.block(Block::Table(numbers_table(&chosen.material, &record.profiles)));
+    }
+    section = section
+        .block(Block::List(record.remarks()))
+        .block(Block::figure(&calibration_figure(record, "calibration"))?);
+    let page = Page::new("Calibration", "One set of numbers for a whole record, ramps and holds alike");
+    Ok(page
+        .section(section)
+        .provenance("Record", record.input.called())
+        .provenance("SHA-256", &record.input.sha256)
+        .provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION"))))
+}
+
+/// Measured and simulated force over time, and what is left over.
+#[must_use]
+pub fn calibration_figure(record: &CalibratedRecord, name: &str) -> Figure {
+    let (times, forces) = (record.data.times(), record.data.forces());
+    let motion = record.data.motion();
+    let time = || Axis::linear("Time", "s");
+    let mut force = Panel::new(time(), Axis::linear("Force", "N")).share(1.6);
+    force = force.layer(Layer::line(times.to_vec(), forces.to_vec(), Role::Measured).label("measured"));
+    let mut left = Panel::new(time(), Axis::linear("Measured − simulated", "N"));
+    for (index, made) in record.made().take(MOST).enumerate() {
+        let role = if index == 0 { Role::Fitted } else { Role::Alternative(index as u8 - 1) };
+        let law = made.material.candidate.to_string();
+        force = force.layer(Layer::line(times.to_vec(), made.simulated.clone(), role).label(law));
+        let residuals = forces.iter().zip(&made.simulated).map(|(measured, simulated)| measured - simulated).collect();
+        left = left.layer(Layer::line(times.to_vec(), residuals, role));
+    }
+    if record.data.fitted() < times.len() {
+        let at = times[record.data.fitted() - 1];
+        force = force.layer(Layer::vertical(at, Role::Reference).label("fitted | foretold"));
+        left = left.layer(Layer::vertical(at, Role::Reference));
+    }
+    let travel = times.iter().map(|time| 1e3 * motion.displacement_at(*time)).collect();
+    let jaw = Panel::new(time(), Axis::linear("Displacement", "mm"));
+    Figure::new(name, "A whole record with the laws calibrated on it, and what each leaves over.")
+        .panel(force)
+        .panel(left.zero_line())
+        .panel(jaw.layer(Layer::line(times.to_vec(), travel, Role::Measured)))
+        .arrangement(Arrangement::Stacked)
+        .height_mm(150.0)
+}
+
+/// Laws that a figure shows.
+const MOST: usize = 4;

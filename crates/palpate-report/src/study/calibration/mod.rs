@@ -1,0 +1,12 @@
+//! A whole record calibrated, and what the material predicts: tables, text and figures.
+//!
+//! | file | what |
+//! |---|---|
+//! | `material.rs` | the laws on the record, the numbers of the material: tables, text, figure, page |
+//! | `prediction.rs` | what the body does, with intervals: series, table, figure |
+
+mod material;
+mod prediction;
+
+pub use material::{calibration_figure, calibration_page, calibration_text, material_table};
+pub use prediction::{prediction_figure, prediction_table, write_prediction};

@@ -1,0 +1,248 @@
+//! Figures of compared laws.
+
+use palpate::fit::SpectrumFit;
+use palpate::forecast::{Comparison, Row, name_in_words};
+use palpate::laws::Law;
+
+use crate::figure::{Arrangement, Axis, Figure, Layer, MOST_PANELS, Panel, Role};
+use crate::number::significant;
+use crate::result::{ComparedHold, ComparedRecord};
+
+/// Laws that a panel shows; there are no more markers that can be told apart.
+const MOST_LAWS: usize = 8;
+/// The same where a figure has several panels.
+const FEWER_LAWS: usize = 5;
+/// Laws whose residuals are shown.
+const MOST_RESIDUALS: usize = 3;
+/// Stretches of ln t over which residuals are averaged.
+const STRETCHES: usize = 60;
+
+/// All figures of a compared record; their names end in `suffix`.
+pub(in crate::study) fn all(record: &ComparedRecord, suffix: &str) -> Vec<Figure> {
+    [forward_errors(record, suffix), law_residuals(record, suffix), spectra(record, suffix)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+/// A figure of one panel a hold.
+fn by_hold(name: String, caption: &str, panels: Vec<(Panel, f64)>, all: usize) -> Option<Figure> {
+    let height = panels.first()?.1;
+    let columns = match panels.len() {
+        1 => 1,
+        2 | 4 => 2,
+        _ => 3,
+    };
+    let rows = panels.len().div_ceil(columns);
+    let shown = panels.len();
+    let more = if shown < all { format!(" Shown: the first {shown} of {all} holds.") } else { String::new() };
+    let figure = Figure::new(name, format!("{caption}{more}"))
+        .arrangement(Arrangement::Grid(columns))
+        .height_mm(if columns == 1 { 1.4 * height } else { height * rows as f64 });
+    Some(panels.into_iter().fold(figure, |figure, (panel, _)| figure.panel(panel)))
+}
+
+/// Forward error of each law after each cut.
+fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
+    let holds: Vec<_> = record.verdicts().filter(|(_, comparison)| !comparison.cuts.is_empty()).collect();
+    let (laws, all) = best_laws(&holds);
+    let panels = holds.iter().take(MOST_PANELS).map(|(hold, comparison)| {
+        let mut panel =
+            Panel::new(Axis::linear("Part of the hold that was fitted", "%"), Axis::log("Error over the rest", "%"))
+                .title(hold.short_title());
+        for (series, law) in laws.iter().enumerate() {
+            let row = comparison.rows.iter().find(|row| row.law == *law);
+            panel = panel.layers(row.into_iter().flat_map(|row| forward_layers(row, comparison, series)));
+        }
+        (panel, 78.0)
+    });
+    let left = if all > laws.len() { format!(" The {} best of {all} laws.", laws.len()) } else { String::new() };
+    by_hold(
+        format!("forward_errors{suffix}"),
+        &format!(
+            "What each law, fitted to the first part of a hold, foretells of the rest: root mean square error in % of the change of the signal.{left}"
+        ),
+        panels.collect(),
+        holds.len(),
+    )
+}
+
+/// The laws to show, those of the lowest mean rank first, and how many there are; every panel shows the same in the same colours.
+fn best_laws(holds: &[(&ComparedHold, &Comparison)]) -> (Vec<Law>, usize) {
+    let mut ranks: Vec<(Law, usize)> = Vec::new();
+    for (_, comparison) in holds {
+        for (rank, row) in comparison.rows.iter().enumerate() {
+            match ranks.iter_mut().find(|(law, _)| *law == row.law) {
+                Some((_, sum)) => *sum += rank,
+                None => ranks.push((row.law, rank)),
+            }
+        }
+    }
+    let all = ranks.len();
+    ranks.sort_by_key(|(_, sum)| *sum);
+    ranks.truncate(if holds.len() == 1 { MOST_LAWS } else { FEWER_LAWS });
+    (ranks.into_iter().map(|(law, _)| law).collect(), all)
+}
+
+fn forward_layers(row: &Row, comparison: &Comparison, series: usize) -> Vec<Layer> {
+    let (mut x, mut y) = (Vec::new(), Vec::new());
+    for (index, cut) in comparison.cuts.iter().enumerate() {
+        if let Some(error) = row.forward.relative(index, comparison.change) {
+            x.push(100.0 * cut / comparison.duration);
+            y.push(100.0 * error);
+        }
+    }
+    let role = Role::Series(series as u8);
+    let label = row.law.to_string();
+    vec![Layer::line(x.clone(), y.clone(), role).label(label.clone()), Layer::points(x, y, role).label(label)]
+}
+
+/// What the best laws leave over, averaged over stretches of ln t.
+fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
+    let holds: Vec<_> = record.verdicts().collect();
+    let mut panels = Vec::new();
+    for (hold, comparison) in holds.iter().take(MOST_PANELS) {
+        let (unit, factor) = hold.quantity.for_people();
+        let mut panel = Panel::new(Axis::log("Time", "s"), Axis::linear("Mean residual", unit))
+            .title(hold.short_title())
+            .zero_line();
+        for (series, row) in comparison.rows.iter().filter(|row| row.is_good()).take(MOST_RESIDUALS).enumerate() {
+            let (times, means) = averaged(hold, row, factor);
+            panel = panel.layer(Layer::line(times, means, Role::Series(series as u8)).label(row.law.to_string()));
+        }
+        panels.push((panel, 62.0));
+    }
+    by_hold(
+        format!("law_residuals{suffix}"),
+        &format!(
+            "What the best laws leave over when fitted to the whole hold (measured less fitted, averaged over {STRETCHES} stretches of ln t). Noise scatters about zero; a wave is shape that the law misses."
+        ),
+        panels,
+        holds.len(),
+    )
+}
+
+/// Means of the residuals over stretches that are equally long in ln t, in the unit for people.
+fn averaged(hold: &ComparedHold, row: &Row, factor: f64) -> (Vec<f64>, Vec<f64>) {
+    let predict = |t: f64| match (&row.spectrum, &row.fit) {
+        (Some(spectrum), _) => spectrum.predict(t),
+        (None, Ok(fit)) => fit.predict(t),
+        (None, Err(_)) => f64::NAN,
+    };
+    // The first sample is at time zero, which a logarithm has no place for.
+    let first = hold.times.partition_point(|t| *t <= 0.0);
+    let (times, values) = (&hold.times[first..], &hold.values[first..]);
+    let (Some(start), Some(end)) = (times.first(), times.last()) else {
+        return (Vec::new(), Vec::new());
+    };
+    let mut sums = vec![(0.0, 0.0, 0usize); STRETCHES];
+    for (t, y) in times.iter().zip(values) {
+        let place = (t / start).ln() / (end / start).ln() * STRETCHES as f64;
+        let stretch = &mut sums[(place as usize).min(STRETCHES - 1)];
+        *stretch = (stretch.0 + t.ln(), stretch.1 + factor * (y - predict(*t)), stretch.2 + 1);
+    }
+    let filled = sums.into_iter().filter(|(.., count)| *count > 0);
+    filled.map(|(ln_t, sum, count)| ((ln_t / count as f64).exp(), sum / count as f64)).unzip()
+}
+
+/// The dense spectrum of each hold, as stems over ln τ.
+fn spectra(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
+    let spectrum = |comparison: &'_ Comparison| comparison.rows.iter().find_map(|row| row.spectrum.clone());
+    let holds: Vec<_> = record.verdicts().filter_map(|(hold, found)| Some((hold, spectrum(found)?))).collect();
+    let panels: Vec<_> = holds.iter().take(MOST_PANELS).map(|(hold, fit)| (spectrum_panel(hold, fit), 62.0)).collect();
+    by_hold(
+        format!("spectra{suffix}"),
+        "The dense spectrum of each hold: amplitude over relaxation time; the line marks the length of the hold. Where the slowest time carries weight the spectrum is open-ended, and its equilibrium is a convention of the grid.",
+        panels,
+        holds.len(),
+    )
+}
+
+fn spectrum_panel(hold: &ComparedHold, fit: &SpectrumFit) -> Panel {
+    let (unit, factor) = hold.quantity.for_people();
+    let stems: Vec<(f64, f64)> = fit
+        .times
+        .iter()
+        .zip(&fit.amplitudes)
+        .filter(|(_, height)| **height > 0.0)
+        .map(|(time, height)| (*time, factor * fit.sign * height))
+        .collect();
+    let (mut x, mut y) = (Vec::new(), Vec::new());
+    for (time, height) in &stems {
+        x.extend([*time, *time, f64::NAN]);
+        y.extend([0.0, *height, f64::NAN]);
+    }
+    let end = significant(factor * fit.equilibrium, 4);
+    let title = if fit.is_open_ended() {
+        format!("Hold {}: open-ended", hold.number)
+    } else if unit.is_empty() {
+        format!("Hold {}: equilibrium {end}", hold.number)
+    } else {
+        format!("Hold {}: equilibrium {end} {unit}", hold.number)
+    };
+    let (first, last) = (fit.times.first().copied().unwrap_or(1.0), fit.times.last().copied().unwrap_or(1.0));
+    let (times, heights) = stems.into_iter().unzip();
+    Panel::new(Axis::log("Relaxation time τ", "s").range(0.9 * first, 1.1 * last), Axis::linear("Amplitude", unit))
+        .title(title)
+        .zero_line()
+        .layer(Layer::vertical(fit.duration, Role::Reference))
+        .layer(Layer::line(x, y, Role::Series(0)))
+        .layer(Layer::points(times, heights, Role::Series(0)))
+}
+
+/// The chosen laws in words, with how many holds each is chosen for.
+pub(super) fn chosen(record: &ComparedRecord) -> String {
+    let mut counts: Vec<(String, usize)> = Vec::new();
+    for law in record.verdicts().filter_map(|(_, comparison)| Some(comparison.verdict.as_ref()?.law)) {
+        let name = name_in_words(law);
+        match counts.iter_mut().find(|(other, _)| *other == name) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((name, 1)),
+        }
+    }
+    counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let told: Vec<String> = counts
+        .into_iter()
+        .map(|(name, count)| format!("{name} ({count} {})", if count == 1 { "hold" } else { "holds" }))
+        .collect();
+    told.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use palpate::fit::Samples;
+    use palpate::forecast::{CompareOptions, compare_laws};
+    use palpate::test_problems::noisy_hold;
+
+    use super::*;
+    use crate::result::Quantity;
+
+    #[test]
+    fn averaged_residuals_of_an_exact_law_are_below_its_noise() {
+        let (times, values) = noisy_hold(2000, 5.0, 1e-3);
+        let options = CompareOptions {
+            laws: vec!["latency".parse().unwrap(), Law::Spectrum],
+            ..CompareOptions::default()
+        };
+        let comparison = compare_laws(&Samples::new(&times, &values), &options).unwrap();
+        let hold = ComparedHold {
+            number: 1,
+            after: None,
+            start: 0.0,
+            end: times[times.len() - 1],
+            fit_start: 0.0,
+            level: None,
+            quantity: Quantity::Force,
+            times,
+            values,
+            comparison: None,
+            findings: Vec::new(),
+        };
+        for row in &comparison.rows {
+            let (times, means) = averaged(&hold, row, 1.0);
+            assert!(times.windows(2).all(|pair| pair[0] < pair[1]) && times.len() <= STRETCHES);
+            let late = &means[means.len() - 5..];
+            assert!(late.iter().all(|mean| mean.abs() < 0.5 * comparison.noise), "{}: {late:?}", row.law);
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! The page of compared laws.
+
+use palpate::forecast::Comparison;
+
+use super::{figures, tables};
+use crate::document::{ComparisonDocument, ComparisonSettingsDocument};
+use crate::figure::{Figure, MOST_PANELS};
+use crate::page::{Block, Page, Section};
+use crate::result::{ComparedRecord, LeftOut};
+use crate::study::bundle::{Bundle, Pictures, StudyError};
+use crate::study::findings;
+
+/// All files of compared records: `report.html`, `comparison.json`, `comparison.md`, `tables/*.csv`, `figures/*.svg`.
+///
+/// # Errors
+/// [`StudyError`] when a figure or document cannot be made.
+pub fn comparison_bundle(
+    records: &[ComparedRecord],
+    left_out: &[LeftOut],
+    settings: ComparisonSettingsDocument,
+    pictures: Pictures,
+) -> Result<Bundle, StudyError> {
+    let mut bundle = Bundle::default();
+    let mut page = Page::new("Laws compared", "Which law of relaxation or creep to use, and how sure that is");
+    for (index, record) in records.iter().enumerate() {
+        let suffix = if records.len() == 1 { String::new() } else { format!("_{}", index + 1) };
+        let figures = figures::all(record, &suffix);
+        for figure in &figures {
+            bundle.figure(figure, pictures)?;
+        }
+        let found = findings::gathered_of(record, findings::MOST_LINES);
+        let mut section = Section::new(&record.input.title).blocks(blocks(record, &figures)?);
+        if !found.is_empty() {
+            section = section
+                .block(Block::Subheading("Findings".to_owned()))
+                .block(Block::Findings(found.iter().map(findings::Gathered::told).collect()));
+        }
+        page = page
+            .section(section)
+            .provenance("Record", record.input.called())
+            .provenance("SHA-256", &record.input.sha256);
+    }
+    if !left_out.is_empty() {
+        let files = left_out.iter().map(tables::left_out_line).collect();
+        page = page.section(Section::new("Left out").block(Block::List(files)));
+    }
+    page = page.provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION")));
+    bundle.table(&tables::laws(records, &settings.cuts));
+    let laws: Vec<_> = settings.laws.iter().filter_map(|law| law.parse().ok()).collect();
+    bundle.text("comparison.md", tables::comparison_markdown(records, left_out, &laws));
+    bundle.text("report.html", page.to_html());
+    bundle.json("comparison.json", &ComparisonDocument::new(records, left_out, settings))?;
+    Ok(bundle)
+}
+
+/// Which law to use on the holds of a record: sentences, tables, figures.
+pub(in crate::study) fn blocks(record: &ComparedRecord, figures: &[Figure]) -> Result<Vec<Block>, StudyError> {
+    let mut blocks = Vec::new();
+    let judged: Vec<_> = record.verdicts().collect();
+    match judged.as_slice() {
+        [] => return Ok(vec![Block::paragraph("No hold has enough samples and change to compare laws on it.")]),
+        [(_, comparison)] => blocks.extend(comparison.sentence().map(Block::Paragraph)),
+        _ => {
+            blocks.push(Block::paragraph(format!("Chosen: {}.", figures::chosen(record))));
+            blocks.extend(tables::verdicts(record).map(Block::Table));
+        }
+    }
+    for figure in figures {
+        blocks.push(Block::figure(figure)?);
+    }
+    for (hold, comparison) in judged.iter().take(MOST_PANELS) {
+        if judged.len() > 1 {
+            blocks.push(Block::Subheading(hold.title()));
+            blocks.extend(Comparison::sentence(comparison).map(Block::Paragraph));
+        }
+        blocks.extend(tables::laws_of_hold(hold).map(Block::Table));
+    }
+    if judged.len() > MOST_PANELS {
+        blocks.push(Block::paragraph(format!(
+            "The first {MOST_PANELS} holds are shown; tables/laws.csv has all {}.",
+            judged.len()
+        )));
+    }
+    blocks.push(Block::List(tables::NOTES.map(str::to_owned).into()));
+    Ok(blocks)
+}

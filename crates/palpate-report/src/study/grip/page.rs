@@ -1,0 +1,60 @@
+//! The page of a planned grip.
+
+use super::figure::grip_figure;
+use super::tables::{grip_table, neighbour_table, schedule_table, sensitivity_table};
+use crate::document::GripDocument;
+use crate::page::{Block, Page, Section};
+use crate::result::GrippedBody;
+use crate::study::bundle::{Bundle, Pictures, StudyError};
+use crate::study::calibration::{material_table, write_prediction};
+
+/// All files of a planned grip: `report.html`, `grip.json`, `tables/*.csv`, `figures/grip.svg`, `series/*.csv`.
+///
+/// # Errors
+/// [`StudyError`] when the figure or document cannot be made.
+pub fn grip_bundle(body: &GrippedBody<'_>, pictures: Pictures) -> Result<Bundle, StudyError> {
+    let mut bundle = Bundle::default();
+    let answer = &body.answer;
+    let mut verdict = Section::new("Will it hold?")
+        .block(Block::Paragraph(body.question()))
+        .block(Block::Paragraph(body.verdict()));
+    let grips = grip_table(body);
+    if !grips.rows.is_empty() {
+        let figure = grip_figure(body, "grip");
+        bundle.figure(&figure, pictures)?;
+        bundle.table(&grips);
+        verdict = verdict.block(Block::figure(&figure)?).block(Block::Table(grips));
+    }
+    verdict = verdict.block(Block::List(body.remarks()));
+    let mut page = Page::new("Grip", "How long it holds, and how to squeeze").section(verdict);
+    let sections = [
+        ("Squeezes beside it", neighbour_table(body)),
+        ("Squeeze and back off", sensitivity_table(body)),
+        ("Squeeze again", schedule_table(body)),
+        ("Material", Some(material_table(body.grip.material()))),
+    ];
+    for (heading, table) in sections {
+        let Some(table) = table else { continue };
+        bundle.table(&table);
+        page = page.section(Section::new(heading).block(Block::Table(table)));
+    }
+    let courses = [
+        ("squeeze", answer.squeeze.as_ref().ok().map(|made| &made.course)),
+        ("back_off", answer.back_off.as_ref().ok().map(|made| &made.course)),
+        ("force_held", answer.pressed.as_ref().ok().map(|made| &made.course)),
+        ("schedule", answer.schedule.as_ref().and_then(|made| made.as_ref().ok()).map(|made| &made.course)),
+    ];
+    for (name, course) in courses {
+        let Some(course) = course else { continue };
+        let mut content = Vec::new();
+        write_prediction(&mut content, course)?;
+        bundle.files.push((format!("series/{name}.csv"), content));
+    }
+    page = page
+        .provenance("Material", &body.path)
+        .provenance("SHA-256", &body.sha256)
+        .provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION")));
+    bundle.text("report.html", page.to_html());
+    bundle.json("grip.json", &GripDocument::new(body))?;
+    Ok(bundle)
+}

@@ -1,0 +1,176 @@
+//! A planned grip: tables and text.
+
+use palpate::grip::{Holding, Lasts};
+
+use crate::number::significant;
+use crate::result::{GrippedBody, lasted, percent};
+use crate::table::{Cell, Table, TableColumn};
+use crate::wrap::wrapped;
+
+const NO_INTERVAL: &str = "the calibration says nothing of it";
+
+/// The grips beside one another.
+#[must_use]
+pub fn grip_table(body: &GrippedBody<'_>) -> Table {
+    let answer = &body.answer;
+    let share = percent(body.grip.confidence());
+    let caption = format!("Grips by the calibrated law; the end is {} behind the closing.", lasted(answer.shown));
+    let column = |heading: &str, key: &str, unit: &str| TableColumn::new(heading, key, unit);
+    let mut table = Table::new("grips", caption)
+        .column(column("Grip", "grip", ""))
+        .column(column("Closed", "closing_s", "s"))
+        .column(column("Squeeze", "displacement_mm", "mm"))
+        .column(column("at end", "end_displacement_mm", "mm"))
+        .column(column("Force", "start_force_n", "N"))
+        .column(column("peak", "peak_force_n", "N"))
+        .column(column("at end", "end_force_n", "N"))
+        .column(column("needed", "needed_force_n", "N"))
+        .column(column("Holds", "lasts_s", "s"))
+        .column(column(&format!("{share} from"), "lasts_low_s", "s"))
+        .column(column("to", "lasts_high_s", "s"))
+        .column(column("Work", "work_mj", "mJ"));
+    let time = |time: Lasts| match time {
+        Lasts::For(seconds) => Cell::number(seconds, 4),
+        Lasts::Always => Cell::text("always"),
+    };
+    let end = |course: &palpate::calibrate::Prediction| course.trajectory.force.last().copied().unwrap_or(0.0);
+    let holding = |name: &str, found: &Holding, end: f64| {
+        let interval = |pick: fn((Lasts, Lasts)) -> Lasts| {
+            found.interval.map_or_else(|| Cell::missing(NO_INTERVAL), |interval| time(pick(interval)))
+        };
+        vec![
+            Cell::text(name),
+            Cell::number(found.closing, 3),
+            Cell::number(1e3 * found.displacement, 4),
+            Cell::number(1e3 * found.displacement, 4),
+            Cell::number(found.start_force, 4),
+            Cell::number(found.peak_force, 4),
+            Cell::number(end, 4),
+            Cell::number(found.needed_force, 4),
+            time(found.lasts),
+            interval(|(low, _)| low),
+            interval(|(_, high)| high),
+            Cell::number(1e3 * found.work, 3),
+        ]
+    };
+    if let Ok(squeeze) = &answer.squeeze {
+        table = table.row(holding("squeeze", &squeeze.found, end(&squeeze.course)));
+    }
+    if let Ok(back_off) = &answer.back_off {
+        table = table.row(holding("squeeze and back off", &back_off.found.backed, end(&back_off.course)));
+    }
+    if let Ok(pressed) = &answer.pressed {
+        let found = &pressed.found;
+        let lasts = match (found.holds, found.stroke_ends) {
+            (false, _) => Cell::number(0.0, 4),
+            (true, Some(time)) => Cell::number(time, 4),
+            (true, None) => Cell::text("always"),
+        };
+        table = table.row(vec![
+            Cell::text("force held"),
+            Cell::number(found.closing, 3),
+            Cell::number(1e3 * found.displacement_start, 4),
+            Cell::number(1e3 * found.displacement_end, 4),
+            Cell::number(found.force, 4),
+            Cell::number(found.force, 4),
+            match found.stroke_ends {
+                None => Cell::number(found.force, 4),
+                Some(_) => Cell::missing("the stroke ends before"),
+            },
+            Cell::number(found.needed_force, 4),
+            lasts,
+            Cell::missing("a force that is held does not fall"),
+            Cell::missing("a force that is held does not fall"),
+            Cell::number(1e3 * found.work, 3),
+        ]);
+    }
+    table
+}
+
+/// How long squeezes a little less and more deep hold.
+#[must_use]
+pub fn neighbour_table(body: &GrippedBody<'_>) -> Option<Table> {
+    let answer = &body.answer;
+    let squeeze = answer.squeeze.as_ref().ok().filter(|_| answer.neighbours.len() > 1)?;
+    let speed = significant(1e3 * squeeze.found.plan.speed(), 3);
+    let mut table = Table::new("neighbours", format!("Squeezes beside it, at {speed} mm/s."))
+        .column(TableColumn::new("Squeeze", "displacement_mm", "mm"))
+        .column(TableColumn::new("beside it", "change_percent", "%"))
+        .column(TableColumn::new("Holds", "lasts_s", "s"));
+    for (place, time) in &answer.neighbours {
+        table = table.row(vec![
+            Cell::number(1e3 * place, 4),
+            Cell::number((100.0 * (place / squeeze.found.displacement - 1.0)).round(), 2),
+            time.seconds().map_or_else(|| Cell::text("always"), |seconds| Cell::number(seconds, 4)),
+        ]);
+    }
+    Some(table)
+}
+
+/// What the numbers of the material do to squeeze and back off.
+#[must_use]
+pub fn sensitivity_table(body: &GrippedBody<'_>) -> Option<Table> {
+    let found = &body.answer.back_off.as_ref().ok()?.found;
+    let caption = "Squeeze and back off: what happens if a number of the material is 1 % larger than was found.";
+    let mut table = Table::new("sensitivities", caption)
+        .column(TableColumn::new("Number", "number", ""))
+        .column(TableColumn::new("known to", "standard_error_percent", "%"))
+        .column(TableColumn::new("Force missed", "missed_mn", "mN"))
+        .column(TableColumn::new("Turn farther by", "over_um", "µm"));
+    for one in &found.sensitivities {
+        table = table.row(vec![
+            Cell::text(one.name.replace('_', " ")),
+            Cell::number_or(one.error.map(|error| 100.0 * error), 2, "it has no error"),
+            // Rounding alone is nothing.
+            Cell::number(if one.missed.abs() < 1e-9 { 0.0 } else { 1e3 * one.missed }, 3),
+            Cell::number(1e6 * one.over, 3),
+        ]);
+    }
+    (!found.sensitivities.is_empty()).then_some(table)
+}
+
+/// The squeezes of a schedule.
+#[must_use]
+pub fn schedule_table(body: &GrippedBody<'_>) -> Option<Table> {
+    let found = &body.answer.schedule.as_ref()?.as_ref().ok()?.found;
+    let mut table = Table::new("schedule", "When to squeeze again; times since first touch.")
+        .column(TableColumn::new("Move", "move", ""))
+        .column(TableColumn::new("at", "time_s", "s"))
+        .column(TableColumn::new("Jaw from", "from_mm", "mm"))
+        .column(TableColumn::new("to", "to_mm", "mm"))
+        .column(TableColumn::new("Force from", "force_from_n", "N"))
+        .column(TableColumn::new("to", "force_to_n", "N"));
+    for (index, step) in found.moves.iter().enumerate() {
+        table = table.row(vec![
+            Cell::Integer(index as i64 + 1),
+            Cell::number(step.time, 5),
+            Cell::number(1e3 * step.from, 5),
+            Cell::number(1e3 * step.to, 5),
+            Cell::number(step.force_from, 4),
+            Cell::number(step.force_to, 4),
+        ]);
+    }
+    Some(table)
+}
+
+/// A planned grip as text for a terminal.
+#[must_use]
+pub fn grip_text(body: &GrippedBody<'_>) -> String {
+    let mut text = format!("{}\n", body.path);
+    text.push_str(&wrapped(&body.question()));
+    text.push('\n');
+    text.push_str(&wrapped(&body.verdict()));
+    let grips = grip_table(body);
+    let tables = [
+        (!grips.rows.is_empty()).then_some(grips),
+        neighbour_table(body),
+        sensitivity_table(body),
+        schedule_table(body),
+    ];
+    for table in tables.into_iter().flatten() {
+        text.push_str(&format!("\n{}", table.to_plain_text()));
+    }
+    text.push('\n');
+    body.remarks().iter().for_each(|remark| text.push_str(&wrapped(remark)));
+    text
+}

@@ -1,0 +1,324 @@
+//! Figures of an analysed record.
+
+use palpate::analysis::{Analysis, HoldAnalysis, Signal};
+use palpate::fit::{ExponentChoice, LatencyFit, Termination};
+use palpate::segment::{After, Phase};
+
+use crate::figure::{Arrangement, Axis, Figure, Layer, MOST_PANELS, Panel, Role};
+
+/// Points that a fitted curve is drawn with.
+const CURVE: usize = 200;
+/// Holds that share a panel.
+const MOST_SERIES: usize = 8;
+
+/// Force over displacement over time with the phases, the paper's figure 4; the simulated force laid over where there is one.
+pub(super) fn record(analysis: &Analysis, name: &str) -> Figure {
+    let time = analysis.record.time();
+    let mut force = Panel::new(Axis::linear("Time", "s"), Axis::linear("Force", "N")).share(1.7);
+    for (i, hold) in analysis.holds.iter().enumerate() {
+        let span = Layer::span(hold.start, hold.end, Role::Series(0));
+        // Names are readable while there are few.
+        let named = analysis.holds.len() <= MOST_PANELS;
+        force = force.layer(if named { span.label(format!("{}", i + 1)) } else { span });
+    }
+    force = force.layer(Layer::line(time.to_vec(), analysis.record.force().to_vec(), Role::Measured).label("measured"));
+    if let Some(overlay) = &analysis.overlay {
+        let n = overlay.model.law.exponent();
+        let label = format!("simulated, n = {n}");
+        force = force.layer(Layer::line(overlay.time.clone(), overlay.force.clone(), Role::Simulated).label(label));
+    }
+    let numbered = if analysis.holds.len() <= MOST_PANELS { ", with their numbers" } else { "" };
+    let quantities = if analysis.record.displacement().is_some() { "Force and displacement" } else { "Force" };
+    let mut caption = format!("{quantities} over time. Shaded: the holds that were found{numbered}.");
+    if analysis.overlay.is_some() {
+        caption
+            .push_str(" The simulated curve follows the measured displacement with the numbers fitted to the holds.");
+    }
+    let mut figure = Figure::new(name, caption).panel(force).arrangement(Arrangement::Stacked);
+    if let Some(displacement) = analysis.record.displacement() {
+        let millimetres = displacement.iter().map(|d| d * 1e3).collect();
+        let panel = Panel::new(Axis::linear("Time", "s"), Axis::linear("Displacement", "mm"));
+        figure = figure.panel(panel.layer(Layer::line(time.to_vec(), millimetres, Role::Measured)));
+    }
+    figure
+}
+
+/// Strain rate against strain with the fitted law, hold by hold: the paper's figure 6. `None` where no strain is known.
+pub(in crate::study) fn strain_rates(analysis: &Analysis, name: &str) -> Option<Figure> {
+    let n = analysis.across.common_exponent?;
+    let (mut panels, mut most) = (Vec::new(), 0);
+    let mut caption = format!(
+        "Strain rate against strain (points: smoothed differences of the record; lines: the law with n = {n} fitted to the signal over time)."
+    );
+    for (after, title) in [(After::Loading, "After loading"), (After::Unloading, "After unloading")] {
+        let holds: Vec<&HoldAnalysis> = analysis
+            .holds
+            .iter()
+            .filter(|hold| hold.after == Some(after) && hold.signal == Signal::Strain && !hold.rates.rate.is_empty())
+            .collect();
+        let shown = spread(&holds, MOST_SERIES);
+        if shown.is_empty() {
+            continue;
+        }
+        if shown.len() < holds.len() {
+            caption.push_str(&format!(
+                " {title}: {} of {} holds, spread over the displacements.",
+                shown.len(),
+                holds.len()
+            ));
+        }
+        let (panel, outside) = rate_panel(&shown, n);
+        if outside > 0 {
+            let points: usize = shown.iter().map(|hold| hold.rates.rate.len()).sum();
+            caption.push_str(&format!(" {title}: {outside} of {points} points lie outside the range shown."));
+        }
+        most = most.max(shown.len());
+        panels.push(panel.title(title));
+    }
+    if panels.is_empty() {
+        return None;
+    }
+    // Long legends stand above the axes and need room of their own.
+    let height = if most > 5 { 84.0 } else { 66.0 };
+    let figure = Figure::new(name, caption).arrangement(Arrangement::SideBySide).height_mm(height);
+    Some(panels.into_iter().fold(figure, Figure::panel))
+}
+
+/// At most `most` holds, spread over the displacements, in the order of the record.
+fn spread<'a>(holds: &[&'a HoldAnalysis], most: usize) -> Vec<&'a HoldAnalysis> {
+    if holds.len() <= most {
+        return holds.to_vec();
+    }
+    let mut sorted = holds.to_vec();
+    sorted.sort_by(|a, b| a.displacement.unwrap_or(0.0).total_cmp(&b.displacement.unwrap_or(0.0)));
+    let mut chosen: Vec<&HoldAnalysis> = (0..most).map(|i| sorted[i * (sorted.len() - 1) / (most - 1)]).collect();
+    chosen.sort_by_key(|hold| hold.number);
+    chosen
+}
+
+/// The strain rates of some holds with their laws, and how many points lie outside the range shown.
+fn rate_panel(holds: &[&HoldAnalysis], n: f64) -> (Panel, usize) {
+    let curves: Vec<Option<(Vec<f64>, Vec<f64>)>> =
+        holds.iter().map(|hold| hold.fit_with(n).map(|fit| rate_curve(fit, hold))).collect();
+    let rates = || holds.iter().flat_map(|hold| hold.rates.rate.iter().copied());
+    let fitted = curves.iter().flatten().flat_map(|(_, rates)| rates.iter().copied());
+    let mut axis = Axis::linear("Strain rate", "s⁻¹");
+    let mut outside = 0;
+    if let Some((low, high)) = robust_range(rates().collect(), fitted) {
+        outside = rates().filter(|rate| *rate < low || *rate > high).count();
+        axis = axis.range(low, high);
+    }
+    let mut panel = Panel::new(Axis::linear("Strain", ""), axis).zero_line();
+    for (series, (hold, curve)) in holds.iter().zip(curves).enumerate() {
+        let role = Role::Series(series as u8);
+        panel = panel.layer(Layer::points(hold.rates.strain.clone(), hold.rates.rate.clone(), role));
+        let label = match hold.displacement {
+            Some(d) => format!("{}: {} mm", hold.number, fixed(d * 1e3)),
+            None => format!("{}", hold.number),
+        };
+        if let Some((strain, rate)) = curve {
+            panel = panel.layer(Layer::line(strain, rate, role).label(label));
+        }
+    }
+    (panel, outside)
+}
+
+/// One decimal place, without a sign on zero.
+fn fixed(value: f64) -> String {
+    format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0).replace('-', "−")
+}
+
+/// A range without the few strays that would flatten everything else; `None` where there are no such strays.
+///
+/// It holds the bulk of the rates and the fitted laws as far as these are of that size.
+fn robust_range(mut rates: Vec<f64>, fitted: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    rates.retain(|rate| rate.is_finite());
+    rates.sort_by(f64::total_cmp);
+    let (first, last) = (*rates.first()?, *rates.last()?);
+    let at = |share: f64| rates[((rates.len() - 1) as f64 * share).round() as usize];
+    let (mut low, mut high) = (at(0.01).min(0.0), at(0.99).max(0.0));
+    let reach = 2.0 * (high - low);
+    for rate in fitted.filter(|rate| rate.abs() <= reach) {
+        (low, high) = (low.min(rate), high.max(rate));
+    }
+    let room = 0.05 * (high - low);
+    (last - first > 1.3 * (high - low) && room > 0.0).then_some((low - room, high + room))
+}
+
+/// The law's strain rate over the strains that a hold passes through.
+fn rate_curve(fit: &LatencyFit, hold: &HoldAnalysis) -> (Vec<f64>, Vec<f64>) {
+    let last = hold.times.last().copied().unwrap_or(0.0);
+    let (from, to) = (fit.predict(0.0), fit.predict(last));
+    let n = fit.exponent.value;
+    let strains = (0..CURVE).map(|i| from + (to - from) * i as f64 / (CURVE - 1) as f64);
+    strains
+        .map(|strain| {
+            let x = strain - fit.equilibrium.value;
+            (strain, -fit.rate_coefficient.value * x.signum() * x.abs().powf(n))
+        })
+        .unzip()
+}
+
+/// Each hold over the logarithm of time with its fits, and what they leave over.
+pub(super) fn holds(analysis: &Analysis, name: &str) -> Option<Figure> {
+    let all: Vec<&HoldAnalysis> = analysis.holds.iter().filter(|hold| !hold.fits.is_empty()).collect();
+    let fitted = &all[..all.len().min(MOST_PANELS)];
+    let columns = match fitted.len() {
+        0 => return None,
+        1 => 1,
+        2 | 4 => 2,
+        _ => 3,
+    };
+    let mut figure = Figure::new(
+        name,
+        format!(
+            "Relaxation over the logarithm of the time since the start of the fit, with the law at the common exponent and with a free exponent.{}",
+            first_of(fitted.len(), all.len())
+        ),
+    )
+    .arrangement(Arrangement::Grid(columns));
+    for hold in fitted {
+        figure = figure.panel(hold_panel(analysis, hold));
+    }
+    let rows = fitted.len().div_ceil(columns);
+    let height = if columns == 1 { 95.0 } else { 62.0 * rows as f64 };
+    Some(figure.height_mm(height))
+}
+
+/// What a caption says where only the first holds have a panel.
+fn first_of(shown: usize, all: usize) -> String {
+    if shown < all {
+        format!(" Shown: the first {shown} of {all} fitted holds.")
+    } else {
+        String::new()
+    }
+}
+
+fn hold_panel(analysis: &Analysis, hold: &HoldAnalysis) -> Panel {
+    let y = match hold.signal {
+        Signal::Strain => Axis::linear("Strain", ""),
+        Signal::Force => Axis::linear("Force", "N"),
+    };
+    // The first sample is at time zero, which a logarithm has no place for.
+    let visible = hold.times.partition_point(|t| *t <= 0.0);
+    let (times, values) = (hold.times[visible..].to_vec(), hold.values[visible..].to_vec());
+    let (first, last) = (times.first().copied().unwrap_or(1.0), times.last().copied().unwrap_or(1.0));
+    let title = match hold.displacement {
+        Some(d) => format!("Hold {}, {} mm", hold.number, fixed(d * 1e3)),
+        None => format!("Hold {}", hold.number),
+    };
+    let mut panel = Panel::new(Axis::log("Time", "s"), y)
+        .title(title)
+        .layer(Layer::points(times, values, Role::Measured).label("measured"));
+    if hold.fitted < hold.times.len() {
+        panel = panel.layer(Layer::vertical(hold.times[hold.fitted - 1], Role::Reference).label("fitted until"));
+    }
+    let curve: Vec<f64> = (0..CURVE).map(|i| first * (last / first).powf(i as f64 / (CURVE - 1) as f64)).collect();
+    for fit in &hold.fits {
+        let is_common = fit.choice == ExponentChoice::Fixed(analysis.across.common_exponent.unwrap_or(f64::NAN));
+        let is_free = fit.choice == ExponentChoice::Free;
+        if is_common || is_free {
+            let role = if is_free { Role::Alternative(0) } else { Role::Fitted };
+            let label = match fit.termination {
+                Termination::ExponentAtBound => format!("n = {} (free, at its bound)", fit.exponent.value),
+                _ if is_free => format!("n = {:.2} (free)", fit.exponent.value),
+                _ => format!("n = {}", fit.exponent.value),
+            };
+            let line = curve.iter().map(|t| fit.predict(*t)).collect();
+            panel = panel.layer(Layer::line(curve.clone(), line, role).label(label));
+        }
+    }
+    panel
+}
+
+/// Residuals of the preferred fits over the logarithm of time.
+pub(super) fn residuals(analysis: &Analysis, name: &str) -> Option<Figure> {
+    let all: Vec<(&HoldAnalysis, &LatencyFit)> =
+        analysis.holds.iter().filter_map(|hold| Some((hold, hold.preferred()?))).collect();
+    // A fit without noise leaves only the rounding of its own arithmetic, which says nothing.
+    let worth: Vec<_> = all.iter().filter(|(_, fit)| fit.rmse > 1e-9 * fit.amplitude.value.abs()).collect();
+    let fitted = &worth[..worth.len().min(MOST_PANELS)];
+    if fitted.is_empty() {
+        return None;
+    }
+    let exact = match all.len() - worth.len() {
+        0 => String::new(),
+        count => format!(" Left out: {count} holds that are fitted to within rounding."),
+    };
+    let columns = fitted.len().min(3);
+    let mut figure = Figure::new(
+        name,
+        format!(
+            "What the preferred fit of each hold leaves over (measured less fitted). Noise scatters about zero; a wave is shape that the law misses.{}{exact}",
+            first_of(fitted.len(), worth.len())
+        ),
+    )
+    .arrangement(Arrangement::Grid(columns))
+    .height_mm(50.0 * fitted.len().div_ceil(columns) as f64);
+    for (hold, fit) in fitted {
+        let visible = hold.times.partition_point(|t| *t <= 0.0);
+        let left: Vec<f64> = hold.times[visible..]
+            .iter()
+            .zip(&hold.values[visible..])
+            .map(|(t, y)| (y - fit.predict(*t)) * hold.force_per_signal)
+            .collect();
+        let panel = Panel::new(Axis::log("Time", "s"), Axis::linear("Residual", "N"))
+            .title(format!("Hold {}, n = {:.2}", hold.number, fit.exponent.value))
+            .zero_line()
+            .layer(Layer::points(hold.times[visible..].to_vec(), left, Role::Measured));
+        figure = figure.panel(panel);
+    }
+    Some(figure)
+}
+
+/// Rate coefficient against equilibrium strain with error bars: the trend of Tables I and II.
+pub(super) fn trend(analysis: &Analysis, name: &str) -> Option<Figure> {
+    let n = analysis.across.common_exponent?;
+    let mut panel = Panel::new(Axis::linear("Equilibrium strain", ""), Axis::log("Rate coefficient", "s⁻¹"));
+    let mut points = 0;
+    for (after, role, label) in [
+        (After::Loading, Role::Measured, "after loading"),
+        (After::Unloading, Role::Alternative(0), "after unloading"),
+    ] {
+        let fits: Vec<&LatencyFit> = analysis
+            .holds
+            .iter()
+            .filter(|hold| hold.after == Some(after) && hold.signal == Signal::Strain)
+            .filter_map(|hold| hold.fit_with(n))
+            .filter(|fit| fit.termination.is_good())
+            .collect();
+        if fits.is_empty() {
+            continue;
+        }
+        points += fits.len();
+        let x = fits.iter().map(|fit| fit.equilibrium.value).collect();
+        let y = fits.iter().map(|fit| fit.rate_coefficient.value).collect();
+        let errors = fits.iter().map(|fit| fit.rate_coefficient.standard_error.unwrap_or(0.0)).collect();
+        panel = panel.layer(Layer::points(x, y, role).error_bars(errors).label(label));
+    }
+    (points >= 2).then(|| {
+        let caption = format!(
+            "Rate coefficient v at n = {n} against the equilibrium strain of each hold; bars: standard errors."
+        );
+        Figure::new(name, caption).panel(panel).width_mm(110.0).height_mm(75.0)
+    })
+}
+
+/// Whether a record has phases of a kind; keeps captions true.
+pub(super) fn has_phase(analysis: &Analysis, phase: Phase) -> bool {
+    analysis.segmentation.segments.iter().any(|segment| segment.phase == phase)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::robust_range;
+
+    #[test]
+    fn one_stray_rate_does_not_flatten_the_rest() {
+        let mut rates: Vec<f64> = (0..500).map(|i| -1e-3 * f64::from(i) / 500.0).collect();
+        assert_eq!(robust_range(rates.clone(), std::iter::empty()), None);
+        rates.push(-5.0);
+        let (low, high) = robust_range(rates, [-1.2e-3, -7.0].into_iter()).expect("a range");
+        assert!(low < -1.2e-3 && low > -2e-3 && high > 0.0 && high < 1e-3);
+    }
+}

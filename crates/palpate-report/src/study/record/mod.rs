@@ -1,0 +1,19 @@
+//! An analysed record: an analysis in; tables, text, figures and a page out.
+//!
+//! | file | what |
+//! |---|---|
+//! | `figures.rs` | the record, its holds, strain rates and trend |
+//! | `tables.rs` | its tables and text |
+//! | `method.rs` | the settings that a page tells |
+//! | `cut.rs` | how a record was cut into phases |
+//! | `page.rs` | the page, and all files |
+
+mod cut;
+pub(super) mod figures;
+mod method;
+mod page;
+mod tables;
+
+pub use cut::cut_figure;
+pub use page::analysis_bundle;
+pub use tables::analysis_text;

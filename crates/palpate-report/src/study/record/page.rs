@@ -1,0 +1,190 @@
+//! The page of an analysed record.
+
+use std::slice;
+
+use palpate::analysis::{Analysis, JointHolds};
+use palpate::fit::TrendVerdict;
+use palpate::segment::{After, Phase};
+
+use super::{figures, method, tables};
+use crate::document::AnalysisDocument;
+use crate::number::significant;
+use crate::page::{Block, Page, Section};
+use crate::result::{ComparedRecord, Input};
+use crate::study::bundle::{Bundle, Pictures, StudyError};
+use crate::study::comparison;
+use crate::study::findings;
+
+/// All files of an analysed record: `report.html`, `analysis.json`, `tables/*.csv`, `figures/*.svg`.
+///
+/// # Errors
+/// [`StudyError`] when a figure or document cannot be made.
+pub fn analysis_bundle(analysis: &Analysis, input: Input, pictures: Pictures) -> Result<Bundle, StudyError> {
+    let mut bundle = Bundle::default();
+    let figures: Vec<_> = [Some(figures::record(analysis, "record"))]
+        .into_iter()
+        .chain([
+            figures::strain_rates(analysis, "strain_rates"),
+            figures::holds(analysis, "holds"),
+            figures::residuals(analysis, "residuals"),
+            figures::trend(analysis, "trend"),
+        ])
+        .flatten()
+        .collect();
+    let compared = ComparedRecord::of_analysis(analysis, input.clone());
+    let of_laws = comparison::figures::all(&compared, "");
+    for figure in figures.iter().chain(&of_laws) {
+        bundle.figure(figure, pictures)?;
+    }
+    if let Some(compare) = &analysis.options.compare {
+        bundle.table(&comparison::tables::laws(slice::from_ref(&compared), &compare.cuts));
+        comparison::tables::verdicts(&compared).iter().for_each(|table| bundle.table(table));
+    }
+    for table in tables::all(analysis) {
+        bundle.table(&table);
+    }
+    let which_law = match analysis.options.compare {
+        Some(_) => Some(comparison::page::blocks(&compared, &of_laws)?),
+        None => None,
+    };
+    let page = page(analysis, &input, &figures, which_law)?;
+    bundle.text("report.html", page.to_html());
+    bundle.json("analysis.json", &AnalysisDocument::new(analysis, input))?;
+    Ok(bundle)
+}
+
+fn page(
+    analysis: &Analysis,
+    input: &Input,
+    figures: &[crate::figure::Figure],
+    comparison: Option<Vec<Block>>,
+) -> Result<Page, StudyError> {
+    let figure = |name: &str| figures.iter().find(|figure| figure.name == name);
+    let mut record = Section::new("The record").block(Block::paragraph(summary(analysis)));
+    if let Some(picture) = figure("record") {
+        record = record.block(Block::figure(picture)?);
+    }
+    record = record.block(Block::Table(tables::holds(analysis)));
+    let mut laws = Section::new("The law, hold by hold");
+    for after in [After::Loading, After::Unloading] {
+        laws = laws.blocks(tables::paper_table(analysis, after).map(Block::Table));
+    }
+    laws = laws.block(Block::Table(tables::exponents(analysis)));
+    for name in ["holds", "residuals", "strain_rates", "trend"] {
+        if let Some(picture) = figure(name) {
+            laws = laws.block(Block::figure(picture)?);
+        }
+    }
+    laws = laws.blocks(joint_sentence(analysis).or_else(|| trend_sentence(analysis)).map(Block::Paragraph));
+    laws = laws.blocks(tables::joint(analysis).map(Block::Table));
+    laws = laws.blocks(tables::agreements(analysis).map(Block::Table));
+    laws = laws.blocks(tables::predictions(analysis).map(Block::Table));
+    let mut page = Page::new(&input.title, "Squeeze-and-hold test: phases, strains and the latency law")
+        .section(Section::new("Findings").blocks(findings(analysis)))
+        .section(record)
+        .section(laws);
+    if let Some(blocks) = comparison {
+        page = page.section(Section::new("Which law to use").blocks(blocks));
+    }
+    page = page
+        .section(Section::new("All fits").block(Block::Table(tables::fits(analysis))))
+        .section(Section::new("Method and settings").blocks(method::blocks(analysis)));
+    page = page
+        .provenance("Record", input.called())
+        .provenance("SHA-256", &input.sha256)
+        .provenance("Rows", input.rows.to_string());
+    if let Some(test) = &input.test {
+        page = page.provenance("Test description", test);
+    }
+    Ok(page.provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION"))))
+}
+
+/// What was found, in a few sentences.
+fn summary(analysis: &Analysis) -> String {
+    let time = analysis.record.time();
+    let after = |after| analysis.holds.iter().filter(|hold| hold.after == Some(after)).count();
+    let mut text = format!(
+        "{} samples over {} s: {} after loading and {} after unloading.",
+        analysis.record.len(),
+        significant(time[time.len() - 1] - time[0], 4),
+        holds_word(after(After::Loading)),
+        holds_word(after(After::Unloading)),
+    );
+    if figures::has_phase(analysis, Phase::Rest) {
+        text.push_str(" The record begins at rest.");
+    }
+    if let Some(n) = analysis.across.common_exponent {
+        let fitted = analysis.holds.iter().filter(|hold| !hold.fits.is_empty()).count();
+        let which = if fitted == 1 { "this hold" } else { "all holds" };
+        text.push_str(&format!(" The lowest listed exponent that fits {which} best is n = {n}."));
+    }
+    if let Some(overlay) = &analysis.overlay {
+        text.push_str(&format!(
+            " Simulated with n = {}, v = {} s⁻¹ and {} layers{}, the force stays within {} % (rms) of the largest measured force.",
+            overlay.model.law.exponent(),
+            significant(overlay.model.law.rate_coefficient(), 3),
+            significant(overlay.model.layers.count(), 3),
+            if overlay.layers_fitted { " (fitted to the ramps)" } else { "" },
+            significant(100.0 * overlay.relative, 2),
+        ));
+    }
+    text
+}
+
+fn holds_word(count: usize) -> String {
+    match count {
+        0 => "no hold".to_owned(),
+        1 => "one hold".to_owned(),
+        count => format!("{count} holds"),
+    }
+}
+
+/// Whether v is one number, from the holds after loading at the common exponent.
+fn joint_sentence(analysis: &Analysis) -> Option<String> {
+    let joint = analysis.across.joint.first().filter(|joint| joint.which == JointHolds::Loading)?;
+    let trend = joint.comparison.trend.as_ref()?;
+    let verdict = match joint.comparison.verdict {
+        TrendVerdict::Constant => "one v describes them all",
+        TrendVerdict::FallsWithStrain => "v falls as the equilibrium strain grows, as the authors of the paper saw",
+        TrendVerdict::RisesWithStrain => "v rises with the equilibrium strain",
+        TrendVerdict::Undecided => "these holds do not tell whether v changes with strain",
+    };
+    Some(format!(
+        "Trend over {} holds after loading, weighted by their errors: d ln v/dεₑ = {} ({} % interval {} to {}): {verdict}.",
+        trend.points.len(),
+        significant(trend.slope, 3),
+        significant(100.0 * joint.fit.options.fit.confidence, 3),
+        significant(trend.interval.0, 3),
+        significant(trend.interval.1, 3)
+    ))
+}
+
+fn trend_sentence(analysis: &Analysis) -> Option<String> {
+    let trend = analysis.across.trend?;
+    let (low, high) = trend.interval?;
+    let verdict = if low > 0.0 {
+        "v rises with the equilibrium strain"
+    } else if high < 0.0 {
+        "v falls as the equilibrium strain grows, as the authors of the paper saw"
+    } else {
+        "no trend of v can be told from these holds"
+    };
+    Some(format!(
+        "Trend over {} holds after loading: d ln v/dεₑ = {} (95 % interval {} to {}): {verdict}.",
+        trend.holds,
+        significant(trend.slope, 3),
+        significant(low, 3),
+        significant(high, 3)
+    ))
+}
+
+/// Findings of the record and of its holds; the same finding of several holds is told once.
+fn findings(analysis: &Analysis) -> Vec<Block> {
+    let list: Vec<_> =
+        findings::gathered(analysis, findings::MOST_LINES).iter().map(findings::Gathered::told).collect();
+    if list.is_empty() {
+        vec![Block::paragraph("Nothing to report: the holds are long and clean enough for the numbers below.")]
+    } else {
+        vec![Block::Findings(list)]
+    }
+}
