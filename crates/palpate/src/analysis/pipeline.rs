@@ -1,19 +1,15 @@
 //! The order of the steps.
 
-use super::across::{Across, across};
-use super::corrected::corrected;
-use super::hold::{HoldAnalysis, analyze_hold};
-use super::joint::changing_rate;
-use super::modulus::{ModulusSource, implied_modulus};
-use super::overlay::{Overlay, overlay};
-use super::signals::{correction_findings, signal_findings, stray_rows, suspicious_signs, touch_findings};
-use super::skew::ClockSkew;
-use super::{AnalysisOptions, Finding};
-use crate::contact::{Shape, Specimen, SpecimenError};
+use super::error::AnalysisError;
+use super::finding::Finding;
+use super::holds::{HoldAnalysis, analyze_hold};
+use super::options::AnalysisOptions;
+use super::prepare::{ClockSkew, Prepared, corrected, signal_findings};
+use super::together::{Across, ModulusSource, Overlay, across, changing_rate, implied_modulus, overlay};
+use crate::contact::{Specimen, SpecimenError};
 use crate::number::significant;
-use crate::record::{Record, RecordError, SignalReport};
-use crate::segment::{ContactPoint, Phase, Segment, SegmentError, Segmentation, find_contact_of};
-use crate::simulate::Separation;
+use crate::record::{Record, SignalReport};
+use crate::segment::{ContactPoint, Phase, Segment, Segmentation};
 
 /// The study of one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,74 +40,6 @@ pub struct Analysis {
     pub findings: Vec<Finding>,
 }
 
-/// Why a record could not be analysed.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum AnalysisError {
-    /// No phases.
-    #[error(transparent)]
-    Segment(#[from] SegmentError),
-    /// A correction that cannot be made.
-    #[error(transparent)]
-    Correction(#[from] RecordError),
-    /// Numbers that make no specimen.
-    #[error(transparent)]
-    Specimen(#[from] SpecimenError),
-    /// The jaw goes further than the body is deep.
-    #[error(
-        "sample {sample} (t = {time} s) is {:.4} mm beyond first touch, the {limit_name} allows less than {:.4} mm", 1e3 * found, 1e3 * limit
-    )]
-    BeyondBody {
-        /// Number of the sample, from 1.
-        sample: usize,
-        /// Its time, s.
-        time: f64,
-        /// Travel of the jaw since first touch there, m.
-        found: f64,
-        /// Travel at which the contact would reach the plane that does not move, m.
-        limit: f64,
-        /// What limits it.
-        limit_name: &'static str,
-    },
-    /// A first touch that the jaw does not reach.
-    #[error("first touch is given at {:.4} mm, the jaw goes no farther than {:.4} mm", 1e3 * asked, 1e3 * farthest)]
-    TouchBeyond {
-        /// What was given, m.
-        asked: f64,
-        /// The largest displacement of the record, m.
-        farthest: f64,
-    },
-    /// Holds were found, but none can be fitted.
-    #[error("{}: {reason}", none_of(*holds))]
-    NothingToFit {
-        /// Holds found.
-        holds: usize,
-        /// What they lack.
-        reason: String,
-        /// What helps against that.
-        hint: &'static str,
-    },
-}
-
-impl AnalysisError {
-    /// What would help.
-    #[must_use]
-    pub fn hint(&self) -> String {
-        match self {
-            Self::Segment(error) => error.hint().to_owned(),
-            Self::Correction(error) => error.hint().to_owned(),
-            Self::Specimen(_) => "check the geometry in the test description and its units".to_owned(),
-            Self::BeyondBody { .. } => {
-                "check the unit of the displacement, the size of the body and squeezed_from; a strip pulled in grips needs separation = false"
-                    .to_owned()
-            }
-            Self::TouchBeyond { .. } => {
-                "displacements count compression as positive, from the zero of the column; leave touch out to have it found".to_owned()
-            }
-            Self::NothingToFit { hint, .. } => (*hint).to_owned(),
-        }
-    }
-}
-
 /// Root mean square error of an overlay, as a share of the largest force, from which on it is called poor.
 const POOR: f64 = 0.05;
 
@@ -133,32 +61,14 @@ pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
 pub fn examine(record: &Record, options: &AnalysisOptions) -> Result<Analysis, AnalysisError> {
     let signals = record.signals();
     let corrected = corrected(record, options)?;
-    let skewed = corrected.skew_finding();
-    // Of clocks that differ the force goes on while the jaw stands already: that is no saturation.
-    let aligned = corrected.aligned(record);
-    let segmentation = corrected.segmentation?;
-    let mut findings = correction_findings(&corrected.record);
-    let aligned = aligned.as_ref().map_or((record, &signals), |(record, signals)| (record, signals));
-    findings.extend(signal_findings(aligned, &held(&corrected.record, &segmentation)));
-    findings.extend(stray_rows(&corrected.record));
-    findings.extend(skewed);
-    let (record, skew) = (corrected.record, corrected.skew);
-    if !segmentation.settings.from_displacement {
-        findings.push(Finding::PhasesFromForce);
-    }
-    findings.extend(segmentation.ripple.map(Finding::from));
-    findings.extend(segmentation.ruptures.iter().map(Finding::from));
-    findings.extend(suspicious_signs(&record));
-    let body = options.geometry.as_ref().map(|geometry| (&geometry.shape, geometry.sides));
-    let contact = find_contact_of(&record, &segmentation, body, options.touch);
-    if contact.air_travel > 0.0 {
-        findings.push(Finding::AirTravel {
-            travel: contact.air_travel,
-        });
-    }
-    let record = record.tared(contact.tare);
-    findings.extend(touch_findings(&record, &contact, options.touch));
-    beyond_body(&record, options)?;
+    let prepared = corrected.prepared(options)?;
+    let mut findings = signal_findings((record, &signals), &corrected, &prepared, options.touch);
+    let skew = corrected.skew;
+    let Prepared {
+        record,
+        segmentation,
+        contact,
+    } = prepared;
     let (specimen, modulus_source) = specimen(&record, &segmentation, options, &mut findings)?;
     let holds: Vec<HoldAnalysis> = segmentation
         .holds()
@@ -192,12 +102,6 @@ pub fn examine(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
         overlay,
         findings,
     })
-}
-
-/// From when to when each hold lasts.
-fn held(record: &Record, segmentation: &Segmentation) -> Vec<(f64, f64)> {
-    let time = record.time();
-    segmentation.holds().map(|hold| (time[hold.start], time[hold.end - 1])).collect()
 }
 
 /// First sample of the loading or unloading that a hold follows.
@@ -243,36 +147,6 @@ fn specimen(
     }
 }
 
-/// An error if the jaw goes as far as the body is deep: a unit, a radius or a number of sides is wrong.
-///
-/// A ball and a body between plates have that limit; a strip in grips can be stretched beyond its own length.
-pub(super) fn beyond_body(record: &Record, options: &AnalysisOptions) -> Result<(), AnalysisError> {
-    let (Some(geometry), Some(displacement)) = (&options.geometry, record.displacement()) else {
-        return Ok(());
-    };
-    let is_strip = matches!(geometry.shape, Shape::Prism { .. }) && options.separation == Separation::Bonded;
-    if is_strip {
-        return Ok(());
-    }
-    // The limit is one of geometry; any modulus will do.
-    let body = Specimen::new(geometry.shape.clone(), 1.0, geometry.sides)?;
-    let share = body.contact_displacement(1.0);
-    for (index, travel) in displacement.iter().enumerate() {
-        if let Err(SpecimenError::TooDeep { limit, limit_name, .. }) =
-            body.check_contact_displacement(travel * share, false)
-        {
-            return Err(AnalysisError::BeyondBody {
-                sample: index + 1,
-                time: record.time()[index],
-                found: *travel,
-                limit: limit / share,
-                limit_name,
-            });
-        }
-    }
-    Ok(())
-}
-
 /// A finding if the error of first touch moves an equilibrium strain by more than its interval says.
 ///
 /// ε = F/(E A(u₁)), so an error of u₁ moves it by the share A′/A · δu₁.
@@ -296,13 +170,6 @@ fn uncertain_touch(contact: &ContactPoint, specimen: &Specimen, holds: &[HoldAna
             interval,
         }
     })
-}
-
-fn none_of(holds: usize) -> String {
-    match holds {
-        1 => "the hold that was found cannot be fitted".to_owned(),
-        _ => format!("none of the {holds} holds can be fitted"),
-    }
 }
 
 /// The one force of all holds.

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Baseline, Compliance};
+use super::correct::Compliance;
+use super::correction::Baseline;
 
 /// What to do about a force that is stamped later than the displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

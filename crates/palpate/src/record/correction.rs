@@ -4,7 +4,6 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Baseline, Tare};
 use crate::number::{counted, significant};
 
 /// Which time stamps are meant.
@@ -38,6 +37,26 @@ impl Column {
             Self::Force => "force",
         }
     }
+}
+
+/// What the force without contact is like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Baseline {
+    /// One number.
+    Constant,
+    /// A straight line in time: the load cell drifts. It is drawn on through the whole record, so that a line from a short
+    /// stretch before a long test means little; samples after the jaw has left hold it at the other end.
+    Sloped,
+}
+
+/// What was subtracted from a record.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Tare {
+    /// Force without contact, N.
+    pub force: f64,
+    /// Displacement at first touch, m.
+    pub displacement: f64,
 }
 
 /// Something that was done to a record; SI units. A record carries all of them in the order in which they were done.

@@ -1,6 +1,7 @@
 //! Time stamps that repeat or step back, mended where that is safe.
 
-use super::{Clock, Correction, RecordError};
+use super::checks::RecordError;
+use super::correction::{Clock, Correction};
 
 /// One row in this many may be out of order.
 const ROWS_PER_LATE: usize = 50;

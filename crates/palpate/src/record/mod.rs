@@ -1,147 +1,31 @@
 //! A measured record: time, displacement and force, checked and in SI.
 //!
+//! `RawColumns` come in; a `Record` goes out and lists what was done to it, and its `SignalReport` says what it was like.
+//!
 //! | file | what |
 //! |---|---|
 //! | `raw.rs` | columns as a file holds them, before anything is checked |
 //! | `signals/` | what such columns are like: stamps, gaps, strays, saturation, rounding |
 //! | `mend.rs` | time stamps that repeat or step back |
 //! | `checks.rs` | what every record must be: finite, of equal lengths, time rising |
-//! | `clocks.rs` | force and displacement stamped by different clocks brought onto one |
-//! | `corrections.rs` | tare, air-run subtraction, repair of single-row dropouts |
-//! | `resample.rs` | other sample times |
-//! | `baseline.rs` | the force without contact |
-//! | `compliance.rs` | what the machine gives way, the deflection of a cantilever |
+//! | `measured.rs` | the record itself |
+//! | `correct/` | corrections that make a new record |
 //! | `asked.rs` | corrections that somebody may ask for |
 //! | `correction.rs` | what was done, as a list that goes with the record |
 
 mod asked;
-mod baseline;
 mod checks;
-mod clocks;
-mod compliance;
+mod correct;
 mod correction;
-mod corrections;
+mod measured;
 mod mend;
 mod raw;
-mod resample;
 mod signals;
 
 pub use asked::{CorrectionOptions, SkewChoice};
-pub use baseline::Baseline;
 pub use checks::RecordError;
-pub use compliance::{Compliance, ComplianceError, ComplianceTable};
-pub use correction::{Clock, Column, Correction};
-pub use corrections::Tare;
+pub use correct::{Compliance, ComplianceError, ComplianceTable};
+pub use correction::{Baseline, Clock, Column, Correction, Tare};
+pub use measured::Record;
 pub use raw::RawColumns;
 pub use signals::{Gaps, Reversals, SampleInterval, Saturation, SignalReport, Stamps, Strays, Values, rounding_step};
-
-/// A force record of a squeeze-and-hold test; SI units, the direction of loading is positive.
-///
-/// The direction of loading is compression for a squeezed body and stretch for a strip in grips; displacement and
-/// force share it. A record may lack the displacement (phases are then found from the force).
-#[derive(Debug, Clone, PartialEq)]
-pub struct Record {
-    time: Vec<f64>,
-    displacement: Option<Vec<f64>>,
-    force: Vec<f64>,
-    corrections: Vec<Correction>,
-}
-
-impl Record {
-    /// A record from columns of equal length: time in s, displacement in m, force in N.
-    ///
-    /// # Errors
-    /// [`RecordError`] for unequal lengths, fewer than two rows, values that are not finite, time that does not rise,
-    /// or a force that never changes while nothing moves.
-    ///
-    /// ```
-    /// use palpate::record::Record;
-    /// let record = Record::new(vec![0.0, 0.1, 0.2], Some(vec![0.0, 1e-3, 1e-3]), vec![0.0, 2.0, 1.9])?;
-    /// assert_eq!(record.len(), 3);
-    /// assert!(Record::new(vec![0.0, 0.1, 0.1], None, vec![0.0, 2.0, 1.9]).is_err());
-    /// # Ok::<(), palpate::record::RecordError>(())
-    /// ```
-    pub fn new(time: Vec<f64>, displacement: Option<Vec<f64>>, force: Vec<f64>) -> Result<Self, RecordError> {
-        checks::lengths(&time, displacement.as_deref(), &force)?;
-        checks::finite("time", &time)?;
-        if let Some(displacement) = &displacement {
-            checks::finite("displacement", displacement)?;
-        }
-        checks::finite("force", &force)?;
-        checks::rising(&time)?;
-        checks::changing(displacement.as_deref(), &force)?;
-        Ok(Self {
-            time,
-            displacement,
-            force,
-            corrections: Vec::new(),
-        })
-    }
-
-    /// What was done to the measured columns, in order. Empty for a record that is as it was measured.
-    #[must_use]
-    pub fn corrections(&self) -> &[Correction] {
-        &self.corrections
-    }
-
-    /// What the columns are like now; [`RawColumns::report`] says what they were like before.
-    #[must_use]
-    pub fn signals(&self) -> SignalReport {
-        SignalReport::of(&self.time, self.displacement(), &self.force)
-    }
-
-    /// The record with corrections that were made to its columns before they became one: by the program that read them.
-    #[must_use]
-    pub fn corrected_before(self, earlier: impl IntoIterator<Item = Correction>) -> Self {
-        self.preceded_by(earlier)
-    }
-
-    /// The record with corrections that were made before those it knows of.
-    fn preceded_by(mut self, earlier: impl IntoIterator<Item = Correction>) -> Self {
-        self.corrections.splice(0..0, earlier);
-        self
-    }
-
-    /// The record after one more correction.
-    fn followed_by(mut self, done: Correction) -> Self {
-        self.corrections.push(done);
-        self
-    }
-
-    /// Number of samples.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.time.len()
-    }
-
-    /// Never true: a record has two samples at least.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.time.is_empty()
-    }
-
-    /// Time, s.
-    #[must_use]
-    pub fn time(&self) -> &[f64] {
-        &self.time
-    }
-
-    /// Displacement, m, if it was recorded.
-    #[must_use]
-    pub fn displacement(&self) -> Option<&[f64]> {
-        self.displacement.as_deref()
-    }
-
-    /// Force, N.
-    #[must_use]
-    pub fn force(&self) -> &[f64] {
-        &self.force
-    }
-
-    /// Median time between samples, s.
-    #[must_use]
-    pub fn sample_interval(&self) -> f64 {
-        let mut steps: Vec<f64> = self.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        crate::statistics::median(&mut steps)
-    }
-}

@@ -1,7 +1,10 @@
 //! Columns as a file holds them, before anything is checked.
 
-use super::mend::mended;
-use super::{Clock, Record, RecordError, SignalReport, checks};
+use super::checks::{self, RecordError};
+use super::correction::Clock;
+use super::measured::Record;
+use super::mend::{Mended, mended};
+use super::signals::SignalReport;
 
 /// Columns in SI as they were read: nothing is checked, nothing is mended.
 ///
@@ -78,11 +81,7 @@ impl RawColumns {
 }
 
 /// Columns of equal lengths and finite numbers with their stamps mended.
-fn checked(
-    clock: Clock,
-    time: Vec<f64>,
-    columns: Vec<(&'static str, Vec<f64>)>,
-) -> Result<super::mend::Mended, RecordError> {
+fn checked(clock: Clock, time: Vec<f64>, columns: Vec<(&'static str, Vec<f64>)>) -> Result<Mended, RecordError> {
     for (name, values) in &columns {
         checks::same_length(time.len(), name, values.len())?;
     }

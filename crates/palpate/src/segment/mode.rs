@@ -1,22 +1,8 @@
 //! What the machine holds: the displacement, the force, or neither.
 
-use serde::{Deserialize, Serialize};
-
-use super::levels::range;
+use super::segmentation::HoldMode;
 use crate::record::Record;
-use crate::statistics::{mean, noise};
-
-/// What stays in a hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum HoldMode {
-    /// The displacement: the force may relax.
-    DisplacementHeld,
-    /// The force: the displacement creeps.
-    ForceHeld,
-    /// Both move, if slowly.
-    Neither,
-}
+use crate::statistics::{mean, noise, range};
 
 /// Parts into which a hold is cut to see where it goes.
 const PARTS: usize = 10;

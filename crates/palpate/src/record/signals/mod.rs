@@ -18,7 +18,7 @@ pub(super) use values::{lost_rows, stray_rows};
 
 use serde::{Deserialize, Serialize};
 
-use crate::record::Column;
+use crate::record::correction::Column;
 
 /// What the columns of a record are like; SI units.
 ///

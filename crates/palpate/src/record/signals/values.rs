@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::rounding::rounding_step;
-use crate::record::Column;
+use crate::record::correction::Column;
 use crate::statistics::noise;
 
 /// What a measured column is like; its unit is that of the column.

@@ -1,0 +1,80 @@
+//! Why a record could not be analysed.
+
+use crate::contact::SpecimenError;
+use crate::record::RecordError;
+use crate::segment::SegmentError;
+
+/// Why a record could not be analysed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AnalysisError {
+    /// No phases.
+    #[error(transparent)]
+    Segment(#[from] SegmentError),
+    /// A correction that cannot be made.
+    #[error(transparent)]
+    Correction(#[from] RecordError),
+    /// Numbers that make no specimen.
+    #[error(transparent)]
+    Specimen(#[from] SpecimenError),
+    /// The jaw goes further than the body is deep.
+    #[error(
+        "sample {sample} (t = {time} s) is {:.4} mm beyond first touch, the {limit_name} allows less than {:.4} mm", 1e3 * found, 1e3 * limit
+    )]
+    BeyondBody {
+        /// Number of the sample, from 1.
+        sample: usize,
+        /// Its time, s.
+        time: f64,
+        /// Travel of the jaw since first touch there, m.
+        found: f64,
+        /// Travel at which the contact would reach the plane that does not move, m.
+        limit: f64,
+        /// What limits it.
+        limit_name: &'static str,
+    },
+    /// A first touch that the jaw does not reach.
+    #[error("first touch is given at {:.4} mm, the jaw goes no farther than {:.4} mm", 1e3 * asked, 1e3 * farthest)]
+    TouchBeyond {
+        /// What was given, m.
+        asked: f64,
+        /// The largest displacement of the record, m.
+        farthest: f64,
+    },
+    /// Holds were found, but none can be fitted.
+    #[error("{}: {reason}", none_of(*holds))]
+    NothingToFit {
+        /// Holds found.
+        holds: usize,
+        /// What they lack.
+        reason: String,
+        /// What helps against that.
+        hint: &'static str,
+    },
+}
+
+impl AnalysisError {
+    /// What would help.
+    #[must_use]
+    pub fn hint(&self) -> String {
+        match self {
+            Self::Segment(error) => error.hint().to_owned(),
+            Self::Correction(error) => error.hint().to_owned(),
+            Self::Specimen(_) => "check the geometry in the test description and its units".to_owned(),
+            Self::BeyondBody { .. } => {
+                "check the unit of the displacement, the size of the body and squeezed_from; a strip pulled in grips needs separation = false"
+                    .to_owned()
+            }
+            Self::TouchBeyond { .. } => {
+                "displacements count compression as positive, from the zero of the column; leave touch out to have it found".to_owned()
+            }
+            Self::NothingToFit { hint, .. } => (*hint).to_owned(),
+        }
+    }
+}
+
+fn none_of(holds: usize) -> String {
+    match holds {
+        1 => "the hold that was found cannot be fitted".to_owned(),
+        _ => format!("none of the {holds} holds can be fitted"),
+    }
+}

@@ -1,0 +1,203 @@
+//! Holds of constant force: the displacement creeps.
+
+use super::compared::comparison_findings;
+use crate::analysis::finding::Finding;
+use crate::fit::Samples;
+use crate::forecast::{CompareOptions, Comparison, compare_laws};
+use crate::laws::Response;
+use crate::record::{Record, RecordError};
+use crate::segment::{
+    After, GivenHold, HoldMode, Segment, SegmentError, SegmentOptions, find_phases, held_in, phases_with,
+};
+use crate::statistics::median;
+
+/// One hold of constant force, with the laws of creep compared on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CreepHold {
+    /// Number of the hold in the record, from 1.
+    pub number: usize,
+    /// Time of its first sample, s.
+    pub start: f64,
+    /// Time of its last sample, s.
+    pub end: f64,
+    /// Time from which the laws are fitted, s.
+    pub fit_start: f64,
+    /// Force (median), N.
+    pub force: f64,
+    /// Whether the force had grown or fallen before.
+    pub after: Option<After>,
+    /// Times since the start of the fit, s.
+    pub times: Vec<f64>,
+    /// Displacement at those times, m.
+    pub displacement: Vec<f64>,
+    /// Laws compared; `None` where nothing could be fitted.
+    pub comparison: Option<Comparison>,
+    /// What to know about this hold.
+    pub findings: Vec<Finding>,
+}
+
+/// Why a record holds no creep.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CreepError {
+    /// No displacement was recorded.
+    #[error("creep is a displacement at constant force, but the record has no displacement")]
+    NoDisplacement,
+    /// A displacement that never changes.
+    #[error("the displacement cannot creep: {0}")]
+    Still(RecordError),
+    /// Where the force stays, the displacement stays, too.
+    #[error("the displacement is held wherever the force stays: nothing creeps")]
+    DisplacementHeld,
+    /// No hold of constant force.
+    #[error("of the force: {0}")]
+    Segment(SegmentError),
+    /// Limits that make no hold.
+    #[error(transparent)]
+    Given(SegmentError),
+}
+
+impl CreepError {
+    /// What would help.
+    #[must_use]
+    pub fn hint(&self) -> &'static str {
+        match self {
+            Self::NoDisplacement | Self::Still(_) => "name the displacement under columns.displacement",
+            Self::Given(error) => error.hint(),
+            Self::DisplacementHeld | Self::Segment(_) => {
+                "a hold of constant force is needed; without --creep holds of constant displacement are sought"
+            }
+        }
+    }
+}
+
+/// Share of the range of the force by which it may stray from its level and count as held.
+const RINGING: f64 = 0.02;
+
+/// The same error in the words of the column that was searched.
+fn of_force(error: SegmentError) -> CreepError {
+    CreepError::Segment(match error {
+        SegmentError::NoMotion { range, noise, .. } => SegmentError::NoMotion {
+            column: "force",
+            range,
+            noise,
+            unit: "N",
+        },
+        other => other,
+    })
+}
+
+/// Holds of constant force: of given ones all but those in which the displacement is held; else those over which the jaw is
+/// seen to creep, or else all in which the force stays.
+fn force_held(
+    record: &Record,
+    exchanged: &Record,
+    segment: &SegmentOptions,
+    given: &[GivenHold],
+) -> Result<Vec<Segment>, CreepError> {
+    if !given.is_empty() {
+        let found = phases_with(record, segment, given).map_err(CreepError::Given)?;
+        let creeps = |hold: &&Segment| hold.mode != Some(HoldMode::DisplacementHeld);
+        let creeping: Vec<Segment> = found.holds().filter(creeps).copied().collect();
+        return if creeping.is_empty() { Err(CreepError::DisplacementHeld) } else { Ok(creeping) };
+    }
+    let held = |segment: &&Segment| segment.mode == Some(HoldMode::ForceHeld);
+    let seen: Vec<Segment> =
+        find_phases(record, segment).map_or_else(|_| Vec::new(), |found| found.holds().filter(held).copied().collect());
+    if !seen.is_empty() {
+        return Ok(seen);
+    }
+    // The tolerance of a test is a length; a controller that rings about its set force still holds it.
+    let (low, high) = record.force().iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
+    let segment = SegmentOptions {
+        tolerance: Some(RINGING * (high - low)),
+        ..*segment
+    };
+    let found = find_phases(exchanged, &segment).map_err(of_force)?;
+    let moves = |hold: &&Segment| held_in(record, hold.start, hold.end) != HoldMode::DisplacementHeld;
+    let creeping: Vec<Segment> = found.holds().filter(moves).copied().collect();
+    if creeping.is_empty() { Err(CreepError::DisplacementHeld) } else { Ok(creeping) }
+}
+
+/// Finds the holds of constant force in a record and compares laws of creep on the displacement of each.
+///
+/// Where holds are `given` they are those, less any whose mode is [`HoldMode::DisplacementHeld`]. Else they are those whose mode
+/// is [`HoldMode::ForceHeld`]. Where there is none, phases are found as for a squeeze, with force and displacement exchanged: the
+/// force is what the machine holds, to a fiftieth of its range, whatever tolerance `segment` has. `until` (s) limits how much of
+/// each hold is fitted.
+///
+/// ```
+/// use palpate::analysis::creep_holds;
+/// use palpate::forecast::CompareOptions;
+/// use palpate::record::Record;
+/// use palpate::segment::SegmentOptions;
+/// // 6 N reached in 1 s and held, while the jaw goes on by 0.3 mm with a time of 5 s
+/// let time: Vec<f64> = (0..600).map(|i| 0.05 * f64::from(i)).collect();
+/// let force: Vec<f64> = time.iter().map(|t| 6.0 * t.min(1.0)).collect();
+/// let jaw: Vec<f64> = time.iter().map(|t| 1e-3 * t.min(1.0) + 3e-4 * (1.0 - (-(t - 1.0f64).max(0.0) / 5.0).exp())).collect();
+/// let record = Record::new(time, Some(jaw), force)?;
+/// let holds = creep_holds(&record, (&SegmentOptions::default(), &[]), &CompareOptions::default(), None)?;
+/// assert_eq!(holds.len(), 1);
+/// assert!((holds[0].force - 6.0).abs() < 1e-9);
+/// let best = &holds[0].comparison.as_ref().unwrap().verdict.as_ref().unwrap().law;
+/// assert_eq!(best.to_string(), "standard-linear-solid");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`CreepError`] for a record without displacement, or without a hold of constant force.
+pub fn creep_holds(
+    record: &Record,
+    (segment, given): (&SegmentOptions, &[GivenHold]),
+    compare: &CompareOptions,
+    until: Option<f64>,
+) -> Result<Vec<CreepHold>, CreepError> {
+    let (record, _) = record.repaired();
+    let moved = record.displacement().ok_or(CreepError::NoDisplacement)?.to_vec();
+    let exchanged =
+        Record::new(record.time().to_vec(), Some(record.force().to_vec()), moved).map_err(CreepError::Still)?;
+    let held = force_held(&record, &exchanged, segment, given)?;
+    let mut compare = compare.clone();
+    compare.fit.response = Response::Creep;
+    let time = exchanged.time();
+    let holds = held.iter().enumerate().map(|(index, hold)| {
+        let from = hold.fit_start;
+        let times: Vec<f64> = time[from..hold.end].iter().map(|t| t - time[from]).collect();
+        let displacement = exchanged.force()[from..hold.end].to_vec();
+        let fitted = until.map_or(times.len(), |until| times.partition_point(|t| *t <= until));
+        let comparison = compare_laws(&Samples::new(&times[..fitted], &displacement[..fitted]), &compare).ok();
+        CreepHold {
+            number: index + 1,
+            start: time[hold.start],
+            end: time[hold.end - 1],
+            fit_start: time[from],
+            force: median(&mut record.force()[hold.start..hold.end].to_vec()),
+            after: hold.after,
+            findings: comparison.as_ref().map_or_else(Vec::new, comparison_findings),
+            times,
+            displacement,
+            comparison,
+        }
+    });
+    Ok(holds.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_record_without_displacement_says_so() {
+        let record = Record::new(vec![0.0, 1.0, 2.0], None, vec![0.0, 1.0, 1.0]).unwrap();
+        let found = creep_holds(&record, (&SegmentOptions::default(), &[]), &CompareOptions::default(), None);
+        assert_eq!(found, Err(CreepError::NoDisplacement));
+    }
+
+    #[test]
+    fn a_jaw_that_stands_still_cannot_creep() {
+        let time: Vec<f64> = (0..100).map(f64::from).collect();
+        let force: Vec<f64> = time.iter().map(|t| t.min(10.0)).collect();
+        let record = Record::new(time, Some(vec![1e-3; 100]), force).unwrap();
+        let found = creep_holds(&record, (&SegmentOptions::default(), &[]), &CompareOptions::default(), None);
+        assert_eq!(found, Err(CreepError::DisplacementHeld));
+    }
+}

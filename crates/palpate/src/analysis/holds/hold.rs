@@ -1,0 +1,374 @@
+//! One hold.
+
+use serde::{Deserialize, Serialize};
+
+use super::behaviour::not_a_hold;
+use super::compared::comparison_findings;
+use super::rate_bias::{RateBias, rate_bias};
+use crate::analysis::finding::Finding;
+use crate::analysis::options::AnalysisOptions;
+use crate::contact::Specimen;
+use crate::fit::{
+    ExponentChoice, FitError, LatencyFit, OrderSelection, Samples, Termination, fit_hold, fit_rates, select_order,
+};
+use crate::forecast::{Comparison, RampChoice, compare_laws};
+use crate::laws::Loading;
+use crate::record::Record;
+use crate::segment::{After, HoldMode, Relaxation, RelaxationType, Segment, classify_relaxation};
+use crate::simulate::Separation;
+use crate::statistics::{mean, median, noise};
+use crate::strain::{StrainRates, contact_strain, strain_rates};
+
+/// What the laws are fitted to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Signal {
+    /// Strain of the contact layer.
+    Strain,
+    /// Force, N.
+    Force,
+}
+
+/// How well a fit to the first part of a hold foretells the rest.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Prediction {
+    /// Root mean square error beyond the window, in the unit of the signal.
+    pub rmse: f64,
+    /// The same as a share of the drop of the signal over the whole hold.
+    pub relative: f64,
+    /// Samples beyond the window.
+    pub samples: usize,
+}
+
+/// All that is known of one hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HoldAnalysis {
+    /// Number of the hold in the record, from 1.
+    pub number: usize,
+    /// Where it lies.
+    pub segment: Segment,
+    /// Time of its first sample, s.
+    pub start: f64,
+    /// Time of its last sample, s.
+    pub end: f64,
+    /// Time from which the laws are fitted, s.
+    pub fit_start: f64,
+    /// Displacement of the jaw (median), m, if recorded.
+    pub displacement: Option<f64>,
+    /// What came before.
+    pub after: Option<After>,
+    /// Type I or II.
+    pub relaxation: Relaxation,
+    /// Force where the fit starts, N.
+    pub force_start: f64,
+    /// Force at the end (mean of the last hundredth), N.
+    pub force_end: f64,
+    /// What was fitted.
+    pub signal: Signal,
+    /// Newtons per unit of the signal at this hold: E A, or 1.
+    pub force_per_signal: f64,
+    /// Times since the start of the fit, s.
+    pub times: Vec<f64>,
+    /// The signal at those times.
+    pub values: Vec<f64>,
+    /// How many of those samples were fitted (the rest is predicted).
+    pub fitted: usize,
+    /// Time-domain fits: the listed exponents in order, then the free one.
+    pub fits: Vec<LatencyFit>,
+    /// How well each foretells the rest of the hold, where the fit ended early on request.
+    pub predictions: Vec<Option<Prediction>>,
+    /// Which exponent the data ask for.
+    pub order: Option<OrderSelection>,
+    /// Laws compared on the hold.
+    pub comparison: Option<Comparison>,
+    /// Smoothed strains and strain rates.
+    pub rates: StrainRates,
+    /// Rate-domain fits in the same order as `fits`; `None` where one could not be made.
+    pub rate_fits: Vec<Option<LatencyFit>>,
+    /// How far noise takes the rate domain from the truth, at the preferred exponent.
+    pub rate_bias: Option<RateBias>,
+    /// What to know about this hold.
+    pub findings: Vec<Finding>,
+}
+
+impl HoldAnalysis {
+    /// The preferred time-domain fit.
+    #[must_use]
+    pub fn preferred(&self) -> Option<&LatencyFit> {
+        self.fits.get(self.order.as_ref()?.preferred?)
+    }
+
+    /// The time-domain fit with a given exponent.
+    #[must_use]
+    pub fn fit_with(&self, exponent: f64) -> Option<&LatencyFit> {
+        self.fits.iter().find(|fit| fit.choice == ExponentChoice::Fixed(exponent))
+    }
+
+    /// The rate-domain fit with a given exponent.
+    #[must_use]
+    pub fn rate_fit_with(&self, exponent: f64) -> Option<&LatencyFit> {
+        self.rate_fits.iter().flatten().find(|fit| fit.choice == ExponentChoice::Fixed(exponent))
+    }
+}
+
+/// Analyses one hold of a corrected record; `ramp` is the first sample of the loading or unloading before it.
+pub(in crate::analysis) fn analyze_hold(
+    record: &Record,
+    (segment, ramp): (&Segment, Option<usize>),
+    number: usize,
+    specimen: Option<&Specimen>,
+    options: &AnalysisOptions,
+) -> HoldAnalysis {
+    let mut segment = *segment;
+    let reopened = specimen.and_then(|_| open_until(record, &segment, options));
+    segment.fit_start = reopened.unwrap_or(segment.fit_start);
+    let range = segment.fit_start..segment.end;
+    let force = &record.force()[range];
+    let displacement = record.displacement().map(|d| median(&mut d[segment.start..segment.end].to_vec()));
+    let tail = (force.len() / 100).max(1);
+    let mut hold = HoldAnalysis {
+        number,
+        segment,
+        start: record.time()[segment.start],
+        end: record.time()[segment.end - 1],
+        fit_start: record.time()[segment.fit_start],
+        displacement,
+        after: segment.after,
+        relaxation: classify_relaxation(force),
+        force_start: force[0],
+        force_end: mean(&force[force.len() - tail..]),
+        signal: if specimen.is_some() { Signal::Strain } else { Signal::Force },
+        force_per_signal: 1.0,
+        times: Vec::new(),
+        values: Vec::new(),
+        fitted: 0,
+        fits: Vec::new(),
+        predictions: Vec::new(),
+        order: None,
+        comparison: None,
+        rates: StrainRates::default(),
+        rate_fits: Vec::new(),
+        rate_bias: None,
+        findings: Vec::new(),
+    };
+    if reopened.is_some() {
+        hold.findings.push(Finding::ContactOpen { until: hold.fit_start });
+    }
+    let force_held = segment.mode == Some(HoldMode::ForceHeld);
+    if force_held {
+        // A force that a controller brings back to where it was does not relax.
+        hold.relaxation.kind = RelaxationType::None;
+    } else if hold.relaxation.kind == RelaxationType::None {
+        hold.findings.push(Finding::NoRelaxation {
+            change: hold.relaxation.change,
+            standard_error: hold.relaxation.standard_error,
+        });
+    }
+    let has_signal = take_signal(&mut hold, record, if force_held { None } else { specimen }, options);
+    if has_signal && hold.relaxation.kind != RelaxationType::None {
+        fit_all(&mut hold, options);
+        hold.comparison = compare(&hold, loading(record, ramp, &segment), options);
+        let fitted = (&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
+        hold.rate_bias = hold.preferred().and_then(|fit| rate_bias(fitted, fit, &options.rate_window, &options.fit));
+        judge(&mut hold);
+        hold.findings.extend(hold.comparison.iter().flat_map(comparison_findings));
+    }
+    hold.findings.extend(not_a_hold(record, &segment));
+    hold
+}
+
+/// The sample at which the body meets the jaw again, in a hold after unloading that begins with the contact open.
+///
+/// Open means: no force beyond five times its noise. Only a jaw that cannot pull leaves the body.
+fn open_until(record: &Record, segment: &Segment, options: &AnalysisOptions) -> Option<usize> {
+    const LEAST: usize = 5;
+    if options.separation != Separation::Unilateral || segment.after != Some(After::Unloading) {
+        return None;
+    }
+    let force = &record.force()[segment.start..segment.end];
+    let largest = record.force().iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+    let threshold = (5.0 * noise(force)).max(1e-3 * largest);
+    let closed = force.windows(3).position(|three| three.iter().all(|f| *f > threshold))?;
+    (closed >= LEAST).then_some(segment.start + closed)
+}
+
+/// Fills times and values, thinned if there are too many; `false` if there is no strain to be told.
+fn take_signal(
+    hold: &mut HoldAnalysis,
+    record: &Record,
+    specimen: Option<&Specimen>,
+    options: &AnalysisOptions,
+) -> bool {
+    let range = hold.segment.fit_start..hold.segment.end;
+    let every = range.len().div_ceil(options.most_samples.max(8));
+    if every > 1 {
+        hold.findings.push(Finding::Thinned { every });
+    }
+    let start = hold.fit_start;
+    let samples = range.step_by(every);
+    match (specimen, record.displacement(), hold.displacement) {
+        (Some(specimen), Some(displacement), Some(level)) => {
+            let contact = specimen.contact_displacement(level);
+            hold.force_per_signal = specimen.force(1.0, contact);
+            // So close to first touch the area is the difference of two nearly equal numbers.
+            let shallow = contact < 0.01 * specimen.depth() && specimen.contact_area(0.0) == 0.0;
+            for i in samples {
+                match contact_strain(record.force()[i], displacement[i], specimen) {
+                    Some(strain) if !shallow => {
+                        hold.times.push(record.time()[i] - start);
+                        hold.values.push(strain);
+                    }
+                    _ => {
+                        hold.findings.push(Finding::NoContactArea);
+                        hold.times.clear();
+                        hold.values.clear();
+                        return false;
+                    }
+                }
+            }
+        }
+        _ => {
+            hold.signal = Signal::Force;
+            for i in samples {
+                hold.times.push(record.time()[i] - start);
+                hold.values.push(record.force()[i]);
+            }
+        }
+    }
+    hold.fitted = match options.fit_until {
+        Some(until) => hold.times.partition_point(|t| *t <= until),
+        None => hold.times.len(),
+    };
+    true
+}
+
+/// The exponents to fit: the listed ones, then the free one.
+fn choices(options: &AnalysisOptions) -> Vec<ExponentChoice> {
+    let listed = options.exponents.iter().map(|n| ExponentChoice::Fixed(*n));
+    listed.chain(options.free_exponent.then_some(ExponentChoice::Free)).collect()
+}
+
+fn fit_all(hold: &mut HoldAnalysis, options: &AnalysisOptions) {
+    let (times, values) = (&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
+    hold.rates = strain_rates(times, values, &options.rate_window);
+    for choice in choices(options) {
+        match fit_hold(times, values, choice, &options.fit) {
+            Ok(fit) => {
+                hold.predictions.push(foretell(&fit, &hold.times, &hold.values, hold.fitted));
+                hold.fits.push(fit);
+                hold.rate_fits.push(fit_rates(&hold.rates.strain, &hold.rates.rate, choice, &options.fit).ok());
+            }
+            Err(FitError::TooFewSamples { needed, found, .. }) => {
+                if hold.fits.is_empty() && hold.findings.iter().all(|finding| finding.code() != "too_few_samples") {
+                    hold.findings.push(Finding::TooFewSamples { found, needed });
+                }
+            }
+            // A constant signal has been reported as no relaxation; nothing else can happen to a checked record.
+            Err(_) => {}
+        }
+    }
+    if !hold.fits.is_empty() {
+        hold.order = Some(select_order(&hold.fits));
+    }
+}
+
+/// Compares laws over the whole hold, or over what was asked to be fitted.
+fn compare(hold: &HoldAnalysis, loading: Option<Loading>, options: &AnalysisOptions) -> Option<Comparison> {
+    let mut options = options.compare.clone()?;
+    if options.ramps == RampChoice::Measured {
+        options.fit.loading = loading;
+    }
+    let samples = Samples::new(&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
+    compare_laws(&samples, &options).ok()
+}
+
+/// The displacement from sample `ramp` to where the fit of a hold starts.
+fn loading(record: &Record, ramp: Option<usize>, segment: &Segment) -> Option<Loading> {
+    let range = ramp?..segment.fit_start + 1;
+    Loading::new(&record.time()[range.clone()], &record.displacement()?[range]).ok()
+}
+
+/// Error of a fit over the samples from index `fitted` on.
+fn foretell(fit: &LatencyFit, times: &[f64], values: &[f64], fitted: usize) -> Option<Prediction> {
+    let beyond = times[fitted..].iter().zip(&values[fitted..]);
+    let samples = values.len() - fitted;
+    if samples == 0 {
+        return None;
+    }
+    let square: f64 = beyond.map(|(t, y)| (y - fit.predict(*t)).powi(2)).sum();
+    let tail = (values.len() / 100).max(1);
+    let drop = (values[0] - mean(&values[values.len() - tail..])).abs();
+    let rmse = (square / samples as f64).sqrt();
+    Some(Prediction {
+        rmse,
+        relative: rmse / drop,
+        samples,
+    })
+}
+
+/// Adds what the fits give cause to say.
+fn judge(hold: &mut HoldAnalysis) {
+    let Some(order) = hold.order.as_ref() else { return };
+    let alike: Vec<f64> = order
+        .candidates
+        .iter()
+        .filter(|candidate| !candidate.free && candidate.as_good_as_best)
+        .map(|candidate| candidate.exponent)
+        .collect();
+    if alike.len() > 1 {
+        hold.findings.push(Finding::ExponentsAlike { exponents: alike });
+    }
+    if let Some(free) = hold.fits.iter().find(|fit| fit.choice == ExponentChoice::Free) {
+        match free.exponent.interval {
+            Some((low, high)) if high - low > free.exponent.value.max(1.0) => {
+                hold.findings.push(Finding::ExponentUndetermined {
+                    interval: Some((low, high)),
+                });
+            }
+            Some(_) => {
+                if let Some(correlation) = confounded(free) {
+                    hold.findings.push(Finding::ExponentConfounded { correlation });
+                }
+            }
+            None if free.termination != Termination::RateAtBound => {
+                hold.findings.push(Finding::ExponentUndetermined { interval: None });
+            }
+            _ => {}
+        }
+    }
+    let Some(best) = hold.preferred().cloned() else { return };
+    if best.termination == Termination::RateAtBound {
+        hold.findings.push(Finding::RateAtBound {
+            exponent: best.exponent.value,
+        });
+        return;
+    }
+    let (last, first_step) = (hold.times[hold.fitted - 1], hold.times[1]);
+    let left = (best.predict(last) - best.equilibrium.value) / best.amplitude.value;
+    if left > 0.2 {
+        hold.findings.push(Finding::EquilibriumExtrapolated { beyond: left });
+    }
+    let share = (best.predict(0.0) - best.predict(first_step)) / (best.predict(0.0) - best.predict(last));
+    if share > 0.3 {
+        hold.findings.push(Finding::SampledTooSlowly { share });
+    }
+    if best.residual_correlation > 0.5 && best.rmse > 1e-9 * best.amplitude.value.abs() {
+        hold.findings.push(Finding::ResidualsCorrelated {
+            correlation: best.residual_correlation,
+            independent: best.effective_samples(),
+        });
+    }
+}
+
+/// Correlation of exponent and equilibrium, if it is close to one and the exponent is not known well for all that.
+fn confounded(fit: &LatencyFit) -> Option<f64> {
+    const CLOSE: f64 = 0.98;
+    const WIDE: f64 = 0.2;
+    let (low, high) = fit.exponent.interval?;
+    if high - low < WIDE * fit.exponent.value {
+        return None;
+    }
+    let covariance = fit.covariance.as_ref()?;
+    let correlation = covariance[0][3] / (covariance[0][0] * covariance[3][3]).sqrt();
+    (correlation.abs() > CLOSE).then_some(correlation)
+}

@@ -1,0 +1,121 @@
+//! The corrections that were asked for, in order.
+
+use super::skew::{ClockSkew, clock_skew};
+use crate::analysis::error::AnalysisError;
+use crate::analysis::finding::Finding;
+use crate::analysis::options::AnalysisOptions;
+use crate::record::{Correction, Record, SignalReport, SkewChoice};
+use crate::segment::{ContactChoice, SegmentError, Segmentation, free_samples, phases_with};
+
+/// A corrected record with its phases, ready for first touch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Corrected {
+    /// The record; it knows what was done to it.
+    pub record: Record,
+    /// Why there are none is for those to say who need them: a record of creep has none that come from its displacement.
+    pub segmentation: Result<Segmentation, SegmentError>,
+    /// What the clocks of the record as it came seem to differ by.
+    pub skew: Option<ClockSkew>,
+    /// Whether a skew was to be found and taken away.
+    pub skew_asked: bool,
+}
+
+impl Corrected {
+    /// The record as it came with its clocks put right, and what its columns are like then, if they are seen to differ.
+    #[must_use]
+    pub fn aligned(&self, record: &Record) -> Option<(Record, SignalReport)> {
+        let skew = self.skew.filter(ClockSkew::is_seen)?;
+        let aligned = record.without_skew(skew.skew, Some(skew.standard_error)).ok()?;
+        let signals = aligned.signals();
+        Some((aligned, signals))
+    }
+
+    /// [`Finding::ClocksSkewed`] if the clocks differ and nothing was done about it, [`Finding::ClocksOpen`] if that was asked for and could
+    /// not be told.
+    #[must_use]
+    pub fn skew_finding(&self) -> Option<Finding> {
+        let open = || open_skew(&self.record, self.skew.as_ref()).filter(|_| self.skew_asked);
+        skew_finding(&self.record, self.skew.as_ref()).or_else(open)
+    }
+}
+
+/// Repairs single-row dropouts and makes the corrections that are asked for, as [`analyze`](crate::analysis::analyze) does: skew, sample
+/// times, baseline, compliance, in this order, since each needs those before it.
+///
+/// Edges are sought where they were measured; a baseline is the force where nothing touches; and a table of compliance
+/// counts forces from zero.
+///
+/// # Errors
+/// [`AnalysisError`] for a correction that cannot be made, and where a baseline is to be found but the phases are not.
+pub fn corrected(record: &Record, options: &AnalysisOptions) -> Result<Corrected, AnalysisError> {
+    let (record, _) = record.repaired();
+    let asked = &options.corrections;
+    let phases = |record: &Record| phases_with(record, &options.segment, &options.given_holds);
+    let segmentation = phases(&record);
+    let skew = segmentation.as_ref().ok().and_then(|segmentation| clock_skew(&record, segmentation));
+    let mut next = record;
+    let before = next.corrections().len();
+    match (asked.skew, skew.filter(ClockSkew::is_seen)) {
+        (SkewChoice::Given(given), _) => next = next.without_skew(given, None)?,
+        (SkewChoice::Auto, Some(seen)) => next = next.without_skew(seen.skew, Some(seen.standard_error))?,
+        (SkewChoice::Auto, None) | (SkewChoice::Report, _) => {}
+    }
+    if let Some(rate) = asked.resample {
+        next = next.resampled(rate)?;
+    }
+    if let Some(baseline) = asked.baseline {
+        let free = match asked.baseline_window {
+            Some((from, until)) => {
+                let index = |at: f64| next.time().partition_point(|time| *time < at);
+                std::iter::once(index(from)..index(until)).collect()
+            }
+            None => free_samples(&next, &phases(&next)?),
+        };
+        next = next.without_baseline(baseline, &free)?;
+    }
+    if let Some(compliance) = &asked.compliance {
+        next = next.without_compliance(compliance)?;
+    }
+    touch_within(&next, options.touch)?;
+    let segmentation = if next.corrections().len() == before { segmentation } else { phases(&next) };
+    Ok(Corrected {
+        record: next,
+        segmentation,
+        skew,
+        skew_asked: asked.skew == SkewChoice::Auto,
+    })
+}
+
+/// A finding if the clocks differ by more than their error and a sample interval, and nothing was done about it.
+///
+/// One clock that stamps both columns at the same rows can seem to be off by a part of an interval: what was held between
+/// two samples is not known.
+fn skew_finding(record: &Record, skew: Option<&ClockSkew>) -> Option<Finding> {
+    let skew = skew.filter(|skew| skew.is_resolved(skew.interval.max(record.sample_interval())))?;
+    let removed = |done: &Correction| matches!(done, Correction::SkewRemoved { .. });
+    if record.corrections().iter().any(removed) {
+        return None;
+    }
+    Some(Finding::ClocksSkewed {
+        skew: skew.skew,
+        standard_error: skew.standard_error,
+    })
+}
+
+/// A finding if the skew was to be found and could not be: its error is longer than samples are apart, or too few edges show in both columns.
+fn open_skew(record: &Record, skew: Option<&ClockSkew>) -> Option<Finding> {
+    let resolved =
+        skew.is_some_and(|skew| 3.0 * skew.standard_error < 2.0 * skew.interval.max(record.sample_interval()));
+    (!resolved && skew.is_none_or(|skew| !skew.is_seen())).then(|| Finding::ClocksOpen {
+        skew: skew.map(|skew| (skew.skew, skew.standard_error)),
+    })
+}
+
+/// Refuses a first touch that the jaw does not reach.
+fn touch_within(record: &Record, touch: ContactChoice) -> Result<(), AnalysisError> {
+    let (ContactChoice::Displacement(asked), Some(displacement)) = (touch, record.displacement()) else {
+        return Ok(());
+    };
+    let farthest = displacement.iter().copied().fold(f64::MIN, f64::max);
+    if asked < farthest { Ok(()) } else { Err(AnalysisError::TouchBeyond { asked, farthest }) }
+}

@@ -1,0 +1,202 @@
+//! What the columns of a record, and what was done to them, give cause to say.
+
+use super::corrected::Corrected;
+use super::prepared::Prepared;
+use crate::analysis::finding::Finding;
+use crate::record::{Column, Correction, Record, SignalReport, Values};
+use crate::segment::{ContactChoice, ContactPoint, Segmentation};
+use crate::statistics::{median, noise};
+
+/// Levels between the smallest and the largest value below which rounding is worth a word.
+const FEW_LEVELS: f64 = 200.0;
+/// Share of rows that repeat the row before above which noise does not smooth the rounding.
+const REPEATING: f64 = 0.5;
+
+/// All findings on the columns of a record: as they were measured, as they were corrected, and counted from first touch.
+pub(in crate::analysis) fn signal_findings(
+    measured: (&Record, &SignalReport),
+    corrected: &Corrected,
+    prepared: &Prepared,
+    touch: ContactChoice,
+) -> Vec<Finding> {
+    let Prepared {
+        record,
+        segmentation,
+        contact,
+    } = prepared;
+    let mut findings = correction_findings(&corrected.record);
+    // Of clocks that differ the force goes on while the jaw stands already: that is no saturation.
+    let aligned = corrected.aligned(measured.0);
+    let aligned = aligned.as_ref().map_or(measured, |(record, signals)| (record, signals));
+    findings.extend(column_findings(aligned, &held(record, segmentation)));
+    findings.extend(stray_rows(&corrected.record));
+    findings.extend(corrected.skew_finding());
+    if !segmentation.settings.from_displacement {
+        findings.push(Finding::PhasesFromForce);
+    }
+    findings.extend(segmentation.ripple.map(Finding::from));
+    findings.extend(segmentation.ruptures.iter().map(Finding::from));
+    findings.extend(suspicious_signs(&corrected.record));
+    if contact.air_travel > 0.0 {
+        findings.push(Finding::AirTravel {
+            travel: contact.air_travel,
+        });
+    }
+    findings.extend(touch_findings(record, contact, touch));
+    findings
+}
+
+/// From when to when each hold lasts.
+fn held(record: &Record, segmentation: &Segmentation) -> Vec<(f64, f64)> {
+    let time = record.time();
+    segmentation.holds().map(|hold| (time[hold.start], time[hold.end - 1])).collect()
+}
+
+/// Findings on the columns of a record as they are, of which `holds` are the holds in time.
+fn column_findings((record, signals): (&Record, &SignalReport), holds: &[(f64, f64)]) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let gaps = signals.stamps.gaps;
+    if let Some(from) = gaps.from {
+        findings.push(Finding::Gaps {
+            count: gaps.count,
+            longest: gaps.longest,
+            from,
+        });
+    }
+    let displacement = signals.displacement.as_ref().map(|values| (Column::Displacement, values));
+    for (column, values) in displacement.into_iter().chain([(Column::Force, &signals.force)]) {
+        findings.extend(clipped(record, column, values, holds));
+        findings.extend(rounded(column, values));
+    }
+    findings
+}
+
+fn clipped(record: &Record, column: Column, values: &Values, holds: &[(f64, f64)]) -> Option<Finding> {
+    let saturation = values.saturation.filter(|saturation| saturation.clipped)?;
+    let measured = match column {
+        Column::Displacement => record.displacement()?,
+        Column::Force => record.force(),
+    };
+    let time = record.time();
+    let reached = |(from, until): &(f64, f64)| {
+        let rows = time.partition_point(|t| t < from)..time.partition_point(|t| t <= until);
+        measured[rows].contains(&saturation.level)
+    };
+    Some(Finding::Saturated {
+        column,
+        level: saturation.level,
+        rows: saturation.rows,
+        holds: (1..).zip(holds).filter(|(_, hold)| reached(hold)).map(|(number, _)| number).collect(),
+    })
+}
+
+/// A jaw stands still in a hold; only a force that repeats itself is rounded too coarsely.
+fn rounded(column: Column, values: &Values) -> Option<Finding> {
+    let step = values.step.filter(|step| values.range < FEW_LEVELS * step)?;
+    (column == Column::Force && values.repeating > REPEATING).then_some(Finding::Quantised { column, step })
+}
+
+/// [`Finding::SignSuspicious`] for columns that fall first, where a test loads first.
+///
+/// What counts is the first time that a column is half as far from its start as it ever comes: many small steps up and one large
+/// one down are no reason for doubt.
+pub fn suspicious_signs(record: &Record) -> Vec<Finding> {
+    let force = record.force();
+    let (low, high) = force.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
+    let seen = (0.05 * (high - low)).max(8.0 * noise(force));
+    let columns = [("displacement", record.displacement(), 0.0), ("force", Some(force), seen)];
+    let falls = columns.into_iter().filter_map(|(column, values, least)| {
+        let values = values?;
+        let start = median(&mut values[..values.len().min(5)].to_vec());
+        let most = values.iter().fold(0.0, |most: f64, value| most.max((value - start).abs()));
+        let first = values.iter().find(|value| (**value - start).abs() >= 0.5 * most)?;
+        let fall = start - values.iter().copied().fold(f64::MAX, f64::min);
+        (*first < start && fall > least).then(|| Finding::SignSuspicious {
+            column: column.to_owned(),
+            fall,
+        })
+    });
+    falls.collect()
+}
+
+/// [`Finding::RowsStray`] for rows of the force that stray alone and were not repaired.
+fn stray_rows(record: &Record) -> Option<Finding> {
+    let strays = record.signals().force.strays;
+    let first = *strays.rows.first()?;
+    Some(Finding::RowsStray {
+        count: strays.count,
+        time: record.time()[first],
+        force: record.force()[first],
+    })
+}
+
+/// Findings on what was done to a record before its analysis and in it.
+fn correction_findings(record: &Record) -> Vec<Finding> {
+    let finding = |done: &Correction| match *done {
+        Correction::StampsSorted { rows, largest, .. } => Some(Finding::StampsSorted { rows, largest }),
+        Correction::StampsMerged { rows, merged, .. } => Some(Finding::StampsMerged { rows, merged }),
+        Correction::RowsAveraged { rows, averaged } => Some(Finding::RowsAveraged { rows, averaged }),
+        Correction::StressAsForce => Some(Finding::StressAsForce),
+        Correction::DropoutsReplaced { column, count } => Some(Finding::DropoutsRepaired { column, count }),
+        _ => None,
+    };
+    record.corrections().iter().filter_map(finding).collect()
+}
+
+/// Share of the largest squeeze by which the rules for first touch may differ.
+const SPREAD: f64 = 0.05;
+
+/// Share of the largest squeeze by which the loading curve may lie apart from the other rules.
+const APART: f64 = 0.05;
+
+/// Findings on first touch in a record that counts from it.
+fn touch_findings(record: &Record, contact: &ContactPoint, asked: ContactChoice) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let squeeze = record.displacement().into_iter().flatten().fold(0.0f64, |most, d| most.max(*d));
+    if let Some(spread) = contact.spread.filter(|spread| *spread > SPREAD * squeeze) {
+        findings.push(Finding::TouchSpread { spread, squeeze });
+    }
+    if let Some(apart) = contact.apart().filter(|apart| asked == ContactChoice::Auto && apart.abs() > APART * squeeze) {
+        findings.push(Finding::TouchApart { apart, squeeze });
+    }
+    if let ContactChoice::By(method) = asked
+        && contact.method != Some(method)
+    {
+        findings.push(Finding::TouchNotFound { method });
+    }
+    findings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stairs(sign: f64) -> Record {
+        let knots = [
+            (0.0, 0.0),
+            (1.0, 5.0),
+            (5.0, 5.0),
+            (6.0, 10.0),
+            (10.0, 10.0),
+            (11.0, 15.0),
+            (15.0, 15.0),
+            (17.0, -1.0),
+        ];
+        let at = |t: f64| {
+            let next = knots.iter().position(|knot| knot.0 >= t).unwrap_or(knots.len() - 1).max(1);
+            let ((t0, y0), (t1, y1)) = (knots[next - 1], knots[next]);
+            y0 + (y1 - y0) * (t - t0) / (t1 - t0)
+        };
+        let time: Vec<f64> = (0..170).map(|i| 0.1 * f64::from(i)).collect();
+        let travel: Vec<f64> = time.iter().map(|t| sign * at(*t)).collect();
+        Record::new(time, Some(travel.clone()), travel).unwrap()
+    }
+
+    /// Steps up of a third each and a release in one go looked like a test that begins downwards.
+    #[test]
+    fn a_release_larger_than_the_steps_is_no_wrong_sign() {
+        assert_eq!(suspicious_signs(&stairs(1.0)), []);
+        let codes: Vec<&str> = suspicious_signs(&stairs(-1.0)).iter().map(Finding::code).collect();
+        assert_eq!(codes, ["sign_suspicious", "sign_suspicious"]);
+    }
+}

@@ -1,0 +1,96 @@
+//! One law for several holds of a record, against one for each.
+
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::finding::Finding;
+use crate::analysis::holds::{HoldAnalysis, Signal};
+use crate::analysis::options::AnalysisOptions;
+use crate::fit::{
+    ExponentChoice, HoldWeights, JointComparison, JointFit, JointOptions, Samples, TrendVerdict, compare_joint,
+    fit_joint,
+};
+use crate::laws::Law;
+use crate::segment::After;
+
+/// Which holds were fitted together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum JointHolds {
+    /// Those after loading.
+    Loading,
+    /// Those after loading and after unloading.
+    All,
+}
+
+/// The latency law with one v (and n) for several holds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct JointAnalysis {
+    /// Which holds.
+    pub which: JointHolds,
+    /// Whether n is the common exponent or was found.
+    pub choice: ExponentChoice,
+    /// Numbers of the holds in the record.
+    pub holds: Vec<usize>,
+    /// The fit; holds count by the inverse of the variance of their own residuals.
+    pub fit: JointFit,
+    /// Against each hold by itself.
+    pub comparison: JointComparison,
+}
+
+/// Joint fits of the holds after loading and of all holds, with the common exponent and with a free one.
+///
+/// Only strains are fitted: v of a force depends on the contact area, which differs from hold to hold.
+pub(super) fn joint(holds: &[HoldAnalysis], common: Option<f64>, options: &AnalysisOptions) -> Vec<JointAnalysis> {
+    let Some(n) = common else { return Vec::new() };
+    let usable = |hold: &&HoldAnalysis| {
+        hold.signal == Signal::Strain && hold.fit_with(n).is_some_and(|fit| fit.termination.is_good())
+    };
+    let all: Vec<&HoldAnalysis> = holds.iter().filter(usable).collect();
+    let loading: Vec<&HoldAnalysis> = all.iter().copied().filter(|hold| hold.after == Some(After::Loading)).collect();
+    let more = all.len() > loading.len();
+    let groups = [Some((JointHolds::Loading, loading)), more.then_some((JointHolds::All, all))];
+    let choices = [Some(ExponentChoice::Fixed(n)), options.free_exponent.then_some(ExponentChoice::Free)];
+    let mut found = Vec::new();
+    for (which, holds) in groups.into_iter().flatten().filter(|(_, holds)| holds.len() > 1) {
+        found.extend(choices.into_iter().flatten().filter_map(|choice| together(which, &holds, choice, options)));
+    }
+    found
+}
+
+fn together(
+    which: JointHolds,
+    holds: &[&HoldAnalysis],
+    choice: ExponentChoice,
+    options: &AnalysisOptions,
+) -> Option<JointAnalysis> {
+    let of = |hold: &&'_ HoldAnalysis| hold.fitted;
+    let samples: Vec<Samples<'_>> =
+        holds.iter().map(|hold| Samples::new(&hold.times[..of(hold)], &hold.values[..of(hold)])).collect();
+    let options = JointOptions {
+        weights: HoldWeights::SeparateVariance,
+        fit: options.fit,
+        ..JointOptions::default()
+    };
+    // Each of these holds was fitted by itself before, so that only the search itself can fail.
+    let fit = fit_joint(&samples, Law::Latency { exponent: choice }, &options).ok()?;
+    let comparison = compare_joint(&samples, &fit, None).ok()?;
+    Some(JointAnalysis {
+        which,
+        choice,
+        holds: holds.iter().map(|hold| hold.number).collect(),
+        fit,
+        comparison,
+    })
+}
+
+/// What the holds after loading say of v at the common exponent, unless it is that v is constant.
+pub(in crate::analysis) fn changing_rate(joint: &[JointAnalysis]) -> Option<Finding> {
+    let first = joint.first().filter(|first| first.which == JointHolds::Loading)?;
+    let trend = first.comparison.trend.as_ref()?;
+    (first.comparison.verdict != TrendVerdict::Constant).then_some(Finding::RateCoefficientTrend {
+        verdict: first.comparison.verdict,
+        holds: trend.points.len(),
+        slope: trend.slope,
+        interval: trend.interval,
+    })
+}

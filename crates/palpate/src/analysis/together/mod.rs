@@ -1,0 +1,22 @@
+//! What the holds of one record say together.
+//!
+//! | file | what |
+//! |---|---|
+//! | `across.rs` | common exponent, trend of v, agreement of equilibrium strains |
+//! | `joint.rs` | one law for several holds against one for each |
+//! | `modulus.rs` | the modulus that the relaxed forces imply |
+//! | `overlay.rs` | the same displacement simulated with the fitted numbers |
+
+mod across;
+mod joint;
+mod modulus;
+mod overlay;
+
+pub(super) use across::across;
+pub use across::{Across, LevelAgreement, Trend};
+pub(super) use joint::changing_rate;
+pub use joint::{JointAnalysis, JointHolds};
+pub use modulus::ModulusSource;
+pub(super) use modulus::implied_modulus;
+pub use overlay::Overlay;
+pub(super) use overlay::overlay;

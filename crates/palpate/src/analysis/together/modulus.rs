@@ -1,0 +1,152 @@
+//! The modulus that the relaxed forces imply.
+
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::options::{AnalysisOptions, Geometry};
+use crate::contact::Specimen;
+use crate::fit::{ExponentChoice, LatencyFit, fit_hold, select_order};
+use crate::record::Record;
+use crate::segment::{After, Phase, Segment, Segmentation};
+use crate::statistics::{median, noise};
+
+/// Where the modulus comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ModulusSource {
+    /// Given by the user.
+    Given,
+    /// Estimated from the relaxed forces of the holds.
+    Estimated,
+}
+
+/// A modulus from relaxed forces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::analysis) struct ImpliedModulus {
+    /// E, Pa.
+    pub(in crate::analysis) value: f64,
+    /// Its standard error, Pa; `None` where no fit gave the relaxed forces.
+    pub(in crate::analysis) standard_error: Option<f64>,
+}
+
+/// A hold in contact: the force that a body of 1 Pa would keep, and the fits to the measured one.
+struct RelaxedHold {
+    unit_force: f64,
+    last: f64,
+    after_loading: bool,
+    fits: Vec<LatencyFit>,
+}
+
+/// E from the holds: weighted least squares of F_e = E · A(u₁) · u₁/depth, which is equation (11) at equilibrium.
+///
+/// F_e is where the force of each hold tends to by the law with the exponent that all holds have in common; it needs no E,
+/// since force and strain of a hold differ by a factor. Holds whose fit did not end well do not count; the others count by
+/// the standard error of their F_e, and the error of E is widened where they scatter by more. Where nothing can be fitted
+/// (a body that does not relax) the last forces of the holds after loading stand in. `None` if no hold has an area, or the
+/// forces are negative.
+pub(in crate::analysis) fn implied_modulus(
+    record: &Record,
+    segmentation: &Segmentation,
+    geometry: &Geometry,
+    options: &AnalysisOptions,
+) -> Option<ImpliedModulus> {
+    let body = Specimen::new(geometry.shape.clone(), 1.0, geometry.sides).ok()?;
+    let displacement = record.displacement()?;
+    let holds: Vec<RelaxedHold> = segmentation
+        .holds()
+        .filter_map(|hold| relaxed_hold(record, displacement, hold, &body, options))
+        .collect();
+    let common = common_choice(&holds, options);
+    let relaxed = |hold: &RelaxedHold| {
+        let fit = hold.fits.iter().find(|fit| Some(fit.choice) == common)?;
+        let error = fit.equilibrium.standard_error.filter(|_| fit.termination.is_good())?;
+        // Noise-free holds leave rounding only, which is no measure of their weight.
+        let floor = 1e-9 * (fit.equilibrium.value.abs() + fit.amplitude.value.abs());
+        Some((hold.unit_force, fit.equilibrium.value, error.max(floor)))
+    };
+    let points: Vec<(f64, f64, f64)> = holds.iter().filter_map(relaxed).collect();
+    let implied = if points.is_empty() {
+        let loaded = holds.iter().filter(|hold| hold.after_loading);
+        let last: Vec<(f64, f64, f64)> = loaded.map(|hold| (hold.unit_force, hold.last, 1.0)).collect();
+        ImpliedModulus {
+            standard_error: None,
+            ..weighted(&last)
+        }
+    } else {
+        weighted(&points)
+    };
+    (implied.value.is_finite() && implied.value > 0.0).then_some(implied)
+}
+
+/// E = Σ w g F/Σ w g² with w = 1/σ², g the force at 1 Pa; its variance 1/Σ w g², times χ² per freedom where that exceeds 1.
+fn weighted(points: &[(f64, f64, f64)]) -> ImpliedModulus {
+    let (mut square, mut shared) = (0.0, 0.0);
+    for (unit, force, error) in points {
+        square += (unit / error).powi(2);
+        shared += unit * force / (error * error);
+    }
+    let value = shared / square;
+    let chi: f64 = points.iter().map(|(unit, force, error)| ((force - value * unit) / error).powi(2)).sum();
+    let freedom = (points.len() as f64 - 1.0).max(1.0);
+    ImpliedModulus {
+        value,
+        standard_error: Some(((chi / freedom).max(1.0) / square).sqrt()),
+    }
+}
+
+/// The fits to the force of a hold; `None` where the jaw may not touch the body.
+fn relaxed_hold(
+    record: &Record,
+    displacement: &[f64],
+    hold: &Segment,
+    body: &Specimen,
+    options: &AnalysisOptions,
+) -> Option<RelaxedHold> {
+    debug_assert_eq!(hold.phase, Phase::Hold);
+    let range = hold.fit_start..hold.end;
+    let every = range.len().div_ceil(2000).max(1);
+    let start = record.time()[range.start];
+    let times: Vec<f64> = range.clone().step_by(every).map(|i| record.time()[i] - start).collect();
+    let force: Vec<f64> = range.clone().step_by(every).map(|i| record.force()[i]).collect();
+    let after_loading = hold.after == Some(After::Loading);
+    // A jaw that retreats may leave the body, and the force of an open contact says nothing about the modulus.
+    let lowest = force.iter().fold(f64::MAX, |least, f| least.min(*f));
+    let u = body.contact_displacement(median(&mut displacement[range].to_vec()));
+    let unit_force = body.force(body.equilibrium_strain(u), u);
+    if unit_force <= 0.0 || !(after_loading || lowest > 5.0 * noise(&force)) {
+        return None;
+    }
+    let until = options.fit_until.map_or(times.len(), |until| times.partition_point(|t| *t <= until));
+    let fits =
+        choices(options).filter_map(|choice| fit_hold(&times[..until], &force[..until], choice, &options.fit).ok());
+    Some(RelaxedHold {
+        unit_force,
+        last: *force.last()?,
+        after_loading,
+        fits: fits.collect(),
+    })
+}
+
+fn choices(options: &AnalysisOptions) -> impl Iterator<Item = ExponentChoice> + '_ {
+    let listed = options.exponents.iter().map(|n| ExponentChoice::Fixed(*n));
+    listed.chain(options.free_exponent.then_some(ExponentChoice::Free))
+}
+
+/// The lowest listed exponent whose criteria, summed over the holds, are within 2 of the lowest sum; a free one where that
+/// beats all listed ones by more than 2.
+fn common_choice(holds: &[RelaxedHold], options: &AnalysisOptions) -> Option<ExponentChoice> {
+    let asked: Vec<ExponentChoice> = choices(options).collect();
+    let mut sums = vec![0.0; asked.len()];
+    let mut counted = 0;
+    for hold in holds.iter().filter(|hold| hold.fits.len() == asked.len()) {
+        counted += 1;
+        let order = select_order(&hold.fits);
+        sums.iter_mut().zip(&order.candidates).for_each(|(sum, candidate)| *sum += candidate.delta_bic);
+    }
+    let lowest = sums.iter().copied().fold(f64::INFINITY, f64::min);
+    let good = asked.iter().zip(&sums).filter(|(_, sum)| counted > 0 && **sum - lowest <= 2.0);
+    let number = |choice: &ExponentChoice| match choice {
+        ExponentChoice::Fixed(n) => *n,
+        ExponentChoice::Free => f64::INFINITY,
+    };
+    good.map(|(choice, _)| *choice).min_by(|a, b| number(a).total_cmp(&number(b)))
+}

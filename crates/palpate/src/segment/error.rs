@@ -1,0 +1,155 @@
+//! Why no phases were found.
+
+use crate::number::significant;
+
+/// Why no phases were found.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SegmentError {
+    /// Too few samples to see phases.
+    #[error("phases need {needed} samples or more, found {found}")]
+    TooShort {
+        /// Least number.
+        needed: usize,
+        /// Samples found.
+        found: usize,
+    },
+    /// The displacement (or force) never leaves its noise.
+    #[error(
+        "nothing moves: the {column} stays within {}, its noise is {}",
+        told(*range, unit),
+        told(*noise, unit)
+    )]
+    NoMotion {
+        /// Which column.
+        column: &'static str,
+        /// Its range.
+        range: f64,
+        /// Its noise.
+        noise: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// It moves all the time.
+    #[error("no hold found: {}", no_hold((*longest, *samples), (*minimum_hold, *minimum_samples)))]
+    NoHold {
+        /// Longest stretch after a ramp in which it moves slowest, s; 0 if there is none.
+        longest: f64,
+        /// Its samples.
+        samples: usize,
+        /// Least duration of a hold, s.
+        minimum_hold: f64,
+        /// Least number of samples of a hold.
+        minimum_samples: usize,
+    },
+    /// The jaw stands still only after the body broke.
+    #[error(
+        "no hold found: at {} the body broke under {}, and {} are left where the jaw then stands",
+        told(*time, "s"),
+        told(*before, "N"),
+        told(*after, "N")
+    )]
+    Ruptured {
+        /// When the force had fallen by half, s.
+        time: f64,
+        /// Largest force before, N.
+        before: f64,
+        /// Force where the jaw came to stand, N.
+        after: f64,
+    },
+    /// A given hold that the record does not contain.
+    #[error(
+        "given hold {number} lasts from {from} s to {to} s, the record from {} s to {} s",
+        significant(*begin, 6),
+        significant(*last, 6)
+    )]
+    GivenOutside {
+        /// Which, from 1.
+        number: usize,
+        /// Its start, s.
+        from: f64,
+        /// Its end, s.
+        to: f64,
+        /// First time of the record, s.
+        begin: f64,
+        /// Last time of the record, s.
+        last: f64,
+    },
+    /// A given hold with hardly a sample.
+    #[error("given hold {number}, from {from} s to {to} s, has {samples} samples, a hold needs {needed}")]
+    GivenShort {
+        /// Which, from 1.
+        number: usize,
+        /// Its start, s.
+        from: f64,
+        /// Its end, s.
+        to: f64,
+        /// Its samples.
+        samples: usize,
+        /// Fewest samples.
+        needed: usize,
+    },
+    /// Two given holds that share samples.
+    #[error("given holds {first} and {second} overlap")]
+    GivenOverlap {
+        /// One, from 1.
+        first: usize,
+        /// The other.
+        second: usize,
+    },
+}
+
+impl SegmentError {
+    /// What would help.
+    #[must_use]
+    pub fn hint(&self) -> &'static str {
+        match self {
+            Self::GivenOutside { .. } => {
+                "times count as in the record, which need not begin at 0; `palpate inspect` shows them"
+            }
+            Self::GivenShort { .. } => "give an end that is later than the start by some samples",
+            Self::GivenOverlap { .. } => "end the earlier hold before the later one begins",
+            Self::TooShort { .. } => "check that the whole test was exported",
+            Self::NoMotion { .. } => {
+                "check the displacement column and its unit; a record without motion has no relaxation to fit"
+            }
+            Self::Ruptured { .. } => {
+                "what stands after a rupture does not relax; if nothing broke, give the hold by hand ([[phases.hold]] in the test description)"
+            }
+            Self::NoHold {
+                samples,
+                minimum_samples,
+                longest,
+                minimum_hold,
+            } if samples < minimum_samples && longest >= minimum_hold => {
+                "the hold has too few samples: record faster, or set a shortest hold (--minimum-hold), for which 3 samples do"
+            }
+            Self::NoHold { longest: 0.0, .. } => {
+                "a cyclic test has no hold; a tolerance (--tolerance) beyond the range of the test hides every ramp: lower it"
+            }
+            Self::NoHold { .. } => {
+                "a cyclic test has no hold; for a short one lower the shortest hold (--minimum-hold), for a drifting one raise the tolerance (--tolerance)"
+            }
+        }
+    }
+}
+
+/// What is missing for a hold: time or samples, or else that the column stands still.
+fn no_hold((longest, samples): (f64, usize), (minimum, minimum_samples): (f64, usize)) -> String {
+    let slowest = format!("{} ({samples} samples)", told(longest, "s"));
+    if longest == 0.0 {
+        "it moves all the time, or stands from the start".to_owned()
+    } else if longest >= minimum && samples >= minimum_samples {
+        format!("where it moves slowest, for {slowest}, it drifts or turns without a stop")
+    } else {
+        let needed = told(minimum, "s");
+        format!(
+            "the longest standstill after a ramp lasts {slowest}, a hold needs {needed} and {minimum_samples} samples"
+        )
+    }
+}
+
+/// A quantity for people: three digits, lengths in mm.
+fn told(value: f64, unit: &str) -> String {
+    let (value, unit) = if unit == "m" { (1e3 * value, "mm") } else { (value, unit) };
+    format!("{} {unit}", significant(value, 3))
+}

@@ -1,0 +1,279 @@
+//! Phases of a record with displacement and force: what stands still, and which of the two is held.
+
+use super::ramps::fill_gaps;
+use super::ripple::{of_jaw, without_ripple};
+use super::rupture::ruptures;
+use crate::record::Record;
+use crate::segment::error::SegmentError;
+use crate::segment::mode::{mode, mode_at_large};
+use crate::segment::options::{SegmentOptions, SegmentSettings};
+use crate::segment::segmentation::{After, HoldMode, Phase, Rupture, Segment, Segmentation};
+use crate::segment::standstill::{Held, Level, Levels, levels};
+use crate::statistics::{median, range};
+
+/// Share of its range by which a jaw wanders about what it holds.
+const SERVO: f64 = 0.002;
+/// How far a jaw wanders that hunts, in heights of its ripple.
+const RIPPLES: f64 = 1.5;
+/// Share of its range by which a force wanders that a controller holds.
+const CONTROLLER: f64 = 0.02;
+
+pub(super) fn phases(
+    record: &Record,
+    displacement: &[f64],
+    options: &SegmentOptions,
+) -> Result<Segmentation, SegmentError> {
+    let ripple = of_jaw(record.time(), displacement);
+    let servo = ripple.map_or(0.0, |ripple| RIPPLES * ripple.height).max(SERVO * range(displacement));
+    let held = Held {
+        name: ("displacement", "m"),
+        values: displacement,
+        wander: options.tolerance.unwrap_or(servo),
+        hunts: false,
+    };
+    let found = levels(record.time(), &held, options)?;
+    let pressed = force_held(record, &found, options);
+    let together = together(record, &found.levels, &pressed);
+    let mut segments = fill_gaps(&found.values, &together, 2.0 * found.settings.tolerance);
+    if !segments.iter().any(|segment| segment.phase == Phase::Hold) {
+        return Err(found.none());
+    }
+    for index in 0..segments.len() {
+        if segments[index].phase != Phase::Hold {
+            continue;
+        }
+        let Segment { start, end, .. } = segments[index];
+        let is_pressed = pressed.iter().any(|level| level.start == start && level.end == end);
+        segments[index].mode = Some(if is_pressed && mode_at_large(record, start, end) == HoldMode::ForceHeld {
+            HoldMode::ForceHeld
+        } else {
+            mode(record, start, end)
+        });
+        if is_pressed {
+            segments[index].after = direction(record.force(), &segments, index).or(segments[index].after);
+        }
+    }
+    let ruptures = ruptures(record, &mut segments);
+    match ruptures.first() {
+        Some(Rupture {
+            time, before, after, ..
+        }) if !segments.iter().any(|segment| segment.phase == Phase::Hold) => Err(SegmentError::Ruptured {
+            time: *time,
+            before: *before,
+            after: *after,
+        }),
+        _ => Ok(Segmentation {
+            segments,
+            ruptures,
+            ripple,
+            settings: found.settings,
+        }),
+    }
+}
+
+/// Levels of the force over which the displacement creeps; where none is seen, perhaps because its controller hunts, those
+/// of the force less its ripple, with the corners of the jaw.
+fn force_held(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Level> {
+    let found = creeps(record, jaw, options);
+    if !found.is_empty() {
+        return found;
+    }
+    let Some(calm) = without_ripple(record) else {
+        return found;
+    };
+    let mut found = creeps(&calm, jaw, options);
+    found.retain(|level| mode_at_large(&calm, level.start, level.end) == HoldMode::ForceHeld);
+    found.iter().map(|level| jaw.edges_of(record.time(), level)).collect()
+}
+
+/// Levels of the force over which the displacement creeps.
+fn creeps(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Level> {
+    let still = &jaw.levels;
+    let held = Held {
+        name: ("force", "N"),
+        values: record.force(),
+        wander: CONTROLLER * range(record.force()),
+        hunts: true,
+    };
+    let Ok(found) = levels(record.time(), &held, options) else {
+        return Vec::new();
+    };
+    let (low, range) = (least(record.force()), range(record.force()));
+    // A contact that is open shows no force, and nobody holds that.
+    let open = |level: &Level| level.value.abs().min(level.value - low) <= OPEN * range + 3.0 * found.settings.noise;
+    let (mut pressed, mut likely, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
+    // A body that recovers does so ever more slowly, and nowhere stands; a jaw that is clear of it goes at its speed, then stands.
+    let recovers = |level: &Level| {
+        slows_down(record, level, FIRST_HALF_TO_REST) && !still.iter().any(|still| overlap(still, level))
+    };
+    for level in found
+        .levels
+        .iter()
+        .filter(|level| arrives(record, level, &jaw.settings) && (!open(level) || recovers(level)))
+    {
+        let inside: Vec<&Level> = still.iter().filter(|still| overlap(still, level)).collect();
+        let rests = || inside.iter().all(|still| rests_late(record, still, level));
+        match mode_at_large(record, level.start, level.end) {
+            _ if turns_back(record, &inside, level) => pressed.push(*level),
+            HoldMode::ForceHeld if slows_down(record, level, FIRST_HALF) && rests() => pressed.push(*level),
+            HoldMode::ForceHeld => likely.push(*level),
+            // Of a jaw that went much farther elsewhere this creep is a small part.
+            HoldMode::DisplacementHeld
+                if !inside.is_empty() && mode(record, level.start, level.end) == HoldMode::ForceHeld =>
+            {
+                likely.push(*level);
+            }
+            // The jaw stands there, and its noise hides it.
+            HoldMode::DisplacementHeld if inside.is_empty() => unseen.push(jaw.edges_of(record.time(), level)),
+            _ => {}
+        }
+    }
+    // Of a force that stays from a relaxation on, the part after the jaw stood is held.
+    let taken = pressed.clone();
+    for level in found.levels.iter().filter(|level| !taken.iter().any(|other| overlap(other, level))) {
+        let stood = |still: &&Level| still.start <= level.start && (level.start..level.end).contains(&still.end);
+        let Some(start) = still.iter().find(stood).map(|still| still.end) else {
+            continue;
+        };
+        let rest = Level { start, ..*level };
+        let is_long = rest.end - rest.start >= found.settings.minimum_samples;
+        if is_long
+            && !still.iter().any(|still| overlap(still, &rest))
+            && takes_over(record, &rest, still)
+            && mode_at_large(record, rest.start, rest.end) == HoldMode::ForceHeld
+        {
+            likely.retain(|other| !overlap(other, &rest));
+            pressed.push(rest);
+        }
+    }
+    // A machine that holds the force once, and hardly ever the jaw, does so again.
+    let apart = |still: &&Level| !pressed.iter().chain(&likely).any(|level| overlap(still, level));
+    if !pressed.is_empty() && pressed.len() + likely.len() > 2 * still.iter().filter(apart).count() {
+        pressed.append(&mut likely);
+    }
+    pressed.append(&mut unseen);
+    pressed.sort_by_key(|level| level.start);
+    pressed
+}
+
+/// Share of its range up to which a force may be that of an open contact.
+const OPEN: f64 = 0.02;
+
+fn least(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::MAX, f64::min)
+}
+
+/// Share of a creep that its first half must see: of a ramp that goes on while the force happens to stay, it is one half.
+const FIRST_HALF: f64 = 0.51;
+
+/// The same of a creep that ends before the force is let go.
+const FIRST_HALF_TO_REST: f64 = 0.6;
+
+/// Whether the jaw goes more slowly the longer the force is held: its first half sees more than a share of the way.
+fn slows_down(record: &Record, level: &Level, share: f64) -> bool {
+    let Some(displacement) = record.displacement() else {
+        return false;
+    };
+    let time = record.time();
+    let middle = 0.5 * (time[level.start] + time[level.end - 1]);
+    let half = time.partition_point(|t| *t < middle);
+    let few = ((level.end - level.start) / 20).max(1);
+    let at = |from: usize| median(&mut displacement[from..from + few].to_vec());
+    let (first, middle, last) = (at(level.start), at(half.min(level.end - few)), at(level.end - few));
+    (middle - first) / (last - first) > share
+}
+
+/// How far the jaw comes, in standard deviations of its noise.
+const SEEN: f64 = 4.0;
+/// How many times faster than in the hold the jaw comes to it.
+const FASTER: f64 = 2.0;
+
+/// Whether the jaw was faster before the force was held than it is on average since: the middle of a ramp has nothing of that.
+fn arrives(record: &Record, level: &Level, jaw: &SegmentSettings) -> bool {
+    let Some(displacement) = record.displacement() else {
+        return false;
+    };
+    let time = record.time();
+    let way = |from: usize, until: usize| (displacement[until] - displacement[from]).abs();
+    let speed = |from: usize, until: usize| way(from, until) / (time[until] - time[from]);
+    let inside = speed(level.start, level.end - 1);
+    let length = level.end - level.start;
+    let before = [1, 4, 16, 64].map(|part| level.start.saturating_sub((length / part).max(3)));
+    let far = (SEEN * jaw.noise).max(0.5 * jaw.tolerance);
+    let faster = |from: usize| way(from, level.start) > far && speed(from, level.start) > FASTER * inside;
+    level.start > 0 && before.into_iter().any(faster)
+}
+
+/// Whether the machine goes over from holding the jaw to holding the force that it has just then: the jaw stood, and creeps from there on.
+fn takes_over(record: &Record, level: &Level, still: &[Level]) -> bool {
+    let slack = ((level.end - level.start) / 20).max(3);
+    let stood = still
+        .iter()
+        .any(|still| still.end.abs_diff(level.start) <= slack && still.end > still.start + slack);
+    stood && slows_down(record, level, FIRST_HALF_TO_REST)
+}
+
+/// Whether a standstill of the jaw lies outside a level of the force, or is the end of its creep.
+fn rests_late(record: &Record, still: &Level, level: &Level) -> bool {
+    let outside = still.end <= level.start || still.start >= level.end;
+    let late = still.end + (level.end - level.start) / 20 >= level.end;
+    // A ramp that is slow enough keeps the force, too, but it does not slow down before it stops.
+    let creep = Level {
+        end: still.start,
+        ..*level
+    };
+    let before = still.start <= level.start + 8 || slows_down(record, &creep, FIRST_HALF_TO_REST);
+    outside || (late && before)
+}
+
+/// Whether the only standstill in a level of the force is where the jaw turns: it recovers one way, then creeps the other, while
+/// the force stays.
+fn turns_back(record: &Record, inside: &[&Level], level: &Level) -> bool {
+    let [still] = inside else {
+        return false;
+    };
+    let slack = (level.end - level.start) / 20;
+    let at_first = still.start.abs_diff(level.start) <= slack;
+    at_first && still.end + 2 * slack < level.end && mode_at_large(record, still.end, level.end) == HoldMode::ForceHeld
+}
+
+fn overlap(a: &Level, b: &Level) -> bool {
+    a.start < b.end && b.start < a.end
+}
+
+/// On a machine that holds the force, a standstill of the jaw shorter than this share of its holds is a chance in a creep.
+const SHORT: f64 = 0.2;
+
+/// How many times longer a standstill of the jaw may be than the hold of the force that it belongs to: when the force is let go
+/// the jaw takes a while to move.
+const LATER: f64 = 1.15;
+
+/// Both kinds of levels in order. Where they overlap the force is held: the displacement comes to rest late in a creep, as the
+/// force does late in a relaxation, and the longer of the two is the hold.
+fn together(record: &Record, still: &[Level], pressed: &[Level]) -> Vec<Level> {
+    let time = record.time();
+    let length = |level: &Level| time[level.end - 1] - time[level.start];
+    let usual = if pressed.is_empty() { 0.0 } else { median(&mut pressed.iter().map(length).collect::<Vec<f64>>()) };
+    let is_short = |level: &Level| length(level) < SHORT * usual;
+    let holds_force = pressed.len() > still.iter().filter(|level| !is_short(level)).count();
+    let stays = |level: &&Level| {
+        // The rest before anything moved stays what it is.
+        let chance = holds_force && is_short(level);
+        level.start == 0
+            || !chance && !pressed.iter().any(|press| overlap(level, press) && length(level) <= LATER * length(press))
+    };
+    let mut levels: Vec<Level> = still.iter().filter(stays).copied().collect();
+    let still = levels.clone();
+    levels.extend(pressed.iter().filter(|press| !still.iter().any(|level| overlap(level, press))));
+    levels.sort_by_key(|level| level.start);
+    levels
+}
+
+/// Whether the force had grown or fallen before a hold: against the hold before it, or the start of the record.
+fn direction(force: &[f64], segments: &[Segment], index: usize) -> Option<After> {
+    let typical = |segment: &Segment| median(&mut force[segment.start..segment.end].to_vec());
+    let standing = |segment: &&Segment| matches!(segment.phase, Phase::Hold | Phase::Rest);
+    let before = segments[..index].iter().rev().find(standing).map_or(force[0], typical);
+    let rise = typical(&segments[index]) - before;
+    (rise != 0.0).then_some(if rise > 0.0 { After::Loading } else { After::Unloading })
+}

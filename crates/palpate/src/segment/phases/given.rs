@@ -1,0 +1,156 @@
+//! Holds whose limits someone gives.
+
+use serde::{Deserialize, Serialize};
+
+use super::find::find_phases;
+use super::fit_start::place_fits;
+use super::ramps::fill_gaps;
+use crate::record::Record;
+use crate::segment::error::SegmentError;
+use crate::segment::mode::mode;
+use crate::segment::options::{SegmentOptions, SegmentSettings};
+use crate::segment::segmentation::{HoldMode, Phase, Segmentation};
+use crate::segment::standstill::{Held, Level, levels};
+use crate::statistics::{median, noise_in_time, range};
+
+/// A hold with limits that are given and not sought.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct GivenHold {
+    /// Its first moment, s, as the record counts time.
+    pub from: f64,
+    /// Its last moment, s.
+    pub to: f64,
+    /// What is held; `None`: seen from the record.
+    pub mode: Option<HoldMode>,
+}
+
+/// Fewest samples of a hold that is given.
+const FEWEST: usize = 3;
+
+/// Phases with these holds and no others; what lies between them is loading and unloading as found.
+///
+/// ```
+/// use palpate::record::Record;
+/// use palpate::segment::{GivenHold, Phase, SegmentOptions, phases_with};
+/// let time: Vec<f64> = (0..100).map(|i| 0.1 * f64::from(i)).collect();
+/// let jaw = time.iter().map(|t| 1e-3 * t.min(4.0)).collect();
+/// let force = time.iter().map(|t| if *t < 4.0 { *t } else { 3.0 + (4.0 - t).exp() }).collect();
+/// let record = Record::new(time, Some(jaw), force)?;
+/// let given = GivenHold { from: 4.5, to: 9.0, mode: None };
+/// let found = phases_with(&record, &SegmentOptions::default(), &[given])?;
+/// let phases: Vec<Phase> = found.segments.iter().map(|segment| segment.phase).collect();
+/// assert_eq!(phases, [Phase::Loading, Phase::Hold, Phase::Loading]);
+/// assert_eq!((found.segments[1].start, found.segments[1].end), (45, 91));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`SegmentError`] for a hold outside the record, one of fewer than three samples, and two that overlap. Without any given hold
+/// as for [`find_phases`].
+pub fn phases_with(
+    record: &Record,
+    options: &SegmentOptions,
+    given: &[GivenHold],
+) -> Result<Segmentation, SegmentError> {
+    if given.is_empty() {
+        return find_phases(record, options);
+    }
+    let held = record.displacement().unwrap_or_else(|| record.force());
+    let mut places = Vec::with_capacity(given.len());
+    for (index, hold) in given.iter().enumerate() {
+        places.push((samples(record, hold, index + 1)?, hold, index + 1));
+    }
+    places.sort_by_key(|((start, _), ..)| *start);
+    for pair in places.windows(2) {
+        if pair[0].0.1 > pair[1].0.0 {
+            let (first, second) = (pair[0].2.min(pair[1].2), pair[0].2.max(pair[1].2));
+            return Err(SegmentError::GivenOverlap { first, second });
+        }
+    }
+    let (values, settings) = searched(record, held, options);
+    let at = |(start, end): (usize, usize)| Level {
+        start,
+        end,
+        value: median(&mut values[start..end].to_vec()),
+    };
+    let given: Vec<Level> = places.iter().map(|(place, ..)| at(*place)).collect();
+    let mut segments = fill_gaps(&values, &given, 2.0 * settings.tolerance);
+    for ((start, end), hold, _) in &places {
+        let segment = segments.iter_mut().find(|segment| (segment.start, segment.end) == (*start, *end));
+        if let Some(segment) = segment {
+            segment.phase = Phase::Hold;
+            segment.mode = Some(hold.mode.unwrap_or_else(|| mode(record, *start, *end)));
+        }
+    }
+    place_fits(record, options, &mut segments);
+    // Who gives a start means it: no law is fitted to anything before.
+    for segment in segments.iter_mut().filter(|segment| segment.phase == Phase::Hold) {
+        segment.fit_start = segment.fit_start.max(segment.start);
+    }
+    Ok(Segmentation {
+        segments,
+        ruptures: Vec::new(),
+        ripple: None,
+        settings,
+    })
+}
+
+/// The samples of a given hold.
+fn samples(record: &Record, hold: &GivenHold, number: usize) -> Result<(usize, usize), SegmentError> {
+    let time = record.time();
+    let (begin, last) = (time[0], time[time.len() - 1]);
+    let slack = 1e-9 * (last - begin);
+    let GivenHold { from, to, .. } = *hold;
+    if !(from >= begin - slack && to <= last + slack) {
+        return Err(SegmentError::GivenOutside {
+            number,
+            from,
+            to,
+            begin,
+            last,
+        });
+    }
+    let start = time.partition_point(|t| *t < from - slack);
+    let end = time.partition_point(|t| *t <= to + slack);
+    if end < start + FEWEST {
+        return Err(SegmentError::GivenShort {
+            number,
+            from,
+            to,
+            samples: end.saturating_sub(start),
+            needed: FEWEST,
+        });
+    }
+    Ok((start, end))
+}
+
+/// The column without spikes and the thresholds of a search, also where a search would find nothing.
+fn searched(record: &Record, values: &[f64], options: &SegmentOptions) -> (Vec<f64>, SegmentSettings) {
+    let wander = options.tolerance.unwrap_or(0.002 * range(values));
+    let held = Held {
+        name: ("displacement", "m"),
+        values,
+        wander,
+        hunts: false,
+    };
+    let from_displacement = record.displacement().is_some();
+    if let Ok(found) = levels(record.time(), &held, options) {
+        let settings = SegmentSettings {
+            from_displacement,
+            ..found.settings
+        };
+        return (found.values, settings);
+    }
+    let noise = noise_in_time(record.time(), values);
+    let settings = SegmentSettings {
+        from_displacement,
+        noise,
+        tolerance: (2.5 * noise).max(wander),
+        ramp_speed: 0.0,
+        still_speed: 0.0,
+        slope_window: 1,
+        minimum_hold: 0.0,
+        minimum_samples: FEWEST,
+    };
+    (values.to_vec(), settings)
+}

@@ -1,0 +1,30 @@
+//! A record cut into loading, hold and unloading.
+//!
+//! A record comes in and goes out as a `Segmentation`; where a column stands still is found by `standstill`.
+//!
+//! | file | what |
+//! |---|---|
+//! | `find.rs` | phases that are sought |
+//! | `given.rs` | holds whose limits someone gives |
+//! | `from_both.rs` | phases where displacement and force were recorded |
+//! | `from_force.rs` | phases where only the force was |
+//! | `after_peaks.rs` | holds of a force that relaxes slowly all along |
+//! | `ramps.rs` | what lies between the holds: loading and unloading |
+//! | `rupture.rs` | where the body broke |
+//! | `ripple.rs` | the ripple of a controller that hunts |
+//! | `turning.rs` | turning points |
+//! | `fit_start.rs` | from where in a hold the laws are fitted |
+
+mod after_peaks;
+mod find;
+mod fit_start;
+mod from_both;
+mod from_force;
+mod given;
+mod ramps;
+mod ripple;
+mod rupture;
+mod turning;
+
+pub use find::find_phases;
+pub use given::{GivenHold, phases_with};

@@ -1,0 +1,116 @@
+//! A record cut into its phases.
+
+use serde::{Deserialize, Serialize};
+
+use super::options::SegmentSettings;
+
+/// What the jaw does in a segment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Phase {
+    /// Standing still with nothing held: before anything moved, or after the body broke.
+    Rest,
+    /// The displacement grows.
+    Loading,
+    /// The displacement stays, or the force.
+    Hold,
+    /// The displacement falls.
+    Unloading,
+}
+
+/// What came before a hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum After {
+    /// The displacement had grown.
+    Loading,
+    /// The displacement had fallen.
+    Unloading,
+}
+
+/// What stays in a hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum HoldMode {
+    /// The displacement: the force may relax.
+    DisplacementHeld,
+    /// The force: the displacement creeps.
+    ForceHeld,
+    /// Both move, if slowly.
+    Neither,
+}
+
+/// A stretch of the record in one phase.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Segment {
+    /// What the jaw does.
+    pub phase: Phase,
+    /// First sample.
+    pub start: usize,
+    /// Sample after the last.
+    pub end: usize,
+    /// For a hold: what came before it.
+    pub after: Option<After>,
+    /// For a hold: what is held in it.
+    pub mode: Option<HoldMode>,
+    /// For a hold: the sample from which laws are fitted, see [`HoldStart`]. It lies before `start` where the force peaked
+    /// while the jaw was still settling.
+    pub fit_start: usize,
+}
+
+impl Segment {
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.end - self.start
+    }
+
+    /// Never true.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.end == self.start
+    }
+}
+
+/// A body that broke while it was loaded.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Rupture {
+    /// The sample at which the force had fallen by half.
+    pub sample: usize,
+    /// Its time, s.
+    pub time: f64,
+    /// The largest force before, N.
+    pub before: f64,
+    /// The force where the jaw came to stand, N.
+    pub after: f64,
+}
+
+/// A regular ripple on a column.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Ripple {
+    /// From peak to peak, in the unit of the column.
+    pub height: f64,
+    /// Its period, s.
+    pub period: f64,
+}
+
+/// All segments of a record in order, and the thresholds that found them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Segmentation {
+    /// Segments; together they cover the record without gaps.
+    pub segments: Vec<Segment>,
+    /// Where the body broke.
+    pub ruptures: Vec<Rupture>,
+    /// The ripple of a jaw that hunts about the places it holds, if it does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ripple: Option<Ripple>,
+    /// The thresholds used.
+    pub settings: SegmentSettings,
+}
+
+impl Segmentation {
+    /// The holds, in order.
+    pub fn holds(&self) -> impl Iterator<Item = &Segment> {
+        self.segments.iter().filter(|segment| segment.phase == Phase::Hold)
+    }
+}

@@ -1,0 +1,214 @@
+//! Levels of the column that the machine holds: the displacement of the jaw, or the force.
+//!
+//! 1. Single rows that stray are passed over.
+//! 2. The column is cut into straight pieces, as fine as its noise allows.
+//! 3. Pieces that go by far less than those beside them are standstills.
+//! 4. The edges of a standstill are where the lines through ramp and level meet.
+
+use super::edges::sharpened;
+use super::level::Level;
+use super::pieces::{Piece, Roughness, pieces};
+use super::standstills::{Refused, Standstill, joined, standstills};
+use super::stillness::Stillness;
+use crate::segment::error::SegmentError;
+use crate::segment::options::{SegmentOptions, SegmentSettings};
+use crate::statistics::{median, noise_in_time, quantum, range};
+
+/// Drift of a standstill as a share of the way at the speed of the slower ramp beside it.
+const STILL_BELOW: f64 = 0.12;
+/// Fewest samples of a hold.
+const MINIMUM_SAMPLES: usize = 8;
+/// A standstill that drifts by more than this share of the range is a slow ramp.
+const DRIFT: f64 = 0.05;
+/// How far the column would have gone on in a hold, in standard deviations of the noise, on its faster and slower side.
+const GOES_ON: [f64; 2] = [6.0, 3.5];
+/// The same in units of the tolerance.
+const GOES_ON_TOLERANCES: [f64; 2] = [3.0, 1.5];
+
+/// Steps of a rounded column that are no motion.
+const STEPS: f64 = 5.5;
+
+/// A column that a machine may hold, and what is known of it beforehand.
+pub(in crate::segment) struct Held<'a> {
+    /// Its name and unit.
+    pub(in crate::segment) name: (&'static str, &'static str),
+    /// Its values.
+    pub(in crate::segment) values: &'a [f64],
+    /// How far a machine wanders about what it holds, where noise is less.
+    pub(in crate::segment) wander: f64,
+    /// Whether it wanders slowly.
+    pub(in crate::segment) hunts: bool,
+}
+
+/// The levels of a column, and the thresholds that found them.
+pub(in crate::segment) struct Levels {
+    /// The column without spikes.
+    pub(in crate::segment) values: Vec<f64>,
+    pub(in crate::segment) levels: Vec<Level>,
+    pub(in crate::segment) settings: SegmentSettings,
+    refused: Refused,
+    pieces: Vec<Piece>,
+    /// How near to a level its samples are where a ramp has no line.
+    near: f64,
+}
+
+impl Levels {
+    /// A standstill that another column shows, with the edges that this column gives it.
+    pub(in crate::segment) fn edges_of(&self, time: &[f64], other: &Level) -> Level {
+        let mut found = [Standstill {
+            start: other.start,
+            end: other.end,
+        }];
+        sharpened(time, &self.values, &self.pieces, self.near, &mut found);
+        // The corners of this column may lie elsewhere; what they cut short is not better.
+        let [found] = found;
+        if found.end - found.start < other.end - other.start { *other } else { level(&self.values, found) }
+    }
+
+    /// Why there is no hold.
+    pub(in crate::segment) fn none(&self) -> SegmentError {
+        SegmentError::NoHold {
+            longest: self.refused.duration,
+            samples: self.refused.samples,
+            minimum_hold: self.settings.minimum_hold,
+            minimum_samples: self.settings.minimum_samples,
+        }
+    }
+}
+
+/// Finds the levels of a column.
+pub(in crate::segment) fn levels(
+    time: &[f64],
+    held: &Held<'_>,
+    options: &SegmentOptions,
+) -> Result<Levels, SegmentError> {
+    let noise = noise_in_time(time, held.values);
+    let values = without_spikes(held.values, noise);
+    let range = range(&values);
+    let step = rounding(held.values);
+    if range == 0.0 || range < (8.0 * noise).max(STEPS * step) {
+        return Err(SegmentError::NoMotion {
+            column: held.name.0,
+            range,
+            noise,
+            unit: held.name.1,
+        });
+    }
+    let tolerance = (2.5 * noise).max(held.wander).max(1.5 * step);
+    let stray = (0.25 * held.wander).max(0.35 * step);
+    let pieces = pieces(
+        time,
+        &values,
+        Roughness {
+            noise,
+            stray,
+            hunts: held.hunts,
+        },
+    );
+    let stillness = Stillness {
+        noise,
+        band: tolerance,
+        share: options.still_below.unwrap_or(STILL_BELOW),
+        drift: DRIFT * range,
+        goes_on: [0, 1].map(|side| (GOES_ON[side] * noise).max(GOES_ON_TOLERANCES[side] * held.wander)),
+        samples: if options.minimum_hold.is_some() { 3 } else { MINIMUM_SAMPLES },
+        duration: options.minimum_hold,
+    };
+    let (mut found, refused) = standstills(time, &values, &pieces, &stillness);
+    let near = (3.0 * noise).max(0.5 * held.wander);
+    sharpened(time, &values, &pieces, near, &mut found);
+    let mut found = joined(&values, &found, &stillness);
+    // What is left of a standstill between its ramps may be too little for one.
+    found.retain(|found| found.end - found.start >= stillness.samples);
+    let ramp_speed = ramp_speed(time, &pieces, &found);
+    let settings = SegmentSettings {
+        from_displacement: true,
+        noise,
+        tolerance,
+        ramp_speed,
+        still_speed: stillness.share * ramp_speed,
+        slope_window: 1,
+        minimum_hold: options.minimum_hold.unwrap_or(stillness.goes_on[0] / ramp_speed),
+        minimum_samples: stillness.samples,
+    };
+    let levels = found.iter().map(|found| level(&values, *found)).collect();
+    Ok(Levels {
+        values,
+        levels,
+        settings,
+        refused,
+        pieces,
+        near,
+    })
+}
+
+fn level(values: &[f64], found: Standstill) -> Level {
+    let Standstill { start, end } = found;
+    Level {
+        start,
+        end,
+        value: median(&mut values[start..end].to_vec()),
+    }
+}
+
+/// Speed of the ramps: half of the way outside standstills is travelled faster than this.
+fn ramp_speed(time: &[f64], pieces: &[Piece], found: &[Standstill]) -> f64 {
+    let still = |piece: &Piece| {
+        let middle = piece.start.midpoint(piece.end);
+        let next = found.partition_point(|hold| hold.end <= middle);
+        found.get(next).is_some_and(|hold| hold.start <= middle)
+    };
+    let mut parts: Vec<(f64, f64)> = Vec::new();
+    let mut last: Option<(f64, f64)> = None;
+    for piece in pieces {
+        let times = [time[piece.start], time[piece.end - 1]];
+        let ends = times.map(|t| piece.line.at(t));
+        if let Some((t, v)) = last {
+            parts.push(((ends[0] - v).abs() / (times[0] - t), (ends[0] - v).abs()));
+        }
+        if !still(piece) && times[1] > times[0] {
+            parts.push((piece.line.slope().abs(), (ends[1] - ends[0]).abs()));
+        }
+        last = Some((times[1], ends[1]));
+    }
+    parts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let total: f64 = parts.iter().map(|(_, way)| way).sum();
+    let mut sum = 0.0;
+    for (speed, way) in parts {
+        sum += way;
+        if sum >= 0.5 * total {
+            return speed;
+        }
+    }
+    0.0
+}
+
+/// Step of a column that was rounded. Repaired rows are means of two others and lie half a step off; few of them do not
+/// make the step half as wide.
+fn rounding(values: &[f64]) -> f64 {
+    let step = quantum(values);
+    if step == 0.0 {
+        return 0.0;
+    }
+    let steps = || {
+        values
+            .windows(2)
+            .map(|pair| ((pair[1] - pair[0]) / step).round() as i64)
+            .filter(|steps| *steps != 0)
+    };
+    let odd = steps().filter(|steps| steps % 2 != 0).count();
+    if 20 * odd < steps().count() { 2.0 * step } else { step }
+}
+
+/// The column without spikes of one row: a sample far off both neighbours, which agree, becomes their mean.
+pub(in crate::segment) fn without_spikes(values: &[f64], noise: f64) -> Vec<f64> {
+    let mut clean = values.to_vec();
+    for i in 1..values.len().saturating_sub(1) {
+        let (a, b, c) = (clean[i - 1], values[i], values[i + 1]);
+        let stray = (b - a).abs().min((b - c).abs());
+        if (b - a) * (b - c) > 0.0 && stray > 6.0 * noise && (c - a).abs() < 0.5 * stray {
+            clean[i] = 0.5 * (a + c);
+        }
+    }
+    clean
+}

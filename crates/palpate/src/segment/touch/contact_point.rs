@@ -1,0 +1,305 @@
+//! First touch: where displacement and force begin to count.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+use super::estimators::{Approach, TouchEstimate, TouchMethod};
+use super::loading_curve::{LoadingCurve, Touch};
+use crate::contact::{Shape, Sides};
+use crate::record::{Record, Tare};
+use crate::segment::segmentation::{Phase, Segment, Segmentation};
+use crate::statistics::{mean, median, noise};
+
+/// How to find first touch.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactChoice {
+    /// From the force: where the loading curve of the first ramp meets its baseline, if there is travel through air before
+    /// that; otherwise the start of the first ramp.
+    #[default]
+    Auto,
+    /// Displacement and force are zero at first touch already; nothing is subtracted.
+    AsRecorded,
+    /// At this displacement, m.
+    Displacement(f64),
+    /// Where this rule finds it; as [`Auto`](Self::Auto) where the rule finds nothing.
+    By(TouchMethod),
+}
+
+/// First touch.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ContactPoint {
+    /// Sample of first touch, if it lies in the record.
+    pub sample: Option<usize>,
+    /// What to subtract from force and displacement.
+    pub tare: Tare,
+    /// Standard error of the displacement of first touch, m, where it was estimated.
+    pub displacement_error: Option<f64>,
+    /// Travel through air before it, m.
+    pub air_travel: f64,
+    /// The rule that found it; `None` where it was given, or is the foot of the ramp.
+    pub method: Option<TouchMethod>,
+    /// What every rule says that finds something; empty where first touch was given.
+    pub estimates: Vec<TouchEstimate>,
+    /// Robust standard deviation of the estimates, m, if there are three or more: how much first touch hangs on the rule.
+    pub spread: Option<f64>,
+}
+
+impl ContactPoint {
+    fn at(record: &Record, displacement: f64) -> Self {
+        let reached = record.displacement().and_then(|d| d.iter().position(|d| *d >= displacement));
+        Self {
+            sample: reached,
+            tare: Tare {
+                force: 0.0,
+                displacement,
+            },
+            displacement_error: None,
+            air_travel: 0.0,
+            method: None,
+            estimates: Vec::new(),
+            spread: None,
+        }
+    }
+
+    /// By how much first touch lies before (below 0) or behind the middle of what the other rules say, m; `None` for fewer than three.
+    #[must_use]
+    pub fn apart(&self) -> Option<f64> {
+        let method = self.method?;
+        let others = self.estimates.iter().filter(|estimate| estimate.method != method);
+        let mut others: Vec<f64> = others.map(|estimate| estimate.displacement).collect();
+        (others.len() >= 3).then(|| self.tare.displacement - median(&mut others))
+    }
+
+    /// The same with what the rules say.
+    fn with_estimates(self, estimates: Vec<TouchEstimate>) -> Self {
+        let spread = spread(&estimates);
+        Self {
+            estimates,
+            spread,
+            ..self
+        }
+    }
+}
+
+/// 1.4826 times the median distance from the median; `None` for fewer than three.
+fn spread(estimates: &[TouchEstimate]) -> Option<f64> {
+    if estimates.len() < 3 {
+        return None;
+    }
+    let mut places: Vec<f64> = estimates.iter().map(|estimate| estimate.displacement).collect();
+    let middle = median(&mut places);
+    places.iter_mut().for_each(|place| *place = (*place - middle).abs());
+    Some(1.482_6 * median(&mut places))
+}
+
+/// Share of the way from first touch to the end of the ramp by which a curve may lie apart from the other rules.
+const ALONE: f64 = 0.05;
+/// Share of the first ramp's travel below which a late force is no travel through air.
+const AIR: f64 = 0.02;
+/// Standard errors by which first touch must lie behind the foot of the ramp to speak of air.
+const SURE: f64 = 3.0;
+/// Samples that make a baseline.
+const BASELINE: usize = 5;
+
+/// Finds first touch in a segmented record of a body squeezed from two sides; see [`find_contact_of`].
+#[must_use]
+pub fn find_contact(
+    record: &Record,
+    segmentation: &Segmentation,
+    shape: Option<&Shape>,
+    choice: ContactChoice,
+) -> ContactPoint {
+    find_contact_of(record, segmentation, shape.map(|shape| (shape, Sides::Two)), choice)
+}
+
+/// Finds first touch in a segmented record.
+///
+/// The first ramp in which the force rises decides. The curve that a body under the latency law must draw in it, with n, v
+/// and the relaxed force of the hold that follows, is laid over the force by least squares; where it begins is first touch.
+/// Only if that lies clearly behind the foot of the ramp (3 standard errors and 2 % of the travel), and the force is flat
+/// up to there, has the jaw travelled through air. Otherwise first touch is the foot of the ramp, and the zero of the force
+/// is its median at rest before it, or nothing is subtracted from a force without such a rest.
+#[must_use]
+pub fn find_contact_of(
+    record: &Record,
+    segmentation: &Segmentation,
+    body: Option<(&Shape, Sides)>,
+    choice: ContactChoice,
+) -> ContactPoint {
+    let as_recorded = ContactPoint::at(record, 0.0);
+    match (choice, record.displacement()) {
+        (ContactChoice::AsRecorded, _) | (_, None) => as_recorded,
+        (ContactChoice::Displacement(displacement), _) => ContactPoint::at(record, displacement),
+        (ContactChoice::Auto, Some(displacement)) => {
+            automatic(record, displacement, segmentation, body, None).unwrap_or(as_recorded)
+        }
+        (ContactChoice::By(method), Some(displacement)) => {
+            automatic(record, displacement, segmentation, body, Some(method)).unwrap_or(as_recorded)
+        }
+    }
+}
+
+/// Samples without contact: those before the force leaves its baseline in the first ramp, and, if the jaw travelled through
+/// air before that, those at the end of the record in which it is back there. Empty where no ramp lifts the force.
+#[must_use]
+pub fn free_samples(record: &Record, segmentation: &Segmentation) -> Vec<Range<usize>> {
+    let Some((ramp, _)) = first_rise(record, segmentation) else {
+        return Vec::new();
+    };
+    let foot = ramp.start.saturating_sub(1);
+    let displacement = record.displacement().unwrap_or_else(|| record.time());
+    let approach = Approach::of(displacement, record.force(), 0..foot, foot..ramp.end);
+    let touch = approach.and_then(|approach| approach.estimate(TouchMethod::Threshold));
+    let (Some(touch), Some(displacement)) = (touch, record.displacement()) else {
+        return std::iter::once(0..foot + 1).collect();
+    };
+    // Half the way there is surely free; a threshold is passed only after touch.
+    let (from, travel) = (displacement[foot], touch.displacement - displacement[foot]);
+    let level = from + 0.5 * travel;
+    let before = first_beyond(displacement, foot, ramp, level).max(foot + 1);
+    let after = displacement.iter().rposition(|d| *d > level).map_or(record.len(), |last| last + 1);
+    let left = travel > AIR * (displacement[ramp.end - 1] - from) && after > ramp.end && after < record.len();
+    [Some(0..before), left.then_some(after..record.len())].into_iter().flatten().collect()
+}
+
+/// The first loading ramp in which the force rises, and the hold right behind it.
+fn first_rise<'a>(record: &Record, segmentation: &'a Segmentation) -> Option<(&'a Segment, Option<&'a Segment>)> {
+    let force = record.force();
+    let (low, high) = force.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
+    let segments = &segmentation.segments;
+    let rises = |segment: &Segment| {
+        let part = &force[segment.start.saturating_sub(1)..segment.end];
+        let top = part.iter().fold(f64::MIN, |most, f| most.max(*f));
+        top - part[0] > (8.0 * noise(part)).max(0.005 * (high - low))
+    };
+    let index = segments.iter().position(|s| s.phase == Phase::Loading && rises(s))?;
+    let hold = segments.get(index + 1).filter(|next| next.phase == Phase::Hold);
+    Some((&segments[index], hold))
+}
+
+fn automatic(
+    record: &Record,
+    displacement: &[f64],
+    segmentation: &Segmentation,
+    body: Option<(&Shape, Sides)>,
+    asked: Option<TouchMethod>,
+) -> Option<ContactPoint> {
+    let (ramp, hold) = first_rise(record, segmentation)?;
+    let force = record.force();
+    // The sample before the ramp is its foot.
+    let foot = ramp.start.saturating_sub(1);
+    let has_rest = foot + 1 >= BASELINE;
+    // The rest right before the ramp says where the jaw stood better than its last sample alone.
+    let stood = segmentation.segments.iter().find(|s| s.end == ramp.start && s.len() >= BASELINE);
+    let from = stood.map_or(displacement[foot], |s| median(&mut displacement[s.start..s.end].to_vec()));
+    let travel = displacement[ramp.end - 1] - from;
+    if travel <= 0.0 {
+        return None;
+    }
+    let curve = hold
+        .and_then(|hold| LoadingCurve::of(record, displacement, ramp, hold, body))
+        .and_then(|curve| curve.touch(from, travel))
+        .filter(|touch| (from..displacement[ramp.end - 1]).contains(&touch.displacement));
+    let estimates = estimates(record, displacement, foot, ramp, curve.as_ref());
+    let by_rule = estimates.iter().find(|estimate| Some(estimate.method) == asked).copied();
+    if let Some(estimate) = by_rule {
+        let point = behind_air(record, displacement, (foot, ramp), from, estimate.displacement, None);
+        let found = ContactPoint {
+            method: Some(estimate.method),
+            ..point
+        };
+        let found = found.with_estimates(estimates);
+        return Some(ContactPoint {
+            displacement_error: found.spread,
+            ..found
+        });
+    }
+    let touch = curve
+        .filter(|touch| touch.displacement - from > (SURE * touch.error).max(AIR * travel))
+        .filter(|touch| is_flat(force, displacement, foot, touch, ramp));
+    let Some(touch) = touch else {
+        let point = ContactPoint {
+            sample: Some(foot),
+            tare: Tare {
+                force: if has_rest { median(&mut force[..=foot].to_vec()) } else { 0.0 },
+                displacement: from,
+            },
+            ..ContactPoint::at(record, from)
+        };
+        return Some(point.with_estimates(estimates));
+    };
+    let point = ContactPoint {
+        displacement_error: Some(touch.error),
+        method: Some(TouchMethod::LoadingCurve),
+        ..behind_air(record, displacement, (foot, ramp), from, touch.displacement, Some(touch.base))
+    };
+    let point = point.with_estimates(estimates);
+    // A curve that stands alone is that of another body; its own error knows nothing of that.
+    let apart = point
+        .apart()
+        .filter(|apart| apart.abs() > ALONE * (displacement[ramp.end - 1] - touch.displacement));
+    Some(ContactPoint {
+        displacement_error: Some(apart.map_or(touch.error, |apart| touch.error.hypot(apart))),
+        ..point
+    })
+}
+
+/// First touch at `touch` after travel from `from`; the zero of the force is its median over half the way, or `base`.
+fn behind_air(
+    record: &Record,
+    displacement: &[f64],
+    (foot, ramp): (usize, &Segment),
+    from: f64,
+    touch: f64,
+    base: Option<f64>,
+) -> ContactPoint {
+    let force = record.force();
+    let clear = first_beyond(displacement, foot, ramp, 0.5 * (from + touch)).max(foot);
+    let before = median(&mut force[..clear.max(1)].to_vec());
+    ContactPoint {
+        sample: Some(first_beyond(displacement, foot, ramp, touch)),
+        tare: Tare {
+            force: if clear >= BASELINE { before } else { base.unwrap_or(before) },
+            displacement: touch,
+        },
+        air_travel: (touch - from).max(0.0),
+        ..ContactPoint::at(record, touch)
+    }
+}
+
+/// What every rule says that finds something.
+fn estimates(
+    record: &Record,
+    displacement: &[f64],
+    foot: usize,
+    ramp: &Segment,
+    curve: Option<&Touch>,
+) -> Vec<TouchEstimate> {
+    const RULES: [TouchMethod; 4] =
+        [TouchMethod::Threshold, TouchMethod::TwoLines, TouchMethod::Hertz, TouchMethod::VarianceRatio];
+    let curve = curve.map(|touch| TouchEstimate {
+        method: TouchMethod::LoadingCurve,
+        displacement: touch.displacement,
+    });
+    let approach = Approach::of(displacement, record.force(), 0..foot, foot..ramp.end);
+    let rules = approach.iter().flat_map(|approach| RULES.into_iter().filter_map(|rule| approach.estimate(rule)));
+    curve.into_iter().chain(rules).collect()
+}
+
+fn first_beyond(displacement: &[f64], foot: usize, ramp: &Segment, level: f64) -> usize {
+    (foot..ramp.end).find(|i| displacement[*i] >= level).unwrap_or(ramp.end - 1)
+}
+
+/// Whether the force keeps its level over the travel before `touch`: its halves differ by no more than their noise allows.
+fn is_flat(force: &[f64], displacement: &[f64], foot: usize, touch: &Touch, ramp: &Segment) -> bool {
+    let until = first_beyond(displacement, foot, ramp, touch.displacement - touch.error);
+    let air = &force[foot..until];
+    if air.len() < 4 {
+        return air.len() >= 2;
+    }
+    let (first, second) = air.split_at(air.len() / 2);
+    let allowed = 4.0 * touch.noise * (4.0 / air.len() as f64).sqrt();
+    (mean(second) - mean(first)).abs() <= allowed.max(0.01 * touch.rise)
+}

@@ -1,0 +1,375 @@
+//! The force of a first ramp under the latency law, and where it begins.
+
+use std::rc::Rc;
+
+use crate::contact::{Shape, Sides};
+use crate::fit::{ExponentChoice, FitOptions, LatencyFit, fit_hold};
+use crate::record::Record;
+use crate::segment::segmentation::Segment;
+use crate::statistics::{effective_count, lag_one_correlation, median, noise};
+
+/// Where a loading curve begins.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Touch {
+    /// Displacement of first touch, m.
+    pub(super) displacement: f64,
+    /// Its standard error, m.
+    pub(super) error: f64,
+    /// Force without contact, N.
+    pub(super) base: f64,
+    /// Root mean square residual, N.
+    pub(super) noise: f64,
+    /// Rise of the force in the ramp, N.
+    pub(super) rise: f64,
+}
+
+/// A first ramp at constant speed, and the law of the hold behind it.
+///
+/// With s = d − d₀ the travel since first touch, A the contact area and index 1 for the end of the ramp,
+///
+/// ```text
+/// F(s) = F₀ + A(s)/A(s₁) · [ (F_e − F₀) s/s₁ + X y(s/s₀) ],    dy/dτ = 1 − yⁿ, y(0) = 0,    s₀ = ḋ X¹⁻ⁿ/v
+/// ```
+///
+/// is equation (11) with the excess strain that (10) gives at a constant drive: X is the excess force at which the drive and
+/// the relaxation balance. n, v and F_e come from the hold; d₀, X and F₀ are found here.
+pub(super) struct LoadingCurve {
+    displacement: Vec<f64>,
+    force: Vec<f64>,
+    /// Displacement of the hold, m.
+    level: f64,
+    /// Speed of the jaw, m/s.
+    speed: f64,
+    /// Radius in jaw travel, m; `None` for a constant section.
+    radius: Option<f64>,
+    /// Laws of the hold with one exponent each.
+    laws: Vec<HoldLaw>,
+    rise: f64,
+    deviation: f64,
+}
+
+/// What the hold says, in N and s, with the excess curve of its exponent.
+#[derive(Clone)]
+struct HoldLaw {
+    exponent: f64,
+    coefficient: f64,
+    relaxed: f64,
+    amplitude: f64,
+    /// Sum of squared residuals in the hold, N².
+    square: f64,
+    samples: usize,
+    /// Covariance of the relaxed force, the amplitude and ln λ.
+    covariance: Option<[[f64; 3]; 3]>,
+    curve: Rc<ExcessCurve>,
+}
+
+impl HoldLaw {
+    fn new(fit: &LatencyFit) -> Self {
+        Self {
+            exponent: fit.exponent.value,
+            coefficient: fit.rate_coefficient.value,
+            relaxed: fit.equilibrium.value,
+            amplitude: fit.amplitude.value,
+            square: fit.residual_square,
+            samples: fit.samples,
+            covariance: fit.covariance.as_ref().map(|c| [0, 1, 2].map(|i: usize| [c[i][0], c[i][1], c[i][2]])),
+            curve: Rc::new(ExcessCurve::new(fit.exponent.value)),
+        }
+    }
+}
+
+/// Samples of ramp and rest that are fitted, at most.
+const MOST: usize = 600;
+
+impl LoadingCurve {
+    /// `None` if the hold has no law, or does not relax downwards.
+    pub(super) fn of(
+        record: &Record,
+        displacement: &[f64],
+        ramp: &Segment,
+        hold: &Segment,
+        body: Option<(&Shape, Sides)>,
+    ) -> Option<Self> {
+        let laws = laws(record, hold)?;
+        let foot = ramp.start.saturating_sub(1);
+        // The last sample belongs to the ramp only if the jaw was still moving there.
+        let last = ramp.end - 1;
+        let middle = foot + (last - foot) / 4;
+        let speed = (displacement[last] - displacement[middle]) / (record.time()[last] - record.time()[middle]);
+        if !(speed.is_finite() && speed > 0.0) {
+            return None;
+        }
+        let every = (ramp.end - foot).div_ceil(MOST);
+        let rest = foot.saturating_sub(MOST);
+        let samples: Vec<usize> = (rest..foot).chain((foot..ramp.end).step_by(every)).collect();
+        let force = record.force();
+        let top = force[foot..ramp.end].iter().fold(f64::MIN, |most, f| most.max(*f));
+        Some(Self {
+            displacement: samples.iter().map(|i| displacement[*i]).collect(),
+            force: samples.iter().map(|i| force[*i]).collect(),
+            level: median(&mut displacement[hold.start..hold.end].to_vec()),
+            speed,
+            radius: match body {
+                Some((Shape::Ball { radius } | Shape::Pad { radius, .. }, Sides::Two)) => Some(2.0 * radius),
+                Some((Shape::Ball { radius } | Shape::Pad { radius, .. }, Sides::One)) => Some(*radius),
+                _ => None,
+            },
+            laws,
+            rise: top - force[foot],
+            deviation: noise(&force[..ramp.end]),
+        })
+    }
+
+    /// First touch in a ramp that starts at `from` and travels `travel` (m).
+    ///
+    /// The mean over the laws, each weighted by how likely it makes ramp and hold together; a hold that leaves the exponent
+    /// open adds the scatter of first touch over the laws to the error.
+    pub(super) fn touch(&self, from: f64, travel: f64) -> Option<Touch> {
+        let pairs = self.laws.iter().map(|law| (self.fitted(law, self.starts(law, from, travel)), law));
+        let fits: Vec<(Curve, &HoldLaw)> = pairs.filter_map(|(curve, law)| Some((curve?, law))).collect();
+        let total = |fit: &(Curve, &HoldLaw)| fit.0.square + fit.1.square;
+        let best = fits.iter().min_by(|a, b| total(a).total_cmp(&total(b)))?;
+        let samples = self.force.len() + best.1.samples;
+        let variance = (total(best) / samples as f64).max(f64::MIN_POSITIVE);
+        let weights: Vec<f64> = fits.iter().map(|fit| (0.5 * (total(best) - total(fit)) / variance).exp()).collect();
+        let sum: f64 = weights.iter().sum();
+        let average = |value: &dyn Fn(&Curve) -> f64| {
+            fits.iter().zip(&weights).map(|(fit, weight)| weight * value(&fit.0)).sum::<f64>() / sum
+        };
+        let displacement = average(&|curve| curve.parameters[0]);
+        let square = average(&|curve| curve.error.powi(2) + (curve.parameters[0] - displacement).powi(2));
+        let by_hold = self.error_by_hold(&best.0, best.1);
+        Some(Touch {
+            displacement,
+            error: square.sqrt().hypot(by_hold),
+            base: average(&|curve| curve.parameters[2]),
+            noise: (best.0.square / self.force.len() as f64).sqrt().max(self.deviation),
+            rise: self.rise,
+        })
+    }
+
+    /// Standard error of d₀ that the errors of F_e and v bring in: √(gᵀ C g) with the slopes g of d₀ along the numbers of the
+    /// hold and their covariance C.
+    fn error_by_hold(&self, best: &Curve, law: &HoldLaw) -> f64 {
+        let Some(covariance) = law.covariance else { return 0.0 };
+        let moved = |relaxed: f64, log_coefficient: f64| {
+            let law = HoldLaw {
+                relaxed: law.relaxed + relaxed,
+                coefficient: law.coefficient * log_coefficient.exp(),
+                ..law.clone()
+            };
+            self.fitted(&law, vec![best.parameters])
+                .map_or(0.0, |curve| curve.parameters[0] - best.parameters[0])
+        };
+        let relaxed_error = covariance[0][0].max(0.0).sqrt();
+        if relaxed_error <= 1e-12 * self.rise {
+            return 0.0;
+        }
+        let log_error = (covariance[2][2].max(0.0).sqrt() * 0.5).clamp(1e-6, 0.1);
+        let by_relaxed = moved(relaxed_error, 0.0) / relaxed_error;
+        let by_log = moved(0.0, log_error) / log_error;
+        // v = λ Δ¹⁻ⁿ
+        let slopes = [by_relaxed, by_log * (1.0 - law.exponent) / law.amplitude, by_log];
+        let rows = (0..3).map(|i: usize| slopes[i] * (0..3).map(|j: usize| covariance[i][j] * slopes[j]).sum::<f64>());
+        rows.sum::<f64>().max(0.0).sqrt()
+    }
+
+    /// Starting points: first touch anywhere in the ramp, the balance at the amplitude of the hold or beyond.
+    fn starts(&self, law: &HoldLaw, from: f64, travel: f64) -> Vec<[f64; 3]> {
+        const TOUCHES: u32 = 48;
+        let base = self.force[0];
+        let mut starts: Vec<([f64; 3], f64)> = (0..TOUCHES)
+            .flat_map(|i| {
+                let touch = from + travel * f64::from(i) / f64::from(TOUCHES);
+                [0.9, 1.1, 2.0, 5.0].map(|share| [touch, (share * law.amplitude).ln(), base])
+            })
+            .map(|start| (start, self.square(law, &start)))
+            .collect();
+        starts.sort_by(|a, b| a.1.total_cmp(&b.1));
+        starts.into_iter().take(2).map(|(start, _)| start).collect()
+    }
+
+    fn force_at(&self, law: &HoldLaw, parameters: &[f64; 3], displacement: f64) -> f64 {
+        let [touch, balance, base] = *parameters;
+        let (s, whole) = (displacement - touch, self.level - touch);
+        if s <= 0.0 {
+            return base;
+        }
+        let area = |s: f64| self.radius.map_or(1.0, |radius| s * (2.0 * radius - s));
+        let balance = balance.exp();
+        let transient = self.speed * balance.powf(1.0 - law.exponent) / law.coefficient;
+        let excess = balance * law.curve.at(s / transient);
+        base + area(s) / area(whole) * ((law.relaxed - base) * s / whole + excess)
+    }
+
+    fn residuals(&self, law: &HoldLaw, parameters: &[f64; 3]) -> Vec<f64> {
+        let pairs = self.displacement.iter().zip(&self.force);
+        pairs.map(|(d, force)| force - self.force_at(law, parameters, *d)).collect()
+    }
+
+    fn square(&self, law: &HoldLaw, parameters: &[f64; 3]) -> f64 {
+        let square: f64 = self.residuals(law, parameters).iter().map(|r| r * r).sum();
+        if square.is_finite() { square } else { f64::INFINITY }
+    }
+
+    /// Levenberg–Marquardt from every start; the best curve.
+    fn fitted(&self, law: &HoldLaw, starts: Vec<[f64; 3]>) -> Option<Curve> {
+        let runs = starts.into_iter().map(|start| self.descended(law, start));
+        let (best, square) = runs.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, square)| square.is_finite())?;
+        let residuals = self.residuals(law, &best);
+        let count = residuals.len();
+        if count < 6 {
+            return None;
+        }
+        let (normal, _) = self.normal(law, &best, &residuals);
+        let column = solved(normal, [1.0, 0.0, 0.0])?;
+        // A curve that misses the shape leaves residuals that go together; fewer of them count.
+        let freedom = (effective_count(count, lag_one_correlation(&residuals)) - 3.0).max(1.0);
+        let error = (column[0].max(0.0) * square / freedom).sqrt();
+        let curve = Curve {
+            parameters: best,
+            error,
+            square,
+        };
+        error.is_finite().then_some(curve)
+    }
+
+    fn descended(&self, law: &HoldLaw, start: [f64; 3]) -> ([f64; 3], f64) {
+        let (mut at, mut square, mut damping) = (start, self.square(law, &start), 1e-3);
+        for _ in 0..60 {
+            let (normal, gradient) = self.normal(law, &at, &self.residuals(law, &at));
+            let mut damped = normal;
+            for (i, row) in damped.iter_mut().enumerate() {
+                row[i] += damping * normal[i][i].max(f64::MIN_POSITIVE);
+            }
+            let Some(step) = solved(damped, gradient) else { break };
+            let next = [at[0] + step[0], at[1] + step[1], at[2] + step[2]];
+            let reached = if next[0] < self.level { self.square(law, &next) } else { f64::INFINITY };
+            if reached < square {
+                let gain = (square - reached) / square;
+                (at, square, damping) = (next, reached, 0.2 * damping);
+                if gain < 1e-12 {
+                    break;
+                }
+            } else {
+                damping *= 5.0;
+                if damping > 1e10 {
+                    break;
+                }
+            }
+        }
+        (at, square)
+    }
+
+    /// JᵀJ and Jᵀr, by central differences.
+    fn normal(&self, law: &HoldLaw, at: &[f64; 3], residuals: &[f64]) -> ([[f64; 3]; 3], [f64; 3]) {
+        let steps = [1e-6 * (self.level - at[0]), 1e-6, 1e-6 * self.rise];
+        let columns: Vec<Vec<f64>> = (0..3)
+            .map(|k| {
+                let (mut low, mut high) = (*at, *at);
+                low[k] -= steps[k];
+                high[k] += steps[k];
+                let slope = |d: &f64| (self.force_at(law, &high, *d) - self.force_at(law, &low, *d)) / (2.0 * steps[k]);
+                self.displacement.iter().map(slope).collect()
+            })
+            .collect();
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let row = |i: usize| [0, 1, 2].map(|j: usize| product(&columns[i], &columns[j]));
+        ([row(0), row(1), row(2)], [0, 1, 2].map(|i: usize| product(&columns[i], residuals)))
+    }
+}
+
+/// A loading curve laid over a ramp.
+struct Curve {
+    /// d₀ (m), ln X (X in N) and F₀ (N).
+    parameters: [f64; 3],
+    /// Standard error of d₀, m.
+    error: f64,
+    /// Sum of squared residuals, N².
+    square: f64,
+}
+
+/// Laws of the force in a hold: with a free exponent, a standard error to either side of it, and with common ones.
+fn laws(record: &Record, hold: &Segment) -> Option<Vec<HoldLaw>> {
+    const FIRST: usize = 400;
+    let dense = hold.fit_start..hold.end.min(hold.fit_start + FIRST);
+    let every = (hold.end - dense.end).div_ceil(1000).max(1);
+    let samples: Vec<usize> = dense.clone().chain((dense.end..hold.end).step_by(every)).collect();
+    let times: Vec<f64> = samples.iter().map(|i| record.time()[*i]).collect();
+    let force: Vec<f64> = samples.iter().map(|i| record.force()[*i]).collect();
+    let fit = |choice| {
+        let fit = fit_hold(&times, &force, choice, &FitOptions::default()).ok()?;
+        (fit.termination.is_good() && fit.amplitude.value > 0.0).then_some(fit)
+    };
+    let free = fit(ExponentChoice::Free);
+    let near = free.as_ref().and_then(|free| Some((free.exponent.value, free.exponent.standard_error?)));
+    let sides = near.map_or(Vec::new(), |(n, error)| vec![n - error, n + error]);
+    let exponents = sides.into_iter().chain([1.0, 2.0, 3.0, 5.0, 7.0]).filter(|n| (0.2..=30.0).contains(n));
+    let fixed = exponents.filter_map(|n| fit(ExponentChoice::Fixed(n)));
+    let laws: Vec<HoldLaw> = free.iter().map(HoldLaw::new).chain(fixed.map(|fit| HoldLaw::new(&fit))).collect();
+    (!laws.is_empty()).then_some(laws)
+}
+
+/// y(τ) with dy/dτ = 1 − yⁿ and y(0) = 0: the approach of the excess strain to its balance under a constant drive.
+struct ExcessCurve {
+    exponent: f64,
+    values: Vec<f64>,
+}
+
+impl ExcessCurve {
+    const STEP: f64 = 0.02;
+    const STEPS: usize = 1000;
+
+    /// Runge–Kutta of order 4; between the knots a cubic through values and slopes, to 1e-7 or better for n ≥ 1.
+    fn new(exponent: f64) -> Self {
+        let h = Self::STEP;
+        let slope = |y: f64| 1.0 - y.clamp(0.0, 1.0).powf(exponent);
+        let mut values = vec![0.0];
+        let mut y: f64 = 0.0;
+        for _ in 0..Self::STEPS {
+            let a = slope(y);
+            let b = slope(y + 0.5 * h * a);
+            let c = slope(y + 0.5 * h * b);
+            let d = slope(y + h * c);
+            y = (y + h * (a + 2.0 * b + 2.0 * c + d) / 6.0).min(1.0);
+            values.push(y);
+        }
+        Self { exponent, values }
+    }
+
+    fn at(&self, tau: f64) -> f64 {
+        let place = tau / Self::STEP;
+        if place >= Self::STEPS as f64 {
+            return 1.0;
+        }
+        let (knot, t) = (place as usize, place.fract());
+        let (y0, y1) = (self.values[knot], self.values[knot + 1]);
+        let slope = |y: f64| Self::STEP * (1.0 - y.powf(self.exponent));
+        let (a, b) = (slope(y0) - (y1 - y0), (y1 - y0) - slope(y1));
+        y0 + t * (y1 - y0) + t * (1.0 - t) * (a * (1.0 - t) + b * t)
+    }
+}
+
+/// The solution of three linear equations with a symmetric matrix; `None` if it is singular.
+pub(super) fn solved(matrix: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
+    // Scaled to a unit diagonal: the parameters have different units.
+    let scale = [0, 1, 2].map(|i: usize| matrix[i][i].sqrt());
+    if scale.iter().any(|s| !(s.is_finite() && *s > 0.0)) {
+        return None;
+    }
+    let m = |i: usize, j: usize| matrix[i][j] / (scale[i] * scale[j]);
+    let cofactor = |i: usize, j: usize| {
+        let (a, b) = ((i + 1) % 3, (i + 2) % 3);
+        let (c, d) = ((j + 1) % 3, (j + 2) % 3);
+        m(a, c) * m(b, d) - m(a, d) * m(b, c)
+    };
+    let determinant: f64 = [0, 1, 2].iter().map(|j| m(0, *j) * cofactor(0, *j)).sum();
+    if determinant.abs() < 1e-14 {
+        return None;
+    }
+    let entry = |i: usize| {
+        let sum: f64 = [0, 1, 2].iter().map(|j: &usize| cofactor(*j, i) * right[*j] / scale[*j]).sum();
+        sum / determinant / scale[i]
+    };
+    Some([entry(0), entry(1), entry(2)])
+}

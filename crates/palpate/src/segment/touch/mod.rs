@@ -1,0 +1,14 @@
+//! First touch and the zero of the force.
+//!
+//! | file | what |
+//! |---|---|
+//! | `contact_point.rs` | which rule holds, and what it gives |
+//! | `estimators.rs` | first touch by rules that know no law |
+//! | `loading_curve.rs` | the force of a first ramp under the law, and where it begins |
+
+mod contact_point;
+mod estimators;
+mod loading_curve;
+
+pub use contact_point::{ContactChoice, ContactPoint, find_contact, find_contact_of, free_samples};
+pub use estimators::{TouchEstimate, TouchMethod};
