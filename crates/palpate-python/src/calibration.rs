@@ -9,6 +9,7 @@ use palpate::calibrate::{CalibrateError, CalibrationData, Candidate, Equilibrium
 use palpate::fit::Termination;
 use palpate::laws::Law;
 use palpate::record::Record as Measured;
+use palpate::watch::Unwatched;
 use palpate_report::document::CalibrationDocument;
 use palpate_report::result::{CalibratedRecord, Input};
 use palpate_report::study::{calibration_page, calibration_text};
@@ -122,7 +123,7 @@ fn calibrated(
     let rivals = &wanted.laws[1..];
     let candidates = if rivals.is_empty() { vec![chosen] } else { chosen.with_rivals(rivals) };
     for candidate in candidates {
-        let made = calibrate(&data, candidate, wanted.confidence);
+        let made = calibrate(&data, candidate, wanted.confidence, &mut Unwatched);
         if rows.is_empty()
             && let Err(error) = made
         {
@@ -132,7 +133,7 @@ fn calibrated(
         rows.push((candidate, made));
     }
     let profiles = match rows.first() {
-        Some((_, Ok(made))) if wanted.profile => profile(&data, made)?,
+        Some((_, Ok(made))) if wanted.profile => profile(&data, made, &mut Unwatched)?,
         _ => Vec::new(),
     };
     Ok(CalibratedRecord {

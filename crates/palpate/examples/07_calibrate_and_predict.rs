@@ -4,6 +4,7 @@ use palpate::analysis::Geometry;
 use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, calibrate};
 use palpate::simulate::{ProtocolStep, Sampling, Separation, protocol, simulate_force};
 use palpate::test_problems::{Noise, PAPER_RATE, paper_ball, paper_test_a};
+use palpate::watch::Unwatched;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The paper's test (a) on its ball, at 10 Hz, with a load cell good to 0.2 N.
@@ -24,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     for law in ["latency", "standard-linear-solid", "prony:2"] {
         let candidate = Candidate::new(law.parse()?, EquilibriumLaw::EvenStrain);
-        let found = calibrate(&data, candidate, 0.95)?;
+        let found = calibrate(&data, candidate, 0.95, &mut Unwatched)?;
         println!("{law}: leaves {:.3} N, BIC {:.0}", found.rmse, found.criteria.bic);
         for number in &found.material.numbers {
             println!("  {} {:.4e} {:?}", number.name, number.estimate.value, number.estimate.interval);

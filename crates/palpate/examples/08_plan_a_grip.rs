@@ -7,6 +7,7 @@ use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, Material, c
 use palpate::grip::{Band, Grasp, Grip, Lasts, Limits, Objective, Plan, Regrip};
 use palpate::simulate::{Separation, simulate_force};
 use palpate::test_problems::{Noise, PAPER_RATE, paper_ball, paper_test_a};
+use palpate::watch::Unwatched;
 
 /// The paper's ball, calibrated on the paper's test (a) at 10 Hz with a load cell good to 0.05 N.
 fn calibrated() -> Result<Material, Box<dyn std::error::Error>> {
@@ -25,7 +26,7 @@ fn calibrated() -> Result<Material, Box<dyn std::error::Error>> {
     let held = [0.005, 0.010, 0.015, 0.020, 0.025];
     let data = CalibrationData::new(body, ball.separation, motion, times, forces, &held)?;
     let candidate = Candidate::new("latency".parse()?, EquilibriumLaw::EvenStrain);
-    Ok(calibrate(&data, candidate, 0.95)?.material)
+    Ok(calibrate(&data, candidate, 0.95, &mut Unwatched)?.material)
 }
 
 fn told(lasts: Lasts) -> String {

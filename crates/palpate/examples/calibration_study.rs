@@ -10,6 +10,7 @@ use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, calibrate};
 use palpate::record::Record;
 use palpate::simulate::{Motion, Separation, simulate_force};
 use palpate::test_problems::{Noise, paper_ball, paper_test_a, paper_test_b};
+use palpate::watch::Unwatched;
 
 const RATE: f64 = 20.0;
 const FORCE_NOISE: f64 = 0.2;
@@ -70,7 +71,7 @@ fn counts(motion: &Motion, law: &str, seeds: std::ops::Range<u64>) -> BTreeMap<&
     let mut counts: BTreeMap<&str, Count> = BTreeMap::new();
     let candidate = Candidate::new(law.parse().expect("a law"), EquilibriumLaw::EvenStrain);
     for seed in seeds {
-        let found = calibrate(&data(motion, seed), candidate, 0.95).expect("a calibration");
+        let found = calibrate(&data(motion, seed), candidate, 0.95, &mut Unwatched).expect("a calibration");
         for (name, _, truth) in TRUTH {
             let estimate = found.material.estimate(name).expect("a number");
             if estimate.standard_error.is_none() && law != "latency" && name == "exponent" {

@@ -73,6 +73,56 @@ impl<F: FnMut(Progress<'_>) -> Result<(), Cancelled>> Watch for F {
     }
 }
 
+/// Progress of work whose length is not known beforehand, but how much of the whole each of its stages is.
+///
+/// It is reported in thousandths, which never fall and end at the whole.
+#[cfg(feature = "std")]
+pub(crate) struct Stages<'a> {
+    watch: &'a mut dyn Watch,
+    task: String,
+    /// Shares of the whole at which the present stage begins and ends.
+    stage: (f64, f64),
+    done: usize,
+}
+
+#[cfg(feature = "std")]
+impl<'a> Stages<'a> {
+    const WHOLE: usize = 1000;
+
+    pub(crate) fn new(task: String, watch: &'a mut dyn Watch) -> Self {
+        Self {
+            watch,
+            task,
+            stage: (0.0, 0.0),
+            done: 0,
+        }
+    }
+
+    /// The last stage is over; the next is `share` of the whole.
+    pub(crate) fn enter(&mut self, share: f64) {
+        self.stage = (self.stage.1, (self.stage.1 + share).min(1.0));
+    }
+
+    /// Reports that `share` of the present stage is done.
+    pub(crate) fn reach(&mut self, share: f64) -> Result<(), Cancelled> {
+        let (start, end) = self.stage;
+        let reached = (start + (end - start) * share.clamp(0.0, 1.0)) * Self::WHOLE as f64;
+        self.done = self.done.max(reached as usize);
+        self.hear()
+    }
+
+    /// Reports that work goes on, no further than it was.
+    pub(crate) fn hear(&mut self) -> Result<(), Cancelled> {
+        self.watch.report(Progress::counted(&self.task, self.done, Self::WHOLE))
+    }
+
+    /// Reports that all is done.
+    pub(crate) fn finish(mut self) -> Result<(), Cancelled> {
+        self.done = Self::WHOLE;
+        self.hear()
+    }
+}
+
 /// Nobody watches: the work goes on to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Unwatched;

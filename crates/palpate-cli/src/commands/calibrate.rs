@@ -2,6 +2,7 @@
 
 use palpate::analysis::AnalysisOptions;
 use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, RateLaw, calibrate, profile};
+use palpate::watch::Unwatched;
 use palpate_files::description::{MaterialFile, MaterialOrigin, TestDescription};
 use palpate_report::document::CalibrationDocument;
 use palpate_report::result::CalibratedRecord;
@@ -52,7 +53,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Outcome, Failure> {
     let candidates = if arguments.no_rivals { vec![chosen] } else { chosen.with_rivals(&arguments.rivals) };
     for candidate in candidates {
         let _working = Working::new(format!("calibrating {candidate}"));
-        let made = calibrate(&data, candidate, confidence);
+        let made = calibrate(&data, candidate, confidence, &mut Unwatched);
         if rows.is_empty()
             && let Err(error) = made
         {
@@ -64,7 +65,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Outcome, Failure> {
     let profiles = match rows.first() {
         Some((_, Ok(made))) if arguments.profile => {
             let _working = Working::new("following the profiles".to_owned());
-            profile(&data, made).map_err(refused)?
+            profile(&data, made, &mut Unwatched).map_err(refused)?
         }
         _ => Vec::new(),
     };

@@ -4,6 +4,7 @@ use crate::analysis::AnalysisError;
 use crate::contact::{EquilibriumError, SpecimenError};
 use crate::laws::Law;
 use crate::simulate::{MotionError, SimulateError};
+use crate::watch::Cancelled;
 
 /// Why a calibration could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -100,6 +101,9 @@ pub enum CalibrateError {
     /// A simulation that could not be run.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
+    /// Its watch ended it.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl CalibrateError {

@@ -10,6 +10,7 @@ use super::{CalibrateError, CalibrationData, Candidate, Material, MaterialNumber
 use crate::fit::{Assessed, Estimate, NoiseModel, Scale, Termination};
 use crate::forecast::{Criteria, criteria};
 use crate::simulate::{Motion, simulate_force};
+use crate::watch::{Stages, Watch};
 
 /// How well a calibration foretells what it was not fitted to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -63,12 +64,13 @@ pub struct Calibration {
 /// use palpate::laws::Law;
 /// use palpate::simulate::{Separation, simulate_force};
 /// use palpate::test_problems::{paper_ball, paper_test_a};
+/// use palpate::watch::Unwatched;
 /// let (motion, model) = (paper_test_a(), paper_ball(Separation::Unilateral));
 /// let times: Vec<f64> = (0..=660).map(|i| 0.1 * f64::from(i)).collect();
 /// let forces = simulate_force(&motion, &model, &times)?;
 /// let ball = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None };
 /// let data = CalibrationData::new(ball, model.separation, motion, times, forces, &[])?;
-/// let found = calibrate(&data, Candidate::new("latency".parse()?, EquilibriumLaw::EvenStrain), 0.95)?;
+/// let found = calibrate(&data, Candidate::new("latency".parse()?, EquilibriumLaw::EvenStrain), 0.95, &mut Unwatched)?;
 /// let value = |name| found.material.estimate(name).unwrap().value;
 /// assert!((value("modulus") - 28e3).abs() < 1e-3);            // Pa
 /// assert!((value("exponent") - 5.0).abs() < 1e-5);
@@ -78,8 +80,14 @@ pub struct Calibration {
 ///
 /// # Errors
 /// [`CalibrateError`] for a law that no contact is simulated with, an equilibrium law that does not go with the body, fewer samples than
-/// numbers, and a force that does not rise with the squeeze.
-pub fn calibrate(data: &CalibrationData, candidate: Candidate, confidence: f64) -> Result<Calibration, CalibrateError> {
+/// numbers, and a force that does not rise with the squeeze; [`CalibrateError::Cancelled`] once `watch` ends it, which hears of every
+/// simulation or two.
+pub fn calibrate(
+    data: &CalibrationData,
+    candidate: Candidate,
+    confidence: f64,
+    watch: &mut dyn Watch,
+) -> Result<Calibration, CalibrateError> {
     let prepared = Prepared::new(candidate, data)?;
     let free = prepared.searched.len();
     if data.fitted() <= free {
@@ -88,7 +96,8 @@ pub fn calibrate(data: &CalibrationData, candidate: Candidate, confidence: f64) 
             numbers: free,
         });
     }
-    let found = search(&prepared, data)?;
+    let mut stages = Stages::new(format!("calibrating {candidate}"), watch);
+    let found = search(&prepared, data, &mut stages)?;
     let problem = Problem {
         prepared: &prepared,
         motion: data.motion(),
@@ -102,7 +111,7 @@ pub fn calibrate(data: &CalibrationData, candidate: Candidate, confidence: f64) 
     let open: Vec<usize> = (0..free)
         .filter(|i| found.theta[*i] > prepared.searched[*i].low && found.theta[*i] < prepared.searched[*i].high)
         .collect();
-    let jacobian = problem.jacobian(&found.theta);
+    let jacobian = problem.jacobian(&found.theta, &mut stages)?;
     if let (Some(missing), Some(factor)) =
         (candidate.rate.needs(), jacobian.as_ref().and_then(|columns| columns.last()))
         && factor.iter().all(|slope| *slope == 0.0)
@@ -165,6 +174,7 @@ pub fn calibrate(data: &CalibrationData, candidate: Candidate, confidence: f64) 
         }
     });
     let rmse = (found.square / data.fitted() as f64).sqrt();
+    stages.finish()?;
     Ok(Calibration {
         material: Material {
             body: prepared.body.clone(),

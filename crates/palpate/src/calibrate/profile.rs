@@ -13,9 +13,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::candidate::Prepared;
-use super::search::{Found, Problem};
+use super::search::Problem;
 use super::{CalibrateError, Calibration, CalibrationData, Material, MaterialNumber};
 use crate::fit::Interval;
+use crate::watch::{Cancelled, Stages, Watch};
 
 /// The profile interval of a number of a material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -80,21 +81,26 @@ const MOST_STEPS: usize = 40;
 /// use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, calibrate, profile};
 /// use palpate::simulate::{Separation, simulate_force};
 /// use palpate::test_problems::{Noise, paper_ball, paper_test_a};
+/// use palpate::watch::Unwatched;
 /// let (motion, model) = (paper_test_a(), paper_ball(Separation::Unilateral));
 /// let mut noise = Noise::new(1);
 /// let times: Vec<f64> = (0..=220).map(|i| 0.3 * f64::from(i)).collect();
 /// let forces = simulate_force(&motion, &model, &times)?.iter().map(|force| force + 0.2 * noise.normal()).collect();
 /// let ball = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None };
 /// let data = CalibrationData::new(ball, model.separation, motion, times, forces, &[])?;
-/// let found = calibrate(&data, Candidate::new("latency".parse()?, EquilibriumLaw::EvenStrain), 0.95)?;
-/// let exponent = profile(&data, &found)?.into_iter().find(|number| number.name == "exponent").unwrap();
+/// let found = calibrate(&data, Candidate::new("latency".parse()?, EquilibriumLaw::EvenStrain), 0.95, &mut Unwatched)?;
+/// let exponent = profile(&data, &found, &mut Unwatched)?.into_iter().find(|number| number.name == "exponent").unwrap();
 /// assert!(exponent.interval.low.unwrap() < 5.0 && 5.0 < exponent.interval.high.unwrap());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// [`CalibrateError`] as for [`calibrate`](super::calibrate), of data that are not those of the calibration.
-pub fn profile(data: &CalibrationData, calibration: &Calibration) -> Result<Vec<NumberProfile>, CalibrateError> {
+/// [`CalibrateError`] as for [`calibrate`](super::calibrate), of data that are not those of the calibration, and once `watch` ends it.
+pub fn profile(
+    data: &CalibrationData,
+    calibration: &Calibration,
+    watch: &mut dyn Watch,
+) -> Result<Vec<NumberProfile>, CalibrateError> {
     let material = &calibration.material;
     let prepared = Prepared::new(material.candidate, data)?;
     let best = &calibration.theta;
@@ -107,10 +113,14 @@ pub fn profile(data: &CalibrationData, calibration: &Calibration) -> Result<Vec<
     };
     let least = super::search::sum_of_squares(&problem.residuals(best).ok_or(CalibrateError::NoStiffness)?);
     let freedom = (data.fitted() - calibration.free_numbers) as f64;
+    let mut stages = Stages::new("following the profiles".to_owned(), watch);
+    let ends = 2.0 * material.numbers.len() as f64;
     let of = |(number, known): (usize, &MaterialNumber)| {
-        let open = Interval { low: None, high: None };
         let (Some(error), Some((_, high))) = (known.estimate.standard_error, known.estimate.interval) else {
-            return None;
+            return Ok(None);
+        };
+        let Some(searched) = follower(&prepared, material, best, number) else {
+            return Ok(None);
         };
         let half = (high / known.estimate.value).ln();
         let profile = Profile {
@@ -118,26 +128,31 @@ pub fn profile(data: &CalibrationData, calibration: &Calibration) -> Result<Vec<
             best,
             least,
             freedom,
-            searched: follower(&prepared, material, best, number)?,
+            searched,
             number,
             log: known.estimate.value.ln(),
             half,
             target: half / (error / known.estimate.value),
         };
-        let interval = if half > 0.0 && profile.target.is_finite() {
-            Interval {
-                low: profile.end(-1.0),
-                high: profile.end(1.0),
-            }
-        } else {
-            open
+        let mut end = |side: f64| {
+            stages.enter(1.0 / ends);
+            if half > 0.0 && profile.target.is_finite() { profile.end(side, &mut stages) } else { Ok(None) }
         };
-        Some(NumberProfile {
+        let (low, high) = (end(-1.0)?, end(1.0)?);
+        Ok::<_, Cancelled>(Some(NumberProfile {
             name: known.name.clone(),
-            interval,
-        })
+            interval: Interval { low, high },
+        }))
     };
-    Ok(material.numbers.iter().enumerate().filter_map(of).collect())
+    let found: Vec<NumberProfile> = material
+        .numbers
+        .iter()
+        .enumerate()
+        .map(of)
+        .filter_map(Result::transpose)
+        .collect::<Result<_, _>>()?;
+    stages.finish()?;
+    Ok(found)
 }
 
 /// The searched number that follows when a number of the material is held.
@@ -181,7 +196,7 @@ struct Profile<'a> {
 
 impl Profile<'_> {
     /// z with the number held at a distance, and the other numbers then; `None` beyond where numbers are sought.
-    fn at(&self, distance: f64, near: &[f64]) -> Option<(f64, Vec<f64>)> {
+    fn at(&self, distance: f64, near: &[f64], stages: &mut Stages<'_>) -> Result<Option<(f64, Vec<f64>)>, Cancelled> {
         let held = Held {
             searched: self.searched,
             number: self.number,
@@ -191,26 +206,30 @@ impl Profile<'_> {
             held: Some(held),
             ..*self.problem
         };
-        let found: Found = problem.descend(near, MOST_STEPS)?;
+        let Some(found) = problem.descend(near, MOST_STEPS, stages)? else {
+            return Ok(None);
+        };
         let more = (found.square / self.least - 1.0).max(0.0);
-        let theta = held.completed(self.problem.prepared, &found.theta)?;
         let bounds = &self.problem.prepared.searched[self.searched];
-        let within = theta[self.searched] > bounds.low && theta[self.searched] < bounds.high;
-        within.then_some(((more * self.freedom).sqrt(), theta))
+        let within = |theta: &Vec<f64>| theta[self.searched] > bounds.low && theta[self.searched] < bounds.high;
+        let theta = held.completed(self.problem.prepared, &found.theta).filter(within);
+        Ok(theta.map(|theta| ((more * self.freedom).sqrt(), theta)))
     }
 
     /// The end on one side, as a value; `None` where it is open.
-    fn end(&self, side: f64) -> Option<f64> {
+    fn end(&self, side: f64, stages: &mut Stages<'_>) -> Result<Option<f64>, Cancelled> {
         let mut near = (0.0, 0.0, self.best.to_vec());
         let mut distance = self.half;
         // Outwards until the bound is passed.
         let mut far = loop {
-            let (z, theta) = self.at(side * distance, &near.2)?;
+            let Some((z, theta)) = self.at(side * distance, &near.2, stages)? else {
+                return Ok(None);
+            };
             if z >= self.target {
                 break (distance, z);
             }
             if distance >= FARTHEST {
-                return None;
+                return Ok(None);
             }
             let slope = z / distance;
             near = (distance, z, theta);
@@ -224,9 +243,11 @@ impl Profile<'_> {
             let straight = near.0 + width * (self.target - near.1) / (far.1 - near.1);
             let inside = straight.clamp(near.0 + 0.02 * width, far.0 - 0.02 * width);
             let next = if stuck % 3 == 0 { near.0 + 0.5 * width } else { inside };
-            let (z, theta) = self.at(side * next, &near.2)?;
+            let Some((z, theta)) = self.at(side * next, &near.2, stages)? else {
+                return Ok(None);
+            };
             if (z - self.target).abs() < 0.5 * CLOSE * self.target {
-                return Some((self.log + side * next).exp());
+                return Ok(Some((self.log + side * next).exp()));
             }
             if z < self.target {
                 near = (next, z, theta);
@@ -234,6 +255,6 @@ impl Profile<'_> {
                 far = (next, z);
             }
         }
-        Some((self.log + 0.5 * side * (near.0 + far.0)).exp())
+        Ok(Some((self.log + 0.5 * side * (near.0 + far.0)).exp()))
     }
 }

@@ -9,6 +9,7 @@ use super::profile::Held;
 use super::{CalibrateError, CalibrationData};
 use crate::fit::{Cholesky, Termination};
 use crate::simulate::{Motion, simulate_force};
+use crate::watch::{Cancelled, Stages};
 
 /// Residuals of a candidate on some samples.
 #[derive(Clone, Copy)]
@@ -53,24 +54,34 @@ impl Problem<'_> {
     }
 
     /// Derivatives of the simulated forces by every number, column by column, from differences on both sides.
-    pub(super) fn jacobian(&self, theta: &[f64]) -> Option<Vec<Vec<f64>>> {
+    pub(super) fn jacobian(&self, theta: &[f64], stages: &mut Stages<'_>) -> Result<Option<Vec<Vec<f64>>>, Cancelled> {
+        let mut columns = Vec::with_capacity(theta.len());
+        for index in 0..theta.len() {
+            stages.hear()?;
+            match self.slope(theta, index) {
+                Some(column) => columns.push(column),
+                None => return Ok(None),
+            }
+        }
+        Ok(Some(columns))
+    }
+
+    /// Derivatives of the simulated forces by one number.
+    fn slope(&self, theta: &[f64], index: usize) -> Option<Vec<f64>> {
         /// Of the logarithm; the error of the difference is some 10⁻⁸ of the derivative.
         const STEP: f64 = 1e-4;
-        let column = |i: usize| {
-            if self.follows(i) {
-                return Some(vec![0.0; self.times.len()]);
-            }
-            let bounds = &self.prepared.searched[i];
-            let moved = |by: f64| {
-                let mut beside = theta.to_vec();
-                beside[i] = (theta[i] + by).clamp(bounds.low, bounds.high);
-                Some((beside[i], self.forces_with(&beside)?))
-            };
-            let ((low, below), (high, above)) = (moved(-STEP)?, moved(STEP)?);
-            let per_step = 1.0 / (high - low);
-            Some(above.iter().zip(&below).map(|(a, b)| (a - b) * per_step).collect())
+        if self.follows(index) {
+            return Some(vec![0.0; self.times.len()]);
+        }
+        let bounds = &self.prepared.searched[index];
+        let moved = |by: f64| {
+            let mut beside = theta.to_vec();
+            beside[index] = (theta[index] + by).clamp(bounds.low, bounds.high);
+            Some((beside[index], self.forces_with(&beside)?))
         };
-        (0..theta.len()).map(column).collect()
+        let ((low, below), (high, above)) = (moved(-STEP)?, moved(STEP)?);
+        let per_step = 1.0 / (high - low);
+        Some(above.iter().zip(&below).map(|(a, b)| (a - b) * per_step).collect())
     }
 
     /// Whether a searched number follows one that is held.
@@ -79,15 +90,25 @@ impl Problem<'_> {
     }
 
     /// Damped steps from `start` to the nearest optimum inside the bounds; `None` where even the start cannot be simulated.
-    pub(super) fn descend(&self, start: &[f64], most: usize) -> Option<Found> {
+    pub(super) fn descend(
+        &self,
+        start: &[f64],
+        most: usize,
+        stages: &mut Stages<'_>,
+    ) -> Result<Option<Found>, Cancelled> {
         let searched = &self.prepared.searched;
         let mut theta: Vec<f64> = start.iter().zip(searched).map(|(value, s)| value.clamp(s.low, s.high)).collect();
-        let mut residuals = self.residuals(&theta)?;
+        let Some(mut residuals) = self.residuals(&theta) else {
+            return Ok(None);
+        };
         let mut square = sum_of_squares(&residuals);
         let (mut damping, mut simulations) = (1e-3, 1);
         let mut termination = Termination::IterationLimit;
-        'search: for _ in 0..most {
-            let jacobian = self.jacobian(&theta)?;
+        'search: for step in 0..most {
+            stages.reach(step as f64 / most as f64)?;
+            let Some(jacobian) = self.jacobian(&theta, stages)? else {
+                return Ok(None);
+            };
             simulations += 2 * theta.len() as u64;
             let gradient: Vec<f64> = jacobian.iter().map(|column| dot(column, &residuals)).collect();
             let pinned = |i: usize| {
@@ -133,6 +154,7 @@ impl Problem<'_> {
                     termination = Termination::Converged;
                     break 'search;
                 }
+                stages.hear()?;
                 let trial = self.residuals(&next);
                 simulations += 1;
                 let trial_square = trial.as_deref().map_or(f64::INFINITY, sum_of_squares);
@@ -169,13 +191,13 @@ impl Problem<'_> {
                 damping = (damping * 8.0).max(1e-6);
             }
         }
-        Some(Found {
+        Ok(Some(Found {
             theta,
             residuals,
             square,
             termination,
             simulations,
-        })
+        }))
     }
 }
 
@@ -205,8 +227,15 @@ const MOST_STEPS: usize = 60;
 /// Steps of the last one.
 const MOST_LAST_STEPS: usize = 300;
 
+/// Shares of the whole work that the grid, the coarse descents, those on the motion as measured, and the last one are.
+const SHARES: [f64; 4] = [0.15, 0.25, 0.2, 0.38];
+
 /// The best numbers of a candidate for the fitted part of its data.
-pub(super) fn search(prepared: &Prepared, data: &CalibrationData) -> Result<Found, CalibrateError> {
+pub(super) fn search(
+    prepared: &Prepared,
+    data: &CalibrationData,
+    stages: &mut Stages<'_>,
+) -> Result<Found, CalibrateError> {
     let (times, forces) = (&data.times()[..data.fitted()], &data.forces()[..data.fitted()]);
     let few = few(times, data.motion());
     let (few_times, few_forces): (Vec<f64>, Vec<f64>) = few.iter().map(|i| (times[*i], forces[*i])).unzip();
@@ -221,23 +250,30 @@ pub(super) fn search(prepared: &Prepared, data: &CalibrationData) -> Result<Foun
     let simple = data.motion().simplified(0.005 * prepared.scales.deepest);
     let coarse = problem(&simple, &few_times, &few_forces);
     let mut simulations = 0;
-    let starts = super::starts::starts(prepared, &coarse, &mut simulations);
+    stages.enter(SHARES[0]);
+    let starts = super::starts::starts(prepared, &coarse, &mut simulations, stages)?;
     if starts.is_empty() {
         return Err(super::starts::refusal(prepared, &coarse));
     }
     // Valleys are told apart on the simple motion; every knot of a measured one takes its own share of a simulation.
-    let mut descended = |problem: &Problem<'_>, starts: &[Vec<f64>]| {
-        let mut found: Vec<Found> = starts.iter().filter_map(|start| problem.descend(start, MOST_STEPS)).collect();
+    let mut descended = |problem: &Problem<'_>, starts: &[Vec<f64>], share: f64, stages: &mut Stages<'_>| {
+        let mut found: Vec<Found> = Vec::new();
+        for start in starts {
+            stages.enter(share / starts.len() as f64);
+            found.extend(problem.descend(start, MOST_STEPS, stages)?);
+        }
         simulations += found.iter().map(|found| found.simulations).sum::<u64>();
         found.sort_by(|a, b| a.square.total_cmp(&b.square));
-        found
+        Ok::<_, Cancelled>(found)
     };
     let starts: Vec<Vec<f64>> = starts.into_iter().take(REFINED).collect();
-    let valleys: Vec<Vec<f64>> =
-        descended(&coarse, &starts).into_iter().take(VALLEYS).map(|found| found.theta).collect();
-    let found = descended(&problem(data.motion(), &few_times, &few_forces), &valleys);
+    let valleys = descended(&coarse, &starts, SHARES[1], stages)?;
+    let valleys: Vec<Vec<f64>> = valleys.into_iter().take(VALLEYS).map(|found| found.theta).collect();
+    let found = descended(&problem(data.motion(), &few_times, &few_forces), &valleys, SHARES[2], stages)?;
+    let nearest = found.first().ok_or(CalibrateError::NoStiffness)?;
+    stages.enter(SHARES[3]);
     let whole = problem(data.motion(), times, forces);
-    let best = found.first().and_then(|best| whole.descend(&best.theta, MOST_LAST_STEPS));
+    let best = whole.descend(&nearest.theta, MOST_LAST_STEPS, stages)?;
     let mut best = best.ok_or(CalibrateError::NoStiffness)?;
     best.simulations += simulations;
     let at_bound = |(value, searched): (&f64, &super::candidate::Searched)| {

@@ -5,14 +5,23 @@ use super::search::{Problem, dot, sum_of_squares};
 use super::{CalibrateError, EquilibriumLaw};
 use crate::laws::{ExponentChoice, Law};
 use crate::simulate::simulate_force;
+use crate::watch::{Cancelled, Stages};
 
 /// Exponents that are tried where n is to be found.
 const EXPONENTS: [f64; 6] = [1.0, 1.6, 2.5, 4.0, 6.0, 10.0];
 
 /// Starting points, the best first.
-pub(super) fn starts(prepared: &Prepared, problem: &Problem<'_>, simulations: &mut u64) -> Vec<Vec<f64>> {
+pub(super) fn starts(
+    prepared: &Prepared,
+    problem: &Problem<'_>,
+    simulations: &mut u64,
+    stages: &mut Stages<'_>,
+) -> Result<Vec<Vec<f64>>, Cancelled> {
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
-    for law in laws(prepared) {
+    let grid = laws(prepared);
+    let count = grid.len() as f64;
+    for (index, law) in grid.into_iter().enumerate() {
+        stages.reach(index as f64 / count)?;
         *simulations += 1;
         if let Some((square, modulus)) = scaled(prepared, problem, &law) {
             let mut theta = match prepared.candidate.equilibrium {
@@ -36,7 +45,7 @@ pub(super) fn starts(prepared: &Prepared, problem: &Problem<'_>, simulations: &m
             apart.push(theta);
         }
     }
-    apart
+    Ok(apart)
 }
 
 /// Why no point of the grid is one to start from: what keeps the first from being simulated, or a force that does not rise.

@@ -1,6 +1,8 @@
 //! Calibration of whole records: recovery, coverage, prediction of what was not fitted.
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
+use std::time::{Duration, Instant};
+
 use palpate::analysis::Geometry;
 use palpate::calibrate::{
     CalibrateError, Calibration, CalibrationData, Candidate, EquilibriumLaw, Extrapolation, RateLaw, calibrate, profile,
@@ -8,6 +10,7 @@ use palpate::calibrate::{
 use palpate::contact::{RateDependence, Shape, Sides};
 use palpate::simulate::{Motion, ProtocolStep, Sampling, Separation, VaryingContact, protocol, simulate_force};
 use palpate::test_problems::{Noise, PAPER_RATE, paper_ball, paper_test_a, paper_test_b};
+use palpate::watch::{Cancelled, Progress, Unwatched, Watch};
 
 /// A test of the paper's ball as a machine would have recorded it, at 10 Hz.
 fn measured(motion: &Motion, seed: u64, noise: f64) -> CalibrationData {
@@ -37,7 +40,7 @@ const EVEN: EquilibriumLaw = EquilibriumLaw::EvenStrain;
 #[test]
 fn without_noise_the_numbers_come_back() {
     for motion in [paper_test_a(), paper_test_b()] {
-        let found = calibrate(&measured(&motion, 1, 0.0), candidate("latency", EVEN), 0.95).unwrap();
+        let found = calibrate(&measured(&motion, 1, 0.0), candidate("latency", EVEN), 0.95, &mut Unwatched).unwrap();
         let truth = [("modulus", 28e3), ("exponent", 5.0), ("rate_coefficient", 2e4), ("layer_thickness", 0.035 / 8.0)];
         for (name, truth) in truth {
             let value = found.material.estimate(name).unwrap().value;
@@ -51,8 +54,8 @@ fn without_noise_the_numbers_come_back() {
 #[test]
 fn calibrated_on_loading_the_unloading_is_foretold() {
     let a = measured(&paper_test_a(), 7, 0.2).fitted_until(53.0).unwrap();
-    let latency = calibrate(&a, candidate("latency", EVEN), 0.95).unwrap();
-    let linear = calibrate(&a, candidate("standard-linear-solid", EVEN), 0.95).unwrap();
+    let latency = calibrate(&a, candidate("latency", EVEN), 0.95, &mut Unwatched).unwrap();
+    let linear = calibrate(&a, candidate("standard-linear-solid", EVEN), 0.95, &mut Unwatched).unwrap();
     let (good, poor) = (latency.foretold.unwrap(), linear.foretold.unwrap());
     // What is left is the noise of the readings.
     assert!((0.15..0.25).contains(&good.rmse) && poor.rmse > 1.8 * good.rmse, "{good:?} {poor:?}");
@@ -103,8 +106,11 @@ fn a_rate_that_depends_on_strain_or_direction_is_found_and_chosen() {
             rate,
             ..candidate("latency", EVEN)
         };
-        let made: Vec<_> =
-            candidates.with_rivals(&[]).into_iter().map(|one| calibrate(&data, one, 0.95).unwrap()).collect();
+        let made: Vec<_> = candidates
+            .with_rivals(&[])
+            .into_iter()
+            .map(|one| calibrate(&data, one, 0.95, &mut Unwatched).unwrap())
+            .collect();
         assert_eq!(made.len(), 3);
         let (low, high) = made[0].material.estimate(name).unwrap().interval.unwrap();
         let value = made[0].material.estimate(name).unwrap().value;
@@ -117,7 +123,7 @@ fn a_rate_that_depends_on_strain_or_direction_is_found_and_chosen() {
         // And foretold: fitted on the first three holds, the others follow.
         let part = data.fitted_until(34.0).unwrap();
         let [mine, plain] = [candidates, candidate("latency", EVEN)]
-            .map(|one| calibrate(&part, one, 0.95).unwrap().foretold.unwrap().rmse);
+            .map(|one| calibrate(&part, one, 0.95, &mut Unwatched).unwrap().foretold.unwrap().rmse);
         assert!(mine < 0.5 * plain, "{rate:?}: {mine} {plain}");
     }
 }
@@ -135,7 +141,7 @@ fn depths_that_were_held_are_counted_up_to_where_the_fit_ends() {
 fn what_was_not_fitted_is_not_said_to_be_shown() {
     let a = measured(&paper_test_a(), 1, 0.0).fitted_until(10.0).unwrap();
     let first = a.forces()[..a.fitted()].iter().copied().fold(0.0, f64::max);
-    let found = calibrate(&a, candidate("latency:5", EVEN), 0.95).unwrap();
+    let found = calibrate(&a, candidate("latency:5", EVEN), 0.95, &mut Unwatched).unwrap();
     assert_eq!(found.material.shown.largest_force, first);
     assert!(first < 0.5 * a.forces().iter().copied().fold(0.0, f64::max));
 }
@@ -148,10 +154,10 @@ fn a_constant_rate_is_not_said_to_vary() {
             rate,
             ..candidate("latency", EVEN)
         };
-        let found = calibrate(&data, asked, 0.95).unwrap();
+        let found = calibrate(&data, asked, 0.95, &mut Unwatched).unwrap();
         let (low, high) = found.material.estimate(rate.factor_name().unwrap()).unwrap().interval.unwrap();
         assert!(low < 1.0 && high > 1.0, "{rate:?}: {low} to {high}");
-        let plain = calibrate(&data, candidate("latency", EVEN), 0.95).unwrap();
+        let plain = calibrate(&data, candidate("latency", EVEN), 0.95, &mut Unwatched).unwrap();
         assert!(found.criteria.bic > plain.criteria.bic, "{rate:?}");
     }
 }
@@ -160,8 +166,8 @@ fn a_constant_rate_is_not_said_to_vary() {
 #[test]
 fn the_profile_of_the_exponent_is_that_of_fits_with_it_given() {
     let data = measured(&paper_test_a(), 2, 0.2);
-    let found = calibrate(&data, candidate("latency", EVEN), 0.95).unwrap();
-    let profiles = profile(&data, &found).unwrap();
+    let found = calibrate(&data, candidate("latency", EVEN), 0.95, &mut Unwatched).unwrap();
+    let profiles = profile(&data, &found, &mut Unwatched).unwrap();
     let names: Vec<&str> = profiles.iter().map(|number| number.name.as_str()).collect();
     assert_eq!(names, ["modulus", "exponent", "rate_coefficient", "layer_thickness"]);
     let square = |made: &Calibration| made.rmse.powi(2) * data.fitted() as f64;
@@ -170,7 +176,7 @@ fn the_profile_of_the_exponent_is_that_of_fits_with_it_given() {
     let target = half * estimate.value / estimate.standard_error.unwrap();
     let exponent = profiles[1].interval;
     for end in [exponent.low.unwrap(), exponent.high.unwrap()] {
-        let given = calibrate(&data, candidate(&format!("latency:{end}"), EVEN), 0.95).unwrap();
+        let given = calibrate(&data, candidate(&format!("latency:{end}"), EVEN), 0.95, &mut Unwatched).unwrap();
         let z = ((square(&given) / square(&found) - 1.0) * (data.fitted() - 4) as f64).sqrt();
         assert!((z / target - 1.0).abs() < 5e-3, "{end}: {z} {target}");
     }
@@ -196,8 +202,8 @@ fn a_profile_is_open_where_the_record_leaves_a_number_open() {
         hold: 3.0,
     };
     let data = measured(&protocol(&[step]).unwrap(), 6, 0.4);
-    let found = calibrate(&data, candidate("latency", EVEN), 0.95).unwrap();
-    let profiles = profile(&data, &found).unwrap();
+    let found = calibrate(&data, candidate("latency", EVEN), 0.95, &mut Unwatched).unwrap();
+    let profiles = profile(&data, &found, &mut Unwatched).unwrap();
     assert!(
         profiles.iter().any(|number| number.interval.low.is_none() || number.interval.high.is_none()),
         "{profiles:?}"
@@ -222,20 +228,20 @@ fn a_direction_that_the_record_does_not_show_is_said() {
         rate: RateLaw::ByDirection,
         ..candidate("latency", EVEN)
     };
-    let error = calibrate(&measured(&loading, 1, 0.05), asked, 0.95).unwrap_err();
+    let error = calibrate(&measured(&loading, 1, 0.05), asked, 0.95, &mut Unwatched).unwrap_err();
     assert!(matches!(error, CalibrateError::FactorUnseen { .. }) && !error.hint().is_empty(), "{error}");
     let linear = Candidate {
         rate: RateLaw::ByStrain,
         ..candidate("prony:2", EVEN)
     };
-    let error = calibrate(&measured(&loading, 1, 0.05), linear, 0.95).unwrap_err();
+    let error = calibrate(&measured(&loading, 1, 0.05), linear, 0.95, &mut Unwatched).unwrap_err();
     assert!(error.to_string().contains("no rate coefficient"), "{error}");
 }
 
 #[test]
 fn a_table_of_relaxed_forces_is_that_of_the_body() {
     let data = measured(&paper_test_a(), 3, 0.05);
-    let found = calibrate(&data, candidate("latency:5", EquilibriumLaw::Table), 0.95).unwrap();
+    let found = calibrate(&data, candidate("latency:5", EquilibriumLaw::Table), 0.95, &mut Unwatched).unwrap();
     let body = paper_ball(Separation::Unilateral).specimen;
     for (index, u) in data.levels().iter().take(4).enumerate() {
         let truth = body.force(body.equilibrium_strain(*u), *u);
@@ -269,7 +275,7 @@ fn competitors_find_their_own_numbers() {
         };
         let forces = simulate_force(&motion, &contact, &times).unwrap();
         let data = CalibrationData::new(ball(), Separation::Unilateral, motion.clone(), times.clone(), forces, &[]);
-        let found = calibrate(&data.unwrap(), candidate(law, EVEN), 0.95).unwrap();
+        let found = calibrate(&data.unwrap(), candidate(law, EVEN), 0.95, &mut Unwatched).unwrap();
         for (name, truth) in [("modulus", 20e3), ("overshoot_1", 0.8), ("time_1", 3.0)] {
             let value = found.material.estimate(name).unwrap().value;
             assert!((value / truth - 1.0).abs() < 1e-4, "{law} {name}: {value}");
@@ -279,7 +285,8 @@ fn competitors_find_their_own_numbers() {
 
 #[test]
 fn questions_beyond_the_test_are_said_to_be() {
-    let found = calibrate(&measured(&paper_test_a(), 5, 0.2), candidate("latency:5", EVEN), 0.95).unwrap();
+    let found =
+        calibrate(&measured(&paper_test_a(), 5, 0.2), candidate("latency:5", EVEN), 0.95, &mut Unwatched).unwrap();
     let squeeze = protocol(&[ProtocolStep {
         to: 0.03,
         rate: 2.0 * PAPER_RATE,
@@ -312,7 +319,7 @@ fn questions_beyond_the_test_are_said_to_be() {
 #[test]
 fn what_cannot_be_calibrated_says_why() {
     let data = measured(&paper_test_a(), 1, 0.2);
-    let refused = |law, equilibrium| calibrate(&data, candidate(law, equilibrium), 0.95).unwrap_err();
+    let refused = |law, equilibrium| calibrate(&data, candidate(law, equilibrium), 0.95, &mut Unwatched).unwrap_err();
     assert!(matches!(refused("stretched", EVEN), CalibrateError::NotALaw { .. }));
     let hertz = refused("latency", EquilibriumLaw::Hertz { poisson_ratio: 0.7 });
     assert!(matches!(hertz, CalibrateError::Equilibrium(_)), "{hertz}");
@@ -320,8 +327,86 @@ fn what_cannot_be_calibrated_says_why() {
     let away: Vec<f64> = data.forces().iter().map(|force| -force).collect();
     let (motion, times) = (data.motion().clone(), data.times().to_vec());
     let wrong = CalibrationData::new(ball(), Separation::Unilateral, motion.clone(), times.clone(), away, &[]).unwrap();
-    let wrong = calibrate(&wrong, candidate("latency", EVEN), 0.95).unwrap_err();
+    let wrong = calibrate(&wrong, candidate("latency", EVEN), 0.95, &mut Unwatched).unwrap_err();
     assert_eq!(wrong, CalibrateError::NoStiffness);
     let short = CalibrationData::new(ball(), Separation::Unilateral, motion, times, vec![1.0], &[]).unwrap_err();
     assert!(matches!(short, CalibrateError::Lengths { forces: 1, .. }));
+}
+
+/// What a watch heard of a calibration and its profiles.
+fn heard(work: impl FnOnce(&mut dyn Watch)) -> Vec<(u64, u64)> {
+    let mut heard = Vec::new();
+    work(&mut |progress: Progress<'_>| {
+        heard.push((progress.done, progress.total.unwrap()));
+        Ok(())
+    });
+    heard
+}
+
+#[test]
+fn progress_never_falls_and_reaches_its_total() {
+    let data = measured(&paper_test_a(), 2, 0.2);
+    let mut found = None;
+    let calibrated = heard(|watch| found = Some(calibrate(&data, candidate("latency", EVEN), 0.95, watch).unwrap()));
+    let profiled = heard(|watch| drop(profile(&data, &found.unwrap(), watch).unwrap()));
+    for heard in [calibrated, profiled] {
+        assert!(heard.windows(2).all(|pair| pair[0].0 <= pair[1].0 && pair[0].1 == pair[1].1));
+        let (done, total) = *heard.last().unwrap();
+        assert_eq!(done, total);
+        // The stages are shares of the whole, and not all of it is done in one of them.
+        assert!(
+            heard.iter().filter(|(done, _)| (total / 10..9 * total / 10).contains(done)).count() > heard.len() / 10
+        );
+    }
+}
+
+/// 24 holds of 13,000 samples at 100 Hz, up and down the body.
+fn long_record() -> CalibrationData {
+    let steps: Vec<ProtocolStep> = (1..=24)
+        .map(|step: i32| ProtocolStep {
+            to: 4e-4 * f64::from(12 - (step - 12).abs() + 1),
+            rate: PAPER_RATE,
+            hold: 130.0,
+        })
+        .collect();
+    let (motion, mut random) = (protocol(&steps).unwrap(), Noise::new(3));
+    let times: Vec<f64> = (0..).map(|i| 0.01 * f64::from(i)).take_while(|t| *t <= motion.end()).collect();
+    let forces = simulate_force(&motion, &paper_ball(Separation::Unilateral), &times).unwrap();
+    let forces = forces.iter().map(|force| force + 0.05 * random.normal()).collect();
+    CalibrationData::new(ball(), Separation::Unilateral, motion, times, forces, &[]).unwrap()
+}
+
+#[test]
+fn a_cancelled_calibration_of_a_long_record_ends_promptly() {
+    let data = long_record();
+    assert!(data.samples() > 24 * 13_000);
+    let mut found = None;
+    let count = heard(|watch| found = Some(calibrate(&data, candidate("latency", EVEN), 0.95, watch).unwrap())).len();
+    let found = found.unwrap();
+    // How long it takes until the watch is asked again, and from its answer until the work has ended; the shortest of some tries,
+    // since other work may have the processor meanwhile.
+    let longest = |stops: &[usize], work: &dyn Fn(&mut dyn Watch) -> CalibrateError| {
+        let times = stops.iter().map(|stop| {
+            let tries = (0..3).map(|_| {
+                let (mut reports, mut asked) = (0, None);
+                let error = work(&mut |_: Progress<'_>| {
+                    reports += 1;
+                    if reports == stop - 1 {
+                        asked = Some(Instant::now());
+                    }
+                    if reports < *stop { Ok(()) } else { Err(Cancelled) }
+                });
+                assert_eq!((error, reports), (CalibrateError::Cancelled(Cancelled), *stop));
+                asked.unwrap().elapsed()
+            });
+            tries.min().unwrap()
+        });
+        times.max().unwrap()
+    };
+    let calibrating = longest(&[2, count / 3, count - 20, count], &|watch| {
+        calibrate(&data, candidate("latency", EVEN), 0.95, watch).unwrap_err()
+    });
+    let profiling = longest(&[2, 40], &|watch| profile(&data, &found, watch).unwrap_err());
+    let limit = Duration::from_millis(200);
+    assert!(calibrating < limit && profiling < limit, "{calibrating:?} {profiling:?}");
 }
