@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use numpy::PyArray1;
-use palpate::simulate::{ContactModel, ContactState as State, StepError};
-use palpate_files::description::{DescriptionError, Model, parse_scene, read_scene, self_contained};
+use palpate::contact::RateDependence;
+use palpate::simulate::{Contact, ContactModel, ContactState as State, StepError};
+use palpate_files::description::{DescriptionError, parse_scene, read_scene, self_contained};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyTuple, PyType};
 
@@ -26,13 +27,16 @@ fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
     Ok((model, self_contained(&text, &path).map_err(undescribed)?))
 }
 
-fn latency(scene: Result<(Option<String>, Model), DescriptionError>) -> PyResult<ContactModel> {
+fn latency(scene: Result<(Option<String>, Contact), DescriptionError>) -> PyResult<ContactModel> {
     match scene.map_err(undescribed)?.1 {
-        Model::Latency(model) => Ok(model),
-        Model::Varying(_) => {
+        Contact::Latency {
+            model,
+            rate: RateDependence::Constant,
+        } => Ok(model),
+        Contact::Latency { .. } => {
             Err(refused_plainly::<ModelError>("a contact is stepped by a latency law with one rate coefficient"))
         }
-        Model::Linear(_) => Err(refused_plainly::<ModelError>("a contact is stepped by the latency law alone")),
+        Contact::Linear(_) => Err(refused_plainly::<ModelError>("a contact is stepped by the latency law alone")),
     }
 }
 

@@ -29,7 +29,7 @@ pub(crate) fn simulate(py: Python<'_>, path: Option<PathBuf>, text: Option<&str>
         None => parse_protocol(text.unwrap_or_default(), Path::new("protocol")),
     };
     let protocol = protocol.map_err(undescribed)?;
-    let series = at_length(py, move || walk(protocol.drive(), protocol.contact(), &protocol.sampling))?;
+    let series = at_length(py, move || walk(protocol.drive(), &protocol.contact, &protocol.sampling))?;
     Ok(Trajectory {
         series: series.map_err(refused_plainly::<ModelError>)?,
     })

@@ -50,7 +50,7 @@ pub(crate) fn simulate_many(
     if let Some(times) = &times {
         // Times outside the motion are wrong for all runs alike, but for those whose holds are swept.
         let base = sweep.base();
-        simulate(base.drive(), base.contact(), &Sampling::Times(times.clone()))
+        simulate(base.drive(), &base.contact, &Sampling::Times(times.clone()))
             .map_err(refused_plainly::<ModelError>)?;
     }
     let (progress, stopped) = (Progress::of(progress), Arc::new(AtomicBool::new(false)));
@@ -87,7 +87,7 @@ pub(crate) fn simulate_many(
 /// Forces of a run at given times, N; none where the run is refused.
 fn forces(sweep: &Sweep, run: u64, times: &[f64]) -> Option<Vec<f64>> {
     let protocol = sweep.run(run).1.ok()?;
-    let series = simulate(protocol.drive(), protocol.contact(), &Sampling::Times(times.to_vec())).ok()?;
+    let series = simulate(protocol.drive(), &protocol.contact, &Sampling::Times(times.to_vec())).ok()?;
     Some(series.force)
 }
 

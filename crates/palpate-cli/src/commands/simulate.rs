@@ -9,7 +9,7 @@ use palpate::simulate::{
     SimulateError, StrainWave, Trajectory, cycles, energy, simulate, strain_wave, work_by_step,
 };
 use palpate::test_problems::Noise;
-use palpate_files::description::{DescriptionError, Model, Protocol, read_protocol, read_scene};
+use palpate_files::description::{DescriptionError, Protocol, read_protocol, read_scene};
 use palpate_report::study::{
     cycle_table, hysteresis_figure, step_work_table, trajectory_figure, wave_figure, write_trajectory,
 };
@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     };
     let working = Working::new("simulating");
     let of = arguments.drive.as_ref().unwrap_or(&arguments.protocol);
-    let trajectory = simulate(scene.drive(), scene.model.contact(), &scene.sampling)
+    let trajectory = simulate(scene.drive(), &scene.contact, &scene.sampling)
         .map_err(|error: SimulateError| Failure::of_file(of, error, None))?;
     // Everything is made before anything is written.
     let extras = extras(&scene, &trajectory, arguments, of)?;
@@ -71,16 +71,16 @@ fn extras(
     of: &Path,
 ) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
     let refused = |error: SimulateError| Failure::of_file(of, error, None);
-    let (drive, model, sampling) = (scene.drive(), scene.model.contact(), &scene.sampling);
+    let (drive, contact, sampling) = (scene.drive(), &scene.contact, &scene.sampling);
     let title = |path: &Path| path.file_stem().map_or("figure".to_owned(), |stem| stem.to_string_lossy().into_owned());
-    let caption = |what: &str| caption(scene.title.as_deref(), what, model);
+    let caption = |what: &str| caption(scene.title.as_deref(), what, contact);
     let mut made = Vec::new();
     if let Some(path) = &arguments.figure {
         let what = "Force, strain of the contact layer and displacement of the jaw";
         made.push((path.clone(), picture(path, &trajectory_figure(trajectory, &title(path), &caption(what)))?));
     }
     if arguments.hysteresis.is_some() || arguments.energy_by_step.is_some() || arguments.energy_by_cycle.is_some() {
-        let steps = work_by_step(drive, model).map_err(refused)?;
+        let steps = work_by_step(drive, contact).map_err(refused)?;
         let cycles = cycles(&steps);
         if let Some(path) = &arguments.hysteresis {
             let caption = caption("Force against displacement of the jaw; the area of a loop is what the cycle lost");
@@ -94,7 +94,7 @@ fn extras(
         }
     }
     if arguments.wave.is_some() || arguments.strain_map.is_some() {
-        let layered = scene.model.latency().ok_or_else(|| {
+        let layered = scene.contact.latency().ok_or_else(|| {
             let hint = "name the latency law in [law], or leave --layers-out and --strain-map out";
             Failure::of_file(of, "a linear law has no layers whose strain could be shown", Some(hint.to_owned()))
         })?;
@@ -108,7 +108,7 @@ fn extras(
         }
     }
     if let Some(path) = &arguments.energy {
-        let energy = energy(drive, model, sampling).map_err(refused)?;
+        let energy = energy(drive, contact, sampling).map_err(refused)?;
         made.push((path.clone(), energy_table(&energy).to_csv().into_bytes()));
     }
     Ok(made)
@@ -122,7 +122,7 @@ fn described(error: DescriptionError) -> Failure {
 /// What is simulated: a body with the steps of a protocol, or with what a record says.
 struct Scene {
     title: Option<String>,
-    model: Model,
+    contact: Contact,
     driver: Driver,
     sampling: Sampling,
 }
@@ -150,7 +150,7 @@ fn stepped(arguments: &SimulateArguments) -> Result<Scene, Failure> {
     }
     Ok(Scene {
         title: protocol.title.clone(),
-        model: protocol.model.clone(),
+        contact: protocol.contact.clone(),
         sampling: protocol.sampling.clone(),
         driver: Driver::Steps(Box::new(protocol)),
     })
@@ -158,7 +158,7 @@ fn stepped(arguments: &SimulateArguments) -> Result<Scene, Failure> {
 
 /// The body of the protocol, driven by a record from its first row on.
 fn driven(arguments: &SimulateArguments, path: &Path) -> Result<Scene, Failure> {
-    let (title, model) = read_scene(&arguments.protocol).map_err(described)?;
+    let (title, contact) = read_scene(&arguments.protocol).map_err(described)?;
     let test = super::record::description(arguments.test.as_deref(), None)?;
     let record = super::record::record(path, test.as_ref())?.record;
     let times = record.time().to_vec();
@@ -182,7 +182,7 @@ fn driven(arguments: &SimulateArguments, path: &Path) -> Result<Scene, Failure> 
     };
     Ok(Scene {
         title,
-        model,
+        contact,
         driver,
         sampling,
     })
@@ -211,17 +211,14 @@ fn record(trajectory: &Trajectory, arguments: &SimulateArguments) -> String {
     out
 }
 
-fn caption(title: Option<&str>, what: &str, model: Contact<'_>) -> String {
-    let law = match model {
-        Contact::Latency(model) => latency(model),
-        Contact::Varying(contact) => match contact.rate {
-            RateDependence::Constant => latency(&contact.model),
+fn caption(title: Option<&str>, what: &str, contact: &Contact) -> String {
+    let law = match contact {
+        Contact::Latency { model, rate } => match rate {
+            RateDependence::Constant => latency(model),
             RateDependence::Strain { factor } => {
-                format!("{}, v times {factor} by 0.1 of equilibrium strain", latency(&contact.model))
+                format!("{}, v times {factor} by 0.1 of equilibrium strain", latency(model))
             }
-            RateDependence::Direction { factor } => {
-                format!("{}, v times {factor} while strain rises", latency(&contact.model))
-            }
+            RateDependence::Direction { factor } => format!("{}, v times {factor} while strain rises", latency(model)),
         },
         Contact::Linear(contact) => {
             let memory = match contact.memory {

@@ -9,7 +9,7 @@
 //! | folder | what |
 //! |---|---|
 //! | `text/` | a description as it is written: quantities, places, what is wrong in plain words |
-//! | `body/` | the tables of a body and its contact, and the [`Model`] that they make |
+//! | `body/` | the tables of a body and its contact, and the contact that they make |
 //! | `test/` | a test: its record, its body, how to evaluate it ([`TestDescription`]); known machines ([`machines`]) |
 //! | `material/` | a calibrated body with its intervals ([`MaterialFile`]), read and written |
 //! | `protocol/` | a protocol: body, law and steps of the jaw ([`Protocol`]) |
@@ -24,7 +24,6 @@ mod sweep;
 mod test;
 mod text;
 
-pub use body::Model;
 pub use material::{MATERIAL_VERSION, MaterialFile, MaterialOrigin, parse_material, read_material};
 pub use protocol::{
     Protocol, parse_protocol, parse_protocol_of, parse_scene, read_protocol, read_protocol_of, read_scene,

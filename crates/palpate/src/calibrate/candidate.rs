@@ -2,10 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::material::{Body, CalibratedContact};
+use super::material::Body;
 use super::{CalibrateError, CalibrationData};
 use crate::contact::{Equilibrium, RateDependence, Specimen};
 use crate::laws::{ExponentChoice, Law, MOST_TERMS};
+use crate::simulate::Contact;
 
 /// The law of the force that a body tends to, whose coefficients are to be found.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -259,7 +260,7 @@ impl Prepared {
     }
 
     /// The contact with these numbers; `None` where they make none.
-    pub(super) fn contact(&self, theta: &[f64]) -> Option<CalibratedContact> {
+    pub(super) fn contact(&self, theta: &[f64]) -> Option<Contact> {
         self.body.contact(self.candidate, &self.values(theta))
     }
 

@@ -2,47 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Candidate, EquilibriumLaw, RateLaw};
+use super::{Candidate, EquilibriumLaw};
 use crate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
 use crate::fit::Estimate;
 use crate::latency::LatencyLaw;
 use crate::laws::{ExponentChoice, Law};
-use crate::simulate::{
-    Contact, ContactModel, LinearContact, LinearLaw, LinearTerm, Memory, Separation, VaryingContact,
-};
-
-/// A contact with all its numbers, whichever law it obeys.
-#[derive(Debug, Clone, PartialEq)]
-pub enum CalibratedContact {
-    /// The latency law.
-    Latency(ContactModel),
-    /// The same with a rate coefficient that depends on the state of the layer.
-    Varying(VaryingContact),
-    /// A linear law.
-    Linear(LinearContact),
-}
-
-impl<'a> From<&'a CalibratedContact> for Contact<'a> {
-    fn from(contact: &'a CalibratedContact) -> Self {
-        match contact {
-            CalibratedContact::Latency(model) => Self::Latency(model),
-            CalibratedContact::Varying(model) => Self::Varying(model),
-            CalibratedContact::Linear(model) => Self::Linear(model),
-        }
-    }
-}
-
-impl CalibratedContact {
-    /// The body.
-    #[must_use]
-    pub fn specimen(&self) -> &Specimen {
-        match self {
-            Self::Latency(model) => &model.specimen,
-            Self::Varying(contact) => &contact.model.specimen,
-            Self::Linear(model) => &model.specimen,
-        }
-    }
-}
+use crate::simulate::{Contact, ContactModel, LinearContact, LinearLaw, LinearTerm, Memory, Separation};
 
 /// What of a body is known without any test.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -132,7 +97,7 @@ pub struct Material {
 
 impl Body {
     /// The contact whose numbers are `values`, in the order of [`names`]; `None` where they make none.
-    pub(super) fn contact(&self, candidate: Candidate, values: &[f64]) -> Option<CalibratedContact> {
+    pub(super) fn contact(&self, candidate: Candidate, values: &[f64]) -> Option<Contact> {
         let (stiffness, law) = values.split_at(self.levels.len().max(1));
         let specimen = self.specimen(candidate.equilibrium, stiffness)?;
         Some(match candidate.law {
@@ -144,14 +109,8 @@ impl Body {
                     layers,
                     separation: self.separation,
                 };
-                match candidate.rate {
-                    RateLaw::Constant => CalibratedContact::Latency(model),
-                    varying => {
-                        let rate = varying.with(law[3]);
-                        rate.is_sound().then_some(())?;
-                        CalibratedContact::Varying(VaryingContact { model, rate })
-                    }
-                }
+                let rate = candidate.rate.with(law.get(3).copied().unwrap_or(1.0));
+                rate.is_sound().then_some(Contact::Latency { model, rate })?
             }
             _ => {
                 let term = |term: &[f64]| LinearTerm {
@@ -159,7 +118,7 @@ impl Body {
                     rate: 1.0 / term[1],
                 };
                 let terms: Vec<LinearTerm> = law.chunks_exact(2).map(term).collect();
-                CalibratedContact::Linear(LinearContact {
+                Contact::Linear(LinearContact {
                     specimen,
                     law: LinearLaw::new(&terms).ok()?,
                     memory: match candidate.law {
@@ -242,13 +201,13 @@ impl Material {
     /// If the numbers make no contact, which [`is_whole`](Self::is_whole) would have said.
     #[must_use]
     #[expect(clippy::expect_used, reason = "a material that exists is whole")]
-    pub fn contact(&self) -> CalibratedContact {
+    pub fn contact(&self) -> Contact {
         self.body.contact(self.candidate, &self.values()).expect("the numbers of a material make a contact")
     }
 
     /// The contact with each number times a factor; `None` where that makes none.
     #[must_use]
-    pub fn contact_off(&self, factors: &[f64]) -> Option<CalibratedContact> {
+    pub fn contact_off(&self, factors: &[f64]) -> Option<Contact> {
         let values: Vec<f64> = self.values().iter().zip(factors).map(|(value, factor)| value * factor).collect();
         self.body.contact(self.candidate, &values)
     }

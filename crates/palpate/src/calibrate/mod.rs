@@ -25,6 +25,6 @@ pub use candidate::{Candidate, EquilibriumLaw, RateLaw};
 pub use data::CalibrationData;
 pub use error::CalibrateError;
 pub use fit::{Calibration, Foretold, calibrate};
-pub use material::{Body, CalibratedContact, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, Shown};
+pub use material::{Body, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, Shown};
 pub use predict::{Extrapolation, Prediction};
 pub use profile::{NumberProfile, profile};

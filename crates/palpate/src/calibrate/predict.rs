@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{CalibratedContact, Material};
+use super::Material;
 use crate::number::significant;
-use crate::simulate::{Drive, ProgramStep, Sampling, SimulateError, Trajectory, simulate};
+use crate::simulate::{Contact, Drive, ProgramStep, Sampling, SimulateError, Trajectory, simulate};
 use crate::statistics::coverage_factor;
 
 /// A question beyond what the test has shown.
@@ -140,7 +140,7 @@ impl Material {
         let times = Sampling::Times(trajectory.time.clone());
         let longer = continued(drive, &trajectory);
         let others = longer.as_ref().map_or(drive, Drive::from);
-        let course = |contact: &CalibratedContact| simulate(others, contact, &times).ok();
+        let course = |contact: &Contact| simulate(others, contact, &times).ok();
         for direction in self.directions() {
             let Some((high, low, width)) = both_sides(self, &direction, &course) else {
                 continue;
@@ -254,7 +254,7 @@ fn continued(drive: Drive<'_>, course: &Trajectory) -> Option<Vec<ProgramStep>> 
 fn both_sides<T>(
     material: &Material,
     direction: &[f64],
-    result: &impl Fn(&CalibratedContact) -> Option<T>,
+    result: &impl Fn(&Contact) -> Option<T>,
 ) -> Option<(T, T, f64)> {
     let off = |by: f64| {
         let factors: Vec<f64> = direction.iter().map(|log| (by * log).exp()).collect();

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Grasp, GripError, Limits, Plan, PlanKind};
-use crate::calibrate::{CalibratedContact, Material, Prediction};
+use crate::calibrate::{Material, Prediction};
+use crate::simulate::Contact;
 use crate::simulate::{ProgramStep, Sampling, Separation, SimulateError, StepEnd, step_ends, work_by_step};
 
 /// How long a hold lasts.
@@ -71,7 +72,7 @@ pub(super) const ALWAYS: f64 = 3.156e8;
 #[derive(Debug, Clone)]
 pub struct Grip<'a> {
     pub(super) material: &'a Material,
-    pub(super) contact: CalibratedContact,
+    pub(super) contact: Contact,
     pub(super) grasp: Grasp,
     pub(super) limits: Limits,
     pub(super) confidence: f64,

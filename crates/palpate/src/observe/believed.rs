@@ -9,10 +9,10 @@
 use super::kept::Kept;
 use super::observation::Uncertain;
 use super::{ObserveError, ObserverOptions};
-use crate::calibrate::{CalibratedContact, Material};
+use crate::calibrate::Material;
 use crate::contact::RateDependence;
 use crate::latency::LatencyLaw;
-use crate::simulate::{ContactModel, ContactState, StepError};
+use crate::simulate::{Contact, ContactModel, ContactState, StepError};
 
 /// Readings closer than this (s) tell no more than one: what a model leaves over lasts longer.
 const APART: f64 = 0.01;
@@ -39,11 +39,9 @@ struct Member {
 }
 
 impl Member {
-    fn new(contact: CalibratedContact, offset: f64) -> Option<Self> {
-        let (model, rate) = match contact {
-            CalibratedContact::Latency(model) => (model, RateDependence::Constant),
-            CalibratedContact::Varying(contact) => (contact.model, contact.rate),
-            CalibratedContact::Linear(_) => return None,
+    fn new(contact: Contact, offset: f64) -> Option<Self> {
+        let Contact::Latency { model, rate } = contact else {
+            return None;
         };
         Some(Self {
             law: model.law,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::contact::{Contact, by_law};
+use super::contact::{ContactRef, by_law};
 use super::course::Course;
 use super::{Drive, Sampling, SimulateError, energy, simulate};
 
@@ -73,7 +73,7 @@ pub struct Cycle {
 /// As for [`simulate`](super::simulate()).
 pub fn work_by_step<'a, 'b>(
     drive: impl Into<Drive<'a>>,
-    contact: impl Into<Contact<'b>>,
+    contact: impl Into<ContactRef<'b>>,
 ) -> Result<Vec<StepWork>, SimulateError> {
     let (drive, contact) = (drive.into(), contact.into());
     let mut knots = by_law!(contact, contact => Course::new(drive, contact)?.times().to_vec());

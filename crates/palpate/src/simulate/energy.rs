@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::contact::{Contact, by_law};
+use super::contact::{ContactRef, by_law};
 use super::course::Course;
 use super::layer::Layer;
 use super::trajectory::sample_times;
@@ -70,7 +70,7 @@ impl Energy {
 /// As for [`simulate`](super::simulate()).
 pub fn energy<'a, 'b>(
     drive: impl Into<Drive<'a>>,
-    contact: impl Into<Contact<'b>>,
+    contact: impl Into<ContactRef<'b>>,
     sampling: &Sampling,
 ) -> Result<Energy, SimulateError> {
     by_law!(contact.into(), contact => energy_of(drive.into(), contact, sampling))

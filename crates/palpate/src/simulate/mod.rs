@@ -61,7 +61,7 @@ pub(crate) use walk::check_displacements;
 #[cfg(feature = "std")]
 pub use {
     crate::contact::Work,
-    contact::Contact,
+    contact::{Contact, ContactRef},
     course::Drive,
     cycles::{Cycle, StepWork, cycles, work_by_step},
     energy::{Energy, EnergySplit, energy},
@@ -72,7 +72,6 @@ pub use {
     program::{ProgramStep, StepEnd, step_ends},
     summary::{Summary, summary},
     trajectory::{Sampling, Trajectory, simulate, simulate_force},
-    varying::VaryingContact,
     walk::{ContactEvent, ContactEventKind},
     wave::{StrainWave, strain_wave, strain_wave_within},
 };

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::SimulateError;
-use super::contact::{Contact, by_law};
+use super::contact::{ContactRef, by_law};
 use super::layer::Layer;
 use super::walk::{Stretch, Walker, check_force};
 
@@ -75,7 +75,10 @@ impl ProgramStep {
 ///
 /// # Errors
 /// As for `simulate`.
-pub fn step_ends<'a>(program: &[ProgramStep], contact: impl Into<Contact<'a>>) -> Result<Vec<StepEnd>, SimulateError> {
+pub fn step_ends<'a>(
+    program: &[ProgramStep],
+    contact: impl Into<ContactRef<'a>>,
+) -> Result<Vec<StepEnd>, SimulateError> {
     by_law!(contact.into(), contact => ends_of(program, contact))
 }
 

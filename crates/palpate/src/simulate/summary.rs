@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::contact::{Contact, by_law};
+use super::contact::{ContactRef, by_law};
 use super::course::Course;
 use super::energy::{Account, stored_at};
 use super::layer::Layer;
@@ -65,7 +65,7 @@ pub struct Summary {
 /// As for `simulate`.
 pub fn summary<'a, 'b>(
     drive: impl Into<Drive<'a>>,
-    contact: impl Into<Contact<'b>>,
+    contact: impl Into<ContactRef<'b>>,
     sampling: &Sampling,
 ) -> Result<Summary, SimulateError> {
     by_law!(contact.into(), contact => summed_up(drive.into(), contact, sampling))

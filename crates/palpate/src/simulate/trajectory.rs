@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::contact::{Contact, by_law};
+use super::contact::{ContactRef, by_law};
 use super::course::Course;
 use super::layer::Layer;
 use super::walk::{Stretch, StretchState, walk};
@@ -195,7 +195,7 @@ impl Trajectory {
 /// for a step with wrong numbers, a force that the jaw never meets, and force control while the jaw is off the body.
 pub fn simulate<'a, 'b>(
     drive: impl Into<Drive<'a>>,
-    contact: impl Into<Contact<'b>>,
+    contact: impl Into<ContactRef<'b>>,
     sampling: &Sampling,
 ) -> Result<Trajectory, SimulateError> {
     by_law!(contact.into(), contact => trajectory(drive.into(), contact, sampling))
@@ -231,7 +231,7 @@ fn trajectory<L: Layer>(drive: Drive<'_>, model: &L, sampling: &Sampling) -> Res
 /// As for [`simulate`].
 pub fn simulate_force<'a>(
     motion: &Motion,
-    contact: impl Into<Contact<'a>>,
+    contact: impl Into<ContactRef<'a>>,
     times: &[f64],
 ) -> Result<Vec<f64>, SimulateError> {
     by_law!(contact.into(), contact => forces(motion, contact, times))

@@ -17,30 +17,12 @@ const CHANGE: f64 = 0.01;
 const MOST_PARTS: f64 = 500.0;
 
 /// A contact whose rate coefficient depends on the state of its layer.
-///
-/// ```
-/// use palpate::contact::{RateDependence, Specimen, Shape, Sides, Layers};
-/// use palpate::latency::LatencyLaw;
-/// use palpate::simulate::{ContactModel, Motion, Separation, VaryingContact, simulate_force};
-/// let model = ContactModel {
-///     specimen: Specimen::new(Shape::Ball { radius: 0.035 }, 28e3, Sides::Two)?,
-///     law: LatencyLaw::new(5.0, 2e4)?,
-///     layers: Layers::new(8.0)?,
-///     separation: Separation::Unilateral,
-/// };
-/// // Ten times slower at every 0.1 of strain: after the same squeeze more force is left.
-/// let slower = VaryingContact { model: model.clone(), rate: RateDependence::Strain { factor: 0.1 } };
-/// let squeeze = Motion::new(vec![0.0, 0.6, 10.6], vec![0.0, 0.005, 0.005])?;
-/// let [plain, slow] = [simulate_force(&squeeze, &model, &[10.6])?, simulate_force(&squeeze, &slower, &[10.6])?];
-/// assert!((plain[0] - 1.5561).abs() < 1e-4 && (slow[0] - 1.8079).abs() < 1e-4); // N
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct VaryingContact {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Varying<'a> {
     /// The contact, with the rate coefficient at first touch, or while the strain falls.
-    pub model: ContactModel,
+    pub(super) model: &'a ContactModel,
     /// How it depends on the state.
-    pub rate: RateDependence,
+    pub(super) rate: RateDependence,
 }
 
 /// The layer through a straight piece of motion, part by part.
@@ -99,21 +81,10 @@ impl Surface {
     }
 }
 
-impl VaryingContact {
+impl Varying<'_> {
     /// The law at an excess strain and a contact displacement (m).
     fn law_at(&self, excess: f64, u: f64) -> LatencyLaw {
         self.rate.law(self.model.law, excess, self.model.specimen.equilibrium_strain(u))
-    }
-
-    /// The same contact with the one rate coefficient that it has at an excess strain and a displacement (m) of the jaw: what holds while
-    /// the jaw stands there.
-    #[must_use]
-    pub fn standing_at(&self, excess: f64, displacement: f64) -> ContactModel {
-        let u = self.model.specimen.contact_displacement(displacement);
-        ContactModel {
-            law: self.law_at(excess, u),
-            ..self.model.clone()
-        }
     }
 
     /// Rate of the whole strain, 1/s, with the jaw at contact displacement `u` (m) and going at `speed` (m/s).
@@ -176,7 +147,7 @@ impl VaryingContact {
     }
 }
 
-impl Layer for VaryingContact {
+impl Layer for Varying<'_> {
     type Excess = f64;
     /// Displacement of the next node, m.
     type Behind = f64;

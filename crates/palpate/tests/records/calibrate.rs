@@ -8,7 +8,7 @@ use palpate::calibrate::{
     CalibrateError, Calibration, CalibrationData, Candidate, EquilibriumLaw, Extrapolation, RateLaw, calibrate, profile,
 };
 use palpate::contact::{RateDependence, Shape, Sides};
-use palpate::simulate::{Motion, ProtocolStep, Sampling, Separation, VaryingContact, protocol, simulate_force};
+use palpate::simulate::{Contact, Motion, ProtocolStep, Sampling, Separation, protocol, simulate_force};
 use palpate::test_problems::{Noise, PAPER_RATE, paper_ball, paper_test_a, paper_test_b};
 use palpate::watch::{Cancelled, Progress, Unwatched, Watch};
 
@@ -72,7 +72,7 @@ fn calibrated_on_loading_the_unloading_is_foretold() {
 
 /// The record of a ball whose rate coefficient depends on strain or direction.
 fn varying(rate: RateDependence, motion: &Motion, noise: f64) -> CalibrationData {
-    let contact = VaryingContact {
+    let contact = Contact::Latency {
         model: paper_ball(Separation::Unilateral),
         rate,
     };

@@ -447,7 +447,7 @@ fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
 
 #[test]
 fn a_material_whose_rate_depends_on_the_strain_is_watched_by_that() {
-    use palpate::calibrate::{CalibratedContact, MaterialNumber, MaterialUnit, RateLaw};
+    use palpate::calibrate::{MaterialNumber, MaterialUnit, RateLaw};
     use palpate::fit::Estimate;
     use palpate::simulate::{Motion, Sampling, simulate};
     let mut varying = material(1.0);
@@ -460,9 +460,7 @@ fn a_material_whose_rate_depends_on_the_strain_is_watched_by_that() {
     let covariance = &mut varying.uncertainty.as_mut().unwrap().covariance;
     covariance.iter_mut().for_each(|row| row.push(0.0));
     covariance.push(vec![0.0; 5]);
-    let CalibratedContact::Varying(truth) = varying.contact() else {
-        panic!("a contact whose rate varies");
-    };
+    let truth = varying.contact();
     let motion = Motion::new(vec![0.0, STOP, 8.0], vec![0.0, 5e-3, 5e-3]).unwrap();
     let times = (1..(8.0 * RATE) as usize).map(|i| i as f64 / RATE).collect();
     let course = simulate(&motion, &truth, &Sampling::Times(times)).unwrap();

@@ -107,8 +107,8 @@ pub(super) fn refusals(runs: &Values, reasons: &Values) -> (u64, Option<(i64, St
 
 fn outcome(protocol: &Protocol, steps: usize) -> Result<Vec<Option<f64>>, String> {
     let refused = |error: palpate::simulate::SimulateError| error.to_string();
-    let whole = summary(protocol.drive(), protocol.contact(), &protocol.sampling).map_err(refused)?;
-    let ends = step_ends(&protocol.steps, protocol.contact()).map_err(refused)?;
+    let whole = summary(protocol.drive(), &protocol.contact, &protocol.sampling).map_err(refused)?;
+    let ends = step_ends(&protocol.steps, &protocol.contact).map_err(refused)?;
     Ok(whole_run(&whole).into_iter().chain(of_steps(protocol, &ends, steps)).collect())
 }
 

@@ -6,7 +6,7 @@
 //! | `specimen.rs` | shape, size and stiffness, to `Specimen` |
 //! | `law.rs` | the law with its numbers |
 //! | `contact.rs` | layers and separation |
-//! | `model.rs` | all of it, to a [`Model`] |
+//! | `model.rs` | all of it, to a [`Contact`](palpate::simulate::Contact) |
 
 pub(super) mod contact;
 mod law;
@@ -14,4 +14,3 @@ pub(super) mod model;
 pub(super) mod specimen;
 pub(super) mod tables;
 
-pub use model::Model;

@@ -7,13 +7,13 @@ use std::path::Path;
 
 use palpate::{
     calibrate::{
-        Body, CalibratedContact, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, RateLaw,
+        Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, RateLaw,
         Shown,
     },
     contact::{Equilibrium, RateDependence},
     fit::Estimate,
     laws::Law,
-    simulate::ContactModel,
+    simulate::{Contact, ContactModel},
     units::Dimension,
 };
 use serde::Deserialize;
@@ -23,7 +23,7 @@ use super::{
     tables::{CalibratedEquilibriumName, CalibrationTable, MaterialTables, NumberTable, ShownTable, unit_of},
 };
 use crate::description::{
-    body::model::{Model, model},
+    body::model::model,
     text::{
         error::DescriptionError,
         quantity::QuantityText,
@@ -57,15 +57,15 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
         law,
         equilibrium: equilibrium(source, table.equilibrium, &model)?,
         rate: match &model {
-            Model::Varying(contact) => rate_law(contact.rate),
-            Model::Latency(_) | Model::Linear(_) => RateLaw::Constant,
+            Contact::Latency { rate, .. } => rate_law(*rate),
+            Contact::Linear(_) => RateLaw::Constant,
         },
     };
     let material = Material {
         body: Body {
             shape: model.specimen().shape().clone(),
             sides: model.specimen().sides(),
-            separation: model.contact().separation(),
+            separation: model.separation(),
             levels: levels(&model),
         },
         candidate,
@@ -137,7 +137,7 @@ fn version(source: &Source<'_>) -> Result<(), DescriptionError> {
 fn equilibrium(
     source: &Source<'_>,
     name: CalibratedEquilibriumName,
-    model: &Model,
+    model: &Contact,
 ) -> Result<EquilibriumLaw, DescriptionError> {
     match (name, model.specimen().equilibrium()) {
         (CalibratedEquilibriumName::EvenStrain, Equilibrium::EvenStrain) => Ok(EquilibriumLaw::EvenStrain),
@@ -180,7 +180,7 @@ pub(crate) fn factor(rate: RateDependence) -> Option<f64> {
 }
 
 /// Contact displacements of the rows of a table of relaxed forces, but for first touch.
-fn levels(model: &Model) -> Vec<f64> {
+fn levels(model: &Contact) -> Vec<f64> {
     match model.specimen().equilibrium() {
         Equilibrium::Measured { force_per_displacement } => {
             force_per_displacement.points().into_iter().skip(1).map(|(place, _)| place).collect()
@@ -322,19 +322,20 @@ fn latency_pairs(there: &ContactModel, here: &ContactModel) -> [(String, f64, f6
 }
 
 /// A key whose number differs between the two, with both.
-fn disagreement(model: &Model, contact: &CalibratedContact) -> Option<(String, f64, f64)> {
+fn disagreement(model: &Contact, contact: &Contact) -> Option<(String, f64, f64)> {
     let mut pairs = Vec::new();
     match (model, contact) {
-        (Model::Latency(there), CalibratedContact::Latency(here)) => pairs.extend(latency_pairs(there, here)),
-        (Model::Varying(there), CalibratedContact::Varying(here)) => {
-            pairs.extend(latency_pairs(&there.model, &here.model));
+        (Contact::Latency { model: there, rate }, Contact::Latency { model: here, rate: calibrated })
+            if rate_law(*rate) == rate_law(*calibrated) =>
+        {
+            pairs.extend(latency_pairs(there, here));
             if let (Some(a), Some(b), Some(name)) =
-                (factor(there.rate), factor(here.rate), rate_law(here.rate).factor_name())
+                (factor(*rate), factor(*calibrated), rate_law(*calibrated).factor_name())
             {
                 pairs.push((format!("law.{name}"), a, b));
             }
         }
-        (Model::Linear(there), CalibratedContact::Linear(here)) => {
+        (Contact::Linear(there), Contact::Linear(here)) => {
             let terms = [there, here].map(|contact| contact.law.terms());
             let count = terms.map(<[_]>::len);
             if count[0] != count[1] || there.memory != here.memory {

@@ -3,11 +3,11 @@
 use std::fmt::Write;
 
 use palpate::{
-    calibrate::{CalibratedContact, EquilibriumLaw},
+    calibrate::EquilibriumLaw,
     contact::{Equilibrium, Shape, Sides},
     latency::LatencyLaw,
     number::{exact, significant},
-    simulate::{LinearContact, Memory, Separation},
+    simulate::{Contact, LinearContact, Memory, Separation},
 };
 
 use super::{
@@ -111,14 +111,13 @@ impl MaterialFile {
     fn write_law(&self, out: &mut String) {
         out.push_str("\n[law]\n");
         match self.material.contact() {
-            CalibratedContact::Latency(model) => self.write_latency(out, model.law),
-            CalibratedContact::Varying(contact) => {
-                self.write_latency(out, contact.model.law);
-                if let (Some(name), Some(factor)) = (rate_law(contact.rate).factor_name(), factor(contact.rate)) {
+            Contact::Latency { model, rate } => {
+                self.write_latency(out, model.law);
+                if let (Some(name), Some(factor)) = (rate_law(rate).factor_name(), factor(rate)) {
                     let _ = writeln!(out, "{name} = {factor:?}{}", self.interval(name, 1.0, ""));
                 }
             }
-            CalibratedContact::Linear(LinearContact { law, memory, .. }) => {
+            Contact::Linear(LinearContact { law, memory, .. }) => {
                 let time = |rate: f64| format!("\"{} s\"", exact(1.0 / rate));
                 let _ = match law.terms() {
                     [only] if memory == Memory::Strain => writeln!(

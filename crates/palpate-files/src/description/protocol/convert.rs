@@ -13,7 +13,7 @@ use super::{
     tables::{OutputTable, ProtocolTables},
 };
 use crate::description::{
-    body::model::{Model, model},
+    body::model::model,
     material::MaterialFile,
     text::{
         error::DescriptionError,
@@ -37,7 +37,7 @@ pub struct Protocol {
     /// The motion of the jaw, if displacements alone are asked for.
     pub motion: Option<Motion>,
     /// The body and its contact.
-    pub model: Model,
+    pub contact: Contact,
     /// When to report.
     pub sampling: Sampling,
     /// Whether the file has a table `[sweep]`, which a single simulation leaves aside.
@@ -45,12 +45,6 @@ pub struct Protocol {
 }
 
 impl Protocol {
-    /// The body, as simulations take it.
-    #[must_use]
-    pub fn contact(&self) -> Contact<'_> {
-        self.model.contact()
-    }
-
     /// What drives the contact: the motion if there is one, else the steps.
     #[must_use]
     pub fn drive(&self) -> Drive<'_> {
@@ -91,7 +85,7 @@ pub fn parse_protocol_of(text: &str, path: &Path, material: &MaterialFile) -> Re
 ///
 /// # Errors
 /// As for [`read_protocol`], less those of steps and output.
-pub fn read_scene(path: &Path) -> Result<(Option<String>, Model), DescriptionError> {
+pub fn read_scene(path: &Path) -> Result<(Option<String>, Contact), DescriptionError> {
     parse_scene(&source::read(path, LONGEST)?, path)
 }
 
@@ -99,7 +93,7 @@ pub fn read_scene(path: &Path) -> Result<(Option<String>, Model), DescriptionErr
 ///
 /// # Errors
 /// As for [`parse_protocol`], less those of steps and output.
-pub fn parse_scene(text: &str, path: &Path) -> Result<(Option<String>, Model), DescriptionError> {
+pub fn parse_scene(text: &str, path: &Path) -> Result<(Option<String>, Contact), DescriptionError> {
     let source = Source { path, text };
     let tables: ProtocolTables = protocol_tables(&source)?;
     let model = model(&source, &tables.specimen, &tables.law, &tables.contact)?;
@@ -148,17 +142,17 @@ pub(crate) fn check(source: &Source<'_>, tables: &ProtocolTables) -> Result<Prot
 }
 
 /// A protocol with this body and the steps of the tables.
-fn checked_steps(source: &Source<'_>, tables: &ProtocolTables, model: Model) -> Result<Protocol, DescriptionError> {
+fn checked_steps(source: &Source<'_>, tables: &ProtocolTables, contact: Contact) -> Result<Protocol, DescriptionError> {
     let Steps {
         program,
         motion,
         tables: written,
-    } = steps(source, &tables.step, &model)?;
+    } = steps(source, &tables.step, &contact)?;
     let refused = |found: String| source.value("step", "steps that can be simulated", &found);
     let end = match &motion {
         Some(motion) => motion.end(),
         None => {
-            let ends = step_ends(&program, model.contact())
+            let ends = step_ends(&program, &contact)
                 .map_err(|error| refused(error.in_step(|number| written[number - 1]).to_string()))?;
             ends.last().map_or(0.0, |end| end.time)
         }
@@ -169,7 +163,7 @@ fn checked_steps(source: &Source<'_>, tables: &ProtocolTables, model: Model) -> 
         steps: program,
         written,
         motion,
-        model,
+        contact,
         sampling,
         has_sweep: tables.sweep.is_some(),
     })

@@ -2,15 +2,12 @@
 
 use palpate::{
     contact::SpecimenError,
-    simulate::{self, Motion, ProgramStep, ProtocolStep},
+    simulate::{self, Contact, Motion, ProgramStep, ProtocolStep},
     units::Dimension,
 };
 
 use super::tables::StepTable;
-use crate::description::{
-    body::model::Model,
-    text::{error::DescriptionError, quantity::QuantityText, source::Source},
-};
+use crate::description::text::{error::DescriptionError, quantity::QuantityText, source::Source};
 
 /// Steps one by one, and as a motion if they are one.
 pub(crate) struct Steps {
@@ -20,7 +17,7 @@ pub(crate) struct Steps {
     pub(crate) tables: Vec<usize>,
 }
 
-pub(crate) fn steps(source: &Source<'_>, tables: &[StepTable], model: &Model) -> Result<Steps, DescriptionError> {
+pub(crate) fn steps(source: &Source<'_>, tables: &[StepTable], model: &Contact) -> Result<Steps, DescriptionError> {
     if tables.is_empty() {
         return Err(source.missing("step", "one or more [[step]] tables with to and rate"));
     }
@@ -87,7 +84,7 @@ fn ramp(
     source: &Source<'_>,
     key: &impl Fn(&str) -> String,
     table: &StepTable,
-    model: &Model,
+    model: &Contact,
 ) -> Result<Option<ProgramStep>, DescriptionError> {
     let both = |a: &str, b: &str| source.both(&key(a), &key(b));
     match (&table.to, &table.to_force, &table.rate, &table.force_rate) {
@@ -147,10 +144,10 @@ fn check_displacement(
     key: &str,
     written: &QuantityText,
     to: f64,
-    model: &Model,
+    model: &Contact,
 ) -> Result<(), DescriptionError> {
     let specimen = model.specimen();
-    let bonded = model.contact().separation() == simulate::Separation::Bonded;
+    let bonded = model.separation() == simulate::Separation::Bonded;
     let contact_displacement = specimen.contact_displacement(to);
     let expected = match specimen.check_contact_displacement(contact_displacement, bonded) {
         Ok(()) => return Ok(()),

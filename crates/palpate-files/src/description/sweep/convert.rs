@@ -219,7 +219,7 @@ pub fn read_sweep(path: &Path) -> Result<Sweep, DescriptionError> {
 /// assert_eq!(sweep.runs(), 6);
 /// let (values, protocol) = sweep.run(3);
 /// assert_eq!(values, [1e4, 0.035]);
-/// assert_eq!(protocol?.model.latency().map(|model| model.law.rate_coefficient()), Some(1e4));
+/// assert_eq!(protocol?.contact.latency().map(|model| model.law.rate_coefficient()), Some(1e4));
 /// assert_eq!(sweep.numbers()[0].column, "law_rate_coefficient_per_s");
 /// # Ok::<(), palpate_files::description::DescriptionError>(())
 /// ```

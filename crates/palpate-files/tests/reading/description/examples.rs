@@ -31,7 +31,7 @@ fn every_example_is_accepted() {
     for path in protocols {
         let protocol = read_protocol(&path).unwrap_or_else(|error| panic!("{error}"));
         assert!(protocol.title.is_some(), "{}", path.display());
-        simulate(protocol.drive(), &protocol.model, &protocol.sampling).expect("a simulation");
+        simulate(protocol.drive(), &protocol.contact, &protocol.sampling).expect("a simulation");
     }
 }
 
@@ -40,15 +40,15 @@ fn the_papers_tests_are_the_papers() {
     for (name, motion) in [("paper-a.toml", paper_test_a()), ("paper-b.toml", paper_test_b())] {
         let protocol = read_protocol(&folder("protocols").join(name)).expect(name);
         assert_eq!(protocol.motion, Some(motion), "{name}");
-        assert_eq!(protocol.model.latency(), Some(&paper_ball(Separation::Bonded)), "{name}");
+        assert_eq!(protocol.contact.latency(), Some(&paper_ball(Separation::Bonded)), "{name}");
     }
 }
 
 #[test]
 fn a_grip_loses_its_contact() {
     let protocol = read_protocol(&folder("protocols/grip.toml")).expect("a protocol");
-    assert_eq!(protocol.contact().separation(), Separation::Unilateral);
-    let result = simulate(protocol.drive(), &protocol.model, &protocol.sampling).expect("a result");
+    assert_eq!(protocol.contact.separation(), Separation::Unilateral);
+    let result = simulate(protocol.drive(), &protocol.contact, &protocol.sampling).expect("a result");
     assert!(result.events.len() >= 3, "{:?}", result.events);
     assert!(result.force.iter().all(|force| *force >= 0.0));
 }

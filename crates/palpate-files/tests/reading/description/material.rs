@@ -145,7 +145,7 @@ fn a_rate_coefficient_that_depends_on_the_state_is_written_and_read() {
         // The same in a protocol, which is not calibrated.
         let steps = "[[step]]\nto = \"5 mm\"\nrate = \"10 mm/s\"\nhold = \"10 s\"\n";
         let protocol = parse_protocol(&format!("{text}\n{steps}"), Path::new("p.toml")).unwrap();
-        assert_eq!(protocol.contact(), (&file.material.contact()).into());
+        assert_eq!(protocol.contact, file.material.contact());
         let changed = text.replacen(&format!("{name} = 0.3"), &format!("{name} = 0.4"), 1);
         let error = parse_material(&changed, Path::new("m.toml")).unwrap_err().to_string();
         assert!(error.contains(&format!("law.{name}")) && error.contains("calibrated no more"), "{error}");
@@ -186,19 +186,19 @@ fn a_material_is_the_body_of_a_protocol_and_of_a_test() {
     std::fs::write(&named, format!("material = \"soft.toml\"\n{steps}")).unwrap();
     let protocol = read_protocol(&named).unwrap();
     let contact = file.material.contact();
-    assert_eq!(protocol.contact(), (&contact).into());
+    assert_eq!(protocol.contact, contact);
     let text = self_contained(&std::fs::read_to_string(&named).unwrap(), &named).unwrap();
     assert_eq!(parse_protocol(&text, Path::new("elsewhere.toml")).unwrap(), protocol);
     // The file itself is a protocol, once it has steps.
     let whole = parse_protocol(&format!("{}\n{steps}", file.to_toml()), Path::new("p.toml")).unwrap();
-    assert_eq!(whole.contact(), (&contact).into());
+    assert_eq!(whole.contact, contact);
     // Another body in the protocol is left aside only where that is asked for.
     let other = format!(
         "specimen = {{ shape = \"ball\", radius = \"20 mm\", modulus = \"1 kPa\" }}\nlaw = {{ name = \"latency\", exponent = 2, rate_coefficient = \"1 /s\" }}\n{steps}"
     );
     let bodied = folder.path().join("bodied.toml");
     std::fs::write(&bodied, &other).unwrap();
-    assert_eq!(read_protocol_of(&bodied, &file).unwrap().contact(), (&contact).into());
+    assert_eq!(read_protocol_of(&bodied, &file).unwrap().contact, contact);
     std::fs::write(&bodied, format!("material = \"soft.toml\"\n{other}")).unwrap();
     let both = read_protocol(&bodied).unwrap_err();
     assert!(both.to_string().contains("specimen") && both.to_string().contains("material"), "{both}");

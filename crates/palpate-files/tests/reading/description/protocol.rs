@@ -2,10 +2,10 @@
 
 use palpate::{
     contact::{Shape, Sides},
-    simulate::{LinearLaw, Memory, ProgramStep, Sampling, Separation, simulate},
+    simulate::{Contact, LinearLaw, Memory, ProgramStep, Sampling, Separation, simulate},
 };
 
-use palpate_files::description::{Model, read_protocol};
+use palpate_files::description::read_protocol;
 
 use super::{SQUEEZE, protocol, says, with};
 
@@ -13,12 +13,12 @@ use super::{SQUEEZE, protocol, says, with};
 fn a_short_protocol_has_the_usual_rest() {
     let squeeze = protocol(SQUEEZE).unwrap();
     assert_eq!(squeeze.title, None);
-    assert_eq!(squeeze.model.specimen().shape(), &Shape::Ball { radius: 0.035 });
-    assert_eq!(squeeze.model.specimen().modulus(), 28_000.0);
-    assert_eq!(squeeze.model.specimen().sides(), Sides::Two);
-    assert_eq!(squeeze.model.latency().unwrap().layers.count(), 8.0);
-    assert_eq!(squeeze.contact().separation(), Separation::Unilateral);
-    let law = squeeze.model.latency().unwrap().law;
+    assert_eq!(squeeze.contact.specimen().shape(), &Shape::Ball { radius: 0.035 });
+    assert_eq!(squeeze.contact.specimen().modulus(), 28_000.0);
+    assert_eq!(squeeze.contact.specimen().sides(), Sides::Two);
+    assert_eq!(squeeze.contact.latency().unwrap().layers.count(), 8.0);
+    assert_eq!(squeeze.contact.separation(), Separation::Unilateral);
+    let law = squeeze.contact.latency().unwrap().law;
     assert_eq!((law.exponent(), law.rate_coefficient()), (5.0, 2e4));
     assert_eq!(squeeze.sampling, Sampling::Rate(100.0));
     let (to, rate) = (0.005, 0.5 / 60.0);
@@ -31,7 +31,7 @@ fn a_short_protocol_has_the_usual_rest() {
 fn bodies_by_their_tables_and_laws_of_the_relaxed_force() {
     let rows = "areas = [[\"0 mm\", \"0 mm^2\"], [\"1 mm\", \"40 mm^2\"], [\"5 mm\", \"1 cm^2\"]]";
     let punch = with("\"ball\"\nradius = \"35 mm\"", &format!("\"profile\"\ndepth = \"2 cm\"\n{rows}"));
-    let body = protocol(&punch).unwrap().model.specimen().clone();
+    let body = protocol(&punch).unwrap().contact.specimen().clone();
     assert_eq!((body.depth(), body.sides()), (0.02, Sides::One));
     assert!((body.contact_area(0.001) - 4e-5).abs() < 1e-19 && (body.contact_area(0.004) - 1e-4).abs() < 3e-5);
     let short = punch.replace("[\"5 mm\"", "[\"2 mm\"");
@@ -47,7 +47,7 @@ fn bodies_by_their_tables_and_laws_of_the_relaxed_force() {
     says(protocol(&punch.replace(rows, "")), "specimen.areas", "the areas of a profile", "");
 
     let hertz = with("radius", "equilibrium = \"hertz\"\npoisson_ratio = 0.5\nradius");
-    let body = protocol(&hertz).unwrap().model.specimen().clone();
+    let body = protocol(&hertz).unwrap().contact.specimen().clone();
     let expected = 4.0 / 3.0 * 28e3 / 0.75 * 0.035f64.sqrt() * 1e-3f64.powf(1.5);
     assert!((body.force(body.equilibrium_strain(1e-3), 1e-3) / expected - 1.0).abs() < 1e-14);
     says(
@@ -61,7 +61,7 @@ fn bodies_by_their_tables_and_laws_of_the_relaxed_force() {
 
     let rows = "equilibrium_forces = [[\"0 mm\", \"0 N\"], [\"1 mm\", \"0.2 N\"], [\"4 mm\", \"2 N\"]]";
     let measured = with("modulus = \"28 kPa\"", rows);
-    let body = protocol(&measured).unwrap().model.specimen().clone();
+    let body = protocol(&measured).unwrap().contact.specimen().clone();
     assert!((body.force(body.equilibrium_strain(0.004), 0.004) - 2.0).abs() < 1e-14);
     says(
         protocol(&measured.replace("\"2 N\"", "\"0.5 N\"")),
@@ -81,7 +81,7 @@ fn bodies_by_their_tables_and_laws_of_the_relaxed_force() {
 fn shapes_and_choices() {
     let strip = "shape = \"strip\"\nwidth = \"10 mm\"\nthickness = \"4 mm\"\nlength = \"20 mm\"";
     let strip = with("shape = \"ball\"\nradius = \"35 mm\"", strip);
-    let model = protocol(&strip).unwrap().model;
+    let model = protocol(&strip).unwrap().contact;
     assert_eq!(
         model.specimen().shape(),
         &Shape::Prism {
@@ -91,12 +91,12 @@ fn shapes_and_choices() {
     );
     assert_eq!(model.specimen().sides(), Sides::One);
     let cylinder = with("shape = \"ball\"\nradius", "shape = \"cylinder\"\nlength = \"2 cm\"\ndiameter");
-    let Shape::Prism { area, length } = *protocol(&cylinder).unwrap().model.specimen().shape() else {
+    let Shape::Prism { area, length } = *protocol(&cylinder).unwrap().contact.specimen().shape() else {
         panic!("no prism");
     };
     assert!((area - std::f64::consts::PI * 0.0175 * 0.0175).abs() < 1e-18 && length == 0.02);
     let block = with("\"ball\"\nradius", "\"block\"\narea = \"40 mm^2\"\nlength");
-    let shape = protocol(&block).unwrap().model.specimen().shape().clone();
+    let shape = protocol(&block).unwrap().contact.specimen().shape().clone();
     assert_eq!(
         shape,
         Shape::Prism {
@@ -105,7 +105,7 @@ fn shapes_and_choices() {
         }
     );
     let pad = with("\"ball\"\nradius", "\"pad\"\nthickness = \"10 mm\"\nradius");
-    let model = protocol(&pad).unwrap().model;
+    let model = protocol(&pad).unwrap().contact;
     let shape = Shape::Pad {
         radius: 0.035,
         thickness: 0.01,
@@ -117,8 +117,8 @@ fn shapes_and_choices() {
         "[contact]",
         "[contact]\nlayer_thickness = \"4.375 mm\"\nseparation = false\nsqueezed_from = \"one side\"",
     );
-    let model = protocol(&thick).unwrap().model;
-    assert_eq!((model.latency().unwrap().layers.count(), model.contact().separation()), (8.0, Separation::Bonded));
+    let model = protocol(&thick).unwrap().contact;
+    assert_eq!((model.latency().unwrap().layers.count(), model.separation()), (8.0, Separation::Bonded));
     assert_eq!(model.specimen().sides(), Sides::One);
     let times = with("[output]", "[output]\ntimes = [\"0.6 s\", \"600 ms\", \"10.6 s\"]");
     let squeeze = protocol(&times).unwrap();
@@ -307,7 +307,7 @@ fn steps_in_force_and_in_displacement() {
         ProgramStep::Move { to: 0.0, rate: 1e-3 },
     ];
     assert_eq!(mixed.steps, expected);
-    let result = simulate(mixed.drive(), &mixed.model, &mixed.sampling).unwrap();
+    let result = simulate(mixed.drive(), &mixed.contact, &mixed.sampling).unwrap();
     assert!(result.force.iter().any(|force| (force - 10.0).abs() < 1e-12));
     // A hold alone is a step too.
     let still = with(STEP, &format!("{STEP}\n[[step]]\nhold = \"5 s\""));
@@ -354,9 +354,9 @@ const LINEAR: &str = r#"
 
 #[test]
 fn linear_laws_stand_in_a_protocol() {
-    let law = |text: &str| match protocol(text).unwrap().model {
-        Model::Linear(contact) => (contact.law, contact.memory),
-        Model::Latency(_) | Model::Varying(_) => panic!("expected a linear law"),
+    let law = |text: &str| match protocol(text).unwrap().contact {
+        Contact::Linear(contact) => (contact.law, contact.memory),
+        Contact::Latency { .. } => panic!("expected a linear law"),
     };
     let (prony, memory) = law(LINEAR);
     assert_eq!((prony.relaxation(0.0), memory), (4.0, Memory::Strain));
@@ -370,7 +370,7 @@ fn linear_laws_stand_in_a_protocol() {
     assert_eq!(law(&other("fung", &format!("memory = \"strain\", {shares}"))).1, Memory::Strain);
     let (fractional, _) = law(&other("fractional-zener", "overshoot = 2, time = \"5 s\", order = 0.5"));
     assert!((fractional.relaxation(5.0) - (1.0 + 2.0 * 0.427_583_576_155_807)).abs() < 1e-7);
-    assert!(protocol(LINEAR).unwrap().model.latency().is_none());
+    assert!(protocol(LINEAR).unwrap().contact.latency().is_none());
 }
 
 #[test]

@@ -29,7 +29,7 @@ fn a_grid_meets_every_value_with_every_other() {
     let runs: Vec<Vec<f64>> = (0..6).map(|run| sweep.run(run).0).collect();
     let expected: Vec<Vec<f64>> = [1.0, 3.0, 5.0].iter().flat_map(|n| [vec![*n, 0.03], vec![*n, 0.04]]).collect();
     assert_eq!(runs, expected);
-    let model = sweep.run(3).1.unwrap().model;
+    let model = sweep.run(3).1.unwrap().contact;
     assert_eq!((model.latency().unwrap().law.exponent(), model.specimen().depth()), (3.0, 0.04));
     let names: Vec<_> = sweep.numbers().iter().map(|number| (number.column.as_str(), number.unit)).collect();
     assert_eq!(names, [("law_exponent", ""), ("specimen_radius_m", "m")]);
@@ -156,7 +156,7 @@ fn a_simulation_leaves_the_sweep_aside() {
     let (with, without) = (parse_protocol(&text, Path::new("a")), parse_protocol(SQUEEZE, Path::new("a")));
     let (with, without) = (with.unwrap(), without.unwrap());
     assert!(with.has_sweep && !without.has_sweep);
-    assert_eq!((with.model, with.steps), (without.model, without.steps));
+    assert_eq!((with.contact, with.steps), (without.contact, without.steps));
     let schema = schema_protocol().to_string();
     assert!(schema.contains("latin hypercube") && schema.contains("log 1e3..1e6 /s, 50"), "{schema}");
 }

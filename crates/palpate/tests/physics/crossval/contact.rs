@@ -7,8 +7,8 @@ use crate::common::reference;
 use palpate::contact::{Curve, Equilibrium, Layers, RateDependence, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactEventKind, ContactModel, ForceHistory, Motion, Sampling, Separation, SimulateError, VaryingContact,
-    simulate, simulate_force, strain_wave,
+    Contact, ContactEventKind, ContactModel, ForceHistory, Motion, Sampling, Separation, SimulateError, simulate,
+    simulate_force, strain_wave,
 };
 use palpate::test_problems::paper_ball;
 use serde::Deserialize;
@@ -465,7 +465,7 @@ fn with_a_rate_that_depends_on_strain_or_direction() {
             "strain" => (RateDependence::Strain { factor: *factor }, tolerance.strain),
             _ => (RateDependence::Direction { factor: *factor }, tolerance.direction),
         };
-        let contact = VaryingContact {
+        let contact = Contact::Latency {
             model: case.model(),
             rate,
         };
@@ -476,7 +476,7 @@ fn with_a_rate_that_depends_on_strain_or_direction() {
             _ => simulate(&ForceHistory::new(times, values).unwrap(), &contact, &sampling),
         }
         .unwrap();
-        let depth = contact.model.specimen.depth();
+        let depth = contact.specimen().depth();
         let off = distance(&result.contact_displacement, &case.contact_displacement) / depth;
         verdict.add(&case.name, "displacement", off, allowed);
         verdict.add(&case.name, "excess strain", distance(&result.excess_strain, &case.excess_strain), allowed);
@@ -488,8 +488,9 @@ fn with_a_rate_that_depends_on_strain_or_direction() {
 #[test]
 fn a_surface_left_alone_recovers_by_its_own_rate() {
     for rate in [RateDependence::Strain { factor: 0.2 }, RateDependence::Direction { factor: 0.3 }] {
-        let mut contact = VaryingContact {
-            model: paper_ball(Separation::Unilateral),
+        let model = paper_ball(Separation::Unilateral);
+        let contact = Contact::Latency {
+            model: model.clone(),
             rate,
         };
         let squeeze = Motion::new(vec![0.0, 1.0, 11.0, 11.01, 80.0], vec![0.0, 0.015, 0.015, -0.01, -0.01]).unwrap();
@@ -498,8 +499,8 @@ fn a_surface_left_alone_recovers_by_its_own_rate() {
         assert!(off.force.iter().all(|force| *force == 0.0) && off.contact_displacement[0] > 1e-3);
         let since = times[0];
         let again = |elapsed: f64, dent: f64| {
-            let (depth, layers) = (contact.model.specimen.depth(), contact.model.layers.count());
-            let law = |y: f64| rate.times(-1.0, y) * contact.model.law.rate_coefficient() / layers * y.powi(5);
+            let (depth, layers) = (model.specimen.depth(), model.layers.count());
+            let law = |y: f64| rate.times(-1.0, y) * model.law.rate_coefficient() / layers * y.powi(5);
             // Runge and Kutta's method of fourth order.
             let (mut y, steps) = (dent / depth, 4000);
             let h = elapsed / f64::from(steps);
@@ -515,9 +516,8 @@ fn a_surface_left_alone_recovers_by_its_own_rate() {
             let exact = again(time - since, off.contact_displacement[0]);
             assert!((u - exact).abs() < 1e-6 * 0.035, "{rate:?} at {time} s: {u} {exact}");
         }
-        contact.rate = RateDependence::Constant;
-        let plain = simulate(&squeeze, &contact, &Sampling::Times(times.clone())).unwrap();
-        let model = simulate(&squeeze, &contact.model, &Sampling::Times(times)).unwrap();
+        let plain = simulate(&squeeze, &Contact::from(model.clone()), &Sampling::Times(times.clone())).unwrap();
+        let model = simulate(&squeeze, &model, &Sampling::Times(times)).unwrap();
         assert_eq!(plain.contact_displacement, model.contact_displacement);
     }
 }
