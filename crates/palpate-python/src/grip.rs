@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use palpate::calibrate::Material as Body;
-use palpate::grip::{Band, Control, Grasp, Grip as Gripper, GripError, Lasts, Limits, Objective, Question, Regrip};
+use palpate::grip::{
+    Band, Control, Grasp, Grip as Gripper, GripError, Limits, Objective, Question, Regrip, TimeToSlip,
+};
 use palpate_files::description::MaterialFile;
 use palpate_report::document::GripDocument;
 use palpate_report::result::GrippedBody;
@@ -118,7 +120,7 @@ struct Kept {
     confidence: f64,
     holds: bool,
     squeeze: Option<Holding>,
-    neighbours: Vec<(f64, Lasts)>,
+    neighbours: Vec<(f64, TimeToSlip)>,
     back_off: Option<BackOff>,
     force_held: Option<ForceHeld>,
     schedule: Option<Schedule>,
@@ -170,7 +172,7 @@ impl Kept {
             squeeze: answer.squeeze.as_ref().ok().map(Into::into),
             neighbours: answer.neighbours.clone(),
             back_off: answer.back_off.as_ref().ok().map(Into::into),
-            force_held: answer.pressed.as_ref().ok().map(Into::into),
+            force_held: answer.force_hold.as_ref().ok().map(Into::into),
             schedule: answer.schedule.as_ref().and_then(|made| made.as_ref().ok()).map(Into::into),
             refused: body.refused().into_iter().map(refused).collect(),
         })

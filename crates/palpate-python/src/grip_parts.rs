@@ -5,8 +5,8 @@ use std::sync::Arc;
 use arrow_array::{ArrayRef, Float64Array, StringArray};
 use palpate::calibrate::Prediction as Predicted;
 use palpate::grip::{
-    BackOff as Backed, Followed, Holding as Found, Lasts, Move, PlanKind, Pressed, Regrip, Schedule as Squeezes,
-    Sensitivity,
+    BackOff as Backed, Followed, ForceHold, Holding as Found, Move, PlanKind, Regrip, Schedule as Squeezes,
+    Sensitivity, TimeToSlip,
 };
 use palpate::number::significant;
 use pyo3::prelude::*;
@@ -19,7 +19,7 @@ use crate::table::Table;
 use crate::work::{Made, made_again};
 
 /// A time, s; infinite for always.
-pub(crate) fn seconds(lasts: Lasts) -> f64 {
+pub(crate) fn seconds(lasts: TimeToSlip) -> f64 {
     lasts.seconds().unwrap_or(f64::INFINITY)
 }
 
@@ -32,7 +32,7 @@ fn column<T>(rows: &[T], number: fn(&T) -> Option<f64>) -> ArrayRef {
 }
 
 /// How long squeezes beside the one that is asked about hold.
-pub(crate) fn neighbour_table(neighbours: &[(f64, Lasts)]) -> PyResult<Table> {
+pub(crate) fn neighbour_table(neighbours: &[(f64, TimeToSlip)]) -> PyResult<Table> {
     Table::of(vec![
         ("displacement_m", column(neighbours, |row| Some(row.0))),
         ("time_to_slip_s", column(neighbours, |row| Some(seconds(row.1)))),
@@ -79,8 +79,8 @@ pub(crate) struct Holding {
     /// Work of the jaws while they close, J.
     #[pyo3(get)]
     work_j: f64,
-    lasts: Lasts,
-    interval: Option<(Lasts, Lasts)>,
+    lasts: TimeToSlip,
+    interval: Option<(TimeToSlip, TimeToSlip)>,
     /// How sharply the time depends on the squeeze, d ln(time)/d(displacement), 1/m; None where it slips at once or never.
     #[pyo3(get)]
     sharpness_per_m: Option<f64>,
@@ -156,8 +156,8 @@ impl Holding {
 
     fn __repr__(&self) -> String {
         let time = match self.lasts {
-            Lasts::Always => "always".to_owned(),
-            Lasts::For(time) => format!("for {} s", significant(time, 3)),
+            TimeToSlip::Never => "always".to_owned(),
+            TimeToSlip::After(time) => format!("for {} s", significant(time, 3)),
         };
         format!(
             "<palpate.Holding {}: {} mm, {} N, {} N relaxed, {} N needed; holds {time}>",
@@ -278,8 +278,8 @@ pub(crate) struct ForceHeld {
     course: Predicted,
 }
 
-impl From<&Followed<Pressed>> for ForceHeld {
-    fn from(made: &Followed<Pressed>) -> Self {
+impl From<&Followed<ForceHold>> for ForceHeld {
+    fn from(made: &Followed<ForceHold>) -> Self {
         let found = &made.found;
         Self {
             force_n: found.force,

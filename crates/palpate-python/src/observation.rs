@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, StringArray};
+use palpate::fit::Estimate;
+use palpate::grip::TimeToSlip;
 use palpate::number::significant;
-use palpate::observe::{Held, Observation as Seen, Phase, Slip, TimeToSlip, Uncertain};
+use palpate::observe::{ContactPhase, Held, Observation as Seen, Slip, SlipForecast};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
@@ -21,12 +23,12 @@ pub(crate) struct Observation {
     seen: Seen,
 }
 
-fn phase(phase: Phase) -> &'static str {
+fn phase(phase: ContactPhase) -> &'static str {
     match phase {
-        Phase::Free => "free",
-        Phase::Loading => "loading",
-        Phase::Holding => "holding",
-        Phase::Unloading => "unloading",
+        ContactPhase::Free => "free",
+        ContactPhase::Loading => "loading",
+        ContactPhase::Holding => "holding",
+        ContactPhase::Unloading => "unloading",
     }
 }
 
@@ -37,12 +39,17 @@ fn held(held: Held) -> &'static str {
     }
 }
 
-fn slips(time: TimeToSlip) -> &'static str {
-    match time {
-        TimeToSlip::Unknown => "not_known_yet",
-        TimeToSlip::Never => "never",
-        TimeToSlip::After { value: None, .. } => "perhaps_never",
-        TimeToSlip::After { value: Some(_), .. } => "after",
+fn slips(forecast: SlipForecast) -> &'static str {
+    match forecast {
+        SlipForecast::Unknown => "not_known_yet",
+        SlipForecast::Known {
+            low: TimeToSlip::Never, ..
+        } => "never",
+        SlipForecast::Known {
+            best: TimeToSlip::Never,
+            ..
+        } => "perhaps_never",
+        SlipForecast::Known { .. } => "after",
     }
 }
 
@@ -55,21 +62,20 @@ fn warning(slip: Slip) -> &'static str {
 }
 
 /// Best value and ends of the interval, s; infinite for never.
-fn times(time: Option<TimeToSlip>) -> Option<(f64, f64, f64)> {
-    let open = |time: Option<f64>| time.unwrap_or(f64::INFINITY);
-    match time? {
-        TimeToSlip::Unknown => None,
-        TimeToSlip::Never => Some((f64::INFINITY, f64::INFINITY, f64::INFINITY)),
-        TimeToSlip::After { value, low, high } => Some((open(value), low, open(high))),
+fn times(forecast: Option<SlipForecast>) -> Option<(f64, f64, f64)> {
+    let seconds = |time: TimeToSlip| time.seconds().unwrap_or(f64::INFINITY);
+    match forecast? {
+        SlipForecast::Unknown => None,
+        SlipForecast::Known { best, low, high } => Some((seconds(best), seconds(low), seconds(high))),
     }
 }
 
-fn value(number: Option<Uncertain>) -> Option<f64> {
+fn value(number: Option<Estimate>) -> Option<f64> {
     number.map(|number| number.value)
 }
 
-fn deviation(number: Option<Uncertain>) -> Option<f64> {
-    number.map(|number| number.deviation)
+fn deviation(number: Option<Estimate>) -> Option<f64> {
+    number.and_then(|number| number.standard_error)
 }
 
 /// Observations as a table: a column for each attribute of `Observation`, numbers that are not known missing.
@@ -248,7 +254,13 @@ impl Observation {
         let held = seen.held.map_or_else(String::new, |what| format!(" the {}", held(what)));
         let slip = match (seen.slip, seen.time_to_slip) {
             (Slip::Slipping, _) => ", slipping".to_owned(),
-            (_, Some(TimeToSlip::After { value: Some(time), .. })) => format!(", slips in {} s", significant(time, 3)),
+            (
+                _,
+                Some(SlipForecast::Known {
+                    best: TimeToSlip::After(time),
+                    ..
+                }),
+            ) => format!(", slips in {} s", significant(time, 3)),
             _ => String::new(),
         };
         let (time, force) = (significant(seen.time, 6), significant(seen.force, 4));

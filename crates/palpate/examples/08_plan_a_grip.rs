@@ -4,7 +4,7 @@
 
 use palpate::analysis::Geometry;
 use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, Material, calibrate};
-use palpate::grip::{Band, Grasp, Grip, Lasts, Limits, Objective, Plan, Regrip};
+use palpate::grip::{Band, Grasp, Grip, Limits, Objective, Plan, Regrip, TimeToSlip};
 use palpate::simulate::{Separation, simulate_force};
 use palpate::test_problems::{Noise, PAPER_RATE, paper_ball, paper_test_a};
 use palpate::watch::Unwatched;
@@ -29,7 +29,7 @@ fn calibrated() -> Result<Material, Box<dyn std::error::Error>> {
     Ok(calibrate(&data, candidate, 0.95, &mut Unwatched)?.material)
 }
 
-fn told(lasts: Lasts) -> String {
+fn told(lasts: TimeToSlip) -> String {
     lasts.seconds().map_or_else(|| "always".to_owned(), |time| format!("{time:.2} s"))
 }
 
@@ -69,7 +69,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         backed.drift,
         backed.plain_drift
     );
-    let pressed = grip.pressed(None, 60.0)?;
+    let pressed = grip.force_hold(None, 60.0)?;
     println!(
         "{:.2} N held: the body creeps from {:.2} mm to {:.2} mm",
         pressed.force,

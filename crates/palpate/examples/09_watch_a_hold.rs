@@ -4,7 +4,8 @@
 
 use std::time::Instant;
 
-use palpate::observe::{Observer, ObserverOptions, Phase, Slip, TimeToSlip};
+use palpate::grip::TimeToSlip;
+use palpate::observe::{ContactPhase, Observer, ObserverOptions, Slip, SlipForecast};
 use palpate::simulate::{ContactState, Separation};
 use palpate::test_problems::{Noise, paper_ball};
 
@@ -32,13 +33,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if seen.began {
             println!("{time:.3} s: a hold began at {:.3} s", seen.held_since.unwrap_or(time));
         }
-        if seen.phase == Phase::Holding && time > 0.7 + 2.0 * f64::from(told) && told < 4 {
+        if seen.phase == ContactPhase::Holding && time > 0.7 + 2.0 * f64::from(told) && told < 4 {
             told += 1;
             match seen.time_to_slip {
-                Some(TimeToSlip::After {
-                    value: Some(value),
-                    low,
-                    high: Some(high),
+                Some(SlipForecast::Known {
+                    best: TimeToSlip::After(value),
+                    low: TimeToSlip::After(low),
+                    high: TimeToSlip::After(high),
                 }) => {
                     println!("{time:.3} s: slips in {value:.1} s ({low:.1} to {high:.1} s)");
                 }

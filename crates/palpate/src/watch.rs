@@ -83,6 +83,15 @@ pub(crate) struct Stages<'a> {
     /// Shares of the whole at which the present stage begins and ends.
     stage: (f64, f64),
     done: usize,
+    /// Once ended it stays so, whatever the watch says later.
+    cancelled: bool,
+}
+
+#[cfg(feature = "std")]
+impl std::fmt::Debug for Stages<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Stages").field("task", &self.task).field("done", &self.done).finish_non_exhaustive()
+    }
 }
 
 #[cfg(feature = "std")]
@@ -95,6 +104,7 @@ impl<'a> Stages<'a> {
             task,
             stage: (0.0, 0.0),
             done: 0,
+            cancelled: false,
         }
     }
 
@@ -113,13 +123,23 @@ impl<'a> Stages<'a> {
 
     /// Reports that work goes on, no further than it was.
     pub(crate) fn hear(&mut self) -> Result<(), Cancelled> {
-        self.watch.report(Progress::counted(&self.task, self.done, Self::WHOLE))
+        self.cancelled |= self.watch.report(Progress::counted(&self.task, self.done, Self::WHOLE)).is_err();
+        if self.cancelled { Err(Cancelled) } else { Ok(()) }
     }
 
     /// Reports that all is done.
-    pub(crate) fn finish(mut self) -> Result<(), Cancelled> {
+    pub(crate) fn finish(&mut self) -> Result<(), Cancelled> {
         self.done = Self::WHOLE;
         self.hear()
+    }
+}
+
+/// Work inside a stage: how far it is counts as that share of the stage.
+#[cfg(feature = "std")]
+impl Watch for Stages<'_> {
+    fn report(&mut self, progress: Progress<'_>) -> Result<(), Cancelled> {
+        let total = progress.total.filter(|total| *total > 0);
+        self.reach(total.map_or(0.0, |total| progress.done as f64 / total as f64))
     }
 }
 

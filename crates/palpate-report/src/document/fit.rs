@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use palpate::analysis::{HoldAnalysis, Prediction, Signal};
+use palpate::analysis::{HoldAnalysis, HoldoutError, Signal};
 use palpate::fit::{Domain, Estimate, ExponentChoice, LatencyFit};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -55,7 +55,7 @@ impl FitDocument {
         fit: &LatencyFit,
         hold: &HoldAnalysis,
         delta_bic: Option<f64>,
-        prediction: Option<Prediction>,
+        prediction: Option<HoldoutError>,
     ) -> Self {
         let is_strain = hold.signal == Signal::Strain;
         let newtons = hold.force_per_signal;

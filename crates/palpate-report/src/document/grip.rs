@@ -1,7 +1,7 @@
 //! `palpate.grip/1`: a planned grip.
 
 use palpate::grip::{
-    BackOff, Control, Holding, Lasts, Move, Objective, PlanKind, Pressed, Regrip, Schedule, Sensitivity,
+    BackOff, Control, ForceHold, Holding, Move, Objective, PlanKind, Regrip, Schedule, Sensitivity, TimeToSlip,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -251,10 +251,10 @@ pub struct GripDocument {
     pub remarks: Vec<String>,
 }
 
-impl From<Lasts> for LastsDocument {
-    fn from(lasts: Lasts) -> Self {
+impl From<TimeToSlip> for LastsDocument {
+    fn from(lasts: TimeToSlip) -> Self {
         Self {
-            always: lasts == Lasts::Always,
+            always: lasts == TimeToSlip::Never,
             seconds: lasts.seconds(),
         }
     }
@@ -311,8 +311,8 @@ impl From<&BackOff> for BackOffDocument {
     }
 }
 
-impl From<&Pressed> for PressedDocument {
-    fn from(found: &Pressed) -> Self {
+impl From<&ForceHold> for PressedDocument {
+    fn from(found: &ForceHold) -> Self {
         Self {
             force_n: found.force,
             duration_s: found.duration,
@@ -407,7 +407,7 @@ impl GripDocument {
             .to_owned(),
             duration: question
                 .duration
-                .map(|time| if time.is_finite() { Lasts::For(time) } else { Lasts::Always }.into()),
+                .map(|time| if time.is_finite() { TimeToSlip::After(time) } else { TimeToSlip::Never }.into()),
             objective: question.squeeze.is_none().then(|| objective.to_owned()),
             assured: question.assured,
             holds: answer.holds() == Ok(true),
@@ -422,7 +422,7 @@ impl GripDocument {
                 })
                 .collect(),
             back_off: answer.back_off.as_ref().ok().map(|made| (&made.found).into()),
-            force_held: answer.pressed.as_ref().ok().map(|made| (&made.found).into()),
+            force_held: answer.force_hold.as_ref().ok().map(|made| (&made.found).into()),
             schedule: answer.schedule.as_ref().and_then(|made| made.as_ref().ok()).map(|made| (&made.found).into()),
             refused: refused.collect(),
             extrapolations: body.extrapolations().iter().map(ToString::to_string).collect(),

@@ -1,6 +1,8 @@
 //! `palpate.watch/1`: what an observer reports while it watches a contact, one JSON object a line.
 
-use palpate::observe::{Held, Observation, Slip, TimeToSlip, Uncertain};
+use palpate::fit::Estimate;
+use palpate::grip::TimeToSlip;
+use palpate::observe::{Held, Observation, Slip, SlipForecast};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -130,8 +132,8 @@ pub struct ObservationDocument {
     pub warning: Option<String>,
 }
 
-fn parted(number: Option<Uncertain>) -> (Option<f64>, Option<f64>) {
-    (number.map(|number| number.value), number.map(|number| number.deviation))
+fn parted(number: Option<Estimate>) -> (Option<f64>, Option<f64>) {
+    (number.map(|number| number.value), number.and_then(|number| number.standard_error))
 }
 
 impl ObservationDocument {
@@ -144,7 +146,11 @@ impl ObservationDocument {
         let (strain, strain_deviation) = parted(seen.excess_strain);
         let hold = seen.held.zip(seen.held_since);
         let times = match seen.time_to_slip {
-            Some(TimeToSlip::After { value, low, high }) => Some((value, low, high)),
+            Some(SlipForecast::Known {
+                best,
+                low: TimeToSlip::After(low),
+                high,
+            }) => Some((best.seconds(), low, high.seconds())),
             _ => None,
         };
         Self {
@@ -195,7 +201,7 @@ impl WatchedHoldDocument {
 
     /// The same with the last equilibrium force and speed of creep.
     #[must_use]
-    pub fn with_last(mut self, equilibrium_force: Option<Uncertain>, creep_rate: Option<Uncertain>) -> Self {
+    pub fn with_last(mut self, equilibrium_force: Option<Estimate>, creep_rate: Option<Estimate>) -> Self {
         (self.equilibrium_force_n, self.equilibrium_force_deviation_n) = parted(equilibrium_force);
         (self.creep_rate_m_per_s, self.creep_rate_deviation_m_per_s) = parted(creep_rate);
         self

@@ -1,7 +1,7 @@
 //! What a planned grip says, in sentences.
 
 use palpate::contact::Sides;
-use palpate::grip::{BackOff, Control, Grasp, Holding, Lasts, Objective, PlanKind, Pressed, Regrip, Schedule};
+use palpate::grip::{BackOff, Control, ForceHold, Grasp, Holding, Objective, PlanKind, Regrip, Schedule, TimeToSlip};
 use palpate::number::significant;
 
 use super::gripped::GrippedBody;
@@ -50,7 +50,7 @@ impl GrippedBody<'_> {
                 Ok(squeeze) => format!("{word}: {}", of_squeeze(self, &squeeze.found, holds)),
                 Err(error) => format!("No: {error}."),
             },
-            Control::Force => match &answer.pressed {
+            Control::Force => match &answer.force_hold {
                 Ok(pressed) => format!("{word}: {}", of_pressed(&pressed.found, holds)),
                 Err(error) => format!("No: {error}."),
             },
@@ -68,7 +68,7 @@ impl GrippedBody<'_> {
         if let Ok(squeeze) = &answer.squeeze {
             remarks.extend(on_squeeze(&squeeze.found));
         }
-        if let (Ok(squeeze), Ok(pressed)) = (&answer.squeeze, &answer.pressed)
+        if let (Ok(squeeze), Ok(pressed)) = (&answer.squeeze, &answer.force_hold)
             && pressed.found.holds
         {
             remarks.push(both_ways(&squeeze.found, &pressed.found, answer.shown));
@@ -106,7 +106,7 @@ pub(crate) fn lasted(seconds: f64) -> String {
     format!("{} {unit}", significant(seconds / length, 3))
 }
 
-fn lasts(time: Lasts) -> String {
+fn lasts(time: TimeToSlip) -> String {
     time.seconds().map_or_else(|| "always".to_owned(), lasted)
 }
 
@@ -161,20 +161,20 @@ fn of_squeeze(body: &GrippedBody<'_>, found: &Holding, holds: bool) -> String {
         format!(" ({share}: {} to {})", lasts(low), lasts(high))
     });
     match found.lasts {
-        Lasts::For(0.0) => format!(
+        TimeToSlip::After(0.0) => format!(
             "{what} slips at once: {} are needed, {} are there when the jaws stop.",
             newton(found.needed_force),
             newton(found.start_force)
         ),
-        Lasts::Always if found.relaxed_force >= found.needed_force => {
+        TimeToSlip::Never if found.relaxed_force >= found.needed_force => {
             format!("{what} holds always{interval}: the relaxed force of {} is enough.", newton(found.relaxed_force))
         }
-        Lasts::Always => format!(
+        TimeToSlip::Never => format!(
             "{what} holds for more than ten years{interval}, and not for good: it relaxes to {}, and {} are needed.",
             newton(found.relaxed_force),
             newton(found.needed_force)
         ),
-        Lasts::For(time) => {
+        TimeToSlip::After(time) => {
             let until = body.answer.question.duration.filter(|_| !holds).map_or_else(String::new, |wanted| {
                 if wanted.is_finite() {
                     format!("; {} were asked for", lasted(wanted))
@@ -187,7 +187,7 @@ fn of_squeeze(body: &GrippedBody<'_>, found: &Holding, holds: bool) -> String {
     }
 }
 
-fn of_pressed(found: &Pressed, holds: bool) -> String {
+fn of_pressed(found: &ForceHold, holds: bool) -> String {
     if holds {
         return format!("a force of {} that is held does not slip.", newton(found.force));
     }
@@ -211,7 +211,7 @@ fn on_squeeze(found: &Holding) -> Option<String> {
     })
 }
 
-fn both_ways(squeeze: &Holding, pressed: &Pressed, shown: f64) -> String {
+fn both_ways(squeeze: &Holding, pressed: &ForceHold, shown: f64) -> String {
     let surplus = 100.0 * (squeeze.peak_force / squeeze.needed_force - 1.0);
     let standing = if surplus > 0.0 {
         format!("they squeeze {} % harder than is needed, and wait", significant(surplus, 2))

@@ -30,7 +30,7 @@ impl GrippedBody<'_> {
         [
             ("squeeze", answer.squeeze.as_ref().err()),
             ("squeeze and back off", answer.back_off.as_ref().err()),
-            ("force held", answer.pressed.as_ref().err()),
+            ("force held", answer.force_hold.as_ref().err()),
             ("squeeze again", answer.schedule.as_ref().and_then(|made| made.as_ref().err())),
         ]
         .into_iter()

@@ -2,8 +2,9 @@
 
 use palpate::fit::Termination;
 use palpate::forecast::Certainty;
+use palpate::grip::TimeToSlip;
 use palpate::number::exact;
-use palpate::observe::{self, Held, Slip, TimeToSlip};
+use palpate::observe::{ContactPhase, Held, Slip, SlipForecast};
 use palpate::segment::{After, HoldMode, HoldStart, Phase};
 
 /// The word for a phase.
@@ -74,12 +75,12 @@ pub(crate) fn percent(share: f64) -> String {
 
 /// The word for what happens at a tick.
 #[must_use]
-pub fn watched_phase_word(phase: observe::Phase) -> &'static str {
+pub fn watched_phase_word(phase: ContactPhase) -> &'static str {
     match phase {
-        observe::Phase::Free => "free",
-        observe::Phase::Loading => "loading",
-        observe::Phase::Holding => "holding",
-        observe::Phase::Unloading => "unloading",
+        ContactPhase::Free => "free",
+        ContactPhase::Loading => "loading",
+        ContactPhase::Holding => "holding",
+        ContactPhase::Unloading => "unloading",
     }
 }
 
@@ -94,12 +95,17 @@ pub fn held_word(held: Held) -> &'static str {
 
 /// The word for whether it slips.
 #[must_use]
-pub fn slips_word(time: TimeToSlip) -> &'static str {
-    match time {
-        TimeToSlip::Unknown => "not_known_yet",
-        TimeToSlip::Never => "never",
-        TimeToSlip::After { value: None, .. } => "perhaps_never",
-        TimeToSlip::After { value: Some(_), .. } => "after",
+pub fn slips_word(forecast: SlipForecast) -> &'static str {
+    match forecast {
+        SlipForecast::Unknown => "not_known_yet",
+        SlipForecast::Known {
+            low: TimeToSlip::Never, ..
+        } => "never",
+        SlipForecast::Known {
+            best: TimeToSlip::Never,
+            ..
+        } => "perhaps_never",
+        SlipForecast::Known { .. } => "after",
     }
 }
 

@@ -23,7 +23,7 @@ mod together;
 
 pub use error::AnalysisError;
 pub use finding::{Finding, Severity};
-pub use holds::{CreepError, CreepHold, HoldAnalysis, Prediction, RateBias, Signal, creep_holds};
+pub use holds::{CreepError, CreepHold, HoldAnalysis, HoldoutError, RateBias, Signal, creep_holds};
 pub use options::{AnalysisOptions, Geometry, LayersChoice};
 pub use pipeline::{Analysis, analyze, examine};
 pub use prepare::{ClockSkew, Corrected, Prepared, clock_skew, corrected, prepared, suspicious_signs};

@@ -2,19 +2,9 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Simd, dispatch};
-
-use super::body::Bodies;
-use super::cascade::{self, Cascade, Stack};
-use super::layer::{self, ContactLayers, Laws};
-use super::parallel::{for_each, for_each_part};
-use super::stops::Stops;
+use super::parallel::for_each;
 use crate::contact::{Equilibrium, Shape};
-use crate::latency::lanes::Power;
-use crate::simulate::{
-    ContactModel, Motion, Sampling, Separation, SimulateError, check_displacements, simulate_force, strain_wave,
-};
-use crate::vector::level;
+use crate::simulate::{ContactModel, Motion, Separation, SimulateError, check_displacements};
 
 /// Why a batch could not be made or simulated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -196,83 +186,6 @@ impl Batch {
         from..until
     }
 
-    /// Contact force (N) of every contact at the end of its motion.
-    ///
-    /// # Errors
-    /// [`BatchError::Contact`] if the numbers of a contact leave the range of doubles.
-    pub fn final_forces(&self) -> Result<Vec<f64>, BatchError> {
-        let mut forces = vec![0.0; self.len()];
-        self.fill_forces(None, &mut forces);
-        self.one_by_one(&mut forces, 1, |model, motion| simulate_force(motion, model, &[motion.end()]))?;
-        self.checked(forces, 1, None)
-    }
-
-    /// Contact force (N) of every contact at rising `times` (s), which lie inside its motion: those of contact i are the i-th row of
-    /// `times.len()` numbers.
-    ///
-    /// Every sample ends a step: where a few suffice, ask for a few.
-    ///
-    /// # Errors
-    /// [`BatchError::Contact`] for times that do not rise or lie outside a motion, and if numbers leave the range of doubles.
-    pub fn forces_at(&self, times: &[f64]) -> Result<Vec<f64>, BatchError> {
-        self.check_times(times)?;
-        let mut forces = vec![0.0; self.len() * times.len()];
-        self.fill_forces(Some(times), &mut forces);
-        self.one_by_one(&mut forces, times.len(), |model, motion| simulate_force(motion, model, times))?;
-        self.checked(forces, times.len(), Some(times))
-    }
-
-    /// Strain of every layer of every contact at rising `times` (s), which lie inside its motion.
-    ///
-    /// `tolerance` is the error allowed in a step of a node, in units of what the surface travels at most, from 10⁻¹³ to 0.01.
-    /// The strain of a layer is m differences of nodes: 10⁻⁹ gives it to 10⁻⁷ or better.
-    ///
-    /// # Errors
-    /// As for [`forces_at`](Self::forces_at); [`BatchError::Tolerance`]; [`SimulateError::FractionalLayers`] for a contact whose number
-    /// of layers is not whole.
-    ///
-    /// ```
-    /// use palpate::batch::Batch;
-    /// use palpate::simulate::Separation;
-    /// use palpate::test_problems::{paper_ball, paper_test_a};
-    ///
-    /// let batch = Batch::shared(&vec![paper_ball(Separation::Bonded); 20], &paper_test_a())?;
-    /// let strains = batch.strains_at(&[0.6, 43.0], 1e-10)?;
-    /// // excess 0.133032493898 on top of 12.5 mm/35 mm in the contact layer
-    /// assert!((strains.of(7, 1)[0] - (0.133_032_493_898 + 12.5 / 35.0)).abs() < 1e-8);
-    /// assert_eq!(strains.of(7, 1).len(), 8);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn strains_at(&self, times: &[f64], tolerance: f64) -> Result<LayerStrains, BatchError> {
-        if !(1e-13..=0.01).contains(&tolerance) {
-            return Err(BatchError::Tolerance { found: tolerance });
-        }
-        self.check_times(times)?;
-        if let Some(index) = self.layers.iter().position(|m| m.fract() != 0.0 || *m >= 1e6) {
-            let found = self.layers[index];
-            let source = SimulateError::FractionalLayers { found };
-            return Err(BatchError::Contact { index, source });
-        }
-        let stride = self.layers.iter().fold(0.0, |most: f64, m| most.max(*m)) as usize;
-        let row = times.len() * stride;
-        let mut strains = vec![0.0; self.len() * row];
-        for_each_part(&mut strains, cascade::GROUP * row, |index, part| {
-            dispatch!(level(), simd => self.strains_of(simd, index * cascade::GROUP, times, (tolerance, stride), part));
-        });
-        self.one_by_one(&mut strains, row, |model, motion| {
-            let wave = strain_wave(motion, model, &Sampling::Times(times.to_vec()))?;
-            let at = |sample: usize, layer: usize| wave.strain.get(layer).map_or(0.0, |strain| strain[sample]);
-            Ok((0..row).map(|i| at(i / stride, i % stride)).collect())
-        })?;
-        let strains = self.checked(strains, row, None)?;
-        Ok(LayerStrains {
-            strains,
-            layers: self.layers.iter().map(|m| *m as usize).collect(),
-            samples: times.len(),
-            stride,
-        })
-    }
-
     /// Checks that times rise and lie inside every motion.
     pub(super) fn check_times(&self, times: &[f64]) -> Result<(), BatchError> {
         let rises = |index: usize| index == 0 || times[index - 1] <= times[index];
@@ -308,7 +221,7 @@ impl Batch {
     }
 
     /// Fills the rows of the contacts that are simulated alone with what `simulated` says.
-    fn one_by_one(
+    pub(super) fn one_by_one(
         &self,
         rows: &mut [f64],
         len: usize,
@@ -342,156 +255,5 @@ impl Batch {
     /// The contacts of the group that begins at `first`; past the last contact it is repeated.
     pub(super) fn group<const L: usize>(&self, first: usize) -> [usize; L] {
         std::array::from_fn(|lane| (first + lane).min(self.len() - 1))
-    }
-
-    /// Forces of some contacts in double precision, row by row.
-    pub(super) fn forces_in_double(&self, contacts: &[usize], times: Option<&[f64]>) -> Vec<f64> {
-        const L: usize = layer::GROUP;
-        let row = times.map_or(1, <[f64]>::len);
-        let mut forces = vec![0.0; contacts.len() * row];
-        for_each_part(&mut forces, L * row, |index, part| {
-            let group = std::array::from_fn(|lane| contacts[(index * L + lane).min(contacts.len() - 1)]);
-            dispatch!(level(), simd => self.forces_of(simd, group, times, part));
-        });
-        forces
-    }
-
-    fn fill_forces(&self, times: Option<&[f64]>, forces: &mut [f64]) {
-        let row = times.map_or(1, <[f64]>::len);
-        for_each_part(forces, layer::GROUP * row, |index, part| {
-            dispatch!(level(), simd => self.forces_of(simd, self.group(index * layer::GROUP), times, part));
-        });
-    }
-
-    /// The forces of one group, contact by contact.
-    #[inline(always)]
-    fn forces_of<S: Simd>(&self, simd: S, group: [usize; layer::GROUP], times: Option<&[f64]>, part: &mut [f64]) {
-        const L: usize = layer::GROUP;
-        let mut stops = Stops::<L>::new(self, group);
-        let exponent = stops.column(&self.exponent);
-        let laws = Laws {
-            power: Power::of(&exponent),
-            exponent,
-            rate_coefficient: stops.column(&self.rate_coefficient),
-        };
-        let (depth, layers) = (stops.column(&self.depth), stops.column(&self.layers));
-        let bodies = Bodies::new(self, &stops);
-        let mut contact = ContactLayers::new();
-        let samples = times.map_or(1, <[f64]>::len);
-        for sample in 0..samples {
-            let targets = times.map_or_else(|| stops.ends(), |times| [times[sample]; L]);
-            while let Some(leg) = stops.next(&targets) {
-                let mut drive = [0.0; L];
-                for lane in 0..L {
-                    drive[lane] = leg.speed[lane] * (layers[lane] - 1.0) / depth[lane];
-                }
-                contact.advance(simd, &laws, &drive, &leg.elapsed);
-            }
-            let forces = bodies.forces(&contact.excess, &stops.displacement());
-            for (row, force) in part.chunks_exact_mut(samples).zip(forces) {
-                row[sample] = force;
-            }
-        }
-    }
-
-    /// The strains of one group, contact by contact and sample by sample.
-    #[inline(always)]
-    fn strains_of<S: Simd>(
-        &self,
-        simd: S,
-        first: usize,
-        times: &[f64],
-        (tolerance, stride): (f64, usize),
-        part: &mut [f64],
-    ) {
-        const L: usize = cascade::GROUP;
-        let mut stops = Stops::<L>::new(self, self.group(first));
-        let (depth, layers) = (stops.column(&self.depth), stops.column(&self.layers));
-        let (begin, end) = (stops.time, stops.ends());
-        let stack = Stack::new(
-            stops.column(&self.exponent),
-            stops.column(&self.rate_coefficient),
-            layers,
-            std::array::from_fn(|lane| end[lane] - begin[lane]),
-        );
-        let reach = stops.farthest();
-        let allowed = std::array::from_fn(|lane| tolerance * (reach[lane] / depth[lane]).max(f64::MIN_POSITIVE));
-        let start = stops.displacement();
-        let mut cascade = Cascade::new(&stack, allowed, std::array::from_fn(|lane| start[lane] / depth[lane]));
-        let mut width = [0.0; L];
-        for (sample, &time) in times.iter().enumerate() {
-            while let Some(leg) = stops.next(&[time; L]) {
-                let (mut surface, mut speed) = ([0.0; L], [0.0; L]);
-                for lane in 0..L {
-                    surface[lane] = leg.from[lane] / depth[lane];
-                    speed[lane] = leg.speed[lane] / depth[lane];
-                    if leg.is_new[lane] {
-                        width[lane] = leg.piece[lane] / 64.0;
-                    }
-                }
-                cascade.advance(simd, &stack, (&surface, &speed), &leg.elapsed, width);
-                width = cascade.width();
-            }
-            let u = stops.displacement();
-            for (lane, row) in part.chunks_exact_mut(times.len() * stride).enumerate() {
-                let row = &mut row[sample * stride..][..layers[lane] as usize];
-                let mut outer = u[lane] / depth[lane];
-                for (layer, strain) in row.iter_mut().enumerate() {
-                    let inner = if layer + 1 < layers[lane] as usize { cascade.nodes()[layer * L + lane] } else { 0.0 };
-                    *strain = layers[lane] * (outer - inner);
-                    outer = inner;
-                }
-            }
-        }
-    }
-}
-
-/// Strain of every layer of every contact of a batch.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LayerStrains {
-    /// Contact by contact, sample by sample, `stride` layers each.
-    strains: Vec<f64>,
-    layers: Vec<usize>,
-    samples: usize,
-    stride: usize,
-}
-
-impl LayerStrains {
-    /// Strains of the layers of a contact at a sample, the contact layer first.
-    ///
-    /// # Panics
-    /// If there is no such contact or sample.
-    #[must_use]
-    pub fn of(&self, contact: usize, sample: usize) -> &[f64] {
-        assert!(sample < self.samples, "sample {sample} of {}", self.samples);
-        &self.strains[(contact * self.samples + sample) * self.stride..][..self.layers[contact]]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::latency::LatencyLaw;
-    use crate::test_problems::{paper_ball, paper_test_a};
-    use crate::vector::tests::on_every_level;
-
-    #[test]
-    fn the_same_bits_on_every_instruction_set() {
-        for exponents in [[1.0; 32], [2.0; 32], [5.0; 32], std::array::from_fn(|lane| 0.7 + 0.2 * lane as f64)] {
-            let models = exponents.map(|n| ContactModel {
-                law: LatencyLaw::new(n, 300.0).unwrap(),
-                ..paper_ball(Separation::Bonded)
-            });
-            let batch = Batch::shared(&models, &paper_test_a()).unwrap();
-            on_every_level(|| {
-                // On this thread, which is the one that pretends.
-                let mut forces = vec![0.0; 32];
-                dispatch!(level(), simd => batch.forces_of(simd, batch.group(0), None, &mut forces));
-                let mut strains = vec![0.0; 8 * 8];
-                dispatch!(level(), simd => batch.strains_of(simd, 0, &[43.0], (1e-8, 8), &mut strains));
-                forces.extend(strains);
-                forces
-            });
-        }
     }
 }

@@ -6,7 +6,9 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `contacts.rs` | `Batch`: the contacts in columns, checked; forces and strains of all of them |
+//! | `contacts.rs` | `Batch`: the contacts in columns, checked |
+//! | `forces.rs`, `strains.rs` | forces of all of them; strains of all their layers |
+//! | `summaries.rs` | what each of many runs comes to, under any drive and law: for sweeps |
 //! | `stops.rs` | a group of contacts on its way from knot to knot and sample to sample |
 //! | `body.rs` | force from excess strain and displacement |
 //! | `layer.rs` | contact layers: closed form in holds, regularised equation in ramps |
@@ -17,9 +19,14 @@
 mod body;
 mod cascade;
 mod contacts;
+mod forces;
 mod layer;
 mod parallel;
 mod single;
 mod stops;
+mod strains;
+mod summaries;
 
-pub use contacts::{Batch, BatchError, LayerStrains};
+pub use contacts::{Batch, BatchError};
+pub use strains::LayerStrains;
+pub use summaries::{Run, summaries};

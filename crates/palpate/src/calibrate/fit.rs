@@ -1,27 +1,18 @@
 //! One candidate fitted to a whole record.
 
-use serde::{Deserialize, Serialize};
-
-use super::candidate::Prepared;
 use super::material::names;
-use super::profile::FARTHEST;
-use super::search::{Problem, search};
+use super::prepared::Prepared;
+use super::problem::Problem;
+use super::search::search;
 use super::{CalibrateError, CalibrationData, Candidate, Material, MaterialNumber, MaterialUncertainty, Shown};
+use crate::analysis::HoldoutError;
 use crate::fit::{Assessed, Estimate, NoiseModel, Scale, Termination};
 use crate::forecast::{Criteria, criteria};
 use crate::simulate::{Motion, simulate_force};
 use crate::watch::{Stages, Watch};
 
-/// How well a calibration foretells what it was not fitted to.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Foretold {
-    /// Root mean square of measured less foretold force, N.
-    pub rmse: f64,
-    /// The same as a share of the largest force of the record.
-    pub relative: f64,
-    /// Samples foretold.
-    pub samples: usize,
-}
+/// Distance from the best value, as a logarithm, beyond which an end counts as open: a factor of a million.
+pub(super) const FARTHEST: f64 = 14.0;
 
 /// A candidate fitted to the whole of a record, ramps and holds alike.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +32,7 @@ pub struct Calibration {
     /// Information criteria, every sample counted as one; only differences between candidates on the same data mean anything.
     pub criteria: Criteria,
     /// What comes after the fitted part, if it was fitted in part.
-    pub foretold: Option<Foretold>,
+    pub foretold: Option<HoldoutError>,
     /// Why it ended.
     pub termination: Termination,
     /// Simulations it took.
@@ -167,7 +158,7 @@ pub fn calibrate(
     let foretold = (data.fitted() < data.times().len()).then(|| {
         let rest = data.fitted()..;
         let rmse = rms(&data.forces()[rest.clone()], &simulated[rest]);
-        Foretold {
+        HoldoutError {
             rmse,
             relative: rmse / largest,
             samples: data.times().len() - data.fitted(),

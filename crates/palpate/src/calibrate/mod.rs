@@ -1,10 +1,13 @@
 //! One set of numbers for a whole record: what a hold describes, a calibration predicts.
 //!
+//! A [`CalibrationData`] and a [`Candidate`] come in, a [`Calibration`] goes out, with the [`Material`] that grips and observers take.
+//!
 //! | file | what | equations |
 //! |---|---|---|
 //! | `data.rs` | what is fitted: a motion of the jaw and the force it met | |
-//! | `candidate.rs` | a law of the layer and one of the relaxed force, and the numbers that are searched | (10), (11) |
-//! | `starts.rs`, `search.rs` | a grid, then damped steps | |
+//! | `candidate.rs` | a law of the layer and one of the relaxed force | (10), (11) |
+//! | `prepared.rs` | the numbers of a candidate that are searched | |
+//! | `starts.rs`, `search.rs`, `problem.rs` | a grid, then damped steps | |
 //! | `fit.rs` | from there to numbers with intervals | |
 //! | `profile.rs` | intervals by the profile of what is left over | |
 //! | `material.rs` | the body with its numbers | |
@@ -17,6 +20,8 @@ mod error;
 mod fit;
 mod material;
 mod predict;
+mod prepared;
+mod problem;
 mod profile;
 mod search;
 mod starts;
@@ -24,7 +29,7 @@ mod starts;
 pub use candidate::{Candidate, EquilibriumLaw, RateLaw};
 pub use data::CalibrationData;
 pub use error::CalibrateError;
-pub use fit::{Calibration, Foretold, calibrate};
+pub use fit::{Calibration, calibrate};
 pub use material::{Body, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, Shown};
 pub use predict::{Extrapolation, Prediction};
 pub use profile::{NumberProfile, profile};

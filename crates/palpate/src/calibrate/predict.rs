@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::Material;
 use crate::number::significant;
-use crate::simulate::{Contact, Drive, ProgramStep, Sampling, SimulateError, Trajectory, simulate};
+use crate::simulate::{Contact, Drive, ProgramStep, Sampling, SimulateError, Trajectory, simulate_watched};
 use crate::statistics::coverage_factor;
+use crate::watch::{Cancelled, Stages, Unwatched, Watch};
 
 /// A question beyond what the test has shown.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -125,24 +126,48 @@ impl Material {
     /// standard deviation to either side: Σ_k ((f(+L_k) − f(−L_k))/2)².
     ///
     /// # Errors
-    /// As for [`simulate`].
+    /// As for [`simulate`](crate::simulate::simulate()).
     pub fn predict<'a>(
         &self,
         drive: impl Into<Drive<'a>>,
         sampling: &Sampling,
         confidence: f64,
     ) -> Result<Prediction, SimulateError> {
+        self.predict_watched(drive, sampling, confidence, &mut Unwatched)
+    }
+
+    /// As [`predict`](Self::predict), heard by `watch` as each of the simulations is.
+    ///
+    /// # Errors
+    /// As for [`simulate`](crate::simulate::simulate()), and [`SimulateError::Cancelled`].
+    pub fn predict_watched<'a>(
+        &self,
+        drive: impl Into<Drive<'a>>,
+        sampling: &Sampling,
+        confidence: f64,
+        watch: &mut dyn Watch,
+    ) -> Result<Prediction, SimulateError> {
         let drive = drive.into();
         let best = self.contact();
-        let trajectory = simulate(drive, &best, sampling)?;
+        let directions = self.directions();
+        let share = 1.0 / (1.0 + 2.0 * directions.len() as f64);
+        let mut stages = Stages::new("predicting".to_owned(), watch);
+        stages.enter(share);
+        let trajectory = simulate_watched(drive, &best, sampling, &mut stages)?;
         let count = trajectory.len();
         let (mut force, mut displacement) = (vec![0.0; count], vec![0.0; count]);
         let times = Sampling::Times(trajectory.time.clone());
         let longer = continued(drive, &trajectory);
         let others = longer.as_ref().map_or(drive, Drive::from);
-        let course = |contact: &Contact| simulate(others, contact, &times).ok();
-        for direction in self.directions() {
-            let Some((high, low, width)) = both_sides(self, &direction, &course) else {
+        for direction in directions {
+            let mut course = |contact: &Contact| {
+                stages.enter(share);
+                match simulate_watched(others, contact, &times, &mut stages) {
+                    Err(SimulateError::Cancelled(cancelled)) => Err(cancelled),
+                    course => Ok(course.ok()),
+                }
+            };
+            let Some((high, low, width)) = both_sides(self, &direction, &mut course)? else {
                 continue;
             };
             for (sum, (high, low)) in force.iter_mut().zip(high.force.iter().zip(&low.force)) {
@@ -153,6 +178,7 @@ impl Material {
             }
         }
         let freedom = self.uncertainty.as_ref().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom);
+        stages.finish()?;
         Ok(Prediction {
             extrapolations: self.extrapolations(drive, &trajectory),
             trajectory,
@@ -254,20 +280,20 @@ fn continued(drive: Drive<'_>, course: &Trajectory) -> Option<Vec<ProgramStep>> 
 fn both_sides<T>(
     material: &Material,
     direction: &[f64],
-    result: &impl Fn(&Contact) -> Option<T>,
-) -> Option<(T, T, f64)> {
-    let off = |by: f64| {
+    result: &mut impl FnMut(&Contact) -> Result<Option<T>, Cancelled>,
+) -> Result<Option<(T, T, f64)>, Cancelled> {
+    let mut off = |by: f64| {
         let factors: Vec<f64> = direction.iter().map(|log| (by * log).exp()).collect();
-        result(&material.contact_off(&factors)?)
+        material.contact_off(&factors).map_or(Ok(None), |contact| result(&contact))
     };
     let mut by = 1.0;
     for _ in 0..8 {
-        if let (Some(high), Some(low)) = (off(by), off(-by)) {
-            return Some((high, low, 2.0 * by));
+        if let (Some(high), Some(low)) = (off(by)?, off(-by)?) {
+            return Ok(Some((high, low, 2.0 * by)));
         }
         by *= 0.25;
     }
-    None
+    Ok(None)
 }
 
 /// Columns L_k with C = Σ L_k L_kᵀ, of a covariance that may be singular: Cholesky's method, the largest diagonal first.

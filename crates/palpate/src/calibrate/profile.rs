@@ -12,9 +12,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::candidate::Prepared;
-use super::search::Problem;
-use super::{CalibrateError, Calibration, CalibrationData, Material, MaterialNumber};
+use super::fit::{Calibration, FARTHEST};
+use super::prepared::Prepared;
+use super::problem::{Held, Problem, sum_of_squares};
+use super::{CalibrateError, CalibrationData, Material, MaterialNumber};
 use crate::fit::Interval;
 use crate::watch::{Cancelled, Stages, Watch};
 
@@ -26,44 +27,6 @@ pub struct NumberProfile {
     /// Its interval, whose ends the record may leave open.
     pub interval: Interval,
 }
-
-/// A number that is held while the others are sought.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Held {
-    /// Place of the searched number that follows.
-    pub(super) searched: usize,
-    /// Place among the numbers of the material.
-    number: usize,
-    /// Natural logarithm of the value it is held at.
-    log: f64,
-}
-
-impl Held {
-    /// The searched numbers with the one that follows put in; `None` where none does.
-    pub(super) fn completed(&self, prepared: &Prepared, theta: &[f64]) -> Option<Vec<f64>> {
-        const STEP: f64 = 1e-6;
-        let mut theta = theta.to_vec();
-        let off = |theta: &[f64]| prepared.values(theta)[self.number].ln() - self.log;
-        for _ in 0..50 {
-            let now = off(&theta);
-            if now.abs() < 1e-12 {
-                return Some(theta);
-            }
-            let at = theta[self.searched];
-            theta[self.searched] = at + STEP;
-            let slope = (off(&theta) - now) / STEP;
-            // Straight for all but the layer thickness, of which the logarithm bends once.
-            theta[self.searched] = at - (now / slope).clamp(-3.0, 3.0);
-            if !theta[self.searched].is_finite() {
-                return None;
-            }
-        }
-        (off(&theta).abs() < 1e-9).then_some(theta)
-    }
-}
-
-/// Distance from the best value, as a logarithm, beyond which an end counts as open: a factor of a million.
-pub(super) const FARTHEST: f64 = 14.0;
 
 /// Accuracy of an end in shares of its distance.
 const CLOSE: f64 = 1e-3;
@@ -111,7 +74,7 @@ pub fn profile(
         forces: &data.forces()[..data.fitted()],
         held: None,
     };
-    let least = super::search::sum_of_squares(&problem.residuals(best).ok_or(CalibrateError::NoStiffness)?);
+    let least = sum_of_squares(&problem.residuals(best).ok_or(CalibrateError::NoStiffness)?);
     let freedom = (data.fitted() - calibration.free_numbers) as f64;
     let mut stages = Stages::new("following the profiles".to_owned(), watch);
     let ends = 2.0 * material.numbers.len() as f64;

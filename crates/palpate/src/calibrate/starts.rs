@@ -1,7 +1,7 @@
 //! Where the search begins: a grid over the numbers of the law, the stiffness following from each point of it.
 
-use super::candidate::Prepared;
-use super::search::{Problem, dot, sum_of_squares};
+use super::prepared::Prepared;
+use super::problem::{Problem, dot, sum_of_squares};
 use super::{CalibrateError, EquilibriumLaw};
 use crate::laws::{ExponentChoice, Law};
 use crate::simulate::simulate_force;

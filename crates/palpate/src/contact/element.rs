@@ -16,7 +16,7 @@
 //! In these units all ramps of a law are stretches of one curve on either side of the steady state. A ramp that comes to where an earlier
 //! one was goes on along its steps.
 
-use super::Work;
+use super::SimulationWork;
 use crate::latency::{LatencyLaw, signed_power};
 use crate::ode::{Dop853, Step};
 use crate::vector::elementary::exp_m1;
@@ -167,7 +167,7 @@ impl Element {
         drive: f64,
         duration: f64,
         ramps: &mut Ramps,
-        work: &mut Work,
+        work: &mut SimulationWork,
     ) -> Self {
         if drive == 0.0 {
             work.closed_forms += 1;
@@ -303,7 +303,7 @@ mod tests {
     fn a_ramp_from_rest_follows_the_hyperbolic_tangent_for_n_2() {
         // ẋ = g − v x² from 0: x = √(g/v) tanh(√(g v) t)
         let law = LatencyLaw::new(2.0, 3.0).unwrap();
-        let element = Element::solve(law, 0.0, 0.7, 9.0, &mut Ramps::default(), &mut Work::default());
+        let element = Element::solve(law, 0.0, 0.7, 9.0, &mut Ramps::default(), &mut SimulationWork::default());
         for i in 0..=90 {
             let t = 0.1 * f64::from(i);
             let exact = (0.7f64 / 3.0).sqrt() * ((0.7f64 * 3.0).sqrt() * t).tanh();
@@ -316,7 +316,7 @@ mod tests {
     #[test]
     fn a_slow_drive_after_a_far_larger_excess_comes_to_its_steady_state() {
         let law = LatencyLaw::new(0.2, 1.4e-3).unwrap();
-        let mut work = Work::default();
+        let mut work = SimulationWork::default();
         let element = Element::solve(law, -9.55e-3, 1.48e-6, 24.6, &mut Ramps::default(), &mut work);
         let end = element.excess_at(24.6);
         assert!(
@@ -353,7 +353,7 @@ mod tests {
             };
             let until = 0.01f64.powf(noise.uniform());
             let law = LatencyLaw::new(n, 1.0).unwrap();
-            let element = Element::solve(law, start, 1.0, until, &mut Ramps::default(), &mut Work::default());
+            let element = Element::solve(law, start, 1.0, until, &mut Ramps::default(), &mut SimulationWork::default());
             for part in [0.1, 0.45, 1.0] {
                 let z = element.excess_at(part * until);
                 let off = time_to(z, n) - time_to(start, n) - part * until;
@@ -370,7 +370,7 @@ mod tests {
     fn a_ramp_goes_on_along_an_earlier_one() {
         for (n, v) in [(5.0, 2e4), (3.7, 800.0), (2.0, 5e3), (0.7, 9.0)] {
             let law = LatencyLaw::new(n, v).unwrap();
-            let (mut ramps, mut work) = (Ramps::default(), Work::default());
+            let (mut ramps, mut work) = (Ramps::default(), SimulationWork::default());
             Element::solve(law, 0.0, 0.8, 9.0, &mut ramps, &mut work);
             // From further away, from a place on the curve, and from beyond the steady state, where there is none yet.
             let steady = law.steady_excess(0.8);
@@ -378,7 +378,7 @@ mod tests {
                 let initial = part * steady * drive.signum();
                 let before = work.steps;
                 let element = Element::solve(law, initial, drive, 9.0, &mut ramps, &mut work);
-                let mut own = Work::default();
+                let mut own = SimulationWork::default();
                 let alone = Element::solve(law, initial, drive, 9.0, &mut Ramps::default(), &mut own);
                 let (used, on_curve) = (work.steps - before, part == 0.1);
                 let most = if on_curve { 0 } else { own.steps };
@@ -397,7 +397,7 @@ mod tests {
     fn long_and_fast_ramps_cost_no_more_steps() {
         for (v, duration) in [(2e4, 0.6), (2e4, 6e5), (2e14, 6e5)] {
             let law = LatencyLaw::new(5.0, v).unwrap();
-            let mut work = Work::default();
+            let mut work = SimulationWork::default();
             let element = Element::solve(law, 0.0, 0.83, duration, &mut Ramps::default(), &mut work);
             assert!(work.steps < 60, "{work:?}");
             assert!(element.excess_at(duration) > 0.999 * law.steady_excess(0.83));

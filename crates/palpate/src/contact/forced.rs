@@ -12,7 +12,7 @@
 //! **While it changes** u₂ is integrated as it stands: it stays smooth at first touch, where the displacement of a ball begins like √t.
 
 use super::balance::{Layer, carried_at, share};
-use super::{Layers, RateDependence, Specimen, Work};
+use super::{Layers, RateDependence, SimulationWork, Specimen};
 use crate::latency::LatencyLaw;
 use crate::ode::{Dop853, Step};
 
@@ -122,7 +122,7 @@ impl Forced {
         (from, to): (f64, f64),
         behind: f64,
         duration: f64,
-        work: &mut Work,
+        work: &mut SimulationWork,
     ) -> Result<Self, Stopped> {
         let (_, initial) = body.carry(from, behind).ok_or(Stopped::TooMuch { elapsed: 0.0 })?;
         let force = ForceLine { from, to, duration };
@@ -134,7 +134,7 @@ impl Forced {
         Ok(Self { body, force, path })
     }
 
-    fn held(body: &Body, force: f64, initial: f64, duration: f64, work: &mut Work) -> Result<Path, Stopped> {
+    fn held(body: &Body, force: f64, initial: f64, duration: f64, work: &mut SimulationWork) -> Result<Path, Stopped> {
         let mut steps: Vec<Step> = Vec::new();
         work.closed_forms += 1;
         if initial != 0.0 && duration > 0.0 {
@@ -172,7 +172,7 @@ impl Forced {
         Ok(Path::Held { initial, steps })
     }
 
-    fn changing(body: &Body, force: ForceLine, behind: f64, work: &mut Work) -> Result<Path, Stopped> {
+    fn changing(body: &Body, force: ForceLine, behind: f64, work: &mut SimulationWork) -> Result<Path, Stopped> {
         work.ramps += 1;
         let duration = force.duration;
         let (depth, thickness) = (body.specimen.depth(), body.thickness());

@@ -2,7 +2,7 @@
 //!
 //! | file | what | equations |
 //! |---|---|---|
-//! | `shape.rs` | the form of the body: contact area, depth, and where they come from | (7), (8) |
+//! | `shape.rs` | the form of the body and from how many sides it is squeezed: contact area, depth, and where they come from | (7), (8) |
 //! | `equilibrium.rs` | the force that it tends to: the paper's, Hertz's, or a measured one | (11) |
 //! | `measured.rs` | the last of them, from the rows of a table | |
 //! | `curve/` | a smooth curve through the rows of a table | |
@@ -13,6 +13,7 @@
 //! | `balance.rs` | where a body carries a given force | (11) |
 //! | `forced.rs` | the contact layer through one straight piece of a force history: creep or ramp | |
 //! | `free_surface.rs` | the surface once the jaw has left it | |
+//! | `work.rs` | what a simulation costs | |
 //!
 //! Layer i never feels layer i + 1, so the contact force needs the contact layer alone, whatever the number of
 //! layers; the interior is solved only to show the strain wave (`simulate::wave`).
@@ -33,35 +34,21 @@ mod measured;
 mod rate;
 mod shape;
 mod specimen;
+#[cfg(feature = "std")]
+mod work;
 
 pub(crate) use balance::{Layer, carried_at, share};
 pub use curve::{Curve, CurveError};
 pub use equilibrium::{Equilibrium, EquilibriumError};
 pub use layers::{Layers, LayersError};
-pub use shape::{Shape, Statement};
-pub use specimen::{Sides, Specimen, SpecimenError};
+pub use shape::{Shape, Sides, Statement};
+pub use specimen::{Specimen, SpecimenError};
 
-#[cfg(feature = "std")]
-pub use rate::RateDependence;
 #[cfg(feature = "std")]
 pub(crate) use {
     element::{Element, Ramps, is_kinked, longest_step, rest_of},
     forced::{Body, Carried, ForceLine, Forced, Stopped},
     free_surface::FreeSurface,
 };
-
-/// What a simulation cost, in counts that do not depend on the machine.
 #[cfg(feature = "std")]
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct Work {
-    /// Holds and recoveries solved by the closed form.
-    pub closed_forms: u64,
-    /// Ramps integrated.
-    pub ramps: u64,
-    /// Integration steps taken in ramps (and, for a strain wave, in holds).
-    pub steps: u64,
-    /// Evaluations of the law's rate by the integrator.
-    pub evaluations: u64,
-    /// Contacts lost or regained.
-    pub events: u64,
-}
+pub use {rate::RateDependence, work::SimulationWork};

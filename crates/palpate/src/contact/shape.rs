@@ -2,7 +2,20 @@
 
 use core::f64::consts::PI;
 
-use super::{Curve, Sides};
+use serde::{Deserialize, Serialize};
+
+use super::Curve;
+
+/// From how many sides the body is squeezed: decides which share of the jaw's travel one contact takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sides {
+    /// Both jaws meet the body; by symmetry each contact takes half the travel (section IV of the paper).
+    #[default]
+    Two,
+    /// One jaw presses, the other side rests or is bonded: the contact takes the whole travel.
+    One,
+}
 
 /// Shape of the body, all lengths in m and areas in m².
 #[derive(Debug, Clone, PartialEq)]

@@ -2,19 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::shape::Limit;
-use super::{Equilibrium, EquilibriumError, Shape};
-
-/// From how many sides the body is squeezed: decides which share of the jaw's travel one contact takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Sides {
-    /// Both jaws meet the body; by symmetry each contact takes half the travel (section IV of the paper).
-    #[default]
-    Two,
-    /// One jaw presses, the other side rests or is bonded: the contact takes the whole travel.
-    One,
-}
+use super::equilibrium::{Equilibrium, EquilibriumError};
+use super::shape::{Limit, Shape, Sides};
 
 /// A body with its modulus: what turns displacement and force into strain.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::law_fit::{Fitted, NumberUnit};
 use super::uncertainty::Scale;
-use crate::laws::{Kernel, Law, Response, Shape};
+use crate::laws::{BasisFunction, Kernel, Law, Response};
 
 /// A number that follows from others.
 pub(super) struct Derived {
@@ -95,7 +95,7 @@ impl<'a> View<'a> {
         let amplitude = self.amplitudes()[0];
         let log_amplitude = amplitude.abs().ln();
         let (n, exponent) = match self.fitted.model.shape(0) {
-            Shape::LatencyWith(n) => (n, None),
+            BasisFunction::LatencyWith(n) => (n, None),
             _ => (self.numbers[1], self.place(1)),
         };
         let entries = [(Some(self.first), -(n - 1.0) / amplitude), (self.place(0), 1.0), (exponent, -log_amplitude)];
@@ -185,7 +185,7 @@ impl<'a> View<'a> {
             let numbers = self.fitted.model.numbers_of(i);
             let (amplitude, log_rate) = (self.amplitudes()[i], self.numbers[numbers.start]);
             let place = Some(self.first + i);
-            if *shape == Shape::Straight {
+            if *shape == BasisFunction::Straight {
                 all.push(Derived {
                     name: "flow_rate".to_owned(),
                     unit: NumberUnit::SignalPerSecond,
@@ -193,7 +193,7 @@ impl<'a> View<'a> {
                     value: amplitude * log_rate.exp(),
                     gradient: self.gradient(&[(place, log_rate.exp())]),
                 });
-            } else if *shape == Shape::PowerGrowth {
+            } else if *shape == BasisFunction::PowerGrowth {
                 let factor = (log_rate * self.numbers[numbers.start + 1]).exp();
                 let entries = [(place, factor), (self.place(numbers.start + 1), amplitude * factor * log_rate)];
                 all.push(Derived {

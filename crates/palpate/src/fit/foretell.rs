@@ -9,7 +9,7 @@ use super::samples::{Samples, Scaled};
 use super::search::{condense, finalists};
 use super::separable::{Ending, Work, polished, refine};
 use super::{FitError, LawOptions, SpectrumOptions, fit_spectrum};
-use crate::laws::{Law, LawCurve, Shape, Term};
+use crate::laws::{BasisFunction, Law, LawCurve, Term};
 
 /// How well the first part of a hold foretells the rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -112,7 +112,7 @@ fn spectrum_curve(samples: &Samples<'_>, options: &LawOptions) -> Result<LawCurv
     let fit = fit_spectrum(&times, &values, Some(&nodes.roots), &SpectrumOptions::default())?;
     let term = |(time, height): (&f64, &f64)| Term {
         amplitude: fit.sign * height,
-        shape: Shape::Exponential,
+        shape: BasisFunction::Exponential,
         numbers: vec![-time.ln()],
     };
     let terms: Vec<Term> =

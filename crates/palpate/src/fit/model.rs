@@ -2,7 +2,7 @@
 
 use super::linear_algebra::Few;
 use super::separable::{Shapes, Spare, Termination};
-use crate::laws::{Column, Form, Kernel, Loading, NumberKind, Shape, Superposition};
+use crate::laws::{BasisFunction, Column, Form, Kernel, Loading, NumberKind, Superposition};
 
 /// A nonlinear number of the law.
 #[derive(Debug, Clone)]
@@ -52,7 +52,7 @@ impl Model {
 
     /// The same after a loading, its times in the units of the fit, rather than a step; to a law that knows no superposition it is one.
     pub(super) fn after(self, loading: &Loading) -> Self {
-        let superposes = self.form.shapes.iter().any(Shape::superposes);
+        let superposes = self.form.shapes.iter().any(BasisFunction::superposes);
         Self {
             loading: superposes.then(|| Superposition::new(loading)),
             ..self
@@ -132,11 +132,11 @@ impl Model {
 
     /// Whether this is a series of exponentials with all their rates free.
     pub(super) fn is_series(&self) -> bool {
-        let alike = self.form.shapes.iter().all(|shape| *shape == Shape::Exponential);
+        let alike = self.form.shapes.iter().all(|shape| *shape == BasisFunction::Exponential);
         alike && self.form.shapes.len() > 1 && self.free.len() == self.numbers.len()
     }
 
-    pub(super) fn shape(&self, index: usize) -> Shape {
+    pub(super) fn shape(&self, index: usize) -> BasisFunction {
         self.form.shapes[index]
     }
 }

@@ -18,7 +18,7 @@ use super::samples::Samples;
 use super::separable::{Ending, Shapes, Solution, Target, Termination, Work, polished, refine};
 use super::uncertainty::{Assessed, Scale};
 use super::{FitError, FitOptions, NoiseChoice};
-use crate::contact::{Element, Ramps, Work as Effort};
+use crate::contact::{Element, Ramps, SimulationWork as Effort};
 use crate::latency::{LatencyLaw, decay_many, decay_with_gradient_many};
 use crate::laws::{ExponentChoice, Loading};
 

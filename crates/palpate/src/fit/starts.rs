@@ -5,7 +5,7 @@ use super::lattice::Lattice;
 use super::linear_algebra::{Cholesky, Few};
 use super::model::Model;
 use super::separable::Work;
-use crate::laws::{NumberKind, Shape};
+use crate::laws::{BasisFunction, NumberKind};
 use crate::statistics::dot;
 use crate::vector::columns::multiply;
 use crate::vector::products::{LANES, lane_sums};
@@ -526,10 +526,10 @@ pub(super) fn ends_of(model: &Model) -> Vec<(f64, Vec<f64>)> {
 }
 
 /// λt at which the shape ends, if it does.
-fn finite_end(shape: Shape, other: f64) -> Option<f64> {
+fn finite_end(shape: BasisFunction, other: f64) -> Option<f64> {
     let exponent = match shape {
-        Shape::Latency => other,
-        Shape::LatencyWith(exponent) => exponent,
+        BasisFunction::Latency => other,
+        BasisFunction::LatencyWith(exponent) => exponent,
         _ => return None,
     };
     (exponent < 1.0).then(|| 1.0 / (1.0 - exponent))

@@ -1,10 +1,13 @@
 //! A question to a gripper, and all that answers it.
 
+use std::cell::RefCell;
+
 use serde::{Deserialize, Serialize};
 
 use super::least::check_duration;
-use super::{BackOff, Band, Grip, GripError, Holding, Lasts, Objective, Plan, Pressed, Regrip, Schedule};
+use super::{BackOff, Band, ForceHold, Grip, GripError, Holding, Objective, Plan, Regrip, Schedule, TimeToSlip};
 use crate::calibrate::Prediction;
+use crate::watch::{Cancelled, Stages, Unwatched, Watch};
 
 /// What the gripper holds once it has closed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -57,11 +60,11 @@ pub struct Answer {
     /// The squeeze with the displacement held.
     pub squeeze: Result<Followed<Holding>, GripError>,
     /// How long squeezes a little less and more deep hold, by displacement in m.
-    pub neighbours: Vec<(f64, Lasts)>,
+    pub neighbours: Vec<(f64, TimeToSlip)>,
     /// Squeeze and back off, to the same place if that holds relaxed.
     pub back_off: Result<Followed<BackOff>, GripError>,
     /// The force held.
-    pub pressed: Result<Followed<Pressed>, GripError>,
+    pub force_hold: Result<Followed<ForceHold>, GripError>,
     /// Squeezes that keep the force in the band, if one was asked for.
     pub schedule: Option<Result<Followed<Schedule>, GripError>>,
 }
@@ -114,6 +117,35 @@ impl Grip<'_> {
     /// # Errors
     /// Of numbers that make no question ([`GripError::Number`]); what cannot be had is told in its place in the answer.
     pub fn answer(&self, question: &Question) -> Result<Answer, GripError> {
+        self.answer_watched(question, &mut Unwatched)
+    }
+
+    /// As [`answer`](Self::answer), heard by `watch` at every simulation.
+    ///
+    /// # Errors
+    /// As for [`answer`](Self::answer), and [`GripError::Cancelled`].
+    pub fn answer_watched(&self, question: &Question, watch: &mut dyn Watch) -> Result<Answer, GripError> {
+        let stages = RefCell::new(Stages::new("searching for grips".to_owned(), watch));
+        let heard = Grip {
+            heard: Some(&stages),
+            ..self.clone()
+        };
+        let answer = heard.answered(question);
+        stages.borrow_mut().finish()?;
+        answer
+    }
+
+    /// Goes on to what is `share` of the whole search.
+    fn enter(&self, share: f64) -> Result<(), Cancelled> {
+        self.heard.map_or(Ok(()), |stages| {
+            let mut stages = stages.borrow_mut();
+            stages.enter(share);
+            stages.reach(0.0)
+        })
+    }
+
+    fn answered(&self, question: &Question) -> Result<Answer, GripError> {
+        self.enter(0.3)?;
         let wanted = question.duration.unwrap_or(MINUTE);
         check_duration(wanted)?;
         self.check_assured(question.assured)?;
@@ -129,16 +161,21 @@ impl Grip<'_> {
             let places = [0.9, 0.95, 1.0, 1.05, 1.1].map(|share| share * found.displacement);
             self.neighbours(&places, found.plan.speed())
         };
+        self.enter(0.1)?;
         let neighbours = squeeze.as_ref().map(around).unwrap_or_default();
         let same = question.squeeze.filter(|place| self.relaxed_force(*place) >= self.needed_force(*place));
+        self.enter(0.2)?;
         let back_off = self.back_off(same, shown, question.assured);
-        let pressed = self.pressed(question.force, shown);
+        self.enter(0.1)?;
+        let force_hold = self.force_hold(question.force, shown);
+        self.enter(0.1)?;
         let schedule = question.band.map(|band| self.regrip(band, question.regrip, shown));
         if let Some(Err(error)) = &schedule
             && !error.is_answer()
         {
             return Err(error.clone());
         }
+        self.enter(0.2)?;
         let follow = |steps: &Plan| self.course(steps, shown, SAMPLES);
         Ok(Answer {
             question: *question,
@@ -146,7 +183,7 @@ impl Grip<'_> {
             squeeze: squeeze.and_then(|found| followed(found, |found| follow(&found.plan))),
             neighbours,
             back_off: back_off.and_then(|found| followed(found, |found| follow(&found.backed.plan))),
-            pressed: pressed.and_then(|found| followed(found, |found| self.pressed_course(found, SAMPLES))),
+            force_hold: force_hold.and_then(|found| followed(found, |found| self.force_hold_course(found, SAMPLES))),
             schedule: schedule.map(|made| {
                 // Its moves are many; each is short.
                 made.and_then(|found| followed(found, |found| self.schedule_course(found, SAMPLES / 4)))
@@ -172,13 +209,13 @@ impl Answer {
                 };
                 let wanted = self.question.duration.or((self.question.squeeze.is_none()).then_some(MINUTE));
                 Ok(match wanted {
-                    None => lasts != Lasts::For(0.0),
+                    None => lasts != TimeToSlip::After(0.0),
                     Some(wanted) if wanted.is_finite() => lasts.covers(wanted * ROUNDING),
-                    Some(_) => lasts == Lasts::Always,
+                    Some(_) => lasts == TimeToSlip::Never,
                 })
             }
             Control::Force => {
-                let found = &self.pressed.as_ref().map_err(Clone::clone)?.found;
+                let found = &self.force_hold.as_ref().map_err(Clone::clone)?.found;
                 Ok(found.holds && found.stroke_ends.is_none())
             }
         }
@@ -189,7 +226,7 @@ impl Answer {
     pub fn course(&self) -> Option<&Prediction> {
         match self.question.control {
             Control::Position => self.squeeze.as_ref().ok().map(|followed| &followed.course),
-            Control::Force => self.pressed.as_ref().ok().map(|followed| &followed.course),
+            Control::Force => self.force_hold.as_ref().ok().map(|followed| &followed.course),
         }
     }
 }
@@ -204,7 +241,7 @@ fn shown(question: &Question, squeeze: Option<&Holding>) -> f64 {
     const HOUR: f64 = 3600.0;
     match (question.duration, squeeze.map(|found| found.lasts)) {
         (Some(wanted), _) if wanted.is_finite() => wanted,
-        (None, Some(Lasts::For(time))) if question.squeeze.is_some() => (1.5 * time).max(1.0),
+        (None, Some(TimeToSlip::After(time))) if question.squeeze.is_some() => (1.5 * time).max(1.0),
         (None, _) if question.squeeze.is_none() => MINUTE,
         _ => HOUR,
     }

@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::holding::ALWAYS;
 use super::least::{bisected, check_duration};
+use super::time_to_slip::ALWAYS;
 use super::{Grip, GripError, Holding, Plan};
 use crate::number::significant;
-use crate::simulate::{Sampling, step_ends};
+use crate::simulate::step_ends;
 
 /// What a number of the material does to a squeeze that is to begin relaxed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -105,8 +105,8 @@ impl Grip<'_> {
         let is_assured = |displacement: f64| -> Result<bool, GripError> {
             let plan = Plan::back_off(self.turning_point(displacement)?, displacement, self.limits.speed);
             let start = self.ends(&plan.steps)?.last().map_or(0.0, |end| end.time);
-            let at = Sampling::Times(vec![start, start + duration.min(ALWAYS)]);
-            let predicted = self.material.predict(&plan.held(duration.min(ALWAYS)), &at, self.confidence)?;
+            let at = vec![start, start + duration.min(ALWAYS)];
+            let predicted = self.predict(&plan.held(duration.min(ALWAYS)), at)?;
             let needed = self.needed_force(displacement);
             Ok((0..2).all(|i| predicted.force_interval(i).0 >= needed))
         };

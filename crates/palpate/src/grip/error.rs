@@ -2,6 +2,7 @@
 
 use crate::number::significant;
 use crate::simulate::SimulateError;
+use crate::watch::Cancelled;
 
 /// Why there is no grip.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -92,6 +93,9 @@ pub enum GripError {
     /// A simulation that could not be run.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
+    /// Its watch ended it.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl GripError {
@@ -121,7 +125,7 @@ impl GripError {
             Self::BandSlips { .. } => "raise the lower edge of the band",
             Self::NoIntervals => "ask for the best guess, or calibrate on a test that tells all numbers",
             Self::Bonded => "calibrate on a test with separation = true in [contact]",
-            Self::Number { .. } | Self::Simulate(_) => "",
+            Self::Number { .. } | Self::Simulate(_) | Self::Cancelled(_) => "",
         }
     }
 }

@@ -1,48 +1,19 @@
 //! How long a squeeze holds.
 
-use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
 
-use super::{Grasp, GripError, Limits, Plan, PlanKind};
+use super::time_to_slip::ALWAYS;
+use super::{Grasp, GripError, Limits, Plan, PlanKind, TimeToSlip};
 use crate::calibrate::{Material, Prediction};
-use crate::simulate::Contact;
-use crate::simulate::{ProgramStep, Sampling, Separation, SimulateError, StepEnd, step_ends, work_by_step};
-
-/// How long a hold lasts.
-#[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Lasts {
-    /// So long, s; 0 if it slips at once.
-    For(f64),
-    /// Longer than ten years.
-    Always,
-}
-
-impl Lasts {
-    /// The time, s; `None` for always.
-    #[must_use]
-    pub fn seconds(self) -> Option<f64> {
-        match self {
-            Self::For(time) => Some(time),
-            Self::Always => None,
-        }
-    }
-
-    /// Whether it is `duration` (s) at least.
-    #[must_use]
-    pub fn covers(self, duration: f64) -> bool {
-        self.seconds().is_none_or(|time| time >= duration)
-    }
-}
-
-/// Ten years, s: what holds that long holds always.
-pub(super) const ALWAYS: f64 = 3.156e8;
+use crate::simulate::{Contact, ProgramStep, Sampling, Separation, SimulateError, StepEnd, step_ends, work_by_step};
+use crate::watch::{Cancelled, Progress, Stages};
 
 /// A calibrated body in a gripper.
 ///
 /// ```
 /// use palpate::calibrate::{Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUnit, Shown};
 /// use palpate::contact::{Shape, Sides};
-/// use palpate::grip::{Grasp, Grip, Lasts, Limits, Plan};
+/// use palpate::grip::{Grasp, Grip, TimeToSlip, Limits, Plan};
 /// use palpate::fit::Estimate;
 /// use palpate::simulate::Separation;
 ///
@@ -65,7 +36,7 @@ pub(super) const ALWAYS: f64 = 3.156e8;
 /// let grip = Grip::new(&ball, Grasp::new(0.25, 0.6)?, Limits::new(0.5 / 60.0)?, 0.95)?;
 /// let holding = grip.holding(&Plan::squeeze(0.005, 0.5 / 60.0))?;
 /// assert!((holding.needed_force - 2.043_052).abs() < 1e-6 && (holding.start_force - 3.035_025).abs() < 1e-6);
-/// let Lasts::For(time) = holding.lasts else { panic!() };
+/// let TimeToSlip::After(time) = holding.lasts else { panic!() };
 /// assert!((time - 0.610_7).abs() < 1e-3, "{time}"); // s until it slips
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -76,6 +47,8 @@ pub struct Grip<'a> {
     pub(super) grasp: Grasp,
     pub(super) limits: Limits,
     pub(super) confidence: f64,
+    /// Who hears of every simulation.
+    pub(super) heard: Option<&'a RefCell<Stages<'a>>>,
 }
 
 /// What becomes of a plan whose end is held in displacement; SI units.
@@ -98,9 +71,9 @@ pub struct Holding {
     /// Work that the jaws do while they close, J; what the body gives back is not counted against it.
     pub work: f64,
     /// From the start of the hold until it slips.
-    pub lasts: Lasts,
+    pub lasts: TimeToSlip,
     /// Ends of the interval of that time by what the calibration leaves open; `None` where it says nothing.
-    pub interval: Option<(Lasts, Lasts)>,
+    pub interval: Option<(TimeToSlip, TimeToSlip)>,
     /// How sharply the time depends on the squeeze, d ln(time)/d(displacement), 1/m; `None` where it is no plain squeeze, or slips at once or never.
     pub sharpness: Option<f64>,
 }
@@ -130,6 +103,7 @@ impl<'a> Grip<'a> {
             grasp,
             limits,
             confidence,
+            heard: None,
         })
     }
 
@@ -225,18 +199,30 @@ impl<'a> Grip<'a> {
             from = end.time;
         }
         times.dedup();
-        Ok(self.material.predict(steps, &Sampling::Times(times), self.confidence)?)
+        Ok(self.predict(steps, times)?)
     }
 
     /// How long squeezes to other displacements (m) at the same speed (m/s) hold; those that cannot be made are left out.
     #[must_use]
-    pub fn neighbours(&self, displacements: &[f64], speed: f64) -> Vec<(f64, Lasts)> {
+    pub fn neighbours(&self, displacements: &[f64], speed: f64) -> Vec<(f64, TimeToSlip)> {
         let lasts = |displacement: &f64| Some((*displacement, self.lasts(&Plan::squeeze(*displacement, speed)).ok()?));
         displacements.iter().filter_map(lasts).collect()
     }
 
+    /// Tells who watches that work goes on.
+    pub(super) fn hear(&self) -> Result<(), Cancelled> {
+        self.heard.map_or(Ok(()), |stages| stages.borrow_mut().hear())
+    }
+
+    /// The course over a program at some times (s), with its band.
+    pub(super) fn predict(&self, steps: &[ProgramStep], times: Vec<f64>) -> Result<Prediction, SimulateError> {
+        let watch = &mut |_: Progress<'_>| self.hear();
+        self.material.predict_watched(steps, &Sampling::Times(times), self.confidence, watch)
+    }
+
     /// Where the steps of a program end.
     pub(super) fn ends(&self, steps: &[ProgramStep]) -> Result<Vec<StepEnd>, SimulateError> {
+        self.hear()?;
         step_ends(steps, &self.contact)
     }
 
@@ -263,7 +249,7 @@ impl<'a> Grip<'a> {
     }
 
     /// From the start of the hold until a plan slips, with the best numbers.
-    fn lasts(&self, plan: &Plan) -> Result<Lasts, GripError> {
+    fn lasts(&self, plan: &Plan) -> Result<TimeToSlip, GripError> {
         let ends = self.ends(&plan.steps)?;
         let end = ends.last().ok_or(SimulateError::EmptyProgram)?;
         let needed = self.needed_force(end.displacement);
@@ -277,7 +263,12 @@ impl<'a> Grip<'a> {
         Ok(self.ends(&plan.held(time))?.last().map_or(0.0, |end| end.force))
     }
 
-    fn slips(&self, plan: &Plan, end: &StepEnd, needed: f64) -> Result<(Lasts, Option<(Lasts, Lasts)>), GripError> {
+    fn slips(
+        &self,
+        plan: &Plan,
+        end: &StepEnd,
+        needed: f64,
+    ) -> Result<(TimeToSlip, Option<(TimeToSlip, TimeToSlip)>), GripError> {
         let lasts = self.lasts(plan)?;
         if self.material.uncertainty.is_none() {
             return Ok((lasts, None));
@@ -286,7 +277,7 @@ impl<'a> Grip<'a> {
         let edge = |pick: fn((f64, f64)) -> f64| {
             let mut surplus = |times: &[f64]| -> Result<Vec<f64>, GripError> {
                 let at = times.iter().map(|time| end.time + time).collect();
-                let predicted = self.material.predict(&program, &Sampling::Times(at), self.confidence)?;
+                let predicted = self.predict(&program, at)?;
                 Ok((0..times.len()).map(|i| pick(predicted.force_interval(i)) - needed).collect())
             };
             crossing(&mut surplus)
@@ -294,7 +285,7 @@ impl<'a> Grip<'a> {
         Ok((lasts, Some((edge(|band| band.0)?, edge(|band| band.1)?))))
     }
 
-    fn sharpness(&self, plan: &Plan, lasts: Lasts) -> Option<f64> {
+    fn sharpness(&self, plan: &Plan, lasts: TimeToSlip) -> Option<f64> {
         /// Share of the squeeze to either side.
         const STEP: f64 = 2e-3;
         let PlanKind::Squeeze { displacement, speed } = plan.kind else {
@@ -324,7 +315,7 @@ pub(super) fn peak(ends: &[StepEnd]) -> f64 {
 }
 
 /// The first time since the start of a hold at which a surplus of force falls below 0.
-fn crossing(surplus: &mut impl FnMut(&[f64]) -> Result<Vec<f64>, GripError>) -> Result<Lasts, GripError> {
+fn crossing(surplus: &mut impl FnMut(&[f64]) -> Result<Vec<f64>, GripError>) -> Result<TimeToSlip, GripError> {
     /// Times per decade, and the first power of ten.
     const PER_DECADE: i32 = 8;
     const FIRST: i32 = -4;
@@ -335,10 +326,10 @@ fn crossing(surplus: &mut impl FnMut(&[f64]) -> Result<Vec<f64>, GripError>) -> 
     times.push(ALWAYS);
     let values = surplus(&times)?;
     let Some(short) = values.iter().position(|value| *value < 0.0) else {
-        return Ok(Lasts::Always);
+        return Ok(TimeToSlip::Never);
     };
     if short == 0 {
-        return Ok(Lasts::For(0.0));
+        return Ok(TimeToSlip::After(0.0));
     }
     let (mut holds, mut slips) = (times[short - 1], times[short]);
     for _ in 0..60 {
@@ -352,5 +343,5 @@ fn crossing(surplus: &mut impl FnMut(&[f64]) -> Result<Vec<f64>, GripError>) -> 
             holds = middle;
         }
     }
-    Ok(Lasts::For(holds))
+    Ok(TimeToSlip::After(holds))
 }

@@ -2,10 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::holding::{ALWAYS, peak};
+use super::holding::peak;
+use super::time_to_slip::ALWAYS;
 use super::{Grip, GripError, Holding, Plan};
 use crate::number::significant;
-use crate::simulate::{Sampling, StepEnd};
+use crate::simulate::StepEnd;
 
 /// What a plan should have least of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -151,12 +152,7 @@ impl Grip<'_> {
             displacement: 0.0,
             force: 0.0,
         });
-        let force = if assured {
-            let at = Sampling::Times(vec![end.time]);
-            self.material.predict(&program, &at, self.confidence)?.force_interval(0).0
-        } else {
-            end.force
-        };
+        let force = if assured { self.predict(&program, vec![end.time])?.force_interval(0).0 } else { end.force };
         Ok(force - self.needed_force(end.displacement))
     }
 

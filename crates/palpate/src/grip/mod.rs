@@ -5,10 +5,11 @@
 //! | `grasp.rs` | the load, and the normal force that it needs: Coulomb friction with the soft finger's limit surface |
 //! | `limits.rs` | what the gripper can do |
 //! | `plan.rs` | ways to close it |
+//! | `time_to_slip.rs` | how long a hold lasts |
 //! | `holding.rs` | how long a squeeze holds, with an interval |
 //! | `least.rs` | the least squeeze, peak force or work that holds long enough |
 //! | `back_off.rs` | squeeze over, go back, and the force stays where it is |
-//! | `pressed.rs` | the same grasp with the force held |
+//! | `force_hold.rs` | the same grasp with the force held |
 //! | `regrip.rs` | when to squeeze again |
 //! | `answer.rs` | all of it for one question |
 //! | `error.rs` | why there is none |
@@ -19,21 +20,23 @@
 mod answer;
 mod back_off;
 mod error;
+mod force_hold;
 mod grasp;
 mod holding;
 mod least;
 mod limits;
 mod plan;
-mod pressed;
 mod regrip;
+mod time_to_slip;
 
 pub use answer::{Answer, Control, Followed, Question};
 pub use back_off::{BackOff, Sensitivity};
 pub use error::GripError;
+pub use force_hold::ForceHold;
 pub use grasp::{Grasp, STANDARD_GRAVITY};
-pub use holding::{Grip, Holding, Lasts};
+pub use holding::{Grip, Holding};
 pub use least::Objective;
 pub use limits::Limits;
 pub use plan::{Plan, PlanKind};
-pub use pressed::Pressed;
 pub use regrip::{Band, Move, Regrip, Schedule};
+pub use time_to_slip::TimeToSlip;

@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::basis::BasisFunction;
 use super::form::Column;
 use super::kernel::Kernel;
-use super::law::Response;
 use super::loading::Loading;
-use super::shape::Shape;
+use super::response::Response;
 use super::superposition::Superposition;
 
 /// One term of a [`LawCurve`].
@@ -15,7 +15,7 @@ pub struct Term {
     /// In the unit of the signal.
     pub amplitude: f64,
     /// The shape.
-    pub shape: Shape,
+    pub shape: BasisFunction,
     /// Its numbers: ln of rates in 1/s, pure numbers as they are.
     pub numbers: Vec<f64>,
 }
@@ -26,9 +26,9 @@ pub struct Term {
 /// grows counts negative.
 ///
 /// ```
-/// use palpate::laws::{LawCurve, Response, Shape, Term};
+/// use palpate::laws::{LawCurve, Response, BasisFunction, Term};
 /// // 2 N + 3 N exp(−t/4 s)
-/// let term = Term { amplitude: 3.0, shape: Shape::Exponential, numbers: vec![0.25f64.ln()] };
+/// let term = Term { amplitude: 3.0, shape: BasisFunction::Exponential, numbers: vec![0.25f64.ln()] };
 /// let curve = LawCurve { response: Response::Relaxation, constant: 2.0, terms: vec![term] };
 /// assert!((curve.at(4.0) - (2.0 + 3.0 * (-1.0f64).exp())).abs() < 1e-14);
 /// ```
@@ -81,9 +81,9 @@ impl LawCurve {
     /// A term of the latency law, which is not linear, stays as it is: its amplitude is what is left at the start of the hold.
     ///
     /// ```
-    /// use palpate::laws::{LawCurve, Loading, Response, Shape, Term};
+    /// use palpate::laws::{LawCurve, Loading, Response, BasisFunction, Term};
     /// // After a ramp of one relaxation time 1 − 1/e of the amplitude is left.
-    /// let term = Term { amplitude: 3.0, shape: Shape::Exponential, numbers: vec![0.25f64.ln()] };
+    /// let term = Term { amplitude: 3.0, shape: BasisFunction::Exponential, numbers: vec![0.25f64.ln()] };
     /// let curve = LawCurve { response: Response::Relaxation, constant: 2.0, terms: vec![term] };
     /// let start = curve.after(&Loading::ramp(4.0)?, &[0.0])[0];
     /// assert!((start - (2.0 + 3.0 * (1.0 - (-1.0f64).exp()))).abs() < 1e-14);

@@ -1,8 +1,8 @@
 //! What a law is made of: a constant or none, and shapes.
 
+use super::basis::BasisFunction;
 use super::kernel::{Kernel, NumberKind};
-use super::law::Response;
-use super::shape::Shape;
+use super::response::Response;
 
 /// Columns of a law, in the order of its linear numbers: the constant if it has one, then the shapes.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,7 +12,7 @@ pub(crate) struct Form {
     /// Whether the constant is found from the data (else it is 0 unless given).
     pub(crate) constant: bool,
     /// Shapes, each with its amplitude.
-    pub(crate) shapes: Vec<Shape>,
+    pub(crate) shapes: Vec<BasisFunction>,
 }
 
 /// How a shape stands in the signal: offset + sign × shape.
@@ -23,7 +23,7 @@ pub(crate) struct Column {
 }
 
 impl Form {
-    pub(super) fn with_constant(response: Response, shapes: Vec<Shape>) -> Self {
+    pub(in crate::laws) fn with_constant(response: Response, shapes: Vec<BasisFunction>) -> Self {
         Self {
             response,
             constant: true,
@@ -31,7 +31,7 @@ impl Form {
         }
     }
 
-    pub(super) fn without_constant(response: Response, shapes: Vec<Shape>) -> Self {
+    pub(in crate::laws) fn without_constant(response: Response, shapes: Vec<BasisFunction>) -> Self {
         Self {
             response,
             constant: false,
@@ -50,7 +50,7 @@ impl Form {
 
     /// Names of the amplitudes, numbered where there are several.
     pub(crate) fn amplitude_names(&self) -> Vec<String> {
-        let name = |shape: &Shape| if *shape == Shape::Straight { "flow" } else { "amplitude" };
+        let name = |shape: &BasisFunction| if *shape == BasisFunction::Straight { "flow" } else { "amplitude" };
         self.numbered(|shape| [name(shape)]).into_iter().map(|(_, name)| name).collect()
     }
 
@@ -62,8 +62,11 @@ impl Form {
     }
 
     /// Names of each shape, with the number of the shape among its like where there are several.
-    fn numbered<N: IntoIterator<Item = &'static str>>(&self, names: impl Fn(&Shape) -> N) -> Vec<(usize, String)> {
-        let like = |shape: &Shape| self.shapes.iter().filter(|other| *other == shape).count();
+    fn numbered<N: IntoIterator<Item = &'static str>>(
+        &self,
+        names: impl Fn(&BasisFunction) -> N,
+    ) -> Vec<(usize, String)> {
+        let like = |shape: &BasisFunction| self.shapes.iter().filter(|other| *other == shape).count();
         let mut all = Vec::new();
         for (index, shape) in self.shapes.iter().enumerate() {
             let place = self.shapes[..=index].iter().filter(|other| *other == shape).count();
@@ -78,7 +81,7 @@ impl Form {
 
 impl Column {
     /// How a shape stands in a signal that relaxes or creeps.
-    pub(crate) fn of(shape: &Shape, response: Response) -> Self {
+    pub(crate) fn of(shape: &BasisFunction, response: Response) -> Self {
         let (offset, sign) = match (response, shape.decays()) {
             (Response::Relaxation, true) => (0.0, 1.0),
             (Response::Relaxation, false) => (0.0, -1.0),

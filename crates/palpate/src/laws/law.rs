@@ -5,24 +5,12 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use super::continuous::{diffusion, fractional_zener, fung_continuous, latency, logarithmic, power, stretched};
 use super::description::Description;
+use super::discrete::{burgers, fung, kelvin_voigt, maxwell, prony, spectrum, standard_linear_solid};
+use super::exponent::ExponentChoice;
 use super::form::Form;
-use super::latency::ExponentChoice;
-use super::{
-    burgers, diffusion, fractional_zener, fung, fung_continuous, kelvin_voigt, latency, logarithmic, maxwell, power,
-    prony, spectrum, standard_linear_solid, stretched,
-};
-
-/// What is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Response {
-    /// Force, stress or strain of a contact held at constant displacement.
-    #[default]
-    Relaxation,
-    /// Displacement or strain at constant force, and recovery after release.
-    Creep,
-}
+use super::response::Response;
 
 /// A law of relaxation or creep whose numbers are to be found; see the [table of laws](crate::laws).
 ///

@@ -11,9 +11,9 @@
 
 use std::ops::Range;
 
+use super::basis::BasisFunction;
 use super::kernel::Kernel;
 use super::loading::{Loading, Piece};
-use super::shape::Shape;
 
 /// Nodes of a panel.
 const NODES: usize = 16;
@@ -63,10 +63,10 @@ impl Superposition {
     }
 
     /// ⟨φ⟩ at every time ≥ 0; a latency shape, which knows no superposition, as it is.
-    pub(crate) fn value(&self, shape: &Shape, times: &[f64], theta: &[f64], value: &mut [f64]) {
+    pub(crate) fn value(&self, shape: &BasisFunction, times: &[f64], theta: &[f64], value: &mut [f64]) {
         match shape {
             shape if !shape.superposes() => shape.value(times, theta, value),
-            Shape::Exponential => {
+            BasisFunction::Exponential => {
                 let (factor, _) = self.exponential_factor(theta[0].exp());
                 shape.value(times, theta, value);
                 value.iter_mut().for_each(|phi| *phi *= factor);
@@ -78,7 +78,7 @@ impl Superposition {
     /// ⟨φ⟩ and its derivatives by every number.
     pub(crate) fn gradient(
         &self,
-        shape: &Shape,
+        shape: &BasisFunction,
         times: &[f64],
         theta: &[f64],
         value: &mut [f64],
@@ -86,7 +86,7 @@ impl Superposition {
     ) {
         match shape {
             shape if !shape.superposes() => shape.gradient(times, theta, value, derivatives),
-            Shape::Exponential => {
+            BasisFunction::Exponential => {
                 let (factor, slope) = self.exponential_factor(theta[0].exp());
                 shape.gradient(times, theta, value, derivatives);
                 for (phi, by_log_rate) in value.iter_mut().zip(&mut derivatives[0]) {
@@ -243,7 +243,7 @@ mod tests {
 
     #[derive(Deserialize)]
     struct Case {
-        shape: Shape,
+        shape: BasisFunction,
         numbers: Vec<f64>,
         loading: String,
         time: f64,
@@ -307,7 +307,7 @@ mod tests {
         }
         let (mut a, mut b) = (vec![0.0; 5], vec![0.0; 5]);
         for (superposition, out) in [(&few, &mut a), (&many, &mut b)] {
-            superposition.value(&Shape::Stretched, &[0.0, 1e-3, 0.1, 1.0, 9.0], &[1.0, 0.3], out);
+            superposition.value(&BasisFunction::Stretched, &[0.0, 1e-3, 0.1, 1.0, 9.0], &[1.0, 0.3], out);
         }
         assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-13), "{a:?} {b:?}");
     }

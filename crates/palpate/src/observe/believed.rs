@@ -7,7 +7,7 @@
 //! not move (recursive least squares with a prior, Kalman 1960).
 
 use super::kept::Kept;
-use super::observation::Uncertain;
+use super::normal::Normal;
 use super::{ObserveError, ObserverOptions};
 use crate::calibrate::Material;
 use crate::contact::RateDependence;
@@ -234,9 +234,9 @@ impl Believed {
     }
 
     /// Exponent of the law of a hold, and what the calibration leaves open of it.
-    pub(super) fn exponent(&self) -> Uncertain {
-        Uncertain {
-            value: self.best.model.law.exponent().max(1.0),
+    pub(super) fn exponent(&self) -> Normal {
+        Normal {
+            mean: self.best.model.law.exponent().max(1.0),
             deviation: self.exponent_deviation,
         }
     }
@@ -246,7 +246,7 @@ impl Believed {
         self.surprise < SURPRISED && self.standing.iter().all(|standing| standing.abs() < FAR)
     }
 
-    fn combined(&self, of: impl Fn(&Member) -> f64) -> Uncertain {
+    fn combined(&self, of: impl Fn(&Member) -> f64) -> Normal {
         let mut value = of(&self.best);
         let count = self.pairs.len();
         let mut slopes = [0.0; MOST];
@@ -258,34 +258,34 @@ impl Believed {
         let along = |row: &[f64]| row.iter().zip(slopes).map(|(entry, slope)| entry * slope).sum::<f64>();
         let rows = self.covariance.chunks_exact(count.max(1));
         let variance: f64 = rows.zip(slopes).map(|(row, slope)| slope * along(row)).sum();
-        Uncertain {
-            value,
+        Normal {
+            mean: value,
             deviation: variance.max(0.0).sqrt(),
         }
     }
 
     /// Force that a hold here tends to, N.
-    pub(super) fn equilibrium(&self) -> Uncertain {
+    pub(super) fn equilibrium(&self) -> Normal {
         self.combined(|member| member.equilibrium(self.displacement))
     }
 
     /// Force in excess of it, N.
-    pub(super) fn excess_force(&self) -> Uncertain {
+    pub(super) fn excess_force(&self) -> Normal {
         self.combined(|member| member.state.force(&member.model) - member.equilibrium(self.displacement))
     }
 
     /// Strain in excess of equilibrium.
-    pub(super) fn excess_strain(&self) -> Uncertain {
+    pub(super) fn excess_strain(&self) -> Normal {
         self.combined(|member| member.excess(self.displacement))
     }
 
     /// v|x|ⁿ⁻¹, 1/s.
     pub(super) fn relative_rate(&self) -> f64 {
-        self.best.model.law.relative_rate(self.excess_strain().value)
+        self.best.model.law.relative_rate(self.excess_strain().mean)
     }
 
     /// The force after `dt` (s) more with the jaw where it is, N.
-    pub(super) fn force_after(&self, dt: f64) -> Uncertain {
+    pub(super) fn force_after(&self, dt: f64) -> Normal {
         self.combined(|member| {
             let mut state = member.state;
             state.step(&member.model, dt, self.displacement + member.offset).unwrap_or(0.0)

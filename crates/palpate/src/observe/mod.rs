@@ -1,16 +1,15 @@
 //! A contact watched tick by tick, for controllers: when a hold begins, where it tends, when it slips.
 //!
+//! Readings of force and displacement come in one tick after the other, an [`Observation`] goes out after each.
+//!
 //! | file | what | equations |
 //! |---|---|---|
 //! | `options.rs`, `observation.rs`, `error.rs` | what goes in, what comes out, what is refused | |
 //! | `observer.rs`, `saying.rs` | from tick to tick: phase, hold, fit; and what is said of it, warnings too | |
-//! | `noise.rs`, `smooth.rs` | noise of a signal, and the signal without most of it | |
-//! | `stand.rs`, `alone.rs` | that a jaw, or a force, stands still; the end of loading where there is no displacement | |
-//! | `bins.rs` | a hold of any length in 64 means | |
-//! | `hold_fit.rs` | a hold fitted, with what it leaves open | (4), (5) |
+//! | `signal/` | noise of a signal, the signal without most of it; that a jaw, or a force, stands still | |
+//! | `hold/` | a hold of any length in 64 means, fitted, and the time when its force has fallen to that of slip | (4), (5) |
 //! | `believed.rs` | a calibrated body run beside the record | (10), (11) |
-//! | `forecast.rs` | the time when its force has fallen to that of slip | |
-//! | `kept.rs` | the state as bytes, to send an observer elsewhere | |
+//! | `normal.rs`, `kept.rs` | a value with its deviation; the state as bytes, to send an observer elsewhere | |
 //!
 //! In a hold of the displacement F(t) = F_e + A φ(t; λ, n), [`decay`](crate::latency::decay), equations (4) and (5). Its readings become
 //! means over lengths that grow with the time since the hold began, at most 64 of them. Each time the hold is 4 % longer F_e, A and λ are
@@ -28,7 +27,7 @@
 //!
 //! ```
 //! use palpate::latency::decay;
-//! use palpate::observe::{Observer, ObserverOptions, Phase, Slip, TimeToSlip};
+//! use palpate::observe::{ContactPhase, Observer, ObserverOptions, Slip};
 //!
 //! let mut observer = Observer::new(ObserverOptions { slip_force: Some(2.0), ..ObserverOptions::default() })?;
 //! let mut warned = None;
@@ -44,28 +43,24 @@
 //! }
 //! assert!(warned.is_some_and(|time| time < 0.5 + 0.81));
 //! let seen = observer.feed(60.0, Some(0.005), 1.2 + 1.7 * decay(6.0 * 59.5, 5.0))?;
-//! assert_eq!(seen.phase, Phase::Holding);
+//! assert_eq!(seen.phase, ContactPhase::Holding);
 //! assert!((seen.held_since.unwrap() - 0.5).abs() < 2e-3);
 //! assert!((seen.equilibrium_force.unwrap().value - 1.2).abs() < 1e-3);
 //! # Ok::<(), palpate::observe::ObserveError>(())
 //! ```
 
-mod alone;
 mod believed;
-mod bins;
 mod error;
-mod forecast;
-mod hold_fit;
+mod hold;
 mod kept;
-mod noise;
+mod normal;
 mod observation;
 mod observer;
 mod options;
 mod saying;
-mod smooth;
-mod stand;
+mod signal;
 
 pub use error::ObserveError;
-pub use observation::{Held, Observation, Phase, Slip, TimeToSlip, Uncertain};
+pub use observation::{ContactPhase, Held, Observation, Slip, SlipForecast};
 pub use observer::Observer;
 pub use options::ObserverOptions;

@@ -2,11 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::kept::{Kept, kept};
+use super::kept::Kept;
+use crate::fit::Estimate;
+use crate::grip::TimeToSlip;
 
 /// What happens at a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Phase {
+pub enum ContactPhase {
     /// No contact: the force is within its noise of zero.
     #[default]
     Free,
@@ -37,32 +39,29 @@ impl Kept for Held {
     }
 }
 
-/// A value and its standard deviation.
+/// When the force has relaxed to the force of slip.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Uncertain {
-    /// Best value.
-    pub value: f64,
-    /// Standard deviation.
-    pub deviation: f64,
-}
-kept!(Uncertain: value, deviation);
-
-/// How long until the force has relaxed to the force of slip.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum TimeToSlip {
+pub enum SlipForecast {
     /// Not known yet: no hold, or too little of it.
     Unknown,
-    /// Not by relaxation: with the confidence that was asked for the equilibrium force is above, or the force is held.
-    Never,
-    /// After a time.
-    After {
-        /// Best value, s; `None` where the best equilibrium is above the force of slip.
-        value: Option<f64>,
-        /// Lower end of the interval, s.
-        low: f64,
-        /// Upper end, s; `None` where never is inside the interval.
-        high: Option<f64>,
+    /// With the confidence that was asked for. It never does where the equilibrium force is above, or the force is held.
+    Known {
+        /// Best value, from now on.
+        best: TimeToSlip,
+        /// Lower end of its interval.
+        low: TimeToSlip,
+        /// Upper end.
+        high: TimeToSlip,
     },
+}
+
+impl SlipForecast {
+    /// Not by relaxation.
+    pub(super) const NEVER: Self = Self::Known {
+        best: TimeToSlip::Never,
+        low: TimeToSlip::Never,
+        high: TimeToSlip::Never,
+    };
 }
 
 /// Warnings.
@@ -94,7 +93,7 @@ pub struct Observation {
     /// When, s.
     pub time: f64,
     /// What happens.
-    pub phase: Phase,
+    pub phase: ContactPhase,
     /// What is held; `None` outside a hold.
     pub held: Option<Held>,
     /// When the hold began, s.
@@ -104,17 +103,17 @@ pub struct Observation {
     /// The force without its noise, N: the fitted curve inside a hold, a filter's elsewhere.
     pub force: f64,
     /// The force that a displacement hold tends to, N; `None` until its interval is narrower than the force itself.
-    pub equilibrium_force: Option<Uncertain>,
+    pub equilibrium_force: Option<Estimate>,
     /// Force in excess of equilibrium, N.
-    pub excess_force: Option<Uncertain>,
+    pub excess_force: Option<Estimate>,
     /// Strain in excess of equilibrium; only a material tells it.
-    pub excess_strain: Option<Uncertain>,
+    pub excess_strain: Option<Estimate>,
     /// Rate at which the excess falls now, in shares of itself: v|x|ⁿ⁻¹ in 1/s.
     pub relative_rate: Option<f64>,
     /// Speed of the creep (m/s) while the force is held.
-    pub creep_rate: Option<Uncertain>,
+    pub creep_rate: Option<Estimate>,
     /// How long until slip; `None` where no force of slip was given.
-    pub time_to_slip: Option<TimeToSlip>,
+    pub time_to_slip: Option<SlipForecast>,
     /// Warning.
     pub slip: Slip,
 }

@@ -1,15 +1,11 @@
 //! From tick to tick: phase, hold, fit, warning.
 
-use super::alone::Alone;
 use super::believed::Believed;
-use super::bins::Bins;
-use super::forecast::Crossing;
-use super::hold_fit::{FEWEST, HoldFit};
+use super::hold::{Bins, Crossing, FEWEST, HoldFit};
 use super::kept::{Kept, kept};
-use super::noise::NoiseMeter;
-use super::smooth::Smooth;
-use super::stand::{Change, Stand};
-use super::{Held, Observation, ObserveError, ObserverOptions, Slip, Uncertain};
+use super::normal::Normal;
+use super::signal::{Alone, Change, NoiseMeter, Smooth, Stand};
+use super::{Held, Observation, ObserveError, ObserverOptions, Slip};
 use crate::statistics::coverage_factor;
 
 /// Noise (standard deviations of one reading) within which a signal stands.
@@ -40,7 +36,7 @@ pub(super) struct Hold {
     pub(super) since: f64,
     pub(super) fit: Option<HoldFit>,
     pub(super) crossing: Option<Crossing>,
-    pub(super) creep: Option<Uncertain>,
+    pub(super) creep: Option<Normal>,
     /// Time since the hold began at which the next fit is due, s.
     pub(super) due: f64,
     pub(super) readings: u32,
@@ -365,7 +361,7 @@ impl Observer {
             Crossing::find(elapsed, slip, |time| {
                 let force = believed.force_after(time - elapsed);
                 let half = factor * force.deviation;
-                (force.value - half, force.value, force.value + half)
+                (force.mean - half, force.mean, force.mean + half)
             })
         });
         hold.due = (1.0 + AGAIN) * elapsed;
@@ -377,8 +373,8 @@ impl Observer {
         {
             let confidence = self.options.confidence;
             let exponent = self.believed.as_ref().map_or(
-                Uncertain {
-                    value: self.options.exponent,
+                Normal {
+                    mean: self.options.exponent,
                     deviation: self.options.exponent_deviation,
                 },
                 Believed::exponent,

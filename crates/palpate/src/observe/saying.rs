@@ -1,7 +1,9 @@
 //! What an observer says after a tick: its state as an observation, and warnings.
 
-use super::smooth::Smooth;
-use super::{Held, Observation, Observer, Phase, Slip, TimeToSlip, Uncertain};
+use super::normal::Normal;
+use super::signal::Smooth;
+use super::{ContactPhase, Held, Observation, Observer, Slip, SlipForecast};
+use crate::grip::TimeToSlip;
 
 /// Slip that cannot be excluded is no warning where the best value is so many times farther than the warning is wanted: in the first moments
 /// of a hold nothing can be excluded.
@@ -14,10 +16,10 @@ impl Observer {
     /// What is said after the tick at `time` (s).
     pub(super) fn say(&self, time: f64, began: bool) -> Observation {
         let phase = match &self.hold {
-            Some(_) => Phase::Holding,
-            None if self.is_open() => Phase::Free,
-            None if self.direction() < 0.0 => Phase::Unloading,
-            None => Phase::Loading,
+            Some(_) => ContactPhase::Holding,
+            None if self.is_open() => ContactPhase::Free,
+            None if self.direction() < 0.0 => ContactPhase::Unloading,
+            None => ContactPhase::Loading,
         };
         let mut said = Observation {
             time,
@@ -31,29 +33,33 @@ impl Observer {
             excess_strain: None,
             relative_rate: None,
             creep_rate: None,
-            time_to_slip: self.options.slip_force.map(|_| TimeToSlip::Unknown),
+            time_to_slip: self.options.slip_force.map(|_| SlipForecast::Unknown),
             slip: Slip::None,
         };
         if let Some(hold) = &self.hold {
             said.held = Some(hold.held);
             said.held_since = Some(hold.since);
-            said.creep_rate = hold.creep;
+            said.creep_rate = hold.creep.map(Into::into);
             let elapsed = time - self.relaxes_from;
             if let Some(fit) = &hold.fit {
                 said.force = fit.force(elapsed);
-                said.equilibrium_force = fit.equilibrium();
-                said.excess_force = said.equilibrium_force.map(|equilibrium| Uncertain {
-                    value: said.force - equilibrium.value,
-                    deviation: equilibrium.deviation,
+                let equilibrium = fit.equilibrium();
+                said.equilibrium_force = equilibrium.map(Into::into);
+                said.excess_force = equilibrium.map(|equilibrium| {
+                    Normal {
+                        mean: said.force - equilibrium.mean,
+                        ..equilibrium
+                    }
+                    .into()
                 });
                 said.relative_rate = fit.relaxes().then(|| fit.relative_rate(elapsed));
             }
             self.say_believed(&mut said, hold.held);
             if self.options.slip_force.is_some() {
                 said.time_to_slip = Some(match (hold.held, hold.crossing) {
-                    (Held::Force, _) => TimeToSlip::Never,
+                    (Held::Force, _) => SlipForecast::NEVER,
                     (_, Some(crossing)) => crossing.seen(elapsed),
-                    _ => TimeToSlip::Unknown,
+                    _ => SlipForecast::Unknown,
                 });
             }
         }
@@ -64,17 +70,17 @@ impl Observer {
     /// What a material tells of a hold, where the forces are its.
     fn say_believed(&self, said: &mut Observation, held: Held) {
         let Some(believed) = self.informed() else { return };
-        said.excess_strain = Some(believed.excess_strain());
+        said.excess_strain = Some(believed.excess_strain().into());
         let equilibrium = believed.equilibrium();
-        let sharper = said.equilibrium_force.is_none_or(|itself| equilibrium.deviation <= itself.deviation);
-        if !sharper {
+        let itself = said.equilibrium_force.and_then(|itself| itself.standard_error);
+        if itself.is_some_and(|itself| equilibrium.deviation > itself) {
             return;
         }
-        said.excess_force = Some(believed.excess_force());
+        said.excess_force = Some(believed.excess_force().into());
         said.relative_rate = Some(believed.relative_rate());
         if held == Held::Displacement {
-            said.equilibrium_force = Some(equilibrium);
-            said.force = believed.force_after(0.0).value;
+            said.equilibrium_force = Some(equilibrium.into());
+            said.force = believed.force_after(0.0).mean;
         }
     }
 
@@ -86,7 +92,7 @@ impl Observer {
         let Some(slip) = self.options.slip_force else {
             return Slip::None;
         };
-        if said.phase != Phase::Holding {
+        if said.phase != ContactPhase::Holding {
             return Slip::None;
         }
         let noise = self.force_noise.deviation().unwrap_or(0.0) * Smooth::kept();
@@ -96,9 +102,9 @@ impl Observer {
         let margin = if before == Slip::Slipping { 3.0 * noise } else { 0.0 };
         match said.time_to_slip {
             _ if said.force <= slip + margin => Slip::Slipping,
-            Some(TimeToSlip::After {
-                value: Some(value),
-                low,
+            Some(SlipForecast::Known {
+                best: TimeToSlip::After(value),
+                low: TimeToSlip::After(low),
                 ..
             }) if low <= early * self.options.warn_before
                 && value <= early * FALSE_ALARM * self.options.warn_before =>
@@ -106,7 +112,7 @@ impl Observer {
                 Slip::Soon
             }
             // Before the first fit there is the margin alone.
-            Some(TimeToSlip::Unknown) if said.force - 3.0 * early * noise <= slip => Slip::Soon,
+            Some(SlipForecast::Unknown) if said.force - 3.0 * early * noise <= slip => Slip::Soon,
             _ => Slip::None,
         }
     }

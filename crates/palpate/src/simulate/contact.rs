@@ -114,7 +114,7 @@ macro_rules! by_law {
         match $contact {
             $crate::simulate::ContactRef::Latency($name, $crate::contact::RateDependence::Constant) => $work,
             $crate::simulate::ContactRef::Latency(model, rate) => {
-                let $name = &$crate::simulate::varying::Varying { model, rate };
+                let $name = &$crate::simulate::latency::Varying { model, rate };
                 $work
             }
             $crate::simulate::ContactRef::Linear($name) => $work,

@@ -3,8 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::contact::{ContactRef, by_law};
-use super::course::Course;
-use super::{Drive, Sampling, SimulateError, energy, simulate};
+use super::energy::energy_watched;
+use super::trajectory::simulate_watched;
+use super::walk::Course;
+use super::{Drive, Sampling, SimulateError};
+use crate::watch::{Stages, Unwatched, Watch};
 
 /// What the jaw did between two knots of a drive, J; both contacts of a body that is squeezed from two sides.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -75,12 +78,28 @@ pub fn work_by_step<'a, 'b>(
     drive: impl Into<Drive<'a>>,
     contact: impl Into<ContactRef<'b>>,
 ) -> Result<Vec<StepWork>, SimulateError> {
+    work_by_step_watched(drive, contact, &mut Unwatched)
+}
+
+/// As [`work_by_step`], heard by `watch` at every straight piece of the drive.
+///
+/// # Errors
+/// As for [`simulate`](super::simulate()), and [`SimulateError::Cancelled`].
+pub fn work_by_step_watched<'a, 'b>(
+    drive: impl Into<Drive<'a>>,
+    contact: impl Into<ContactRef<'b>>,
+    watch: &mut dyn Watch,
+) -> Result<Vec<StepWork>, SimulateError> {
     let (drive, contact) = (drive.into(), contact.into());
-    let mut knots = by_law!(contact, contact => Course::new(drive, contact)?.times().to_vec());
+    let mut stages = Stages::new("integrating work".to_owned(), watch);
+    let mut knots = by_law!(contact, contact => Course::new(drive, contact, &mut stages)?.times().to_vec());
     knots.dedup();
     let sampling = Sampling::Times(knots);
-    let energy = energy(drive, contact, &sampling)?;
-    let at = simulate(drive, contact, &sampling)?.displacement;
+    stages.enter(0.5);
+    let energy = energy_watched(drive, contact, &sampling, &mut stages)?;
+    stages.enter(0.5);
+    let at = simulate_watched(drive, contact, &sampling, &mut stages)?.displacement;
+    stages.finish()?;
     let lost = energy.split.map(|split| split.lost);
     let step = |i: usize| StepWork {
         from: energy.time[i],

@@ -3,11 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::contact::{ContactRef, by_law};
-use super::course::Course;
 use super::layer::Layer;
 use super::trajectory::sample_times;
+use super::walk::Course;
 use super::walk::{Stretch, StretchState, walk};
 use super::{Drive, Sampling, SimulateError};
+use crate::watch::{Stages, Unwatched, Watch};
 
 /// Energy of a simulated body over time, in J; both contacts of a body that is squeezed from two sides.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -73,11 +74,33 @@ pub fn energy<'a, 'b>(
     contact: impl Into<ContactRef<'b>>,
     sampling: &Sampling,
 ) -> Result<Energy, SimulateError> {
-    by_law!(contact.into(), contact => energy_of(drive.into(), contact, sampling))
+    energy_watched(drive, contact, sampling, &mut Unwatched)
 }
 
-fn energy_of<L: Layer>(drive: Drive<'_>, model: &L, sampling: &Sampling) -> Result<Energy, SimulateError> {
-    let course = Course::new(drive, model)?;
+/// As [`energy`], heard by `watch` at every straight piece of the drive and every sample.
+///
+/// # Errors
+/// As for [`energy`], and [`SimulateError::Cancelled`].
+pub fn energy_watched<'a, 'b>(
+    drive: impl Into<Drive<'a>>,
+    contact: impl Into<ContactRef<'b>>,
+    sampling: &Sampling,
+    watch: &mut dyn Watch,
+) -> Result<Energy, SimulateError> {
+    let mut stages = Stages::new("integrating work".to_owned(), watch);
+    let result = by_law!(contact.into(), contact => energy_of(drive.into(), contact, sampling, &mut stages))?;
+    stages.finish()?;
+    Ok(result)
+}
+
+fn energy_of<L: Layer>(
+    drive: Drive<'_>,
+    model: &L,
+    sampling: &Sampling,
+    stages: &mut Stages<'_>,
+) -> Result<Energy, SimulateError> {
+    let course = Course::new(drive, model, stages)?;
+    stages.enter(1.0);
     let time = sample_times(&course, sampling)?;
     let contacts = 1.0 / model.specimen().contact_displacement(1.0);
     let mut account = Account::default();
@@ -89,12 +112,13 @@ fn energy_of<L: Layer>(drive: Drive<'_>, model: &L, sampling: &Sampling) -> Resu
         while let Some(&next) = time.get(work.len()).filter(|time| inside(**time)) {
             account.add(stretch, model, (at, next));
             at = next;
+            stages.reach(course.share(at))?;
             work.push(account.work * contacts);
             given_back.push(account.given_back * contacts);
             stored.push(stored_at(stretch, model, next) * contacts);
         }
         account.add(stretch, model, (at, stretch.end));
-        Ok(())
+        Ok(stages.reach(course.share(stretch.end))?)
     })?;
     let split = model.specimen().has_constant_section().then(|| EnergySplit {
         lost: work.iter().zip(&stored).map(|(work, stored)| work - stored).collect(),

@@ -1,6 +1,7 @@
 //! Why a simulation could not run.
 
 use crate::contact::SpecimenError;
+use crate::watch::Cancelled;
 
 /// Why a simulation could not run.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -136,6 +137,9 @@ pub enum SimulateError {
         /// Time, s.
         time: f64,
     },
+    /// Its watch ended it.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl SimulateError {

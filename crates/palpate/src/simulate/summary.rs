@@ -3,12 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::contact::{ContactRef, by_law};
-use super::course::Course;
 use super::energy::{Account, stored_at};
 use super::layer::Layer;
-use super::trajectory::{Trajectory, extend_forces, sample_times};
+use super::trajectory::{Trajectory, check_times, extend_forces, sample_times};
+use super::walk::Course;
 use super::walk::walk;
-use super::{ContactEvent, Drive, Sampling, SimulateError};
+use super::{ContactEvent, Drive, Sampling, SimulateError, StepEnd};
+use crate::vector::columns::all_finite;
+use crate::watch::{Stages, Unwatched};
 
 /// A simulation in a few numbers, SI units, compression positive.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -37,6 +39,17 @@ pub struct Summary {
     pub lost: Option<f64>,
     /// Contacts lost and regained, in order.
     pub events: Vec<ContactEvent>,
+}
+
+/// A simulation in a few numbers, with where its steps end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunSummary {
+    /// What the whole comes to.
+    pub summary: Summary,
+    /// The ends of the steps of a program, or of the straight pieces of a motion; nothing of a force history.
+    pub ends: Vec<StepEnd>,
+    /// Forces (N) at the times that were asked for; `None` if these do not rise or lie outside the drive.
+    pub forces: Option<Vec<f64>>,
 }
 
 /// Simulates as [`simulate`](super::simulate()) does and keeps what the series comes to.
@@ -68,16 +81,37 @@ pub fn summary<'a, 'b>(
     contact: impl Into<ContactRef<'b>>,
     sampling: &Sampling,
 ) -> Result<Summary, SimulateError> {
-    by_law!(contact.into(), contact => summed_up(drive.into(), contact, sampling))
+    run_summary(drive.into(), contact.into(), sampling, &[]).map(|run| run.summary)
 }
 
-fn summed_up<L: Layer>(drive: Drive<'_>, model: &L, sampling: &Sampling) -> Result<Summary, SimulateError> {
-    let course = Course::new(drive, model)?;
+/// The same with where its steps end, and with the forces at more `times` (s), by one walk through the drive.
+pub(crate) fn run_summary(
+    drive: Drive<'_>,
+    contact: ContactRef<'_>,
+    sampling: &Sampling,
+    times: &[f64],
+) -> Result<RunSummary, SimulateError> {
+    let mut unwatched = Unwatched;
+    let mut stages = Stages::new(String::new(), &mut unwatched);
+    by_law!(contact, contact => summed_up(drive, contact, sampling, times, &mut stages))
+}
+
+fn summed_up<L: Layer>(
+    drive: Drive<'_>,
+    model: &L,
+    sampling: &Sampling,
+    wanted: &[f64],
+    stages: &mut Stages<'_>,
+) -> Result<RunSummary, SimulateError> {
+    let course = Course::new(drive, model, stages)?;
     let times = times_and_knots(&course, sampling)?;
-    let (last, contacts) = (course.end(), 1.0 / model.specimen().contact_displacement(1.0));
+    let share = model.specimen().contact_displacement(1.0);
+    let (last, contacts) = (course.end(), 1.0 / share);
     let (mut peak, mut next) = (Peak::default(), 0);
     let (mut account, mut stored) = (Account::default(), 0.0);
     let mut end = Trajectory::default();
+    let mut ends = course.ends().to_vec();
+    let mut forces = check_times((course.start(), last), wanted).is_ok().then(Vec::new);
     let (events, _) = walk(course.drive, model, |stretch| {
         let inside = |time: &f64| *time < stretch.end || stretch.end == last;
         let until = next + times[next..].partition_point(inside);
@@ -87,6 +121,20 @@ fn summed_up<L: Layer>(drive: Drive<'_>, model: &L, sampling: &Sampling) -> Resu
             peak.take(times)?;
         }
         next = until;
+        if let Some(forces) = &mut forces {
+            let rest = &wanted[forces.len()..];
+            extend_forces(stretch, model, &rest[..rest.partition_point(inside)], forces);
+        }
+        if let Drive::Motion(motion) = course.drive
+            && motion.times().get(ends.len() + 1) == Some(&stretch.end)
+        {
+            let displacement = motion.displacements()[ends.len() + 1];
+            ends.push(StepEnd {
+                time: stretch.end,
+                displacement,
+                force: stretch.end_force(model, displacement * share),
+            });
+        }
         account.add(stretch, model, (stretch.start, stretch.end));
         if stretch.end == last {
             end = Trajectory::with_times(vec![last]);
@@ -102,7 +150,7 @@ fn summed_up<L: Layer>(drive: Drive<'_>, model: &L, sampling: &Sampling) -> Resu
     let ([Some(force), Some(displacement), Some(strain), Some(excess_strain)], true) = (sound, work.is_finite()) else {
         return Err(SimulateError::OutOfRange { time: last });
     };
-    Ok(Summary {
+    let summary = Summary {
         end_time: last,
         peak_force: peak.force,
         peak_time: peak.time,
@@ -115,6 +163,11 @@ fn summed_up<L: Layer>(drive: Drive<'_>, model: &L, sampling: &Sampling) -> Resu
         stored: divided.then_some(stored),
         lost: divided.then_some(work - stored),
         events,
+    };
+    Ok(RunSummary {
+        summary,
+        ends,
+        forces: forces.filter(|forces| all_finite(forces)),
     })
 }
 

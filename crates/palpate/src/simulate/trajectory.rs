@@ -3,11 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::contact::{ContactRef, by_law};
-use super::course::Course;
 use super::layer::Layer;
+use super::walk::Course;
 use super::walk::{Stretch, StretchState, walk};
-use super::{ContactEvent, Drive, Motion, SimulateError, Work};
+use super::{ContactEvent, Drive, Motion, SimulateError, SimulationWork};
 use crate::vector::columns::{all_finite, rises_or_stays};
+use crate::watch::{Stages, Unwatched, Watch};
 
 /// When to report.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +46,7 @@ pub struct Trajectory {
     /// Contacts lost and regained, in order.
     pub events: Vec<ContactEvent>,
     /// What it cost.
-    pub work: Work,
+    pub work: SimulationWork,
 }
 
 impl Trajectory {
@@ -198,19 +199,48 @@ pub fn simulate<'a, 'b>(
     contact: impl Into<ContactRef<'b>>,
     sampling: &Sampling,
 ) -> Result<Trajectory, SimulateError> {
-    by_law!(contact.into(), contact => trajectory(drive.into(), contact, sampling))
+    simulate_watched(drive, contact, sampling, &mut Unwatched)
 }
 
-fn trajectory<L: Layer>(drive: Drive<'_>, model: &L, sampling: &Sampling) -> Result<Trajectory, SimulateError> {
-    let course = Course::new(drive, model)?;
+/// As [`simulate`], heard by `watch` at every straight piece of the drive and every 65,536 samples.
+///
+/// # Errors
+/// As for [`simulate`], and [`SimulateError::Cancelled`].
+pub fn simulate_watched<'a, 'b>(
+    drive: impl Into<Drive<'a>>,
+    contact: impl Into<ContactRef<'b>>,
+    sampling: &Sampling,
+    watch: &mut dyn Watch,
+) -> Result<Trajectory, SimulateError> {
+    let mut stages = Stages::new("simulating".to_owned(), watch);
+    let result = by_law!(contact.into(), contact => trajectory(drive.into(), contact, sampling, &mut stages))?;
+    stages.finish()?;
+    Ok(result)
+}
+
+/// Samples that are computed between two reports.
+const AT_ONCE: usize = 65_536;
+
+fn trajectory<L: Layer>(
+    drive: Drive<'_>,
+    model: &L,
+    sampling: &Sampling,
+    stages: &mut Stages<'_>,
+) -> Result<Trajectory, SimulateError> {
+    let course = Course::new(drive, model, stages)?;
     let mut result = Trajectory::with_times(sample_times(&course, sampling)?);
     let (last, mut next) = (course.end(), 0);
+    stages.enter(1.0);
     let (events, work) = walk(course.drive, model, |stretch| {
         let inside = |time: &f64| *time < stretch.end || stretch.end == last;
         let until = next + result.time[next..].partition_point(inside);
-        result.append(stretch, model, until);
-        next = until;
-        Ok(())
+        while next < until {
+            let end = until.min(next + AT_ONCE);
+            result.append(stretch, model, end);
+            stages.reach(course.share(result.time[end - 1]))?;
+            next = end;
+        }
+        Ok(stages.reach(course.share(stretch.end))?)
     })?;
     result.events = events;
     result.work = work;
@@ -238,11 +268,10 @@ pub fn simulate_force<'a>(
 }
 
 fn forces<L: Layer>(motion: &Motion, model: &L, times: &[f64]) -> Result<Vec<f64>, SimulateError> {
-    let course = Course::new(motion.into(), model)?;
-    check_times(&course, times)?;
+    check_times((motion.start(), motion.end()), times)?;
     let last = motion.end();
     let mut force: Vec<f64> = Vec::with_capacity(times.len());
-    walk(course.drive, model, |stretch| {
+    walk(motion.into(), model, |stretch| {
         let next = force.len();
         let inside = |time: &f64| *time < stretch.end || stretch.end == last;
         let times = &times[next..next + times[next..].partition_point(inside)];
@@ -300,15 +329,14 @@ pub(super) fn sample_times(course: &Course<'_>, sampling: &Sampling) -> Result<V
             Ok(grid_with_knots(course, *rate, count as usize))
         }
         Sampling::Times(times) => {
-            check_times(course, times)?;
+            check_times((course.start(), course.end()), times)?;
             Ok(times.clone())
         }
     }
 }
 
 /// Checks that times rise and lie inside the course.
-fn check_times(course: &Course<'_>, times: &[f64]) -> Result<(), SimulateError> {
-    let (from, until) = (course.start(), course.end());
+pub(super) fn check_times((from, until): (f64, f64), times: &[f64]) -> Result<(), SimulateError> {
     // Nearly always they are good: found out at the speed of vectors.
     if rises_or_stays(times)
         && times.first().is_none_or(|first| *first >= from)

@@ -1,7 +1,7 @@
 //! How often intervals contain the truth: simulated holds with noise, fitted many times.
 
 use palpate::fit::{BootstrapOptions, LawOptions, Samples, bootstrap, fit_law, profile_interval};
-use palpate::laws::{ExponentChoice, Law, LawCurve, Response, Shape, Term};
+use palpate::laws::{BasisFunction, ExponentChoice, Law, LawCurve, Response, Term};
 use palpate::test_problems::Noise;
 
 /// A law whose numbers are known, and how noisy its holds are.
@@ -20,7 +20,7 @@ pub(crate) struct Case {
 /// Samples of a hold, evenly over 10 s.
 pub(crate) const SAMPLES: usize = 1000;
 
-fn term(amplitude: f64, shape: Shape, numbers: &[f64]) -> Term {
+fn term(amplitude: f64, shape: BasisFunction, numbers: &[f64]) -> Term {
     Term {
         amplitude,
         shape,
@@ -30,15 +30,18 @@ fn term(amplitude: f64, shape: Shape, numbers: &[f64]) -> Term {
 
 /// The four laws, each with white noise and with AR(1) noise of 0.9.
 pub(crate) fn cases() -> Vec<Case> {
-    let power = |n: f64| term(1.0, Shape::Latency, &[2f64.ln(), n]);
+    let power = |n: f64| term(1.0, BasisFunction::Latency, &[2f64.ln(), n]);
     let fixed = Law::Latency {
         exponent: ExponentChoice::Fixed(5.0),
     };
     let free = Law::Latency {
         exponent: ExponentChoice::Free,
     };
-    let single = term(1.0, Shape::Exponential, &[-(2f64.ln())]);
-    let double = vec![term(0.5, Shape::Exponential, &[-(0.3f64.ln())]), term(0.5, Shape::Exponential, &[-(3f64.ln())])];
+    let single = term(1.0, BasisFunction::Exponential, &[-(2f64.ln())]);
+    let double = vec![
+        term(0.5, BasisFunction::Exponential, &[-(0.3f64.ln())]),
+        term(0.5, BasisFunction::Exponential, &[-(3f64.ln())]),
+    ];
     let common = [("equilibrium", 1.0), ("amplitude", 1.0)];
     let rates = [("relative_rate", 2.0), ("rate_coefficient", 2.0)];
     let named = |more: &[(&'static str, f64)]| [&common[..], more].concat();

@@ -6,8 +6,9 @@ use palpate::calibrate::{
 };
 use palpate::contact::{Shape, Sides};
 use palpate::fit::Estimate;
-use palpate::grip::{Band, Grasp, Grip, GripError, Lasts, Limits, Objective, Plan, PlanKind, Regrip};
+use palpate::grip::{Band, Grasp, Grip, GripError, Limits, Objective, Plan, PlanKind, Question, Regrip, TimeToSlip};
 use palpate::simulate::{ProgramStep, Sampling, Separation, step_ends};
+use palpate::watch::{Cancelled, Progress};
 
 const SPEED: f64 = 0.5 / 60.0;
 
@@ -79,7 +80,7 @@ fn grip(material: &Material, mass: f64) -> Grip<'_> {
     Grip::new(material, Grasp::new(mass, 0.6).unwrap(), Limits::new(SPEED).unwrap(), 0.95).unwrap()
 }
 
-fn seconds(lasts: Lasts) -> f64 {
+fn seconds(lasts: TimeToSlip) -> f64 {
     lasts.seconds().unwrap()
 }
 
@@ -103,9 +104,9 @@ fn it_slips_when_the_closed_form_of_the_hold_says_so() {
         assert!((found.sharpness.unwrap() / slope - 1.0).abs() < 1e-3);
     }
     let shallow = grip.holding(&Plan::squeeze(0.003, SPEED)).unwrap();
-    assert_eq!((shallow.lasts, shallow.sharpness), (Lasts::For(0.0), None));
+    assert_eq!((shallow.lasts, shallow.sharpness), (TimeToSlip::After(0.0), None));
     let deep = grip.holding(&Plan::squeeze(0.008, SPEED)).unwrap();
-    assert!(deep.lasts == Lasts::Always && deep.relaxed_force > deep.needed_force && deep.lasts.covers(1e12));
+    assert!(deep.lasts == TimeToSlip::Never && deep.relaxed_force > deep.needed_force && deep.lasts.covers(1e12));
 }
 
 #[test]
@@ -124,7 +125,7 @@ fn the_interval_of_the_time_is_where_the_edges_of_the_band_slip() {
     }
     // Near to where it holds always, the later end is open.
     let near = grip.holding(&Plan::squeeze(0.0069, SPEED)).unwrap();
-    assert!(near.lasts != Lasts::Always && near.interval.unwrap().1 == Lasts::Always, "{near:?}");
+    assert!(near.lasts != TimeToSlip::Never && near.interval.unwrap().1 == TimeToSlip::Never, "{near:?}");
 }
 
 #[test]
@@ -167,7 +168,7 @@ fn after_a_retreat_the_force_stays_where_it_is() {
     assert!(found.drift.abs() < 1e-9 * found.backed.start_force, "{}", found.drift);
     assert!(found.plain_drift < -0.5 * found.backed.start_force, "{}", found.plain_drift);
     assert!((found.backed.start_force / found.backed.needed_force - 1.0).abs() < 1e-6);
-    assert_eq!(found.backed.lasts, Lasts::Always);
+    assert_eq!(found.backed.lasts, TimeToSlip::Never);
     // Farther and it rises, nearer and it falls; by little, for an excess this small hardly relaxes where n = 5.
     for (by, sign) in [(1.02, 1.0), (0.98, -1.0)] {
         let plan = Plan::back_off(found.over * by, found.backed.displacement, SPEED);
@@ -204,7 +205,7 @@ fn an_assured_retreat_holds_with_the_lower_edge_of_its_band() {
     let material = ball(Some([0.02, 0.01, 0.05, 0.01]));
     let grip = grip(&material, 0.25);
     let [best, assured] = [false, true].map(|assured| grip.back_off(None, 3600.0, assured).unwrap());
-    assert_eq!(best.backed.interval.unwrap().0, Lasts::For(0.0));
+    assert_eq!(best.backed.interval.unwrap().0, TimeToSlip::After(0.0));
     assert!(grip.holding(&assured.backed.plan).unwrap().interval.unwrap().0.covers(3600.0), "{assured:?}");
     let less = grip.back_off(Some(assured.backed.displacement * (1.0 - 1e-5)), 3600.0, false).unwrap();
     assert!(!less.backed.interval.unwrap().0.covers(3600.0), "{less:?}");
@@ -224,7 +225,7 @@ fn an_assured_retreat_holds_with_the_lower_edge_of_its_band() {
 fn held_forces_do_not_slip_and_creep() {
     let material = ball(None);
     let mut grasp = Grasp::new(0.25, 0.6).unwrap();
-    let held = grip(&material, 0.25).pressed(None, 3600.0).unwrap();
+    let held = grip(&material, 0.25).force_hold(None, 3600.0).unwrap();
     assert!((held.force - 0.25 * 9.806_65 / 1.2).abs() < 1e-12 && held.holds);
     let relaxed = held.displacement_relaxed.unwrap();
     assert!(held.displacement_start < held.displacement_end && held.displacement_end < relaxed, "{held:?}");
@@ -234,13 +235,16 @@ fn held_forces_do_not_slip_and_creep() {
         stroke: Some(0.5 * (held.displacement_start + held.displacement_end)),
         ..Limits::new(SPEED).unwrap()
     };
-    let short = Grip::new(&material, grasp, limits, 0.95).unwrap().pressed(None, 3600.0).unwrap();
+    let short = Grip::new(&material, grasp, limits, 0.95).unwrap().force_hold(None, 3600.0).unwrap();
     let ends = short.stroke_ends.unwrap();
     let there = step_ends(&[short.steps[0], ProgramStep::HoldForce { duration: ends }], &material.contact());
     assert!((there.unwrap()[1].displacement / limits.stroke.unwrap() - 1.0).abs() < 1e-9);
     // Torsion needs more force where the contact is small: the least is where both meet.
     grasp.off_centre = 0.02;
-    let twisted = Grip::new(&material, grasp, Limits::new(SPEED).unwrap(), 0.95).unwrap().pressed(None, 60.0).unwrap();
+    let twisted = Grip::new(&material, grasp, Limits::new(SPEED).unwrap(), 0.95)
+        .unwrap()
+        .force_hold(None, 60.0)
+        .unwrap();
     assert!((twisted.force / twisted.needed_force - 1.0).abs() < 1e-9 && twisted.force > 1.5 * held.force);
 }
 
@@ -353,7 +357,7 @@ fn the_time_to_close_is_a_limit_of_every_grip() {
     let (squeeze, retreat, held) = (
         free.least(Objective::Squeeze, 60.0, false).unwrap(),
         free.back_off(None, 60.0, false).unwrap(),
-        free.pressed(None, 60.0).unwrap(),
+        free.force_hold(None, 60.0).unwrap(),
     );
     for (closing, gets) in [(squeeze.closing, true), (0.9 * squeeze.displacement / SPEED, false)] {
         assert_eq!(within(closing * 1.001).least(Objective::Squeeze, 60.0, false).is_ok(), gets, "{closing}");
@@ -362,8 +366,8 @@ fn the_time_to_close_is_a_limit_of_every_grip() {
     assert!(within(1.01 * retreat.backed.closing).back_off(None, 60.0, false).is_ok());
     let refused = late.back_off(Some(retreat.backed.displacement), 60.0, false).unwrap_err();
     assert!(matches!(&refused, GripError::NoBackOff { by, .. } if by.starts_with("closed within")), "{refused}");
-    assert!(within(1.01 * held.closing).pressed(Some(held.force), 60.0).is_ok());
-    let refused = within(0.99 * held.closing).pressed(Some(held.force), 60.0).unwrap_err();
+    assert!(within(1.01 * held.closing).force_hold(Some(held.force), 60.0).is_ok());
+    let refused = within(0.99 * held.closing).force_hold(Some(held.force), 60.0).unwrap_err();
     assert!(
         matches!(
             refused,
@@ -396,12 +400,12 @@ fn forces_and_squeezes_beyond_the_body_are_answers() {
     let material = ball(None);
     let grip = grip(&material, 0.25);
     for force in [115.0, 1000.0] {
-        let refused = grip.pressed(Some(force), 60.0).unwrap_err();
+        let refused = grip.force_hold(Some(force), 60.0).unwrap_err();
         assert!(matches!(refused, GripError::BeyondLimit { name: "force", limit, .. } if limit > 100.0), "{refused}");
     }
     let refused = grip.holding(&Plan::squeeze(0.08, SPEED)).unwrap_err();
     assert_eq!(refused.to_string(), "a squeeze of 80.00 mm is beyond the limit of 70.00 mm");
-    let heavy = self::grip(&material, 250.0).pressed(None, 60.0).unwrap_err();
+    let heavy = self::grip(&material, 250.0).force_hold(None, 60.0).unwrap_err();
     assert!(matches!(heavy, GripError::NoSqueeze { reached, .. } if reached > 100.0), "{heavy}");
     assert!(heavy.to_string().contains("when the jaws stop"), "{heavy}");
 }
@@ -416,4 +420,32 @@ fn more_than_ten_years_and_assurance_without_intervals_are_refused() {
     assert_eq!(grip.least(Objective::Squeeze, 60.0, true), Err(GripError::NoIntervals));
     assert_eq!(grip.back_off(None, 60.0, true), Err(GripError::NoIntervals));
     assert!(!GripError::NoIntervals.is_answer());
+}
+
+#[test]
+fn a_search_for_grips_reports_progress_and_ends_when_it_is_told_to() {
+    let material = ball(Some([0.02, 0.02, 0.05, 0.02]));
+    let grip = grip(&material, 0.25);
+    let question = Question {
+        assured: true,
+        ..Question::hold_for(60.0)
+    };
+    let mut heard = Vec::new();
+    let answer = grip.answer_watched(&question, &mut |progress: Progress<'_>| {
+        heard.push((progress.done, progress.total.unwrap()));
+        Ok(())
+    });
+    assert_eq!(answer, grip.answer(&question));
+    assert!(heard.windows(2).all(|pair| pair[0].0 <= pair[1].0));
+    let (done, total) = *heard.last().unwrap();
+    assert_eq!(done, total);
+    // In the search for the least squeeze, among the neighbours (which leave out what cannot be made), and in the courses at the end.
+    for stop in [2, heard.len() / 3, heard.len() / 2, heard.len() - 3] {
+        let mut reports = 0;
+        let ended = grip.answer_watched(&question, &mut |_: Progress<'_>| {
+            reports += 1;
+            if reports == stop { Err(Cancelled) } else { Ok(()) }
+        });
+        assert_eq!(ended.unwrap_err(), GripError::Cancelled(Cancelled));
+    }
 }

@@ -1,11 +1,24 @@
 //! A contact watched tick by tick: what is found, when, and how often intervals contain the truth.
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
-use palpate::observe::{Held, Observation, ObserveError, Observer, ObserverOptions, Phase, Slip, TimeToSlip};
+use palpate::fit::Estimate;
+use palpate::grip::TimeToSlip;
+use palpate::observe::{ContactPhase, Held, Observation, ObserveError, Observer, ObserverOptions, Slip, SlipForecast};
 use palpate::simulate::{ContactModel, ContactState, Separation};
 use palpate::test_problems::{Noise, paper_ball};
 
 const RATE: f64 = 500.0;
+
+const NEVER: SlipForecast = SlipForecast::Known {
+    best: TimeToSlip::Never,
+    low: TimeToSlip::Never,
+    high: TimeToSlip::Never,
+};
+
+/// Standard error of what an observer says.
+fn error(estimate: Estimate) -> f64 {
+    estimate.standard_error.unwrap()
+}
 /// When the jaw stops, s: 5 mm at 500 mm/min.
 const STOP: f64 = 0.6;
 
@@ -59,7 +72,10 @@ fn a_hold_is_told_within_a_few_ticks_and_once() {
         assert!(began[0].time > STOP && began[0].time - STOP < 10.5 / RATE, "{seed}: {}", began[0].time);
         assert!((began[0].held_since.unwrap() - STOP).abs() < 2.5 / RATE, "{seed}: {began:?}");
         assert_eq!(began[0].held, Some(Held::Displacement));
-        assert!(seen.iter().all(|seen| (seen.time >= began[0].time) == (seen.phase == Phase::Holding)), "{seed}");
+        assert!(
+            seen.iter().all(|seen| (seen.time >= began[0].time) == (seen.phase == ContactPhase::Holding)),
+            "{seed}"
+        );
     }
 }
 
@@ -79,8 +95,8 @@ fn the_equilibrium_and_its_deviation_are_honest() {
             let seen = &seen[((STOP + after) * RATE) as usize - 1];
             if let Some(found) = seen.equilibrium_force {
                 told += 1;
-                inside += i32::from((found.value - truth).abs() < 1.96 * found.deviation);
-                assert!(after < 60.0 || found.deviation < 0.05 * truth, "{seed}: {found:?}");
+                inside += i32::from((found.value - truth).abs() < 1.96 * error(found));
+                assert!(after < 60.0 || error(found) < 0.05 * truth, "{seed}: {found:?}");
             }
         }
     }
@@ -104,12 +120,16 @@ fn intervals_of_the_time_to_slip_contain_the_truth_as_often_as_they_say() {
                 let seen = watched(&course[..until], 1000 + seed, &options);
                 let truth = STOP + slip_after - seen.last().unwrap().time;
                 match seen.last().unwrap().time_to_slip.unwrap() {
-                    TimeToSlip::After { low, high, .. } => {
-                        open += i32::from(high.is_none());
-                        inside += i32::from(low <= truth * 1.001 && high.is_none_or(|high| truth <= high * 1.001));
+                    SlipForecast::Known {
+                        low: TimeToSlip::After(low),
+                        high,
+                        ..
+                    } => {
+                        open += i32::from(high == TimeToSlip::Never);
+                        inside += i32::from(low <= truth * 1.001 && high.covers(truth / 1.001));
                     }
-                    TimeToSlip::Unknown => inside += 1,
-                    TimeToSlip::Never => {}
+                    SlipForecast::Unknown => inside += 1,
+                    SlipForecast::Known { .. } => {}
                 }
             }
             println!("slip {slip_after} s after the stop, seen at {after} s: inside {inside} of {seeds}, open {open}");
@@ -126,7 +146,7 @@ fn the_warning_comes_before_slip() {
         let (mut early, mut all) = (0.0, 0.0);
         for seed in 0..100 {
             let seen = watched(&course, seed, &options);
-            let holding = || seen.iter().filter(|seen| seen.phase == Phase::Holding);
+            let holding = || seen.iter().filter(|seen| seen.phase == ContactPhase::Holding);
             let first = holding().find(|seen| seen.slip != Slip::None).unwrap().time;
             // The lower end of an interval of 95 % comes after the truth in every fortieth.
             let due = STOP + slip_after - 0.8 * options.warn_before;
@@ -152,8 +172,14 @@ fn an_equilibrium_above_slip_is_never_and_below_is_not() {
     let course = squeeze(60.0);
     let last = |slip: f64| *watched(&course, 3, &slipping_at(slip)).last().unwrap();
     let relaxed = last(0.1).equilibrium_force.unwrap().value;
-    assert_eq!(last(0.5 * relaxed).time_to_slip, Some(TimeToSlip::Never));
-    assert!(matches!(last(1.05 * relaxed).time_to_slip, Some(TimeToSlip::After { .. })));
+    assert_eq!(last(0.5 * relaxed).time_to_slip, Some(NEVER));
+    assert!(matches!(
+        last(1.05 * relaxed).time_to_slip,
+        Some(SlipForecast::Known {
+            low: TimeToSlip::After(_),
+            ..
+        })
+    ));
     assert_eq!(last(0.5 * relaxed).slip, Slip::None);
     assert_eq!(last(2.0).slip, Slip::Slipping);
 }
@@ -175,11 +201,11 @@ fn a_force_that_is_held_creeps_and_never_slips() {
         last = Some(seen);
     }
     let seen = last.unwrap();
-    assert_eq!((seen.phase, seen.held, began), (Phase::Holding, Some(Held::Force), 1));
-    assert_eq!((seen.time_to_slip, seen.slip), (Some(TimeToSlip::Never), Slip::None));
+    assert_eq!((seen.phase, seen.held, began), (ContactPhase::Holding, Some(Held::Force), 1));
+    assert_eq!((seen.time_to_slip, seen.slip), (Some(NEVER), Slip::None));
     let (creep, truth) = (seen.creep_rate.unwrap(), (displacement - before) * RATE / 500.0);
     // the line goes through the later half, over which the creep slows down
-    assert!((creep.value / truth - 1.0).abs() < 0.6 && creep.deviation < 0.1 * truth, "{creep:?} {truth}");
+    assert!((creep.value / truth - 1.0).abs() < 0.6 && error(creep) < 0.1 * truth, "{creep:?} {truth}");
 }
 
 #[test]
@@ -204,7 +230,14 @@ fn unloading_and_a_second_squeeze_are_told_apart() {
     let at = |time: f64| seen[(time * RATE) as usize].phase;
     assert_eq!(
         [0.3, 2.0, 5.04, 6.5, 7.55, 11.0].map(at),
-        [Phase::Loading, Phase::Holding, Phase::Unloading, Phase::Free, Phase::Loading, Phase::Holding]
+        [
+            ContactPhase::Loading,
+            ContactPhase::Holding,
+            ContactPhase::Unloading,
+            ContactPhase::Free,
+            ContactPhase::Loading,
+            ContactPhase::Holding
+        ]
     );
     assert_eq!(seen.iter().filter(|seen| seen.began).count(), 2);
 }
@@ -285,7 +318,7 @@ fn a_gap_in_a_hold_is_bridged() {
         last = Some(seen);
     }
     let seen = last.unwrap();
-    assert_eq!((began, seen.phase), (1, Phase::Holding));
+    assert_eq!((began, seen.phase), (1, ContactPhase::Holding));
     assert!((seen.force - course.last().unwrap().2).abs() < 0.02);
 }
 
@@ -294,12 +327,10 @@ fn a_million_ticks_and_strange_ones_stay_finite() {
     let mut observer = Observer::new(slipping_at(1.0)).unwrap();
     let mut noise = Noise::new(9);
     let finite = |seen: &Observation| {
-        let pair = |pair: Option<palpate::observe::Uncertain>| {
-            pair.is_none_or(|pair| pair.value.is_finite() && pair.deviation.is_finite())
-        };
+        let pair = |pair: Option<Estimate>| pair.is_none_or(|pair| pair.value.is_finite() && error(pair).is_finite());
         let slip = match seen.time_to_slip {
-            Some(TimeToSlip::After { value, low, high }) => {
-                [value, Some(low), high].iter().flatten().all(|time| time.is_finite())
+            Some(SlipForecast::Known { best, low, high }) => {
+                [best, low, high].iter().filter_map(|time| time.seconds()).all(f64::is_finite)
             }
             _ => true,
         };
@@ -318,7 +349,7 @@ fn a_million_ticks_and_strange_ones_stay_finite() {
         if i == 1_000_000 {
             // n = 5 and λ = 5/s from the start of the record: at 0.6 s, where the hold begins, still a hold of the law.
             let found = seen.unwrap().equilibrium_force.unwrap();
-            assert!((found.value - 1.0).abs() < 4.0 * found.deviation && found.deviation < 1e-3, "{found:?}");
+            assert!((found.value - 1.0).abs() < 4.0 * error(found) && error(found) < 1e-3, "{found:?}");
         }
     }
     // A few kilobytes, none of them on the heap without a material.
@@ -346,7 +377,6 @@ fn material(stiffer: f64) -> palpate::calibrate::Material {
     use palpate::calibrate::{
         Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, Shown,
     };
-    use palpate::fit::Estimate;
     use palpate::laws::{ExponentChoice, Law};
     let model = model();
     let thickness = model.layers.thickness(model.specimen.depth());
@@ -419,8 +449,10 @@ fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
             let truth = slip_after - after;
             for (width, options) in widths.iter_mut().zip([&plain, &informed]) {
                 let seen = *watched(&course[..until], seed, options).last().unwrap();
-                let Some(TimeToSlip::After {
-                    low, high: Some(high), ..
+                let Some(SlipForecast::Known {
+                    low: TimeToSlip::After(low),
+                    high: TimeToSlip::After(high),
+                    ..
                 }) = seen.time_to_slip
                 else {
                     continue;
@@ -431,7 +463,7 @@ fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
                     if after == 0.3 {
                         let strain = seen.excess_strain.unwrap();
                         assert!(
-                            (strain.value - end).abs() < 5.0 * strain.deviation && strain.deviation < 0.1 * end,
+                            (strain.value - end).abs() < 5.0 * error(strain) && error(strain) < 0.1 * end,
                             "{strain:?} {end}"
                         );
                     }
@@ -448,7 +480,6 @@ fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
 #[test]
 fn a_material_whose_rate_depends_on_the_strain_is_watched_by_that() {
     use palpate::calibrate::{MaterialNumber, MaterialUnit, RateLaw};
-    use palpate::fit::Estimate;
     use palpate::simulate::{Motion, Sampling, simulate};
     let mut varying = material(1.0);
     varying.candidate.rate = RateLaw::ByStrain;
@@ -476,7 +507,7 @@ fn a_material_whose_rate_depends_on_the_strain_is_watched_by_that() {
         let strain = seen[index].excess_strain.unwrap();
         let exact = course.excess_strain[index];
         assert!(
-            (strain.value - exact).abs() < 4.0 * strain.deviation + 1e-4 && strain.deviation < 0.1 * exact,
+            (strain.value - exact).abs() < 4.0 * error(strain) + 1e-4 && error(strain) < 0.1 * exact,
             "{at} s: {strain:?} {exact}"
         );
     }
@@ -485,7 +516,7 @@ fn a_material_whose_rate_depends_on_the_strain_is_watched_by_that() {
     let last = plain.last().unwrap();
     let exact = course.excess_strain.last().unwrap();
     assert!(
-        last.excess_strain.is_none_or(|strain| (strain.value - exact).abs() > 4.0 * strain.deviation),
+        last.excess_strain.is_none_or(|strain| (strain.value - exact).abs() > 4.0 * error(strain)),
         "{last:?} {exact}"
     );
 }
@@ -570,7 +601,7 @@ fn a_hold_is_told_of_where_it_was_held_to_its_last_tick() {
         let force = contact.step(&model, 0.05, place.min(20e-3)).unwrap();
         let seen = observer.feed(time, Some(place.min(20e-3) + 1e-6 * noise.normal()), force + 0.01 * noise.normal());
         let seen = seen.unwrap();
-        if time > 1.5 && time < 5.5 && seen.phase == Phase::Holding {
+        if time > 1.5 && time < 5.5 && seen.phase == ContactPhase::Holding {
             if let Some(before) = held {
                 let equilibrium = |seen: &Observation| seen.equilibrium_force.unwrap().value;
                 assert!((equilibrium(&seen) / equilibrium(&before) - 1.0).abs() < 0.01, "{time}: {seen:?}");
@@ -589,7 +620,7 @@ fn a_warning_does_not_flutter() {
     let mut changes = 0;
     for seed in 0..20 {
         let seen = watched(&course, seed, &slipping_at(1.7));
-        let held = seen.iter().filter(|seen| seen.phase == Phase::Holding && seen.time > 1.0);
+        let held = seen.iter().filter(|seen| seen.phase == ContactPhase::Holding && seen.time > 1.0);
         let slips: Vec<Slip> = held.map(|seen| seen.slip).collect();
         changes += slips.windows(2).filter(|pair| pair[0] != pair[1]).count();
         assert_eq!(slips.last(), Some(&Slip::Slipping));

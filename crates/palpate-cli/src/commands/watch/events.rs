@@ -1,6 +1,7 @@
 //! What happens from tick to tick.
 
-use palpate::observe::{Held, Observation, Phase, Slip, Uncertain};
+use palpate::fit::Estimate;
+use palpate::observe::{ContactPhase, Held, Observation, Slip};
 
 /// Something that happens.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,9 +27,9 @@ pub(super) struct HoldSeen {
     /// Force when it began and when it was last seen, N.
     pub(super) forces: (f64, f64),
     /// The last equilibrium force, N.
-    pub(super) equilibrium: Option<Uncertain>,
+    pub(super) equilibrium: Option<Estimate>,
     /// The last speed of creep, m/s.
-    pub(super) creep: Option<Uncertain>,
+    pub(super) creep: Option<Estimate>,
     /// First warning, s.
     pub(super) warned: Option<f64>,
     /// First time below the force of slip, s.
@@ -49,7 +50,7 @@ impl Holds {
     /// Takes an observation and says what happened with it.
     pub(super) fn follow(&mut self, seen: &Observation) -> Vec<Event> {
         let mut events = Vec::new();
-        if seen.phase != Phase::Holding
+        if seen.phase != ContactPhase::Holding
             && let Some(hold) = self.now.take()
         {
             self.ended.push(hold);

@@ -68,10 +68,11 @@ pub(super) fn warning(seen: &Observation) -> String {
 }
 
 /// A speed in µm/s.
-pub(super) fn scaled(speed: palpate::observe::Uncertain) -> palpate::observe::Uncertain {
-    palpate::observe::Uncertain {
+pub(super) fn scaled(speed: palpate::fit::Estimate) -> palpate::fit::Estimate {
+    palpate::fit::Estimate {
         value: 1e6 * speed.value,
-        deviation: 1e6 * speed.deviation,
+        standard_error: speed.standard_error.map(|error| 1e6 * error),
+        interval: None,
     }
 }
 
@@ -102,7 +103,7 @@ pub(super) fn summary(holds: &[HoldSeen], slip_force: Option<f64>) -> String {
             Cell::number(hold.forces.0, 4),
             Cell::number(hold.forces.1, 4),
             Cell::number_or(hold.equilibrium.map(|force| force.value), 4, unknown),
-            Cell::number_or(hold.equilibrium.map(|force| force.deviation), 2, unknown),
+            Cell::number_or(hold.equilibrium.and_then(|force| force.standard_error), 2, unknown),
             Cell::number_or(hold.creep.map(|creep| 1e6 * creep.value), 3, "not held by force"),
         ];
         if slip_force.is_some() {

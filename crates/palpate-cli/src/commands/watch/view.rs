@@ -76,7 +76,7 @@ impl View {
             ),
             format!("phase        {}", state(seen)),
         ];
-        let known = |number: Option<palpate::observe::Uncertain>, unit| {
+        let known = |number: Option<palpate::fit::Estimate>, unit| {
             number.map_or("not known yet".to_owned(), |number| uncertain(number, unit))
         };
         match seen.creep_rate {

@@ -1,12 +1,14 @@
 //! An observation in words.
 
+use palpate::fit::Estimate;
+use palpate::grip::TimeToSlip;
 use palpate::number::{significant, with_error};
-use palpate::observe::{Observation, Slip, TimeToSlip, Uncertain};
+use palpate::observe::{Observation, Slip, SlipForecast};
 use palpate_report::result::{held_word, watched_phase_word};
 
 /// A value ± its standard deviation, to the digits that it has.
-pub(super) fn uncertain(number: Uncertain, unit: &str) -> String {
-    let text = with_error(number.value, number.deviation);
+pub(super) fn uncertain(number: Estimate, unit: &str) -> String {
+    let text = with_error(number.value, number.standard_error.unwrap_or(0.0));
     if unit.is_empty() { text } else { format!("{text} {unit}") }
 }
 
@@ -24,13 +26,15 @@ pub(super) fn duration(seconds: f64) -> String {
 pub(super) fn slip(seen: &Observation) -> Option<String> {
     Some(match seen.time_to_slip? {
         _ if seen.slip == Slip::Slipping => "slipping".to_owned(),
-        TimeToSlip::Unknown => "not known yet".to_owned(),
-        TimeToSlip::Never => "never by relaxation".to_owned(),
-        TimeToSlip::After { value, low, high } => {
-            let (low, high) = (duration(low), high.map_or("never".to_owned(), duration));
-            match value {
-                Some(value) => format!("in {} ({low} to {high})", duration(value)),
-                None => format!("perhaps never, not before {low}"),
+        SlipForecast::Unknown => "not known yet".to_owned(),
+        SlipForecast::Known {
+            low: TimeToSlip::Never, ..
+        } => "never by relaxation".to_owned(),
+        SlipForecast::Known { best, low, high } => {
+            let words = |time: TimeToSlip| time.seconds().map_or("never".to_owned(), duration);
+            match best {
+                TimeToSlip::After(_) => format!("in {} ({} to {})", words(best), words(low), words(high)),
+                TimeToSlip::Never => format!("perhaps never, not before {}", words(low)),
             }
         }
     })

@@ -13,4 +13,3 @@ mod law;
 pub(super) mod model;
 pub(super) mod specimen;
 pub(super) mod tables;
-

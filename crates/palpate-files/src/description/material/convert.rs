@@ -6,10 +6,7 @@
 use std::path::Path;
 
 use palpate::{
-    calibrate::{
-        Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, RateLaw,
-        Shown,
-    },
+    calibrate::{Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, RateLaw, Shown},
     contact::{Equilibrium, RateDependence},
     fit::Estimate,
     laws::Law,
@@ -325,9 +322,13 @@ fn latency_pairs(there: &ContactModel, here: &ContactModel) -> [(String, f64, f6
 fn disagreement(model: &Contact, contact: &Contact) -> Option<(String, f64, f64)> {
     let mut pairs = Vec::new();
     match (model, contact) {
-        (Contact::Latency { model: there, rate }, Contact::Latency { model: here, rate: calibrated })
-            if rate_law(*rate) == rate_law(*calibrated) =>
-        {
+        (
+            Contact::Latency { model: there, rate },
+            Contact::Latency {
+                model: here,
+                rate: calibrated,
+            },
+        ) if rate_law(*rate) == rate_law(*calibrated) => {
             pairs.extend(latency_pairs(there, here));
             if let (Some(a), Some(b), Some(name)) =
                 (factor(*rate), factor(*calibrated), rate_law(*calibrated).factor_name())

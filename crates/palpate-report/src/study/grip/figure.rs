@@ -20,7 +20,7 @@ pub fn grip_figure(body: &GrippedBody<'_>, name: &str) -> Figure {
     let all = [
         ("displacement held", Role::Fitted, answer.squeeze.as_ref().ok().map(|made| &made.course)),
         ("squeeze and back off", Role::Alternative(0), answer.back_off.as_ref().ok().map(|made| &made.course)),
-        ("force held", Role::Alternative(1), answer.pressed.as_ref().ok().map(|made| &made.course)),
+        ("force held", Role::Alternative(1), answer.force_hold.as_ref().ok().map(|made| &made.course)),
         (
             "squeezed again",
             Role::Alternative(2),

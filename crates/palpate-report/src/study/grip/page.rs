@@ -41,7 +41,7 @@ pub fn grip_bundle(body: &GrippedBody<'_>, pictures: Pictures) -> Result<Bundle,
     let courses = [
         ("squeeze", answer.squeeze.as_ref().ok().map(|made| &made.course)),
         ("back_off", answer.back_off.as_ref().ok().map(|made| &made.course)),
-        ("force_held", answer.pressed.as_ref().ok().map(|made| &made.course)),
+        ("force_held", answer.force_hold.as_ref().ok().map(|made| &made.course)),
         ("schedule", answer.schedule.as_ref().and_then(|made| made.as_ref().ok()).map(|made| &made.course)),
     ];
     for (name, course) in courses {

@@ -1,6 +1,6 @@
 //! A planned grip: tables and text.
 
-use palpate::grip::{Holding, Lasts};
+use palpate::grip::{Holding, TimeToSlip};
 
 use crate::number::significant;
 use crate::result::{GrippedBody, lasted, percent};
@@ -29,13 +29,13 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
         .column(column(&format!("{share} from"), "lasts_low_s", "s"))
         .column(column("to", "lasts_high_s", "s"))
         .column(column("Work", "work_mj", "mJ"));
-    let time = |time: Lasts| match time {
-        Lasts::For(seconds) => Cell::number(seconds, 4),
-        Lasts::Always => Cell::text("always"),
+    let time = |time: TimeToSlip| match time {
+        TimeToSlip::After(seconds) => Cell::number(seconds, 4),
+        TimeToSlip::Never => Cell::text("always"),
     };
     let end = |course: &palpate::calibrate::Prediction| course.trajectory.force.last().copied().unwrap_or(0.0);
     let holding = |name: &str, found: &Holding, end: f64| {
-        let interval = |pick: fn((Lasts, Lasts)) -> Lasts| {
+        let interval = |pick: fn((TimeToSlip, TimeToSlip)) -> TimeToSlip| {
             found.interval.map_or_else(|| Cell::missing(NO_INTERVAL), |interval| time(pick(interval)))
         };
         vec![
@@ -59,7 +59,7 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
     if let Ok(back_off) = &answer.back_off {
         table = table.row(holding("squeeze and back off", &back_off.found.backed, end(&back_off.course)));
     }
-    if let Ok(pressed) = &answer.pressed {
+    if let Ok(pressed) = &answer.force_hold {
         let found = &pressed.found;
         let lasts = match (found.holds, found.stroke_ends) {
             (false, _) => Cell::number(0.0, 4),

@@ -49,7 +49,7 @@ mod tests {
             time: vec![0.0, 1.0],
             strain: vec![vec![0.0, 0.1]; 512],
             displacement: vec![vec![0.0, 0.1]; 512],
-            work: palpate::simulate::Work::default(),
+            work: palpate::simulate::SimulationWork::default(),
         };
         let figure = wave_figure("layers", &wave, "Many layers.");
         let role = |layer: &Layer| match layer {

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::behaviour::not_a_hold;
 use super::compared::comparison_findings;
+use super::holdout::HoldoutError;
 use super::rate_bias::{RateBias, rate_bias};
 use crate::analysis::finding::Finding;
 use crate::analysis::options::AnalysisOptions;
@@ -27,17 +28,6 @@ pub enum Signal {
     Strain,
     /// Force, N.
     Force,
-}
-
-/// How well a fit to the first part of a hold foretells the rest.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Prediction {
-    /// Root mean square error beyond the window, in the unit of the signal.
-    pub rmse: f64,
-    /// The same as a share of the drop of the signal over the whole hold.
-    pub relative: f64,
-    /// Samples beyond the window.
-    pub samples: usize,
 }
 
 /// All that is known of one hold.
@@ -76,7 +66,7 @@ pub struct HoldAnalysis {
     /// Time-domain fits: the listed exponents in order, then the free one.
     pub fits: Vec<LatencyFit>,
     /// How well each foretells the rest of the hold, where the fit ended early on request.
-    pub predictions: Vec<Option<Prediction>>,
+    pub predictions: Vec<Option<HoldoutError>>,
     /// Which exponent the data ask for.
     pub order: Option<OrderSelection>,
     /// Laws compared on the hold.
@@ -289,7 +279,7 @@ fn loading(record: &Record, ramp: Option<usize>, segment: &Segment) -> Option<Lo
 }
 
 /// Error of a fit over the samples from index `fitted` on.
-fn foretell(fit: &LatencyFit, times: &[f64], values: &[f64], fitted: usize) -> Option<Prediction> {
+fn foretell(fit: &LatencyFit, times: &[f64], values: &[f64], fitted: usize) -> Option<HoldoutError> {
     let beyond = times[fitted..].iter().zip(&values[fitted..]);
     let samples = values.len() - fitted;
     if samples == 0 {
@@ -299,7 +289,7 @@ fn foretell(fit: &LatencyFit, times: &[f64], values: &[f64], fitted: usize) -> O
     let tail = (values.len() / 100).max(1);
     let drop = (values[0] - mean(&values[values.len() - tail..])).abs();
     let rmse = (square / samples as f64).sqrt();
-    Some(Prediction {
+    Some(HoldoutError {
         rmse,
         relative: rmse / drop,
         samples,

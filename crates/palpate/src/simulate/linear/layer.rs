@@ -3,7 +3,7 @@
 use super::{LinearContact, Memory, Moving, Pressed, Surface};
 use crate::contact::{Carried, Specimen, Stopped};
 use crate::simulate::layer::Layer;
-use crate::simulate::{Separation, Work};
+use crate::simulate::{Separation, SimulationWork};
 
 impl Layer for LinearContact {
     /// x_k, one for every term.
@@ -54,7 +54,14 @@ impl Layer for LinearContact {
         0.5 * stiffness * depth * (even * even + springs.sum::<f64>())
     }
 
-    fn moving(&self, excess: &Vec<f64>, line: (f64, f64), duration: f64, (): &mut (), work: &mut Work) -> Moving {
+    fn moving(
+        &self,
+        excess: &Vec<f64>,
+        line: (f64, f64),
+        duration: f64,
+        (): &mut (),
+        work: &mut SimulationWork,
+    ) -> Moving {
         work.closed_forms += 1;
         Moving::solve(self, line, excess.clone(), duration)
     }
@@ -99,7 +106,7 @@ impl Layer for LinearContact {
         forces: (f64, f64),
         behind: &Vec<f64>,
         duration: f64,
-        work: &mut Work,
+        work: &mut SimulationWork,
     ) -> Result<Pressed, Stopped> {
         Pressed::solve(self, forces, behind, duration, work)
     }

@@ -13,7 +13,7 @@ use super::recovery::Recovery;
 use super::stage::{DEGREE, Stage, dot, fading, integrated};
 use super::{LinearContact, LinearTerm, Memory};
 use crate::contact::{Carried, ForceLine, Stopped};
-use crate::simulate::Work;
+use crate::simulate::SimulationWork;
 
 /// Error of q, relative to the largest that the forces of a piece ask for at once.
 const TOLERANCE: f64 = 1e-12;
@@ -56,7 +56,7 @@ impl Pressed {
         (from, to): (f64, f64),
         behind: &[f64],
         duration: f64,
-        work: &mut Work,
+        work: &mut SimulationWork,
     ) -> Result<Self, Stopped> {
         let overloaded = Stopped::TooMuch { elapsed: 0.0 };
         let u = contact.carried(from, behind.iter().sum()).ok_or(overloaded)?;
@@ -91,7 +91,7 @@ impl Pressed {
         mut value: f64,
         mut memory: Vec<f64>,
         (duration, to): (f64, f64),
-        work: &mut Work,
+        work: &mut SimulationWork,
     ) -> Result<Vec<Stage>, Stopped> {
         let contact = &self.contact;
         let behind: f64 = memory.iter().zip(contact.law.terms()).map(|(x, term)| x - term.overshoot * value).sum();
@@ -149,7 +149,7 @@ impl Pressed {
         from: f64,
         before: &[f64],
         allowed: f64,
-        work: &mut Work,
+        work: &mut SimulationWork,
     ) -> Option<(Stage, f64)> {
         let (contact, law) = (&self.contact, &self.contact.law);
         let places = &*WHERE;
@@ -404,7 +404,8 @@ mod tests {
     fn order_of_convergence_of_the_collocation_is_seven_or_more() {
         // From 2 N to 9 N within 20 s, by stages of one width.
         let contact = ball(Memory::Strain);
-        let mut piece = Pressed::solve(&contact, (2.0, 9.0), &[0.0, 0.0], 20.0, &mut Work::default()).unwrap();
+        let mut piece =
+            Pressed::solve(&contact, (2.0, 9.0), &[0.0, 0.0], 20.0, &mut SimulationWork::default()).unwrap();
         let exact = piece.value_at(20.0);
         let (first, memory) = (piece.value_at(0.0), piece.memory(0.0));
         piece.path = Path::Stages(Vec::new());
@@ -413,7 +414,8 @@ mod tests {
             let width = 20.0 / f64::from(count);
             for stage in 0..count {
                 let start = width * f64::from(stage);
-                let (stage, _) = piece.stage(start, width, value, &memory, 1e-12, &mut Work::default()).unwrap();
+                let (stage, _) =
+                    piece.stage(start, width, value, &memory, 1e-12, &mut SimulationWork::default()).unwrap();
                 (value, memory) = (stage.value(1.0), stage.memory(1.0, &contact.law));
             }
             (value - exact).abs()
@@ -428,7 +430,7 @@ mod tests {
     fn terms_that_are_over_at_once_ask_for_no_short_stages() {
         let mut contact = ball(Memory::Strain);
         let steps = |contact: &LinearContact| {
-            let mut work = Work::default();
+            let mut work = SimulationWork::default();
             let behind = vec![0.0; contact.law.terms().len()];
             Pressed::solve(contact, (5.0, 5.0), &behind, 1e4, &mut work).unwrap();
             work.steps
@@ -446,14 +448,16 @@ mod tests {
     fn a_force_too_large_after_some_creep_is_refused_with_its_moment() {
         let contact = ball(Memory::Strain);
         // 150 N on a ball of E A(r) = 107.8 N: carried while the body is stiff.
-        let stopped = Pressed::solve(&contact, (150.0, 150.0), &[0.0, 0.0], 1e3, &mut Work::default()).unwrap_err();
+        let stopped =
+            Pressed::solve(&contact, (150.0, 150.0), &[0.0, 0.0], 1e3, &mut SimulationWork::default()).unwrap_err();
         let Stopped::TooMuch { elapsed } = stopped else {
             panic!("{stopped:?}")
         };
         assert!((0.1..100.0).contains(&elapsed), "{elapsed}");
         let short =
-            Pressed::solve(&contact, (150.0, 150.0), &[0.0, 0.0], 0.99 * elapsed, &mut Work::default()).unwrap();
+            Pressed::solve(&contact, (150.0, 150.0), &[0.0, 0.0], 0.99 * elapsed, &mut SimulationWork::default())
+                .unwrap();
         assert!(short.displacement(0.99 * elapsed) < 0.035);
-        assert!(Pressed::solve(&contact, (500.0, 500.0), &[0.0, 0.0], 1.0, &mut Work::default()).is_err());
+        assert!(Pressed::solve(&contact, (500.0, 500.0), &[0.0, 0.0], 1.0, &mut SimulationWork::default()).is_err());
     }
 }

@@ -14,11 +14,12 @@ mod tile;
 use fearless_simd::{Simd, dispatch};
 
 use self::tile::{Chain, Outer, TILE, Tile, surface};
-use super::course::Course;
 use super::trajectory::sample_times;
+use super::walk::Course;
 use super::walk::{Stretch, walk};
-use super::{ContactModel, Drive, Sampling, SimulateError, Work};
+use super::{ContactModel, Drive, Sampling, SimulateError, SimulationWork};
 use crate::vector::level;
+use crate::watch::{Stages, Unwatched, Watch};
 
 /// Tolerance of the node displacements, relative to the largest contact displacement of the motion.
 const TOLERANCE: f64 = 1e-13;
@@ -33,7 +34,7 @@ pub struct StrainWave {
     /// Displacement of node i (0 is the surface) at time k in m: `displacement[i][k]`.
     pub displacement: Vec<Vec<f64>>,
     /// What it cost.
-    pub work: Work,
+    pub work: SimulationWork,
 }
 
 /// Simulates every layer of `model` under a motion, a force or a program (section IV of the paper, steps 1 to 3).
@@ -76,7 +77,23 @@ pub fn strain_wave_within<'a>(
     sampling: &Sampling,
     tolerance: f64,
 ) -> Result<StrainWave, SimulateError> {
-    let course = Course::new(drive.into(), model)?;
+    strain_wave_watched(drive, model, sampling, tolerance, &mut Unwatched)
+}
+
+/// As [`strain_wave_within`], heard by `watch` at every straight piece of the drive.
+///
+/// # Errors
+/// As for [`strain_wave`], and [`SimulateError::Cancelled`].
+pub fn strain_wave_watched<'a>(
+    drive: impl Into<Drive<'a>>,
+    model: &ContactModel,
+    sampling: &Sampling,
+    tolerance: f64,
+    watch: &mut dyn Watch,
+) -> Result<StrainWave, SimulateError> {
+    let mut stages = Stages::new("following the layers".to_owned(), watch);
+    let course = Course::new(drive.into(), model, &mut stages)?;
+    stages.enter(1.0);
     let layers = model.layers.whole().ok_or(SimulateError::FractionalLayers {
         found: model.layers.count(),
     })?;
@@ -86,15 +103,17 @@ pub fn strain_wave_within<'a>(
         strain: vec![Vec::with_capacity(time.len()); layers],
         displacement: vec![Vec::with_capacity(time.len()); layers],
         time,
-        work: Work::default(),
+        work: SimulationWork::default(),
     };
     let last = course.end();
     let (_, walked) = walk(course.drive, model, |stretch| {
         let passed = dispatch!(level(), simd => cascade.pass(simd, stretch, stretch.end == last, &mut wave));
         passed.map_err(|elapsed| SimulateError::StiffLayers {
             time: stretch.start + elapsed,
-        })
+        })?;
+        Ok(stages.reach(course.share(stretch.end))?)
     })?;
+    stages.finish()?;
     wave.work.closed_forms += walked.closed_forms;
     wave.work.ramps += walked.ramps;
     wave.work.steps += walked.steps;

@@ -7,7 +7,7 @@ use std::ops::Range;
 use fearless_simd::{Simd, SimdBase, f64x8};
 
 use super::path::{Knot, Path};
-use super::{ContactModel, Work};
+use super::{ContactModel, SimulationWork};
 use crate::latency::lanes::{Power, block, by_power, each, signed_power};
 use crate::ode::{Column, Slopes, WIDTH};
 use crate::simulate::walk::{Stretch, StretchState};
@@ -129,7 +129,7 @@ impl Tile {
         outer: &Outer<'_>,
         (duration, elapsed): (f64, &[f64]),
         columns: &mut [Vec<f64>],
-        work: &mut Work,
+        work: &mut SimulationWork,
     ) -> Result<Path, f64> {
         let nodes = &mut self.nodes;
         let along = Along {

@@ -2,28 +2,32 @@
 //! Levenberg's method from its ten best points and from the truth, and Nelder and Mead's from the best of those.
 
 use super::double_double::exact_square;
-use palpate::laws::{LawCurve, Response, Shape, Term};
+use palpate::laws::{BasisFunction, LawCurve, Response, Term};
 
 /// A law as the search sees it.
 #[derive(Clone)]
 pub(crate) struct Subject {
     pub(crate) response: Response,
-    pub(crate) shapes: Vec<Shape>,
+    pub(crate) shapes: Vec<BasisFunction>,
     pub(crate) constant: bool,
     /// Bounds of each free number, shape by shape, ln of rates per duration.
     pub(crate) bounds: Vec<(f64, f64)>,
 }
 
 /// Whether the first number of a shape is a rate that only sets a unit.
-pub(crate) fn has_reference(shape: Shape) -> bool {
-    matches!(shape, Shape::Straight | Shape::PowerGrowth)
+pub(crate) fn has_reference(shape: BasisFunction) -> bool {
+    matches!(shape, BasisFunction::Straight | BasisFunction::PowerGrowth)
 }
 
 /// Numbers of a shape that are searched.
-pub(crate) fn free_numbers(shape: Shape) -> usize {
+pub(crate) fn free_numbers(shape: BasisFunction) -> usize {
     match shape {
-        Shape::Straight => 0,
-        Shape::Latency | Shape::Stretched | Shape::PowerDecay | Shape::MittagLeffler | Shape::FungContinuous => 2,
+        BasisFunction::Straight => 0,
+        BasisFunction::Latency
+        | BasisFunction::Stretched
+        | BasisFunction::PowerDecay
+        | BasisFunction::MittagLeffler
+        | BasisFunction::FungContinuous => 2,
         _ => 1,
     }
 }
@@ -95,7 +99,7 @@ impl Subject {
 
     /// The dense grid: every number at many places, several rates in falling order.
     fn grid(&self) -> Vec<Vec<f64>> {
-        let rates = self.shapes.iter().filter(|shape| **shape == Shape::Exponential).count();
+        let rates = self.shapes.iter().filter(|shape| **shape == BasisFunction::Exponential).count();
         let several = rates > 1;
         let count = |i: usize| match (several, self.bounds.len()) {
             (_, 1) => 300,
@@ -157,7 +161,7 @@ impl Subject {
     /// The lowest of the ends of a search with squares to 30 digits, where the law is a series of exponentials: in doubles merged rates
     /// seem to fit better than they do.
     pub(crate) fn checked(&self, times: &[f64], values: &[f64], ends: Vec<(f64, Vec<f64>)>) -> (f64, Vec<f64>) {
-        let is_series = self.shapes.len() > 1 && self.shapes.iter().all(|shape| *shape == Shape::Exponential);
+        let is_series = self.shapes.len() > 1 && self.shapes.iter().all(|shape| *shape == BasisFunction::Exponential);
         let exact = |(square, theta): (f64, Vec<f64>)| {
             let square = if is_series { exact_square(times, values, self.constant, &theta) } else { square };
             (square, theta)

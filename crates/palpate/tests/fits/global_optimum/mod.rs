@@ -10,36 +10,36 @@ mod double_double;
 
 use brute::{Subject, free_numbers, has_reference};
 use palpate::fit::{LawFit, LawOptions, Samples, Termination, fit_law};
-use palpate::laws::{Law, LawCurve, Response, Shape, Term};
+use palpate::laws::{BasisFunction, Law, LawCurve, Response, Term};
 use palpate::test_problems::Noise;
 
 /// Shapes, whether there is a constant, and the range of the pure number, of a law in a response.
-fn parts(law: Law, response: Response) -> (Vec<Shape>, bool, Option<(f64, f64)>) {
+fn parts(law: Law, response: Response) -> (Vec<BasisFunction>, bool, Option<(f64, f64)>) {
     let creep = response == Response::Creep;
-    let exponential = |count: usize| vec![Shape::Exponential; count];
+    let exponential = |count: usize| vec![BasisFunction::Exponential; count];
     match law
         .to_string()
         .split_once(':')
         .map_or_else(|| (law.to_string(), 0.0), |(name, number)| (name.to_owned(), number.parse().unwrap()))
     {
         (name, 0.0) => match name.as_str() {
-            "latency" => (vec![Shape::Latency], true, Some((0.2, 30.0))),
-            "maxwell" if creep => (vec![Shape::Straight], true, None),
+            "latency" => (vec![BasisFunction::Latency], true, Some((0.2, 30.0))),
+            "maxwell" if creep => (vec![BasisFunction::Straight], true, None),
             "maxwell" => (exponential(1), false, None),
             "kelvin-voigt" => (exponential(1), false, None),
             "standard-linear-solid" => (exponential(1), true, None),
-            "burgers" if creep => (vec![Shape::Exponential, Shape::Straight], true, None),
+            "burgers" if creep => (vec![BasisFunction::Exponential, BasisFunction::Straight], true, None),
             "burgers" => (exponential(2), false, None),
-            "fung-continuous" => (vec![Shape::FungContinuous], true, Some((0.05, 25.0))),
-            "stretched" => (vec![Shape::Stretched], true, Some((0.05, 2.0))),
-            "power" if creep => (vec![Shape::PowerGrowth], true, Some((0.01, 2.0))),
-            "power" => (vec![Shape::PowerDecay], false, Some((0.005, 5.0))),
-            "logarithmic" => (vec![Shape::Logarithm], true, None),
-            "fractional-zener" => (vec![Shape::MittagLeffler], true, Some((0.05, 1.0))),
-            "diffusion" => (vec![Shape::Diffusion], true, None),
+            "fung-continuous" => (vec![BasisFunction::FungContinuous], true, Some((0.05, 25.0))),
+            "stretched" => (vec![BasisFunction::Stretched], true, Some((0.05, 2.0))),
+            "power" if creep => (vec![BasisFunction::PowerGrowth], true, Some((0.01, 2.0))),
+            "power" => (vec![BasisFunction::PowerDecay], false, Some((0.005, 5.0))),
+            "logarithmic" => (vec![BasisFunction::Logarithm], true, None),
+            "fractional-zener" => (vec![BasisFunction::MittagLeffler], true, Some((0.05, 1.0))),
+            "diffusion" => (vec![BasisFunction::Diffusion], true, None),
             other => panic!("{other}"),
         },
-        (name, n) if name == "latency" => (vec![Shape::LatencyWith(n)], true, None),
+        (name, n) if name == "latency" => (vec![BasisFunction::LatencyWith(n)], true, None),
         (_, k) => (exponential(k as usize), true, None),
     }
 }
@@ -120,7 +120,7 @@ fn problem(law: Law, response: Response, random: &mut Noise) -> Problem {
 fn bounds(law: Law, response: Response, times: &[f64]) -> Vec<(f64, f64)> {
     let (shapes, _, pure) = parts(law, response);
     let rate = (1e-3f64.ln(), (1e3 / times[1]).ln());
-    let of = |shape: &Shape| {
+    let of = |shape: &BasisFunction| {
         let rate = (!has_reference(*shape)).then_some(rate);
         let numbers: Vec<(f64, f64)> = rate.into_iter().chain(pure).collect();
         assert_eq!(numbers.len(), free_numbers(*shape));

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
 use palpate::fit::{LawFit, LawOptions, Samples, fit_law};
-use palpate::laws::{ExponentChoice, Law, LawCurve, Loading, LoadingError, Response, Shape, Term};
+use palpate::laws::{BasisFunction, ExponentChoice, Law, LawCurve, Loading, LoadingError, Response, Term};
 use palpate::test_problems::Noise;
 
 fn relaxation(constant: f64, terms: Vec<Term>) -> LawCurve {
@@ -14,7 +14,7 @@ fn relaxation(constant: f64, terms: Vec<Term>) -> LawCurve {
     }
 }
 
-fn term(amplitude: f64, shape: Shape, numbers: &[f64]) -> Term {
+fn term(amplitude: f64, shape: BasisFunction, numbers: &[f64]) -> Term {
     Term {
         amplitude,
         shape,
@@ -39,7 +39,7 @@ fn irregular() -> Loading {
 #[test]
 fn a_ramp_takes_a_known_factor_off_an_exponential() {
     for ratio in [1e-9, 1e-3, 0.3, 1.0, 7.0, 300.0] {
-        let curve = relaxation(2.0, vec![term(3.0, Shape::Exponential, &[(0.25f64).ln()])]);
+        let curve = relaxation(2.0, vec![term(3.0, BasisFunction::Exponential, &[(0.25f64).ln()])]);
         let elapsed = [0.0, 1.0, 10.0];
         let found = curve.after(&Loading::ramp(4.0 * ratio).unwrap(), &elapsed);
         for (t, y) in elapsed.iter().zip(found) {
@@ -51,18 +51,24 @@ fn a_ramp_takes_a_known_factor_off_an_exponential() {
 
 /// Laws, shapes with numbers, and what the fit calls them.
 fn laws() -> Vec<(&'static str, LawCurve)> {
-    let exponential = |amplitude: f64, time: f64| term(amplitude, Shape::Exponential, &[-time.ln()]);
+    let exponential = |amplitude: f64, time: f64| term(amplitude, BasisFunction::Exponential, &[-time.ln()]);
     vec![
         ("maxwell", relaxation(0.0, vec![exponential(4.0, 9.0)])),
         ("standard-linear-solid", relaxation(2.0, vec![exponential(4.0, 3.0)])),
         ("prony:2", relaxation(2.0, vec![exponential(4.0, 0.9), exponential(1.5, 14.0)])),
         ("fung:2", relaxation(2.0, vec![exponential(4.0, 0.9), exponential(1.5, 14.0)])),
-        ("stretched", relaxation(2.0, vec![term(4.0, Shape::Stretched, &[-(2.0f64).ln(), 0.5])])),
-        ("power", relaxation(0.0, vec![term(4.0, Shape::PowerDecay, &[0.0, 0.3])])),
-        ("logarithmic", relaxation(9.0, vec![term(0.5, Shape::Logarithm, &[0.5])])),
-        ("fractional-zener", relaxation(2.0, vec![term(4.0, Shape::MittagLeffler, &[-(2.0f64).ln(), 0.7])])),
-        ("fung-continuous", relaxation(2.0, vec![term(4.0, Shape::FungContinuous, &[-(9.0f64).ln(), 3.0])])),
-        ("diffusion", relaxation(2.0, vec![term(4.0, Shape::Diffusion, &[-(6.0f64).ln()])])),
+        ("stretched", relaxation(2.0, vec![term(4.0, BasisFunction::Stretched, &[-(2.0f64).ln(), 0.5])])),
+        ("power", relaxation(0.0, vec![term(4.0, BasisFunction::PowerDecay, &[0.0, 0.3])])),
+        ("logarithmic", relaxation(9.0, vec![term(0.5, BasisFunction::Logarithm, &[0.5])])),
+        (
+            "fractional-zener",
+            relaxation(2.0, vec![term(4.0, BasisFunction::MittagLeffler, &[-(2.0f64).ln(), 0.7])]),
+        ),
+        (
+            "fung-continuous",
+            relaxation(2.0, vec![term(4.0, BasisFunction::FungContinuous, &[-(9.0f64).ln(), 3.0])]),
+        ),
+        ("diffusion", relaxation(2.0, vec![term(4.0, BasisFunction::Diffusion, &[-(6.0f64).ln()])])),
     ]
 }
 

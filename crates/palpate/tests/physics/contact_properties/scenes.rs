@@ -169,22 +169,6 @@ pub(crate) fn laws() -> impl Strategy<Value = Law> + Clone {
     ]
 }
 
-/// A contact, whichever law it obeys.
-#[derive(Debug, Clone)]
-pub(crate) enum Model {
-    Latency(ContactModel),
-    Linear(LinearContact),
-}
-
-impl<'a> From<&'a Model> for Contact<'a> {
-    fn from(model: &'a Model) -> Self {
-        match model {
-            Model::Latency(model) => model.into(),
-            Model::Linear(contact) => contact.into(),
-        }
-    }
-}
-
 /// A body, its law and the unit of time (s).
 #[derive(Debug, Clone)]
 pub(crate) struct Scene {
@@ -195,10 +179,10 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    pub(crate) fn model(&self) -> Model {
+    pub(crate) fn model(&self) -> Contact {
         let (specimen, separation) = (self.body.specimen(), self.separation);
         match &self.law {
-            Law::Latency(n, m) => Model::Latency(ContactModel {
+            Law::Latency(n, m) => Contact::from(ContactModel {
                 specimen,
                 law: LatencyLaw::new(*n, 0.1f64.powf(1.0 - n) / self.unit).unwrap(),
                 layers: Layers::new(*m).unwrap(),
@@ -210,7 +194,7 @@ impl Scene {
                     rate: rate / self.unit,
                 };
                 let law = LinearLaw::new(&terms.iter().map(term).collect::<Vec<_>>()).unwrap();
-                Model::Linear(LinearContact {
+                Contact::Linear(LinearContact {
                     specimen,
                     law,
                     memory: *memory,

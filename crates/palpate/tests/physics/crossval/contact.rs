@@ -7,8 +7,8 @@ use crate::common::reference;
 use palpate::contact::{Curve, Equilibrium, Layers, RateDependence, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    Contact, ContactEventKind, ContactModel, ForceHistory, Motion, Sampling, Separation, SimulateError, simulate,
-    simulate_force, strain_wave,
+    Contact as Simulated, ContactEventKind, ContactModel, ForceHistory, Motion, Sampling, Separation, SimulateError,
+    simulate, simulate_force, strain_wave,
 };
 use palpate::test_problems::paper_ball;
 use serde::Deserialize;
@@ -465,7 +465,7 @@ fn with_a_rate_that_depends_on_strain_or_direction() {
             "strain" => (RateDependence::Strain { factor: *factor }, tolerance.strain),
             _ => (RateDependence::Direction { factor: *factor }, tolerance.direction),
         };
-        let contact = Contact::Latency {
+        let contact = Simulated::Latency {
             model: case.model(),
             rate,
         };
@@ -489,7 +489,7 @@ fn with_a_rate_that_depends_on_strain_or_direction() {
 fn a_surface_left_alone_recovers_by_its_own_rate() {
     for rate in [RateDependence::Strain { factor: 0.2 }, RateDependence::Direction { factor: 0.3 }] {
         let model = paper_ball(Separation::Unilateral);
-        let contact = Contact::Latency {
+        let contact = Simulated::Latency {
             model: model.clone(),
             rate,
         };
@@ -516,7 +516,7 @@ fn a_surface_left_alone_recovers_by_its_own_rate() {
             let exact = again(time - since, off.contact_displacement[0]);
             assert!((u - exact).abs() < 1e-6 * 0.035, "{rate:?} at {time} s: {u} {exact}");
         }
-        let plain = simulate(&squeeze, &Contact::from(model.clone()), &Sampling::Times(times.clone())).unwrap();
+        let plain = simulate(&squeeze, &Simulated::from(model.clone()), &Sampling::Times(times.clone())).unwrap();
         let model = simulate(&squeeze, &model, &Sampling::Times(times)).unwrap();
         assert_eq!(plain.contact_displacement, model.contact_displacement);
     }

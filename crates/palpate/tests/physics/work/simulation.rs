@@ -5,13 +5,13 @@
 use palpate::contact::Layers;
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactModel, ForceHistory, LinearContact, LinearLaw, LinearTerm, Memory, Sampling, Separation, Work, simulate,
-    strain_wave, strain_wave_within,
+    ContactModel, ForceHistory, LinearContact, LinearLaw, LinearTerm, Memory, Sampling, Separation, SimulationWork,
+    simulate, strain_wave, strain_wave_within,
 };
 use palpate::test_problems::{paper_ball, paper_test_a};
 
 /// At most as many steps and evaluations as once counted, and at least half of them: fewer would not be the same work.
-fn is_near(work: Work, steps: u64, evaluations: u64) {
+fn is_near(work: SimulationWork, steps: u64, evaluations: u64) {
     // Rounding may cost a step more on another machine.
     assert!(work.steps <= steps + 2 + steps / 50, "{work:?}, expected {steps} steps");
     assert!(

@@ -2,12 +2,15 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::contact::{Layers, Shape, Sides, Specimen};
+use palpate::batch::{Run, summaries};
+use palpate::contact::{Layers, RateDependence, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{
-    ContactModel, Drive, ForceHistory, Motion, ProgramStep, Sampling, Separation, SimulateError, energy, simulate,
-    summary,
+    Contact, ContactModel, Drive, ForceHistory, LinearContact, LinearLaw, Memory, Motion, ProgramStep, ProtocolStep,
+    Sampling, Separation, SimulateError, energy, energy_watched, protocol, simulate, simulate_watched, step_ends,
+    strain_wave_watched, summary, work_by_step_watched,
 };
+use palpate::watch::{Cancelled, Progress, Unwatched, Watch};
 
 fn model(shape: Shape, separation: Separation) -> ContactModel {
     ContactModel {
@@ -92,4 +95,134 @@ fn a_summary_refuses_what_a_simulation_refuses() {
     let motion = Motion::new(vec![0.0, 1.0], vec![0.0, 0.01]).unwrap();
     let refused = summary(&motion, &model, &Sampling::Times(vec![2.0]));
     assert!(matches!(refused, Err(SimulateError::SampleTime { .. })), "{refused:?}");
+}
+
+#[test]
+fn summaries_of_many_runs_are_those_of_each() {
+    let motion = Motion::new(vec![0.0, 0.4, 8.0, 8.2, 20.0, 21.0], vec![0.0, 0.012, 0.012, 0.0, 0.0, 0.004]).unwrap();
+    let history = ForceHistory::new(vec![0.0, 1.0, 30.0], vec![0.0, 10.0, 10.0]).unwrap();
+    let steps = [
+        ProgramStep::Move { to: 0.012, rate: 0.012 },
+        ProgramStep::HoldPosition { duration: 5.0 },
+        ProgramStep::HoldForce { duration: 5.0 },
+        ProgramStep::Move { to: 0.004, rate: 0.1 },
+    ];
+    let latency = model(BALL, Separation::Unilateral);
+    let linear = LinearContact {
+        specimen: latency.specimen.clone(),
+        law: LinearLaw::standard(2.0, 3.0).unwrap(),
+        memory: Memory::Strain,
+        separation: Separation::Unilateral,
+    };
+    let contacts = [
+        Contact::from(latency.clone()),
+        Contact::Latency {
+            model: latency,
+            rate: RateDependence::Strain { factor: 0.5 },
+        },
+        Contact::from(linear),
+    ];
+    let (sampling, times) = (Sampling::Rate(100.0), [0.2, 0.4, 3.0, 9.0]);
+    let drives = [Drive::from(&motion), Drive::from(&history), Drive::from(&steps)];
+    let runs: Vec<Run<'_>> = contacts
+        .iter()
+        .flat_map(|contact| {
+            drives.map(|drive| Run {
+                drive,
+                contact: contact.into(),
+                sampling: &sampling,
+                times: &times,
+            })
+        })
+        .collect();
+    let mut heard = Vec::new();
+    let found = summaries(&runs, &mut |progress: Progress<'_>| {
+        heard.push((progress.done, progress.total));
+        Ok(())
+    });
+    for (run, found) in runs.iter().zip(found.unwrap()) {
+        let found = found.unwrap();
+        assert_eq!(found.summary, summary(run.drive, run.contact, &sampling).unwrap());
+        let series = simulate(run.drive, run.contact, &Sampling::Times(times.to_vec())).unwrap();
+        assert_eq!(found.forces.unwrap(), series.force);
+        if let Drive::Program(steps) = run.drive {
+            assert_eq!(found.ends, step_ends(steps, run.contact).unwrap());
+        }
+    }
+    assert_eq!((heard[0], *heard.last().unwrap()), ((0, Some(9)), (9, Some(9))));
+    // A motion is a program of moves and holds.
+    let motion = protocol(&[
+        ProtocolStep {
+            to: 0.012,
+            rate: 0.012,
+            hold: 5.0,
+        },
+        ProtocolStep {
+            to: 0.004,
+            rate: 0.1,
+            hold: 0.0,
+        },
+    ])
+    .unwrap();
+    let steps = [steps[0], steps[1], steps[3]];
+    for contact in &contacts {
+        let run = Run {
+            drive: (&motion).into(),
+            contact: contact.into(),
+            sampling: &sampling,
+            times: &[],
+        };
+        let found = summaries(&[run], &mut Unwatched).unwrap().remove(0).unwrap();
+        assert_eq!(found.ends, step_ends(&steps, contact).unwrap());
+    }
+    // What cannot be simulated says so in its place, times outside are no forces, and who watches may end it.
+    let outside = Run {
+        times: &[99.0],
+        ..runs[0]
+    };
+    let deep = Motion::new(vec![0.0, 1.0], vec![0.0, 0.2]).unwrap();
+    let refused = Run {
+        drive: (&deep).into(),
+        ..runs[0]
+    };
+    let found = summaries(&[outside, refused], &mut Unwatched).unwrap();
+    assert!(found[0].as_ref().unwrap().forces.is_none());
+    assert!(matches!(found[1], Err(SimulateError::Displacement { .. })));
+    assert_eq!(summaries(&runs, &mut |_: Progress<'_>| Err(Cancelled)), Err(Cancelled));
+}
+
+/// A squeeze and a thousand turns: what a long protocol is like.
+fn long() -> Motion {
+    let knots = (0..=1000).map(f64::from);
+    Motion::new(knots.clone().collect(), knots.map(|i| 4e-3 * (i % 3.0) / 2.0).collect()).unwrap()
+}
+
+#[test]
+fn long_simulations_report_progress_and_end_when_they_are_told_to() {
+    let (motion, model) = (long(), model(BLOCK, Separation::Bonded));
+    let sampling = Sampling::Rate(10.0);
+    type Work<'a> = &'a dyn Fn(&mut dyn Watch) -> Result<(), SimulateError>;
+    let works: [Work<'_>; 4] = [
+        &|watch| simulate_watched(&motion, &model, &sampling, watch).map(drop),
+        &|watch| energy_watched(&motion, &model, &sampling, watch).map(drop),
+        &|watch| work_by_step_watched(&motion, &model, watch).map(drop),
+        &|watch| strain_wave_watched(&motion, &model, &sampling, 1e-6, watch).map(drop),
+    ];
+    for work in works {
+        let mut heard = Vec::new();
+        work(&mut |progress: Progress<'_>| {
+            heard.push((progress.done, progress.total.unwrap()));
+            Ok(())
+        })
+        .unwrap();
+        assert!(heard.len() > 1000 && heard.windows(2).all(|pair| pair[0].0 <= pair[1].0));
+        let (done, total) = *heard.last().unwrap();
+        assert_eq!(done, total);
+        let mut reports = 0;
+        let ended = work(&mut |_: Progress<'_>| {
+            reports += 1;
+            if reports < 300 { Ok(()) } else { Err(Cancelled) }
+        });
+        assert_eq!((ended, reports), (Err(SimulateError::Cancelled(Cancelled)), 300));
+    }
 }

@@ -1,0 +1,242 @@
+//! Residuals of a candidate, and damped steps to where they are least.
+
+use super::prepared::Prepared;
+use crate::fit::{Cholesky, Termination};
+use crate::simulate::{Motion, simulate_force};
+use crate::watch::{Cancelled, Stages};
+
+/// Residuals of a candidate on some samples.
+#[derive(Clone, Copy)]
+pub(super) struct Problem<'a> {
+    pub(super) prepared: &'a Prepared,
+    pub(super) motion: &'a Motion,
+    pub(super) times: &'a [f64],
+    pub(super) forces: &'a [f64],
+    /// A number that is held, which one of the searched follows.
+    pub(super) held: Option<Held>,
+}
+
+/// A point of the search.
+#[derive(Debug, Clone)]
+pub(super) struct Found {
+    pub(super) theta: Vec<f64>,
+    pub(super) residuals: Vec<f64>,
+    pub(super) square: f64,
+    pub(super) termination: Termination,
+    /// Simulations it took.
+    pub(super) simulations: u64,
+}
+
+impl Problem<'_> {
+    /// Forces with these numbers; `None` where they cannot be simulated.
+    pub(super) fn forces_with(&self, theta: &[f64]) -> Option<Vec<f64>> {
+        let contact = match self.held {
+            Some(held) => self.prepared.contact(&held.completed(self.prepared, theta)?),
+            None => self.prepared.contact(theta),
+        };
+        simulate_force(self.motion, &contact?, self.times).ok()
+    }
+
+    /// Measured less simulated.
+    pub(super) fn residuals(&self, theta: &[f64]) -> Option<Vec<f64>> {
+        let mut forces = self.forces_with(theta)?;
+        forces
+            .iter_mut()
+            .zip(self.forces)
+            .for_each(|(simulated, measured)| *simulated = measured - *simulated);
+        Some(forces)
+    }
+
+    /// Derivatives of the simulated forces by every number, column by column, from differences on both sides.
+    pub(super) fn jacobian(&self, theta: &[f64], stages: &mut Stages<'_>) -> Result<Option<Vec<Vec<f64>>>, Cancelled> {
+        let mut columns = Vec::with_capacity(theta.len());
+        for index in 0..theta.len() {
+            stages.hear()?;
+            match self.slope(theta, index) {
+                Some(column) => columns.push(column),
+                None => return Ok(None),
+            }
+        }
+        Ok(Some(columns))
+    }
+
+    /// Derivatives of the simulated forces by one number.
+    fn slope(&self, theta: &[f64], index: usize) -> Option<Vec<f64>> {
+        /// Of the logarithm; the error of the difference is some 10⁻⁸ of the derivative.
+        const STEP: f64 = 1e-4;
+        if self.follows(index) {
+            return Some(vec![0.0; self.times.len()]);
+        }
+        let bounds = &self.prepared.searched[index];
+        let moved = |by: f64| {
+            let mut beside = theta.to_vec();
+            beside[index] = (theta[index] + by).clamp(bounds.low, bounds.high);
+            Some((beside[index], self.forces_with(&beside)?))
+        };
+        let ((low, below), (high, above)) = (moved(-STEP)?, moved(STEP)?);
+        let per_step = 1.0 / (high - low);
+        Some(above.iter().zip(&below).map(|(a, b)| (a - b) * per_step).collect())
+    }
+
+    /// Whether a searched number follows one that is held.
+    fn follows(&self, searched: usize) -> bool {
+        self.held.is_some_and(|held| held.searched == searched)
+    }
+
+    /// Damped steps from `start` to the nearest optimum inside the bounds; `None` where even the start cannot be simulated.
+    pub(super) fn descend(
+        &self,
+        start: &[f64],
+        most: usize,
+        stages: &mut Stages<'_>,
+    ) -> Result<Option<Found>, Cancelled> {
+        let searched = &self.prepared.searched;
+        let mut theta: Vec<f64> = start.iter().zip(searched).map(|(value, s)| value.clamp(s.low, s.high)).collect();
+        let Some(mut residuals) = self.residuals(&theta) else {
+            return Ok(None);
+        };
+        let mut square = sum_of_squares(&residuals);
+        let (mut damping, mut simulations) = (1e-3, 1);
+        let mut termination = Termination::IterationLimit;
+        'search: for step in 0..most {
+            stages.reach(step as f64 / most as f64)?;
+            let Some(jacobian) = self.jacobian(&theta, stages)? else {
+                return Ok(None);
+            };
+            simulations += 2 * theta.len() as u64;
+            let gradient: Vec<f64> = jacobian.iter().map(|column| dot(column, &residuals)).collect();
+            let pinned = |i: usize| {
+                self.follows(i)
+                    || (theta[i] <= searched[i].low && gradient[i] < 0.0)
+                    || (theta[i] >= searched[i].high && gradient[i] > 0.0)
+            };
+            let free: Vec<usize> = (0..theta.len()).filter(|i| !pinned(*i)).collect();
+            let size = free.len();
+            let mut normal = vec![0.0; size * size];
+            for (a, i) in free.iter().enumerate() {
+                for (b, j) in free.iter().enumerate().take(a + 1) {
+                    normal[a * size + b] = dot(&jacobian[*i], &jacobian[*j]);
+                    normal[b * size + a] = normal[a * size + b];
+                }
+            }
+            loop {
+                let mut damped = normal.clone();
+                for a in 0..size {
+                    let diagonal = &mut damped[a * (size + 1)];
+                    // A floor for a number that the data do not feel at all.
+                    *diagonal = diagonal.max(1e-14 * square) * (1.0 + damping);
+                }
+                let mut step: Vec<f64> = free.iter().map(|i| gradient[*i]).collect();
+                match Cholesky::new(&damped, size) {
+                    Some(factor) => factor.solve(&mut step),
+                    None => {
+                        damping = (damping * 10.0).max(1e-6);
+                        if damping > 1e12 {
+                            termination = Termination::Singular;
+                            break 'search;
+                        }
+                        continue;
+                    }
+                }
+                let mut next = theta.clone();
+                for (i, by) in free.iter().zip(&step) {
+                    // The model is trusted over a factor of e², no further.
+                    next[*i] = (theta[*i] + by.clamp(-2.0, 2.0)).clamp(searched[*i].low, searched[*i].high);
+                }
+                let moved = next.iter().zip(&theta).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                if moved < 1e-12 || damping > 1e12 {
+                    termination = Termination::Converged;
+                    break 'search;
+                }
+                stages.hear()?;
+                let trial = self.residuals(&next);
+                simulations += 1;
+                let trial_square = trial.as_deref().map_or(f64::INFINITY, sum_of_squares);
+                if trial_square < square
+                    && let Some(trial) = trial
+                {
+                    let gain = square - trial_square;
+                    let taken: Vec<f64> = free.iter().map(|i| next[*i] - theta[*i]).collect();
+                    let foretold: f64 = taken
+                        .iter()
+                        .zip(normal.chunks(size))
+                        .zip(&free)
+                        .map(|((by, row), i)| by * (2.0 * gradient[*i] - dot(row, &taken)))
+                        .sum();
+                    (theta, residuals) = (next, trial);
+                    square = trial_square;
+                    // Where much is left over the bottom is steeper than the model says: undamped steps would go from one side to the other.
+                    damping = match gain / foretold {
+                        share if share > 0.75 => (damping * 0.1).max(1e-12),
+                        share if share > 0.25 => damping,
+                        _ => (damping * 8.0).max(1e-6),
+                    };
+                    if gain <= GAIN * square && moved < 1e-4 {
+                        termination = Termination::Converged;
+                        break 'search;
+                    }
+                    break;
+                }
+                // At a flat bottom rounding decides.
+                if moved < 1e-6 && damping < 1.0 && trial_square <= square * (1.0 + 1e-10) {
+                    termination = Termination::Converged;
+                    break 'search;
+                }
+                damping = (damping * 8.0).max(1e-6);
+            }
+        }
+        Ok(Some(Found {
+            theta,
+            residuals,
+            square,
+            termination,
+            simulations,
+        }))
+    }
+}
+
+/// Relative fall of the squared residual below which a step counts as none.
+const GAIN: f64 = 1e-10;
+
+pub(super) fn sum_of_squares(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum()
+}
+
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// A number that is held while the others are sought.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Held {
+    /// Place of the searched number that follows.
+    pub(super) searched: usize,
+    /// Place among the numbers of the material.
+    pub(super) number: usize,
+    /// Natural logarithm of the value it is held at.
+    pub(super) log: f64,
+}
+
+impl Held {
+    /// The searched numbers with the one that follows put in; `None` where none does.
+    pub(super) fn completed(&self, prepared: &Prepared, theta: &[f64]) -> Option<Vec<f64>> {
+        const STEP: f64 = 1e-6;
+        let mut theta = theta.to_vec();
+        let off = |theta: &[f64]| prepared.values(theta)[self.number].ln() - self.log;
+        for _ in 0..50 {
+            let now = off(&theta);
+            if now.abs() < 1e-12 {
+                return Some(theta);
+            }
+            let at = theta[self.searched];
+            theta[self.searched] = at + STEP;
+            let slope = (off(&theta) - now) / STEP;
+            // Straight for all but the layer thickness, of which the logarithm bends once.
+            theta[self.searched] = at - (now / slope).clamp(-3.0, 3.0);
+            if !theta[self.searched].is_finite() {
+                return None;
+            }
+        }
+        (off(&theta).abs() < 1e-9).then_some(theta)
+    }
+}

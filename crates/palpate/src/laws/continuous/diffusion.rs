@@ -1,0 +1,50 @@
+//! One-dimensional diffusion, after Golik's picture of holes that diffuse out of a loaded polymer.
+//!
+//! What is left in a sheet of thickness L that exchanges through both faces: φ(t) = (8/π²) Σ_{k = 1, 3, 5, …} exp(−k²λt)/k²,
+//! λ = π²D/L² with the diffusivity D. y(t) = y_e + Δ φ(t); in creep y₀ + Δ (1 − φ(t)).
+//!
+//! | number | unit | range | meaning |
+//! |---|---|---|---|
+//! | equilibrium y_e, or instantaneous y₀ | of y | any | end, or start in creep |
+//! | amplitude Δ | of y | any | what relaxes |
+//! | time τ = 1/λ = L²/(π²D) | s | above 0 | of the slowest mode |
+//!
+//! Early, 1 − φ grows as the square root of time; late, φ falls as (8/π²) exp(−t/τ).
+
+use crate::laws::basis::BasisFunction;
+use crate::laws::description::Description;
+use crate::laws::form::Form;
+use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
+use crate::laws::response::Response;
+use crate::special::diffusion_decay_many;
+
+pub(in crate::laws) const DESCRIPTION: Description = Description {
+    title: "diffusion",
+    equation: "y_e + Δ (8/π²) Σ_odd exp(−k²t/τ)/k²",
+    source: "hole diffusion after Golik, cited by Tsai, Kao et al.; series: Crank, The Mathematics of Diffusion, section 4.3",
+};
+
+pub(in crate::laws) fn form(response: Response) -> Form {
+    Form::with_constant(response, vec![BasisFunction::Diffusion])
+}
+
+/// (8/π²) Σ_odd exp(−k²λt)/k².
+pub(in crate::laws) struct Diffusion;
+
+impl Kernel for Diffusion {
+    fn numbers(&self) -> &'static [ShapeNumber] {
+        &[ShapeNumber {
+            name: "time",
+            kind: NumberKind::Time,
+        }]
+    }
+
+    fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
+        let mut unused = vec![0.0; times.len()];
+        diffusion_decay_many(times, theta[0].exp(), value, &mut unused);
+    }
+
+    fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
+        diffusion_decay_many(times, theta[0].exp(), value, &mut derivatives[0]);
+    }
+}

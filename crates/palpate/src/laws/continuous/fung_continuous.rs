@@ -1,0 +1,70 @@
+//! Fung's reduced relaxation function with a continuous spectrum, for quasi-linear viscoelasticity.
+//!
+//! y(t) = N [1 + C (E₁(t/τ_long) − E₁(t/τ_short))]/[1 + C ln(τ_long/τ_short)], E₁ the exponential integral: relaxation times spread
+//! evenly in ln τ between τ_short and τ_long. As a shape: φ = [E₁(λt) − E₁(ϱλt)]/ln ϱ with λ = 1/τ_long and ϱ = τ_long/τ_short.
+//!
+//! | number | unit | range | meaning |
+//! |---|---|---|---|
+//! | elastic response N | of y | any | signal at the start |
+//! | strength C | 1 | above 0 for relaxation | height of the spectrum |
+//! | time_short, time_long | s | above 0 | its ends; ln ϱ is sought from 0.05 to 25 |
+//!
+//! Limit: ϱ → 1 is the standard linear solid.
+
+use crate::laws::basis::BasisFunction;
+use crate::laws::description::Description;
+use crate::laws::form::Form;
+use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
+use crate::laws::response::Response;
+use crate::special::fung_continuous_many;
+
+pub(in crate::laws) const DESCRIPTION: Description = Description {
+    title: "Fung, continuous spectrum",
+    equation: "N [1 + C (E₁(t/τ_long) − E₁(t/τ_short))]/[1 + C ln(τ_long/τ_short)]",
+    source: "Neubert 1963; Fung, Biomechanics, section 7.6",
+};
+
+pub(in crate::laws) fn form(response: Response) -> Option<Form> {
+    (response == Response::Relaxation).then(|| Form::with_constant(response, vec![BasisFunction::FungContinuous]))
+}
+
+/// [E₁(λt) − E₁(ϱλt)]/ln ϱ in θ = (ln λ, ln ϱ).
+pub(in crate::laws) struct FungContinuous;
+
+impl Kernel for FungContinuous {
+    fn numbers(&self) -> &'static [ShapeNumber] {
+        const COARSE: [f64; 10] = [0.05, 1.5, 3.0, 4.5, 6.0, 8.0, 10.0, 13.0, 17.0, 25.0];
+        &[
+            ShapeNumber {
+                name: "time_long",
+                kind: NumberKind::Time,
+            },
+            ShapeNumber {
+                name: "log_ratio",
+                kind: NumberKind::Pure {
+                    low: 0.05,
+                    high: 25.0,
+                    coarse: &COARSE,
+                },
+            },
+        ]
+    }
+
+    fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
+        let mut unused = (vec![0.0; times.len()], vec![0.0; times.len()]);
+        let (slow, fast) = (theta[0].exp(), (theta[0] + theta[1]).exp());
+        fung_continuous_many(times, slow, fast, value, &mut unused.0, &mut unused.1);
+    }
+
+    fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
+        let [by_slow, by_ratio] = derivatives else {
+            unreachable!("two numbers")
+        };
+        let (slow, fast) = (theta[0].exp(), (theta[0] + theta[1]).exp());
+        fung_continuous_many(times, slow, fast, value, by_slow, by_ratio);
+        // ln λ moves both ends, ln ϱ only the fast one.
+        for (slow, fast) in by_slow.iter_mut().zip(by_ratio.iter()) {
+            *slow += fast;
+        }
+    }
+}

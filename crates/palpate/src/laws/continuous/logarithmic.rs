@@ -1,0 +1,50 @@
+//! Logarithmic relaxation and creep.
+//!
+//! y(t) = y₀ − Δ ln(1 + λt), in creep y₀ + Δ ln(1 + λt): the limit of the latency law for large n, where (n−1) λ and Δ/(n−1) stay.
+//!
+//! | number | unit | range | meaning |
+//! |---|---|---|---|
+//! | start y₀, or instantaneous y₀ in creep | of y | any | signal at the start |
+//! | amplitude Δ | of y | any | change per e-fold of time |
+//! | time 1/λ | s | above 0 | where the logarithm begins |
+
+use crate::laws::basis::BasisFunction;
+use crate::laws::description::Description;
+use crate::laws::form::Form;
+use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
+use crate::laws::response::Response;
+use crate::vector::{logarithm_many, logarithm_values};
+
+pub(in crate::laws) const DESCRIPTION: Description = Description {
+    title: "logarithmic",
+    equation: "y₀ − Δ ln(1 + t/t₀)",
+    source: "Guiu and Pratt 1964; Kubát 1965",
+};
+
+pub(in crate::laws) fn form(response: Response) -> Form {
+    Form::with_constant(response, vec![BasisFunction::Logarithm])
+}
+
+/// ln(1 + λt).
+pub(in crate::laws) struct Logarithm;
+
+impl Kernel for Logarithm {
+    fn numbers(&self) -> &'static [ShapeNumber] {
+        &[ShapeNumber {
+            name: "time",
+            kind: NumberKind::Time,
+        }]
+    }
+
+    fn decays(&self) -> bool {
+        false
+    }
+
+    fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
+        logarithm_values(times, theta[0].exp(), value);
+    }
+
+    fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
+        logarithm_many(times, theta[0].exp(), value, &mut derivatives[0]);
+    }
+}

@@ -1,0 +1,61 @@
+//! The stretched exponential of Kohlrausch, Williams and Watts.
+//!
+//! y(t) = y_e + Δ exp(−(λt)^β), in creep y₀ + Δ (1 − exp(−(λt)^β)).
+//!
+//! | number | unit | range | meaning |
+//! |---|---|---|---|
+//! | equilibrium y_e, or instantaneous y₀ | of y | any | end, or start in creep |
+//! | amplitude Δ | of y | any | what relaxes |
+//! | time τ = 1/λ | s | above 0 | where e⁻¹ of it is left |
+//! | stretching β | 1 | 0.05 to 2 | 1: exponential; smaller: wider |
+
+use crate::laws::basis::BasisFunction;
+use crate::laws::description::Description;
+use crate::laws::form::Form;
+use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
+use crate::laws::response::Response;
+use crate::vector::{stretched_many, stretched_values};
+
+pub(in crate::laws) const DESCRIPTION: Description = Description {
+    title: "stretched exponential",
+    equation: "y_e + Δ exp(−(t/τ)^β)",
+    source: "Kohlrausch 1854; Williams and Watts 1970",
+};
+
+pub(in crate::laws) fn form(response: Response) -> Form {
+    Form::with_constant(response, vec![BasisFunction::Stretched])
+}
+
+/// exp(−(λt)^β).
+pub(in crate::laws) struct Stretched;
+
+impl Kernel for Stretched {
+    fn numbers(&self) -> &'static [ShapeNumber] {
+        const COARSE: [f64; 12] = [0.05, 0.1, 0.15, 0.22, 0.3, 0.4, 0.53, 0.7, 0.9, 1.2, 1.6, 2.0];
+        &[
+            ShapeNumber {
+                name: "time",
+                kind: NumberKind::Time,
+            },
+            ShapeNumber {
+                name: "stretching",
+                kind: NumberKind::Pure {
+                    low: 0.05,
+                    high: 2.0,
+                    coarse: &COARSE,
+                },
+            },
+        ]
+    }
+
+    fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
+        stretched_values(times, theta[0].exp(), theta[1], value);
+    }
+
+    fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
+        let [by_rate, by_stretching] = derivatives else {
+            unreachable!("two numbers")
+        };
+        stretched_many(times, theta[0].exp(), theta[1], value, by_rate, by_stretching);
+    }
+}

@@ -1,0 +1,24 @@
+//! The shape exp(−λt) that Maxwell, Kelvin–Voigt, standard linear solid, Burgers, Prony and Fung share.
+
+use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
+use crate::vector::{exponential_many, exponential_values};
+
+/// exp(−t/τ).
+pub(in crate::laws) struct Exponential;
+
+impl Kernel for Exponential {
+    fn numbers(&self) -> &'static [ShapeNumber] {
+        &[ShapeNumber {
+            name: "time",
+            kind: NumberKind::Time,
+        }]
+    }
+
+    fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
+        exponential_values(times, theta[0].exp(), value);
+    }
+
+    fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
+        exponential_many(times, theta[0].exp(), value, &mut derivatives[0]);
+    }
+}

@@ -1,0 +1,57 @@
+//! The Maxwell model: spring and dashpot in series.
+//!
+//! Relaxation y(t) = Δ exp(−t/τ): everything relaxes. Creep y(t) = y₀ + rate · t: it flows without end.
+//!
+//! | number | unit | range | meaning |
+//! |---|---|---|---|
+//! | amplitude Δ | of y | any | signal at the start |
+//! | time τ | s | above 0 | relaxation time, viscosity over stiffness |
+//! | instantaneous y₀ (creep) | of y | any | elastic part |
+//! | flow rate (creep) | of y per s | any | slope of the flow |
+
+use crate::laws::basis::BasisFunction;
+use crate::laws::description::Description;
+use crate::laws::form::Form;
+use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
+use crate::laws::response::Response;
+
+pub(in crate::laws) const DESCRIPTION: Description = Description {
+    title: "Maxwell",
+    equation: "Δ exp(−t/τ)",
+    source: "Maxwell 1867; Ferry, Viscoelastic Properties of Polymers, chapter 1",
+};
+
+pub(in crate::laws) fn form(response: Response) -> Form {
+    match response {
+        Response::Relaxation => Form::without_constant(response, vec![BasisFunction::Exponential]),
+        Response::Creep => Form::with_constant(response, vec![BasisFunction::Straight]),
+    }
+}
+
+/// λt with λ one over the duration of the fit: flow.
+pub(in crate::laws) struct Straight;
+
+impl Kernel for Straight {
+    fn numbers(&self) -> &'static [ShapeNumber] {
+        &[ShapeNumber {
+            name: "reference",
+            kind: NumberKind::Reference,
+        }]
+    }
+
+    fn decays(&self) -> bool {
+        false
+    }
+
+    fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
+        let rate = theta[0].exp();
+        for (out, t) in value.iter_mut().zip(times) {
+            *out = rate * t;
+        }
+    }
+
+    fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
+        self.value(times, theta, value);
+        derivatives[0].copy_from_slice(value);
+    }
+}

@@ -1,0 +1,13 @@
+//! Laws of few relaxation times, or many on a grid: springs and dashpots, sums of exponentials.
+//!
+//! Each file states its law, its numbers and where it comes from, and says of which basis functions it is made; `exponential.rs` and
+//! `maxwell.rs` hold those functions.
+
+pub(super) mod burgers;
+pub(super) mod exponential;
+pub(super) mod fung;
+pub(super) mod kelvin_voigt;
+pub(super) mod maxwell;
+pub(super) mod prony;
+pub(super) mod spectrum;
+pub(super) mod standard_linear_solid;

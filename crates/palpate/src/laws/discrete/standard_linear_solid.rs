@@ -1,0 +1,27 @@
+//! The standard linear solid (Zener): a spring beside a Maxwell arm.
+//!
+//! Relaxation y(t) = y_e + Δ exp(−t/τ); creep y(t) = y₀ + Δ (1 − exp(−t/τ)). For one material the retardation time exceeds the
+//! relaxation time by the ratio of instantaneous to relaxed stiffness.
+//!
+//! | number | unit | range | meaning |
+//! |---|---|---|---|
+//! | equilibrium y_e, or instantaneous y₀ in creep | of y | any | end, or start |
+//! | amplitude Δ | of y | any | what relaxes, or creeps |
+//! | time τ | s | above 0 | relaxation time, or retardation time |
+//!
+//! It is Prony with one term, the latency law with n = 1 and the fractional Zener solid of order 1.
+
+use crate::laws::basis::BasisFunction;
+use crate::laws::description::Description;
+use crate::laws::form::Form;
+use crate::laws::response::Response;
+
+pub(in crate::laws) const DESCRIPTION: Description = Description {
+    title: "standard linear solid",
+    equation: "y_e + Δ exp(−t/τ)",
+    source: "Zener 1948; Ferry, Viscoelastic Properties of Polymers, chapter 3",
+};
+
+pub(in crate::laws) fn form(response: Response) -> Form {
+    Form::with_constant(response, vec![BasisFunction::Exponential])
+}

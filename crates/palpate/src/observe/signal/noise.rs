@@ -1,0 +1,130 @@
+//! How noisy a signal is, found out as it comes.
+
+use crate::observe::kept::kept;
+
+/// Readings of which one estimate is made.
+const ROOM: usize = 32;
+/// After how many readings the first estimates come.
+const FIRST: [usize; 2] = [8, 16];
+
+/// Standard deviation of one reading: the median distance of readings from the line through their neighbours.
+///
+/// The distance of y₁ from the line through y₀ and y₂ has the variance σ²(1 + w² + (1 − w)²), w = (t₁ − t₀)/(t₂ − t₀), whatever the speed; a
+/// median of 32 leaves out corners of the motion. Estimates of successive stretches are averaged, the last eight counting most.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::observe) struct NoiseMeter {
+    known: Option<f64>,
+    last: [(f64, f64); 2],
+    seen: usize,
+    room: [f64; ROOM],
+    filled: usize,
+    found: Option<f64>,
+    /// The last step, where the reading before it was that before once more.
+    step: Option<f64>,
+    quantum: f64,
+}
+kept!(NoiseMeter: known, last, seen, room, filled, found, step, quantum; |meter| meter.filled < ROOM);
+
+impl NoiseMeter {
+    pub(in crate::observe) fn new(known: Option<f64>) -> Self {
+        Self {
+            known,
+            last: [(0.0, 0.0); 2],
+            seen: 0,
+            room: [0.0; ROOM],
+            filled: 0,
+            found: None,
+            step: None,
+            quantum: f64::INFINITY,
+        }
+    }
+
+    pub(in crate::observe) fn feed(&mut self, time: f64, value: f64) {
+        if self.seen >= 2 {
+            let [(_, y0), (_, y1)] = self.last;
+            if let Some(step) = self.step.filter(|_| value == y1) {
+                self.quantum = self.quantum.min(step);
+            }
+            self.step = (y0 == y1 && value != y1).then_some((value - y1).abs());
+        }
+        if self.known.is_none() && self.seen >= 2 {
+            let [(t0, y0), (t1, y1)] = self.last;
+            let w = (t1 - t0) / (time - t0);
+            let off = y1 - ((1.0 - w) * y0 + w * value);
+            self.room[self.filled] = off.abs() / (1.0 + w * w + (1.0 - w) * (1.0 - w)).sqrt();
+            self.filled += 1;
+            if self.filled == ROOM || (self.found_early() && FIRST.contains(&self.filled)) {
+                self.estimate();
+            }
+        }
+        self.last = [self.last[1], (time, value)];
+        self.seen = self.seen.saturating_add(1);
+    }
+
+    /// Standard deviation; `None` before the first estimate.
+    pub(in crate::observe) fn deviation(&self) -> Option<f64> {
+        self.known.or(self.found)
+    }
+
+    /// The smallest step between readings that stay, each for two or more: the step of its digits for a signal that has few; 0 before any.
+    pub(in crate::observe) fn quantum(&self) -> f64 {
+        if self.quantum.is_finite() { self.quantum } else { 0.0 }
+    }
+
+    fn found_early(&self) -> bool {
+        self.seen < ROOM + 2
+    }
+
+    fn estimate(&mut self) {
+        /// Median of |N(0, 1)|.
+        const MEDIAN: f64 = 0.674_489_750_196_081_7;
+        let mut sorted = self.room;
+        let sorted = &mut sorted[..self.filled];
+        sorted.sort_unstable_by(f64::total_cmp);
+        let now = sorted[self.filled / 2] / MEDIAN;
+        if self.filled < ROOM {
+            self.found = Some(now);
+        } else {
+            self.found = Some(match self.found {
+                Some(before) if !self.found_early() => (0.875 * before * before + 0.125 * now * now).sqrt(),
+                _ => now,
+            });
+            self.filled = 0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Noise;
+
+    #[test]
+    fn noise_on_a_ramp_with_uneven_clock_is_found() {
+        let (mut meter, mut noise, mut time) = (NoiseMeter::new(None), Noise::new(1), 0.0);
+        for _ in 0..1000 {
+            time += 1e-3 * (0.5 + noise.uniform());
+            meter.feed(time, 3.0 * time + 0.05 * noise.normal());
+        }
+        // the median of 32 scatters by 20 %, the mean of the last ones by a third of that
+        assert!((meter.deviation().unwrap() - 0.05).abs() < 0.012, "{:?}", meter.deviation());
+    }
+
+    #[test]
+    fn rounded_readings_show_their_step() {
+        let mut meter = NoiseMeter::new(None);
+        for i in 0..200 {
+            meter.feed(f64::from(i), (0.21 * f64::from(i)).floor() * 0.5);
+        }
+        assert_eq!(meter.quantum(), 0.5);
+    }
+
+    #[test]
+    fn a_smooth_motion_between_two_rests_has_no_step() {
+        let mut meter = NoiseMeter::new(None);
+        for i in 0..300 {
+            meter.feed(f64::from(i), f64::from((i - 100).clamp(0, 100)));
+        }
+        assert_eq!(meter.quantum(), 0.0);
+    }
+}

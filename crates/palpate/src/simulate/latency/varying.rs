@@ -1,0 +1,314 @@
+//! The latency law with a rate coefficient that depends on the equilibrium strain or on the direction.
+//!
+//! A hold has the closed form (4), (5) with the coefficient of its place. A ramp is cut into parts over which ln v changes by no more than
+//! [`CHANGE`], each with the coefficient of its middle: second order, and good to 10⁻⁵ of the excess strain. Where the coefficient depends on the direction
+//! the parts meet at x = 0, and nothing is approximated. Under a force the law keeps a time of its own, in which the coefficient is one more
+//! factor. A surface without a jaw recovers in parts in the same way.
+
+use crate::contact::{Body, Carried, Element, Forced, FreeSurface, Ramps, RateDependence, Specimen, Stopped};
+use crate::latency::LatencyLaw;
+use crate::simulate::layer::{Layer, crossing, lost, meeting};
+use crate::simulate::{ContactModel, Separation, SimulationWork};
+
+/// Most change of ln v within a part.
+const CHANGE: f64 = 0.01;
+
+/// Most parts of a ramp: what a factor of e⁵ takes.
+const MOST_PARTS: f64 = 500.0;
+
+/// A contact whose rate coefficient depends on the state of its layer.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::simulate) struct Varying<'a> {
+    /// The contact, with the rate coefficient at first touch, or while the strain falls.
+    pub(in crate::simulate) model: &'a ContactModel,
+    /// How it depends on the state.
+    pub(in crate::simulate) rate: RateDependence,
+}
+
+/// The layer through a straight piece of motion, part by part.
+#[derive(Debug)]
+pub(crate) struct Parts(Vec<Part>);
+
+#[derive(Debug)]
+struct Part {
+    /// Start, s after that of the piece.
+    from: f64,
+    element: Element,
+}
+
+impl Parts {
+    fn one(element: Element) -> Self {
+        Self(vec![Part { from: 0.0, element }])
+    }
+
+    fn excess_at(&self, elapsed: f64) -> f64 {
+        let index = self.0.partition_point(|part| part.from <= elapsed).max(1) - 1;
+        self.0[index].element.excess_at(elapsed - self.0[index].from)
+    }
+
+    fn extend_excess(&self, start: f64, times: &[f64], out: &mut Vec<f64>) {
+        let mut done = 0;
+        for (index, part) in self.0.iter().enumerate() {
+            let until = match self.0.get(index + 1) {
+                Some(next) => times.partition_point(|time| time - start < next.from).max(done),
+                None => times.len(),
+            };
+            if until > done {
+                part.element.extend_excess(start + part.from, &times[done..until], out);
+                done = until;
+            }
+        }
+    }
+
+    fn ends(&self) -> impl Iterator<Item = f64> + '_ {
+        self.0.iter().enumerate().flat_map(|(index, part)| {
+            let next = self.0.get(index + 1).map(|next| next.from);
+            let inside = part.element.step_ends().map(|end| part.from + end);
+            inside.filter(move |end| next.is_none_or(|next| *end < next)).chain(next)
+        })
+    }
+}
+
+/// A surface on its way back, part by part.
+#[derive(Debug, Clone)]
+pub(crate) struct Surface(Vec<(f64, FreeSurface)>);
+
+impl Surface {
+    fn displacement_at(&self, elapsed: f64) -> f64 {
+        let index = self.0.partition_point(|(from, _)| *from <= elapsed).max(1) - 1;
+        let (from, surface) = &self.0[index];
+        surface.displacement_at(elapsed - from)
+    }
+}
+
+impl Varying<'_> {
+    /// The law at an excess strain and a contact displacement (m).
+    fn law_at(&self, excess: f64, u: f64) -> LatencyLaw {
+        self.rate.law(self.model.law, excess, self.model.specimen.equilibrium_strain(u))
+    }
+
+    /// Rate of the whole strain, 1/s, with the jaw at contact displacement `u` (m) and going at `speed` (m/s).
+    fn gain(&self, excess: f64, u: f64, speed: f64) -> f64 {
+        let depth = self.model.specimen.depth();
+        self.law_at(excess, u).rate(excess) + self.model.layers.drive(speed, depth) + speed / depth
+    }
+
+    /// Parts of a ramp over which v hardly changes.
+    fn by_strain(
+        &self,
+        mut excess: f64,
+        (from, speed): (f64, f64),
+        duration: f64,
+        known: &mut Ramps,
+        work: &mut SimulationWork,
+    ) -> Parts {
+        let depth = self.model.specimen.depth();
+        let drive = self.model.layers.drive(speed, depth);
+        let change = (self.rate.slope() * speed * duration / depth).abs();
+        let count = (change / CHANGE).ceil().clamp(1.0, MOST_PARTS);
+        let long = duration / count;
+        let parts = (0..count as usize).map(|index| {
+            let start = index as f64 * long;
+            let law = self.law_at(excess, from + speed * (start + 0.5 * long));
+            let element = Element::solve(law, excess, drive, long, known, work);
+            excess = element.excess_at(long);
+            Part { from: start, element }
+        });
+        Parts(parts.collect())
+    }
+
+    /// A part before x = 0 is passed, and one after.
+    fn by_direction(
+        &self,
+        excess: f64,
+        (from, speed): (f64, f64),
+        duration: f64,
+        known: &mut Ramps,
+        work: &mut SimulationWork,
+    ) -> Parts {
+        let drive = self.model.layers.drive(speed, self.model.specimen.depth());
+        let side = if excess == 0.0 { drive } else { excess };
+        let first = Element::solve(self.law_at(side, from), excess, drive, duration, known, work);
+        if excess * first.excess_at(duration) >= 0.0 {
+            return Parts::one(first);
+        }
+        let passed = crossing(0.0, duration, |elapsed| excess.signum() * first.excess_at(elapsed));
+        let second = Element::solve(self.law_at(drive, from), 0.0, drive, duration - passed, known, work);
+        Parts(vec![
+            Part {
+                from: 0.0,
+                element: first,
+            },
+            Part {
+                from: passed,
+                element: second,
+            },
+        ])
+    }
+}
+
+impl Layer for Varying<'_> {
+    type Excess = f64;
+    /// Displacement of the next node, m.
+    type Behind = f64;
+    type Moving = Parts;
+    type Known = Ramps;
+    type Pressed = Forced;
+    type Surface = Surface;
+
+    fn specimen(&self) -> &Specimen {
+        &self.model.specimen
+    }
+
+    fn separation(&self) -> Separation {
+        self.model.separation
+    }
+
+    fn relaxed(&self) -> f64 {
+        self.model.relaxed()
+    }
+
+    fn strain_of(&self, excess: &f64, u: f64) -> f64 {
+        self.model.strain_of(excess, u)
+    }
+
+    fn is_finite(excess: &f64) -> bool {
+        excess.is_finite()
+    }
+
+    fn behind(&self, excess: &f64, u: f64) -> f64 {
+        self.model.behind(excess, u)
+    }
+
+    fn stored(&self, excess: &f64, u: f64) -> f64 {
+        self.model.stored(excess, u)
+    }
+
+    fn moving(
+        &self,
+        &excess: &f64,
+        line: (f64, f64),
+        duration: f64,
+        known: &mut Ramps,
+        work: &mut SimulationWork,
+    ) -> Parts {
+        match self.rate {
+            RateDependence::Strain { .. } => self.by_strain(excess, line, duration, known, work),
+            RateDependence::Direction { .. } | RateDependence::Constant => {
+                self.by_direction(excess, line, duration, known, work)
+            }
+        }
+    }
+
+    fn excess_in(&self, piece: &Parts, elapsed: f64) -> f64 {
+        piece.excess_at(elapsed)
+    }
+
+    fn strain_in(&self, piece: &Parts, elapsed: f64) -> f64 {
+        piece.excess_at(elapsed)
+    }
+
+    fn extend_strains(&self, piece: &Parts, start: f64, times: &[f64], strains: &mut Vec<f64>) {
+        piece.extend_excess(start, times, strains);
+    }
+
+    fn extend(
+        &self,
+        piece: &Parts,
+        (start, speed): (f64, f64),
+        (times, places): (&[f64], &[f64]),
+        strains: &mut Vec<f64>,
+        rates: &mut Vec<f64>,
+    ) {
+        let from = strains.len();
+        piece.extend_excess(start, times, strains);
+        rates.extend(strains[from..].iter().zip(places).map(|(excess, u)| self.gain(*excess, *u, speed)));
+    }
+
+    fn ends_in(piece: &Parts) -> Vec<f64> {
+        piece.ends().collect()
+    }
+
+    fn loss(&self, piece: &Parts, (start, end): (f64, f64), speed: f64, jaw: &impl Fn(f64) -> f64) -> Option<f64> {
+        let strain = |elapsed: f64| piece.excess_at(elapsed) + self.specimen().equilibrium_strain(jaw(start + elapsed));
+        let gain = |elapsed: f64| self.gain(piece.excess_at(elapsed), jaw(start + elapsed), speed);
+        lost(piece.ends(), end - start, speed, strain, gain).map(|elapsed| start + elapsed)
+    }
+
+    fn pressed(
+        &self,
+        forces: (f64, f64),
+        &behind: &f64,
+        duration: f64,
+        work: &mut SimulationWork,
+    ) -> Result<Forced, Stopped> {
+        let body = Body {
+            specimen: self.model.specimen.clone(),
+            law: self.model.law,
+            rate: self.rate,
+            layers: self.model.layers,
+            bonded: self.is_bonded(),
+        };
+        Forced::solve(body, forces, behind, duration, work)
+    }
+
+    fn force_under(piece: &Forced, elapsed: f64) -> f64 {
+        piece.force_at(elapsed)
+    }
+
+    fn carried(piece: &Forced, elapsed: f64) -> Carried {
+        piece.at(elapsed)
+    }
+
+    fn excess_under(piece: &Forced, elapsed: f64) -> f64 {
+        piece.at(elapsed).excess
+    }
+
+    fn behind_under(piece: &Forced, elapsed: f64) -> f64 {
+        piece.behind_at(elapsed)
+    }
+
+    fn ends_under(piece: &Forced) -> Vec<f64> {
+        piece.step_ends().collect()
+    }
+
+    /// Without a jaw ε₁ = 0: the excess is below zero, and the equilibrium strain is that of the dent.
+    fn left(&self, _: &f64, u: f64) -> Option<Surface> {
+        let (depth, layers) = (self.model.specimen.depth(), self.model.layers.count());
+        let count = (self.rate.slope() * u / depth / CHANGE).abs().ceil().clamp(1.0, MOST_PARTS);
+        let (mut from, mut parts) = (0.0, Vec::with_capacity(count as usize));
+        for index in 0..count as usize {
+            let dent = u * (1.0 - index as f64 / count);
+            let next = u * (1.0 - (index as f64 + 1.0) / count);
+            let law = self.law_at(-1.0, 0.5 * (dent + next));
+            let surface = FreeSurface::new(law, depth, layers, dent)?;
+            parts.push((from, surface));
+            from += surface.time_to(next);
+        }
+        Some(Surface(parts))
+    }
+
+    fn surface(&self, surface: &Surface, elapsed: f64) -> f64 {
+        surface.displacement_at(elapsed)
+    }
+
+    /// The surface is stress-free when the jaw arrives: ε₁ = 0.
+    fn met(&self, _: &Surface, _: f64, u: f64) -> f64 {
+        -u / self.model.specimen.depth()
+    }
+
+    fn meeting(
+        &self,
+        surface: &Surface,
+        since: f64,
+        times: (f64, f64),
+        speed: f64,
+        jaw: &impl Fn(f64) -> f64,
+    ) -> Option<f64> {
+        let depth = self.model.specimen.depth();
+        let thickness = self.model.layers.thickness(depth);
+        let place = |time: f64| surface.displacement_at(time - since);
+        let pace = |u: f64| thickness * self.law_at(-1.0, u).rate(u / depth);
+        meeting(place, pace, times, speed, jaw)
+    }
+}
