@@ -3,11 +3,15 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use palpate::fit::SampleChoice;
+use palpate::calibrate::RateLaw;
+use palpate::fit::{Loss, SampleChoice};
+use palpate::forecast::RampChoice;
+use palpate::grip::{Control, Objective};
 use palpate::laws::Law;
 use palpate::segment::{ContactChoice, HoldStart};
 use palpate::units::{Dimension, parse, split_number};
 use palpate_files::description::{parse_hold_start, parse_touch};
+use palpate_jobs as jobs;
 
 /// Soft contact that remembers: squeeze-and-hold tests turned into laws, and laws into forces.
 #[derive(Debug, Parser)]
@@ -61,6 +65,9 @@ pub(crate) struct ReproduceArguments {
     /// Write figures as PNG too
     #[arg(long)]
     pub(crate) png: bool,
+    /// What to print on standard output
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
 }
 
 /// Simulate squeeze, hold, creep and release by a protocol.
@@ -118,8 +125,22 @@ pub(crate) struct SimulateArguments {
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub(crate) displacement_noise: Option<f64>,
     /// Which noise: the same seed gives the same record
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = jobs::Simulate::default().seed)]
     pub(crate) seed: u64,
+}
+
+impl SimulateArguments {
+    pub(crate) fn job(&self) -> jobs::Simulate {
+        jobs::Simulate {
+            drive_by: match self.drive_by {
+                DriveName::Displacement => jobs::DriveBy::Displacement,
+                DriveName::Force => jobs::DriveBy::Force,
+            },
+            force_noise_n: self.force_noise,
+            displacement_noise_m: self.displacement_noise,
+            seed: self.seed,
+        }
+    }
 }
 
 /// Simulate a protocol for many values of its numbers, to one table.
@@ -148,7 +169,7 @@ pub(crate) struct SweepArguments {
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
     /// Which result the figure shows, by the name of its column
-    #[arg(long, value_name = "COLUMN", default_value = "peak_force_n", requires = "figure")]
+    #[arg(long, value_name = "COLUMN", default_value_t = jobs::Sweep::default().show, requires = "figure")]
     pub(crate) show: String,
     /// How many runs at once; all processors if not given. The table is the same for any number
     #[arg(long, value_name = "N")]
@@ -156,6 +177,16 @@ pub(crate) struct SweepArguments {
     /// Compute all runs again, whatever was computed before
     #[arg(long)]
     pub(crate) restart: bool,
+}
+
+impl SweepArguments {
+    pub(crate) fn job(&self) -> jobs::Sweep {
+        jobs::Sweep {
+            show: self.show.clone(),
+            threads: self.threads,
+            restart: self.restart,
+        }
+    }
 }
 
 /// What drives a simulated contact.
@@ -276,6 +307,21 @@ pub(crate) struct AnalyzeArguments {
     pub(crate) no_compare: bool,
 }
 
+impl AnalyzeArguments {
+    pub(crate) fn job(&self) -> jobs::Analyze {
+        jobs::Analyze {
+            fit_until_s: self.fit_until,
+            exponents: self.exponents.clone(),
+            hold_start: self.hold_start,
+            touch: self.touch,
+            tolerance_m: self.tolerance,
+            minimum_hold_s: self.minimum_hold,
+            compare: !self.no_compare,
+            ..jobs::Analyze::default()
+        }
+    }
+}
+
 /// Analyse thousands of records into one table, a row per hold and law.
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -313,6 +359,18 @@ pub(crate) struct BatchArguments {
     /// Analyse all records again, whatever was done before
     #[arg(long)]
     pub(crate) restart: bool,
+}
+
+impl BatchArguments {
+    pub(crate) fn job(&self) -> jobs::Batch {
+        jobs::Batch {
+            laws: self.laws.clone(),
+            fit_until_s: self.fit_until,
+            hold_start: self.hold_start,
+            threads: self.threads,
+            restart: self.restart,
+        }
+    }
 }
 
 /// Compare laws: which one foretells a hold, how sure that is, and what another would cost.
@@ -367,6 +425,27 @@ pub(crate) struct CompareArguments {
     pub(crate) out: Option<PathBuf>,
 }
 
+impl CompareArguments {
+    pub(crate) fn job(&self) -> jobs::Compare {
+        jobs::Compare {
+            laws: self.laws.clone(),
+            cuts: self.cuts.clone(),
+            creep: self.creep,
+            loss: match self.loss {
+                LossName::Squares => Loss::Squares,
+                LossName::Huber => Loss::Huber,
+                LossName::Tukey => Loss::Tukey,
+            },
+            samples: self.samples,
+            ramps: match self.ramps {
+                RampName::Step => RampChoice::Step,
+                RampName::Measured => RampChoice::Measured,
+            },
+            fit_until_s: self.fit_until,
+        }
+    }
+}
+
 /// Calibrate a body on a whole record, ramps and holds alike: one set of numbers that predicts.
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -393,10 +472,10 @@ pub(crate) struct CalibrateArguments {
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
     /// Law of the material
-    #[arg(long, value_name = "LAW", default_value = "latency", value_parser = law)]
+    #[arg(long, value_name = "LAW", default_value_t = jobs::Calibrate::default().law, value_parser = law)]
     pub(crate) law: Law,
     /// Laws to hold against it on the same record
-    #[arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = law, default_value = "standard-linear-solid,prony:2,prony:3,fung:2")]
+    #[arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = law, default_value = named(&jobs::Calibrate::default().rivals))]
     pub(crate) rivals: Vec<Law>,
     /// Calibrate the one law alone
     #[arg(long, conflicts_with = "rivals")]
@@ -428,6 +507,29 @@ pub(crate) struct CalibrateArguments {
     /// What to print on standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,
+}
+
+impl CalibrateArguments {
+    pub(crate) fn job(&self) -> jobs::Calibrate {
+        jobs::Calibrate {
+            law: self.law,
+            rivals: if self.no_rivals { Vec::new() } else { self.rivals.clone() },
+            equilibrium: match self.equilibrium {
+                EquilibriumLawName::EvenStrain => jobs::Equilibrium::EvenStrain,
+                EquilibriumLawName::Hertz => jobs::Equilibrium::Hertz,
+                EquilibriumLawName::Table => jobs::Equilibrium::Table,
+            },
+            poisson_ratio: self.poisson_ratio,
+            rate: match self.rate {
+                RateLawName::Constant => RateLaw::Constant,
+                RateLawName::ByStrain => RateLaw::ByStrain,
+                RateLawName::ByDirection => RateLaw::ByDirection,
+            },
+            fit_until_s: self.fit_until,
+            profile: self.profile,
+            confidence: self.confidence,
+        }
+    }
 }
 
 /// Law of the force once relaxation is over.
@@ -473,7 +575,7 @@ pub(crate) struct PredictArguments {
     #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
     pub(crate) at: Vec<f64>,
     /// Coverage of the intervals, between 0 and 1
-    #[arg(long, value_name = "SHARE", default_value = "0.95", value_parser = coverage, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SHARE", default_value_t = jobs::Predict::default().confidence, value_parser = coverage, allow_hyphen_values = true)]
     pub(crate) confidence: f64,
     /// File for the series (CSV); standard output if neither this nor --at is given
     #[arg(long, value_name = "FILE.csv")]
@@ -481,6 +583,15 @@ pub(crate) struct PredictArguments {
     /// File for a figure (.svg or .png)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
+}
+
+impl PredictArguments {
+    pub(crate) fn job(&self) -> jobs::Predict {
+        jobs::Predict {
+            at_s: self.at.clone(),
+            confidence: self.confidence,
+        }
+    }
 }
 
 /// Plan a grip of a calibrated body between two jaws: how long it holds, and how to squeeze.
@@ -533,10 +644,10 @@ pub(crate) struct GripArguments {
     #[arg(long, value_enum, default_value_t = RegripName::Moves, requires = "band", help_heading = "Question")]
     pub(crate) regrip: RegripName,
     /// The shortest pause between two squeezes of least work
-    #[arg(long, value_name = "TIME", value_parser = time, default_value = "1 s", allow_hyphen_values = true, requires = "band", help_heading = "Question")]
+    #[arg(long, value_name = "TIME", value_parser = time, default_value = seconds(jobs::PlanGrip::default().shortest_pause_s), allow_hyphen_values = true, requires = "band", help_heading = "Question")]
     pub(crate) shortest_pause: f64,
     /// Coverage of the intervals, between 0 and 1
-    #[arg(long, value_name = "SHARE", default_value = "0.95", value_parser = coverage, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SHARE", default_value_t = jobs::PlanGrip::default().confidence, value_parser = coverage, allow_hyphen_values = true)]
     pub(crate) confidence: f64,
     /// Folder for a report with figure, tables, series and JSON
     #[arg(long, value_name = "DIR")]
@@ -547,6 +658,48 @@ pub(crate) struct GripArguments {
     /// What to print on standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,
+}
+
+impl GripArguments {
+    pub(crate) fn job(&self) -> jobs::PlanGrip {
+        let (load, can) = (&self.load, &self.gripper);
+        jobs::PlanGrip {
+            mass_kg: load.mass,
+            friction: load.friction,
+            safety: load.safety,
+            acceleration_up_m_per_s2: load.acceleration_up.unwrap_or(0.0),
+            acceleration_across_m_per_s2: load.acceleration_across.unwrap_or(0.0),
+            acceleration_closing_m_per_s2: load.acceleration_closing.unwrap_or(0.0),
+            torque_n_m: load.torque.unwrap_or(0.0),
+            off_centre_m: load.off_centre.unwrap_or(0.0),
+            gravity_m_per_s2: load.gravity,
+            speed_m_per_s: can.speed,
+            stroke_m: can.stroke,
+            most_force_n: can.most_force,
+            close_within_s: can.close_within,
+            control: match self.control {
+                ControlName::Position => Control::Position,
+                ControlName::Force => Control::Force,
+            },
+            squeeze_m: self.squeeze,
+            force_n: self.force,
+            hold_s: self.hold.filter(|hold| hold.is_finite()),
+            hold_always: self.hold.is_some_and(f64::is_infinite),
+            objective: match self.objective {
+                ObjectiveName::Squeeze => Objective::Squeeze,
+                ObjectiveName::PeakForce => Objective::PeakForce,
+                ObjectiveName::Work => Objective::Work,
+            },
+            assured: self.assured,
+            band_n: self.band,
+            regrip: match self.regrip {
+                RegripName::Moves => jobs::RegripFor::Moves,
+                RegripName::Work => jobs::RegripFor::Work,
+            },
+            shortest_pause_s: self.shortest_pause,
+            confidence: self.confidence,
+        }
+    }
 }
 
 /// The load.
@@ -560,7 +713,7 @@ pub(crate) struct LoadArguments {
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
     pub(crate) friction: f64,
     /// Safety factor on friction, 1 or more
-    #[arg(long, value_name = "NUMBER", default_value_t = 1.0, allow_hyphen_values = true)]
+    #[arg(long, value_name = "NUMBER", default_value_t = jobs::PlanGrip::default().safety, allow_hyphen_values = true)]
     pub(crate) safety: f64,
     /// Acceleration of the hand upwards
     #[arg(long, value_name = "ACCELERATION", value_parser = acceleration, allow_hyphen_values = true)]
@@ -653,29 +806,42 @@ pub(crate) struct WatchArguments {
     #[arg(long, value_name = "MATERIAL.toml", conflicts_with = "exponent")]
     pub(crate) material: Option<PathBuf>,
     /// Exponent of the law where no material says it, from 1 to 30
-    #[arg(long, value_name = "N", default_value = "5", value_parser = exponent, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", default_value_t = jobs::WatchLog::default().exponent, value_parser = exponent, allow_hyphen_values = true)]
     pub(crate) exponent: f64,
     /// Standard deviation to which that exponent is known; intervals are as much wider
-    #[arg(long, value_name = "NUMBER", default_value = "0", value_parser = deviation, conflicts_with = "material", allow_hyphen_values = true)]
+    #[arg(long, value_name = "NUMBER", default_value_t = jobs::WatchLog::default().exponent_deviation, value_parser = deviation, conflicts_with = "material", allow_hyphen_values = true)]
     pub(crate) exponent_deviation: f64,
     /// Normal force at which what is held slips
     #[arg(long, value_name = "FORCE", value_parser = force, allow_hyphen_values = true)]
     pub(crate) slip_force: Option<f64>,
     /// How long before slip to warn
-    #[arg(long, value_name = "TIME", default_value = "1 s", value_parser = time, requires = "slip_force", allow_hyphen_values = true)]
+    #[arg(long, value_name = "TIME", default_value = seconds(jobs::WatchLog::default().warn_before_s), value_parser = time, requires = "slip_force", allow_hyphen_values = true)]
     pub(crate) warn_before: f64,
     /// Coverage of the intervals, between 0 and 1
-    #[arg(long, value_name = "SHARE", default_value = "0.95", value_parser = coverage, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SHARE", default_value_t = jobs::WatchLog::default().confidence, value_parser = coverage, allow_hyphen_values = true)]
     pub(crate) confidence: f64,
     /// Times real time, or max; 10 on a terminal and max elsewhere if not given
     #[arg(long, value_name = "NUMBER|max", value_parser = replay_speed, allow_hyphen_values = true)]
     pub(crate) speed: Option<ReplaySpeed>,
     /// Time of the log between two lines
-    #[arg(long, value_name = "TIME", default_value = "0.5 s", value_parser = time, allow_hyphen_values = true)]
+    #[arg(long, value_name = "TIME", default_value = seconds(jobs::WatchLog::default().every_s), value_parser = time, allow_hyphen_values = true)]
     pub(crate) every: f64,
     /// What to print on standard output
     #[arg(long, value_enum, default_value_t = WatchFormat::Text)]
     pub(crate) format: WatchFormat,
+}
+
+impl WatchArguments {
+    pub(crate) fn job(&self) -> jobs::WatchLog {
+        jobs::WatchLog {
+            exponent: self.exponent,
+            exponent_deviation: self.exponent_deviation,
+            slip_force_n: self.slip_force,
+            warn_before_s: self.warn_before,
+            confidence: self.confidence,
+            every_s: self.every,
+        }
+    }
 }
 
 /// How fast a log is replayed.
@@ -765,6 +931,30 @@ pub(crate) enum SchemaName {
     Watch,
     /// summary.json of `palpate reproduce`
     Reproduction,
+    /// Options of `palpate inspect` as a job
+    JobInspect,
+    /// Options of `palpate analyze` as a job
+    JobAnalyze,
+    /// Options of `palpate compare` as a job
+    JobCompare,
+    /// Options of `palpate calibrate` as a job
+    JobCalibrate,
+    /// Options of `palpate predict` as a job
+    JobPredict,
+    /// Options of `palpate grip` as a job
+    JobGrip,
+    /// Options of `palpate watch` as a job
+    JobWatch,
+    /// Options of `palpate simulate` as a job
+    JobSimulate,
+    /// Options of `palpate sweep` as a job
+    JobSweep,
+    /// Options of `palpate batch` as a job
+    JobBatch,
+    /// Options of `palpate convert` as a job
+    JobConvert,
+    /// Options of `palpate reproduce` as a job
+    JobReproduce,
 }
 
 /// Print completions for a shell.
@@ -776,6 +966,16 @@ pub(crate) struct CompletionsArguments {
     /// Which shell
     #[arg(value_enum)]
     pub(crate) shell: clap_complete::Shell,
+}
+
+/// A time as it is typed.
+fn seconds(time: f64) -> String {
+    format!("{time} s")
+}
+
+/// Laws as they are typed.
+fn named(laws: &[Law]) -> String {
+    laws.iter().map(Law::to_string).collect::<Vec<_>>().join(",")
 }
 
 fn time(text: &str) -> Result<f64, String> {
@@ -886,5 +1086,37 @@ fn samples(text: &str) -> Result<SampleChoice, String> {
             _ => Err(format!("expected at least {FEWEST} samples, such as log:400")),
         },
         _ => Err("expected all or log:N, such as log:400".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(arguments: &[&str]) -> Command {
+        Arguments::try_parse_from([&["palpate"], arguments].concat()).unwrap().command
+    }
+
+    /// The defaults of the command line are those of the jobs.
+    #[test]
+    fn what_is_not_typed_is_as_the_jobs_have_it() {
+        assert!(matches!(parsed(&["analyze", "r"]), Command::Analyze(a) if a.job() == jobs::Analyze::default()));
+        assert!(matches!(parsed(&["compare", "r"]), Command::Compare(a) if a.job() == jobs::Compare::default()));
+        assert!(matches!(parsed(&["calibrate", "r"]), Command::Calibrate(a) if a.job() == jobs::Calibrate::default()));
+        let predict = ["predict", "m", "--protocol", "p"];
+        assert!(matches!(parsed(&predict), Command::Predict(a) if a.job() == jobs::Predict::default()));
+        assert!(matches!(parsed(&["watch", "r"]), Command::Watch(a) if a.job() == jobs::WatchLog::default()));
+        assert!(matches!(parsed(&["simulate", "p"]), Command::Simulate(a) if a.job() == jobs::Simulate::default()));
+        assert!(matches!(parsed(&["sweep", "p"]), Command::Sweep(a) if a.job() == jobs::Sweep::default()));
+        assert!(
+            matches!(parsed(&["batch", "r", "--out", "t"]), Command::Batch(a) if a.job() == jobs::Batch::default())
+        );
+        let grip = jobs::PlanGrip {
+            mass_kg: 1.0,
+            friction: 0.5,
+            ..jobs::PlanGrip::default()
+        };
+        let arguments = ["grip", "m", "--mass", "1 kg", "--friction", "0.5"];
+        assert!(matches!(parsed(&arguments), Command::Grip(a) if a.job() == grip));
     }
 }

@@ -13,7 +13,7 @@ use pyo3::types::PyType;
 use serde::{Deserialize, Serialize};
 
 use crate::document::{Document, Fields};
-use crate::errors::{PalpateError, RecordError, refused, refused_plainly, warn_of};
+use crate::errors::{PalpateError, RecordError, refused, refused_plainly, unwritten, warn_of};
 use crate::record::Kept;
 use crate::table::Table;
 use crate::work::{Made, at_length};
@@ -230,11 +230,10 @@ impl Analysis {
         let (analysis, input) = (self.study(py)?, self.input.clone());
         let report = folder.join("report.html");
         let written = at_length(py, move || {
-            let bundle =
-                analysis_bundle(&analysis, input, Pictures { png }).map_err(|error| (error.to_string(), None))?;
-            palpate_cli::write_study(&folder, &bundle)
+            let bundle = analysis_bundle(&analysis, input, Pictures { png })?;
+            palpate_jobs::output::write_bundle(&folder, &bundle)
         })?;
-        written.map_err(|(message, hint): (String, Option<String>)| refused::<PalpateError>(message, hint))?;
+        written.map_err(|error| unwritten(&error))?;
         Ok(report)
     }
 

@@ -226,7 +226,8 @@ impl Calibration {
         let confidence = wanted.confidence;
         let made = at_length(py, move || calibrated(&record, &options, input, &wanted))?;
         let record = made.map_err(|error| uncalibrated(&error))?;
-        let whole = Kept::of(&record, confidence)?.zip(palpate_cli::material_file(&record));
+        let made = palpate_jobs::Calibrated { record, confidence };
+        let whole = Kept::of(&made.record, confidence)?.zip(made.material());
         let (kept, file) = whole.ok_or_else(|| refused_plainly::<PalpateError>("no law was calibrated"))?;
         Ok(Self {
             kept,

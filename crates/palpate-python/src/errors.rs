@@ -7,6 +7,7 @@ use palpate::analysis::Finding;
 use palpate_files::FileError;
 use palpate_files::description::DescriptionError;
 use palpate_files::record::ReadError;
+use palpate_jobs::{JobError, spelled};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::{PyTypeInfo, create_exception};
@@ -82,6 +83,11 @@ pub(crate) fn undescribed(error: DescriptionError) -> PyErr {
         DescriptionError::Directory { .. } => io::Error::new(io::ErrorKind::IsADirectory, told).into(),
         _ => PyErr::new::<OptionError, _>(told),
     }
+}
+
+/// What a file cannot be written for.
+pub(crate) fn unwritten(error: &JobError) -> PyErr {
+    refused::<PalpateError>(error, error.hint.as_deref().map(|hint| spelled(hint, &|name, _| name.to_owned())))
 }
 
 /// Warns of findings, each with what it means.

@@ -15,7 +15,7 @@ use pyo3::types::{PyDict, PyType};
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::framed;
-use crate::errors::{ModelError, OptionError, PalpateError, refused, refused_plainly, warn};
+use crate::errors::{ModelError, OptionError, PalpateError, refused, refused_plainly, unwritten, warn};
 use crate::grip_parts::{BackOff, ForceHeld, Holding, Schedule, neighbour_table};
 use crate::table::Table;
 use crate::work::{Made, at_length, made_again};
@@ -149,7 +149,7 @@ impl Kept {
         };
         let body = GrippedBody {
             path: "material".to_owned(),
-            sha256: palpate_cli::sha256_of(text.as_bytes()),
+            sha256: palpate_jobs::output::sha256(text.as_bytes()),
             grip,
             answer,
         };
@@ -327,8 +327,7 @@ impl Grip {
         let bundle = Bundle {
             files: self.kept.files.iter().map(bytes).collect(),
         };
-        let written = palpate_cli::write_study(&folder, &bundle);
-        written.map_err(|(message, hint)| refused::<PalpateError>(message, hint))?;
+        palpate_jobs::output::write_bundle(&folder, &bundle).map_err(|error| unwritten(&error))?;
         Ok(folder.join("report.html"))
     }
 

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 
 use crate::arrays::doubles;
-use crate::errors::{ModelError, PalpateError, refused, refused_plainly, undescribed, warn};
+use crate::errors::{ModelError, refused_plainly, undescribed, unwritten, warn};
 use crate::fit::PyEstimate;
 use crate::grip::{Asked, Grip, band, control, objective, regrip, ungripped};
 use crate::prediction::Prediction;
@@ -109,8 +109,7 @@ impl Material {
     ///     The file cannot be written.
     #[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
     fn write(&self, path: PathBuf) -> PyResult<()> {
-        let written = palpate_cli::write_file(&path, self.to_toml().as_bytes());
-        written.map_err(|(message, hint)| refused::<PalpateError>(message, hint))
+        palpate_jobs::output::write_file(&path, self.to_toml().as_bytes()).map_err(|error| unwritten(&error))
     }
 
     /// The same as text.

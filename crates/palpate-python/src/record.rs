@@ -143,7 +143,7 @@ pub(crate) fn read(
     }
     let (read, test, sha256, path) = at_length(py, move || {
         let read = opened(&path, test.as_ref().map(|said| &said.test));
-        let sha256 = palpate_cli::sha256(&path);
+        let sha256 = std::fs::read(&path).map(|bytes| palpate_jobs::output::sha256(&bytes));
         (read, test, sha256, path)
     })?;
     let files = read.map_err(|error| unread(&error))?;
@@ -151,7 +151,7 @@ pub(crate) fn read(
         let parts = files.into_iter().map(|(title, _)| title).collect();
         return Err(unread(&ReadError::SeveralParts { path, parts }));
     }
-    let sha256 = sha256.map_err(|(message, hint)| refused::<RecordError>(message, hint))?;
+    let sha256 = sha256?;
     let stem = || path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let several = files.len() > 1;
     let record = |(name, file): ReadTest| {

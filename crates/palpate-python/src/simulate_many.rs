@@ -55,7 +55,7 @@ pub(crate) fn simulate_many(
     }
     let (progress, stopped) = (Progress::of(progress), Arc::new(AtomicBool::new(false)));
     let (told, stop) = (progress.clone(), Arc::clone(&stopped));
-    let fields = palpate_cli::sweep_fields(&sweep);
+    let fields = palpate_jobs::sweep_fields(&sweep);
     let work = move || {
         let shares = (0..sweep.runs().div_ceil(SHARE)).into_par_iter().map(|share| {
             let runs = share * SHARE..((share + 1) * SHARE).min(sweep.runs());
@@ -65,8 +65,12 @@ pub(crate) fn simulate_many(
             let forces = times
                 .as_deref()
                 .map_or_else(Vec::new, |times| runs.clone().map(|run| forces(&sweep, run, times)).collect());
-            let Rows { columns } = palpate_cli::sweep_rows(&sweep, Path::new(&path), runs, || told.step());
-            (columns, forces)
+            let mut watch = |_: palpate::watch::Progress<'_>| {
+                told.step();
+                if stop.load(Ordering::Relaxed) { Err(palpate::watch::Cancelled) } else { Ok(()) }
+            };
+            let rows = palpate_jobs::sweep_rows(&sweep, Path::new(&path), runs, &mut watch);
+            (rows.map_or_else(|_| Vec::new(), |Rows { columns }| columns), forces)
         });
         (shares.collect::<Vec<_>>(), times.map_or(0, |times| times.len()))
     };

@@ -1,68 +1,38 @@
 //! `palpate predict`: what a calibrated body does under a protocol.
 
-use palpate::simulate::{Sampling, SimulateError};
-use palpate_files::description::{DescriptionError, read_material, read_protocol_of};
-use palpate_report::study::{prediction_figure, prediction_table, write_prediction};
+use palpate_files::description::{read_material, read_protocol_of};
+use palpate_jobs::output::{check_figure, keep_apart, picture, write_file, write_file_with};
+use palpate_jobs::{JobError, Verdict};
 
-use super::picture::{check_picture, picture};
 use crate::arguments::PredictArguments;
-use crate::failure::{Failure, Outcome};
-use crate::files::{write_file, write_file_with};
-use crate::progress::Working;
-use crate::terminal::{note, print, print_with};
+use crate::progress::Bars;
+use crate::terminal::{notes, print, print_with};
 
-pub(crate) fn run(arguments: &PredictArguments) -> Result<Outcome, Failure> {
-    if let Some(path) = &arguments.figure {
-        check_picture(path)?;
+pub(crate) fn run(arguments: &PredictArguments) -> Result<Verdict, JobError> {
+    let PredictArguments {
+        material,
+        protocol,
+        out,
+        figure,
+        ..
+    } = arguments;
+    keep_apart([material, protocol], out.iter().chain(figure))?;
+    figure.as_deref().map_or(Ok(()), check_figure)?;
+    let (job, file) = (arguments.job(), read_material(material)?);
+    let of = (&read_protocol_of(protocol, &file)?, &*protocol.display().to_string());
+    let outcome = job.run((&file, &material.display().to_string()), of, figure.is_some(), &mut Bars::default())?;
+    let predicted = &outcome.result;
+    if let Some(path) = figure {
+        write_file(path, &picture(path, &predicted.figure())?)?;
     }
-    let file = read_material(&arguments.material).map_err(described)?;
-    let protocol = read_protocol_of(&arguments.protocol, &file).map_err(described)?;
-    let material = file.material;
-    let mut at = arguments.at.clone();
-    at.sort_by(f64::total_cmp);
-    at.dedup();
-    let sampling = if at.is_empty() { protocol.sampling.clone() } else { Sampling::Times(at.clone()) };
-    let working = Working::new("predicting");
-    let predict = |sampling: &Sampling| {
-        material.predict(protocol.drive(), sampling, arguments.confidence).map_err(|error| {
-            let hint = matches!(error, SimulateError::SampleTime { .. })
-                .then(|| "ask for times inside the protocol, or lengthen its last hold".to_owned());
-            Failure::of_file(&arguments.protocol, error, hint)
-        })
-    };
-    let predicted = predict(&sampling)?;
-    // Single times make no curve.
-    let course = if arguments.figure.is_some() && !at.is_empty() { Some(predict(&protocol.sampling)?) } else { None };
-    let figure = match &arguments.figure {
-        Some(path) => {
-            let caption = format!("What {} does, by its calibrated law.", arguments.material.display());
-            let title = protocol.title.as_deref().map_or(caption.clone(), |title| format!("{title}. {caption}"));
-            Some(picture(path, &prediction_figure(course.as_ref().unwrap_or(&predicted), "prediction", &title))?)
-        }
-        None => None,
-    };
-    drop(working);
-    if let (Some(path), Some(bytes)) = (&arguments.figure, &figure) {
-        write_file(path, bytes)?;
-    }
-    match &arguments.out {
-        Some(path) => write_file_with(path, |out| write_prediction(out, &predicted))?,
-        None if at.is_empty() => print_with(|out| write_prediction(out, &predicted))?,
+    match out {
+        Some(path) => write_file_with(path, |out| predicted.write_series(out))?,
+        None if job.at_s.is_empty() => print_with(|out| predicted.write_series(out))?,
         None => {}
     }
-    if !at.is_empty() {
-        print(&prediction_table(&predicted).to_plain_text())?;
+    if !job.at_s.is_empty() {
+        print(&predicted.text())?;
     }
-    if material.uncertainty.is_none() {
-        note("the calibration left a number open: the intervals hold noise alone");
-    }
-    for beyond in &predicted.extrapolations {
-        note(&format!("beyond the test: {beyond}"));
-    }
-    Ok(Outcome::Done)
-}
-
-pub(super) fn described(error: DescriptionError) -> Failure {
-    let hint = error.hint();
-    Failure::new(error, hint)
+    notes(&outcome.notes);
+    Ok(outcome.verdict)
 }

@@ -1,27 +1,21 @@
 //! `palpate reproduce`: the paper's study.
 
-use palpate_report::study::{Pictures, reproduce, reproduction_bundle};
+use palpate_jobs::output::write_bundle;
+use palpate_jobs::{JobError, Reproduce, Verdict};
+use palpate_report::study::Pictures;
 
-use crate::arguments::ReproduceArguments;
-use crate::failure::{Failure, Outcome};
-use crate::files::write_bundle;
-use crate::progress::Working;
+use crate::arguments::{Format, ReproduceArguments};
+use crate::progress::Bars;
 use crate::terminal::print;
 
-pub(crate) fn run(arguments: &ReproduceArguments) -> Result<Outcome, Failure> {
-    let working = Working::new("simulating and re-identifying the paper's tests");
-    let study = reproduce().map_err(|error| Failure::new(error, None))?;
-    let pictures = Pictures { png: arguments.png };
-    let bundle = reproduction_bundle(&study, pictures).map_err(|error| Failure::new(error, None))?;
+pub(crate) fn run(arguments: &ReproduceArguments) -> Result<Verdict, JobError> {
+    let outcome = Reproduce {}.run(&mut Bars::default())?;
+    let bundle = outcome.bundle(Pictures { png: arguments.png })?;
     write_bundle(&arguments.out, &bundle)?;
-    drop(working);
-    let mut text = String::from("What the paper reports, checked on its simulated and re-identified tests:\n\n");
-    for check in &study.checks {
-        let word = if check.passed { "pass" } else { "FAIL" };
-        text.push_str(&format!("  {word}  {}\n        {}\n", check.name, check.found));
-    }
-    let report = arguments.out.join("report.html");
-    text.push_str(&format!("\n{} files written; open {}\n", bundle.files.len(), report.display()));
-    print(&text)?;
-    Ok(if study.all_passed() { Outcome::Done } else { Outcome::Negative })
+    let (files, report) = (bundle.files.len(), arguments.out.join("report.html"));
+    print(&match arguments.format {
+        Format::Json => outcome.json()?,
+        Format::Text => format!("{}\n{files} files written; open {}\n", outcome.text(), report.display()),
+    })?;
+    Ok(outcome.verdict)
 }

@@ -164,7 +164,7 @@ fn killed(folder: &Path, arguments: &[&str], parts: &Path, least: usize) -> usiz
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    let count = || fs::read_dir(parts).map_or(0, |entries| entries.flatten().filter(is_part).count());
+    let count = || pieces(parts);
     let since = Instant::now();
     while count() < least && since.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(1));
@@ -175,8 +175,18 @@ fn killed(folder: &Path, arguments: &[&str], parts: &Path, least: usize) -> usiz
     count()
 }
 
-fn is_part(entry: &fs::DirEntry) -> bool {
-    entry.file_name().to_string_lossy().starts_with("part-")
+/// How many finished parts there are.
+fn pieces(parts: &Path) -> usize {
+    let begin = b"\n{\"key\":";
+    let bytes = fs::read(parts.join("pieces")).unwrap_or_default();
+    bytes.windows(begin.len()).filter(|window| window == begin).count()
+}
+
+/// Makes a folder with parts of a sweep whose protocol has this digest.
+fn parts_of(parts: &Path, digest: &str) {
+    fs::create_dir(parts).unwrap();
+    let head = format!("{{\"palpate\":\"sweep\",\"depends_on_sha256\":\"{digest}\"}}\nold");
+    fs::write(parts.join("pieces"), head).unwrap();
 }
 
 #[test]
@@ -193,7 +203,7 @@ fn a_sweep_that_was_killed_goes_on_and_nothing_is_lost_or_doubled() {
     let second = killed(folder.path(), &arguments, &parts, first + 2);
     assert!(first >= 2 && second > first && !out.exists());
     // One part is damaged, one was being written, and somebody left a note.
-    let part = fs::read_dir(&parts).unwrap().flatten().find(is_part).unwrap().path();
+    let part = parts.join("pieces");
     let mut bytes = fs::read(&part).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
@@ -230,9 +240,7 @@ fn restart_computes_everything() {
     assert!(!told(&["--restart"]).contains("before"));
     // Parts of an older sweep make room.
     let parts = folder.path().join("t.parquet.parts");
-    fs::create_dir(&parts).unwrap();
-    fs::write(parts.join("sweep.txt"), "of another").unwrap();
-    fs::write(parts.join("part-0000000-0123456789abcdef.parquet"), "old").unwrap();
+    parts_of(&parts, "of another");
     fs::write(parts.join("note.md"), "mine").unwrap();
     assert!(!told(&["--restart"]).contains("before"));
     assert_eq!(names(&parts), ["note.md"], "files of others stay");
@@ -250,14 +258,12 @@ fn parts_that_outlived_their_table_are_taken_away_and_those_of_others_are_not() 
     let digest = table.mark("palpate_sweep_sha256").unwrap();
     let parts = folder.path().join("t.parquet.parts");
     for (manifest, left) in [(digest, false), ("another", true)] {
-        fs::create_dir(&parts).unwrap();
-        fs::write(parts.join("sweep.txt"), manifest).unwrap();
-        fs::write(parts.join("part-0000000-0123456789abcdef.parquet"), "old").unwrap();
+        parts_of(&parts, manifest);
         let output = palpate(folder.path(), &arguments);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         assert_eq!(parts.exists(), left);
     }
-    assert_eq!(names(&parts).len(), 2);
+    assert_eq!(names(&parts), ["pieces"]);
 }
 
 #[test]

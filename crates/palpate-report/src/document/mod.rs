@@ -39,7 +39,7 @@ pub use grip::{
     BackOffDocument, GraspDocument, GripDocument, GripLimitsDocument, HoldingDocument, LastsDocument, MoveDocument,
     NeighbourDocument, PressedDocument, RefusedDocument, ScheduleDocument, SensitivityDocument,
 };
-pub use reproduction::{CheckDocument, ReproductionDocument};
+pub use reproduction::ReproductionDocument;
 pub use settings::SettingsDocument;
 pub use signals::{
     CorrectionDocument, SignalsDocument, SkewDocument, TouchDocument, TouchEstimateDocument, ValuesDocument,

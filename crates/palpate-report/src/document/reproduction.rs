@@ -5,19 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::analysis::TableRow;
 use super::software::Software;
-
-/// One thing that the paper reports, checked.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct CheckDocument {
-    /// What is checked.
-    pub name: String,
-    /// When it passes.
-    pub criterion: String,
-    /// What was found.
-    pub found: String,
-    /// Whether it passes.
-    pub passed: bool,
-}
+use crate::result::Check;
 
 /// The whole summary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -44,7 +32,7 @@ pub struct ReproductionDocument {
     /// Largest relative error of a re-identified rate coefficient.
     pub largest_rate_coefficient_error: f64,
     /// What the paper reports in words.
-    pub checks: Vec<CheckDocument>,
+    pub checks: Vec<Check>,
     /// Whether all of them pass.
     pub all_passed: bool,
     /// What wrote this.

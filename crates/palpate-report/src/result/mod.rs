@@ -9,6 +9,7 @@
 //! | `compared.rs` | laws compared on the holds of a record |
 //! | `calibrated.rs` | laws calibrated on a record, with remarks |
 //! | `gripped.rs`, `grip_sentences.rs` | a body in a gripper with an answer; the answer in sentences |
+//! | `reproduced.rs` | the paper's study |
 //! | `words.rs` | the words for what the library says |
 
 mod calibrated;
@@ -16,6 +17,7 @@ mod compared;
 mod grip_sentences;
 mod gripped;
 mod input;
+mod reproduced;
 mod words;
 
 pub use calibrated::CalibratedRecord;
@@ -23,5 +25,6 @@ pub use compared::{ComparedHold, ComparedRecord, LeftOut, Quantity};
 pub(crate) use grip_sentences::lasted;
 pub use gripped::GrippedBody;
 pub use input::Input;
+pub use reproduced::{Check, ReproducedTest, Reproduction};
 pub(crate) use words::{after_word, certainty_word, hold_start_word, percent, phase_word};
 pub use words::{held_word, mode_word, slip_word, slips_word, termination_word, watched_phase_word};

@@ -1,6 +1,6 @@
 //! The files of a study, in memory until all of them exist.
 
-use palpate::simulate::{SimulateError, Trajectory};
+use palpate::simulate::Trajectory;
 
 use super::simulate::write_trajectory;
 use crate::figure::{Figure, FigureError};
@@ -19,15 +19,6 @@ pub enum StudyError {
     /// A figure.
     #[error(transparent)]
     Figure(#[from] FigureError),
-    /// A simulation of the paper's study.
-    #[error(transparent)]
-    Simulate(#[from] SimulateError),
-    /// An analysis of the paper's study.
-    #[error(transparent)]
-    Analysis(#[from] palpate::analysis::AnalysisError),
-    /// A record of the paper's study.
-    #[error(transparent)]
-    Record(#[from] palpate::record::RecordError),
     /// Writing to memory.
     #[error(transparent)]
     Io(#[from] std::io::Error),

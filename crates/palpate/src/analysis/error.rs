@@ -3,10 +3,14 @@
 use crate::contact::SpecimenError;
 use crate::record::RecordError;
 use crate::segment::SegmentError;
+use crate::watch::Cancelled;
 
 /// Why a record could not be analysed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AnalysisError {
+    /// The watch ended the work.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// No phases.
     #[error(transparent)]
     Segment(#[from] SegmentError),
@@ -57,6 +61,7 @@ impl AnalysisError {
     #[must_use]
     pub fn hint(&self) -> String {
         match self {
+            Self::Cancelled(_) => String::new(),
             Self::Segment(error) => error.hint().to_owned(),
             Self::Correction(error) => error.hint().to_owned(),
             Self::Specimen(_) => "check the geometry in the test description and its units".to_owned(),

@@ -10,6 +10,7 @@ use crate::contact::{Specimen, SpecimenError};
 use crate::number::significant;
 use crate::record::{Record, SignalReport};
 use crate::segment::{ContactPoint, Phase, Segment, Segmentation};
+use crate::watch::{Progress, Unwatched, Watch};
 
 /// The study of one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,16 +50,28 @@ const POOR: f64 = 0.05;
 /// [`AnalysisError`] when the record has no hold, a correction that was asked for cannot be made, the geometry makes no specimen or is smaller than the travel of the jaw,
 /// or no hold has anything to fit.
 pub fn analyze(record: &Record, options: &AnalysisOptions) -> Result<Analysis, AnalysisError> {
-    let analysis = examine(record, options)?;
+    analyze_watched(record, options, &mut Unwatched)
+}
+
+/// As [`analyze`]; the watch hears of every fit.
+///
+/// # Errors
+/// Those of [`analyze`], and [`AnalysisError::Cancelled`].
+pub fn analyze_watched(
+    record: &Record,
+    options: &AnalysisOptions,
+    watch: &mut dyn Watch,
+) -> Result<Analysis, AnalysisError> {
+    let analysis = examine(record, options, watch)?;
     nothing_to_fit(&analysis.holds)?;
     Ok(analysis)
 }
 
-/// As [`analyze`], but a record none of whose holds can be fitted is no error: its holds say by their findings why.
+/// As [`analyze_watched`], but a record none of whose holds can be fitted is no error: its holds say by their findings why.
 ///
 /// # Errors
-/// Those of [`analyze`] but [`AnalysisError::NothingToFit`].
-pub fn examine(record: &Record, options: &AnalysisOptions) -> Result<Analysis, AnalysisError> {
+/// Those of [`analyze_watched`] but [`AnalysisError::NothingToFit`].
+pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch) -> Result<Analysis, AnalysisError> {
     let signals = record.signals();
     let corrected = corrected(record, options)?;
     let prepared = corrected.prepared(options)?;
@@ -75,9 +88,10 @@ pub fn examine(record: &Record, options: &AnalysisOptions) -> Result<Analysis, A
         .enumerate()
         .map(|(index, segment)| {
             let ramp = ramp_before(&segmentation, segment);
-            analyze_hold(&record, (segment, ramp), index + 1, specimen.as_ref(), options)
+            analyze_hold(&record, (segment, ramp), index + 1, specimen.as_ref(), options, watch)
         })
-        .collect();
+        .collect::<Result<_, _>>()?;
+    watch.report(Progress::open("comparing holds", 0))?;
     findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
     let across = across(&holds, options, 4.0 * segmentation.settings.tolerance);
     findings.extend(changing_rate(&across.joint));

@@ -102,6 +102,7 @@ pub(crate) use uncertainty::{Assessed, Scale};
 use serde::{Deserialize, Serialize};
 
 use crate::laws::{Law, Response};
+use crate::watch::Cancelled;
 
 /// What may be asked of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -141,6 +142,9 @@ impl FitOptions {
 /// Why a fit could not be made at all.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FitError {
+    /// The watch ended the work.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// Columns of different lengths.
     #[error("a fit needs as many values as abscissas, found {abscissas} and {values}")]
     Lengths {

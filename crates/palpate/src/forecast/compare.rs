@@ -8,6 +8,7 @@ use super::verdict::{Verdict, judge};
 use crate::fit::{FitError, LawFit, LawOptions, Samples, SpectrumFit, SpectrumOptions, fit_law, fit_spectrum};
 use crate::laws::{ExponentChoice, Law, Response};
 use crate::statistics::{mean, noise_in_time};
+use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 
 /// What linear laws take the loading before a hold for. The latency law needs no choice: all that it remembers of a loading is
 /// the excess at its end.
@@ -155,27 +156,43 @@ pub struct Comparison {
 /// # Errors
 /// [`FitError`] for samples that no law can be fitted to.
 pub fn compare_laws(samples: &Samples<'_>, options: &CompareOptions) -> Result<Comparison, FitError> {
+    compare_laws_watched(samples, options, &mut Unwatched)
+}
+
+/// As [`compare_laws`]; the watch hears of every law.
+///
+/// # Errors
+/// Those of [`compare_laws`], and [`FitError::Cancelled`].
+pub fn compare_laws_watched(
+    samples: &Samples<'_>,
+    options: &CompareOptions,
+    watch: &mut dyn Watch,
+) -> Result<Comparison, FitError> {
     let mut rows: Vec<Row> = Vec::new();
-    for law in options.laws() {
-        rows.push(row(samples, law, options)?);
+    let laws = options.laws();
+    for (done, law) in laws.iter().enumerate() {
+        watch.report(Progress::counted("comparing laws", done, 2 * laws.len()))?;
+        rows.push(row(samples, *law, options)?);
     }
     let (times, values) = (samples.times(), samples.values());
     let duration = times[times.len() - 1] - times[0];
     let change = change(values);
     let noise = noise_in_time(times, values);
     let mut cuts = cuts(samples, options, duration, noise);
-    let foretell_from = |rows: &mut [Row], cuts: &[f64]| {
-        for row in rows {
+    let mut foretell_from = |rows: &mut [Row], cuts: &[f64]| -> Result<(), Cancelled> {
+        for (done, row) in rows.iter_mut().enumerate() {
+            watch.report(Progress::counted("comparing laws", laws.len() + done, 2 * laws.len()))?;
             row.forward = ForwardScore::of(samples, row.law, &options.fit, cuts, change);
         }
+        Ok(())
     };
-    foretell_from(&mut rows, &cuts);
+    foretell_from(&mut rows, &cuts)?;
     // A first part that no law can be fitted to (a force that has not changed by a digit yet) is no cut.
     let told: Vec<bool> =
         (0..cuts.len()).map(|cut| rows.iter().any(|row| row.forward.forecasts[cut].is_some())).collect();
     if told.contains(&false) {
         cuts = cuts.into_iter().zip(told).filter(|(_, told)| *told).map(|(cut, _)| cut).collect();
-        foretell_from(&mut rows, &cuts);
+        foretell_from(&mut rows, &cuts)?;
     }
     let closest = rows
         .iter()

@@ -14,7 +14,7 @@ mod forward;
 mod sentence;
 mod verdict;
 
-pub use compare::{CompareOptions, Comparison, RampChoice, Ranking, Row, compare_laws};
+pub use compare::{CompareOptions, Comparison, RampChoice, Ranking, Row, compare_laws, compare_laws_watched};
 pub use criteria::{Criteria, criteria};
 pub use forward::ForwardScore;
 pub use sentence::name_in_words;

@@ -3,11 +3,11 @@
 use std::io::{self, Write};
 
 use palpate::observe::Observation;
+use palpate_jobs::{Event, HoldSeen};
 use palpate_report::document::{ObservationDocument, WatchSummaryDocument, WatchedHoldDocument};
 use serde::Serialize;
 
 use super::Shown;
-use super::events::{Event, HoldSeen};
 
 pub(super) struct Jsonl;
 

@@ -3,12 +3,12 @@
 use std::io::{self, Write};
 
 use palpate::observe::{Held, Observation, Slip};
+use palpate_jobs::{Event, HoldSeen};
 use palpate_report::number::significant;
 use palpate_report::result::held_word;
 use palpate_report::table::{Cell, Table, TableColumn};
 
 use super::Shown;
-use super::events::{Event, HoldSeen};
 use super::words::{slip, state, uncertain};
 
 pub(super) struct Lines {

@@ -6,11 +6,11 @@ use std::time::{Duration, Instant};
 
 use anstyle::{AnsiColor, Style};
 use palpate::observe::{Observation, Slip};
+use palpate_jobs::{Event, HoldSeen};
 use palpate_report::number::significant;
 use palpate_report::sparkline::sparkline;
 
 use super::Shown;
-use super::events::{Event, HoldSeen};
 use super::lines::{scaled, summary, warning};
 use super::words::{slip, state, uncertain};
 

@@ -4,9 +4,8 @@ use palpate::segment::After;
 use palpate::test_problems::PAPER_RATE;
 
 use super::page;
-use super::paper::{ReproducedTest, Reproduction};
 use crate::document::{AnalysisDocument, ReproductionDocument, Software};
-use crate::result::Input;
+use crate::result::{Input, ReproducedTest, Reproduction};
 use crate::study::bundle::{Bundle, Pictures, StudyError};
 
 /// All files of the reproduced study.
@@ -28,11 +27,13 @@ pub fn reproduction_bundle(study: &Reproduction, pictures: Pictures) -> Result<B
         bundle.series(&format!("test_{name}_unilateral"), &test.unilateral)?;
     }
     bundle.text("report.html", page::page(study, &figures, &tables)?.to_html());
-    bundle.json("summary.json", &summary(study))?;
+    bundle.json("summary.json", &reproduction_document(study))?;
     Ok(bundle)
 }
 
-fn summary(study: &Reproduction) -> ReproductionDocument {
+/// The summary of the study.
+#[must_use]
+pub fn reproduction_document(study: &Reproduction) -> ReproductionDocument {
     let rows = |test: &ReproducedTest, after: After| {
         let input = Input {
             path: String::new(),
@@ -62,4 +63,15 @@ fn summary(study: &Reproduction) -> ReproductionDocument {
         all_passed: study.all_passed(),
         software: Software::this(),
     }
+}
+
+/// Every check in two lines.
+#[must_use]
+pub fn reproduction_text(study: &Reproduction) -> String {
+    let mut text = String::from("What the paper reports, checked on its simulated and re-identified tests:\n\n");
+    for check in &study.checks {
+        let word = if check.passed { "pass" } else { "FAIL" };
+        text.push_str(&format!("  {word}  {}\n        {}\n", check.name, check.found));
+    }
+    text
 }

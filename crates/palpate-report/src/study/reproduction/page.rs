@@ -4,13 +4,18 @@ use palpate::segment::After;
 use palpate::simulate::Trajectory;
 
 use super::law_figures;
-use super::paper::{MEASURED_COEFFICIENT, MEASURED_EQUILIBRIUM, ReproducedTest, Reproduction, loaded};
 use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
 use crate::page::{Block, Check, Outcome, Page, Section};
+use crate::result::{ReproducedTest, Reproduction};
 use crate::study::bundle::StudyError;
 use crate::study::record::figures as record_figures;
 use crate::study::simulate::wave_figure;
 use crate::table::{Cell, Table, TableColumn};
+
+/// Equilibrium strains of Table I as the authors measured them (compression negative in the paper).
+const MEASURED_EQUILIBRIUM: [f64; 5] = [0.1661, 0.2193, 0.2623, 0.3031, 0.3144];
+/// Rate coefficients of Table I that are legible in the paper's text, 1/s.
+const MEASURED_COEFFICIENT: [Option<f64>; 5] = [None, Some(2.6e4), Some(2.0e4), None, None];
 
 /// Title of the paper.
 const PAPER: &str = "Study of the Relationship Between the Strain and Strain Rate for Viscoelastic Contact Interface in Robotic Grasping";
@@ -96,7 +101,7 @@ fn paper_table(study: &Reproduction, test: &ReproducedTest, after: After) -> Tab
         .column(column("v (rate domain)", "rate_coefficient_rate_domain_per_s", "s⁻¹"))
         .column(column("εₑ measured by the authors", "equilibrium_strain_measured_by_the_authors", ""))
         .column(column("v measured by the authors", "rate_coefficient_measured_by_the_authors_per_s", "s⁻¹"));
-    let holds: Vec<_> = loaded(test).collect();
+    let holds: Vec<_> = test.loaded().collect();
     for (step, hold) in holds.iter().enumerate().filter(|(_, hold)| hold.after == Some(after)) {
         let Some(fit) = hold.fit_with(n) else { continue };
         let free = hold.fits.last();

@@ -1,9 +1,18 @@
 //! What a comparison of laws gives cause to say.
 
 use crate::analysis::finding::Finding;
-use crate::fit::{LawFit, Termination};
+use crate::fit::{FitError, LawFit, Termination};
 use crate::forecast::Comparison;
 use crate::laws::Law;
+use crate::watch::Cancelled;
+
+/// A comparison; none where nothing could be fitted.
+pub(super) fn compared(made: Result<Comparison, FitError>) -> Result<Option<Comparison>, Cancelled> {
+    match made {
+        Err(FitError::Cancelled(cancelled)) => Err(cancelled),
+        made => Ok(made.ok()),
+    }
+}
 
 /// What a comparison gives cause to say.
 pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {

@@ -1,15 +1,16 @@
 //! Holds of constant force: the displacement creeps.
 
-use super::compared::comparison_findings;
+use super::compared::{compared, comparison_findings};
 use crate::analysis::finding::Finding;
 use crate::fit::Samples;
-use crate::forecast::{CompareOptions, Comparison, compare_laws};
+use crate::forecast::{CompareOptions, Comparison, compare_laws_watched};
 use crate::laws::Response;
 use crate::record::{Record, RecordError};
 use crate::segment::{
     After, GivenHold, HoldMode, Segment, SegmentError, SegmentOptions, find_phases, held_in, phases_with,
 };
 use crate::statistics::median;
+use crate::watch::{Cancelled, Watch};
 
 /// One hold of constant force, with the laws of creep compared on it.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +40,9 @@ pub struct CreepHold {
 /// Why a record holds no creep.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CreepError {
+    /// The watch ended the work.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// No displacement was recorded.
     #[error("creep is a displacement at constant force, but the record has no displacement")]
     NoDisplacement,
@@ -62,6 +66,7 @@ impl CreepError {
     pub fn hint(&self) -> &'static str {
         match self {
             Self::NoDisplacement | Self::Still(_) => "name the displacement under columns.displacement",
+            Self::Cancelled(_) => "",
             Self::Given(error) => error.hint(),
             Self::DisplacementHeld | Self::Segment(_) => {
                 "a hold of constant force is needed; without --creep holds of constant displacement are sought"
@@ -135,7 +140,8 @@ fn force_held(
 /// let force: Vec<f64> = time.iter().map(|t| 6.0 * t.min(1.0)).collect();
 /// let jaw: Vec<f64> = time.iter().map(|t| 1e-3 * t.min(1.0) + 3e-4 * (1.0 - (-(t - 1.0f64).max(0.0) / 5.0).exp())).collect();
 /// let record = Record::new(time, Some(jaw), force)?;
-/// let holds = creep_holds(&record, (&SegmentOptions::default(), &[]), &CompareOptions::default(), None)?;
+/// # use palpate::watch::Unwatched;
+/// let holds = creep_holds(&record, (&SegmentOptions::default(), &[]), &CompareOptions::default(), None, &mut Unwatched)?;
 /// assert_eq!(holds.len(), 1);
 /// assert!((holds[0].force - 6.0).abs() < 1e-9);
 /// let best = &holds[0].comparison.as_ref().unwrap().verdict.as_ref().unwrap().law;
@@ -150,6 +156,7 @@ pub fn creep_holds(
     (segment, given): (&SegmentOptions, &[GivenHold]),
     compare: &CompareOptions,
     until: Option<f64>,
+    watch: &mut dyn Watch,
 ) -> Result<Vec<CreepHold>, CreepError> {
     let (record, _) = record.repaired();
     let moved = record.displacement().ok_or(CreepError::NoDisplacement)?.to_vec();
@@ -164,8 +171,9 @@ pub fn creep_holds(
         let times: Vec<f64> = time[from..hold.end].iter().map(|t| t - time[from]).collect();
         let displacement = exchanged.force()[from..hold.end].to_vec();
         let fitted = until.map_or(times.len(), |until| times.partition_point(|t| *t <= until));
-        let comparison = compare_laws(&Samples::new(&times[..fitted], &displacement[..fitted]), &compare).ok();
-        CreepHold {
+        let samples = Samples::new(&times[..fitted], &displacement[..fitted]);
+        let comparison = compared(compare_laws_watched(&samples, &compare, watch))?;
+        Ok(CreepHold {
             number: index + 1,
             start: time[hold.start],
             end: time[hold.end - 1],
@@ -176,19 +184,21 @@ pub fn creep_holds(
             times,
             displacement,
             comparison,
-        }
+        })
     });
-    Ok(holds.collect())
+    holds.collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::watch::Unwatched;
 
     #[test]
     fn a_record_without_displacement_says_so() {
         let record = Record::new(vec![0.0, 1.0, 2.0], None, vec![0.0, 1.0, 1.0]).unwrap();
-        let found = creep_holds(&record, (&SegmentOptions::default(), &[]), &CompareOptions::default(), None);
+        let found =
+            creep_holds(&record, (&SegmentOptions::default(), &[]), &CompareOptions::default(), None, &mut Unwatched);
         assert_eq!(found, Err(CreepError::NoDisplacement));
     }
 
@@ -197,7 +207,8 @@ mod tests {
         let time: Vec<f64> = (0..100).map(f64::from).collect();
         let force: Vec<f64> = time.iter().map(|t| t.min(10.0)).collect();
         let record = Record::new(time, Some(vec![1e-3; 100]), force).unwrap();
-        let found = creep_holds(&record, (&SegmentOptions::default(), &[]), &CompareOptions::default(), None);
+        let found =
+            creep_holds(&record, (&SegmentOptions::default(), &[]), &CompareOptions::default(), None, &mut Unwatched);
         assert_eq!(found, Err(CreepError::DisplacementHeld));
     }
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::behaviour::not_a_hold;
-use super::compared::comparison_findings;
+use super::compared::{compared, comparison_findings};
 use super::holdout::HoldoutError;
 use super::rate_bias::{RateBias, rate_bias};
 use crate::analysis::finding::Finding;
@@ -12,13 +12,14 @@ use crate::contact::Specimen;
 use crate::fit::{
     ExponentChoice, FitError, LatencyFit, OrderSelection, Samples, Termination, fit_hold, fit_rates, select_order,
 };
-use crate::forecast::{Comparison, RampChoice, compare_laws};
+use crate::forecast::{Comparison, RampChoice, compare_laws_watched};
 use crate::laws::Loading;
 use crate::record::Record;
 use crate::segment::{After, HoldMode, Relaxation, RelaxationType, Segment, classify_relaxation};
 use crate::simulate::Separation;
 use crate::statistics::{mean, median, noise};
 use crate::strain::{StrainRates, contact_strain, strain_rates};
+use crate::watch::{Cancelled, Progress, Watch};
 
 /// What the laws are fitted to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -108,7 +109,8 @@ pub(in crate::analysis) fn analyze_hold(
     number: usize,
     specimen: Option<&Specimen>,
     options: &AnalysisOptions,
-) -> HoldAnalysis {
+    watch: &mut dyn Watch,
+) -> Result<HoldAnalysis, Cancelled> {
     let mut segment = *segment;
     let reopened = specimen.and_then(|_| open_until(record, &segment, options));
     segment.fit_start = reopened.unwrap_or(segment.fit_start);
@@ -156,15 +158,15 @@ pub(in crate::analysis) fn analyze_hold(
     }
     let has_signal = take_signal(&mut hold, record, if force_held { None } else { specimen }, options);
     if has_signal && hold.relaxation.kind != RelaxationType::None {
-        fit_all(&mut hold, options);
-        hold.comparison = compare(&hold, loading(record, ramp, &segment), options);
+        fit_all(&mut hold, options, watch)?;
+        hold.comparison = compare(&hold, loading(record, ramp, &segment), options, watch)?;
         let fitted = (&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
         hold.rate_bias = hold.preferred().and_then(|fit| rate_bias(fitted, fit, &options.rate_window, &options.fit));
         judge(&mut hold);
         hold.findings.extend(hold.comparison.iter().flat_map(comparison_findings));
     }
     hold.findings.extend(not_a_hold(record, &segment));
-    hold
+    Ok(hold)
 }
 
 /// The sample at which the body meets the jaw again, in a hold after unloading that begins with the contact open.
@@ -238,10 +240,11 @@ fn choices(options: &AnalysisOptions) -> Vec<ExponentChoice> {
     listed.chain(options.free_exponent.then_some(ExponentChoice::Free)).collect()
 }
 
-fn fit_all(hold: &mut HoldAnalysis, options: &AnalysisOptions) {
+fn fit_all(hold: &mut HoldAnalysis, options: &AnalysisOptions, watch: &mut dyn Watch) -> Result<(), Cancelled> {
     let (times, values) = (&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
     hold.rates = strain_rates(times, values, &options.rate_window);
     for choice in choices(options) {
+        watch.report(Progress::open("fitting the latency law", hold.fits.len()))?;
         match fit_hold(times, values, choice, &options.fit) {
             Ok(fit) => {
                 hold.predictions.push(foretell(&fit, &hold.times, &hold.values, hold.fitted));
@@ -260,16 +263,24 @@ fn fit_all(hold: &mut HoldAnalysis, options: &AnalysisOptions) {
     if !hold.fits.is_empty() {
         hold.order = Some(select_order(&hold.fits));
     }
+    Ok(())
 }
 
 /// Compares laws over the whole hold, or over what was asked to be fitted.
-fn compare(hold: &HoldAnalysis, loading: Option<Loading>, options: &AnalysisOptions) -> Option<Comparison> {
-    let mut options = options.compare.clone()?;
+fn compare(
+    hold: &HoldAnalysis,
+    loading: Option<Loading>,
+    options: &AnalysisOptions,
+    watch: &mut dyn Watch,
+) -> Result<Option<Comparison>, Cancelled> {
+    let Some(mut options) = options.compare.clone() else {
+        return Ok(None);
+    };
     if options.ramps == RampChoice::Measured {
         options.fit.loading = loading;
     }
     let samples = Samples::new(&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
-    compare_laws(&samples, &options).ok()
+    compared(compare_laws_watched(&samples, &options, watch))
 }
 
 /// The displacement from sample `ramp` to where the fit of a hold starts.

@@ -17,6 +17,7 @@ use palpate_report::table::{Cell, Table, TableColumn};
 const WIDTH: usize = 64;
 
 /// A corrected record and its phases, or why there are none.
+#[derive(Debug)]
 pub(super) struct Cut {
     record: Record,
     /// How many corrections were made before.

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use palpate::simulate::{ContactEventKind, ProgramStep, StepEnd, Summary, step_ends, summary};
+use palpate::watch::{Cancelled, Progress, Watch};
 use palpate_files::description::{Protocol, Sweep};
 use palpate_files::parquet_table::{Field, Kind, Rows, Values};
 
@@ -54,8 +55,9 @@ pub(super) fn results(sweep: &Sweep) -> Vec<ResultColumn> {
     whole.chain(steps).collect()
 }
 
-/// All columns: the number of the run, the swept numbers, the results, and why there are none.
-pub(crate) fn fields(sweep: &Sweep) -> Vec<Field> {
+/// All columns of the table: the number of the run, the swept numbers, the results, and why there are none.
+#[must_use]
+pub fn fields(sweep: &Sweep) -> Vec<Field> {
     let swept = sweep.numbers().iter().map(|number| Field::new(&number.column, Kind::Number));
     let results = results(sweep).into_iter().map(|column| Field::new(column.name, Kind::Number));
     [Field::new("run", Kind::Count)]
@@ -66,8 +68,18 @@ pub(crate) fn fields(sweep: &Sweep) -> Vec<Field> {
         .collect()
 }
 
-/// Simulates the runs with these indices, and hands each to `tell` once it is done.
-pub(crate) fn simulated(sweep: &Sweep, path: &Path, runs: std::ops::Range<u64>, mut tell: impl FnMut()) -> Rows {
+/// Simulates the runs of a sweep with these indices, from 0, as rows of that table; the watch hears of each once it is done, and `path` of
+/// the protocol stands in messages.
+///
+/// # Errors
+/// [`Cancelled`] where the watch ends it.
+pub fn simulated(
+    sweep: &Sweep,
+    path: &Path,
+    runs: std::ops::Range<u64>,
+    watch: &mut dyn Watch,
+) -> Result<Rows, Cancelled> {
+    let (first, total) = (runs.start, runs.end - runs.start);
     let results = results(sweep).len();
     let mut numbers: Vec<Vec<Option<f64>>> = vec![Vec::new(); sweep.numbers().len() + results];
     let (mut counts, mut reasons) = (Vec::new(), Vec::new());
@@ -86,13 +98,15 @@ pub(crate) fn simulated(sweep: &Sweep, path: &Path, runs: std::ops::Range<u64>, 
             column.push(value.map(|value| value + 0.0));
         }
         reasons.push(reason);
-        tell();
+        let (done, total) = (run + 1 - first, Some(total));
+        let task = "simulating";
+        watch.report(Progress { task, done, total })?;
     }
     let numbers = numbers.into_iter().map(Values::Number);
     let columns = [Values::Count(counts)].into_iter().chain(numbers).chain([Values::Text(reasons)]);
-    Rows {
+    Ok(Rows {
         columns: columns.collect(),
-    }
+    })
 }
 
 /// From the first and the last column: how many rows were refused, and the number and reason of the first that was.

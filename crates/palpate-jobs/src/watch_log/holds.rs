@@ -5,7 +5,7 @@ use palpate::observe::{ContactPhase, Held, Observation, Slip};
 
 /// Something that happens.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Event {
+pub enum Event {
     /// A hold began.
     Began(Observation),
     /// It turned out that something else is held.
@@ -18,22 +18,23 @@ pub(super) enum Event {
 
 /// A hold as it was seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct HoldSeen {
-    /// When it began and when it was last seen, s.
-    pub(super) since: f64,
-    pub(super) until: f64,
+pub struct HoldSeen {
+    /// When it began, s.
+    pub since: f64,
+    /// Likewise, its last tick, s.
+    pub until: f64,
     /// What was held for most of its ticks.
-    pub(super) held: Held,
+    pub held: Held,
     /// Force when it began and when it was last seen, N.
-    pub(super) forces: (f64, f64),
+    pub forces: (f64, f64),
     /// The last equilibrium force, N.
-    pub(super) equilibrium: Option<Estimate>,
+    pub equilibrium: Option<Estimate>,
     /// The last speed of creep, m/s.
-    pub(super) creep: Option<Estimate>,
+    pub creep: Option<Estimate>,
     /// First warning, s.
-    pub(super) warned: Option<f64>,
+    pub warned: Option<f64>,
     /// First time below the force of slip, s.
-    pub(super) slipped: Option<f64>,
+    pub slipped: Option<f64>,
     ticks: [u64; 2],
 }
 

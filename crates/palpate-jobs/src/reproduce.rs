@@ -1,95 +1,80 @@
 //! The paper's study: both tests simulated, re-identified, and checked against what the paper reports.
 
-use palpate::analysis::{Analysis, AnalysisOptions, Geometry, HoldAnalysis, LayersChoice, analyze};
-use palpate::record::Record;
+use palpate::analysis::{AnalysisError, AnalysisOptions, Geometry, HoldAnalysis, LayersChoice, analyze};
+use palpate::number::significant;
+use palpate::record::{Record, RecordError};
 use palpate::segment::{After, ContactChoice, RelaxationType};
 use palpate::simulate::{
-    ContactEventKind, ContactModel, Motion, Sampling, Separation, StrainWave, Trajectory, simulate, strain_wave,
+    ContactEventKind, ContactModel, Motion, Sampling, Separation, SimulateError, Trajectory, simulate, strain_wave,
 };
 use palpate::test_problems::{paper_ball, paper_test_a, paper_test_b};
+use palpate::watch::{Progress, Watch};
+use palpate_report::document::ReproductionDocument;
+use palpate_report::result::{Check, ReproducedTest, Reproduction};
+use palpate_report::study::{Bundle, Pictures, reproduction_bundle, reproduction_document, reproduction_text};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use crate::document::CheckDocument;
-use crate::number::significant;
-use crate::study::bundle::StudyError;
+use crate::{ErrorKind, JobError, Outcome, Results, Verdict};
 
-/// Equilibrium strains of Table I as the authors measured them (compression negative in the paper).
-pub(super) const MEASURED_EQUILIBRIUM: [f64; 5] = [0.1661, 0.2193, 0.2623, 0.3031, 0.3144];
-/// Rate coefficients of Table I that are legible in the paper's text, 1/s.
-pub(super) const MEASURED_COEFFICIENT: [Option<f64>; 5] = [None, Some(2.6e4), Some(2.0e4), None, None];
 /// Start of the last unloading of test (a) in the paper's simulation, s.
 const LAST_UNLOADING: f64 = 53.0;
 /// Samples a second of the simulated records.
 const SAMPLE_RATE: f64 = 100.0;
 
-/// One test of the paper, simulated and analysed.
-#[derive(Debug, Clone)]
-pub struct ReproducedTest {
-    /// Bonded contact, as in the paper.
-    pub bonded: Trajectory,
-    /// The jaw can leave the ball.
-    pub unilateral: Trajectory,
-    /// All layers (bonded).
-    pub wave: StrainWave,
-    /// The bonded record analysed as if it had been measured.
-    pub analysis: Analysis,
-}
+/// Reproduce the paper's study: its tests simulated, re-identified and checked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Reproduce {}
 
-/// The whole study.
-#[derive(Debug, Clone)]
-pub struct Reproduction {
-    /// The model.
-    pub model: ContactModel,
-    /// Test (a): loading in five steps.
-    pub test_a: ReproducedTest,
-    /// Test (b): one loading, unloading in steps.
-    pub test_b: ReproducedTest,
-    /// What the paper reports in words, checked.
-    pub checks: Vec<CheckDocument>,
-}
-
-impl Reproduction {
-    /// Whether every check passes.
-    #[must_use]
-    pub fn all_passed(&self) -> bool {
-        self.checks.iter().all(|check| check.passed)
-    }
-
-    /// Largest relative error of a re-identified rate coefficient.
-    #[must_use]
-    pub fn largest_coefficient_error(&self) -> f64 {
-        let v = self.model.law.rate_coefficient();
-        let holds = self.test_a.analysis.holds.iter().chain(&self.test_b.analysis.holds);
-        let fits = holds.filter_map(|hold| hold.fit_with(self.model.law.exponent()));
-        fits.map(|fit| (fit.rate_coefficient.value / v - 1.0).abs()).fold(0.0, f64::max)
+impl Reproduce {
+    /// Simulates and re-identifies the paper's two tests.
+    ///
+    /// # Errors
+    /// [`JobError`] where the watch ends it; no other is expected.
+    pub fn run(self, watch: &mut dyn Watch) -> Result<Outcome<Reproduction>, JobError> {
+        let model = paper_ball(Separation::Bonded);
+        let mut result = Reproduction {
+            test_a: reproduced(&paper_test_a(), &model, watch)?,
+            test_b: reproduced(&paper_test_b(), &model, watch)?,
+            model,
+            checks: Vec::new(),
+        };
+        result.checks = checks(&result);
+        Ok(Outcome {
+            verdict: Verdict::of(result.all_passed()),
+            ..Outcome::of(result)
+        })
     }
 }
 
-/// Simulates and re-identifies the paper's two tests.
-///
-/// # Errors
-/// [`StudyError`]; none is expected.
-pub fn reproduce() -> Result<Reproduction, StudyError> {
-    let model = paper_ball(Separation::Bonded);
-    let test_a = reproduce_test(&paper_test_a(), &model)?;
-    let test_b = reproduce_test(&paper_test_b(), &model)?;
-    let mut study = Reproduction {
-        model,
-        test_a,
-        test_b,
-        checks: Vec::new(),
-    };
-    study.checks = checks(&study);
-    Ok(study)
+impl Results for Reproduction {
+    type Document = ReproductionDocument;
+
+    fn document(&self) -> ReproductionDocument {
+        reproduction_document(self)
+    }
+
+    fn text(&self) -> String {
+        reproduction_text(self)
+    }
+
+    fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
+        Ok(reproduction_bundle(self, pictures)?)
+    }
 }
 
-fn reproduce_test(motion: &Motion, model: &ContactModel) -> Result<ReproducedTest, StudyError> {
+fn reproduced(motion: &Motion, model: &ContactModel, watch: &mut dyn Watch) -> Result<ReproducedTest, JobError> {
+    let simulated = |error: SimulateError| JobError::new(ErrorKind::Model, error, None);
+    watch.report(Progress::open("simulating and re-identifying the paper's tests", 0))?;
     let sampling = Sampling::Rate(SAMPLE_RATE);
     let free = ContactModel {
         separation: Separation::Unilateral,
         ..model.clone()
     };
-    let bonded = simulate(motion, model, &sampling)?;
-    let record = Record::new(bonded.time.clone(), Some(bonded.displacement.clone()), bonded.force.clone())?;
+    let bonded = simulate(motion, model, &sampling).map_err(simulated)?;
+    let record = Record::new(bonded.time.clone(), Some(bonded.displacement.clone()), bonded.force.clone());
+    let record = record.map_err(|error: RecordError| JobError::new(ErrorKind::Record, error, None))?;
     let options = AnalysisOptions {
         geometry: Some(Geometry {
             shape: model.specimen.shape().clone(),
@@ -103,19 +88,15 @@ fn reproduce_test(motion: &Motion, model: &ContactModel) -> Result<ReproducedTes
         ..AnalysisOptions::default()
     };
     Ok(ReproducedTest {
-        analysis: analyze(&record, &options)?,
-        unilateral: simulate(motion, &free, &sampling)?,
-        wave: strain_wave(motion, model, &Sampling::Rate(10.0))?,
+        analysis: analyze(&record, &options)
+            .map_err(|error: AnalysisError| JobError::new(ErrorKind::Record, error, None))?,
+        unilateral: simulate(motion, &free, &sampling).map_err(simulated)?,
+        wave: strain_wave(motion, model, &Sampling::Rate(10.0)).map_err(simulated)?,
         bonded,
     })
 }
 
-/// Holds with a contact: the last one, at first touch, has none.
-pub(super) fn loaded(test: &ReproducedTest) -> impl Iterator<Item = &HoldAnalysis> {
-    test.analysis.holds.iter().filter(|hold| hold.displacement.is_some_and(|d| d > 1e-4))
-}
-
-fn checks(study: &Reproduction) -> Vec<CheckDocument> {
+fn checks(study: &Reproduction) -> Vec<Check> {
     vec![
         types(study),
         amounts(study),
@@ -126,8 +107,8 @@ fn checks(study: &Reproduction) -> Vec<CheckDocument> {
     ]
 }
 
-fn check(name: &str, criterion: &str, found: String, passed: bool) -> CheckDocument {
-    CheckDocument {
+fn check(name: &str, criterion: &str, found: String, passed: bool) -> Check {
+    Check {
         name: name.to_owned(),
         criterion: criterion.to_owned(),
         found,
@@ -135,8 +116,8 @@ fn check(name: &str, criterion: &str, found: String, passed: bool) -> CheckDocum
     }
 }
 
-fn types(study: &Reproduction) -> CheckDocument {
-    let holds: Vec<&HoldAnalysis> = loaded(&study.test_a).chain(loaded(&study.test_b)).collect();
+fn types(study: &Reproduction) -> Check {
+    let holds: Vec<&HoldAnalysis> = study.test_a.loaded().chain(study.test_b.loaded()).collect();
     let count = |after, kind| {
         let of_kind = holds.iter().filter(|hold| hold.after == Some(after));
         (of_kind.clone().filter(|hold| hold.relaxation.kind == kind).count(), of_kind.count())
@@ -151,8 +132,8 @@ fn types(study: &Reproduction) -> CheckDocument {
     )
 }
 
-fn amounts(study: &Reproduction) -> CheckDocument {
-    let drops: Vec<f64> = loaded(&study.test_a).map(|hold| hold.force_start - hold.force_end).collect();
+fn amounts(study: &Reproduction) -> Check {
+    let drops: Vec<f64> = study.test_a.loaded().map(|hold| hold.force_start - hold.force_end).collect();
     let shown: Vec<String> = drops.iter().map(|drop| significant(*drop, 3)).collect();
     check(
         "The amount of relaxation grows with displacement",
@@ -162,12 +143,12 @@ fn amounts(study: &Reproduction) -> CheckDocument {
     )
 }
 
-fn agreement(study: &Reproduction) -> CheckDocument {
+fn agreement(study: &Reproduction) -> Check {
     let n = study.model.law.exponent();
     let mut largest: f64 = 0.0;
     let mut pairs = 0;
-    for after_unloading in loaded(&study.test_b).filter(|hold| hold.after == Some(After::Unloading)) {
-        for after_loading in loaded(&study.test_a) {
+    for after_unloading in study.test_b.loaded().filter(|hold| hold.after == Some(After::Unloading)) {
+        for after_loading in study.test_a.loaded() {
             let (Some(a), Some(b)) = (after_loading.displacement, after_unloading.displacement) else {
                 continue;
             };
@@ -188,7 +169,7 @@ fn agreement(study: &Reproduction) -> CheckDocument {
     )
 }
 
-fn lowest_order(study: &Reproduction) -> CheckDocument {
+fn lowest_order(study: &Reproduction) -> Check {
     let found = [&study.test_a, &study.test_b].map(|test| test.analysis.across.common_exponent);
     let n = study.model.law.exponent();
     let shown = found.map(|n| n.map_or("none".to_owned(), |n| n.to_string()));
@@ -200,7 +181,7 @@ fn lowest_order(study: &Reproduction) -> CheckDocument {
     )
 }
 
-fn identified(study: &Reproduction) -> CheckDocument {
+fn identified(study: &Reproduction) -> Check {
     let error = study.largest_coefficient_error();
     check(
         "The law is found again in the simulated records",
@@ -210,7 +191,7 @@ fn identified(study: &Reproduction) -> CheckDocument {
     )
 }
 
-fn last_unloading(study: &Reproduction) -> CheckDocument {
+fn last_unloading(study: &Reproduction) -> Check {
     let test = &study.test_a;
     let begins = last_at_top(&test.bonded);
     let lowest = test.bonded.force.iter().fold(0.0, |low: f64, force| low.min(*force));

@@ -8,10 +8,9 @@ use palpate_files::parquet_table::{TableError, TableReader, Values};
 use palpate_report::figure::MOST_PANELS;
 use palpate_report::study::{SweptAxis, SweptResult, sweep_grid_figure, sweep_points_figure};
 
-use super::parts::table_failure;
 use super::rows::{ResultColumn, results};
-use crate::commands::picture::{check_picture, picture};
-use crate::failure::Failure;
+use crate::output::{check_figure, picture, stem, unwritten_table};
+use crate::{ErrorKind, JobError};
 
 /// Most points that are drawn; more would hide each other.
 const MOST_POINTS: u64 = 5000;
@@ -26,17 +25,17 @@ pub(super) struct Chart {
 
 impl Chart {
     /// Checks that there is such a figure of the sweep.
-    pub(super) fn new(sweep: &Sweep, path: &Path, column: &str) -> Result<Self, Failure> {
-        check_picture(path)?;
+    pub(super) fn new(sweep: &Sweep, path: &Path, column: &str) -> Result<Self, JobError> {
+        check_figure(path)?;
         let results = results(sweep);
         let Some(result) = results.iter().find(|result| result.name == column) else {
             let names: Vec<&str> = results.iter().map(|result| result.name.as_str()).collect();
-            let message = format!("--show {column}: no such result");
-            return Err(Failure::new(message, Some(format!("show one of {}", names.join(", ")))));
+            let hint = format!("show one of {}", names.join(", "));
+            return Err(JobError::option(format!("⟨show={column}⟩: no such result"), &hint));
         };
         if let Plan::Grid { counts } = sweep.plan() {
             let hint = "draw the columns of the table with another program, or sweep fewer numbers";
-            let refused = |message: String| Err(Failure::of_file(path, message, Some(hint.to_owned())));
+            let refused = |message: String| Err(JobError::option(message, hint).of(path.display()));
             match counts.as_slice() {
                 [_] | [_, _] => {}
                 [_, _, panels] if *panels <= MOST_PANELS => {}
@@ -61,19 +60,19 @@ impl Chart {
     }
 
     /// Draws it from the table at `table`.
-    pub(super) fn draw(&self, sweep: &Sweep, table: &Path) -> Result<Vec<u8>, Failure> {
+    pub(super) fn draw(&self, sweep: &Sweep, table: &Path) -> Result<Vec<u8>, JobError> {
         let stride = match sweep.plan() {
             Plan::Grid { .. } => 1,
             Plan::LatinHypercube { .. } | Plan::Together { .. } => sweep.runs().div_ceil(MOST_POINTS).max(1),
         };
         let read =
-            |column: &str| read_column(table, column, stride as usize).map_err(|error| table_failure(table, &error));
+            |column: &str| read_column(table, column, stride as usize).map_err(|error| unwritten_table(table, &error));
         let result = SweptResult {
             label: self.result.label.clone(),
             unit: self.result.unit.to_owned(),
             values: read(&self.result.name)?,
         };
-        let name = self.path.file_stem().map_or("figure".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let name = stem(&self.path);
         let caption = caption(sweep, &self.result, stride);
         let axes = sweep.numbers().iter().map(|number| {
             let values = match number.grid() {
@@ -82,14 +81,16 @@ impl Chart {
             };
             Ok(axis(number, values))
         });
-        let axes = axes.collect::<Result<Vec<_>, Failure>>()?;
+        let axes = axes.collect::<Result<Vec<_>, JobError>>()?;
         let figure = match sweep.plan() {
             Plan::Grid { .. } => sweep_grid_figure(&name, &caption, &axes, &result),
             Plan::LatinHypercube { .. } | Plan::Together { .. } => {
                 Some(sweep_points_figure(&name, &caption, &axes, &result))
             }
         };
-        let figure = figure.ok_or_else(|| Failure::of_file(table, "expected one row a run, found others", None))?;
+        let figure = figure.ok_or_else(|| {
+            JobError::new(ErrorKind::Report, "expected one row a run, found others", None).of(table.display())
+        })?;
         picture(&self.path, &figure)
     }
 }

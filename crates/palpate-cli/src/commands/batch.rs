@@ -1,0 +1,16 @@
+//! `palpate batch`: many records to one table.
+
+use palpate_jobs::input::{Described, NamedRecords};
+use palpate_jobs::{JobError, Verdict};
+
+use crate::arguments::BatchArguments;
+use crate::progress::Bars;
+use crate::terminal::notes;
+
+pub(crate) fn run(arguments: &BatchArguments) -> Result<Verdict, JobError> {
+    let described = Described::read(arguments.test.as_deref(), None)?;
+    let records = NamedRecords::find(&arguments.records, described)?;
+    let outcome = arguments.job().run(records, &arguments.out, &mut Bars::default())?;
+    notes(&outcome.notes);
+    Ok(outcome.verdict)
+}

@@ -1,0 +1,139 @@
+//! A record to phases, laws, tables and a report.
+
+use palpate::analysis::{Analysis, analyze_watched};
+use palpate::record::Record;
+use palpate::segment::{ContactChoice, HoldStart};
+use palpate::watch::{Progress, Watch};
+use palpate_report::document::AnalysisDocument;
+use palpate_report::result::Input;
+use palpate_report::study::{Bundle, Pictures, analysis_bundle, analysis_text};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::input::Measurement;
+use crate::options::checked_confidence;
+use crate::{ErrorKind, JobError, Outcome, Results};
+
+/// Analyse a record: phases, strains, laws. What is not given is as its description says.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Analyze {
+    /// Fit only this long from the start of each hold and predict the rest.
+    pub fit_until_s: Option<f64>,
+    /// Exponents to try, besides a free one.
+    pub exponents: Option<Vec<f64>>,
+    /// Whether a free exponent is tried.
+    pub free_exponent: Option<bool>,
+    /// Coverage of the intervals, between 0 and 1.
+    pub confidence: Option<f64>,
+    /// From where in a hold to fit: "peak", "settled", or so many seconds after the peak.
+    #[schemars(with = "serde_json::Value")]
+    pub hold_start: Option<HoldStart>,
+    /// First touch: "auto", "as_recorded", a displacement in m, or a rule.
+    #[schemars(with = "serde_json::Value")]
+    pub touch: Option<ContactChoice>,
+    /// How far the displacement may stray in a hold.
+    pub tolerance_m: Option<f64>,
+    /// Shortest hold.
+    pub minimum_hold_s: Option<f64>,
+    /// Whether laws are compared, which takes most of the time.
+    pub compare: bool,
+}
+
+impl Default for Analyze {
+    fn default() -> Self {
+        Self {
+            fit_until_s: None,
+            exponents: None,
+            free_exponent: None,
+            confidence: None,
+            hold_start: None,
+            touch: None,
+            tolerance_m: None,
+            minimum_hold_s: None,
+            compare: true,
+        }
+    }
+}
+
+/// An analysed record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Analyzed {
+    /// Phases, laws and findings.
+    pub analysis: Analysis,
+    /// Where the record comes from.
+    pub input: Input,
+}
+
+impl Analyze {
+    /// Puts these options over those of the description.
+    fn over(&self, measured: &mut Measurement) -> Result<(), JobError> {
+        let options = &mut measured.options;
+        options.fit_until = self.fit_until_s.or(options.fit_until);
+        if let Some(exponents) = &self.exponents {
+            if exponents.is_empty() || exponents.iter().any(|n| !(n.is_finite() && *n > 0.0)) {
+                let message = format!("⟨exponents⟩ are numbers above 0, found {exponents:?}");
+                return Err(JobError::option(message, ""));
+            }
+            options.exponents.clone_from(exponents);
+        }
+        options.exponents.sort_by(f64::total_cmp);
+        options.exponents.dedup();
+        if let Some(confidence) = self.confidence {
+            options.fit.confidence = checked_confidence(confidence)?;
+        }
+        options.free_exponent = self.free_exponent.unwrap_or(options.free_exponent);
+        options.segment.hold_start = self.hold_start.unwrap_or(options.segment.hold_start);
+        options.segment.tolerance = self.tolerance_m.or(options.segment.tolerance);
+        options.segment.minimum_hold = self.minimum_hold_s.or(options.segment.minimum_hold);
+        options.touch = self.touch.unwrap_or(options.touch);
+        if !self.compare {
+            options.compare = None;
+        }
+        Ok(())
+    }
+
+    /// Analyses a record, off which the force of the same motion without a body is taken if `air` is given.
+    ///
+    /// # Errors
+    /// [`JobError`] where the record has nothing to analyse, or the watch ends it.
+    pub fn run(
+        &self,
+        mut measured: Measurement,
+        air: Option<&Record>,
+        watch: &mut dyn Watch,
+    ) -> Result<Outcome<Analyzed>, JobError> {
+        self.over(&mut measured)?;
+        let Measurement {
+            mut record,
+            input,
+            options,
+            ..
+        } = measured;
+        if let Some(air) = air {
+            record = record
+                .without_air_run(air)
+                .map_err(|error| JobError::new(ErrorKind::Record, &error, error.hint().to_owned()).of(&input.path))?;
+        }
+        watch.report(Progress::open(&format!("fitting {}", input.called()), 0))?;
+        let analysis =
+            analyze_watched(&record, &options, watch).map_err(|error| JobError::analysis(&error, &input.path))?;
+        Ok(Outcome::of(Analyzed { analysis, input }))
+    }
+}
+
+impl Results for Analyzed {
+    type Document = AnalysisDocument;
+
+    fn document(&self) -> AnalysisDocument {
+        AnalysisDocument::new(&self.analysis, self.input.clone())
+    }
+
+    fn text(&self) -> String {
+        analysis_text(&self.analysis, &self.input)
+    }
+
+    fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
+        Ok(analysis_bundle(&self.analysis, self.input.clone(), pictures)?)
+    }
+}

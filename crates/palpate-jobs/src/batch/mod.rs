@@ -1,0 +1,237 @@
+//! Many records to one table, a row per hold and law.
+//!
+//! | file | what |
+//! |---|---|
+//! | `rows.rs` | an analysed record as rows |
+//! | `table.rs` | the rows as a file |
+
+mod rows;
+mod table;
+
+use std::num::NonZeroUsize;
+use std::ops::Range;
+use std::path::Path;
+use std::time::Instant;
+
+use palpate::analysis::{AnalysisOptions, examine};
+use palpate::forecast::CompareOptions;
+use palpate::laws::Law;
+use palpate::number::counted;
+use palpate::segment::HoldStart;
+use palpate::watch::{Progress, Watch};
+use palpate_report::document::{AnalysisDocument, Software};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::input::{Described, NamedRecords, OpenedFile, Source};
+use crate::output::{is_same, keep_apart, sha256};
+use crate::store::{Store, beside};
+use crate::threads::{Share, over_threads};
+use crate::written_by_batch::is_written_by_batch;
+use crate::{ErrorKind, JobError, Outcome, Verdict};
+use table::Format;
+
+/// Analyse many records into one table, a row per hold and law.
+///
+/// It reads the records and their description, and writes the table and what is done beside it, to go on from.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Batch {
+    /// Laws to fit besides the latency law.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub laws: Option<Vec<Law>>,
+    /// Fit only this long from the start of each hold.
+    pub fit_until_s: Option<f64>,
+    /// From where in a hold to fit: "peak", "settled", or so many seconds after the peak.
+    #[schemars(with = "serde_json::Value")]
+    pub hold_start: Option<HoldStart>,
+    /// How many records at once; all processors if not given. The table is the same for any number.
+    pub threads: Option<NonZeroUsize>,
+    /// Analyse all records again, whatever was done before.
+    pub restart: bool,
+}
+
+/// A table with a row per hold and law.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Batched {
+    /// How many rows it has.
+    pub rows: usize,
+    /// How many tests there are in the files.
+    pub tests: usize,
+    /// The tests that gave no rows.
+    pub failures: Vec<Refused>,
+}
+
+/// A test that could not be analysed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Refused {
+    /// What is wrong, with the path.
+    pub message: String,
+    /// What would help.
+    pub hint: Option<String>,
+}
+
+/// What came of one file.
+#[derive(Debug, Default, Serialize, Deserialize)]
+struct Entry {
+    /// Rows of the table.
+    rows: Vec<Vec<Value>>,
+    /// The tests that gave none, with why.
+    failures: Vec<Refused>,
+    /// How many tests there are in the file.
+    tests: usize,
+}
+
+impl Batch {
+    /// Analyses the records to the table `out`.
+    ///
+    /// # Errors
+    /// [`JobError`] where the table cannot be written, or the watch ends it; what is done stays to go on from. A record that fails stops no
+    /// other.
+    pub fn run(&self, records: NamedRecords, out: &Path, watch: &mut dyn Watch) -> Result<Outcome<Batched>, JobError> {
+        let started = Instant::now();
+        let NamedRecords { mut paths, described } = records;
+        let table = [out.to_owned()];
+        keep_apart(&described.path, &table)?;
+        let format = Format::of(out)?;
+        let options = self.options(&described);
+        if !is_written_by_batch(out) {
+            keep_apart(&paths, &table)?;
+        }
+        let journal = beside(out, ".journal");
+        // In the folder of the records they are no records.
+        let is_ours = |path: &Path| is_same(path, out) || path.parent().is_some_and(|folder| is_same(folder, &journal));
+        paths.retain(|path| !is_ours(path));
+        let settings = settings(&options, &described)?;
+        let store = Store::open(&journal, "batch", &sha256(settings.as_bytes()), self.restart)?;
+        let progress = Progress::counted("analysing", 0, paths.len());
+        let places = over_threads(paths.len(), self.threads, progress, watch, |index, share| {
+            let place = file(&paths[index], &described, &options, &store, share)?;
+            share.advance(1)?;
+            Ok(place)
+        })?;
+        let batched = table::write(out, format, &store, places.iter().map(|(place, _)| place), &settings)?;
+        let before = places.iter().filter(|(_, before)| *before).count();
+        Ok(Outcome {
+            verdict: Verdict::of(batched.failures.is_empty()),
+            notes: batched.notes(out, paths.len(), before, started),
+            result: batched,
+        })
+    }
+
+    fn options(&self, described: &Described) -> AnalysisOptions {
+        let mut options = described.options();
+        options.fit_until = self.fit_until_s.or(options.fit_until);
+        options.segment.hold_start = self.hold_start.unwrap_or(options.segment.hold_start);
+        options.compare = self.laws.as_ref().map(|laws| {
+            let laws = laws.clone();
+            CompareOptions {
+                laws,
+                ..CompareOptions::default()
+            }
+        });
+        options
+    }
+}
+
+/// Where the entry of a file lies, and whether it was there before.
+fn file(
+    path: &Path,
+    described: &Described,
+    options: &AnalysisOptions,
+    store: &Store,
+    share: Share<'_>,
+) -> Result<(Range<u64>, bool), JobError> {
+    let source = Source::open(path);
+    let digest = source.as_ref().ok().and_then(|source| source.digest.clone().ok());
+    let key = format!("{} {}", digest.as_deref().unwrap_or("-"), path.display());
+    if let Some(place) = store.find(&key).filter(|_| digest.is_some()) {
+        return Ok((place, true));
+    }
+    let mut entry = Entry::default();
+    match source.and_then(|source| OpenedFile::of(source, described)) {
+        Ok(opened) => {
+            entry.tests = opened.parts().len();
+            for part in opened.parts() {
+                match document(&opened, *part, options, share) {
+                    Ok(document) => entry.rows.extend(rows::rows(&document)),
+                    Err(error) if error.kind == ErrorKind::Cancelled => return Err(error),
+                    Err(error) => entry.failures.push(Refused::from(error)),
+                }
+            }
+        }
+        Err(error) => {
+            entry.tests = 1;
+            entry.failures.push(Refused::from(error));
+        }
+    }
+    Ok((store.add(&key, &serde_json::to_vec(&entry)?)?, false))
+}
+
+fn document(
+    opened: &OpenedFile<'_>,
+    part: usize,
+    options: &AnalysisOptions,
+    mut share: Share<'_>,
+) -> Result<AnalysisDocument, JobError> {
+    let measured = opened.measurement(part, &mut share)?;
+    let analysis = examine(&measured.record, options, &mut share)
+        .map_err(|error| JobError::analysis(&error, &measured.input.path))?;
+    Ok(AnalysisDocument::new(&analysis, measured.input))
+}
+
+impl From<JobError> for Refused {
+    fn from(error: JobError) -> Self {
+        Self {
+            message: error.to_string(),
+            hint: error.hint,
+        }
+    }
+}
+
+/// Everything that the results depend on besides the records, as text.
+fn settings(options: &AnalysisOptions, described: &Described) -> Result<String, JobError> {
+    let software = Software::this();
+    let value = serde_json::json!({
+        "software": format!("{} {}", software.name, software.version),
+        "test": described.shown(),
+        "test_toml": described.text,
+        "options": serde_json::to_value(options)?,
+        "reading": format!("{:?}", described.test.as_ref().map(|test| &test.reading)),
+    });
+    Ok(value.to_string())
+}
+
+impl Batched {
+    /// Says what was done, and what could not be.
+    fn notes(&self, out: &Path, files: usize, before: usize, started: Instant) -> Vec<String> {
+        const MOST: usize = 1000;
+        let failures = &self.failures;
+        let mut notes: Vec<String> =
+            failures.iter().take(MOST).map(|refused| format!("failed: {}", refused.message)).collect();
+        if failures.len() > MOST {
+            notes.push(format!("failed: … and {} more", failures.len() - MOST));
+        }
+        let mut hints: Vec<&str> = failures.iter().filter_map(|failed| failed.hint.as_deref()).collect();
+        hints.sort_unstable();
+        hints.dedup();
+        if let [hint] = hints[..] {
+            notes.push(format!("hint: {hint}"));
+        }
+        let kept = if before > 0 { format!(" ({before} were done before)") } else { String::new() };
+        let failed = match failures.len() {
+            0 => String::new(),
+            count => format!(", {count} of {} tests failed", self.tests),
+        };
+        notes.push(format!(
+            "{} of {} in {}{kept}{failed}, {:.1} s: {}",
+            counted(self.rows, "row"),
+            counted(self.tests - failures.len(), "test"),
+            counted(files, "file"),
+            started.elapsed().as_secs_f64(),
+            out.display()
+        ));
+        notes
+    }
+}

@@ -1,0 +1,117 @@
+//! The rows of all records as one file, written whole or not at all.
+
+use std::io::{BufWriter, Write};
+use std::ops::Range;
+use std::path::Path;
+
+use palpate_files::parquet_table::{Field, TableError, TableWriter};
+use serde_json::Value;
+
+use super::rows::{fields, table_rows};
+use super::{Batched, Entry};
+use crate::JobError;
+use crate::output::{Unplaced, check_ending, check_no_folder, place_file};
+use crate::store::{Store, beside};
+use crate::written_by_batch::MARK;
+
+/// How the table is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Format {
+    Csv,
+    Parquet,
+}
+
+impl Format {
+    /// By the ending of the name.
+    pub(super) fn of(out: &Path) -> Result<Self, JobError> {
+        check_no_folder(out)?;
+        let hint = "name the table FILE.parquet or FILE.csv";
+        check_ending(out, &["csv", "parquet"], "a table ending in .parquet or .csv", hint)?;
+        Ok(if out.extension().is_some_and(|ending| ending == "csv") { Self::Csv } else { Self::Parquet })
+    }
+}
+
+/// Writes the entries at `places`, one in memory at a time, with `settings` inside.
+pub(super) fn write<'a>(
+    out: &Path,
+    format: Format,
+    store: &Store,
+    places: impl Iterator<Item = &'a Range<u64>>,
+    settings: &str,
+) -> Result<Batched, JobError> {
+    let mut batched = Batched::default();
+    let entry = |place| Ok::<Entry, JobError>(serde_json::from_slice(&store.read(place)?)?);
+    // In the folder of the store, where the next batch clears away what a kill leaves behind.
+    let placed = place_file::<Unplaced>(out, &beside(out, ".journal"), |file| {
+        let mut sink = Sink::new(format, BufWriter::new(file), settings)?;
+        for place in places {
+            let entry = entry(place).map_err(Unplaced::Store)?;
+            batched.rows += entry.rows.len();
+            batched.tests += entry.tests;
+            batched.failures.extend(entry.failures);
+            sink.write(&entry.rows)?;
+        }
+        sink.finish(settings)
+    });
+    placed.map_err(|error| error.at(out)).map(|()| batched)
+}
+
+impl From<csv::Error> for Unplaced {
+    fn from(error: csv::Error) -> Self {
+        Self::Table(TableError::Io(error.into()))
+    }
+}
+
+/// A table that takes rows.
+enum Sink<W: Write + Send> {
+    Csv(csv::Writer<W>),
+    Parquet(TableWriter<W>, Vec<Field>),
+}
+
+impl<W: Write + Send> Sink<W> {
+    fn new(format: Format, mut out: W, settings: &str) -> Result<Self, Unplaced> {
+        let fields = fields();
+        match format {
+            Format::Csv => {
+                // A comment, which readers of CSV can be told to pass over; palpate passes over it by itself.
+                writeln!(out, "# {MARK}: {settings}")?;
+                let mut writer = csv::Writer::from_writer(out);
+                writer.write_record(fields.iter().map(|field| field.name.as_str()))?;
+                Ok(Self::Csv(writer))
+            }
+            Format::Parquet => Ok(Self::Parquet(TableWriter::new(out, &fields)?, fields)),
+        }
+    }
+
+    fn write(&mut self, lines: &[Vec<Value>]) -> Result<(), Unplaced> {
+        match self {
+            Self::Csv(writer) => {
+                for line in lines {
+                    writer.write_record(line.iter().map(cell))?;
+                }
+            }
+            Self::Parquet(writer, fields) => {
+                let rows = table_rows(fields, lines).ok_or(TableError::OtherColumns)?;
+                writer.write(rows)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(self, settings: &str) -> Result<(), Unplaced> {
+        match self {
+            Self::Csv(mut writer) => writer.flush()?,
+            Self::Parquet(writer, _) => writer.finish(&[(MARK, settings)])?,
+        }
+        Ok(())
+    }
+}
+
+/// A value as a cell: what is missing is empty.
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,218 @@
+//! A whole record to one set of parameters: a material.
+
+use palpate::calibrate::{CalibrateError, CalibrationData, Candidate, EquilibriumLaw, RateLaw, calibrate, profile};
+use palpate::laws::Law;
+use palpate::watch::Watch;
+use palpate_files::description::{MaterialFile, MaterialOrigin};
+use palpate_report::document::CalibrationDocument;
+use palpate_report::figure::Figure;
+use palpate_report::result::CalibratedRecord;
+use palpate_report::study::{Bundle, Pictures, calibration_figure, calibration_text};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::input::Measurement;
+use crate::options::checked_confidence;
+use crate::{ErrorKind, JobError, Outcome, Results};
+
+/// Calibrate a body on a whole record, ramps and holds alike: one set of parameters that predicts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Calibrate {
+    /// Law of the material.
+    #[schemars(with = "String")]
+    pub law: Law,
+    /// Laws to hold against it on the same record.
+    #[schemars(with = "Vec<String>")]
+    pub rivals: Vec<Law>,
+    /// Law of the force once relaxation is over.
+    pub equilibrium: Equilibrium,
+    /// Poisson's ratio for Hertz's law; 0.5 if not given.
+    pub poisson_ratio: Option<f64>,
+    /// What the rate coefficient v of the latency law depends on, by one more parameter.
+    #[schemars(with = "String", extend("enum" = ["constant", "by_strain", "by_direction"]))]
+    pub rate: RateLaw,
+    /// Fit only up to this time of the record and predict the rest.
+    pub fit_until_s: Option<f64>,
+    /// Add profile intervals.
+    pub profile: bool,
+    /// Coverage of the intervals, between 0 and 1; as the description says, or 0.95, if not given.
+    pub confidence: Option<f64>,
+}
+
+/// Law of the force once relaxation is over, by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Equilibrium {
+    /// Modulus × displacement/depth × contact area.
+    #[default]
+    EvenStrain,
+    /// Hertz's, for balls and pads.
+    Hertz,
+    /// A monotone table with a row where the jaw was held.
+    Table,
+}
+
+impl Default for Calibrate {
+    fn default() -> Self {
+        Self {
+            law: Law::Latency {
+                exponent: palpate::laws::ExponentChoice::Free,
+            },
+            rivals: vec![
+                Law::StandardLinearSolid,
+                Law::Prony { terms: 2 },
+                Law::Prony { terms: 3 },
+                Law::Fung { terms: 2 },
+            ],
+            equilibrium: Equilibrium::EvenStrain,
+            poisson_ratio: None,
+            rate: RateLaw::Constant,
+            fit_until_s: None,
+            profile: false,
+            confidence: None,
+        }
+    }
+}
+
+/// A calibrated record.
+#[derive(Debug)]
+pub struct Calibrated {
+    /// The laws on the record.
+    pub record: CalibratedRecord,
+    /// Coverage of the intervals.
+    pub confidence: f64,
+}
+
+impl Calibrate {
+    /// The law of the relaxed force.
+    fn equilibrium(&self) -> Result<EquilibriumLaw, JobError> {
+        match (self.equilibrium, self.poisson_ratio) {
+            (Equilibrium::Hertz, ratio) => Ok(EquilibriumLaw::Hertz {
+                poisson_ratio: ratio.unwrap_or(0.5),
+            }),
+            (_, Some(_)) => Err(JobError::option(
+                "⟨poisson_ratio⟩ is for Hertz's law, which is not asked for",
+                "add ⟨equilibrium=hertz⟩, or leave ⟨poisson_ratio⟩ out",
+            )),
+            (Equilibrium::EvenStrain, None) => Ok(EquilibriumLaw::EvenStrain),
+            (Equilibrium::Table, None) => Ok(EquilibriumLaw::Table),
+        }
+    }
+
+    /// What is fitted: first what is asked for, then its rivals.
+    fn candidates(&self) -> Result<Vec<Candidate>, JobError> {
+        let chosen = Candidate {
+            law: self.law,
+            equilibrium: self.equilibrium()?,
+            rate: self.rate,
+        };
+        Ok(if self.rivals.is_empty() { vec![chosen] } else { chosen.with_rivals(&self.rivals) })
+    }
+
+    /// Calibrates the laws on a record.
+    ///
+    /// # Errors
+    /// [`JobError`] where the law that is asked for cannot be calibrated, or the watch ends it.
+    pub fn run(&self, measured: Measurement, watch: &mut dyn Watch) -> Result<Outcome<Calibrated>, JobError> {
+        let candidates = self.candidates()?;
+        let Measurement {
+            record, input, options, ..
+        } = measured;
+        let confidence = checked_confidence(self.confidence.unwrap_or(options.fit.confidence))?;
+        let refused = |error: CalibrateError| uncalibrated(&error, &input.path);
+        let mut data = CalibrationData::of_record(&record, &options).map_err(refused)?;
+        if let Some(until) = self.fit_until_s {
+            data = data.fitted_until(until).map_err(refused)?;
+        }
+        let mut rows = Vec::new();
+        for candidate in candidates {
+            match calibrate(&data, candidate, confidence, watch) {
+                Err(CalibrateError::Cancelled(cancelled)) => return Err(cancelled.into()),
+                // Without the law that was asked for its rivals are of no use.
+                Err(error) if rows.is_empty() => return Err(refused(error)),
+                made => rows.push((candidate, made)),
+            }
+        }
+        let profiles = match rows.first() {
+            Some((_, Ok(made))) if self.profile => profile(&data, made, watch).map_err(refused)?,
+            _ => Vec::new(),
+        };
+        let (used, samples) = (data.times().len(), data.samples());
+        let few = (samples > used).then(|| format!("{used} of {samples} samples are used, evenly chosen"));
+        let record = CalibratedRecord {
+            input,
+            data,
+            rows,
+            profiles,
+        };
+        let notes = few.into_iter().collect();
+        Ok(Outcome {
+            notes,
+            ..Outcome::of(Calibrated { record, confidence })
+        })
+    }
+}
+
+impl Calibrated {
+    /// The material of the law that was asked for, with where it comes from.
+    #[must_use]
+    pub fn material(&self) -> Option<MaterialFile> {
+        let (record, chosen) = (&self.record, self.record.chosen()?);
+        Some(MaterialFile {
+            material: chosen.material.clone(),
+            origin: MaterialOrigin {
+                record: record.input.called(),
+                sha256: record.input.sha256.clone(),
+                test: record.input.test.clone(),
+                palpate: env!("CARGO_PKG_VERSION").to_owned(),
+                samples: record.data.fitted(),
+            },
+        })
+    }
+
+    /// The record with the laws.
+    #[must_use]
+    pub fn figure(&self) -> Figure {
+        calibration_figure(&self.record, "calibration")
+    }
+}
+
+impl Results for Calibrated {
+    type Document = CalibrationDocument;
+
+    fn document(&self) -> CalibrationDocument {
+        CalibrationDocument::new(&self.record, self.confidence)
+    }
+
+    fn text(&self) -> String {
+        calibration_text(&self.record)
+    }
+
+    fn bundle(&self, _: Pictures) -> Result<Bundle, JobError> {
+        let material = self.material().map(|file| ("material.toml".to_owned(), file.to_toml().into_bytes()));
+        let figure = ("figures/calibration.svg".to_owned(), self.figure().to_svg()?.into_bytes());
+        Ok(Bundle {
+            files: material.into_iter().chain([figure]).collect(),
+        })
+    }
+}
+
+/// Why there is no calibration: because of what was asked, of the record, of the body or of the samples.
+fn uncalibrated(error: &CalibrateError, place: &str) -> JobError {
+    let kind = match error {
+        CalibrateError::Cancelled(_) => ErrorKind::Cancelled,
+        CalibrateError::NoGeometry
+        | CalibrateError::NotALaw { .. }
+        | CalibrateError::RateOf { .. }
+        | CalibrateError::Exponent { .. }
+        | CalibrateError::Split { .. } => ErrorKind::Option,
+        CalibrateError::TooFewSamples { .. } | CalibrateError::NoStiffness => ErrorKind::Fit,
+        CalibrateError::Specimen(_)
+        | CalibrateError::Equilibrium(_)
+        | CalibrateError::Motion(_)
+        | CalibrateError::Simulate(_) => ErrorKind::Model,
+        _ => ErrorKind::Record,
+    };
+    JobError::new(kind, error, error.hint().to_owned()).of(place)
+}

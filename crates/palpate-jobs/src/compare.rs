@@ -1,0 +1,212 @@
+//! Records to the law that is to be used, and how sure that is.
+
+use palpate::analysis::{AnalysisOptions, CreepError, analyze_watched, corrected, creep_holds};
+use palpate::fit::{Loss, SampleChoice};
+use palpate::forecast::{CompareOptions, RampChoice};
+use palpate::laws::{Law, Response};
+use palpate::watch::{Progress, Watch};
+use palpate_report::document::{ComparisonDocument, ComparisonSettingsDocument};
+use palpate_report::result::{ComparedRecord, LeftOut};
+use palpate_report::study::{Bundle, Pictures, comparison_bundle, comparison_markdown, comparison_text};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::input::{Described, Measurement, NamedRecords, called};
+use crate::{ErrorKind, JobError, Outcome, Results, Verdict};
+
+/// Compare laws: which one predicts a hold, how sure that is, and what another would cost.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Compare {
+    /// Laws to compare; all that suit if not given.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub laws: Option<Vec<Law>>,
+    /// Parts of a hold that are fitted to predict the rest, as shares of its duration.
+    pub cuts: Option<Vec<f64>>,
+    /// Compare laws of creep: displacement in holds of constant force.
+    pub creep: bool,
+    /// How residuals count.
+    #[schemars(with = "String", extend("enum" = ["squares", "huber", "tukey"]))]
+    pub loss: Loss,
+    /// Which samples are fitted: "all", or about so many spaced evenly in ln t.
+    #[schemars(with = "serde_json::Value")]
+    pub samples: SampleChoice,
+    /// What linear laws take the loading before a hold for.
+    #[schemars(with = "String", extend("enum" = ["step", "measured"]))]
+    pub ramps: RampChoice,
+    /// Compare only over this long from the start of each hold.
+    pub fit_until_s: Option<f64>,
+}
+
+/// Records with the laws compared on their holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Compared {
+    /// The records on which laws could be judged.
+    pub records: Vec<ComparedRecord>,
+    /// The others, with why.
+    pub left_out: Vec<LeftOut>,
+    options: Options,
+}
+
+/// What is asked of every record.
+#[derive(Debug, Clone, PartialEq)]
+struct Options {
+    analysis: AnalysisOptions,
+    compared: CompareOptions,
+}
+
+impl Compare {
+    /// These options over those of a description.
+    fn over(&self, mut analysis: AnalysisOptions) -> Result<Options, JobError> {
+        analysis.fit_until = self.fit_until_s.or(analysis.fit_until);
+        let mut compared = CompareOptions::default();
+        compared.fit.response = if self.creep { Response::Creep } else { Response::Relaxation };
+        compared.fit.confidence = analysis.fit.confidence;
+        compared.fit.samples = self.samples;
+        compared.fit.loss = self.loss;
+        compared.ramps = self.ramps;
+        if let Some(laws) = &self.laws {
+            compared.laws.clone_from(laws);
+            compared.laws.dedup();
+        }
+        if let Some(law) = compared.laws.iter().find(|law| !law.describes(compared.fit.response)) {
+            let (has, other) = if self.creep { ("creep", "without") } else { ("relaxation", "with") };
+            return Err(JobError::option(
+                format!("⟨laws⟩: {law} has no form for {has}"),
+                &format!("leave it out, or compare {other} ⟨creep⟩"),
+            ));
+        }
+        if let Some(cuts) = &self.cuts {
+            compared.cuts.clone_from(cuts);
+            compared.cuts.sort_by(f64::total_cmp);
+            compared.cuts.dedup();
+        }
+        analysis.compare = Some(compared.clone());
+        Ok(Options { analysis, compared })
+    }
+
+    /// Compares laws on the records of named files; `alone` makes what is wrong with the only one an error.
+    ///
+    /// # Errors
+    /// [`JobError`] where options make no comparison, or the watch ends it.
+    pub fn run(
+        &self,
+        records: &NamedRecords,
+        alone: bool,
+        watch: &mut dyn Watch,
+        mut told: impl FnMut(&[String]),
+    ) -> Result<Outcome<Compared>, JobError> {
+        let mut found = self.of(&records.described)?;
+        records.each(
+            None,
+            watch,
+            |_| (),
+            |part, watch| {
+                let measured = part.measurement.inspect(|measured| told(&measured.notes));
+                match measured.and_then(|measured| self.one(measured, &found.options, watch)) {
+                    Err(error) if error.kind == ErrorKind::Cancelled || (alone && part.only) => return Err(error),
+                    made => found.take(called(part.path, part.name), made.map_err(|error| without(part.path, error))),
+                }
+                Ok(())
+            },
+        )?;
+        Ok(found.outcome())
+    }
+
+    /// Compares laws on one record.
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run).
+    pub fn run_on(&self, measured: Measurement, watch: &mut dyn Watch) -> Result<Outcome<Compared>, JobError> {
+        let mut found = Compared::none(self.over(measured.options.clone())?);
+        let (called, made) = (measured.input.called(), self.one(measured, &found.options, watch)?);
+        found.take(called, Ok(made));
+        Ok(found.outcome())
+    }
+
+    fn of(&self, described: &Described) -> Result<Compared, JobError> {
+        Ok(Compared::none(self.over(described.options())?))
+    }
+
+    fn one(&self, measured: Measurement, options: &Options, watch: &mut dyn Watch) -> Result<ComparedRecord, JobError> {
+        let Measurement { record, input, .. } = measured;
+        watch.report(Progress::open(&format!("comparing laws on {}", input.path), 0))?;
+        let (asked, path) = (&options.analysis, &input.path);
+        if self.creep {
+            let record = corrected(&record, asked).map_err(|error| JobError::analysis(&error, path))?.record;
+            let holds =
+                creep_holds(&record, (&asked.segment, &asked.given_holds), &options.compared, asked.fit_until, watch);
+            let refused = |error: CreepError| match error {
+                CreepError::Cancelled(cancelled) => cancelled.into(),
+                error => JobError::new(ErrorKind::Record, &error, error.hint().to_owned()).of(path),
+            };
+            return Ok(ComparedRecord::of_creep(holds.map_err(refused)?, input));
+        }
+        let analysis = analyze_watched(&record, asked, watch).map_err(|error| JobError::analysis(&error, path))?;
+        Ok(ComparedRecord::of_analysis(&analysis, input))
+    }
+}
+
+impl Compared {
+    fn none(options: Options) -> Self {
+        let (records, left_out) = (Vec::new(), Vec::new());
+        Self {
+            records,
+            left_out,
+            options,
+        }
+    }
+
+    /// Takes what came of a record, or why nothing did with what would help.
+    fn take(&mut self, path: String, made: Result<ComparedRecord, (String, Option<String>)>) {
+        let none = "no law could be fitted to any hold";
+        let (reason, hint) = match made {
+            Ok(record) if record.has_verdict() => return self.records.push(record),
+            Ok(_) => (none.to_owned(), None),
+            Err(why) => why,
+        };
+        self.left_out.push(LeftOut { path, reason, hint });
+    }
+
+    fn outcome(self) -> Outcome<Self> {
+        let verdict = Verdict::of(!self.records.is_empty());
+        Outcome {
+            verdict,
+            ..Outcome::of(self)
+        }
+    }
+
+    fn settings(&self) -> ComparisonSettingsDocument {
+        let Options { analysis, compared } = &self.options;
+        ComparisonSettingsDocument::new(compared, analysis.segment.hold_start, analysis.fit_until)
+    }
+
+    /// One table of all records and holds.
+    #[must_use]
+    pub fn markdown(&self) -> String {
+        comparison_markdown(&self.records, &self.left_out, &self.options.compared.laws())
+    }
+}
+
+impl Results for Compared {
+    type Document = ComparisonDocument;
+
+    fn document(&self) -> ComparisonDocument {
+        ComparisonDocument::new(&self.records, &self.left_out, self.settings())
+    }
+
+    fn text(&self) -> String {
+        comparison_text(&self.records, &self.left_out)
+    }
+
+    fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
+        Ok(comparison_bundle(&self.records, &self.left_out, self.settings(), pictures)?)
+    }
+}
+
+/// Why a file was left out, without its own name, and what would help.
+fn without(path: &std::path::Path, error: JobError) -> (String, Option<String>) {
+    let (message, own) = (error.to_string(), path.display().to_string());
+    let reason = message.strip_prefix(&own).map_or(message.as_str(), |rest| rest.trim_start_matches([':', ',', ' ']));
+    (reason.to_owned(), error.hint)
+}

@@ -1,0 +1,154 @@
+//! A record of any format as a plain table in SI.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use palpate::analysis::{corrected, suspicious_signs};
+use palpate::record::CorrectionOptions;
+use palpate::watch::Watch;
+use palpate_files::parquet_table::{Field, Kind, Rows, TableError, TableWriter, Values};
+use palpate_files::record::RecordFile;
+use palpate_report::document::Software;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::input::{OpenedFile, averaged};
+use crate::output::{Unplaced, check_ending, folder_of, place_file};
+use crate::{JobError, Outcome};
+
+/// Under which the file says where its numbers come from.
+const MARK: &str = "palpate_record";
+
+/// Write a record of any format as a plain table in SI, with where it comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Convert {}
+
+/// A record in SI, with where it comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Converted {
+    /// The record, corrected as its description asks.
+    pub file: RecordFile,
+    origin: serde_json::Value,
+}
+
+impl Convert {
+    /// Reads the one record of a file, and corrects it as its description asks; without any corrections asked for, not even dropouts are
+    /// mended.
+    ///
+    /// # Errors
+    /// [`JobError`] where it cannot be read or corrected, or the watch ends it.
+    pub fn run(self, opened: &OpenedFile<'_>, watch: &mut dyn Watch) -> Result<Outcome<Converted>, JobError> {
+        let mut file = opened.read(opened.only()?, watch)?;
+        let done = |file: &RecordFile, from: usize| {
+            let done = file.record.corrections()[from..].iter().map(|done| format!("done: {done}"));
+            done.collect::<Vec<_>>()
+        };
+        let mut notes: Vec<String> = averaged(&file).into_iter().chain(done(&file, 0)).collect();
+        notes.extend(suspicious_signs(&file.record).iter().map(|sign| format!("{}; {}", sign.seen(), sign.remedy())));
+        if file.record.displacement().is_none() {
+            notes.push("no column of displacement was found: the table has time and force alone".to_owned());
+        }
+        let options = opened.described().options();
+        if options.corrections != CorrectionOptions::default() {
+            let before = file.record.corrections().len();
+            let place = file.path.display().to_string();
+            file.record = corrected(&file.record, &options).map_err(|error| JobError::analysis(&error, &place))?.record;
+            notes.extend(done(&file, before));
+        }
+        let origin = origin(&file, opened)?;
+        Ok(Outcome {
+            notes,
+            ..Outcome::of(Converted { file, origin })
+        })
+    }
+}
+
+impl Converted {
+    /// Refuses a name that says no format.
+    ///
+    /// # Errors
+    /// [`JobError`] where it does not end in `.csv`, `.parquet` or `.json`.
+    pub fn check_name(out: &Path) -> Result<(), JobError> {
+        let expected = "a file ending in .csv, .parquet or .json";
+        check_ending(out, &["csv", "parquet", "json"], expected, "name it FILE.csv, FILE.parquet or FILE.json")
+    }
+
+    /// Writes the table, in the format of its name.
+    ///
+    /// # Errors
+    /// [`JobError`] where the name says no format, or the file cannot be written.
+    pub fn write(&self, out: &Path) -> Result<(), JobError> {
+        Self::check_name(out)?;
+        let (file, origin) = (&self.file, &self.origin);
+        place_file(out, folder_of(out), |into| {
+            let into = io::BufWriter::new(into);
+            match out.extension().and_then(|ending| ending.to_str()) {
+                Some("parquet") => write_parquet(into, file, origin)?,
+                Some("json") => write_json(into, file, origin)?,
+                _ => write_csv(into, file, origin)?,
+            }
+            Ok(())
+        })
+        .map_err(|error: Unplaced| error.at(out))
+    }
+}
+
+/// Where the numbers come from, as one JSON object.
+fn origin(file: &RecordFile, opened: &OpenedFile<'_>) -> Result<serde_json::Value, JobError> {
+    Ok(serde_json::json!({
+        "schema": "palpate.record/1",
+        "input": opened.input(file, None)?,
+        "columns": file.columns,
+        "corrections": file.record.corrections(),
+        "test_toml": opened.described().text,
+        "software": Software::this(),
+    }))
+}
+
+/// The columns that the record has, by their names.
+fn columns(file: &RecordFile) -> Vec<(&'static str, &[f64])> {
+    let record = &file.record;
+    let mut columns = vec![("time_s", record.time())];
+    columns.extend(record.displacement().map(|displacement| ("displacement_m", displacement)));
+    columns.push(("force_n", record.force()));
+    columns
+}
+
+fn write_csv(mut out: impl Write, file: &RecordFile, origin: &serde_json::Value) -> io::Result<()> {
+    let columns = columns(file);
+    writeln!(out, "# {MARK}: {origin}")?;
+    let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+    writeln!(out, "{}", names.join(","))?;
+    for row in 0..file.record.len() {
+        for (place, (_, values)) in columns.iter().enumerate() {
+            let gap = if place > 0 { "," } else { "" };
+            write!(out, "{gap}{}", values[row])?;
+        }
+        writeln!(out)?;
+    }
+    out.flush()
+}
+
+fn write_json(mut out: impl Write, file: &RecordFile, origin: &serde_json::Value) -> io::Result<()> {
+    let mut document = origin.clone();
+    for (name, values) in columns(file) {
+        document[name] = values.into();
+    }
+    serde_json::to_writer_pretty(&mut out, &document)?;
+    writeln!(out)?;
+    out.flush()
+}
+
+fn write_parquet(out: impl Write + Send, file: &RecordFile, origin: &serde_json::Value) -> Result<(), TableError> {
+    let columns = columns(file);
+    let fields: Vec<Field> = columns.iter().map(|(name, _)| Field::new(*name, Kind::Number)).collect();
+    let mut writer = TableWriter::new(out, &fields)?;
+    writer.write(Rows {
+        columns: columns
+            .iter()
+            .map(|(_, values)| Values::Number(values.iter().copied().map(Some).collect()))
+            .collect(),
+    })?;
+    writer.finish(&[(MARK, &origin.to_string())])
+}

@@ -1,0 +1,185 @@
+//! Why a job gave no outcome, in words that every front end can use.
+
+use std::fmt;
+use std::io;
+use std::path::Path;
+
+use palpate::analysis::AnalysisError;
+use palpate::watch::Cancelled;
+use palpate_files::FileError;
+use palpate_files::description::DescriptionError;
+use palpate_files::record::ReadError;
+use palpate_report::figure::FigureError;
+use palpate_report::study::StudyError;
+
+/// What a job failed for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ErrorKind {
+    /// An option that no computation can follow, or a description that cannot be used.
+    Option,
+    /// The operating system does not hand a file out, or takes none.
+    File(io::ErrorKind),
+    /// A record that cannot be read, or has nothing to analyse.
+    Record,
+    /// Parameters that make no body, no law or no motion.
+    Model,
+    /// Samples that no law can be fitted to.
+    Fit,
+    /// A figure or document that could not be made.
+    Report,
+    /// The watch ended the job.
+    Cancelled,
+}
+
+/// Why a job gave no outcome.
+///
+/// Message and hint name options between `⟨` and `⟩`, such as `⟨poisson_ratio⟩` or `⟨equilibrium=hertz⟩`; a front end writes them as its
+/// users do, by [`spelled`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct JobError {
+    /// What it failed for.
+    pub kind: ErrorKind,
+    /// The file that the message is about, where the message does not name it.
+    pub place: Option<String>,
+    /// What is wrong: what was expected, what was found.
+    pub message: String,
+    /// What would help.
+    pub hint: Option<String>,
+}
+
+impl JobError {
+    /// An error that speaks of no file; an empty hint is none.
+    pub fn new(kind: ErrorKind, message: impl fmt::Display, hint: impl Into<Option<String>>) -> Self {
+        Self {
+            kind,
+            place: None,
+            message: message.to_string(),
+            hint: hint.into().filter(|hint| !hint.is_empty()),
+        }
+    }
+
+    /// An option that no computation can follow.
+    pub fn option(message: impl fmt::Display, hint: &str) -> Self {
+        Self::new(ErrorKind::Option, message, hint.to_owned())
+    }
+
+    /// The same error, about a file.
+    #[must_use]
+    pub fn of(mut self, place: impl fmt::Display) -> Self {
+        self.place = Some(place.to_string());
+        self
+    }
+
+    /// What the operating system says about a file to be read.
+    pub(crate) fn unread(path: &Path, error: &io::Error) -> Self {
+        Self::new(ErrorKind::File(error.kind()), error, None).of(path.display())
+    }
+
+    /// Of an analysis, with its hint.
+    pub(crate) fn analysis(error: &AnalysisError, place: &str) -> Self {
+        match error {
+            AnalysisError::Cancelled(cancelled) => (*cancelled).into(),
+            error => Self::new(ErrorKind::Record, error, error.hint()).of(place),
+        }
+    }
+
+    /// The whole message with the file in front, options as plain names.
+    fn told(&self) -> String {
+        let place = self.place.as_ref().map_or(String::new(), |place| format!("{place}: "));
+        format!("{place}{}", self.message)
+    }
+}
+
+impl fmt::Display for JobError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&spelled(&self.told(), &|name, _| name.to_owned()))
+    }
+}
+
+impl std::error::Error for JobError {}
+
+/// A text with its options, which stand between `⟨` and `⟩`, as `spell` writes a name and perhaps its value.
+#[must_use]
+pub fn spelled(text: &str, spell: &dyn Fn(&str, Option<&str>) -> String) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some((before, (option, after))) =
+        rest.split_once('⟨').and_then(|(before, behind)| Some((before, behind.split_once('⟩')?)))
+    {
+        let (name, value) = option.split_once('=').map_or((option, None), |(name, value)| (name, Some(value)));
+        out.push_str(before);
+        out.push_str(&spell(name, value));
+        rest = after;
+    }
+    out + rest
+}
+
+impl From<Cancelled> for JobError {
+    fn from(cancelled: Cancelled) -> Self {
+        Self::new(ErrorKind::Cancelled, cancelled, None)
+    }
+}
+
+impl From<ReadError> for JobError {
+    fn from(error: ReadError) -> Self {
+        let kind = match &error {
+            ReadError::File(FileError::NotFound { source, .. } | FileError::Unreadable { source, .. }) => {
+                ErrorKind::File(source.kind())
+            }
+            ReadError::File(FileError::Directory { .. }) => ErrorKind::File(io::ErrorKind::IsADirectory),
+            _ => ErrorKind::Record,
+        };
+        let hint = error.hint();
+        Self::new(kind, error, hint)
+    }
+}
+
+impl From<DescriptionError> for JobError {
+    fn from(error: DescriptionError) -> Self {
+        let kind = match &error {
+            DescriptionError::NotFound { source, .. } | DescriptionError::Unreadable { source, .. } => {
+                ErrorKind::File(source.kind())
+            }
+            DescriptionError::Directory { .. } => ErrorKind::File(io::ErrorKind::IsADirectory),
+            _ => ErrorKind::Option,
+        };
+        let hint = error.hint();
+        Self::new(kind, error, hint)
+    }
+}
+
+impl From<StudyError> for JobError {
+    fn from(error: StudyError) -> Self {
+        Self::new(ErrorKind::Report, error, None)
+    }
+}
+
+impl From<FigureError> for JobError {
+    fn from(error: FigureError) -> Self {
+        Self::new(ErrorKind::Report, error, None)
+    }
+}
+
+impl From<serde_json::Error> for JobError {
+    fn from(error: serde_json::Error) -> Self {
+        Self::new(ErrorKind::Report, error, None)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_are_spelled_as_a_front_end_writes_them() {
+        let error = JobError::option("⟨poisson_ratio⟩ is for Hertz's law", "add ⟨equilibrium=hertz⟩");
+        assert_eq!(error.to_string(), "poisson_ratio is for Hertz's law");
+        let flag = |name: &str, value: Option<&str>| {
+            let value = value.map_or(String::new(), |value| format!(" {value}"));
+            format!("--{}{value}", name.replace('_', "-"))
+        };
+        assert_eq!(spelled(&error.message, &flag), "--poisson-ratio is for Hertz's law");
+        assert_eq!(spelled(&error.hint.unwrap(), &flag), "add --equilibrium hertz");
+        assert_eq!(spelled("a ⟨ that is none", &flag), "a ⟨ that is none");
+    }
+}

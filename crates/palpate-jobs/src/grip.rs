@@ -1,0 +1,256 @@
+//! A material between two jaws: will it hold, and how to squeeze.
+
+use std::path::Path;
+
+use palpate::calibrate::Material;
+use palpate::grip::{Band, Control, Grasp, Grip, GripError, Limits, Objective, Question, Regrip};
+use palpate::watch::Watch;
+use palpate_files::description::{MaterialFile, read_material};
+use palpate_report::document::GripDocument;
+use palpate_report::figure::Figure;
+use palpate_report::result::GrippedBody;
+use palpate_report::study::{Bundle, Pictures, grip_bundle, grip_figure, grip_text};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::options::checked_confidence;
+use crate::output::sha256;
+use crate::{ErrorKind, JobError, Outcome, Results, Verdict};
+
+/// Plan a grip of a calibrated body between two jaws: how long it holds, and how to squeeze. Mass and friction have to be given.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct PlanGrip {
+    /// Mass of the body.
+    pub mass_kg: f64,
+    /// Coefficient of friction between jaw and body.
+    pub friction: f64,
+    /// Safety factor on friction, 1 or more.
+    pub safety: f64,
+    /// Acceleration of the hand upwards.
+    pub acceleration_up_m_per_s2: f64,
+    /// Acceleration across gravity, in the plane of the jaws.
+    pub acceleration_across_m_per_s2: f64,
+    /// Acceleration along the closing axis, which unloads one jaw.
+    pub acceleration_closing_m_per_s2: f64,
+    /// Torque about the closing axis.
+    pub torque_n_m: f64,
+    /// Distance of the centre of mass from the closing axis.
+    pub off_centre_m: f64,
+    /// Gravity; standard gravity if not given.
+    pub gravity_m_per_s2: Option<f64>,
+    /// The fastest that the jaws go; the fastest ramp of the test if not given.
+    pub speed_m_per_s: Option<f64>,
+    /// How far the jaws may squeeze.
+    pub stroke_m: Option<f64>,
+    /// The largest force that gripper and body bear.
+    pub most_force_n: Option<f64>,
+    /// How long closing may take; any time if not given.
+    pub close_within_s: Option<f64>,
+    /// What the gripper holds once it has closed.
+    #[schemars(with = "String", extend("enum" = ["position", "force"]))]
+    pub control: Control,
+    /// Squeeze that is asked about.
+    pub squeeze_m: Option<f64>,
+    /// Force that is asked about, where the force is held.
+    pub force_n: Option<f64>,
+    /// How long it is to hold; 60 s if neither this nor a squeeze is given.
+    pub hold_s: Option<f64>,
+    /// It is to hold for ever.
+    pub hold_always: bool,
+    /// What the squeeze should have least of.
+    #[schemars(with = "String", extend("enum" = ["squeeze", "peak_force", "work"]))]
+    pub objective: Objective,
+    /// The lower edge of the band of the force has to hold, not the best estimate.
+    pub assured: bool,
+    /// Lower and upper edge of the band in which squeezes again and again keep the force.
+    pub band_n: Option<(f64, f64)>,
+    /// What that schedule should have least of.
+    pub regrip: RegripFor,
+    /// The shortest pause between two squeezes of least work.
+    pub shortest_pause_s: f64,
+    /// Coverage of the intervals, between 0 and 1.
+    pub confidence: f64,
+}
+
+/// What a schedule should have least of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RegripFor {
+    /// Squeezes.
+    #[default]
+    Moves,
+    /// Work of the jaws.
+    Work,
+}
+
+impl Default for PlanGrip {
+    fn default() -> Self {
+        Self {
+            mass_kg: f64::NAN,
+            friction: f64::NAN,
+            safety: 1.0,
+            acceleration_up_m_per_s2: 0.0,
+            acceleration_across_m_per_s2: 0.0,
+            acceleration_closing_m_per_s2: 0.0,
+            torque_n_m: 0.0,
+            off_centre_m: 0.0,
+            gravity_m_per_s2: None,
+            speed_m_per_s: None,
+            stroke_m: None,
+            most_force_n: None,
+            close_within_s: None,
+            control: Control::Position,
+            squeeze_m: None,
+            force_n: None,
+            hold_s: None,
+            hold_always: false,
+            objective: Objective::Squeeze,
+            assured: false,
+            band_n: None,
+            regrip: RegripFor::Moves,
+            shortest_pause_s: 1.0,
+            confidence: 0.95,
+        }
+    }
+}
+
+/// A material file, with what results say of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaterialSource {
+    /// What the file says.
+    pub file: MaterialFile,
+    /// What to call it.
+    pub name: String,
+    /// SHA-256 of its bytes, hexadecimal.
+    pub sha256: String,
+}
+
+impl MaterialSource {
+    /// The material in a file.
+    ///
+    /// # Errors
+    /// [`JobError`] where it cannot be read, or is none.
+    pub fn read(path: &Path) -> Result<Self, JobError> {
+        let file = read_material(path)?;
+        let bytes = std::fs::read(path).map_err(|error| JobError::unread(path, &error))?;
+        let (name, sha256) = (path.display().to_string(), sha256(&bytes));
+        Ok(Self { file, name, sha256 })
+    }
+
+    /// A material in memory, as the file would hold it.
+    #[must_use]
+    pub fn of(file: MaterialFile) -> Self {
+        let (name, sha256) = ("material".to_owned(), sha256(file.to_toml().as_bytes()));
+        Self { file, name, sha256 }
+    }
+}
+
+impl PlanGrip {
+    fn question(&self) -> Result<Question, JobError> {
+        if self.control == Control::Position && self.force_n.is_some() {
+            return Err(JobError::option(
+                "⟨force⟩ is for a force that is held, and the displacement is",
+                "add ⟨control=force⟩, or ask with ⟨squeeze⟩ or ⟨most_force⟩",
+            ));
+        }
+        if self.control == Control::Force && self.squeeze_m.is_some() {
+            return Err(JobError::option(
+                "⟨squeeze⟩ is for a displacement that is held, and the force is",
+                "leave ⟨control=force⟩ out, or ask with ⟨force⟩",
+            ));
+        }
+        Ok(Question {
+            control: self.control,
+            squeeze: self.squeeze_m,
+            force: self.force_n,
+            duration: if self.hold_always { Some(f64::INFINITY) } else { self.hold_s },
+            objective: self.objective,
+            assured: self.assured,
+            band: self.band_n.map(|(low, high)| Band { low, high }),
+            regrip: match self.regrip {
+                RegripFor::Moves => Regrip::FewestMoves,
+                RegripFor::Work => Regrip::LeastWork {
+                    shortest_pause: self.shortest_pause_s,
+                },
+            },
+        })
+    }
+
+    /// The body in the gripper that is described.
+    fn gripper<'a>(&self, material: &'a Material) -> Result<Grip<'a>, GripError> {
+        let mut grasp = Grasp::new(self.mass_kg, self.friction)?;
+        grasp.safety = self.safety;
+        grasp.gravity = self.gravity_m_per_s2.unwrap_or(grasp.gravity);
+        grasp.acceleration_up = self.acceleration_up_m_per_s2;
+        grasp.acceleration_across = self.acceleration_across_m_per_s2;
+        grasp.acceleration_closing = self.acceleration_closing_m_per_s2;
+        grasp.torque = self.torque_n_m;
+        grasp.off_centre = self.off_centre_m;
+        let mut limits = Limits::new(self.speed_m_per_s.unwrap_or(material.shown.fastest))?;
+        limits.stroke = self.stroke_m;
+        limits.force = self.most_force_n;
+        limits.closing = self.close_within_s;
+        Grip::new(material, grasp, limits, self.confidence)
+    }
+
+    /// Plans the grip of a material.
+    ///
+    /// # Errors
+    /// [`JobError`] where there is no such question, or the watch ends it. That nothing holds is an answer.
+    pub fn run<'a>(
+        &self,
+        source: &'a MaterialSource,
+        watch: &mut dyn Watch,
+    ) -> Result<Outcome<GrippedBody<'a>>, JobError> {
+        let question = self.question()?;
+        checked_confidence(self.confidence)?;
+        let grip = self.gripper(&source.file.material).map_err(|error| ungripped(&error))?;
+        let answer = grip.answer_watched(&question, watch).map_err(|error| ungripped(&error))?;
+        let (verdict, notes) = match answer.holds() {
+            Ok(holds) => (Verdict::of(holds), Vec::new()),
+            Err(error) if error.is_answer() => (Verdict::Negative, vec![error.hint().to_owned()]),
+            Err(error) => return Err(ungripped(&error)),
+        };
+        let result = GrippedBody {
+            path: source.name.clone(),
+            sha256: source.sha256.clone(),
+            grip,
+            answer,
+        };
+        Ok(Outcome { result, verdict, notes })
+    }
+}
+
+impl Outcome<GrippedBody<'_>> {
+    /// Force, margin and displacement over time.
+    #[must_use]
+    pub fn figure(&self) -> Figure {
+        grip_figure(&self.result, "grip")
+    }
+}
+
+impl Results for GrippedBody<'_> {
+    type Document = GripDocument;
+
+    fn document(&self) -> GripDocument {
+        GripDocument::new(self)
+    }
+
+    fn text(&self) -> String {
+        grip_text(self)
+    }
+
+    fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
+        Ok(grip_bundle(self, pictures)?)
+    }
+}
+
+fn ungripped(error: &GripError) -> JobError {
+    let kind = match error {
+        GripError::Cancelled(_) => ErrorKind::Cancelled,
+        GripError::Number { .. } => ErrorKind::Option,
+        _ => ErrorKind::Model,
+    };
+    JobError::new(kind, error, error.hint().to_owned())
+}

@@ -1,0 +1,70 @@
+//! The description of a test.
+
+use std::path::{Path, PathBuf};
+
+use palpate::analysis::AnalysisOptions;
+use palpate_files::description::{TestDescription, parse_test, read_test};
+
+use crate::JobError;
+
+/// What is said about the tests in a file, and where it stands; the default says nothing.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Described {
+    /// What is said.
+    pub test: Option<TestDescription>,
+    /// The file in which it stands.
+    pub path: Option<PathBuf>,
+    /// Its text.
+    pub text: Option<String>,
+}
+
+impl Described {
+    /// The description in a file, if there is one, with the part of the record's file that is meant.
+    ///
+    /// # Errors
+    /// [`JobError`] where it cannot be read, or is none.
+    pub fn read(path: Option<&Path>, part: Option<&str>) -> Result<Self, JobError> {
+        let Some(path) = path else {
+            return Ok(Self::default().with_part(part));
+        };
+        let test = read_test(path)?;
+        let text = std::fs::read_to_string(path).map_err(|error| JobError::unread(path, &error))?;
+        Ok(Self {
+            test: Some(test),
+            path: Some(path.to_owned()),
+            text: Some(text),
+        }
+        .with_part(part))
+    }
+
+    /// A description that was read already.
+    ///
+    /// # Errors
+    /// [`JobError`] where it is none.
+    pub fn parse(text: String, part: Option<&str>) -> Result<Self, JobError> {
+        Ok(Self {
+            test: Some(parse_test(&text, Path::new("test"))?),
+            path: None,
+            text: Some(text),
+        }
+        .with_part(part))
+    }
+
+    fn with_part(mut self, part: Option<&str>) -> Self {
+        if let Some(part) = part {
+            self.test.get_or_insert_default().reading.part = Some(part.to_owned());
+        }
+        self
+    }
+
+    /// The options of an analysis that it says.
+    #[must_use]
+    pub fn options(&self) -> AnalysisOptions {
+        self.test.as_ref().map_or_else(AnalysisOptions::default, TestDescription::analysis_options)
+    }
+
+    /// Its path as results name it.
+    pub(crate) fn shown(&self) -> Option<String> {
+        self.path.as_ref().map(|path| path.display().to_string())
+    }
+}

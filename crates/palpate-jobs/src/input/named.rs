@@ -1,0 +1,191 @@
+//! The files that were named: one by one, by a folder, or by a pattern.
+
+use std::collections::HashSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use palpate::watch::Watch;
+
+use super::{Described, Measurement, OpenedFile};
+use crate::output::{file_name, folder_in};
+use crate::written_by_batch::is_written_by_batch;
+use crate::{ErrorKind, JobError};
+
+/// The files that were named, those below the folders that were named, and those that patterns match, in order and each once, with what is
+/// said about them all.
+///
+/// Folders and patterns pass over what a batch has written.
+#[derive(Debug, Clone)]
+pub struct NamedRecords {
+    /// The files.
+    pub paths: Vec<PathBuf>,
+    /// What is said about them.
+    pub described: Described,
+}
+
+/// A test of one of the files.
+#[derive(Debug)]
+pub struct Part<'a> {
+    /// Its file.
+    pub path: &'a Path,
+    /// What to call it, where the file holds several.
+    pub name: Option<&'a str>,
+    /// The folder for its results.
+    pub folder: Option<PathBuf>,
+    /// Its record, or why there is none.
+    pub measurement: Result<Measurement, JobError>,
+    /// It is the only test of the only file.
+    pub only: bool,
+}
+
+impl NamedRecords {
+    /// Finds the files.
+    ///
+    /// # Errors
+    /// [`JobError`] where a name leads to none.
+    pub fn find(named: &[PathBuf], described: Described) -> Result<Self, JobError> {
+        let mut paths = Vec::new();
+        if let [path, ..] = named
+            && !named.iter().any(|path| path.exists() || is_pattern(path))
+        {
+            return Err(unmatched(path, "no such file", "check the spelling of the path"));
+        }
+        for path in named {
+            let before = paths.len();
+            if path.is_dir() {
+                below(path, &mut paths)?;
+                if paths.len() == before {
+                    return Err(unmatched(
+                        path,
+                        "expected a folder with records, found none in it or below",
+                        "name a file, or a folder that holds some (TOML and hidden files are passed over)",
+                    ));
+                }
+            } else if is_pattern(path) && !path.exists() {
+                matching(path, &mut paths)?;
+            } else {
+                paths.push(path.clone());
+            }
+        }
+        let mut seen = HashSet::new();
+        paths.retain(|path| seen.insert(path.canonicalize().unwrap_or_else(|_| path.clone())));
+        Ok(Self { paths, described })
+    }
+
+    /// Hands every test to `take`, one in memory at a time, with `out` as the folder for the results of all; `told` hears what else a file
+    /// holds. A file that cannot be opened is handed over once, as a test without a record.
+    ///
+    /// # Errors
+    /// What `take` returns, which ends it.
+    pub fn each(
+        &self,
+        out: Option<&Path>,
+        watch: &mut dyn Watch,
+        mut told: impl FnMut(&[String]),
+        mut take: impl FnMut(Part<'_>, &mut dyn Watch) -> Result<(), JobError>,
+    ) -> Result<(), JobError> {
+        let alone = self.paths.len() == 1;
+        let mut taken = Vec::new();
+        for path in &self.paths {
+            let folder = out.map(|out| match alone {
+                true => out.to_owned(),
+                false => {
+                    let stem = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
+                    folder_in(out, &stem, &mut taken)
+                }
+            });
+            let opened = match OpenedFile::open(path, &self.described) {
+                Ok(opened) => opened,
+                Err(error) => {
+                    let (name, measurement) = (None, Err(error));
+                    let only = alone;
+                    take(
+                        Part {
+                            path,
+                            name,
+                            folder,
+                            measurement,
+                            only,
+                        },
+                        watch,
+                    )?;
+                    continue;
+                }
+            };
+            told(&opened.notes());
+            let several = opened.parts().len() > 1;
+            let mut taken = Vec::new();
+            for part in opened.parts() {
+                let (name, measurement) = (opened.name(*part), opened.measurement(*part, watch));
+                let folder = folder.as_ref().map(|folder| match name {
+                    Some(name) if several => folder_in(folder, &file_name(name), &mut taken),
+                    _ => folder.clone(),
+                });
+                let only = alone && !several;
+                take(
+                    Part {
+                        path,
+                        name,
+                        folder,
+                        measurement,
+                        only,
+                    },
+                    watch,
+                )?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn unmatched(path: &Path, message: &str, hint: &str) -> JobError {
+    JobError::new(ErrorKind::File(std::io::ErrorKind::NotFound), message, hint.to_owned()).of(path.display())
+}
+
+/// All files below a folder but hidden ones, descriptions and what a batch wrote, sorted by path.
+fn below(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<(), JobError> {
+    let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+    let mut entries: Vec<PathBuf> = entries
+        .map_err(|error| JobError::unread(folder, &error))?
+        .into_iter()
+        .filter(|entry| !entry.file_name().to_string_lossy().starts_with('.'))
+        .map(|entry| entry.path())
+        .collect();
+    entries.sort();
+    for path in entries {
+        if is_written_by_batch(&path) {
+            continue;
+        }
+        if path.is_dir() && !path.is_symlink() {
+            below(&path, paths)?;
+        } else if path.is_file() && path.extension().is_none_or(|extension| extension != "toml") {
+            paths.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// Whether a name that is no file can be a pattern, for shells that leave patterns alone and for quoted ones.
+fn is_pattern(path: &Path) -> bool {
+    path.to_string_lossy().contains(['*', '?', '['])
+}
+
+/// All files that a pattern matches, sorted by path.
+fn matching(pattern: &Path, paths: &mut Vec<PathBuf>) -> Result<(), JobError> {
+    let before = paths.len();
+    let found = glob::glob(&pattern.to_string_lossy()).map_err(|error| {
+        JobError::option(format!("expected a pattern of file names, found {error}"), "").of(pattern.display())
+    })?;
+    for path in found {
+        let path = path.map_err(|error| JobError::new(ErrorKind::File(error.error().kind()), &error, None))?;
+        let of_journal = path.parent().is_some_and(is_written_by_batch);
+        if path.is_file() && !of_journal && !is_written_by_batch(&path) {
+            paths.push(path);
+        }
+    }
+    if paths.len() == before {
+        let hint = "* stands for any part of a name, ** for any folders: \"records/**/*.csv\"";
+        return Err(unmatched(pattern, "expected a pattern that matches files, found none", hint));
+    }
+    Ok(())
+}

@@ -1,0 +1,184 @@
+//! A file of records that was looked into.
+
+use std::path::Path;
+
+use palpate::analysis::AnalysisOptions;
+use palpate::record::Record;
+use palpate::watch::{Progress, Watch};
+use palpate_files::open::Contents;
+use palpate_files::record::{ReadError, RecordFile, Tests, read_part, tests};
+use palpate_files::table::SkippedPart;
+use palpate_report::result::Input;
+
+use super::Described;
+use super::source::{FileDigest, Source};
+use crate::JobError;
+
+/// A record as the jobs take it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measurement {
+    /// The record, in SI, loading positive.
+    pub record: Record,
+    /// What results say of where it comes from.
+    pub input: Input,
+    /// How its description wants it analysed.
+    pub options: AnalysisOptions,
+    /// What to know of its reading, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// A file of records that was looked into.
+pub struct OpenedFile<'d> {
+    contents: Contents,
+    tests: Tests,
+    described: &'d Described,
+    digest: FileDigest,
+}
+
+impl<'d> OpenedFile<'d> {
+    /// Looks into the file at `path`.
+    ///
+    /// # Errors
+    /// [`JobError`] where it cannot be read, or holds no test.
+    pub fn open(path: &Path, described: &'d Described) -> Result<Self, JobError> {
+        Self::of(Source::open(path)?, described)
+    }
+
+    /// Looks into a file whose bytes are there.
+    pub(crate) fn of(source: Source, described: &'d Described) -> Result<Self, JobError> {
+        let said = described.test.clone().unwrap_or_default();
+        let contents = Contents::of(source.input, &said.reading).map_err(ReadError::File)?;
+        let tests = tests(&contents, &said)?;
+        Ok(Self {
+            contents,
+            tests,
+            described,
+            digest: source.digest,
+        })
+    }
+
+    /// What is in the file.
+    #[must_use]
+    pub fn contents(&self) -> &Contents {
+        &self.contents
+    }
+
+    /// What is said about its tests.
+    #[must_use]
+    pub fn described(&self) -> &'d Described {
+        self.described
+    }
+
+    /// Indices of its tests among its parts.
+    #[must_use]
+    pub fn parts(&self) -> &[usize] {
+        &self.tests.parts
+    }
+
+    /// What was passed over.
+    #[must_use]
+    pub fn skipped(&self) -> &[SkippedPart] {
+        &self.tests.skipped
+    }
+
+    /// What the file holds besides tests, a sentence each.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let path = self.contents.path().display();
+        let told = |part: &SkippedPart| format!("{path}: skipped {} ({})", part.name, part.reason);
+        self.skipped().iter().map(told).collect()
+    }
+
+    /// What to call a part, where the file holds several tests.
+    #[must_use]
+    pub fn name(&self, part: usize) -> Option<&str> {
+        let several = self.contents.parts().len() > 1;
+        self.contents.parts()[part].name.as_deref().filter(|_| several)
+    }
+
+    /// The one test of the file.
+    ///
+    /// # Errors
+    /// [`JobError`] where there are several, with their names.
+    pub fn only(&self) -> Result<usize, JobError> {
+        match self.parts() {
+            [only] => Ok(*only),
+            several => Err(JobError::from(ReadError::SeveralParts {
+                path: self.contents.path().to_owned(),
+                parts: several.iter().map(|part| self.contents.parts()[*part].title().to_owned()).collect(),
+            })),
+        }
+    }
+
+    /// Reads the record in a part; the watch hears of the bytes.
+    ///
+    /// # Errors
+    /// [`JobError`] where it cannot be read, or the watch ends it.
+    pub fn read(&self, part: usize, watch: &mut dyn Watch) -> Result<RecordFile, JobError> {
+        let path = self.contents.path();
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        let task = format!("reading {name}");
+        let mut heard = Ok(());
+        let mut report = |done, total| {
+            let (task, total) = (task.as_str(), Some(total));
+            heard = heard.and_then(|()| watch.report(Progress { task, done, total }));
+        };
+        let file = read_part(&self.contents, part, self.described.test.as_ref(), &mut report);
+        let size = self.contents.bytes();
+        report(size, size);
+        heard?;
+        Ok(file?)
+    }
+
+    /// The record in a part as jobs take it.
+    ///
+    /// # Errors
+    /// As for [`read`](Self::read).
+    pub fn measurement(&self, part: usize, watch: &mut dyn Watch) -> Result<Measurement, JobError> {
+        let file = self.read(part, watch)?;
+        Ok(Measurement {
+            input: self.input(&file, self.name(part))?,
+            options: self.described.options(),
+            notes: averaged(&file).into_iter().collect(),
+            record: file.record,
+        })
+    }
+
+    /// What results say of where a record comes from; `part` is what to call it where the file holds several.
+    ///
+    /// # Errors
+    /// [`JobError`] where the file can no longer be read.
+    pub(crate) fn input(&self, file: &RecordFile, part: Option<&str>) -> Result<Input, JobError> {
+        let path = file.path.as_path();
+        let about = self.described.test.as_ref().and_then(|test| test.about.title.clone());
+        let title = about.unwrap_or_else(|| path.file_stem().unwrap_or_default().to_string_lossy().into_owned());
+        Ok(Input {
+            path: path.display().to_string(),
+            part: file.part.name.clone(),
+            sha256: self.digest.clone()?,
+            rows: file.rows,
+            rows_averaged: file.averaged,
+            test: self.described.shown(),
+            title: part.map_or_else(|| title.clone(), |part| format!("{title} · {part}")),
+        })
+    }
+}
+
+/// That a file is so long that its rows were averaged.
+pub(crate) fn averaged(file: &RecordFile) -> Option<String> {
+    (file.averaged > 1).then(|| {
+        let kept = file.rows.div_ceil(file.averaged);
+        format!(
+            "{}: {} rows are more than are kept; every {} successive ones became their mean ({kept} samples)",
+            file.path.display(),
+            file.rows,
+            file.averaged
+        )
+    })
+}
+
+/// A record by its file, and its part where the file holds several.
+#[must_use]
+pub fn called(path: &Path, part: Option<&str>) -> String {
+    part.map_or_else(|| path.display().to_string(), |part| format!("{}, {part}", path.display()))
+}

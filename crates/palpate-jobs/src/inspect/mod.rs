@@ -1,0 +1,188 @@
+//! What is in a record, and which machines are known.
+//!
+//! | file | what |
+//! |---|---|
+//! | `facts.rs` | how a test is written, its columns, its sampling |
+//! | `cut.rs` | the cut into phases: as a table, a sparkline and a figure |
+
+mod cut;
+mod facts;
+
+use std::fmt::Write as _;
+
+use palpate::watch::Watch;
+use palpate_files::description::machines;
+use palpate_files::input::Packing;
+use palpate_files::open::Contents;
+use palpate_files::record::describe;
+use palpate_report::figure::Figure;
+use palpate_report::table::{Cell, Table, TableColumn};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::input::{OpenedFile, averaged};
+use crate::{ErrorKind, JobError, Outcome};
+use cut::Cut;
+use facts::{columns_table, part_facts, signal_facts};
+
+/// Say what is in a file, and which phases a test in it has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Inspect {
+    /// The file has to hold one test: its figure or its description is wanted.
+    pub only: bool,
+}
+
+/// What is in a file: as much as is known, even where that gives no record.
+#[derive(Debug)]
+pub struct Inspected {
+    /// All that is known, for people.
+    pub text: String,
+    /// Why the one test of the file gives no record, or no phases.
+    pub refused: Option<JobError>,
+    /// A first description of the one test, with every guess commented.
+    pub description: Option<String>,
+    cut: Option<Cut>,
+}
+
+impl Inspect {
+    /// Looks into a file.
+    ///
+    /// # Errors
+    /// [`JobError`] where the watch ends it; whatever else is wrong stands in the result.
+    pub fn run(self, opened: &OpenedFile<'_>, watch: &mut dyn Watch) -> Result<Outcome<Inspected>, JobError> {
+        let mut found = Inspected {
+            text: file_facts(opened.contents()),
+            refused: None,
+            description: None,
+            cut: None,
+        };
+        let mut notes = Vec::new();
+        let told = match opened.parts() {
+            [only] => found.one_test(opened, *only, &mut notes, watch),
+            _ if self.only => opened.only().map(drop),
+            several => many_tests(opened, several, &mut notes, watch).map(|tests| found.text.push_str(&tests)),
+        };
+        for part in opened.skipped() {
+            let _ = writeln!(found.text, "skipped {}: {}", part.name, part.reason);
+        }
+        found.refused = told.err();
+        match found.refused {
+            Some(error) if error.kind == ErrorKind::Cancelled => Err(error),
+            _ => Ok(Outcome {
+                notes,
+                ..Outcome::of(found)
+            }),
+        }
+    }
+}
+
+impl Inspected {
+    /// The cut into phases; none where there is no record.
+    #[must_use]
+    pub fn figure(&self) -> Option<Figure> {
+        self.cut.as_ref().map(Cut::figure)
+    }
+
+    /// Everything about one test; where it gives no record, as much as is known.
+    fn one_test(
+        &mut self,
+        opened: &OpenedFile<'_>,
+        part: usize,
+        notes: &mut Vec<String>,
+        watch: &mut dyn Watch,
+    ) -> Result<(), JobError> {
+        let (test, out) = (opened.described().test.as_ref(), &mut self.text);
+        let about = &opened.contents().parts()[part];
+        out.push_str(&part_facts(about, opened.contents().format()));
+        let file = opened.read(part, watch).inspect_err(|_| {
+            // The columns help to mend what is wrong.
+            out.push_str(&columns_table(about, None).to_plain_text());
+            self.description = Some(describe(opened.contents(), part, None, None));
+        })?;
+        notes.extend(averaged(&file));
+        out.push_str(&columns_table(about, Some(&file)).to_plain_text());
+        out.push('\n');
+        let cut = Cut::of(&file.record, test);
+        out.push_str(&signal_facts(&file, cut.as_ref().ok().and_then(Cut::signals)));
+        let place = file.path.display().to_string();
+        let cut = cut.map_err(|error| JobError::analysis(&error, &place))?;
+        out.push_str(&cut.told(test));
+        if let Some(error) = cut.refused() {
+            return Err(JobError::new(ErrorKind::Record, error, error.hint().to_owned()).of(place));
+        }
+        let found = cut.found().map(|segmentation| (&file, segmentation));
+        self.description = Some(describe(opened.contents(), part, Some(&file), found));
+        self.cut = Some(cut);
+        Ok(())
+    }
+}
+
+/// Machines that a description can name, with what each is, for people.
+#[must_use]
+pub fn machines_text() -> String {
+    machines_table().to_plain_text()
+}
+
+/// Machines that a description can name, with what each is.
+fn machines_table() -> Table {
+    let table = Table::new("machines", "Machines")
+        .column(TableColumn::new("Name", "name", ""))
+        .column(TableColumn::new("What", "about", ""))
+        .note("in a test description: [machine] preset = \"NAME\"; what the description says itself goes before");
+    machines().iter().fold(table, |table, machine| {
+        table.row(vec![Cell::text(machine.name), Cell::text(machine.about().trim_end_matches('.'))])
+    })
+}
+
+/// Format, packing and number of tests.
+fn file_facts(contents: &Contents) -> String {
+    let packing = match contents.packing() {
+        Packing::None => String::new(),
+        packed => format!(", {packed}"),
+    };
+    format!("{}\n{}{packing}\n", contents.path().display(), contents.format())
+}
+
+/// One row a test.
+fn many_tests(
+    opened: &OpenedFile<'_>,
+    parts: &[usize],
+    notes: &mut Vec<String>,
+    watch: &mut dyn Watch,
+) -> Result<String, JobError> {
+    let mut table = Table::new("tests", "Tests")
+        .column(TableColumn::new("Test", "part", ""))
+        .column(TableColumn::new("Rows", "rows", ""))
+        .column(TableColumn::new("Duration", "duration_s", "s"))
+        .column(TableColumn::new("Largest force", "force_max_n", "N"))
+        .column(TableColumn::new("Holds", "holds", ""))
+        .note("palpate inspect FILE --part NAME shows one of them");
+    for part in parts {
+        let name = opened.contents().parts()[*part].title();
+        table = table.row(match opened.read(*part, watch) {
+            Ok(file) => {
+                notes.extend(averaged(&file));
+                let record = &file.record;
+                let time = record.time();
+                let cut = Cut::of(record, opened.described().test.as_ref()).ok();
+                let holds = cut.as_ref().and_then(Cut::found).map(|found| found.holds().count());
+                vec![
+                    Cell::text(name),
+                    Cell::Integer(file.rows as i64),
+                    Cell::number(time[time.len() - 1] - time[0], 5),
+                    Cell::number(record.force().iter().fold(0.0, |most: f64, force| most.max(force.abs())), 4),
+                    holds.map_or_else(|| Cell::text("none"), |count| Cell::Integer(count as i64)),
+                ]
+            }
+            Err(error) if error.kind == ErrorKind::Cancelled => return Err(error),
+            Err(error) => {
+                let mut row = vec![Cell::text(name)];
+                row.extend((0..3).map(|_| Cell::missing("not read")));
+                row.push(Cell::text(error.to_string()));
+                row
+            }
+        });
+    }
+    Ok(format!("\n{}\n", table.to_plain_text()))
+}

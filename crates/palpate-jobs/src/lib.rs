@@ -1,0 +1,52 @@
+//! What palpate can be asked to do: one file or room a job, between the front ends and the library with its files and reports.
+//!
+//! A job is a struct of options that has units in its names and a JSON form; its defaults stand here and nowhere else. `run` takes what
+//! the job works on and a [`Watch`](palpate::watch::Watch), which hears of its progress and may cancel it, and gives an [`Outcome`] or a
+//! [`JobError`]. A front end parses or converts, runs one job, and prints or converts.
+//!
+//! | file | what |
+//! |---|---|
+//! | `error.rs` | why there is no outcome ([`JobError`]) |
+//! | `outcome.rs` | result, document, text, files and verdict of a job |
+//! | `input/` | records, opened and hashed once |
+//! | `output.rs` | files that appear whole or not at all, and never in the place of one that is read |
+//! | `store.rs` | what can be resumed |
+//! | `threads.rs` | many pieces of work over threads |
+//! | `analyze.rs` … | one job each |
+
+pub mod input;
+pub mod output;
+
+mod analyze;
+mod batch;
+mod calibrate;
+mod compare;
+mod convert;
+mod error;
+mod grip;
+mod inspect;
+mod options;
+mod outcome;
+mod predict;
+mod reproduce;
+mod simulate;
+mod store;
+mod sweep;
+mod threads;
+mod watch_log;
+mod written_by_batch;
+
+pub use analyze::{Analyze, Analyzed};
+pub use batch::{Batch, Batched, Refused};
+pub use calibrate::{Calibrate, Calibrated, Equilibrium};
+pub use compare::{Compare, Compared};
+pub use convert::{Convert, Converted};
+pub use error::{ErrorKind, JobError, spelled};
+pub use grip::{MaterialSource, PlanGrip, RegripFor};
+pub use inspect::{Inspect, Inspected, machines_text};
+pub use outcome::{Outcome, Results, Verdict};
+pub use predict::{Predict, Predicted};
+pub use reproduce::Reproduce;
+pub use simulate::{DriveBy, Simulate, Simulated};
+pub use sweep::{Sweep, Swept, sweep_fields, sweep_rows};
+pub use watch_log::{Event, HoldSeen, Seen, WatchLog};

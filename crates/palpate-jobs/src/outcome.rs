@@ -1,0 +1,96 @@
+//! What a job gives: its result, and everything that can be made of it.
+
+use palpate_report::study::{Bundle, Pictures};
+use serde::Serialize;
+
+use crate::JobError;
+
+/// Whether the answer of a job that was done is a yes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Done, and the answer is no worse than expected.
+    Positive,
+    /// Done, and the answer is no: it does not hold, nothing could be compared, a check failed.
+    Negative,
+}
+
+impl Verdict {
+    /// Of a condition that holds in a positive one.
+    #[must_use]
+    pub fn of(positive: bool) -> Self {
+        if positive { Self::Positive } else { Self::Negative }
+    }
+
+    /// The exit code of a command: 0 or 1.
+    #[must_use]
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Self::Positive => 0,
+            Self::Negative => 1,
+        }
+    }
+}
+
+/// The outcome of a job. Text, document and files are made of its result when they are wanted; nothing is computed again.
+#[derive(Debug, Clone)]
+pub struct Outcome<R> {
+    /// The typed result.
+    pub result: R,
+    /// Whether the answer is a yes.
+    pub verdict: Verdict,
+    /// What to know beside the result, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// A result that is shown as text, as a document and as files.
+pub trait Results {
+    /// What programs read.
+    type Document: Serialize;
+
+    /// The document.
+    fn document(&self) -> Self::Document;
+
+    /// Tables and sentences for people.
+    fn text(&self) -> String;
+
+    /// Report, document, tables and figures by their names.
+    ///
+    /// # Errors
+    /// [`JobError`] where a figure or document cannot be made.
+    fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError>;
+}
+
+impl<R> Outcome<R> {
+    /// A result about which there is nothing more to say.
+    pub fn of(result: R) -> Self {
+        Self {
+            result,
+            verdict: Verdict::Positive,
+            notes: Vec::new(),
+        }
+    }
+}
+
+impl<R: Results> Outcome<R> {
+    /// The document as text, indented, with a line end.
+    ///
+    /// # Errors
+    /// [`JobError`] where it has no form in JSON.
+    pub fn json(&self) -> Result<String, JobError> {
+        Ok(serde_json::to_string_pretty(&self.result.document())? + "\n")
+    }
+
+    /// Tables and sentences for people.
+    #[must_use]
+    pub fn text(&self) -> String {
+        self.result.text()
+    }
+
+    /// Report, document, tables and figures by their names.
+    ///
+    /// # Errors
+    /// [`JobError`] where a figure or document cannot be made.
+    pub fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
+        self.result.bundle(pictures)
+    }
+}

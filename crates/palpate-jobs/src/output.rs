@@ -1,0 +1,295 @@
+//! Files that appear whole or not at all, and never in the place of one that is read.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use palpate_files::parquet_table::TableError;
+use palpate_report::figure::Figure;
+use palpate_report::study::Bundle;
+use sha2::{Digest, Sha256};
+
+use crate::{ErrorKind, JobError};
+
+/// Begin of the names of temporary files.
+pub(crate) const TEMPORARY: &str = ".palpate-";
+
+/// Resolution of PNG figures.
+const DPI: f64 = 300.0;
+
+/// Refuses to write a file that is read: a measured record cannot be had again.
+///
+/// # Errors
+/// [`JobError`] with the first of `writes` that is among `reads`, through links too.
+pub fn keep_apart<'a>(
+    reads: impl IntoIterator<Item = &'a PathBuf>,
+    writes: impl IntoIterator<Item = &'a PathBuf>,
+) -> Result<(), JobError> {
+    let reads: Vec<&PathBuf> = reads.into_iter().collect();
+    match writes.into_iter().find(|out| reads.iter().any(|read| is_same(read, out))) {
+        Some(out) => Err(JobError::option(
+            "expected another file than those that are read, found one of them",
+            "choose another name for what is written",
+        )
+        .of(out.display())),
+        None => Ok(()),
+    }
+}
+
+/// Whether two paths lead to one file, through links too.
+pub(crate) fn is_same(one: &Path, other: &Path) -> bool {
+    match (one.canonicalize(), other.canonicalize()) {
+        (Ok(one), Ok(other)) => one == other,
+        _ => one == other,
+    }
+}
+
+/// What the operating system says about a file to be written, and what would help.
+pub(crate) fn unwritten(path: &Path, error: &io::Error) -> JobError {
+    let hint = match error.kind() {
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => "choose a folder that you may write to",
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "free some space; nothing was written",
+        io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => {
+            "a file stands where the folder should go; choose another name with ⟨out⟩"
+        }
+        _ => "",
+    };
+    // The name of a temporary file would say nothing to the reader.
+    let what = io::Error::from(error.kind());
+    JobError::new(ErrorKind::File(error.kind()), format!("cannot write: {what}"), hint.to_owned()).of(path.display())
+}
+
+/// Writes one file: under a temporary name first, then renamed.
+///
+/// # Errors
+/// [`JobError`] where the operating system takes no file there.
+pub fn write_file(path: &Path, content: &[u8]) -> Result<(), JobError> {
+    write_file_with(path, |out| out.write_all(content))
+}
+
+/// Likewise, for content that is made as it goes.
+///
+/// # Errors
+/// As for [`write_file`].
+pub fn write_file_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), JobError> {
+    let buffered = |file: &fs::File| -> io::Result<()> {
+        let mut out = io::BufWriter::new(file);
+        write(&mut out)?;
+        out.flush()
+    };
+    place_file(path, folder_of(path), buffered).map_err(|error: io::Error| unwritten(path, &error))
+}
+
+/// The folder that a file lies in.
+pub(crate) fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Likewise, for writers with errors of their own, and with the temporary file in a folder on the same disk.
+pub(crate) fn place_file<E: From<io::Error>>(
+    path: &Path,
+    folder: &Path,
+    write: impl FnOnce(&fs::File) -> Result<(), E>,
+) -> Result<(), E> {
+    fs::create_dir_all(folder)?;
+    let file = tempfile::Builder::new().prefix(TEMPORARY).tempfile_in(folder)?;
+    write(file.as_file())?;
+    file.as_file().sync_all()?;
+    file.persist(path).map_err(|error| error.error)?;
+    Ok(open_to_all(path)?)
+}
+
+/// Why a table is not in its place.
+pub(crate) enum Unplaced {
+    Store(JobError),
+    Table(TableError),
+}
+
+impl From<TableError> for Unplaced {
+    fn from(error: TableError) -> Self {
+        Self::Table(error)
+    }
+}
+
+impl From<io::Error> for Unplaced {
+    fn from(error: io::Error) -> Self {
+        Self::Table(error.into())
+    }
+}
+
+impl Unplaced {
+    pub(crate) fn at(self, path: &Path) -> JobError {
+        match self {
+            Self::Store(error) => error,
+            Self::Table(error) => unwritten_table(path, &error),
+        }
+    }
+}
+
+/// A failure of a table at `path`.
+pub(crate) fn unwritten_table(path: &Path, error: &TableError) -> JobError {
+    match error {
+        TableError::Io(error) => unwritten(path, error),
+        error => {
+            let hint = "compute all runs again with ⟨restart⟩".to_owned();
+            JobError::new(ErrorKind::File(io::ErrorKind::InvalidData), error, hint).of(path.display())
+        }
+    }
+}
+
+/// Refuses a table in the place of a folder.
+pub(crate) fn check_no_folder(out: &Path) -> Result<(), JobError> {
+    if out.is_dir() {
+        let message = "expected a file to write the table to, found a directory";
+        return Err(JobError::option(message, "choose another name with ⟨out⟩").of(out.display()));
+    }
+    Ok(())
+}
+
+/// Writes all files of a bundle below `folder`: all of them beside it first, then moved into place.
+///
+/// # Errors
+/// As for [`write_file`].
+pub fn write_bundle(folder: &Path, bundle: &Bundle) -> Result<(), JobError> {
+    let stage = |bundle: &Bundle| -> io::Result<tempfile::TempDir> {
+        fs::create_dir_all(folder)?;
+        let staged = tempfile::Builder::new().prefix(TEMPORARY).tempdir_in(folder)?;
+        for (name, content) in &bundle.files {
+            let path = staged.path().join(name);
+            fs::create_dir_all(folder_of(&path))?;
+            let mut file = fs::File::create(&path)?;
+            file.write_all(content)?;
+            file.sync_all()?;
+        }
+        Ok(staged)
+    };
+    let existed = folder.exists();
+    let staged = stage(bundle).map_err(|error| {
+        if !existed {
+            // Only an empty folder goes; one that others have written to since stays.
+            let _ = fs::remove_dir(folder);
+        }
+        unwritten(folder, &error)
+    })?;
+    let stale = stale_files(folder, bundle);
+    for (name, _) in &bundle.files {
+        let target = folder.join(name);
+        let place = fs::create_dir_all(folder_of(&target));
+        let place = place.and_then(|()| fs::rename(staged.path().join(name), &target));
+        place.map_err(|error| unwritten(&target, &error))?;
+    }
+    for path in stale {
+        // A file that is gone already is as good as removed.
+        let _ = fs::remove_file(path);
+    }
+    let names: String = bundle.files.iter().map(|(name, _)| format!("{name}\n")).collect();
+    write_file(&folder.join(MANIFEST), names.as_bytes())
+}
+
+/// The names that the last run wrote into a folder, so that the next one can take away what it does not write again.
+const MANIFEST: &str = ".palpate-files";
+
+/// Files of an earlier run that this one does not write: they would speak of another record. Others' files stay.
+fn stale_files(folder: &Path, bundle: &Bundle) -> Vec<PathBuf> {
+    let written = fs::read_to_string(folder.join(MANIFEST)).unwrap_or_default();
+    let is_stale = |name: &&str| {
+        let inside = Path::new(name).components().all(|part| matches!(part, std::path::Component::Normal(_)));
+        inside && !bundle.files.iter().any(|(new, _)| new == name)
+    };
+    written.lines().filter(is_stale).map(|name| folder.join(name)).collect()
+}
+
+/// Temporary files are private; a result is as readable as any other file of the user's.
+#[cfg(unix)]
+fn open_to_all(path: &Path) -> io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    fs::set_permissions(path, fs::Permissions::from_mode(0o644))
+}
+
+#[cfg(not(unix))]
+fn open_to_all(_: &Path) -> io::Result<()> {
+    Ok(())
+}
+
+/// SHA-256 of bytes, hexadecimal.
+#[must_use]
+pub fn sha256(content: &[u8]) -> String {
+    hexadecimal(Sha256::digest(content))
+}
+
+/// A digest in hexadecimal.
+pub(crate) fn hexadecimal(bytes: impl AsRef<[u8]>) -> String {
+    bytes.as_ref().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Refuses a name without one of these endings; `expected` and `hint` say what is meant.
+pub(crate) fn check_ending(path: &Path, endings: &[&str], expected: &str, hint: &str) -> Result<(), JobError> {
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some(ending) if endings.contains(&ending) => Ok(()),
+        _ => Err(JobError::option(format!("expected {expected}"), hint).of(path.display())),
+    }
+}
+
+/// Refuses names of figures that say no format.
+///
+/// # Errors
+/// [`JobError`] where the name does not end in `.svg` or `.png`.
+pub fn check_figure(path: &Path) -> Result<(), JobError> {
+    check_ending(path, &["svg", "png"], "a figure ending in .svg or .png", "name the figure FILE.svg or FILE.png")
+}
+
+/// Refuses names of series that do not end in `.csv`.
+///
+/// # Errors
+/// [`JobError`] for any other name.
+pub fn check_series(path: &Path) -> Result<(), JobError> {
+    check_ending(path, &["csv"], "a series ending in .csv", "name the series FILE.csv")
+}
+
+/// Refuses a file that is there: a description that a person has worked on is not written over.
+///
+/// # Errors
+/// [`JobError`] where there is such a file.
+pub fn check_new(path: &Path) -> Result<(), JobError> {
+    if path.exists() {
+        let hint = "choose another name with ⟨write_test⟩, or remove the file first";
+        let message = "expected the name of a new file, found one that is there";
+        return Err(JobError::option(message, hint).of(path.display()));
+    }
+    Ok(())
+}
+
+/// The bytes of a figure, by the ending of its name.
+///
+/// # Errors
+/// [`JobError`] where the name says no format, or the figure cannot be drawn.
+pub fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, JobError> {
+    check_figure(path)?;
+    let drawn = match path.extension().and_then(|extension| extension.to_str()) {
+        Some("png") => figure.to_png(DPI),
+        _ => figure.to_svg().map(String::into_bytes),
+    };
+    drawn.map_err(|error| JobError::from(error).of(path.display()))
+}
+
+/// The name of a figure in a file.
+pub(crate) fn stem(path: &Path) -> String {
+    path.file_stem().map_or("figure".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// A name of a test as the name of a file: what no system allows there becomes a hyphen.
+pub(crate) fn file_name(name: &str) -> String {
+    let allowed = |letter: char| !letter.is_control() && !"/\\:*?\"<>|".contains(letter);
+    let name: String = name.chars().map(|letter| if allowed(letter) { letter } else { '-' }).collect();
+    let name = name.trim().trim_matches('.').trim();
+    if name.is_empty() { "test".to_owned() } else { name.to_owned() }
+}
+
+/// A folder by its name in another one, with a number where that is taken.
+pub(crate) fn folder_in(out: &Path, name: &str, taken: &mut Vec<PathBuf>) -> PathBuf {
+    let numbered = (2..).map(|number| out.join(format!("{name}-{number}")));
+    let mut names = std::iter::once(out.join(name)).chain(numbered);
+    let folder = names.find(|folder| !taken.contains(folder)).unwrap_or_else(|| out.join(name));
+    taken.push(folder.clone());
+    folder
+}

@@ -1,0 +1,112 @@
+//! A material under a protocol: its force, with intervals.
+
+use std::io::{self, Write};
+
+use palpate::calibrate::Prediction;
+use palpate::simulate::{Sampling, SimulateError};
+use palpate::watch::{Progress, Watch};
+use palpate_files::description::{MaterialFile, Protocol};
+use palpate_report::figure::Figure;
+use palpate_report::study::{prediction_figure, prediction_table, write_prediction};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::options::checked_confidence;
+use crate::{ErrorKind, JobError, Outcome};
+
+/// Predict what a calibrated body does under a protocol, with intervals.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Predict {
+    /// Times at which the force is wanted; the whole course if there are none.
+    pub at_s: Vec<f64>,
+    /// Coverage of the intervals, between 0 and 1.
+    pub confidence: f64,
+}
+
+impl Default for Predict {
+    fn default() -> Self {
+        Self {
+            at_s: Vec::new(),
+            confidence: 0.95,
+        }
+    }
+}
+
+/// What a calibrated body does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Predicted {
+    /// At the times that are wanted.
+    pub prediction: Prediction,
+    /// The whole course.
+    course: Option<Prediction>,
+    caption: String,
+}
+
+impl Predict {
+    /// Predicts what the body of a material file, under the name of that file, does under a protocol. The course between single times is
+    /// computed only for a figure.
+    ///
+    /// # Errors
+    /// [`JobError`] where the protocol cannot be followed, or the watch ends it.
+    pub fn run(
+        &self,
+        (file, name): (&MaterialFile, &str),
+        (protocol, place): (&Protocol, &str),
+        with_figure: bool,
+        watch: &mut dyn Watch,
+    ) -> Result<Outcome<Predicted>, JobError> {
+        let (material, confidence) = (&file.material, checked_confidence(self.confidence)?);
+        let mut at = self.at_s.clone();
+        at.sort_by(f64::total_cmp);
+        at.dedup();
+        watch.report(Progress::open("predicting", 0))?;
+        let predict = |sampling: &Sampling| {
+            material.predict(protocol.drive(), sampling, confidence).map_err(|error| {
+                let beyond = matches!(error, SimulateError::SampleTime { .. });
+                let hint = beyond.then(|| "ask for times inside the protocol, or lengthen its last hold".to_owned());
+                JobError::new(ErrorKind::Model, error, hint).of(place)
+            })
+        };
+        // Single times make no curve.
+        let single = !at.is_empty();
+        let prediction = predict(&if single { Sampling::Times(at) } else { protocol.sampling.clone() })?;
+        let course = (with_figure && single).then(|| predict(&protocol.sampling)).transpose()?;
+        let open = "the calibration left a number open: the intervals hold noise alone";
+        let open = material.uncertainty.is_none().then(|| open.to_owned());
+        let beyond = prediction.extrapolations.iter().map(|beyond| format!("beyond the test: {beyond}"));
+        let notes = open.into_iter().chain(beyond).collect();
+        let caption = format!("What {name} does, by its calibrated law.");
+        let caption = protocol.title.as_deref().map_or(caption.clone(), |title| format!("{title}. {caption}"));
+        Ok(Outcome {
+            notes,
+            ..Outcome::of(Predicted {
+                prediction,
+                course,
+                caption,
+            })
+        })
+    }
+}
+
+impl Predicted {
+    /// The forces, a row each.
+    #[must_use]
+    pub fn text(&self) -> String {
+        prediction_table(&self.prediction).to_plain_text()
+    }
+
+    /// Writes the series as CSV.
+    ///
+    /// # Errors
+    /// Whatever the writer says.
+    pub fn write_series(&self, out: &mut dyn Write) -> io::Result<()> {
+        write_prediction(out, &self.prediction)
+    }
+
+    /// The course with its intervals.
+    #[must_use]
+    pub fn figure(&self) -> Figure {
+        prediction_figure(self.course.as_ref().unwrap_or(&self.prediction), "prediction", &self.caption)
+    }
+}

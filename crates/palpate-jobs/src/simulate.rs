@@ -1,0 +1,360 @@
+//! A protocol, or a body under a measured drive, to series, figures and tables.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use palpate::contact::RateDependence;
+use palpate::record::Record;
+use palpate::simulate::{
+    Contact, ContactEventKind, ContactModel, Drive, Energy, ForceHistory, Memory, Motion, Sampling, SimulateError,
+    StepWork, StrainWave, Trajectory, cycles, energy, simulate, strain_wave, work_by_step,
+};
+use palpate::test_problems::Noise;
+use palpate::watch::{Progress, Watch};
+use palpate_files::description::{Protocol, read_protocol, read_scene};
+use palpate_report::figure::Figure;
+use palpate_report::study::{
+    cycle_table, hysteresis_figure, step_work_table, trajectory_figure, wave_figure, write_trajectory,
+};
+use palpate_report::table::{Cell, Table, TableColumn};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::output::stem;
+use crate::{ErrorKind, JobError, Outcome};
+
+/// Simulate squeeze, hold, creep and release by a protocol, or by a measured drive.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Simulate {
+    /// Which column of a record drives the contact.
+    pub drive_by: DriveBy,
+    /// The series is a record as a machine would write it, with noise of this standard deviation on the force.
+    pub force_noise_n: Option<f64>,
+    /// Likewise on the displacement.
+    pub displacement_noise_m: Option<f64>,
+    /// Which noise: the same seed gives the same record.
+    pub seed: u64,
+}
+
+/// What of a record drives a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DriveBy {
+    /// Its displacement.
+    #[default]
+    Displacement,
+    /// Its force.
+    Force,
+}
+
+impl Default for Simulate {
+    fn default() -> Self {
+        Self {
+            drive_by: DriveBy::Displacement,
+            force_noise_n: None,
+            displacement_noise_m: None,
+            seed: 1,
+        }
+    }
+}
+
+/// A simulated series, and what is drawn and computed of it where it is wanted.
+#[derive(Debug)]
+pub struct Simulated {
+    /// The series.
+    pub trajectory: Trajectory,
+    scene: Scene,
+    job: Simulate,
+}
+
+impl Simulate {
+    /// Simulates the body of the protocol at `path` under its steps, or, if a record with its name is given, under that.
+    ///
+    /// # Errors
+    /// [`JobError`] where the protocol cannot be read or followed, or the watch ends it.
+    pub fn run(
+        self,
+        path: &Path,
+        driver: Option<(&Record, &str)>,
+        watch: &mut dyn Watch,
+    ) -> Result<Outcome<Simulated>, JobError> {
+        let (scene, mut notes) = match driver {
+            None => stepped(path)?,
+            Some((record, place)) => (self.driven(path, record, place)?, Vec::new()),
+        };
+        watch.report(Progress::open("simulating", 0))?;
+        let trajectory = simulate(scene.drive(), &scene.contact, &scene.sampling);
+        let trajectory = trajectory.map_err(|error| scene.refused(error))?;
+        for event in &trajectory.events {
+            let what = match event.kind {
+                ContactEventKind::Lost => "lost",
+                ContactEventKind::Regained => "regained",
+            };
+            // Rounded first, so that no minus stands before a zero.
+            let depth = (1e7 * event.contact_displacement).round() / 1e4 + 0.0;
+            notes.push(format!("contact {what} at {:.4} s, surface at {depth:.4} mm", event.time));
+        }
+        let result = Simulated {
+            trajectory,
+            scene,
+            job: self,
+        };
+        Ok(Outcome {
+            notes,
+            ..Outcome::of(result)
+        })
+    }
+
+    /// The body of the protocol, driven by a record from its first row on.
+    fn driven(self, protocol: &Path, record: &Record, place: &str) -> Result<Scene, JobError> {
+        let (title, contact) = read_scene(protocol)?;
+        let times = record.time().to_vec();
+        let sampling = Sampling::Times(times.clone());
+        let driver = match self.drive_by {
+            DriveBy::Displacement => {
+                let displacement = record.displacement().ok_or_else(|| {
+                    let hint = "replay the force with ⟨drive_by=force⟩, or name the column in a test description";
+                    let message = "expected a displacement to replay, found none";
+                    JobError::new(ErrorKind::Record, message, hint.to_owned()).of(place)
+                })?;
+                Motion::new(times, displacement.to_vec()).map(Driver::Motion)
+            }
+            DriveBy::Force => {
+                // Noise about zero pulls at nothing; a jaw that really pulls is told by its size.
+                let most = record.force().iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+                let quiet = |force: &f64| if *force < 0.0 && *force > -PULL * most { 0.0 } else { *force };
+                ForceHistory::new(times, record.force().iter().map(quiet).collect()).map(Driver::Force)
+            }
+        };
+        Ok(Scene {
+            driver: driver.map_err(|error| JobError::new(ErrorKind::Model, error, None).of(place))?,
+            place: place.to_owned(),
+            title,
+            contact,
+            sampling,
+        })
+    }
+}
+
+impl Simulated {
+    /// Writes the series as CSV, as a record of a machine where noise was asked for.
+    ///
+    /// # Errors
+    /// Whatever the writer says.
+    pub fn write_series(&self, out: &mut dyn Write) -> io::Result<()> {
+        match (self.job.force_noise_n, self.job.displacement_noise_m) {
+            (None, None) => write_trajectory(out, &self.trajectory),
+            _ => out.write_all(self.record().as_bytes()),
+        }
+    }
+
+    /// Force, strain and displacement over time, as the figure in the file at `path`.
+    #[must_use]
+    pub fn figure(&self, path: &Path) -> Figure {
+        let caption = self.scene.caption("Force, strain of the contact layer and displacement of the jaw");
+        trajectory_figure(&self.trajectory, &stem(path), &caption)
+    }
+
+    /// Force against displacement, likewise.
+    ///
+    /// # Errors
+    /// [`JobError`] where the work of a step cannot be computed.
+    pub fn hysteresis(&self, path: &Path) -> Result<Figure, JobError> {
+        let what = "Force against displacement of the jaw; the area of a loop is what the cycle lost";
+        let cycles = cycles(&self.scene.steps()?);
+        Ok(hysteresis_figure(&self.trajectory, &cycles, &stem(path), &self.scene.caption(what)))
+    }
+
+    /// What every step cost, as CSV.
+    ///
+    /// # Errors
+    /// As for [`hysteresis`](Self::hysteresis).
+    pub fn energy_by_step(&self) -> Result<String, JobError> {
+        Ok(step_work_table(&self.scene.steps()?).to_csv())
+    }
+
+    /// What every cycle cost, as CSV.
+    ///
+    /// # Errors
+    /// As for [`hysteresis`](Self::hysteresis).
+    pub fn energy_by_cycle(&self) -> Result<String, JobError> {
+        Ok(cycle_table(&cycles(&self.scene.steps()?)).to_csv())
+    }
+
+    /// Work over time, as CSV.
+    ///
+    /// # Errors
+    /// [`JobError`] where it cannot be computed.
+    pub fn energy(&self) -> Result<String, JobError> {
+        let scene = &self.scene;
+        let energy = energy(scene.drive(), &scene.contact, &scene.sampling);
+        Ok(energy_table(&energy.map_err(|error| scene.refused(error))?).to_csv())
+    }
+
+    /// Strain of every layer over time.
+    ///
+    /// # Errors
+    /// [`JobError`] where the law has no layers.
+    pub fn wave(&self) -> Result<StrainWave, JobError> {
+        let scene = &self.scene;
+        let layered = scene.contact.latency().ok_or_else(|| {
+            let hint = "name the latency law in [law], or leave ⟨layers_out⟩ and ⟨strain_map⟩ out";
+            JobError::option("a linear law has no layers whose strain could be shown", hint).of(&scene.place)
+        })?;
+        strain_wave(scene.drive(), layered, &scene.sampling).map_err(|error| scene.refused(error))
+    }
+
+    /// The strain of every layer as CSV.
+    #[must_use]
+    pub fn wave_csv(wave: &StrainWave) -> String {
+        wave_table(wave).to_csv()
+    }
+
+    /// The same as the figure in the file at `path`.
+    #[must_use]
+    pub fn wave_figure(&self, wave: &StrainWave, path: &Path) -> Figure {
+        wave_figure(
+            &stem(path),
+            wave,
+            &self.scene.caption("Strain of every layer over time, and of some of them as lines"),
+        )
+    }
+
+    /// The series as a machine would have recorded it: three columns, noise, and a preamble that says it is none.
+    fn record(&self) -> String {
+        let Simulate { seed, .. } = self.job;
+        let (force_noise, displacement_noise) =
+            (self.job.force_noise_n.unwrap_or(0.0), self.job.displacement_noise_m.unwrap_or(0.0));
+        let (mut noise, trajectory) = (Noise::new(seed), &self.trajectory);
+        let mut out = format!(
+            "Origin,\"simulated by palpate {}, not measured\"\nForce noise,\"{force_noise}\",N\nDisplacement noise,\"{}\",mm\nSeed,\"{seed}\"\n",
+            env!("CARGO_PKG_VERSION"),
+            1e3 * displacement_noise,
+        );
+        out.push_str("time_s,displacement_mm,force_n\n");
+        for i in 0..trajectory.len() {
+            let displacement = 1e3 * (trajectory.displacement[i] + displacement_noise * noise.normal());
+            let force = trajectory.force[i] + force_noise * noise.normal();
+            out.push_str(&format!("{:.6},{displacement:.6},{force:.6}\n", trajectory.time[i]));
+        }
+        out
+    }
+}
+
+/// What is simulated: a body with the steps of a protocol, or with what a record says.
+#[derive(Debug)]
+struct Scene {
+    /// The file that errors are about.
+    place: String,
+    title: Option<String>,
+    contact: Contact,
+    driver: Driver,
+    sampling: Sampling,
+}
+
+#[derive(Debug)]
+enum Driver {
+    Steps(Box<Protocol>),
+    Motion(Motion),
+    Force(ForceHistory),
+}
+
+impl Scene {
+    fn drive(&self) -> Drive<'_> {
+        match &self.driver {
+            Driver::Steps(protocol) => protocol.drive(),
+            Driver::Motion(motion) => motion.into(),
+            Driver::Force(history) => history.into(),
+        }
+    }
+
+    fn steps(&self) -> Result<Vec<StepWork>, JobError> {
+        work_by_step(self.drive(), &self.contact).map_err(|error| self.refused(error))
+    }
+
+    fn refused(&self, error: SimulateError) -> JobError {
+        JobError::new(ErrorKind::Model, error, None).of(&self.place)
+    }
+
+    fn caption(&self, what: &str) -> String {
+        caption(self.title.as_deref(), what, &self.contact)
+    }
+}
+
+/// The body and the steps of a protocol, and what to know of them.
+fn stepped(path: &Path) -> Result<(Scene, Vec<String>), JobError> {
+    let protocol = read_protocol(path)?;
+    let one = "one run, with the numbers as they stand: the table [sweep] is for palpate sweep";
+    let notes = if protocol.has_sweep { vec![one.to_owned()] } else { Vec::new() };
+    let scene = Scene {
+        place: path.display().to_string(),
+        title: protocol.title.clone(),
+        contact: protocol.contact.clone(),
+        sampling: protocol.sampling.clone(),
+        driver: Driver::Steps(Box::new(protocol)),
+    };
+    Ok((scene, notes))
+}
+
+/// Share of the largest force up to which a measured pull is noise of the zero.
+const PULL: f64 = 0.02;
+
+fn caption(title: Option<&str>, what: &str, contact: &Contact) -> String {
+    let law = match contact {
+        Contact::Latency { model, rate } => match rate {
+            RateDependence::Constant => latency(model),
+            RateDependence::Strain { factor } => {
+                format!("{}, v times {factor} by 0.1 of equilibrium strain", latency(model))
+            }
+            RateDependence::Direction { factor } => format!("{}, v times {factor} while strain rises", latency(model)),
+        },
+        Contact::Linear(contact) => {
+            let memory = match contact.memory {
+                Memory::Strain => "strain",
+                Memory::Force => "force",
+            };
+            match contact.law.terms() {
+                [only] => format!("linear memory of {memory}, overshoot {}, {} s", only.overshoot, 1.0 / only.rate),
+                terms => format!("linear memory of {memory}, {} terms", terms.len()),
+            }
+        }
+    };
+    format!("{}{what}; {law}.", title.map_or(String::new(), |title| format!("{title}. ")))
+}
+
+fn latency(model: &ContactModel) -> String {
+    let (law, layers) = (model.law, model.layers.count());
+    format!("n = {}, v = {:e} 1/s, {layers} layers", law.exponent(), law.rate_coefficient())
+}
+
+fn wave_table(wave: &StrainWave) -> Table {
+    let mut table = Table::new("wave", "Strain of every layer.").column(TableColumn::new("Time", "time_s", "s"));
+    for layer in 1..=wave.strain.len() {
+        table = table.column(TableColumn::new(format!("Layer {layer}"), format!("strain_layer_{layer}"), ""));
+    }
+    table.rows = (0..wave.time.len())
+        .map(|row| {
+            let strains = wave.strain.iter().map(|strain| Cell::number(strain[row], 6));
+            std::iter::once(Cell::number(wave.time[row], 6)).chain(strains).collect()
+        })
+        .collect();
+    table
+}
+
+fn energy_table(energy: &Energy) -> Table {
+    let mut table = Table::new("energy", "Work of the jaw and what becomes of it.")
+        .column(TableColumn::new("Time", "time_s", "s"))
+        .column(TableColumn::new("Work", "work_j", "J"))
+        .column(TableColumn::new("Given back", "given_back_j", "J"));
+    let mut columns = vec![&energy.time, &energy.work, &energy.given_back];
+    if let Some(split) = &energy.split {
+        table = table
+            .column(TableColumn::new("Stored", "stored_j", "J"))
+            .column(TableColumn::new("Lost", "lost_j", "J"));
+        columns.extend([&split.stored, &split.lost]);
+    }
+    let row = |i: usize| columns.iter().map(|column| Cell::number(column[i], 9)).collect();
+    table.rows = (0..energy.time.len()).map(row).collect();
+    table
+}

@@ -1,0 +1,240 @@
+//! Many runs of one protocol to one table.
+//!
+//! | file | what |
+//! |---|---|
+//! | `rows.rs` | what a run comes to |
+//! | `chart.rs` | the table as a figure |
+
+mod chart;
+mod rows;
+
+use std::fs::File;
+use std::io::Write;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use palpate::watch::{Progress, Watch};
+use palpate_files::description::{Sweep as SweptProtocol, read_sweep};
+use palpate_files::parquet_table::{Field, Rows, TableError, TableReader, TableWriter};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+pub use rows::{fields as sweep_fields, simulated as sweep_rows};
+
+use crate::output::{
+    Unplaced, check_ending, check_no_folder, keep_apart, place_file, sha256, unwritten_table, write_file,
+};
+use crate::store::{Store, beside, depends_on};
+use crate::threads::over_threads;
+use crate::{JobError, Outcome, Verdict};
+use chart::Chart;
+use rows::refusals;
+
+/// Simulate a protocol for many values of its numbers, to one table.
+///
+/// It reads the protocol, and writes the table, the figure and, until the table is whole, its finished parts beside it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Sweep {
+    /// Which result the figure shows, by the name of its column.
+    pub show: String,
+    /// How many runs at once; all processors if not given. The table is the same for any number.
+    pub threads: Option<NonZeroUsize>,
+    /// Compute all runs again, whatever was computed before.
+    pub restart: bool,
+}
+
+impl Default for Sweep {
+    fn default() -> Self {
+        Self {
+            show: "peak_force_n".to_owned(),
+            threads: None,
+            restart: false,
+        }
+    }
+}
+
+/// A table with a row a run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Swept {
+    /// The table.
+    pub table: PathBuf,
+    /// How many runs it holds.
+    pub runs: u64,
+    /// How many of them were refused.
+    pub refused: u64,
+    /// How many of them were computed before.
+    pub computed_before: u64,
+}
+
+/// Under which the table says what sweep it holds.
+const MARK: &str = "palpate_sweep_sha256";
+
+impl Sweep {
+    /// Simulates the runs of the protocol at `path` to the table `out`; one named as the protocol in the folder at hand if none is given.
+    ///
+    /// # Errors
+    /// [`JobError`] where the protocol has no sweep, a file cannot be written, or the watch ends it; finished parts stay to go on from.
+    pub fn run(
+        &self,
+        path: &Path,
+        out: Option<&Path>,
+        figure: Option<&Path>,
+        watch: &mut dyn Watch,
+    ) -> Result<Outcome<Swept>, JobError> {
+        let started = Instant::now();
+        let files = |path: Option<&Path>| path.map(Path::to_owned);
+        keep_apart(&[path.to_owned()], &[files(out), files(figure)].into_iter().flatten().collect::<Vec<_>>())?;
+        let sweep = read_sweep(path)?;
+        let out = table_of(path, out)?;
+        let chart = figure.map(|figure| Chart::new(&sweep, figure, &self.show)).transpose()?;
+        let computed_before = self.table(&sweep, path, &out, watch)?;
+        if let Some(chart) = chart {
+            write_file(&chart.path, &chart.draw(&sweep, &out)?)?;
+        }
+        let (refused, first) = refused(&out).map_err(|error| unwritten_table(&out, &error))?;
+        let runs = sweep.runs();
+        let first = first.map(|(run, reason)| format!("{refused} of {runs} runs refused, first run {run}: {reason}"));
+        let before = match computed_before {
+            0 => String::new(),
+            all if all == runs => ", all of them computed before".to_owned(),
+            some => format!(", {some} of them computed before"),
+        };
+        let seconds = started.elapsed().as_secs_f64();
+        let done = format!("{}: {runs} runs in {seconds:.1} s{before}", out.display());
+        let result = Swept {
+            table: out,
+            runs,
+            refused,
+            computed_before,
+        };
+        Ok(Outcome {
+            result,
+            verdict: Verdict::of(refused != runs),
+            notes: first.into_iter().chain([done]).collect(),
+        })
+    }
+
+    /// Makes the table, unless it is there, and returns how many of its runs were computed before.
+    fn table(&self, sweep: &SweptProtocol, path: &Path, out: &Path, watch: &mut dyn Watch) -> Result<u64, JobError> {
+        let digest = digest(sweep);
+        let folder = beside(out, ".parts");
+        let found = depends_on(&folder);
+        if !self.restart && is_complete(out, &digest, sweep.runs()) {
+            if found.is_some_and(|found| found == digest) {
+                // Killed after the table was whole: only its parts are left over.
+                Store::open(&folder, "sweep", &digest, false)?.remove()?;
+            }
+            return Ok(sweep.runs());
+        }
+        if !self.restart && found.is_some_and(|found| found != digest) {
+            return Err(JobError::option(
+                "expected parts of this sweep, found those of another: the protocol or palpate changed since",
+                "compute all runs with ⟨restart⟩, or name another table with ⟨out⟩",
+            )
+            .of(folder.display()));
+        }
+        let store = Store::open(&folder, "sweep", &digest, self.restart)?;
+        let (runs, size) = (sweep.runs(), part_size(sweep.runs()));
+        let parts = usize::try_from(runs.div_ceil(size)).unwrap_or(usize::MAX);
+        let runs_of = |part: usize| part as u64 * size..runs.min((part as u64 + 1) * size);
+        let done: u64 = (0..parts)
+            .filter(|part| store.find(&part.to_string()).is_some())
+            .map(|part| runs_of(part).end - runs_of(part).start)
+            .sum();
+        let fields = sweep_fields(sweep);
+        let progress = Progress {
+            task: "simulating",
+            done,
+            total: Some(runs),
+        };
+        // Each part is the work of one thread, so that its bytes do not depend on how many there are.
+        let places = over_threads(parts, self.threads, progress, watch, |part, share| {
+            let key = part.to_string();
+            if let Some(place) = store.find(&key) {
+                return Ok(place);
+            }
+            let rows = sweep_rows(sweep, path, runs_of(part), &mut |_: Progress<'_>| share.advance(1))?;
+            store.add(&key, &packed(&fields, rows).map_err(|error| unwritten_table(&folder, &error))?)
+        })?;
+        // In the folder of the parts, where the next sweep clears away what a kill leaves behind.
+        place_file::<Unplaced>(out, &folder, |file| {
+            let mut writer = TableWriter::new(file, &fields)?;
+            for place in &places {
+                unpacked(&store.read(place).map_err(Unplaced::Store)?, |rows| writer.write(rows))?;
+            }
+            Ok(writer.finish(&[(MARK, &digest)])?)
+        })
+        .map_err(|error| error.at(out))?;
+        store.remove()?;
+        Ok(done)
+    }
+}
+
+/// Rows as the bytes of a table.
+fn packed(fields: &[Field], rows: Rows) -> Result<Vec<u8>, TableError> {
+    let mut bytes = Vec::new();
+    let mut writer = TableWriter::new(&mut bytes, fields)?;
+    writer.write(rows)?;
+    writer.finish(&[])?;
+    Ok(bytes)
+}
+
+/// Hands on the rows of such a table.
+fn unpacked(bytes: &[u8], mut take: impl FnMut(Rows) -> Result<(), TableError>) -> Result<(), TableError> {
+    let mut file = tempfile::tempfile()?;
+    file.write_all(bytes)?;
+    let table = TableReader::new(file)?;
+    (0..table.groups()).try_for_each(|group| take(table.read(group)?))
+}
+
+/// Where the table goes: beside nothing else, under the name of the protocol, if nothing is said.
+fn table_of(protocol: &Path, out: Option<&Path>) -> Result<PathBuf, JobError> {
+    let Some(out) = out else {
+        return Ok(beside(Path::new(protocol.file_stem().unwrap_or_default()), ".parquet"));
+    };
+    check_ending(out, &["parquet"], "a table ending in .parquet", "name the table FILE.parquet")?;
+    check_no_folder(out)?;
+    Ok(out.to_owned())
+}
+
+/// What the rows of a sweep depend on: the text of the protocol, and who computes them.
+fn digest(sweep: &SweptProtocol) -> String {
+    sha256(format!("palpate {} sweep 1\n{}", env!("CARGO_PKG_VERSION"), sweep.text()).as_bytes())
+}
+
+/// Whether the table is there and holds all of this sweep.
+fn is_complete(out: &Path, digest: &str, runs: u64) -> bool {
+    let table = File::open(out).map_err(TableError::from).and_then(TableReader::new);
+    table.is_ok_and(|table| table.mark(MARK) == Some(digest) && table.rows() == runs)
+}
+
+/// How many runs of a table were refused, and the number and reason of the first that was.
+fn refused(table: &Path) -> Result<(u64, Option<(i64, String)>), TableError> {
+    let table = TableReader::new(File::open(table)?)?;
+    let (mut count, mut first) = (0, None);
+    for group in 0..table.groups() {
+        let reasons = table.values(group, table.fields().len() - 1)?;
+        let (more, reason) = refusals(&table.values(group, 0)?, &reasons);
+        count += more;
+        first = first.or(reason);
+    }
+    Ok((count, first))
+}
+
+/// Runs of a part: about a thousand parts, none of them too small to be worth a file or too large to be lost.
+fn part_size(runs: u64) -> u64 {
+    (runs / 1024).next_power_of_two().clamp(16, 8192)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_neither_tiny_nor_huge() {
+        let sizes = [1, 450, 100_000, 1_000_000, 10_000_000].map(part_size);
+        assert_eq!(sizes, [16, 16, 128, 1024, 8192]);
+    }
+}

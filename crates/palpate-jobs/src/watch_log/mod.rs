@@ -1,0 +1,117 @@
+//! A recorded log as a controller would have seen it: holds, where they tend, time to slip.
+//!
+//! | file | what |
+//! |---|---|
+//! | `holds.rs` | what happens from tick to tick, and the holds that were seen |
+
+mod holds;
+
+use palpate::observe::{Observation, ObserveError, Observer, ObserverOptions};
+use palpate::record::Record;
+use palpate::watch::{Progress, Watch};
+use palpate_files::description::MaterialFile;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+pub use holds::{Event, HoldSeen};
+
+use crate::{ErrorKind, JobError, Outcome};
+use holds::Holds;
+
+/// Watch a recorded log as if it came in live.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct WatchLog {
+    /// Exponent of the law where no material says it, from 1 to 30.
+    pub exponent: f64,
+    /// Standard error of that exponent; intervals are as much wider.
+    pub exponent_deviation: f64,
+    /// Normal force at which what is held slips.
+    pub slip_force_n: Option<f64>,
+    /// How long before slip to warn.
+    pub warn_before_s: f64,
+    /// Coverage of the intervals, between 0 and 1.
+    pub confidence: f64,
+    /// Time of the log between two observations that are reported.
+    pub every_s: f64,
+}
+
+impl Default for WatchLog {
+    fn default() -> Self {
+        Self {
+            exponent: 5.0,
+            exponent_deviation: 0.0,
+            slip_force_n: None,
+            warn_before_s: 1.0,
+            confidence: 0.95,
+            every_s: 0.5,
+        }
+    }
+}
+
+/// What is reported while a log is watched, in its order.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Seen {
+    /// A sample of this time comes next, s.
+    Next(f64),
+    /// Something happened.
+    Event(Event),
+    /// A sample, and whether it is one of those to be reported.
+    Tick(Observation, bool),
+}
+
+/// Ticks between two reports to the watch.
+const TICKS: usize = 256;
+
+impl WatchLog {
+    /// The observer of a body, whose excess strain is known from first touch on if its material is given.
+    fn observer(&self, material: Option<MaterialFile>) -> Result<Observer, ObserveError> {
+        Observer::new(ObserverOptions {
+            material: material.map(|file| file.material),
+            exponent: self.exponent,
+            exponent_deviation: self.exponent_deviation,
+            slip_force: self.slip_force_n,
+            warn_before: self.warn_before_s,
+            confidence: self.confidence,
+            ..ObserverOptions::default()
+        })
+    }
+
+    /// Feeds the samples of a log, whose name is `place`, one by one; `see` hears of every one, until it is no longer interested.
+    ///
+    /// # Errors
+    /// [`JobError`] where the options or the log are none that can be watched, or the watch ends it.
+    pub fn run(
+        &self,
+        (record, place): (&Record, &str),
+        material: Option<MaterialFile>,
+        watch: &mut dyn Watch,
+        mut see: impl FnMut(Seen) -> bool,
+    ) -> Result<Outcome<Vec<HoldSeen>>, JobError> {
+        let refused = |error: ObserveError| {
+            let hint = error.hint().to_owned();
+            JobError::new(ErrorKind::Option, error, hint).of(place)
+        };
+        let mut observer = self.observer(material).map_err(refused)?;
+        let (times, displacement) = (record.time(), record.displacement());
+        let (mut holds, mut next) = (Holds::default(), times[0]);
+        for (index, (time, force)) in times.iter().zip(record.force()).enumerate() {
+            if index % TICKS == 0 {
+                watch.report(Progress::counted("watching", index, times.len()))?;
+            }
+            if !see(Seen::Next(*time)) {
+                break;
+            }
+            let seen = observer.feed(*time, displacement.map(|column| column[index]), *force).map_err(refused)?;
+            let reported = *time >= next;
+            if reported {
+                next += self.every_s * ((time - next) / self.every_s).floor() + self.every_s;
+            }
+            let events = holds.follow(&seen).into_iter().map(Seen::Event);
+            if !events.chain([Seen::Tick(seen, reported)]).all(&mut see) {
+                break;
+            }
+        }
+        Ok(Outcome::of(holds.all()))
+    }
+}

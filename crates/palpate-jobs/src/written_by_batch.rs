@@ -1,0 +1,37 @@
+//! How files show that a batch wrote them: among records they are passed over.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use crate::store::is_store;
+
+/// Under which the table says what it depends on.
+pub(crate) const MARK: &str = "palpate_batch";
+
+/// Most bytes of a Parquet footer that are looked at.
+const FOOTER: u64 = 1 << 20;
+
+/// Whether a file is such a table: by its first line, or by a key at its end.
+fn is_table(path: &Path) -> bool {
+    let marked = || -> io::Result<bool> {
+        let mut file = File::open(path)?;
+        let first = format!("# {MARK}: ");
+        let mut bytes = Vec::new();
+        if path.extension().is_some_and(|ending| ending == "parquet") {
+            let length = file.seek(SeekFrom::End(0))?;
+            file.seek(SeekFrom::Start(length.saturating_sub(FOOTER)))?;
+            file.read_to_end(&mut bytes)?;
+            return Ok(bytes.windows(MARK.len()).any(|window| window == MARK.as_bytes()));
+        }
+        file.take(first.len() as u64).read_to_end(&mut bytes)?;
+        Ok(bytes == first.as_bytes())
+    };
+    marked().unwrap_or(false)
+}
+
+/// Whether a path is a table of a batch, or the folder of what is done.
+pub(crate) fn is_written_by_batch(path: &Path) -> bool {
+    let is_journal = |folder: &Path| folder.extension().is_some_and(|ending| ending == "journal") && is_store(folder);
+    if path.is_dir() { is_journal(path) } else { is_table(path) }
+}

@@ -1,0 +1,176 @@
+//! Jobs as front ends use them: their options as JSON, and work that is cancelled.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use palpate::watch::{Cancelled, Progress, Unwatched, Watch};
+use palpate_jobs::input::{Described, Measurement, NamedRecords, OpenedFile};
+use palpate_jobs::{
+    Analyze, Batch, Calibrate, Compare, Convert, ErrorKind, Inspect, JobError, PlanGrip, Predict, Reproduce, Results,
+    Simulate, Sweep, Verdict, WatchLog,
+};
+use schemars::{JsonSchema, schema_for};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// A file of the repository's examples.
+fn example(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name)
+}
+
+fn ball() -> Measurement {
+    let described = Described::read(Some(&example("records/ball.toml")), None).unwrap();
+    let opened = OpenedFile::open(&example("records/ball.csv"), &described).unwrap();
+    opened.measurement(opened.only().unwrap(), &mut Unwatched).unwrap()
+}
+
+fn options<J: Default + Serialize + DeserializeOwned + JsonSchema>() {
+    let usual: J = serde_json::from_str("{}").unwrap();
+    let json = serde_json::to_value(J::default()).unwrap();
+    assert_eq!(serde_json::to_value(&usual).unwrap(), json, "what is left out has its default");
+    let refused = serde_json::from_str::<J>("{\"fit_untill\": 1}").err().unwrap().to_string();
+    assert!(refused.contains("unknown field"), "{refused}");
+    let schema = schema_for!(J).to_value();
+    let listed = schema["properties"].as_object().cloned().unwrap_or_default();
+    assert!(json.as_object().unwrap().keys().all(|key| listed.contains_key(key)), "{schema}");
+}
+
+#[test]
+fn every_job_has_a_json_form_with_defaults() {
+    options::<Analyze>();
+    options::<Batch>();
+    options::<Calibrate>();
+    options::<Compare>();
+    options::<Convert>();
+    options::<Inspect>();
+    options::<Predict>();
+    options::<Reproduce>();
+    options::<Simulate>();
+    options::<Sweep>();
+    options::<WatchLog>();
+    options::<PlanGrip>();
+}
+
+#[test]
+fn options_that_exclude_each_other_name_themselves() {
+    let job = Calibrate {
+        poisson_ratio: Some(0.3),
+        ..Calibrate::default()
+    };
+    let error = job.run(ball(), &mut Unwatched).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Option);
+    assert_eq!(error.to_string(), "poisson_ratio is for Hertz's law, which is not asked for");
+}
+
+#[test]
+fn text_and_document_are_made_of_one_result() {
+    let job = Analyze {
+        compare: false,
+        ..Analyze::default()
+    };
+    let outcome = job.run(ball(), None, &mut Unwatched).unwrap();
+    assert_eq!(outcome.verdict, Verdict::Positive);
+    let json: serde_json::Value = serde_json::from_str(&outcome.json().unwrap()).unwrap();
+    assert_eq!(json["holds"].as_array().unwrap().len(), outcome.result.analysis.holds.len());
+    assert!(outcome.text().contains("Hold"), "{}", outcome.text());
+    assert_eq!(outcome.result.document().input.sha256, outcome.result.input.sha256);
+}
+
+/// A watch that cancels once `after` has passed, and says when it first could have been heard.
+struct Impatient {
+    cancelled: Arc<AtomicBool>,
+}
+
+impl Watch for Impatient {
+    fn report(&mut self, _: Progress<'_>) -> Result<(), Cancelled> {
+        if self.cancelled.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
+    }
+}
+
+/// The shortest time of a few from a cancellation to the end of the job that was cancelled.
+fn heard_after(mut job: impl FnMut(&mut Impatient) -> Result<(), JobError>) -> Duration {
+    let mut shortest = Duration::MAX;
+    for after in [30, 60, 120, 200, 300].map(Duration::from_millis) {
+        let cancelled = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&cancelled);
+        let clock = thread::spawn(move || {
+            thread::sleep(after);
+            flag.store(true, Ordering::Relaxed);
+            Instant::now()
+        });
+        let result = job(&mut Impatient { cancelled });
+        let ended = Instant::now();
+        let asked = clock.join().unwrap();
+        match result {
+            Err(error) => assert_eq!(error.kind, ErrorKind::Cancelled, "{error}"),
+            Ok(()) => panic!("the job was over before it could be cancelled"),
+        }
+        shortest = shortest.min(ended.saturating_duration_since(asked));
+    }
+    shortest
+}
+
+const SOON: Duration = Duration::from_millis(200);
+
+#[test]
+fn an_analysis_and_a_comparison_hear_that_they_are_cancelled() {
+    let measured = ball();
+    let analyzed = heard_after(|watch| Analyze::default().run(measured.clone(), None, watch).map(drop));
+    assert!(analyzed < SOON, "{analyzed:?}");
+    let compared = heard_after(|watch| Compare::default().run_on(measured.clone(), watch).map(drop));
+    assert!(compared < SOON, "{compared:?}");
+}
+
+#[test]
+fn a_calibration_hears_that_it_is_cancelled() {
+    let measured = ball();
+    let job = Calibrate {
+        profile: true,
+        ..Calibrate::default()
+    };
+    let heard = heard_after(|watch| job.run(measured.clone(), watch).map(drop));
+    assert!(heard < SOON, "{heard:?}");
+}
+
+#[test]
+fn a_cancelled_sweep_keeps_what_is_done_and_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(example("protocols/grip.toml")).unwrap();
+    let protocol = folder.path().join("sweep.toml");
+    fs::write(&protocol, text + "\n[sweep]\nspecimen.radius = \"linear 30..40 mm, 3000\"\n").unwrap();
+    let out = folder.path().join("t.parquet");
+    let job = Sweep::default();
+    let heard = heard_after(|watch| job.run(&protocol, Some(&out), None, watch).map(drop));
+    assert!(heard < SOON && !out.exists(), "{heard:?}");
+    let outcome = job.run(&protocol, Some(&out), None, &mut Unwatched).unwrap();
+    assert_eq!(outcome.result.runs, 3000);
+    assert!(outcome.result.computed_before > 0 && out.exists());
+    let whole = folder.path().join("whole.parquet");
+    job.run(&protocol, Some(&whole), None, &mut Unwatched).unwrap();
+    assert!(fs::read(out).unwrap() == fs::read(whole).unwrap());
+}
+
+#[test]
+fn a_cancelled_batch_keeps_what_is_done_and_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(example("records/ball.csv")).unwrap();
+    for number in 0..60 {
+        // Each is another file.
+        fs::write(folder.path().join(format!("{number}.csv")), format!("{text}{}", "\n".repeat(number))).unwrap();
+    }
+    let described = Described::read(Some(&example("records/ball.toml")), None).unwrap();
+    let records = NamedRecords::find(&[folder.path().to_owned()], described).unwrap();
+    let out = folder.path().join("table.csv");
+    let job = Batch::default();
+    let heard = heard_after(|watch| job.run(records.clone(), &out, watch).map(drop));
+    assert!(heard < SOON && !out.exists(), "{heard:?}");
+    let outcome = job.run(records.clone(), &out, &mut Unwatched).unwrap();
+    assert_eq!((outcome.result.tests, outcome.result.failures.len()), (60, 0));
+    assert!(outcome.notes[0].contains("were done before"), "{:?}", outcome.notes);
+}
