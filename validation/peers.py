@@ -199,7 +199,7 @@ def median_time(what, runs):
 
 
 def rust_times():
-    command = ["cargo", "run", "--release", "-q", "-p", "palpate", "--example", "timing"]
+    command = ["cargo", "run", "--profile", "dist", "-q", "-p", "palpate", "--example", "timing"]
     try:
         out = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     except (OSError, subprocess.CalledProcessError) as error:

@@ -1,6 +1,6 @@
 """Speed of the Python package against SciPy and lmfit, in one run.
 
-    maturin build --release --manifest-path crates/palpate-python/Cargo.toml --out wheels
+    maturin build --profile dist --manifest-path crates/palpate-python/Cargo.toml --out wheels
     pip install wheels/palpate-*.whl scipy lmfit
     python validation/python_speed.py [--write]
 

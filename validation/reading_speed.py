@@ -79,7 +79,7 @@ def write_record(path, rows):
 
 
 def by_palpate(path):
-    command = ["cargo", "run", "--release", "-q", "-p", "palpate-files", "--example", "read_columns", "--", path, "1", "2", "3"]
+    command = ["cargo", "run", "--profile", "dist", "-q", "-p", "palpate-files", "--example", "read_columns", "--", path, "1", "2", "3"]
     out = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     return json.loads(out)
 
@@ -140,7 +140,7 @@ def main():
     parser.add_argument("--only", choices=["palpate"], help="leave the others out")
     parser.add_argument("--write", action="store_true", help="write validation/results/reading_speed.md")
     arguments = parser.parse_args()
-    subprocess.run(["cargo", "build", "--release", "-q", "-p", "palpate-files", "--example", "read_columns"], cwd=ROOT, check=True)
+    subprocess.run(["cargo", "build", "--profile", "dist", "-q", "-p", "palpate-files", "--example", "read_columns"], cwd=ROOT, check=True)
     names = ["palpate"] if arguments.only else ["palpate", *READERS]
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "record.csv")

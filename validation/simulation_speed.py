@@ -12,7 +12,7 @@
    steps, with all contacts, and the time is scaled up.
 4. step: one tick of a controller (ContactState::step).
 
-palpate's side is `cargo run --release --example timing -- --simulations`.
+palpate's side is `cargo run --profile dist --example timing -- --simulations`.
 """
 
 import argparse
@@ -39,7 +39,7 @@ SAMPLES = 6601
 
 
 def rust_times():
-    command = ["cargo", "run", "--release", "-q", "-p", "palpate", "--example", "timing", "--", "--simulations"]
+    command = ["cargo", "run", "--profile", "dist", "-q", "-p", "palpate", "--example", "timing", "--", "--simulations"]
     out = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     return {row["name"]: row for row in map(json.loads, out.splitlines())}
 

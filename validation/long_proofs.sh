@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# The proofs of which ./test runs a part, whole: optimised, with as many random problems as the committed results rest on.
+#
+#   validation/long_proofs.sh            all of them, hours on two cores
+#   validation/long_proofs.sh NAME...    only these: optimum properties segmentation calibration coverage
+#
+# optimum       every law against brute force, 10,000 problems each: results/global_optimum.md
+# properties    properties of contacts and laws, 20,000 random cases each
+# segmentation  holds sought in 1000 simulated records: results/segmentation.md
+# calibration   1000 records of each of the paper's tests: results/calibration.md
+# coverage      how often intervals contain the truth, 1000 holds a law: results/coverage.md (needs matplotlib)
+set -euo pipefail
+cd "$(dirname "$0")/.."
+names=("$@")
+((${#names[@]})) || names=(optimum properties segmentation calibration coverage)
+for name in "${names[@]}"; do
+    echo "=== $name"
+    case "$name" in
+    optimum)
+        PALPATE_PROBLEMS="${PALPATE_PROBLEMS:-10000}" cargo test --release -p palpate --test fits -- \
+            --nocapture global_optimum recovery::no_search_finds_a_better_fit
+        ;;
+    properties)
+        PROPTEST_CASES="${PROPTEST_CASES:-20000}" cargo test --release -p palpate --test physics -- properties batch::single
+        ;;
+    segmentation) validation/segmentation.sh ;;
+    calibration) validation/calibration.sh ;;
+    coverage) python3 validation/coverage.py ;;
+    *)
+        echo "long_proofs: no such proof: $name" >&2
+        exit 2
+        ;;
+    esac
+done
