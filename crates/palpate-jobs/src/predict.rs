@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use palpate::calibrate::Prediction;
 use palpate::simulate::{Sampling, SimulateError};
-use palpate::watch::{Progress, Watch};
+use palpate::watch::Watch;
 use palpate_files::description::{MaterialFile, Protocol};
 use palpate_report::figure::Figure;
 use palpate_report::study::{prediction_figure, prediction_table, write_prediction};
@@ -60,9 +60,11 @@ impl Predict {
         let mut at = self.at_s.clone();
         at.sort_by(f64::total_cmp);
         at.dedup();
-        watch.report(Progress::open("predicting", 0))?;
-        let predict = |sampling: &Sampling| {
-            material.predict(protocol.drive(), sampling, confidence).map_err(|error| {
+        let mut predict = |sampling: &Sampling| {
+            material.predict_watched(protocol.drive(), sampling, confidence, watch).map_err(|error| {
+                if let SimulateError::Cancelled(cancelled) = error {
+                    return cancelled.into();
+                }
                 let beyond = matches!(error, SimulateError::SampleTime { .. });
                 let hint = beyond.then(|| "ask for times inside the protocol, or lengthen its last hold".to_owned());
                 JobError::new(ErrorKind::Model, error, hint).of(place)

@@ -7,10 +7,10 @@ use palpate::contact::RateDependence;
 use palpate::record::Record;
 use palpate::simulate::{
     Contact, ContactEventKind, ContactModel, Drive, Energy, ForceHistory, Memory, Motion, Sampling, SimulateError,
-    StepWork, StrainWave, Trajectory, cycles, energy, simulate, strain_wave, work_by_step,
+    StepWork, StrainWave, Trajectory, cycles, energy, simulate_watched, strain_wave, work_by_step,
 };
 use palpate::test_problems::Noise;
-use palpate::watch::{Progress, Watch};
+use palpate::watch::Watch;
 use palpate_files::description::{Protocol, read_protocol, read_scene};
 use palpate_report::figure::Figure;
 use palpate_report::study::{
@@ -83,8 +83,7 @@ impl Simulate {
             None => stepped(path)?,
             Some((record, place)) => (self.driven(path, record, place)?, Vec::new()),
         };
-        watch.report(Progress::open("simulating", 0))?;
-        let trajectory = simulate(scene.drive(), &scene.contact, &scene.sampling);
+        let trajectory = simulate_watched(scene.drive(), &scene.contact, &scene.sampling, watch);
         let trajectory = trajectory.map_err(|error| scene.refused(error))?;
         for event in &trajectory.events {
             let what = match event.kind {
@@ -274,7 +273,10 @@ impl Scene {
     }
 
     fn refused(&self, error: SimulateError) -> JobError {
-        JobError::new(ErrorKind::Model, error, None).of(&self.place)
+        match error {
+            SimulateError::Cancelled(cancelled) => cancelled.into(),
+            error => JobError::new(ErrorKind::Model, error, None).of(&self.place),
+        }
     }
 
     fn caption(&self, what: &str) -> String {

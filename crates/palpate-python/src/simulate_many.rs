@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use arrow_array::{ArrayRef, FixedSizeListArray, Float64Array, Int64Array, StringArray};
 use arrow_schema::{DataType, Field};
 use palpate::simulate::{Sampling, simulate};
-use palpate_files::description::{DescriptionError, Sweep, parse_runs};
+use palpate_files::description::{DescriptionError, parse_runs};
 use palpate_files::parquet_table::{Rows, Values};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -62,15 +62,13 @@ pub(crate) fn simulate_many(
             if stop.load(Ordering::Relaxed) {
                 return (Vec::new(), Vec::new());
             }
-            let forces = times
-                .as_deref()
-                .map_or_else(Vec::new, |times| runs.clone().map(|run| forces(&sweep, run, times)).collect());
             let mut watch = |_: palpate::watch::Progress<'_>| {
                 told.step();
                 if stop.load(Ordering::Relaxed) { Err(palpate::watch::Cancelled) } else { Ok(()) }
             };
-            let rows = palpate_jobs::sweep_rows(&sweep, Path::new(&path), runs, &mut watch);
-            (rows.map_or_else(|_| Vec::new(), |Rows { columns }| columns), forces)
+            let times = times.as_deref().unwrap_or_default();
+            palpate_jobs::sweep_rows(&sweep, Path::new(&path), runs, times, &mut watch)
+                .map_or_else(|_| (Vec::new(), Vec::new()), |(Rows { columns }, forces)| (columns, forces))
         });
         (shares.collect::<Vec<_>>(), times.map_or(0, |times| times.len()))
     };
@@ -86,13 +84,6 @@ pub(crate) fn simulate_many(
         columns.push(("force_n", lists(all, samples)?));
     }
     Table::of(columns)
-}
-
-/// Forces of a run at given times, N; none where the run is refused.
-fn forces(sweep: &Sweep, run: u64, times: &[f64]) -> Option<Vec<f64>> {
-    let protocol = sweep.run(run).1.ok()?;
-    let series = simulate(protocol.drive(), &protocol.contact, &Sampling::Times(times.to_vec())).ok()?;
-    Some(series.force)
 }
 
 /// The parts of one column as one.

@@ -155,7 +155,7 @@ impl Sweep {
             if let Some(place) = store.find(&key) {
                 return Ok(place);
             }
-            let rows = sweep_rows(sweep, path, runs_of(part), &mut |_: Progress<'_>| share.advance(1))?;
+            let (rows, _) = sweep_rows(sweep, path, runs_of(part), &[], &mut |_: Progress<'_>| share.advance(1))?;
             store.add(&key, &packed(&fields, rows).map_err(|error| unwritten_table(&folder, &error))?)
         })?;
         // In the folder of the parts, where the next sweep clears away what a kill leaves behind.

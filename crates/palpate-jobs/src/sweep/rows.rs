@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use palpate::simulate::{ContactEventKind, ProgramStep, StepEnd, Summary, step_ends, summary};
+use palpate::batch::Run;
+use palpate::simulate::{ContactEventKind, ProgramStep, StepEnd, Summary};
 use palpate::watch::{Cancelled, Progress, Watch};
 use palpate_files::description::{Protocol, Sweep};
 use palpate_files::parquet_table::{Field, Kind, Rows, Values};
@@ -69,7 +70,7 @@ pub fn fields(sweep: &Sweep) -> Vec<Field> {
 }
 
 /// Simulates the runs of a sweep with these indices, from 0, as rows of that table; the watch hears of each once it is done, and `path` of
-/// the protocol stands in messages.
+/// the protocol stands in messages. Beside the rows stand the forces (N) of every run at `times` (s), if it has any then.
 ///
 /// # Errors
 /// [`Cancelled`] where the watch ends it.
@@ -77,21 +78,23 @@ pub fn simulated(
     sweep: &Sweep,
     path: &Path,
     runs: std::ops::Range<u64>,
+    times: &[f64],
     watch: &mut dyn Watch,
-) -> Result<Rows, Cancelled> {
+) -> Result<(Rows, Vec<Option<Vec<f64>>>), Cancelled> {
     let (first, total) = (runs.start, runs.end - runs.start);
     let results = results(sweep).len();
     let mut numbers: Vec<Vec<Option<f64>>> = vec![Vec::new(); sweep.numbers().len() + results];
-    let (mut counts, mut reasons) = (Vec::new(), Vec::new());
+    let (mut counts, mut reasons, mut forces) = (Vec::new(), Vec::new(), Vec::new());
     for run in runs {
         let (values, protocol) = sweep.run(run);
         let outcome = protocol
             .map_err(|error| without(path, &error.to_string()))
-            .and_then(|protocol| outcome(&protocol, sweep.steps()));
-        let (row, reason) = match outcome {
-            Ok(row) => (row, None),
-            Err(reason) => (vec![None; results], Some(reason)),
+            .and_then(|protocol| outcome(&protocol, sweep.steps(), times));
+        let (row, force, reason) = match outcome {
+            Ok((row, force)) => (row, force, None),
+            Err(reason) => (vec![None; results], None, Some(reason)),
         };
+        forces.push(force);
         counts.push(i64::try_from(run + 1).unwrap_or(i64::MAX));
         for (column, value) in numbers.iter_mut().zip(values.into_iter().map(Some).chain(row)) {
             // + 0.0 turns −0 into 0.
@@ -104,9 +107,10 @@ pub fn simulated(
     }
     let numbers = numbers.into_iter().map(Values::Number);
     let columns = [Values::Count(counts)].into_iter().chain(numbers).chain([Values::Text(reasons)]);
-    Ok(Rows {
+    let rows = Rows {
         columns: columns.collect(),
-    })
+    };
+    Ok((rows, forces))
 }
 
 /// From the first and the last column: how many rows were refused, and the number and reason of the first that was.
@@ -119,11 +123,37 @@ pub(super) fn refusals(runs: &Values, reasons: &Values) -> (u64, Option<(i64, St
     (first.iter().count() as u64 + refused.count() as u64, first)
 }
 
-fn outcome(protocol: &Protocol, steps: usize) -> Result<Vec<Option<f64>>, String> {
-    let refused = |error: palpate::simulate::SimulateError| error.to_string();
-    let whole = summary(protocol.drive(), &protocol.contact, &protocol.sampling).map_err(refused)?;
-    let ends = step_ends(&protocol.steps, &protocol.contact).map_err(refused)?;
-    Ok(whole_run(&whole).into_iter().chain(of_steps(protocol, &ends, steps)).collect())
+/// Numbers of a row, and the forces at some times.
+type RowAndForces = (Vec<Option<f64>>, Option<Vec<f64>>);
+
+fn outcome(protocol: &Protocol, steps: usize, times: &[f64]) -> Result<RowAndForces, String> {
+    let run = Run {
+        drive: protocol.drive(),
+        contact: (&protocol.contact).into(),
+        sampling: &protocol.sampling,
+        times,
+    };
+    let run = run.summarize().map_err(|error| error.to_string())?;
+    let ends = end_forces(protocol, &run.ends);
+    Ok((whole_run(&run.summary).into_iter().chain(of_steps(protocol, &ends, steps)).collect(), run.forces))
+}
+
+/// Force at the end of every step. Those of a motion are the ends of its straight pieces, of which a step that goes nowhere has none.
+fn end_forces(protocol: &Protocol, ends: &[StepEnd]) -> Vec<f64> {
+    let is_motion = protocol.motion.is_some();
+    let mut ends = ends.iter().map(|end| end.force);
+    let (mut jaw, mut force) = (0.0, 0.0);
+    let end = |step: &ProgramStep| {
+        let stands = matches!(step, ProgramStep::Move { to, .. } if is_motion && *to == jaw);
+        if let ProgramStep::Move { to, .. } = step {
+            jaw = *to;
+        }
+        if !stands {
+            force = ends.next().unwrap_or(force);
+        }
+        force
+    };
+    protocol.steps.iter().map(end).collect()
 }
 
 fn whole_run(run: &Summary) -> [Option<f64>; WHOLE_RUN.len()] {
@@ -145,7 +175,7 @@ fn whole_run(run: &Summary) -> [Option<f64>; WHOLE_RUN.len()] {
 }
 
 /// Three numbers for every `[[step]]` table: force after its ramp, force at its end, and which share its hold relaxed.
-fn of_steps(protocol: &Protocol, ends: &[StepEnd], steps: usize) -> Vec<Option<f64>> {
+fn of_steps(protocol: &Protocol, ends: &[f64], steps: usize) -> Vec<Option<f64>> {
     let mut row = Vec::with_capacity(steps * STEP.len());
     let mut before = 0.0;
     for table in 1..=steps {
@@ -155,7 +185,7 @@ fn of_steps(protocol: &Protocol, ends: &[StepEnd], steps: usize) -> Vec<Option<f
             .zip(&protocol.written)
             .zip(ends)
             .filter(|((_, written), _)| **written == table)
-            .map(|((step, _), end)| (*step, end.force))
+            .map(|((step, _), end)| (*step, *end))
             .collect();
         let (mut ramp, mut end, mut relaxed) = (None, None, None);
         for (step, force) in parts {

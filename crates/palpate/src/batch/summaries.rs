@@ -17,14 +17,22 @@ pub struct Run<'a> {
     pub times: &'a [f64],
 }
 
+impl Run<'_> {
+    /// What the run comes to, by one walk through its drive (two for a program, whose steps end where the contact has them end). Summary and
+    /// ends of steps are those of [`summary`](crate::simulate::summary()) and [`step_ends`](crate::simulate::step_ends) to the last bit, forces
+    /// those of [`simulate`](crate::simulate::simulate()) to rounding.
+    ///
+    /// # Errors
+    /// As for `simulate`.
+    pub fn summarize(&self) -> Result<RunSummary, SimulateError> {
+        run_summary(self.drive, self.contact, self.sampling, self.times)
+    }
+}
+
 /// Runs between two reports.
 const AT_ONCE: usize = 256;
 
-/// What each run comes to, in the order of the runs, on all cores; the results do not depend on how many there are.
-///
-/// Every run takes one walk through its drive (two for a program, whose steps end where the contact has them end): summary, ends of steps and
-/// forces come from the same walk, and are those of [`summary`](crate::simulate::summary()), [`step_ends`](crate::simulate::step_ends) and
-/// [`simulate`](crate::simulate::simulate()) to the last bit.
+/// What each run comes to ([`Run::summarize`]), in the order of the runs, on all cores; the results do not depend on how many there are.
 ///
 /// ```
 /// use palpate::batch::{Run, summaries};
@@ -49,10 +57,7 @@ pub fn summaries(runs: &[Run<'_>], watch: &mut dyn Watch) -> Result<Vec<Result<R
     let mut found = Vec::with_capacity(runs.len());
     for part in runs.chunks(AT_ONCE) {
         watch.report(Progress::counted("simulating", found.len(), runs.len()))?;
-        found.extend(for_each(part.len(), |index| {
-            let run = &part[index];
-            run_summary(run.drive, run.contact, run.sampling, run.times)
-        }));
+        found.extend(for_each(part.len(), |index| part[index].summarize()));
     }
     watch.report(Progress::counted("simulating", runs.len(), runs.len()))?;
     Ok(found)

@@ -112,8 +112,13 @@ impl CalibrateError {
     pub fn hint(&self) -> String {
         match self {
             Self::NoGeometry => "describe the body in [specimen] of the test description: shape and size".to_owned(),
-            Self::NoDisplacement => "name the column of the displacement in [columns]; without it holds alone are fitted, by `palpate analyze`".to_owned(),
-            Self::NotALaw { .. } => "laws of a whole contact are latency, latency:N, standard-linear-solid, prony:K and fung:K".to_owned(),
+            Self::NoDisplacement => {
+                "name the column of the displacement in [columns]; without it holds alone can be fitted, each by itself"
+                    .to_owned()
+            }
+            Self::NotALaw { .. } => {
+                "laws of a whole contact are latency, latency:N, standard-linear-solid, prony:K and fung:K".to_owned()
+            }
             Self::RateOf { .. } => "leave the dependence of v out, or ask for the law latency".to_owned(),
             Self::FactorUnseen { .. } => "calibrate with a constant rate coefficient, or on a longer record".to_owned(),
             Self::Split { .. } => "choose a time inside the record".to_owned(),

@@ -52,7 +52,7 @@ impl ObserveError {
     #[must_use]
     pub fn hint(&self) -> &'static str {
         match self {
-            Self::LinearMaterial => "calibrate with --law latency, or observe without a material",
+            Self::LinearMaterial => "calibrate with the latency law, or observe without a material",
             Self::NotFinite { .. } => "leave the tick out: the observer bridges a gap",
             Self::TimeNotRising { .. } => "after a clock was set, begin with a new observer",
             Self::Displacement { .. } => "count displacement from first touch, growing as the jaw closes, in m",

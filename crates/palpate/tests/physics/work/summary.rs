@@ -144,7 +144,10 @@ fn summaries_of_many_runs_are_those_of_each() {
         let found = found.unwrap();
         assert_eq!(found.summary, summary(run.drive, run.contact, &sampling).unwrap());
         let series = simulate(run.drive, run.contact, &Sampling::Times(times.to_vec())).unwrap();
-        assert_eq!(found.forces.unwrap(), series.force);
+        for (found, force) in found.forces.unwrap().iter().zip(&series.force) {
+            // In a hold the stiffness is taken out of the sum.
+            assert!((found - force).abs() <= 1e-14 * force.abs(), "{found} {force}");
+        }
         if let Drive::Program(steps) = run.drive {
             assert_eq!(found.ends, step_ends(steps, run.contact).unwrap());
         }
