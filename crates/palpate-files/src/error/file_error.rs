@@ -337,8 +337,19 @@ impl FileError {
         }
     }
 
+    /// What kind of refusal of the operating system it is, if it is one.
+    #[must_use]
+    pub fn io_kind(&self) -> Option<io::ErrorKind> {
+        match self {
+            Self::NotFound { source, .. } | Self::Unreadable { source, .. } => Some(source.kind()),
+            Self::Directory { .. } => Some(io::ErrorKind::IsADirectory),
+            _ => None,
+        }
+    }
+
     /// Sorts what the operating system says about `path` into causes.
-    pub(crate) fn from_io(path: &Path, source: io::Error) -> Self {
+    #[must_use]
+    pub fn from_io(path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();
         match source.kind() {
             io::ErrorKind::NotFound => Self::NotFound { path, source },

@@ -15,4 +15,6 @@ mod vocabulary;
 pub(crate) use names::{measured, measures_another, names_quantity, rank_of_name, topic_and_field, words};
 pub use quantity::Quantity;
 pub(crate) use unit_words::{unit_factor, volts_are};
-pub(crate) use vocabulary::{BENDING, OTHER, OTHER_CHARACTERS, SIGNS_OF_LENGTH, STRAINS, VOCABULARY, is_listed};
+pub(crate) use vocabulary::{
+    BENDING, OTHER, OTHER_CHARACTERS, SIGNS_OF_LENGTH, STRAINS, UNCALIBRATED, VOCABULARY, is_listed,
+};

@@ -81,3 +81,6 @@ pub(crate) const SIGNS_OF_LENGTH: &str = "x y z d s u w h δ delta dx dz dl Δl"
 
 /// Words of quantities that some machines give as a length, though they mean a ratio.
 pub(crate) const STRAINS: &str = "strain dehnung";
+
+/// The column of a bending that the file does not make a force of.
+pub(crate) const UNCALIBRATED: &str = "uncalibrated force";

@@ -193,20 +193,7 @@ impl<'a> Chooser<'a> {
             return Ok(None);
         };
         let quantity = values.role.measured();
-        let column = self.named(&format!("columns.{quantity}.also"), also)?;
-        if self.part.clock_of(column.number) != self.part.clock_of(values.column.number) {
-            return Err(ColumnError::ClocksDiffer {
-                path: self.path.to_owned(),
-                columns: (values.column.into(), column.into()),
-            });
-        }
-        if column.number == values.column.number {
-            return Err(ColumnError::Twice {
-                path: self.path.to_owned(),
-                column: column.into(),
-                quantities: (quantity, quantity),
-            });
-        }
+        let column = self.beside(values, &format!("columns.{quantity}.also"), also)?;
         Ok(Some(Found {
             role: Role::Added(quantity),
             column,
@@ -225,26 +212,32 @@ impl<'a> Chooser<'a> {
         }
         // A description without the column is refused when it is checked.
         let named = choice.column.as_ref().unwrap_or(&ColumnRef::Number(0));
-        let column = self.named("columns.deflection.column", named)?;
-        if self.part.clock_of(column.number) != self.part.clock_of(height.column.number) {
-            return Err(ColumnError::ClocksDiffer {
-                path: self.path.to_owned(),
-                columns: (height.column.into(), column.into()),
-            });
-        }
-        if column.number == height.column.number {
-            return Err(ColumnError::Twice {
-                path: self.path.to_owned(),
-                column: column.into(),
-                quantities: (Quantity::Displacement, Quantity::Displacement),
-            });
-        }
+        let column = self.beside(height, "columns.deflection.column", named)?;
         Ok(Found {
             role: Role::Deflection,
             column,
             unit: choice.unit.as_deref(),
             choice: Some(choice),
         })
+    }
+
+    /// Another column that is named under a key, and must have the clock of `values`.
+    fn beside(&self, values: &Found<'a>, key: &str, named: &ColumnRef) -> Result<&'a ColumnInfo, ColumnError> {
+        let column = self.named(key, named)?;
+        let path = self.path.to_owned();
+        if self.part.clock_of(column.number) != self.part.clock_of(values.column.number) {
+            let columns = (values.column.into(), column.into());
+            return Err(ColumnError::ClocksDiffer { path, columns });
+        }
+        if column.number == values.column.number {
+            let quantity = values.role.measured();
+            return Err(ColumnError::Twice {
+                path,
+                column: column.into(),
+                quantities: (quantity, quantity),
+            });
+        }
+        Ok(column)
     }
 
     fn clock(&self, quantity: Quantity, clock: &'a ClockChoice) -> Result<Found<'a>, ColumnError> {

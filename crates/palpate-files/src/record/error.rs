@@ -8,8 +8,7 @@ use super::{named::NamedColumn, snippet};
 use crate::{
     cell::DecimalMark,
     error::FileError,
-    formats::afm::UNCALIBRATED,
-    naming::{Quantity, unit_factor},
+    naming::{Quantity, UNCALIBRATED, unit_factor},
     table::{ColumnInfo, ColumnRef},
 };
 

@@ -3,29 +3,14 @@
 use super::Table;
 
 pub(crate) fn write(table: &Table) -> String {
-    let mut out = String::new();
-    line(&mut out, table.columns.iter().map(|column| column.key.clone()));
+    let mut writer = csv::WriterBuilder::new().terminator(csv::Terminator::CRLF).from_writer(Vec::new());
+    // Nothing refuses to be written to memory.
+    let _ = writer.write_record(table.columns.iter().map(|column| &column.key));
     for row in 0..table.rows.len() {
-        line(&mut out, (0..table.columns.len()).map(|column| table.cell(row, column).stored()));
+        let _ = writer.write_record((0..table.columns.len()).map(|column| table.cell(row, column).stored()));
     }
-    out
-}
-
-fn line(out: &mut String, fields: impl Iterator<Item = String>) {
-    let fields: Vec<String> = fields.map(quoted).collect();
-    // A lone empty field would read as a blank line.
-    let alone = fields.len() == 1 && fields[0].is_empty();
-    out.push_str(if alone { "\"\"" } else { "" });
-    out.push_str(&fields.join(","));
-    out.push_str("\r\n");
-}
-
-fn quoted(field: String) -> String {
-    if field.contains([',', '"', '\r', '\n']) {
-        format!("\"{}\"", field.replace('"', "\"\""))
-    } else {
-        field
-    }
+    let bytes = writer.into_inner().unwrap_or_default();
+    String::from_utf8(bytes).unwrap_or_default()
 }
 
 #[cfg(test)]

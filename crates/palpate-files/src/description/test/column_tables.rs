@@ -122,23 +122,8 @@ impl ColumnsTable {
         let measured = |table: Option<ColumnTable>, key, quantity| {
             table.map(|table| table.checked(source, key, quantity)).transpose()
         };
-        let time = self.time.map(|table| {
-            check_unit(source, "columns.time.unit", table.unit.as_deref(), Dimension::Time)?;
-            Ok(ColumnChoice {
-                column: table.column,
-                unit: table.unit,
-                unit_by: None,
-                scale: None,
-                offset: 0.0,
-                sign: 1.0,
-                also: None,
-                doubled: false,
-                travel_per_unit: None,
-                clock: None,
-            })
-        });
         Ok(ColumnChoices {
-            time: time.transpose()?,
+            time: measured(self.time.map(TimeTable::plain), "time", Quantity::Time)?,
             displacement: self.displacement.map(|table| table.checked(source)).transpose()?,
             force: measured(self.force, "force", Quantity::Force)?,
             stress: measured(self.stress, "stress", Quantity::Stress)?,
@@ -152,6 +137,19 @@ impl ColumnsTable {
 
 /// What a deflection is taken off.
 const HEIGHT: &str = "the column of the height, such as { column = \"measuredHeight\", sign = -1 }";
+
+impl TimeTable {
+    fn plain(self) -> ColumnTable {
+        ColumnTable {
+            column: self.column,
+            unit: self.unit,
+            scale: None,
+            offset: None,
+            sign: None,
+            clock: None,
+        }
+    }
+}
 
 impl DeflectionTable {
     fn checked(self, source: &Source<'_>) -> Result<ColumnChoice, DescriptionError> {

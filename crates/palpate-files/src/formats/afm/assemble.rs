@@ -3,7 +3,8 @@
 use super::curve::{Curve, Formula, Line, Segment};
 use crate::{
     error::shorten,
-    formats::afm::{UNCALIBRATED, metadata},
+    formats::afm::metadata,
+    naming::UNCALIBRATED,
     table::{ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart},
 };
 

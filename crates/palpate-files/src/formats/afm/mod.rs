@@ -25,9 +25,6 @@
 //! | `jpk_force/` | JPK's binary files: a curve, a map of curves |
 //! | `tab/` | the text format of afmformats |
 
-/// The column of a bending that the file does not make a force of.
-pub(crate) const UNCALIBRATED: &str = "uncalibrated force";
-
 mod assemble;
 mod curve;
 pub(crate) mod jpk_force;

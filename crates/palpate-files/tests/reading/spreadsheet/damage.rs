@@ -136,6 +136,18 @@ fn counts_that_lie_take_no_memory() {
     assert!(text.ends_with("expected styles of at most 128 MiB, found 3001"), "{text}");
 }
 
+/// One part can stand for all of them, and would be read as often.
+#[test]
+fn sheets_beyond_any_workbook_are_refused() {
+    let sheets = (0..4097).map(|number| (format!("sheet {number}"), String::new())).collect();
+    let book = Book {
+        sheets,
+        ..Book::default()
+    };
+    let text = message(open(&book.bytes()));
+    assert!(text.ends_with("expected at most 4096 sheets, found 4097"), "{text}");
+}
+
 #[test]
 fn styles_that_would_not_be_found_are_told() {
     let mut book = small_book();

@@ -7,13 +7,11 @@
 //! counted first.
 
 use super::records::{CONTINUE, Record, Records, letters, u16_at, u32_at};
-use crate::formats::spreadsheet::book::{MOST_SHEETS, Sheet};
+use crate::formats::spreadsheet::book::Sheet;
 
 /// Most cells from the first to the last of every sheet, all sheets together: some 0.5 GB while they are read.
 const MOST_CELLS: u64 = 8 << 20;
-/// Most bytes of the texts that the sheets share (32 MiB), and most records that they go on in.
-const MOST_OF_TEXTS: usize = 32 << 20;
-/// See [`MOST_OF_TEXTS`].
+/// Most records that the texts of the sheets go on in: `calamine` shifts all that are left for each.
 const MOST_CONTINUED: usize = 1 << 14;
 /// The number of the last column that a sheet of this format can have, from 0.
 const LAST_COLUMN: u16 = 255;
@@ -109,15 +107,11 @@ impl Sifted {
                     }
                     starts.push((start, written));
                     self.sheets.push(sheet);
-                    if starts.len() > MOST_SHEETS {
-                        return Err("at most 4096 sheets");
-                    }
                 }
                 TEXTS => {
                     let continued = records.continued();
-                    let size = continued.iter().map(|piece| piece.len()).sum::<usize>() + bytes.len();
-                    if size > MOST_OF_TEXTS || continued.len() > MOST_CONTINUED {
-                        return Err("shared texts of at most 32 MiB in 16384 records");
+                    if continued.len() > MOST_CONTINUED {
+                        return Err("shared texts in at most 16384 records");
                     }
                     self.put(TEXTS, bytes);
                     for piece in continued {
@@ -249,5 +243,24 @@ impl Cells {
         self.places.sort_unstable();
         self.places.dedup();
         self.places.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shared_texts_in_many_pieces_are_refused() {
+        let of = |pieces: usize| {
+            let mut written = Sifted::default();
+            written.put(BEGIN, &[0, 6]);
+            written.put(TEXTS, &[0; 8]);
+            (0..pieces).for_each(|_| written.put(CONTINUE, &[]));
+            written.put(END, &[]);
+            sift(&written.stream).map(drop)
+        };
+        assert_eq!(of(MOST_CONTINUED), Ok(()));
+        assert_eq!(of(MOST_CONTINUED + 1), Err(("workbook".to_owned(), "shared texts in at most 16384 records")));
     }
 }
