@@ -157,7 +157,7 @@ fn agreement(study: &Reproduction) -> Check {
             };
             if (a - b).abs() < 1e-5 {
                 pairs += 1;
-                largest = largest.max((x.equilibrium.value - y.equilibrium.value).abs());
+                largest = largest.max((x.equilibrium().value - y.equilibrium().value).abs());
             }
         }
     }

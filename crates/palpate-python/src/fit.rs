@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use numpy::{PyArray1, PyArray2};
 use palpate::fit::{
-    Estimate, LawFit, LawOptions, Loss, NoiseChoice, NumberUnit, SampleChoice, Samples, Termination, fit_law,
+    BootstrapOptions, Estimate, Fit, IntervalMethod, LawOptions, Loss, NoiseChoice, NumberUnit, SampleChoice, Samples,
+    Termination, fit_law,
 };
 use palpate::laws::{Law, Response};
 use palpate::number::{significant, with_error};
@@ -95,8 +96,8 @@ fn unit_word(unit: NumberUnit) -> &'static str {
 /// ('s', True, 1.0001)
 #[pyclass(name = "Fit", module = "palpate", frozen, eq)]
 #[derive(Clone, PartialEq)]
-pub(crate) struct Fit {
-    fit: LawFit,
+pub(crate) struct PyFit {
+    fit: Fit,
 }
 
 /// How a fit ended, in a word.
@@ -112,12 +113,12 @@ fn unequal(what: &str, found: usize, times: usize) -> PyErr {
     refused_plainly::<FitError>(format!("a fit needs as many {what} as times, found {found} and {times}"))
 }
 
-impl Fit {
+impl PyFit {
     fn json(&self) -> PyResult<String> {
         serde_json::to_string(&self.fit).map_err(refused_plainly::<FitError>)
     }
 
-    fn with_confidence(&self, confidence: f64) -> PyResult<LawFit> {
+    fn with_confidence(&self, confidence: f64) -> PyResult<Fit> {
         if !(confidence > 0.0 && confidence < 1.0) {
             let message = format!("an interval covers a share between 0 and 1, found {confidence}");
             return Err(refused_plainly::<OptionError>(message));
@@ -131,7 +132,7 @@ impl Fit {
 }
 
 #[pymethods]
-impl Fit {
+impl PyFit {
     /// Name of the law, such as "latency" or "prony:2".
     #[getter]
     fn law(&self) -> String {
@@ -142,12 +143,12 @@ impl Fit {
     #[getter]
     fn estimates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        for number in &self.fit.numbers {
+        for number in &self.fit.parameters {
             let estimate = PyEstimate {
                 estimate: number.estimate,
                 unit: unit_word(number.unit).into(),
             };
-            dict.set_item(&number.name, estimate)?;
+            dict.set_item(number.name.to_string(), estimate)?;
         }
         Ok(dict)
     }
@@ -156,8 +157,18 @@ impl Fit {
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        for number in &self.fit.numbers {
-            dict.set_item(&number.name, number.estimate.value)?;
+        for number in &self.fit.parameters {
+            dict.set_item(number.name.to_string(), number.estimate.value)?;
+        }
+        Ok(dict)
+    }
+
+    /// Intervals by profiles, where these were asked for, by name; None for an end that the data leave open.
+    #[getter]
+    fn profiles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for (name, interval) in &self.fit.profiles {
+            dict.set_item(name.to_string(), (interval.low, interval.high))?;
         }
         Ok(dict)
     }
@@ -165,7 +176,7 @@ impl Fit {
     /// Names of the numbers that were searched, in the order of `covariance`.
     #[getter]
     fn parameters(&self) -> Vec<String> {
-        self.fit.parameters.clone()
+        self.fit.searched.clone()
     }
 
     /// Covariance of the searched numbers; None where the data leave one open.
@@ -290,8 +301,8 @@ impl Fit {
             significant(fit.rmse, 6),
             ending(fit.termination),
         );
-        let width = fit.numbers.iter().map(|number| number.name.len()).max().unwrap_or(0) + 1;
-        for number in &fit.numbers {
+        let width = fit.parameters.iter().map(|number| number.name.to_string().len()).max().unwrap_or(0) + 1;
+        for number in &fit.parameters {
             let (name, estimate) = (format!("{}:", number.name), &number.estimate);
             let value = significant(estimate.value, 8);
             let error = match estimate.standard_error {
@@ -308,7 +319,7 @@ impl Fit {
             let mut pairs: Vec<(f64, String)> = Vec::new();
             for (i, row) in rows.iter().enumerate() {
                 for (j, entry) in row.iter().enumerate().skip(i + 1) {
-                    pairs.push((*entry, format!("C({}, {})", fit.parameters[i], fit.parameters[j])));
+                    pairs.push((*entry, format!("C({}, {})", fit.searched[i], fit.searched[j])));
                 }
             }
             pairs.retain(|(entry, _)| entry.abs() >= 0.1);
@@ -340,7 +351,7 @@ impl Fit {
     }
 
     fn __repr__(&self) -> String {
-        let numbers = self.fit.numbers.iter().map(|number| {
+        let numbers = self.fit.parameters.iter().map(|number| {
             let estimate = &number.estimate;
             let value = match estimate.standard_error {
                 Some(error) => with_error(estimate.value, error),
@@ -375,6 +386,7 @@ pub(crate) struct Keywords {
     noise: String,
     confidence: f64,
     log_spaced: Option<usize>,
+    intervals: String,
 }
 
 impl Keywords {
@@ -403,8 +415,15 @@ impl Keywords {
             "white" => NoiseChoice::White,
             other => return Err(word("noise", other, "\"residuals\", \"white\"")),
         };
+        let intervals = match self.intervals.as_str() {
+            "curvature" => IntervalMethod::Curvature,
+            "profile" => IntervalMethod::Profile,
+            "bootstrap" => IntervalMethod::Bootstrap(BootstrapOptions::default()),
+            other => return Err(word("intervals", other, "\"curvature\", \"profile\", \"bootstrap\"")),
+        };
         let options = LawOptions {
             response,
+            intervals,
             fixed: self.fixed.unwrap_or_default(),
             bounds: self.bounds.unwrap_or_default(),
             loss,
@@ -441,7 +460,7 @@ pub(crate) fn fitted(
     values: &[f64],
     deviations: Option<&[f64]>,
     asked: &Asked,
-) -> Result<LawFit, palpate::fit::FitError> {
+) -> Result<Fit, palpate::fit::FitError> {
     let samples = Samples::new(times, values);
     let samples = deviations.map_or(samples, |deviations| samples.with_deviations(deviations));
     fit_law(&samples, asked.law, &asked.options)
@@ -454,7 +473,7 @@ pub(crate) fn fit_hold<'py>(
     signal: &Bound<'py, PyAny>,
     weights: Option<&Bound<'py, PyAny>>,
     keywords: Keywords,
-) -> PyResult<Fit> {
+) -> PyResult<PyFit> {
     let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
     let deviations = deviations_of(weights)?;
     if let Some(deviations) = deviations.as_ref().filter(|deviations| deviations.len() != times.len()) {
@@ -462,7 +481,7 @@ pub(crate) fn fit_hold<'py>(
     }
     let asked = keywords.asked()?;
     let fit = briefly(py, || fitted(&times, &values, deviations.as_deref(), &asked))?;
-    Ok(Fit {
+    Ok(PyFit {
         fit: fit.map_err(unfitted)?,
     })
 }

@@ -11,7 +11,7 @@ use arrow_buffer::ScalarBuffer;
 use arrow_cast::cast;
 use arrow_schema::{DataType, Field};
 use numpy::{PyArray1, PyArrayMethods};
-use palpate::fit::{LawFit, LawNumber, LawOptions, NumberUnit, Samples, fit_law};
+use palpate::fit::{Fit, LawOptions, NumberUnit, Parameter, Samples, fit_law};
 use palpate::laws::Response;
 use pyo3::prelude::*;
 use pyo3_arrow::PyChunkedArray;
@@ -142,7 +142,7 @@ fn one_for_all(times: &Ragged, curves: usize, name: &str) -> PyResult<bool> {
 }
 
 /// A fit, or why there is none; nothing at all after Ctrl-C.
-type Fitted = Option<Result<LawFit, String>>;
+type Fitted = Option<Result<Fit, String>>;
 
 #[pyfunction]
 pub(crate) fn fit_many(
@@ -193,7 +193,7 @@ pub(crate) fn fit_many(
 }
 
 /// The numbers that every fit of a law has, whatever the curve, by their names.
-fn numbers_of(asked: &Asked) -> PyResult<Vec<LawNumber>> {
+fn numbers_of(asked: &Asked) -> PyResult<Vec<Parameter>> {
     let times: Vec<f64> = (0..200).map(f64::from).collect();
     let falling = |t: &f64| 1.0 / (1.0 + 0.1 * t).sqrt();
     let sign = if asked.options.response == Response::Creep { -1.0 } else { 1.0 };
@@ -202,7 +202,7 @@ fn numbers_of(asked: &Asked) -> PyResult<Vec<LawNumber>> {
         response: asked.options.response,
         ..LawOptions::default()
     };
-    Ok(fit_law(&Samples::new(&times, &values), asked.law, &plain).map_err(unfitted)?.numbers)
+    Ok(fit_law(&Samples::new(&times, &values), asked.law, &plain).map_err(unfitted)?.parameters)
 }
 
 fn suffix(unit: NumberUnit) -> &'static str {
@@ -216,7 +216,7 @@ fn suffix(unit: NumberUnit) -> &'static str {
 /// A row a curve; numbers that a fit does not have are missing.
 fn table(asked: &Asked, fits: &[Fitted]) -> PyResult<Table> {
     let good = || fits.iter().map(|fit| fit.as_ref().and_then(|fit| fit.as_ref().ok()));
-    let floats = |pick: &dyn Fn(&LawFit) -> Option<f64>| -> ArrayRef {
+    let floats = |pick: &dyn Fn(&Fit) -> Option<f64>| -> ArrayRef {
         Arc::new(good().map(|fit| fit.and_then(pick)).collect::<Float64Array>())
     };
     let law = asked.law.to_string();
@@ -225,9 +225,9 @@ fn table(asked: &Asked, fits: &[Fitted]) -> PyResult<Table> {
         ("law".to_owned(), Arc::new(fits.iter().map(|_| Some(&law)).collect::<StringArray>())),
     ];
     for number in &numbers_of(asked)? {
-        let (name, suffix) = (&number.name, suffix(number.unit));
+        let (name, suffix) = (&number.name.to_string(), suffix(number.unit));
         columns.push((format!("{name}{suffix}"), floats(&|fit| fit.value(name))));
-        let error = |fit: &LawFit| fit.estimate(name)?.standard_error;
+        let error = |fit: &Fit| fit.estimate(name)?.standard_error;
         columns.push((format!("{name}_standard_error{suffix}"), floats(&error)));
         columns.push((format!("{name}_low{suffix}"), floats(&|fit| Some(fit.estimate(name)?.interval?.0))));
         columns.push((format!("{name}_high{suffix}"), floats(&|fit| Some(fit.estimate(name)?.interval?.1))));

@@ -59,7 +59,7 @@ mod _palpate {
     #[pymodule_export]
     use crate::errors::{FitError, ModelError, OptionError, PalpateError, PalpateWarning, RecordError};
     #[pymodule_export]
-    use crate::fit::{Fit, PyEstimate, fit_hold};
+    use crate::fit::{PyEstimate, PyFit, fit_hold};
     #[pymodule_export]
     use crate::fit_many::fit_many;
     #[pymodule_export]

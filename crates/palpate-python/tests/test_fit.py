@@ -134,6 +134,19 @@ def test_bounds_may_be_lists_and_open() -> None:
         assert palpate.fit_hold(t, y, bounds={"exponent": pair}).values["exponent"] == pytest.approx(free, rel=1e-6)
 
 
+def test_intervals_rest_on_what_was_asked_for() -> None:
+    t, y = relaxation(noise=1e-3)
+    plain = palpate.fit_hold(t, y, law="standard-linear-solid")
+    assert plain.profiles == {}
+    for intervals in ("profile", "bootstrap"):
+        fit = palpate.fit_hold(t, y, law="standard-linear-solid", intervals=intervals)
+        assert fit.values == plain.values
+        low, high = fit.estimates["time"].interval
+        least, most = plain.estimates["time"].interval
+        assert (high - low) / (most - least) == pytest.approx(1.0, rel=0.5)
+        assert (fit.profiles.get("time") == (low, high)) is (intervals == "profile")
+
+
 @pytest.mark.parametrize(
     ("keyword", "value", "told"),
     [
@@ -148,6 +161,7 @@ def test_bounds_may_be_lists_and_open() -> None:
         ("log_spaced", -1, "log_spaced: expected a number of samples, found -1"),
         ("log_spaced", 5.5, "log_spaced: expected a number of samples, found 5.5"),
         ("noise", "pink", "noise is one of"),
+        ("intervals", "guess", "intervals is one of"),
     ],
 )
 def test_a_wrong_option_is_an_option_error_that_names_it(keyword: str, value: object, told: str) -> None:

@@ -15,15 +15,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (fit, candidate) in fits.iter().zip(&order.candidates) {
         println!(
             "{:5.2} {:12.5} ± {:.5} {:13.0} {:9.6} {:6.1}",
-            fit.exponent.value,
-            fit.equilibrium.value,
-            fit.equilibrium.standard_error.unwrap_or(f64::NAN),
-            fit.rate_coefficient.value,
+            fit.exponent().value,
+            fit.equilibrium().value,
+            fit.equilibrium().standard_error.unwrap_or(f64::NAN),
+            fit.rate_coefficient().value,
             fit.rmse,
             candidate.delta_bic
         );
     }
-    let lowest = order.lowest_order.map(|i| fits[i].exponent.value);
+    let lowest = order.lowest_order.map(|i| fits[i].exponent().value);
     println!("lowest order that fits best: {lowest:?}");
     Ok(())
 }

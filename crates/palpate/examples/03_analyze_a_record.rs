@@ -27,7 +27,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let after = hold.after.map_or(String::new(), |after| format!("{after:?}"));
         print!("hold {} after {after:9} {:6.2} to {:6.2} s", hold.number, hold.start, hold.end);
         match hold.fit_with(5.0) {
-            Some(fit) => println!("  ε_e = {:.4}  v = {:.0} 1/s", fit.equilibrium.value, fit.rate_coefficient.value),
+            Some(fit) => {
+                println!("  ε_e = {:.4}  v = {:.0} 1/s", fit.equilibrium().value, fit.rate_coefficient().value);
+            }
             None => println!("  not fitted"),
         }
     }

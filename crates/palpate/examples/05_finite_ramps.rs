@@ -41,7 +41,7 @@ fn print_law(law: &str, (name, loadings): &Way, records: &[Record]) -> Result<()
         };
         let fit = fit_law(&record.samples(), law.parse()?, &options)?;
         print!("{:>7} s", record.ramp);
-        for number in &fit.numbers {
+        for number in &fit.parameters {
             print!("  {} {:.3}", number.name, number.estimate.value);
         }
         print!("  0.01 s after a step {:.2}  off", fit.curve.at(0.01));

@@ -51,8 +51,8 @@
 //! // ... and find the law again in the strain of the hold.
 //! let hold = series.time.partition_point(|t| *t < 0.6);
 //! let fit = fit_hold(&series.time[hold..], &series.strain[hold..], ExponentChoice::Free, &FitOptions::default())?;
-//! assert!((fit.exponent.value - 5.0).abs() < 1e-6);
-//! assert!((fit.rate_coefficient.value / 2e4 - 1.0).abs() < 1e-5);
+//! assert!((fit.exponent().value - 5.0).abs() < 1e-6);
+//! assert!((fit.rate_coefficient().value / 2e4 - 1.0).abs() < 1e-5);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -83,6 +83,8 @@ pub mod number;
 pub mod observe;
 #[cfg(feature = "std")]
 mod ode;
+#[cfg(feature = "std")]
+mod optimise;
 #[cfg(feature = "std")]
 pub mod random;
 #[cfg(feature = "std")]

@@ -266,8 +266,9 @@ def _keywords(
     noise: str,
     confidence: float,
     log_spaced: int | None,
+    intervals: str,
 ) -> dict[str, Any]:
-    words = {"law": law, "response": response, "loss": loss, "noise": noise}
+    words = {"law": law, "response": response, "loss": loss, "noise": noise, "intervals": intervals}
     for name, word in words.items():
         if not isinstance(word, str):
             raise OptionError(f"{name}: expected a word, found {word!r}")
@@ -297,6 +298,7 @@ def fit_hold(
     noise: str = "residuals",
     confidence: float = 0.95,
     log_spaced: int | None = None,
+    intervals: str = "curvature",
 ) -> Fit:
     """Fit a law to one hold; no starting values.
 
@@ -327,6 +329,9 @@ def fit_hold(
         Coverage of the intervals, between 0 and 1.
     log_spaced
         Fit about this many samples, equally spaced in ln t.
+    intervals
+        What intervals rest on: "curvature" at the optimum, "profile" of the residual square, asymmetric and open where the
+        data do not close it (`Fit.profiles`), or "bootstrap", residuals resampled in blocks.
 
     Returns
     -------
@@ -348,7 +353,7 @@ def fit_hold(
     >>> round(fit.values["time"], 6)
     8.0
     """
-    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced)
+    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals)
     return _fit_hold(time_s, signal, weights, keywords)
 
 
@@ -365,6 +370,7 @@ def fit_many(
     noise: str = "residuals",
     confidence: float = 0.95,
     log_spaced: int | None = None,
+    intervals: str = "curvature",
     progress: bool | None = None,
 ) -> Table:
     """Fit a law to many holds, on all processors and without the GIL.
@@ -374,7 +380,7 @@ def fit_many(
     time_s, signal, weights
         A list of arrays of any lengths, an array of shape (curves, samples), or a column of lists in Arrow (pyarrow,
         polars). One column of times, or of weights, stands for all curves.
-    law, response, fixed, bounds, loss, noise, confidence, log_spaced
+    law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals
         As for `fit_hold`.
     progress
         Whether to show a bar of tqdm; if left out, where tqdm is there, standard error is a terminal and it takes a while.
@@ -390,7 +396,7 @@ def fit_many(
     OptionError
         As for `fit_hold`; no list of curves; times or weights that are meant for all curves and are none.
     """
-    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced)
+    keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals)
     columns = {"time_s": time_s, "signal": signal, "weights": weights}
     for name, found in columns.items():
         if isinstance(found, Mapping):

@@ -610,6 +610,9 @@ class Fit:
     @property
     def values(self) -> dict[str, float]: ...
     @property
+    def profiles(self) -> dict[str, tuple[float | None, float | None]]:
+        """Intervals by profiles, where these were asked for, by name; None for an end that the data leave open."""
+    @property
     def parameters(self) -> list[str]: ...
     @property
     def covariance(self) -> _Doubles | None: ...

@@ -327,14 +327,14 @@ fn tables(analysis: &Analysis) -> Option<TablesDocument> {
     let rows = |after: After| -> Vec<TableRow> {
         let holds = analysis.holds.iter().filter(|hold| hold.after == Some(after) && hold.signal == Signal::Strain);
         let row = |hold: &HoldAnalysis| {
-            let fit = hold.fits.iter().find(|fit| fit.choice == ExponentChoice::Fixed(n))?;
+            let fit = hold.fits.iter().find(|fit| fit.choice() == ExponentChoice::Fixed(n))?;
             Some(TableRow {
                 hold: hold.number,
                 displacement_m: hold.displacement,
-                equilibrium_strain: fit.equilibrium.value,
-                equilibrium_strain_standard_error: fit.equilibrium.standard_error,
-                rate_coefficient_per_s: fit.rate_coefficient.value,
-                rate_coefficient_standard_error_per_s: fit.rate_coefficient.standard_error,
+                equilibrium_strain: fit.equilibrium().value,
+                equilibrium_strain_standard_error: fit.equilibrium().standard_error,
+                rate_coefficient_per_s: fit.rate_coefficient().value,
+                rate_coefficient_standard_error_per_s: fit.rate_coefficient().standard_error,
             })
         };
         holds.filter_map(row).collect()

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use palpate::fit::{Estimate, Forecast, LawFit, Loss, SampleChoice, SpectrumFit};
+use palpate::fit::{Estimate, Fit, Forecast, Loss, SampleChoice, SpectrumFit};
 use palpate::forecast::{CompareOptions, Comparison, RampChoice, Ranking, Row, Verdict};
 use palpate::laws::Response;
 use palpate::segment::HoldStart;
@@ -348,12 +348,12 @@ fn law(row: &Row, change: f64, lowest_aicc: f64, quantity: Quantity) -> LawDocum
     }
 }
 
-fn numbers(fit: &LawFit, quantity: Quantity) -> BTreeMap<String, NumberDocument> {
-    let named = |number: &palpate::fit::LawNumber| {
+fn numbers(fit: &Fit, quantity: Quantity) -> BTreeMap<String, NumberDocument> {
+    let named = |number: &palpate::fit::Parameter| {
         let suffix = quantity.suffix(number.unit)?;
         Some((format!("{}{suffix}", number.name), NumberDocument::from(&number.estimate)))
     };
-    fit.numbers.iter().filter_map(named).filter(|(_, number)| number.value.is_finite()).collect()
+    fit.parameters.iter().filter_map(named).filter(|(_, number)| number.value.is_finite()).collect()
 }
 
 fn forecast(forecast: &Forecast, change: f64) -> ForecastDocument {

@@ -66,14 +66,14 @@ impl FitDocument {
                 Domain::Rate => "rate",
             }
             .to_owned(),
-            exponent: fit.exponent.value,
-            exponent_fixed: fit.choice != ExponentChoice::Free,
-            equilibrium_strain: is_strain.then_some(fit.equilibrium.value),
-            equilibrium_force_n: fit.equilibrium.value * newtons,
-            excess_strain: is_strain.then_some(fit.amplitude.value),
-            excess_force_n: fit.amplitude.value * newtons,
-            relative_rate_per_s: fit.relative_rate.value,
-            rate_coefficient_per_s: is_strain.then_some(fit.rate_coefficient.value),
+            exponent: fit.exponent().value,
+            exponent_fixed: fit.choice() != ExponentChoice::Free,
+            equilibrium_strain: is_strain.then_some(fit.equilibrium().value),
+            equilibrium_force_n: fit.equilibrium().value * newtons,
+            excess_strain: is_strain.then_some(fit.amplitude().value),
+            excess_force_n: fit.amplitude().value * newtons,
+            relative_rate_per_s: fit.relative_rate().value,
+            rate_coefficient_per_s: is_strain.then_some(fit.rate_coefficient().value),
             standard_error: BTreeMap::new(),
             confidence_interval: BTreeMap::new(),
             rmse: fit.rmse,
@@ -83,14 +83,14 @@ impl FitDocument {
             prediction_error: prediction.map(|prediction| prediction.relative),
             termination: termination_word(fit.termination).to_owned(),
         };
-        document.note("exponent", fit.exponent, 1.0);
-        document.note("equilibrium_force_n", fit.equilibrium, newtons);
-        document.note("excess_force_n", fit.amplitude, newtons);
-        document.note("relative_rate_per_s", fit.relative_rate, 1.0);
+        document.note("exponent", fit.exponent(), 1.0);
+        document.note("equilibrium_force_n", fit.equilibrium(), newtons);
+        document.note("excess_force_n", fit.amplitude(), newtons);
+        document.note("relative_rate_per_s", fit.relative_rate(), 1.0);
         if is_strain {
-            document.note("equilibrium_strain", fit.equilibrium, 1.0);
-            document.note("excess_strain", fit.amplitude, 1.0);
-            document.note("rate_coefficient_per_s", fit.rate_coefficient, 1.0);
+            document.note("equilibrium_strain", fit.equilibrium(), 1.0);
+            document.note("excess_strain", fit.amplitude(), 1.0);
+            document.note("rate_coefficient_per_s", fit.rate_coefficient(), 1.0);
         }
         document
     }

@@ -58,7 +58,7 @@ impl Reproduction {
         let v = self.model.law.rate_coefficient();
         let holds = self.test_a.analysis.holds.iter().chain(&self.test_b.analysis.holds);
         let fits = holds.filter_map(|hold| hold.fit_with(self.model.law.exponent()));
-        fits.map(|fit| (fit.rate_coefficient.value / v - 1.0).abs()).fold(0.0, f64::max)
+        fits.map(|fit| (fit.rate_coefficient().value / v - 1.0).abs()).fold(0.0, f64::max)
     }
 }
 

@@ -10,7 +10,7 @@ use crate::contact::{Specimen, SpecimenError};
 use crate::number::significant;
 use crate::record::{Record, SignalReport};
 use crate::segment::{ContactPoint, Phase, Segment, Segmentation};
-use crate::watch::{Progress, Unwatched, Watch};
+use crate::watch::{Unwatched, Watch};
 
 /// The study of one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,9 +91,8 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
             analyze_hold(&record, (segment, ramp), index + 1, specimen.as_ref(), options, watch)
         })
         .collect::<Result<_, _>>()?;
-    watch.report(Progress::open("comparing holds", 0))?;
     findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
-    let across = across(&holds, options, 4.0 * segmentation.settings.tolerance);
+    let across = across(&holds, options, 4.0 * segmentation.settings.tolerance, watch)?;
     findings.extend(changing_rate(&across.joint));
     let overlay = specimen.as_ref().and_then(|specimen| {
         let result = overlay(&record, &segmentation, specimen, &holds, across.common_exponent, options);
@@ -167,7 +166,7 @@ fn specimen(
 fn uncertain_touch(contact: &ContactPoint, specimen: &Specimen, holds: &[HoldAnalysis]) -> Option<Finding> {
     let error = contact.displacement_error?;
     let shares = holds.iter().filter_map(|hold| {
-        let equilibrium = &hold.preferred()?.equilibrium;
+        let equilibrium = hold.preferred()?.equilibrium();
         let (low, high) = equilibrium.interval?;
         let u = specimen.contact_displacement(hold.displacement?);
         let moved = specimen.contact_displacement(error);

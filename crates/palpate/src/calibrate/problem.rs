@@ -1,7 +1,7 @@
 //! Residuals of a candidate, and damped steps to where they are least.
 
 use super::prepared::Prepared;
-use crate::fit::{Cholesky, Termination};
+use crate::optimise::{Cholesky, Termination};
 use crate::simulate::{Motion, simulate_force};
 use crate::watch::{Cancelled, Stages};
 

@@ -8,7 +8,7 @@ use super::prepared::{Prepared, Searched};
 use super::problem::{Found, Problem};
 use super::starts::{refusal, starts};
 use super::{CalibrateError, CalibrationData};
-use crate::fit::Termination;
+use crate::optimise::Termination;
 use crate::simulate::Motion;
 use crate::watch::{Cancelled, Stages};
 

@@ -2,14 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::build::build;
-use super::condensed::Condensed;
-use super::law_fit::Fitted;
+use super::error::FitError;
+use super::global::search::finalists;
+use super::law::fitted::Fitted;
+use super::options::LawOptions;
+use super::problem::build::build;
+use super::problem::condensed::{Condensed, condense};
 use super::samples::{Samples, Scaled};
-use super::search::{condense, finalists};
-use super::separable::{Ending, Work, polished, refine};
-use super::{FitError, LawOptions, SpectrumOptions, fit_spectrum};
+use super::spectrum::{SpectrumOptions, fit_spectrum};
 use crate::laws::{BasisFunction, Law, LawCurve, Term};
+use crate::optimise::{Ending, Work, polished, refine};
 
 /// How well the first part of a hold foretells the rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -32,7 +34,7 @@ pub struct Forecast {
 /// the error of a given curve by 10⁻⁴ of itself.
 ///
 /// # Errors
-/// [`FitError`] as for [`fit_law`](super::fit_law) on the first part; [`FitError::TooFewSamples`] if none are left to foretell.
+/// [`FitError`] as for [`fit_law`](crate::fit::fit_law) on the first part; [`FitError::TooFewSamples`] if none are left to foretell.
 pub fn foretell(samples: &Samples<'_>, law: Law, options: &LawOptions, cut: f64) -> Result<Forecast, FitError> {
     options.check()?;
     samples.check(1)?;

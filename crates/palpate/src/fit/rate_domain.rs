@@ -1,18 +1,22 @@
 //! Strain rate fitted against strain, equation (10): the paper's way.
 
-use super::estimates::{Domain, Estimate, LatencyFit};
+use super::error::FitError;
+use super::estimate::Estimate;
+use super::latency::LatencyFit;
+use super::noise::uncertainty::{Assessed, Scale};
+use super::options::{FitOptions, NoiseChoice};
+use super::parameter::ParameterKind;
+use super::result::{Domain, Fit, NumberUnit, Parameter};
 use super::samples::not_finite;
-use super::separable::{Ending, Refined, Shapes, Solution, Target, Termination, Work, polished, refine};
-use super::uncertainty::{Assessed, Scale};
-use super::{FitError, FitOptions, NoiseChoice};
-use crate::laws::ExponentChoice;
+use crate::laws::{BasisFunction, ExponentChoice, Law, LawCurve, Response, Term};
+use crate::optimise::{Ending, Refined, Shapes, Solution, Target, Termination, Work, polished, refine};
 
 /// Fits ε̇ = −v sgn(x) |x|ⁿ, x = ε − ε_e, to strain rates (1/s) over strains: equations (9) and (10).
 ///
 /// Least squares in ε̇, as in the paper; the order of the samples does not matter. For given (ε_e, n) the law is linear
 /// in v, so ε_e, or (ε_e, n), is sought from a coarse grid up to ten ranges of strain away.
 ///
-/// **Noise biases this fit**: it enters both axes, and the rates come from a derivative. Prefer [`fit_hold`](super::fit_hold)
+/// **Noise biases this fit**: it enters both axes, and the rates come from a derivative. Prefer [`fit_hold`](crate::fit::fit_hold)
 /// and read this one as the paper's view of the data. The excess at the first sample is reported as the amplitude.
 ///
 /// ```
@@ -20,8 +24,8 @@ use crate::laws::ExponentChoice;
 /// let strains: Vec<f64> = (0..60).map(|i| 0.25 + 0.002 * f64::from(i)).collect();
 /// let rates: Vec<f64> = strains.iter().map(|e| -2e4 * (e - 0.2f64).powi(5)).collect();
 /// let fit = fit_rates(&strains, &rates, ExponentChoice::Fixed(5.0), &FitOptions::default())?;
-/// assert!((fit.equilibrium.value - 0.2).abs() < 1e-9);
-/// assert!((fit.rate_coefficient.value / 2e4 - 1.0).abs() < 1e-6);
+/// assert!((fit.equilibrium().value - 0.2).abs() < 1e-9);
+/// assert!((fit.rate_coefficient().value / 2e4 - 1.0).abs() < 1e-6);
 /// # Ok::<(), palpate::fit::FitError>(())
 /// ```
 ///
@@ -54,7 +58,7 @@ pub fn fit_rates(
         }
     }
     let solution = polished(&shapes, target, best.ok_or(FitError::NoDecay)?, &mut work);
-    Ok(scaled.fit(strains, &solution, choice, options, work))
+    LatencyFit::new(scaled.fit(strains, &solution, choice, options, work)).ok_or(FitError::NoDecay)
 }
 
 fn check(strains: &[f64], rates: &[f64], choice: ExponentChoice) -> Result<(), FitError> {
@@ -122,7 +126,7 @@ impl Scaled {
         choice: ExponentChoice,
         options: &FitOptions,
         work: Work,
-    ) -> LatencyFit {
+    ) -> Fit {
         let scaled_v = solution.linear[0];
         let n = match choice {
             ExponentChoice::Fixed(n) => n,
@@ -156,24 +160,73 @@ impl Scaled {
         });
         let covariance = covariance.filter(|rows: &Vec<Vec<f64>>| rows.iter().flatten().all(|entry| entry.is_finite()));
         let residual_square = solution.residual_square * self.fastest * self.fastest;
-        LatencyFit {
+        let log_rate_value = coefficient.ln() + (n - 1.0) * log_amplitude;
+        let mut parameters = vec![
+            (
+                ParameterKind::Equilibrium,
+                NumberUnit::Signal,
+                estimate(equilibrium, &[0.0, 1.0, 0.0], Scale::Linear, self.range),
+            ),
+            (
+                ParameterKind::Amplitude,
+                NumberUnit::Signal,
+                estimate(amplitude, &[0.0, 1.0, 0.0], Scale::Linear, self.range),
+            ),
+            (
+                ParameterKind::RelativeRate,
+                NumberUnit::PerSecond,
+                estimate(log_rate_value.exp(), &log_rate, Scale::Log, 1.0),
+            ),
+            (
+                ParameterKind::RateCoefficient,
+                NumberUnit::RateCoefficient,
+                estimate(coefficient, &log_v, Scale::Log, 1.0),
+            ),
+        ];
+        if choice == ExponentChoice::Free {
+            let exponent = estimate(n, &[0.0, 0.0, 1.0 / n], Scale::Log, 1.0);
+            parameters.insert(3, (ParameterKind::Exponent, NumberUnit::One, exponent));
+        }
+        let (shape, numbers) = match choice {
+            ExponentChoice::Fixed(n) => (BasisFunction::LatencyWith(n), vec![log_rate_value]),
+            ExponentChoice::Free => (BasisFunction::Latency, vec![log_rate_value, n]),
+        };
+        let parameter = |(kind, unit, estimate): (ParameterKind, NumberUnit, Estimate)| Parameter {
+            name: kind.into(),
+            unit,
+            estimate,
+        };
+        Fit {
+            law: Law::Latency { exponent: choice },
             domain: Domain::Rate,
-            choice,
-            exponent: match choice {
-                ExponentChoice::Fixed(n) => Estimate::fixed(n),
-                ExponentChoice::Free => estimate(n, &[0.0, 0.0, 1.0 / n], Scale::Log, 1.0),
-            },
-            equilibrium: estimate(equilibrium, &[0.0, 1.0, 0.0], Scale::Linear, self.range),
-            amplitude: estimate(amplitude, &[0.0, 1.0, 0.0], Scale::Linear, self.range),
-            relative_rate: estimate((coefficient.ln() + (n - 1.0) * log_amplitude).exp(), &log_rate, Scale::Log, 1.0),
-            rate_coefficient: estimate(coefficient, &log_v, Scale::Log, 1.0),
+            response: Response::Relaxation,
+            curve: LawCurve::relaxing(
+                Response::Relaxation,
+                equilibrium,
+                vec![Term {
+                    amplitude,
+                    shape,
+                    numbers,
+                }],
+            ),
+            loading: None,
+            parameters: parameters.into_iter().map(parameter).collect(),
+            profiles: Vec::new(),
+            searched: ["equilibrium", "log_rate_coefficient", "exponent"][..size]
+                .iter()
+                .map(ToString::to_string)
+                .collect(),
+            values: [equilibrium, coefficient.ln(), n][..size].to_vec(),
             covariance,
             residual_square,
             rmse: (residual_square / strains.len() as f64).sqrt(),
             residual_correlation: assessed.correlation,
             noise: assessed.noise,
+            uncertainty: None,
             samples: strains.len(),
+            duration: 0.0,
             termination: solution.termination,
+            ghosts: Vec::new(),
             work,
         }
     }

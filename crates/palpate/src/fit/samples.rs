@@ -1,7 +1,7 @@
 //! The samples of a hold, checked and brought to units in which every hold looks alike.
 
-use super::FitError;
-use super::separable::Target;
+use super::error::FitError;
+use crate::optimise::Target;
 use crate::vector::columns::{all_finite, extremes, multiply, rises, shifted};
 
 /// A hold to be fitted: times in s, values in their unit, and how far each may be off.
@@ -20,9 +20,9 @@ use crate::vector::columns::{all_finite, extremes, multiply, rises, shifted};
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Samples<'a> {
-    pub(super) times: &'a [f64],
-    pub(super) values: &'a [f64],
-    pub(super) deviations: Option<&'a [f64]>,
+    pub(crate) times: &'a [f64],
+    pub(crate) values: &'a [f64],
+    pub(crate) deviations: Option<&'a [f64]>,
 }
 
 impl<'a> Samples<'a> {
@@ -58,7 +58,7 @@ impl<'a> Samples<'a> {
     }
 
     /// Whether a law with so many numbers can be fitted to these samples at all.
-    pub(super) fn check(&self, parameters: usize) -> Result<(), FitError> {
+    pub(crate) fn check(&self, parameters: usize) -> Result<(), FitError> {
         if self.times.len() != self.values.len() {
             return Err(FitError::Lengths {
                 abscissas: self.times.len(),
@@ -112,22 +112,22 @@ impl<'a> Samples<'a> {
 
 /// A hold in units of its own duration and range.
 #[derive(Debug, Clone)]
-pub(super) struct Scaled {
-    pub(super) times: Vec<f64>,
+pub(crate) struct Scaled {
+    pub(crate) times: Vec<f64>,
     /// (y − center)/range, times `roots`.
-    pub(super) values: Vec<f64>,
+    pub(crate) values: Vec<f64>,
     /// Square roots of the weights, one at the root mean square; `None` if all are alike.
-    pub(super) roots: Option<Vec<f64>>,
+    pub(crate) roots: Option<Vec<f64>>,
     /// Root mean square of 1/σ: what the roots were divided by; 1 without deviations.
-    pub(super) precision: f64,
-    pub(super) duration: f64,
-    pub(super) center: f64,
-    pub(super) range: f64,
+    pub(crate) precision: f64,
+    pub(crate) duration: f64,
+    pub(crate) center: f64,
+    pub(crate) range: f64,
 }
 
 impl Scaled {
     /// Scales checked samples; `constant` is the constant of the law if it is given.
-    pub(super) fn new(samples: &Samples<'_>, constant: Option<f64>) -> Result<Self, FitError> {
+    pub(crate) fn new(samples: &Samples<'_>, constant: Option<f64>) -> Result<Self, FitError> {
         // Of a sample that says nothing only its time counts, if it is the first or the last.
         let start = samples.times[0];
         let duration = samples.times[samples.times.len() - 1] - start;
@@ -170,20 +170,20 @@ impl Scaled {
         })
     }
 
-    pub(super) fn target(&self) -> Target<'_> {
+    pub(crate) fn target(&self) -> Target<'_> {
         Target::new(&self.values, self.roots.as_deref())
     }
 
     /// ln λ, in the units of the fit, from the slowest to the fastest rate that such a hold can show: 10⁻³ per duration to
     /// 10³ per first sample step.
-    pub(super) fn log_rates(&self) -> (f64, f64) {
+    pub(crate) fn log_rates(&self) -> (f64, f64) {
         let first = self.times.iter().copied().find(|t| *t > 0.0).unwrap_or(1.0);
         (1e-3f64.ln(), (1e3 / first).ln())
     }
 }
 
 /// The first sample of which a number is none, if there is one.
-pub(super) fn not_finite(columns: [(&'static str, &[f64]); 2]) -> Option<FitError> {
+pub(crate) fn not_finite(columns: [(&'static str, &[f64]); 2]) -> Option<FitError> {
     let first = |(what, column): (&'static str, &[f64])| {
         let index = column.iter().position(|value| !value.is_finite())?;
         let found = column[index];

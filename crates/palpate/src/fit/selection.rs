@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ExponentChoice, LatencyFit};
+use super::latency::LatencyFit;
+use crate::laws::ExponentChoice;
 
 /// One exponent that was tried.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -43,23 +44,23 @@ const EVIDENCE: f64 = 2.0;
 #[must_use]
 pub fn select_order(fits: &[LatencyFit]) -> OrderSelection {
     let best = fits.iter().min_by(|a, b| a.residual_square.total_cmp(&b.residual_square));
-    let effective = best.map_or(0.0, LatencyFit::effective_samples);
+    let effective = best.map_or(0.0, |fit| fit.effective_samples());
     // Noise-free records leave rounding only; below this share of the signal all residuals are equal.
     let floor = |fit: &LatencyFit| {
-        let scale = fit.amplitude.value.abs() + fit.equilibrium.value.abs();
+        let scale = fit.amplitude().value.abs() + fit.equilibrium().value.abs();
         (1e-9 * scale).powi(2) * fit.samples as f64
     };
     let criterion = |fit: &LatencyFit| {
         let square = fit.residual_square.max(floor(fit));
-        effective * (square / fit.samples as f64).ln() + fit.parameters() as f64 * effective.ln()
+        effective * (square / fit.samples as f64).ln() + fit.free_numbers() as f64 * effective.ln()
     };
-    let listed = |fit: &LatencyFit| matches!(fit.choice, ExponentChoice::Fixed(_));
+    let listed = |fit: &LatencyFit| matches!(fit.choice(), ExponentChoice::Fixed(_));
     let lowest = fits.iter().map(criterion).fold(f64::INFINITY, f64::min);
     let lowest_listed = fits.iter().filter(|fit| listed(fit)).map(criterion).fold(f64::INFINITY, f64::min);
     let candidates: Vec<Candidate> = fits
         .iter()
         .map(|fit| Candidate {
-            exponent: fit.exponent.value,
+            exponent: fit.exponent().value,
             free: !listed(fit),
             rmse: fit.rmse,
             delta_bic: criterion(fit) - lowest,

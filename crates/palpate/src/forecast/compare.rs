@@ -1,141 +1,14 @@
 //! All laws on one hold, ranked.
 
-use serde::{Deserialize, Serialize};
-
-use super::criteria::{Criteria, criteria};
+use super::criteria::criteria;
 use super::forward::ForwardScore;
-use super::verdict::{Verdict, judge};
-use crate::fit::{FitError, LawFit, LawOptions, Samples, SpectrumFit, SpectrumOptions, fit_law, fit_spectrum};
-use crate::laws::{ExponentChoice, Law, Response};
+use super::options::CompareOptions;
+use super::result::{Comparison, Ranking, Row};
+use super::verdict::judge;
+use crate::fit::{Fit, FitError, LawOptions, Samples, SpectrumOptions, fit_law_watched, fit_spectrum};
+use crate::laws::Law;
 use crate::statistics::{mean, noise_in_time};
 use crate::watch::{Cancelled, Progress, Unwatched, Watch};
-
-/// What linear laws take the loading before a hold for. The latency law needs no choice: all that it remembers of a loading is
-/// the excess at its end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RampChoice {
-    /// A step at the start of the fit, as is usual: right where the ramp is short beside all times of the law.
-    #[default]
-    Step,
-    /// What was measured, by the hereditary integral; of use to [`analyze`](crate::analysis::analyze), which knows the ramp.
-    Measured,
-}
-
-/// What may be asked of [`compare_laws`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct CompareOptions {
-    /// Laws that are compared; if empty, all that suit the response.
-    pub laws: Vec<Law>,
-    /// Options of every fit.
-    pub fit: LawOptions,
-    /// What linear laws take the loading before a hold for.
-    pub ramps: RampChoice,
-    /// Cut points as shares of the duration of the hold, each between 0 and 1.
-    pub cuts: Vec<f64>,
-}
-
-impl Default for CompareOptions {
-    fn default() -> Self {
-        Self {
-            laws: Vec::new(),
-            fit: LawOptions::default(),
-            ramps: RampChoice::default(),
-            cuts: vec![0.25, 1.0 / 3.0, 0.5],
-        }
-    }
-}
-
-impl CompareOptions {
-    /// The laws that will be compared.
-    #[must_use]
-    pub fn laws(&self) -> Vec<Law> {
-        if !self.laws.is_empty() {
-            return self.laws.clone();
-        }
-        let latency = |exponent| Law::Latency { exponent };
-        let all = [
-            latency(ExponentChoice::Free),
-            latency(ExponentChoice::Fixed(5.0)),
-            Law::StandardLinearSolid,
-            Law::Prony { terms: 2 },
-            Law::Prony { terms: 3 },
-            Law::Spectrum,
-            Law::Stretched,
-            Law::FractionalZener,
-            Law::FungContinuous,
-            Law::Power,
-            Law::Logarithmic,
-            Law::Diffusion,
-        ];
-        let creep = [Law::KelvinVoigt, Law::Burgers];
-        let extra = creep.into_iter().filter(|_| self.fit.response == Response::Creep);
-        all.into_iter().chain(extra).filter(|law| law.describes(self.fit.response)).collect()
-    }
-}
-
-/// By what laws were ranked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Ranking {
-    /// By the forward score.
-    Forward,
-    /// By BIC at the effective number of samples: the hold is too short, or too noisy, to foretell anything.
-    Information,
-}
-
-/// One law on one hold.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Row {
-    /// The law.
-    pub law: Law,
-    /// Its fit to the whole hold (for the spectrum see `spectrum`).
-    pub fit: Result<LawFit, FitError>,
-    /// The spectrum, if that is the law.
-    pub spectrum: Option<SpectrumFit>,
-    /// Numbers that the data determine; not a whole one for a smoothed spectrum.
-    pub numbers: f64,
-    /// Root mean square residual, in the unit of the signal.
-    pub rmse: f64,
-    /// Criteria as textbooks define them, at the number of samples.
-    pub criteria: Option<Criteria>,
-    /// BIC at the effective number of samples, less the lowest.
-    pub delta_bic: Option<f64>,
-    /// What it foretells.
-    pub forward: ForwardScore,
-}
-
-impl Row {
-    /// Whether the law was fitted, to an optimum inside its range.
-    #[must_use]
-    pub fn is_good(&self) -> bool {
-        self.spectrum.is_some() || self.fit.as_ref().is_ok_and(|fit| fit.termination.is_good())
-    }
-}
-
-/// Laws compared on one hold.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Comparison {
-    /// One row a law, best first.
-    pub rows: Vec<Row>,
-    /// By what they are ranked.
-    pub ranking: Ranking,
-    /// Cut points, s after the first sample.
-    pub cuts: Vec<f64>,
-    /// Time from the first to the last sample, s.
-    pub duration: f64,
-    /// Change of the signal over the hold, in its unit: forward errors are shares of it.
-    pub change: f64,
-    /// Standard deviation of the noise, in the unit of the signal.
-    pub noise: f64,
-    /// Samples.
-    pub samples: usize,
-    /// Samples that count as independent, by the residuals of the closest fit.
-    pub effective_samples: f64,
-    /// Which law to use; `None` if none could be fitted.
-    pub verdict: Option<Verdict>,
-}
 
 /// Fits laws to a hold, lets each foretell the last part from the first, and ranks them.
 ///
@@ -156,23 +29,33 @@ pub struct Comparison {
 /// # Errors
 /// [`FitError`] for samples that no law can be fitted to.
 pub fn compare_laws(samples: &Samples<'_>, options: &CompareOptions) -> Result<Comparison, FitError> {
-    compare_laws_watched(samples, options, &mut Unwatched)
+    compare_laws_watched(samples, options, &[], &mut Unwatched)
 }
 
-/// As [`compare_laws`]; the watch hears of every law.
+/// A fit of the same samples that exists already, with what was asked of it.
+#[derive(Debug, Clone)]
+pub struct KnownFit<'a> {
+    /// What was asked.
+    pub options: LawOptions,
+    /// The fit.
+    pub fit: &'a Fit,
+}
+
+/// [`compare_laws`] with a watch, and with fits that exist already, which are not made again.
 ///
 /// # Errors
-/// Those of [`compare_laws`], and [`FitError::Cancelled`].
+/// As [`compare_laws`], and [`FitError::Cancelled`].
 pub fn compare_laws_watched(
     samples: &Samples<'_>,
     options: &CompareOptions,
+    known: &[KnownFit<'_>],
     watch: &mut dyn Watch,
 ) -> Result<Comparison, FitError> {
-    let mut rows: Vec<Row> = Vec::new();
     let laws = options.laws();
-    for (done, law) in laws.iter().enumerate() {
-        watch.report(Progress::counted("comparing laws", done, 2 * laws.len()))?;
-        rows.push(row(samples, *law, options)?);
+    let mut rows: Vec<Row> = Vec::new();
+    for law in &laws {
+        watch.report(Progress::counted("comparing laws", rows.len(), 2 * laws.len()))?;
+        rows.push(row(samples, *law, options, known, watch)?);
     }
     let (times, values) = (samples.times(), samples.values());
     let duration = times[times.len() - 1] - times[0];
@@ -198,7 +81,7 @@ pub fn compare_laws_watched(
         .iter()
         .filter_map(|row| row.fit.as_ref().ok())
         .min_by(|a, b| a.residual_square.total_cmp(&b.residual_square));
-    let effective = closest.map_or(values.len() as f64, LawFit::effective_samples);
+    let effective = closest.map_or(values.len() as f64, Fit::effective_samples);
     weigh(&mut rows, effective, values.len(), change);
     let ranking = if cuts.is_empty() { Ranking::Information } else { Ranking::Forward };
     let key = |row: &Row| match ranking {
@@ -221,7 +104,13 @@ pub fn compare_laws_watched(
     Ok(comparison)
 }
 
-fn row(samples: &Samples<'_>, law: Law, options: &CompareOptions) -> Result<Row, FitError> {
+fn row(
+    samples: &Samples<'_>,
+    law: Law,
+    options: &CompareOptions,
+    known: &[KnownFit<'_>],
+    watch: &mut dyn Watch,
+) -> Result<Row, FitError> {
     let mut row = Row {
         law,
         fit: Err(FitError::NoDecay),
@@ -239,7 +128,11 @@ fn row(samples: &Samples<'_>, law: Law, options: &CompareOptions) -> Result<Row,
         row.spectrum = Some(fit);
         return Ok(row);
     }
-    row.fit = fit_law(samples, law, &options.fit);
+    let same = |known: &&KnownFit<'_>| known.fit.law == law && known.options.same_for(law, &options.fit);
+    row.fit = match known.iter().find(same) {
+        Some(known) => Ok(known.fit.clone()),
+        None => fit_law_watched(samples, law, &options.fit, watch),
+    };
     match &row.fit {
         Ok(fit) => {
             row.numbers = fit.free_numbers() as f64;

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `criteria.rs` | AICc and BIC |
 //! | `forward.rs` | forward score: fit the first part of the hold, predict the rest |
+//! | `options.rs`, `result.rs` | what is asked, and what is said |
 //! | `compare.rs` | all laws on one hold, ranked |
 //! | `verdict.rs` | which law to use, how sure that is, what another would cost |
 //! | `sentence.rs` | that in one sentence |
@@ -11,11 +12,14 @@
 mod compare;
 mod criteria;
 mod forward;
+mod options;
+mod result;
 mod sentence;
 mod verdict;
 
-pub use compare::{CompareOptions, Comparison, RampChoice, Ranking, Row, compare_laws, compare_laws_watched};
+pub use compare::{KnownFit, compare_laws, compare_laws_watched};
 pub use criteria::{Criteria, criteria};
 pub use forward::ForwardScore;
+pub use options::{CompareOptions, RampChoice};
+pub use result::{Certainty, Comparison, Ranking, Row, Verdict};
 pub use sentence::name_in_words;
-pub use verdict::{Certainty, Verdict};

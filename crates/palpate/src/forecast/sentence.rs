@@ -1,7 +1,6 @@
 //! A verdict in one sentence.
 
-use super::compare::{Comparison, Ranking};
-use super::verdict::{Certainty, Verdict};
+use super::result::{Certainty, Comparison, Ranking, Verdict};
 use crate::laws::{ExponentChoice, Law};
 
 /// Beyond this many times a cost is no longer told exactly.

@@ -1,36 +1,7 @@
 //! Which law to use, how sure that is, and what another would cost.
 
-use serde::{Deserialize, Serialize};
-
-use super::compare::{Comparison, Ranking, Row};
+use super::result::{Certainty, Comparison, Ranking, Row, Verdict};
 use crate::laws::Law;
-
-/// How sure a verdict is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Certainty {
-    /// Best, or as good as the best, at every cut point, and every law that is not alike is at least twice as far off.
-    Clear,
-    /// Best in the mean.
-    Likely,
-    /// Most laws that are no generalisation of the chosen one do as well.
-    Open,
-}
-
-/// Which law to use.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Verdict {
-    /// The law with the fewest numbers among those that do best; the spectrum only if nothing else does as well.
-    pub law: Law,
-    /// All laws that do as well, this one included, best first.
-    pub alike: Vec<Law>,
-    /// How sure that is.
-    pub certainty: Certainty,
-    /// Cut points at which it was best or alike.
-    pub cuts_won: usize,
-    /// What every other law costs: its error over that of the chosen one (forward), or its excess of BIC (information).
-    pub costs: Vec<(Law, f64)>,
-}
 
 /// Errors within this factor of the best count as alike.
 const ALIKE: f64 = 1.5;

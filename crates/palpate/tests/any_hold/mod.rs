@@ -1,6 +1,6 @@
 //! Bytes read as a law, options and columns: shared by the property test of inputs and the fuzz target `fit_law`.
 
-use palpate::fit::{LawFit, LawOptions, Loss, Samples, Termination, fit_law};
+use palpate::fit::{Fit, LawOptions, Loss, Samples, Termination, fit_law};
 use palpate::laws::{Law, Response};
 
 /// The laws that are tried.
@@ -28,9 +28,9 @@ pub(crate) const LAWS: [&str; 17] = [
 const MOST: usize = 60;
 
 /// Whether nothing in a fit is NaN.
-pub(crate) fn is_whole(fit: &LawFit) -> bool {
+pub(crate) fn is_whole(fit: &Fit) -> bool {
     let errors = fit.covariance.iter().flatten().flatten().copied();
-    let numbers = fit.numbers.iter().flat_map(|number| {
+    let numbers = fit.parameters.iter().flat_map(|number| {
         let (low, high) = number.estimate.interval.unwrap_or((0.0, 0.0));
         [number.estimate.value, number.estimate.standard_error.unwrap_or(0.0), low, high]
     });

@@ -104,7 +104,7 @@ fn agrees_with_optima_of_forty_digits() {
         assert!(rss <= tolerance.rss_relative, "{}: {rss:e}", case.name);
         for hold in &fit.holds {
             for number in &fit.shared {
-                let own = hold.estimate(&number.name).unwrap();
+                let own = &hold.parameter(number.name).unwrap().estimate;
                 let error = number.estimate.standard_error.unwrap();
                 assert!((own.value - number.estimate.value).abs() < 1e-9 * error, "{}: {}", case.name, number.name);
                 assert!((own.standard_error.unwrap() / error - 1.0).abs() < 1e-6, "{}: {}", case.name, number.name);

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::fit::{LawFit, LawOptions, Loss, Samples, Termination, fit_law};
+use palpate::fit::{Fit, LawOptions, Loss, Samples, Termination, fit_law};
 use palpate::laws::Law;
 use palpate::test_problems::Noise;
 
@@ -23,7 +23,7 @@ fn hold(seed: u64, tenth: bool) -> (Vec<f64>, Vec<f64>) {
     (times, values)
 }
 
-fn fit(seed: u64, spoilt: bool, loss: Loss) -> LawFit {
+fn fit(seed: u64, spoilt: bool, loss: Loss) -> Fit {
     let (times, values) = hold(seed, spoilt);
     let options = LawOptions {
         loss,

@@ -72,9 +72,9 @@ fn noise_free_contacts_give_back_their_law() {
                     let what = format!("n = {n}, v = {v}, m = {m}, knot {knot}, {choice:?}: {fit:?}");
                     assert_eq!(fit.termination, Termination::Converged, "{what}");
                     let errors = [
-                        (fit.exponent.value - n).abs(),
-                        (fit.rate_coefficient.value / v - 1.0).abs(),
-                        (fit.equilibrium.value - equilibrium).abs(),
+                        (fit.exponent().value - n).abs(),
+                        (fit.rate_coefficient().value / v - 1.0).abs(),
+                        (fit.equilibrium().value - equilibrium).abs(),
                     ];
                     for (worst, error) in worst.iter_mut().zip(errors) {
                         *worst = worst.max(error);
@@ -91,14 +91,14 @@ fn noise_free_contacts_give_back_their_law() {
 
 /// Distances of n, ln λ, amplitude and equilibrium from the truth in standard errors.
 fn distances(fit: &LatencyFit, truth: [f64; 4]) -> Vec<f64> {
-    let relative = fit.relative_rate.standard_error.unwrap() / fit.relative_rate.value;
+    let relative = fit.relative_rate().standard_error.unwrap() / fit.relative_rate().value;
     let mut found = vec![
-        (fit.relative_rate.value.ln() - truth[1].ln()).abs() / relative,
-        (fit.amplitude.value - truth[2]).abs() / fit.amplitude.standard_error.unwrap(),
-        (fit.equilibrium.value - truth[3]).abs() / fit.equilibrium.standard_error.unwrap(),
+        (fit.relative_rate().value.ln() - truth[1].ln()).abs() / relative,
+        (fit.amplitude().value - truth[2]).abs() / fit.amplitude().standard_error.unwrap(),
+        (fit.equilibrium().value - truth[3]).abs() / fit.equilibrium().standard_error.unwrap(),
     ];
-    if fit.choice == ExponentChoice::Free {
-        found.push((fit.exponent.value - truth[0]).abs() / fit.exponent.standard_error.unwrap());
+    if fit.choice() == ExponentChoice::Free {
+        found.push((fit.exponent().value - truth[0]).abs() / fit.exponent().standard_error.unwrap());
     }
     found
 }
@@ -320,8 +320,8 @@ fn no_search_finds_a_better_fit() {
             worse.push(format!(
                 "{excess:.2e}: problem {index}, {}, {choice:?}: ended at ln λT {}, n {} ({:?}), better at {point:?}",
                 problem.text,
-                (fit.relative_rate.value * duration).ln(),
-                fit.exponent.value,
+                (fit.relative_rate().value * duration).ln(),
+                fit.exponent().value,
                 fit.termination
             ));
         }
@@ -344,7 +344,8 @@ fn intervals_cover_the_truth_as_often_as_they_say() {
             let value = |t: &f64| level + amplitude * (decay(rate * t, n) + 0.01 * random.normal());
             let values: Vec<f64> = times.iter().map(value).collect();
             let fit = fit_hold(&times, &values, choice, &FitOptions::default()).unwrap();
-            let estimates = [fit.exponent, fit.equilibrium, fit.amplitude, fit.relative_rate, fit.rate_coefficient];
+            let estimates =
+                [fit.exponent(), fit.equilibrium(), fit.amplitude(), fit.relative_rate(), fit.rate_coefficient()];
             for ((count, estimate), truth) in covered.iter_mut().zip(estimates).zip(law) {
                 let inside = |(low, high): (f64, f64)| (low..=high).contains(&truth);
                 *count += u32::from(estimate.interval.is_some_and(inside));
@@ -379,12 +380,12 @@ fn no_unit_changes_the_answer() {
             for (t_unit, y_unit) in [(1.0, 1e12), (1.0, 1e-12), (1e9, 1.0), (1e-9, 1.0), (1e9, 1e-12), (1e-9, 1e12)] {
                 let other = fit(t_unit, y_unit);
                 assert_eq!(other.termination, reference.termination);
-                let n = reference.exponent.value;
+                let n = reference.exponent().value;
                 let pairs = [
-                    (other.exponent, reference.exponent, 1.0),
-                    (other.equilibrium, reference.equilibrium, y_unit),
-                    (other.amplitude, reference.amplitude, y_unit),
-                    (other.relative_rate, reference.relative_rate, 1.0 / t_unit),
+                    (other.exponent(), reference.exponent(), 1.0),
+                    (other.equilibrium(), reference.equilibrium(), y_unit),
+                    (other.amplitude(), reference.amplitude(), y_unit),
+                    (other.relative_rate(), reference.relative_rate(), 1.0 / t_unit),
                 ];
                 let mut distance = (other.residual_square / reference.residual_square / y_unit / y_unit - 1.0).abs();
                 for (found, expected, unit) in pairs {
@@ -395,8 +396,8 @@ fn no_unit_changes_the_answer() {
                     }
                 }
                 // ln v takes n into its unit: ln v' = ln v − ln t_unit − (n − 1) ln y_unit.
-                let log_v = reference.rate_coefficient.value.ln() - t_unit.ln() - (n - 1.0) * y_unit.ln();
-                distance = distance.max(0.01 * (other.rate_coefficient.value.ln() - log_v).abs());
+                let log_v = reference.rate_coefficient().value.ln() - t_unit.ln() - (n - 1.0) * y_unit.ln();
+                distance = distance.max(0.01 * (other.rate_coefficient().value.ln() - log_v).abs());
                 assert!(distance <= 1e-9, "n = {n}, {choice:?}, units {t_unit} {y_unit}: {distance:e}");
                 worst = worst.max(distance);
             }

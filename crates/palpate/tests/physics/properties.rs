@@ -418,7 +418,7 @@ fn columns() -> impl Strategy<Value = (Vec<f64>, Vec<f64>, Vec<f64>)> {
 
 /// No number of a converged fit may be NaN.
 fn is_whole(fit: &LatencyFit) -> bool {
-    let estimates = [fit.exponent, fit.equilibrium, fit.amplitude, fit.relative_rate, fit.rate_coefficient];
+    let estimates = [fit.exponent(), fit.equilibrium(), fit.amplitude(), fit.relative_rate(), fit.rate_coefficient()];
     let sound = |number: f64| !number.is_nan();
     let whole = estimates.iter().all(|estimate| {
         let (low, high) = estimate.interval.unwrap_or((0.0, 0.0));
@@ -483,7 +483,7 @@ proptest! {
         let choice = if free { ExponentChoice::Free } else { ExponentChoice::Fixed(n) };
         if let Ok(fit) = fit_hold(&times, &values, choice, &FitOptions::default()) {
             prop_assert!(is_whole(&fit) || !fit.termination.is_good(), "{fit:?}");
-            let errors = [fit.equilibrium, fit.amplitude, fit.relative_rate].map(|estimate| estimate.standard_error);
+            let errors = [fit.equilibrium(), fit.amplitude(), fit.relative_rate()].map(|estimate| estimate.standard_error);
             if !fit.termination.is_good() {
                 prop_assert_eq!(errors, [None; 3], "errors on numbers that are not determined");
             }

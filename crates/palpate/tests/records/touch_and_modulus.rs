@@ -239,7 +239,7 @@ fn the_paper_ball_gives_back_its_equilibrium_strains() {
         let analysis = analyze(&bench.record(&[0.005, 0.01, 0.015], 10.0, 1), &ball(Some(28e3))).unwrap();
         assert!(analysis.contact.tare.force.abs() < 1e-12, "{:?}", analysis.contact);
         for (hold, expected) in analysis.holds.iter().zip([0.0025, 0.005, 0.0075]) {
-            let found = hold.fit_with(5.0).unwrap().equilibrium.value;
+            let found = hold.fit_with(5.0).unwrap().equilibrium().value;
             assert!((found - expected / 0.035).abs() < 1e-6, "air {air}: {found}");
         }
         let codes: Vec<&str> = analysis.findings.iter().map(Finding::code).collect();

@@ -149,12 +149,12 @@ fn robust_range(mut rates: Vec<f64>, fitted: impl Iterator<Item = f64>) -> Optio
 fn rate_curve(fit: &LatencyFit, hold: &HoldAnalysis) -> (Vec<f64>, Vec<f64>) {
     let last = hold.times.last().copied().unwrap_or(0.0);
     let (from, to) = (fit.predict(0.0), fit.predict(last));
-    let n = fit.exponent.value;
+    let n = fit.exponent().value;
     let strains = (0..CURVE).map(|i| from + (to - from) * i as f64 / (CURVE - 1) as f64);
     strains
         .map(|strain| {
-            let x = strain - fit.equilibrium.value;
-            (strain, -fit.rate_coefficient.value * x.signum() * x.abs().powf(n))
+            let x = strain - fit.equilibrium().value;
+            (strain, -fit.rate_coefficient().value * x.signum() * x.abs().powf(n))
         })
         .unzip()
 }
@@ -215,14 +215,14 @@ fn hold_panel(analysis: &Analysis, hold: &HoldAnalysis) -> Panel {
     }
     let curve: Vec<f64> = (0..CURVE).map(|i| first * (last / first).powf(i as f64 / (CURVE - 1) as f64)).collect();
     for fit in &hold.fits {
-        let is_common = fit.choice == ExponentChoice::Fixed(analysis.across.common_exponent.unwrap_or(f64::NAN));
-        let is_free = fit.choice == ExponentChoice::Free;
+        let is_common = fit.choice() == ExponentChoice::Fixed(analysis.across.common_exponent.unwrap_or(f64::NAN));
+        let is_free = fit.choice() == ExponentChoice::Free;
         if is_common || is_free {
             let role = if is_free { Role::Alternative(0) } else { Role::Fitted };
             let label = match fit.termination {
-                Termination::ExponentAtBound => format!("n = {} (free, at its bound)", fit.exponent.value),
-                _ if is_free => format!("n = {:.2} (free)", fit.exponent.value),
-                _ => format!("n = {}", fit.exponent.value),
+                Termination::ExponentAtBound => format!("n = {} (free, at its bound)", fit.exponent().value),
+                _ if is_free => format!("n = {:.2} (free)", fit.exponent().value),
+                _ => format!("n = {}", fit.exponent().value),
             };
             let line = curve.iter().map(|t| fit.predict(*t)).collect();
             panel = panel.layer(Layer::line(curve.clone(), line, role).label(label));
@@ -236,7 +236,7 @@ pub(super) fn residuals(analysis: &Analysis, name: &str) -> Option<Figure> {
     let all: Vec<(&HoldAnalysis, &LatencyFit)> =
         analysis.holds.iter().filter_map(|hold| Some((hold, hold.preferred()?))).collect();
     // A fit without noise leaves only the rounding of its own arithmetic, which says nothing.
-    let worth: Vec<_> = all.iter().filter(|(_, fit)| fit.rmse > 1e-9 * fit.amplitude.value.abs()).collect();
+    let worth: Vec<_> = all.iter().filter(|(_, fit)| fit.rmse > 1e-9 * fit.amplitude().value.abs()).collect();
     let fitted = &worth[..worth.len().min(MOST_PANELS)];
     if fitted.is_empty() {
         return None;
@@ -263,7 +263,7 @@ pub(super) fn residuals(analysis: &Analysis, name: &str) -> Option<Figure> {
             .map(|(t, y)| (y - fit.predict(*t)) * hold.force_per_signal)
             .collect();
         let panel = Panel::new(Axis::log("Time", "s"), Axis::linear("Residual", "N"))
-            .title(format!("Hold {}, n = {:.2}", hold.number, fit.exponent.value))
+            .title(format!("Hold {}, n = {:.2}", hold.number, fit.exponent().value))
             .zero_line()
             .layer(Layer::points(hold.times[visible..].to_vec(), left, Role::Measured));
         figure = figure.panel(panel);
@@ -291,9 +291,9 @@ pub(super) fn trend(analysis: &Analysis, name: &str) -> Option<Figure> {
             continue;
         }
         points += fits.len();
-        let x = fits.iter().map(|fit| fit.equilibrium.value).collect();
-        let y = fits.iter().map(|fit| fit.rate_coefficient.value).collect();
-        let errors = fits.iter().map(|fit| fit.rate_coefficient.standard_error.unwrap_or(0.0)).collect();
+        let x = fits.iter().map(|fit| fit.equilibrium().value).collect();
+        let y = fits.iter().map(|fit| fit.rate_coefficient().value).collect();
+        let errors = fits.iter().map(|fit| fit.rate_coefficient().standard_error.unwrap_or(0.0)).collect();
         panel = panel.layer(Layer::points(x, y, role).error_bars(errors).label(label));
     }
     (points >= 2).then(|| {

@@ -42,7 +42,7 @@ fn equilibrium(hold: &HoldAnalysis, fit: &LatencyFit) -> Cell {
     let largest = hold.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     match fit.termination {
         Termination::EquilibriumAtBound => Cell::missing(AT_EDGE),
-        _ => estimate_within(fit.equilibrium, largest),
+        _ => estimate_within(fit.equilibrium(), largest),
     }
 }
 
@@ -58,7 +58,7 @@ fn rate(fit: &LatencyFit, of: Estimate) -> Cell {
 fn free_exponent(fit: &LatencyFit) -> Cell {
     match fit.termination {
         Termination::ExponentAtBound => Cell::missing(AT_EDGE),
-        _ => estimate(fit.exponent),
+        _ => estimate(fit.exponent()),
     }
 }
 
@@ -173,14 +173,14 @@ fn fit_row(hold: &HoldAnalysis, fit: &LatencyFit, index: usize) -> Vec<Cell> {
     vec![
         Cell::Integer(hold.number as i64),
         Cell::text(if in_time { "time" } else { "rate" }),
-        match fit.choice {
+        match fit.choice() {
             ExponentChoice::Fixed(n) => order(n),
             ExponentChoice::Free => free_exponent(fit),
         },
         equilibrium(hold, fit),
-        rate(fit, fit.relative_rate),
+        rate(fit, fit.relative_rate()),
         if hold.signal == Signal::Strain {
-            rate(fit, fit.rate_coefficient)
+            rate(fit, fit.rate_coefficient())
         } else {
             Cell::missing("no strain")
         },
@@ -219,14 +219,14 @@ pub(super) fn paper_table(analysis: &Analysis, after: After) -> Option<Table> {
         let Some(fit) = hold.fit_with(n) else { continue };
         rows += 1;
         let by_rate = hold.rate_fit_with(n);
-        let free = hold.fits.iter().find(|fit| fit.choice == ExponentChoice::Free);
+        let free = hold.fits.iter().find(|fit| fit.choice() == ExponentChoice::Free);
         table = table.row(vec![
             Cell::Integer(hold.number as i64),
             Cell::number_or(hold.displacement.map(|d| 1e3 * d), 4, "not recorded"),
             equilibrium(hold, fit),
-            rate(fit, fit.rate_coefficient),
+            rate(fit, fit.rate_coefficient()),
             by_rate.map_or(Cell::missing("no fit"), |fit| equilibrium(hold, fit)),
-            by_rate.map_or(Cell::missing("no fit"), |fit| rate(fit, fit.rate_coefficient)),
+            by_rate.map_or(Cell::missing("no fit"), |fit| rate(fit, fit.rate_coefficient())),
             free.map_or(Cell::missing("not asked"), free_exponent),
         ]);
     }
@@ -330,11 +330,11 @@ pub(super) fn predictions(analysis: &Analysis) -> Option<Table> {
             rows += 1;
             table = table.row(vec![
                 Cell::Integer(hold.number as i64),
-                Cell::text(match fit.choice {
+                Cell::text(match fit.choice() {
                     ExponentChoice::Fixed(n) => format!("{n}"),
-                    ExponentChoice::Free => format!("{:.3} (free)", fit.exponent.value),
+                    ExponentChoice::Free => format!("{:.3} (free)", fit.exponent().value),
                 }),
-                Cell::Integer(fit.parameters() as i64),
+                Cell::Integer(fit.free_numbers() as i64),
                 Cell::number(100.0 * fit.rmse * prediction.relative / prediction.rmse, 3),
                 Cell::number(100.0 * prediction.relative, 3),
                 Cell::Integer(prediction.samples as i64),

@@ -114,10 +114,10 @@ fn paper_table(study: &Reproduction, test: &ReproducedTest, after: After) -> Tab
         table = table.row(vec![
             Cell::Integer(step as i64 + 1),
             Cell::number_or(hold.displacement.map(|d| 1e3 * d), 3, "not recorded"),
-            Cell::number(fit.equilibrium.value, 5),
-            Cell::number(fit.rate_coefficient.value, 5),
-            Cell::number_or(free.map(|fit| fit.exponent.value), 5, "no fit"),
-            Cell::number_or(hold.rate_fit_with(n).map(|fit| fit.rate_coefficient.value), 4, "no fit"),
+            Cell::number(fit.equilibrium().value, 5),
+            Cell::number(fit.rate_coefficient().value, 5),
+            Cell::number_or(free.map(|fit| fit.exponent().value), 5, "no fit"),
+            Cell::number_or(hold.rate_fit_with(n).map(|fit| fit.rate_coefficient().value), 4, "no fit"),
             Cell::number_or(equilibrium, 4, "illegible in the source"),
             Cell::number_or(coefficient, 2, "illegible in the source"),
         ]);

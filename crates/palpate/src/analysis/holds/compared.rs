@@ -1,7 +1,7 @@
 //! What a comparison of laws gives cause to say.
 
 use crate::analysis::finding::Finding;
-use crate::fit::{FitError, LawFit, Termination};
+use crate::fit::{Fit, FitError, Termination};
 use crate::forecast::Comparison;
 use crate::laws::Law;
 use crate::watch::Cancelled;
@@ -22,7 +22,7 @@ pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
     };
     let at_bound = ended(&[Termination::RateAtBound, Termination::ExponentAtBound]);
     let fits = comparison.rows.iter().filter_map(|row| row.fit.as_ref().ok());
-    let none = |fit: &&LawFit| {
+    let none = |fit: &&Fit| {
         matches!(fit.termination, Termination::Singular | Termination::TermsMerged) || !fit.ghosts.is_empty()
     };
     let merged: Vec<Law> = fits.filter(none).map(|fit| fit.law).collect();

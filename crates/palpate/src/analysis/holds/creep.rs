@@ -172,7 +172,7 @@ pub fn creep_holds(
         let displacement = exchanged.force()[from..hold.end].to_vec();
         let fitted = until.map_or(times.len(), |until| times.partition_point(|t| *t <= until));
         let samples = Samples::new(&times[..fitted], &displacement[..fitted]);
-        let comparison = compared(compare_laws_watched(&samples, &compare, watch))?;
+        let comparison = compared(compare_laws_watched(&samples, &compare, &[], watch))?;
         Ok(CreepHold {
             number: index + 1,
             start: time[hold.start],

@@ -12,7 +12,7 @@ use crate::contact::Specimen;
 use crate::fit::{
     ExponentChoice, FitError, LatencyFit, OrderSelection, Samples, Termination, fit_hold, fit_rates, select_order,
 };
-use crate::forecast::{Comparison, RampChoice, compare_laws_watched};
+use crate::forecast::{Comparison, KnownFit, RampChoice, compare_laws_watched};
 use crate::laws::Loading;
 use crate::record::Record;
 use crate::segment::{After, HoldMode, Relaxation, RelaxationType, Segment, classify_relaxation};
@@ -92,13 +92,13 @@ impl HoldAnalysis {
     /// The time-domain fit with a given exponent.
     #[must_use]
     pub fn fit_with(&self, exponent: f64) -> Option<&LatencyFit> {
-        self.fits.iter().find(|fit| fit.choice == ExponentChoice::Fixed(exponent))
+        self.fits.iter().find(|fit| fit.choice() == ExponentChoice::Fixed(exponent))
     }
 
     /// The rate-domain fit with a given exponent.
     #[must_use]
     pub fn rate_fit_with(&self, exponent: f64) -> Option<&LatencyFit> {
-        self.rate_fits.iter().flatten().find(|fit| fit.choice == ExponentChoice::Fixed(exponent))
+        self.rate_fits.iter().flatten().find(|fit| fit.choice() == ExponentChoice::Fixed(exponent))
     }
 }
 
@@ -273,14 +273,23 @@ fn compare(
     options: &AnalysisOptions,
     watch: &mut dyn Watch,
 ) -> Result<Option<Comparison>, Cancelled> {
-    let Some(mut options) = options.compare.clone() else {
+    let Some(mut compare) = options.compare.clone() else {
         return Ok(None);
     };
-    if options.ramps == RampChoice::Measured {
-        options.fit.loading = loading;
+    if compare.ramps == RampChoice::Measured {
+        compare.fit.loading = loading;
     }
     let samples = Samples::new(&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
-    compared(compare_laws_watched(&samples, &options, watch))
+    let known = |fit: &LatencyFit| options.fit.of_latency(fit.choice());
+    let known: Vec<KnownFit<'_>> = hold
+        .fits
+        .iter()
+        .map(|fit| KnownFit {
+            options: known(fit),
+            fit,
+        })
+        .collect();
+    compared(compare_laws_watched(&samples, &compare, &known, watch))
 }
 
 /// The displacement from sample `ramp` to where the fit of a hold starts.
@@ -319,9 +328,9 @@ fn judge(hold: &mut HoldAnalysis) {
     if alike.len() > 1 {
         hold.findings.push(Finding::ExponentsAlike { exponents: alike });
     }
-    if let Some(free) = hold.fits.iter().find(|fit| fit.choice == ExponentChoice::Free) {
-        match free.exponent.interval {
-            Some((low, high)) if high - low > free.exponent.value.max(1.0) => {
+    if let Some(free) = hold.fits.iter().find(|fit| fit.choice() == ExponentChoice::Free) {
+        match free.exponent().interval {
+            Some((low, high)) if high - low > free.exponent().value.max(1.0) => {
                 hold.findings.push(Finding::ExponentUndetermined {
                     interval: Some((low, high)),
                 });
@@ -340,12 +349,12 @@ fn judge(hold: &mut HoldAnalysis) {
     let Some(best) = hold.preferred().cloned() else { return };
     if best.termination == Termination::RateAtBound {
         hold.findings.push(Finding::RateAtBound {
-            exponent: best.exponent.value,
+            exponent: best.exponent().value,
         });
         return;
     }
     let (last, first_step) = (hold.times[hold.fitted - 1], hold.times[1]);
-    let left = (best.predict(last) - best.equilibrium.value) / best.amplitude.value;
+    let left = (best.predict(last) - best.equilibrium().value) / best.amplitude().value;
     if left > 0.2 {
         hold.findings.push(Finding::EquilibriumExtrapolated { beyond: left });
     }
@@ -353,7 +362,7 @@ fn judge(hold: &mut HoldAnalysis) {
     if share > 0.3 {
         hold.findings.push(Finding::SampledTooSlowly { share });
     }
-    if best.residual_correlation > 0.5 && best.rmse > 1e-9 * best.amplitude.value.abs() {
+    if best.residual_correlation > 0.5 && best.rmse > 1e-9 * best.amplitude().value.abs() {
         hold.findings.push(Finding::ResidualsCorrelated {
             correlation: best.residual_correlation,
             independent: best.effective_samples(),
@@ -365,8 +374,8 @@ fn judge(hold: &mut HoldAnalysis) {
 fn confounded(fit: &LatencyFit) -> Option<f64> {
     const CLOSE: f64 = 0.98;
     const WIDE: f64 = 0.2;
-    let (low, high) = fit.exponent.interval?;
-    if high - low < WIDE * fit.exponent.value {
+    let (low, high) = fit.exponent().interval?;
+    if high - low < WIDE * fit.exponent().value {
         return None;
     }
     let covariance = fit.covariance.as_ref()?;

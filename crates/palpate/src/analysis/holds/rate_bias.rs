@@ -41,15 +41,15 @@ pub(super) fn rate_bias(
     let every = times.len().div_ceil(MOST_SAMPLES);
     let noise = noise_in_time(times, values) / (every as f64).sqrt();
     let times: Vec<f64> = times.iter().step_by(every).copied().collect();
-    let exponent = fit.exponent.value;
+    let exponent = fit.exponent().value;
     let (mut ratios, mut shifts) = (Vec::new(), Vec::new());
     for seed in 0..REPETITIONS {
         let mut random = Noise::new(seed);
         let signal: Vec<f64> = times.iter().map(|t| fit.predict(*t) + noise * random.normal()).collect();
         let rates = strain_rates(&times, &signal, window);
         if let Ok(by_rate) = fit_rates(&rates.strain, &rates.rate, ExponentChoice::Fixed(exponent), options) {
-            ratios.push(by_rate.rate_coefficient.value / fit.rate_coefficient.value);
-            shifts.push((by_rate.equilibrium.value - fit.equilibrium.value) / fit.amplitude.value);
+            ratios.push(by_rate.rate_coefficient().value / fit.rate_coefficient().value);
+            shifts.push((by_rate.equilibrium().value - fit.equilibrium().value) / fit.amplitude().value);
         }
     }
     if 2 * ratios.len() < REPETITIONS as usize || !ratios.iter().chain(&shifts).all(|value| value.is_finite()) {

@@ -8,6 +8,7 @@ use crate::analysis::options::AnalysisOptions;
 use crate::fit::LatencyFit;
 use crate::segment::After;
 use crate::statistics::coverage_factor;
+use crate::watch::{Cancelled, Watch};
 
 /// How ln v goes with the equilibrium strain over the holds after loading (the trend of Table I).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -58,19 +59,20 @@ pub(in crate::analysis) fn across(
     holds: &[HoldAnalysis],
     options: &AnalysisOptions,
     displacement_tolerance: f64,
-) -> Across {
+    watch: &mut dyn Watch,
+) -> Result<Across, Cancelled> {
     let evidence = summed_evidence(holds, &options.exponents);
     let common_exponent = evidence.iter().filter(|(_, delta)| *delta <= 2.0).map(|(n, _)| *n).min_by(f64::total_cmp);
     let fit = |hold: &HoldAnalysis| {
         common_exponent.and_then(|n| hold.fit_with(n).cloned()).filter(|fit| fit.termination.is_good())
     };
-    Across {
+    Ok(Across {
         trend: trend(holds, fit),
-        joint: joint(holds, common_exponent, options),
+        joint: joint(holds, common_exponent, options, watch)?,
         agreements: agreements(holds, fit, displacement_tolerance),
         common_exponent,
         evidence,
-    }
+    })
 }
 
 fn summed_evidence(holds: &[HoldAnalysis], exponents: &[f64]) -> Vec<(f64, f64)> {
@@ -94,7 +96,7 @@ fn trend(holds: &[HoldAnalysis], fit: impl Fn(&HoldAnalysis) -> Option<LatencyFi
         .filter(|hold| hold.after == Some(After::Loading))
         .filter_map(|hold| {
             let fit = fit(hold)?;
-            Some((fit.equilibrium.value, fit.rate_coefficient.value.ln()))
+            Some((fit.equilibrium().value, fit.rate_coefficient().value.ln()))
         })
         .collect();
     let count = points.len() as f64;
@@ -138,17 +140,17 @@ fn agreements(
         let Some((loading, above)) = partner.and_then(|hold| Some((hold, fit(hold)?))) else {
             continue;
         };
-        let error = match (above.equilibrium.standard_error, below.equilibrium.standard_error) {
+        let error = match (above.equilibrium().standard_error, below.equilibrium().standard_error) {
             (Some(a), Some(b)) => Some(a.hypot(b)),
             _ => None,
         };
-        let difference = above.equilibrium.value - below.equilibrium.value;
+        let difference = above.equilibrium().value - below.equilibrium().value;
         agreements.push(LevelAgreement {
             displacement: level,
             loading: loading.number,
             unloading: unloading.number,
-            loading_equilibrium: above.equilibrium.value,
-            unloading_equilibrium: below.equilibrium.value,
+            loading_equilibrium: above.equilibrium().value,
+            unloading_equilibrium: below.equilibrium().value,
             z: error.filter(|error| *error > 0.0).map(|error| difference / error),
         });
     }

@@ -6,11 +6,12 @@ use crate::analysis::finding::Finding;
 use crate::analysis::holds::{HoldAnalysis, Signal};
 use crate::analysis::options::AnalysisOptions;
 use crate::fit::{
-    ExponentChoice, HoldWeights, JointComparison, JointFit, JointOptions, Samples, TrendVerdict, compare_joint,
-    fit_joint,
+    ExponentChoice, FitError, HoldWeights, JointComparison, JointFit, JointOptions, Samples, TrendVerdict,
+    compare_joint, fit_joint_watched,
 };
 use crate::laws::Law;
 use crate::segment::After;
+use crate::watch::{Cancelled, Watch};
 
 /// Which holds were fitted together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -40,8 +41,13 @@ pub struct JointAnalysis {
 /// Joint fits of the holds after loading and of all holds, with the common exponent and with a free one.
 ///
 /// Only strains are fitted: v of a force depends on the contact area, which differs from hold to hold.
-pub(super) fn joint(holds: &[HoldAnalysis], common: Option<f64>, options: &AnalysisOptions) -> Vec<JointAnalysis> {
-    let Some(n) = common else { return Vec::new() };
+pub(super) fn joint(
+    holds: &[HoldAnalysis],
+    common: Option<f64>,
+    options: &AnalysisOptions,
+    watch: &mut dyn Watch,
+) -> Result<Vec<JointAnalysis>, Cancelled> {
+    let Some(n) = common else { return Ok(Vec::new()) };
     let usable = |hold: &&HoldAnalysis| {
         hold.signal == Signal::Strain && hold.fit_with(n).is_some_and(|fit| fit.termination.is_good())
     };
@@ -52,9 +58,11 @@ pub(super) fn joint(holds: &[HoldAnalysis], common: Option<f64>, options: &Analy
     let choices = [Some(ExponentChoice::Fixed(n)), options.free_exponent.then_some(ExponentChoice::Free)];
     let mut found = Vec::new();
     for (which, holds) in groups.into_iter().flatten().filter(|(_, holds)| holds.len() > 1) {
-        found.extend(choices.into_iter().flatten().filter_map(|choice| together(which, &holds, choice, options)));
+        for choice in choices.into_iter().flatten() {
+            found.extend(together(which, &holds, choice, options, watch)?);
+        }
     }
-    found
+    Ok(found)
 }
 
 fn together(
@@ -62,7 +70,8 @@ fn together(
     holds: &[&HoldAnalysis],
     choice: ExponentChoice,
     options: &AnalysisOptions,
-) -> Option<JointAnalysis> {
+    watch: &mut dyn Watch,
+) -> Result<Option<JointAnalysis>, Cancelled> {
     let of = |hold: &&'_ HoldAnalysis| hold.fitted;
     let samples: Vec<Samples<'_>> =
         holds.iter().map(|hold| Samples::new(&hold.times[..of(hold)], &hold.values[..of(hold)])).collect();
@@ -72,15 +81,18 @@ fn together(
         ..JointOptions::default()
     };
     // Each of these holds was fitted by itself before, so that only the search itself can fail.
-    let fit = fit_joint(&samples, Law::Latency { exponent: choice }, &options).ok()?;
-    let comparison = compare_joint(&samples, &fit, None).ok()?;
-    Some(JointAnalysis {
+    let fit = match fit_joint_watched(&samples, Law::Latency { exponent: choice }, &options, watch) {
+        Err(FitError::Cancelled(cancelled)) => return Err(cancelled),
+        Err(_) => return Ok(None),
+        Ok(fit) => fit,
+    };
+    Ok(compare_joint(&samples, &fit, None).ok().map(|comparison| JointAnalysis {
         which,
         choice,
         holds: holds.iter().map(|hold| hold.number).collect(),
         fit,
         comparison,
-    })
+    }))
 }
 
 /// What the holds after loading say of v at the common exponent, unless it is that v is constant.

@@ -57,11 +57,11 @@ pub(in crate::analysis) fn implied_modulus(
         .collect();
     let common = common_choice(&holds, options);
     let relaxed = |hold: &RelaxedHold| {
-        let fit = hold.fits.iter().find(|fit| Some(fit.choice) == common)?;
-        let error = fit.equilibrium.standard_error.filter(|_| fit.termination.is_good())?;
+        let fit = hold.fits.iter().find(|fit| Some(fit.choice()) == common)?;
+        let error = fit.equilibrium().standard_error.filter(|_| fit.termination.is_good())?;
         // Noise-free holds leave rounding only, which is no measure of their weight.
-        let floor = 1e-9 * (fit.equilibrium.value.abs() + fit.amplitude.value.abs());
-        Some((hold.unit_force, fit.equilibrium.value, error.max(floor)))
+        let floor = 1e-9 * (fit.equilibrium().value.abs() + fit.amplitude().value.abs());
+        Some((hold.unit_force, fit.equilibrium().value, error.max(floor)))
     };
     let points: Vec<(f64, f64, f64)> = holds.iter().filter_map(relaxed).collect();
     let implied = if points.is_empty() {

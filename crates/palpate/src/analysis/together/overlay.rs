@@ -46,7 +46,7 @@ pub(in crate::analysis) fn overlay(
     let usable = |after: Option<After>| -> Vec<f64> {
         let fits = holds.iter().filter(|hold| hold.after == after).filter_map(|hold| hold.fit_with(n));
         fits.filter(|fit| fit.termination.is_good())
-            .map(|fit: &LatencyFit| fit.rate_coefficient.value)
+            .map(|fit: &LatencyFit| fit.rate_coefficient().value)
             .collect()
     };
     let mut coefficients = usable(Some(After::Loading));

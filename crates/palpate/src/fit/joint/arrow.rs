@@ -4,19 +4,18 @@
 //! Eliminating the holds leaves a small system in the shared numbers, whose right-hand side is the slope of the residual
 //! square with every hold's own numbers at their best. For a law that is linear in these it is variable projection.
 
-use super::super::linear_algebra::Cholesky;
-use super::super::separable::{Termination, Work};
 use super::hold::{Part, View, moved};
+use crate::optimise::{Termination, Work, stepped_within};
 
 /// All holds at one point.
-pub(super) struct Point {
-    pub(super) shared: Vec<f64>,
-    pub(super) parts: Vec<Part>,
-    pub(super) square: f64,
+pub(crate) struct Point {
+    pub(crate) shared: Vec<f64>,
+    pub(crate) parts: Vec<Part>,
+    pub(crate) square: f64,
 }
 
 impl Point {
-    pub(super) fn new(views: &[View<'_>], shared: &[f64], own: &[Vec<f64>], work: &mut Work) -> Self {
+    pub(crate) fn new(views: &[View<'_>], shared: &[f64], own: &[Vec<f64>], work: &mut Work) -> Self {
         let mut point = Self {
             shared: shared.to_vec(),
             parts: views.iter().zip(own).map(|(view, own)| Part::new(*view, own, shared.len())).collect(),
@@ -27,7 +26,7 @@ impl Point {
     }
 
     /// Moves to these shared numbers and finds the holds' own ones, from those given.
-    pub(super) fn settle(&mut self, views: &[View<'_>], shared: &[f64], own: &[Vec<f64>], work: &mut Work) {
+    pub(crate) fn settle(&mut self, views: &[View<'_>], shared: &[f64], own: &[Vec<f64>], work: &mut Work) {
         self.shared.copy_from_slice(shared);
         self.square = 0.0;
         for ((part, view), own) in self.parts.iter_mut().zip(views).zip(own) {
@@ -39,7 +38,7 @@ impl Point {
         }
     }
 
-    pub(super) fn own(&self) -> Vec<Vec<f64>> {
+    pub(crate) fn own(&self) -> Vec<Vec<f64>> {
         self.parts.iter().map(|part| part.own.clone()).collect()
     }
 
@@ -87,18 +86,18 @@ impl Point {
 
 /// How a search ends.
 #[derive(Clone, Copy)]
-pub(super) struct Ending {
+pub(crate) struct Ending {
     /// Share of the residual square that a full step must promise to be taken.
-    pub(super) gain: f64,
+    pub(crate) gain: f64,
     /// Steps after which it ends short.
-    pub(super) most_iterations: usize,
+    pub(crate) most_iterations: usize,
 }
 
 /// Share of the residual square below which steps are taken undamped, for as long as they promise ever less.
 const NEAR: f64 = 1e-9;
 
 /// Refines a point to the nearest optimum inside the bounds of the shared numbers (Levenberg–Marquardt on the eliminated system).
-pub(super) fn refine(
+pub(crate) fn refine(
     views: &[View<'_>],
     bounds: &[(f64, f64)],
     mut here: Point,
@@ -157,23 +156,6 @@ pub(super) fn refine(
 
 /// A damped step that stays inside the bounds; a number pushed out of them stays where it is.
 fn stepped(at: &[f64], hessian: &[f64], gradient: &[f64], damping: f64, bounds: &[(f64, f64)]) -> Vec<f64> {
-    let q = at.len();
-    let pinned = |i: usize| (at[i] <= bounds[i].0 && gradient[i] < 0.0) || (at[i] >= bounds[i].1 && gradient[i] > 0.0);
-    let free: Vec<usize> = (0..q).filter(|&i| !pinned(i)).collect();
-    let diagonal = |i: usize| hessian[i * q + i].max(f64::MIN_POSITIVE) * (1.0 + damping);
-    let mut change: Vec<f64> = free.iter().map(|&i| gradient[i]).collect();
-    let entry = |i: usize, j: usize| if i == j { diagonal(i) } else { hessian[i * q + j] };
-    let matrix: Vec<f64> =
-        free.iter().flat_map(|&i| free.iter().map(move |&j| (i, j))).map(|(i, j)| entry(i, j)).collect();
-    match Cholesky::new(&matrix, free.len()) {
-        Some(factor) => factor.solve(&mut change),
-        None => change.iter_mut().zip(&free).for_each(|(value, &i)| *value /= diagonal(i)),
-    }
-    let mut step = vec![0.0; q];
-    for (&i, change) in free.iter().zip(change) {
-        let (low, high) = bounds[i];
-        let most = 0.25 * (high - low);
-        step[i] = (at[i] + change.clamp(-most, most)).clamp(low, high) - at[i];
-    }
-    step
+    let next = stepped_within(at, hessian, gradient, damping, |i| bounds[i]);
+    next.iter().zip(at).map(|(next, at)| next - at).collect()
 }

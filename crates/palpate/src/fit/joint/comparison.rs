@@ -3,9 +3,12 @@
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
+use super::result::{JointFit, law_options};
 use super::trend::{SharedTrend, TrendPoint};
-use super::{JointFit, law_options};
-use crate::fit::{FitError, LawFit, NumberUnit, Samples, fit_law};
+use crate::fit::error::FitError;
+use crate::fit::law::fit_law::fit_law;
+use crate::fit::result::{Fit, NumberUnit};
+use crate::fit::samples::Samples;
 
 /// What a number does from hold to hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -91,7 +94,7 @@ pub fn compare_joint(
             values: count,
         });
     }
-    let effective: f64 = joint.separate.iter().map(LawFit::effective_samples).sum();
+    let effective: f64 = joint.separate.iter().map(Fit::effective_samples).sum();
     let few = joint.free_numbers() as f64;
     let many: f64 = joint.separate.iter().map(|fit| fit.free_numbers() as f64).sum();
     // Noise-free records leave rounding only.
@@ -130,14 +133,17 @@ fn verdict(trend: Option<&SharedTrend>, p: Option<f64>, level: f64) -> TrendVerd
 
 /// ln of the first shared number over the strain.
 fn trend(holds: &[Samples<'_>], joint: &JointFit, strains: Option<&[f64]>) -> Result<Option<SharedTrend>, FitError> {
-    let Some(name) = joint.shared.first().map(|number| number.name.clone()) else {
+    let Some(name) = joint.shared.first().map(|number| number.name.to_string()) else {
         return Ok(None);
     };
-    let held = joint.shared[1..].iter().find(|number| number.unit == NumberUnit::One).map(|number| &number.name);
-    let (fits, beside) = match held.and_then(|held| Some((held, common(&joint.separate, held)?))) {
+    let held = joint.shared[1..]
+        .iter()
+        .find(|number| number.unit == NumberUnit::One)
+        .map(|number| number.name.to_string());
+    let (fits, beside) = match held.and_then(|held| Some((common(&joint.separate, &held)?, held))) {
         None => (joint.separate.clone(), None),
-        Some((held, (value, error))) => {
-            let at = |value: f64| -> Result<Vec<LawFit>, FitError> {
+        Some(((value, error), held)) => {
+            let at = |value: f64| -> Result<Vec<Fit>, FitError> {
                 let mut options = law_options(joint.law, &joint.options);
                 options.bounds.clear();
                 options.fixed.push((held.clone(), value));
@@ -146,12 +152,12 @@ fn trend(holds: &[Samples<'_>], joint: &JointFit, strains: Option<&[f64]>) -> Re
             (at(value)?, Some(at(value + error)?))
         }
     };
-    let log = |fit: &LawFit| fit.value(&name).map_or(f64::NAN, f64::ln);
+    let log = |fit: &Fit| fit.value(&name).map_or(f64::NAN, f64::ln);
     let mut points = Vec::new();
     for (index, fit) in fits.iter().enumerate() {
         let error = fit.estimate(&name).and_then(|estimate| Some(estimate.standard_error? / estimate.value));
         // A constant that was not found has no error.
-        let level = fit.numbers.first().filter(|number| number.estimate.standard_error.is_some());
+        let level = fit.parameters.first().filter(|number| number.estimate.standard_error.is_some());
         let strain = strains.map(|strains| strains[index]).or(level.map(|number| number.estimate.value));
         let (Some(error), Some(abscissa)) = (error, strain) else {
             continue;
@@ -169,7 +175,7 @@ fn trend(holds: &[Samples<'_>], joint: &JointFit, strains: Option<&[f64]>) -> Re
 }
 
 /// The mean of a number over separate fits, by their errors, in ln; and its standard error.
-fn common(separate: &[LawFit], name: &str) -> Option<(f64, f64)> {
+fn common(separate: &[Fit], name: &str) -> Option<(f64, f64)> {
     let (mut total, mut sum) = (0.0, 0.0);
     for fit in separate {
         if let Some(estimate) = fit.estimate(name)

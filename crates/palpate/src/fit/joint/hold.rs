@@ -1,24 +1,23 @@
 //! One hold among several: how the shared numbers come to it, and what it says about them.
 
-use super::super::linear_algebra::Cholesky;
-use super::super::model::Model;
-use super::super::samples::Scaled;
-use super::super::separable::{Shapes, Target, Work};
+use crate::fit::problem::model::Model;
+use crate::fit::samples::Scaled;
 use crate::laws::NumberKind;
+use crate::optimise::{Cholesky, Shapes, Target, Work};
 use crate::vector::products::{dot, form_residuals, normal_equations};
 
 /// A hold in its own units, with what ties it to the others.
-pub(super) struct Hold {
-    pub(super) model: Model,
-    pub(super) scaled: Scaled,
+pub(crate) struct Hold {
+    pub(crate) model: Model,
+    pub(crate) scaled: Scaled,
     /// Weight of the hold's residuals, in units of its own range, among those of all holds.
-    pub(super) weight: f64,
+    pub(crate) weight: f64,
     /// ln of the hold's duration over the shared unit of time.
-    pub(super) log_duration: f64,
+    pub(crate) log_duration: f64,
     /// ln of the hold's range over the shared unit of the signal.
-    pub(super) log_range: f64,
+    pub(crate) log_range: f64,
     /// Whether the rate follows from the amplitude, λ = v |Δ|ⁿ⁻¹, and n if it is held.
-    pub(super) coupling: Option<Option<f64>>,
+    pub(crate) coupling: Option<Option<f64>>,
 }
 
 /// Steps of [`Part::settle`] after which the outer search takes over.
@@ -26,7 +25,7 @@ const STEPS: usize = 30;
 
 impl Hold {
     /// Constant and amplitudes.
-    pub(super) fn own(&self) -> usize {
+    pub(crate) fn own(&self) -> usize {
         self.model.linear()
     }
 
@@ -41,8 +40,8 @@ impl Hold {
     }
 
     /// The nonlinear numbers of the hold, in its units.
-    pub(super) fn theta(&self, shared: &[f64], own: &[f64]) -> Vec<f64> {
-        let shift = |(number, value): (&super::super::model::Number, &f64)| match number.kind {
+    pub(crate) fn theta(&self, shared: &[f64], own: &[f64]) -> Vec<f64> {
+        let shift = |(number, value): (&crate::fit::problem::model::Number, &f64)| match number.kind {
             NumberKind::Pure { .. } => *value,
             _ => value + self.log_duration,
         };
@@ -54,7 +53,7 @@ impl Hold {
     }
 
     /// The shared numbers at which this hold has these.
-    pub(super) fn shared(&self, theta: &[f64], own: &[f64]) -> Vec<f64> {
+    pub(crate) fn shared(&self, theta: &[f64], own: &[f64]) -> Vec<f64> {
         let nothing = vec![0.0; theta.len()];
         // θ is the shared numbers plus what the duration adds, and what the amplitude adds at the exponent found.
         let mut at = nothing;
@@ -70,7 +69,7 @@ impl Hold {
     }
 
     /// Derivatives of own, then nonlinear numbers by own, then shared ones, row by row.
-    pub(super) fn sensitivity(&self, shared: &[f64], own: &[f64]) -> Vec<Vec<f64>> {
+    pub(crate) fn sensitivity(&self, shared: &[f64], own: &[f64]) -> Vec<Vec<f64>> {
         let size = own.len() + shared.len();
         let mut rows: Vec<Vec<f64>> =
             (0..size).map(|i| (0..size).map(|j| if i == j { 1.0 } else { 0.0 }).collect()).collect();
@@ -87,15 +86,15 @@ impl Hold {
 
 /// The samples of a hold that a search looks at: all, or the nodes that stand for them.
 #[derive(Clone, Copy)]
-pub(super) struct View<'a> {
-    pub(super) hold: &'a Hold,
-    pub(super) times: &'a [f64],
-    pub(super) target: Target<'a>,
+pub(crate) struct View<'a> {
+    pub(crate) hold: &'a Hold,
+    pub(crate) times: &'a [f64],
+    pub(crate) target: Target<'a>,
 }
 
 impl<'a> View<'a> {
     /// All samples of a hold.
-    pub(super) fn all(hold: &'a Hold) -> Self {
+    pub(crate) fn all(hold: &'a Hold) -> Self {
         Self {
             hold,
             times: &hold.scaled.times,
@@ -106,21 +105,21 @@ impl<'a> View<'a> {
 
 /// A hold at one point: its own numbers and the normal equations there.
 #[derive(Clone)]
-pub(super) struct Part {
-    pub(super) own: Vec<f64>,
-    pub(super) residuals: Vec<f64>,
+pub(crate) struct Part {
+    pub(crate) own: Vec<f64>,
+    pub(crate) residuals: Vec<f64>,
     /// Derivatives of the signal by own, then shared numbers.
     jacobian: Vec<Vec<f64>>,
     /// JᵀJ, row-major, own numbers first.
-    pub(super) normal: Vec<f64>,
+    pub(crate) normal: Vec<f64>,
     /// Jᵀr.
-    pub(super) gradient: Vec<f64>,
+    pub(crate) gradient: Vec<f64>,
     /// Squared residuals, in units of the hold's range.
-    pub(super) square: f64,
+    pub(crate) square: f64,
 }
 
 impl Part {
-    pub(super) fn new(view: View<'_>, own: &[f64], shared: usize) -> Self {
+    pub(crate) fn new(view: View<'_>, own: &[f64], shared: usize) -> Self {
         let (size, samples) = (own.len() + shared, view.times.len());
         Self {
             own: own.to_vec(),
@@ -168,14 +167,14 @@ impl Part {
     }
 
     /// The factored normal equations of the own numbers.
-    pub(super) fn own_block(&self) -> Option<Cholesky> {
+    pub(crate) fn own_block(&self) -> Option<Cholesky> {
         let (l, size) = (self.own.len(), self.gradient.len());
         let block: Vec<f64> = (0..l * l).map(|i| self.normal[i / l * size + i % l]).collect();
         Cholesky::new(&block, l)
     }
 
     /// The best own numbers at given shared ones, from those at hand: one step where the law is linear in them.
-    pub(super) fn settle(&mut self, view: View<'_>, shared: &[f64], own: &[f64], work: &mut Work) {
+    pub(crate) fn settle(&mut self, view: View<'_>, shared: &[f64], own: &[f64], work: &mut Work) {
         self.evaluate(view, shared, own, work);
         let floor = dot(view.target.values(), view.target.values()) * 1e-31;
         let mut trial = self.clone();
@@ -209,7 +208,7 @@ impl Part {
 }
 
 /// Own numbers after a share of a step; an amplitude that sets the rate keeps its sign and its order of magnitude.
-pub(super) fn moved(hold: &Hold, own: &[f64], step: &[f64], share: f64) -> Vec<f64> {
+pub(crate) fn moved(hold: &Hold, own: &[f64], step: &[f64], share: f64) -> Vec<f64> {
     let mut next: Vec<f64> = own.iter().zip(step).map(|(value, change)| value + share * change).collect();
     if hold.coupling.is_some() {
         let last = own.len() - 1;

@@ -1,38 +1,32 @@
 //! From the best point to numbers with their errors.
 
-use super::super::law_fit::Fitted;
-use super::super::linear_algebra::{Cholesky, Few};
-use super::super::separable::{Solution, Termination, Work};
-use super::super::uncertainty::Assessed;
 use super::arrow::Point;
 use super::hold::Hold;
-use super::{JointFit, JointOptions};
-use crate::fit::LawFit;
+use super::result::{JointFit, JointOptions};
+use crate::fit::law::fitted::Fitted;
+use crate::fit::noise::uncertainty::Assessed;
+use crate::fit::parameter::ParameterName;
+use crate::fit::result::Fit;
 use crate::laws::{Law, NumberKind};
+use crate::optimise::{Cholesky, Few, Solution, Termination, Work};
 use crate::statistics::{effective_count, lag_one_correlation};
 
 /// Holds brought together, with what each said alone.
-pub(super) struct Joint {
-    pub(super) law: Law,
-    pub(super) options: JointOptions,
-    pub(super) holds: Vec<Hold>,
-    pub(super) solutions: Vec<Solution>,
+pub(crate) struct Joint {
+    pub(crate) law: Law,
+    pub(crate) options: JointOptions,
+    pub(crate) holds: Vec<Hold>,
+    pub(crate) solutions: Vec<Solution>,
     /// Bounds of the shared numbers.
-    pub(super) bounds: Vec<(f64, f64)>,
+    pub(crate) bounds: Vec<(f64, f64)>,
     /// ln of the shared unit of time.
-    pub(super) log_time: f64,
+    pub(crate) log_time: f64,
     /// ln of the shared unit of the signal.
-    pub(super) log_signal: f64,
+    pub(crate) log_signal: f64,
 }
 
 impl Joint {
-    pub(super) fn report(
-        &self,
-        point: &Point,
-        termination: Termination,
-        separate: Vec<LawFit>,
-        work: Work,
-    ) -> JointFit {
+    pub(crate) fn report(&self, point: &Point, termination: Termination, separate: Vec<Fit>, work: Work) -> JointFit {
         let inverse = self.inverse_normal(point);
         let termination = match (&inverse, termination) {
             (None, Termination::Converged) => Termination::Singular,
@@ -55,8 +49,8 @@ impl Joint {
             let assessed = Assessed::widened(white, deviation, trust, widening, *rho);
             fitted.report_with(self.law, assessed, work)
         };
-        let holds: Vec<LawFit> = correlations.iter().enumerate().map(hold).collect();
-        let number = |name: String| holds[0].numbers.iter().find(|number| number.name == name).cloned();
+        let holds: Vec<Fit> = correlations.iter().enumerate().map(hold).collect();
+        let number = |name: String| holds[0].parameter(name.parse::<ParameterName>().ok()?).cloned();
         let shared = self.shared_names().into_iter().filter_map(number).collect();
         let signal = (2.0 * self.log_signal).exp();
         let alone = self.solutions.iter().zip(&self.holds);
@@ -156,24 +150,24 @@ impl Joint {
         rate.into_iter().chain(others).collect()
     }
 
-    fn names(&self, holds: &[LawFit]) -> Vec<String> {
+    fn names(&self, holds: &[Fit]) -> Vec<String> {
         let own = self.holds[0].own();
         let mut names = Vec::new();
         for (index, fit) in holds.iter().enumerate() {
-            names.extend(fit.parameters[..own].iter().map(|name| format!("{name}_hold_{}", index + 1)));
+            names.extend(fit.searched[..own].iter().map(|name| format!("{name}_hold_{}", index + 1)));
         }
-        names.extend(holds[0].parameters[own..].iter().cloned());
+        names.extend(holds[0].searched[own..].iter().cloned());
         if self.holds[0].coupling.is_some() {
             names[holds.len() * own] = "log_rate_coefficient".to_owned();
         }
         names
     }
 
-    fn values(&self, point: &Point, holds: &[LawFit]) -> Vec<f64> {
+    fn values(&self, point: &Point, holds: &[Fit]) -> Vec<f64> {
         let own = self.holds[0].own();
         let constants = holds.iter().flat_map(|fit| fit.values[..own].iter().copied());
         let exponent = self.holds[0].coupling.map_or(1.0, |held| held.unwrap_or_else(|| point.shared[1]));
-        let natural = |(number, value): (&crate::fit::model::Number, &f64)| match number.kind {
+        let natural = |(number, value): (&crate::fit::problem::model::Number, &f64)| match number.kind {
             NumberKind::Pure { .. } => *value,
             _ => value - self.log_time - (exponent - 1.0) * self.log_signal,
         };

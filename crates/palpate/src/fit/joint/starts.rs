@@ -1,18 +1,19 @@
 //! Where a joint search starts: at the separate fits, at their mean, and at the valleys of a coarse grid over all holds.
 
-use super::super::condensed::Condensed;
-use super::super::model::Model;
-use super::super::search::condense;
-use super::super::separable::{Ending as Local, Work, refine as refine_one};
-use super::super::starts::{Grid, advance, coarse, rates, starts as valleys};
 use super::arrow::{Ending, Point, refine};
 use super::hold::{Hold, View};
+use crate::fit::global::grid::{Grid, advance, coarse, rates};
+use crate::fit::global::starts::starts as valleys;
+use crate::fit::problem::condensed::{Condensed, condense};
+use crate::fit::problem::model::Model;
+use crate::optimise::{Ending as Local, Work, refine as refine_one};
+use crate::watch::{Cancelled, Progress, Watch};
 
 /// A point to start from.
 #[derive(Clone)]
-pub(super) struct Start {
-    pub(super) shared: Vec<f64>,
-    pub(super) own: Vec<Vec<f64>>,
+pub(crate) struct Start {
+    pub(crate) shared: Vec<f64>,
+    pub(crate) own: Vec<Vec<f64>>,
 }
 
 /// Points of the grid that are refined.
@@ -25,13 +26,14 @@ const COMBINATIONS: usize = 2000;
 const FINALISTS: usize = 3;
 
 /// The best points on the nodes that stand for the samples, deepest first.
-pub(super) fn finalists(
+pub(crate) fn finalists(
     holds: &[Hold],
     bounds: &[(f64, f64)],
     separate: Vec<Start>,
     most_iterations: usize,
     work: &mut Work,
-) -> Vec<Start> {
+    watch: &mut dyn Watch,
+) -> Result<Vec<Start>, Cancelled> {
     let nodes: Vec<Condensed> = holds.iter().map(|hold| condense(&hold.scaled)).collect();
     let views: Vec<View<'_>> = holds.iter().zip(&nodes).map(|(hold, nodes)| view(hold, nodes)).collect();
     let inside: f64 = holds.iter().zip(&nodes).map(|(hold, nodes)| hold.weight.powi(2) * nodes.inside).sum();
@@ -48,6 +50,7 @@ pub(super) fn finalists(
     };
     let mut found: Vec<(f64, Start)> = Vec::new();
     for start in starts {
+        watch.report(Progress::counted("fitting holds together", holds.len(), holds.len() + 1))?;
         let inner: Vec<f64> =
             start.shared.iter().zip(bounds).map(|(value, (low, high))| value.clamp(*low, *high)).collect();
         let point = Point::new(&views, &inner, &start.own, &mut aside);
@@ -65,7 +68,7 @@ pub(super) fn finalists(
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let limit = found.first().map_or(0.0, |(least, _)| least * 1.001 + f64::MIN_POSITIVE);
     let alike = found.into_iter().take_while(|(square, _)| *square <= limit).map(|(_, start)| start);
-    distinct(alike, 1e-3, FINALISTS)
+    Ok(distinct(alike, 1e-3, FINALISTS))
 }
 
 fn view<'a>(hold: &'a Hold, nodes: &'a Condensed) -> View<'a> {
@@ -169,7 +172,7 @@ fn places(model: &Model, bounds: &[(f64, f64)]) -> Vec<Vec<f64>> {
             }
         }
     }
-    let axis = |(number, bounds): (&super::super::model::Number, &(f64, f64))| match number.kind {
+    let axis = |(number, bounds): (&crate::fit::problem::model::Number, &(f64, f64))| match number.kind {
         crate::laws::NumberKind::Pure { .. } => coarse(number.kind, *bounds, None),
         _ => rates(*bounds, None, Grid::Coarse),
     };

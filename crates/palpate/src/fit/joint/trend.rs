@@ -42,7 +42,7 @@ pub struct TrendPoint {
 
 impl SharedTrend {
     /// The slope through these points; `None` for fewer than two, or if all lie at one x.
-    pub(super) fn of(number: String, points: Vec<TrendPoint>, confidence: f64) -> Option<Self> {
+    pub(crate) fn of(number: String, points: Vec<TrendPoint>, confidence: f64) -> Option<Self> {
         let count = points.len() as f64;
         let mean = points.iter().map(|point| point.abscissa).sum::<f64>() / count;
         let spread: f64 = points.iter().map(|point| (point.abscissa - mean).powi(2)).sum();

@@ -1,22 +1,28 @@
 //! The restricted likelihood of a noise, and of AR(1) at every ρ.
 
-use super::minimum::minimise;
-use super::{Noise, NoiseModel};
-use crate::fit::linear_algebra::{Cholesky, Few, Square};
+use super::found::Noise;
+use super::model::NoiseModel;
+use crate::optimise::{Cholesky, Few, Level, Minimum, Square, minimise};
 use crate::statistics::dot;
 use crate::vector::products::cross_products;
 
 /// Value of the restricted likelihood: −2 ln L up to a constant, and the variance that belongs to it.
 #[derive(Clone, Copy)]
-pub(super) struct Likelihood {
-    pub(super) deviance: f64,
-    pub(super) variance: f64,
+pub(crate) struct Likelihood {
+    pub(crate) deviance: f64,
+    pub(crate) variance: f64,
+}
+
+impl Level for Likelihood {
+    fn level(&self) -> f64 {
+        self.deviance
+    }
 }
 
 impl Likelihood {
     /// From ZᵀR⁻¹Z with Z = (J, r), and ln |R|:
     /// −2 ln L = (N − p) ln σ² + ln |R| + ln |JᵀR⁻¹J|, σ² = (rᵀR⁻¹r − what J takes up)/(N − p).
-    pub(super) fn of(product: &[f64], log_determinant: f64, samples: usize) -> Option<Self> {
+    pub(crate) fn of(product: &[f64], log_determinant: f64, samples: usize) -> Option<Self> {
         let size = product.len().isqrt();
         let numbers = size - 1;
         let block: Square = (0..numbers * numbers).map(|i| product[i / numbers * size + i % numbers]).collect();
@@ -32,13 +38,39 @@ impl Likelihood {
     }
 }
 
+/// The deviance at a minimum and the noise there, with that beside it along the columns of the Cholesky factor of its covariance,
+/// 2 (∂²deviance)⁻¹.
+pub(crate) fn noise_at(
+    minimum: &Minimum<Likelihood>,
+    evaluate: &impl Fn(&[f64]) -> Option<Likelihood>,
+    model: impl Fn(&[f64]) -> NoiseModel,
+) -> (f64, Noise) {
+    let mut beside = Vec::new();
+    for spread in minimum.directions() {
+        // At an edge the other side has to do.
+        for side in [1.0, -1.0, 0.5, -0.5] {
+            let at: Few = minimum.at.iter().zip(&spread).map(|(x, d)| x + side * d).collect();
+            if let Some(found) = evaluate(&at) {
+                beside.push((model(&at), found.variance));
+                break;
+            }
+        }
+    }
+    let noise = Noise {
+        model: model(&minimum.at),
+        variance: minimum.value.variance,
+        beside,
+    };
+    (minimum.value.deviance, noise)
+}
+
 /// ρ from ln of how many samples count as one, κ = ln((1 + ρ)/(1 − ρ)): the scale on which ρ is searched.
-pub(super) fn correlation_of(kappa: f64) -> f64 {
+pub(crate) fn correlation_of(kappa: f64) -> f64 {
     (0.5 * kappa).tanh()
 }
 
 /// AR(1): its R⁻¹ has three diagonals, so products of neighbours, formed once, give the likelihood at every ρ.
-pub(super) struct Neighbours {
+pub(crate) struct Neighbours {
     samples: usize,
     size: usize,
     /// ZᵀZ.
@@ -50,7 +82,7 @@ pub(super) struct Neighbours {
 }
 
 impl Neighbours {
-    pub(super) fn new(jacobian: &[&[f64]], residuals: &[f64]) -> Self {
+    pub(crate) fn new(jacobian: &[&[f64]], residuals: &[f64]) -> Self {
         let all: Vec<&[f64]> = jacobian.iter().copied().chain([residuals]).collect();
         let (samples, size) = (residuals.len(), all.len());
         let early: Vec<&[f64]> = all.iter().map(|column| &column[..samples - 1]).collect();
@@ -70,7 +102,7 @@ impl Neighbours {
     }
 
     /// R⁻¹ has 1 + ρ² on its diagonal (1 at the ends) and −ρ beside it, over 1 − ρ²; |R| = (1 − ρ²)^(N−1).
-    pub(super) fn likelihood(&self, kappa: f64) -> Option<Likelihood> {
+    pub(crate) fn likelihood(&self, kappa: f64) -> Option<Likelihood> {
         let rho = correlation_of(kappa);
         let square = rho * rho;
         let entry =
@@ -80,7 +112,7 @@ impl Neighbours {
     }
 
     /// The best ρ, between white noise and noise that is one sample in all.
-    pub(super) fn noise(&self) -> Option<(f64, Noise)> {
+    pub(crate) fn noise(&self) -> Option<(f64, Noise)> {
         let model = |kappa: f64| NoiseModel::Autoregressive {
             correlation: correlation_of(kappa),
         };
@@ -89,6 +121,6 @@ impl Neighbours {
         let last = self.same.len() - 1;
         let start = 2.0 * (0.5 * self.next[last] / self.same[last]).clamp(-0.999, 0.999).atanh();
         let found = minimise(&evaluate, &[start.clamp(0.1, most - 0.1)])?;
-        Some(found.noise(&evaluate, |x| model(x[0])))
+        Some(noise_at(&found, &evaluate, |x| model(x[0])))
     }
 }

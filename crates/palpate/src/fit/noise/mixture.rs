@@ -1,22 +1,23 @@
 //! White noise and AR(1).
 
-use super::likelihood::{Likelihood, correlation_of};
-use super::minimum::minimise;
+use super::found::Noise;
+use super::likelihood::{Likelihood, correlation_of, noise_at};
+use super::model::NoiseModel;
 use super::rows::{Filter, Rows, whitened_squares};
-use super::{Noise, NoiseModel};
+use crate::optimise::minimise;
 
 /// Fall of the deviance that a first look has to show: from there to the bottom it falls by some units more. Of white residuals that
 /// look slow, two of three are done with here.
 const PROMISE: f64 = 2.0;
 
 /// White noise and AR(1): Kalman's filter whitens all columns alike, sample by sample.
-pub(super) struct Mixture<'a> {
+pub(crate) struct Mixture<'a> {
     rows: Rows,
     residuals: &'a [f64],
 }
 
 impl<'a> Mixture<'a> {
-    pub(super) fn new(jacobian: &[&'a [f64]], residuals: &'a [f64]) -> Self {
+    pub(crate) fn new(jacobian: &[&'a [f64]], residuals: &'a [f64]) -> Self {
         let columns: Vec<&[f64]> = jacobian.iter().copied().chain([residuals]).collect();
         Self {
             rows: Rows::new(&columns),
@@ -25,7 +26,7 @@ impl<'a> Mixture<'a> {
     }
 
     /// ρ and s from κ and ln(s/(1 − s)).
-    pub(super) fn model(x: &[f64]) -> NoiseModel {
+    pub(crate) fn model(x: &[f64]) -> NoiseModel {
         NoiseModel::WhiteAndAutoregressive {
             correlation: correlation_of(x[0]),
             share: 1.0 / (1.0 + (-x[1]).exp()),
@@ -38,7 +39,7 @@ impl<'a> Mixture<'a> {
     }
 
     /// The likelihood, between white noise and noise that is one sample in all.
-    pub(super) fn likelihood(&self, x: &[f64]) -> Option<Likelihood> {
+    pub(crate) fn likelihood(&self, x: &[f64]) -> Option<Likelihood> {
         if x[0] < 0.05 || x[0] > self.longest() || x[1].abs() > 8.0 {
             return None;
         }
@@ -52,14 +53,14 @@ impl<'a> Mixture<'a> {
     }
 
     /// The best ρ and s, if a first look finds a deviance that promises to fall below this one.
-    pub(super) fn noise(&self, deviance: f64) -> Option<(f64, Noise)> {
+    pub(crate) fn noise(&self, deviance: f64) -> Option<(f64, Noise)> {
         let evaluate = |x: &[f64]| self.likelihood(x);
         let start = self.start()?;
         if evaluate(&start)?.deviance > deviance - PROMISE {
             return None;
         }
         let found = minimise(&evaluate, &start)?;
-        Some(found.noise(&evaluate, Self::model))
+        Some(noise_at(&found, &evaluate, Self::model))
     }
 
     /// Where to begin: the residuals alone can tell, as if nothing had been fitted.

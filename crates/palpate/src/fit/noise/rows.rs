@@ -9,14 +9,14 @@ use crate::vector::{accelerated, level};
 const LANES: usize = 8;
 
 /// The columns of a fit, as many at a time as a vector holds; those beyond the last are zero.
-pub(super) struct Rows {
+pub(crate) struct Rows {
     columns: usize,
     samples: usize,
     blocks: Vec<Vec<[f64; LANES]>>,
 }
 
 impl Rows {
-    pub(super) fn new(columns: &[&[f64]]) -> Self {
+    pub(crate) fn new(columns: &[&[f64]]) -> Self {
         let samples = columns.first().map_or(0, |column| column.len());
         let block = |columns: &[&[f64]]| {
             let mut rows = vec![[0.0; LANES]; samples];
@@ -35,12 +35,12 @@ impl Rows {
     }
 
     /// Number of samples.
-    pub(super) fn samples(&self) -> usize {
+    pub(crate) fn samples(&self) -> usize {
         self.samples
     }
 
     /// ZᵀF with F_i = ρ (F_{i−1} + Z_{i−1}).
-    pub(super) fn with_sums_before(&self, rho: f64) -> Vec<f64> {
+    pub(crate) fn with_sums_before(&self, rho: f64) -> Vec<f64> {
         self.tiled(|left, right| {
             dispatch!(level(), simd => {
                 let rho = f64x8::splat(simd, rho);
@@ -55,7 +55,7 @@ impl Rows {
     }
 
     /// WᵀW with W the columns whitened by a filter.
-    pub(super) fn whitened(&self, filter: &Filter) -> Vec<f64> {
+    pub(crate) fn whitened(&self, filter: &Filter) -> Vec<f64> {
         let last = filter.steps.len() - 1;
         self.tiled(|left, right| {
             dispatch!(level(), simd => {
@@ -109,16 +109,16 @@ fn products<S: Simd>(
 
 /// Kalman's filter of white noise with AR(1), as it takes a column: what it expects of the next sample is `kept` of what it expected
 /// and `taken` of what came; the difference counts times `root`.
-pub(super) struct Filter {
+pub(crate) struct Filter {
     /// kept, taken and root of the first samples; the last of them for all that follow.
-    pub(super) steps: Vec<[f64; 3]>,
+    pub(crate) steps: Vec<[f64; 3]>,
     /// ln |R|.
-    pub(super) log_determinant: f64,
+    pub(crate) log_determinant: f64,
 }
 
 impl Filter {
     /// The filter for this correlation of neighbours and this share of the correlated part.
-    pub(super) fn new(rho: f64, share: f64, samples: usize) -> Self {
+    pub(crate) fn new(rho: f64, share: f64, samples: usize) -> Self {
         let mut steps = Vec::new();
         let (mut ahead, mut log_determinant) = (share, 0.0);
         for index in 0..samples {
@@ -139,7 +139,7 @@ impl Filter {
 }
 
 /// Σ of the squares of one column whitened by each of several filters, side by side.
-pub(super) fn whitened_squares(column: &[f64], filters: &[Filter]) -> Vec<f64> {
+pub(crate) fn whitened_squares(column: &[f64], filters: &[Filter]) -> Vec<f64> {
     let many = |filters: &[Filter]| {
         let longest = filters.iter().map(|filter| filter.steps.len()).max().unwrap_or(0);
         let step = |index: usize, what: usize| -> [f64; LANES] {

@@ -13,15 +13,14 @@ mod normal;
 mod result;
 mod strength;
 
-pub use result::{SpectrumFit, SpectrumPeak, SpectrumWork};
-
-use serde::{Deserialize, Serialize};
-
-use super::FitError;
-use super::samples::not_finite;
-use crate::latency::decay_many;
 use normal::{GONE, Normal};
+use serde::{Deserialize, Serialize};
 use strength::{Smoothed, Smoother};
+
+use crate::fit::error::FitError;
+use crate::fit::samples::not_finite;
+use crate::latency::decay_many;
+pub use result::{SpectrumFit, SpectrumPeak, SpectrumWork};
 
 /// Grid times are no shorter than this share of the hold, however early its second sample.
 const SHORTEST: f64 = 1e-6;

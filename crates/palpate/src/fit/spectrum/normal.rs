@@ -5,22 +5,23 @@ use crate::statistics::dot;
 
 /// Samples taken at a time, so that all columns of a block stay in the nearest cache.
 const BLOCK: usize = 64;
+
 /// After this many of its times an exponential is less than rounding.
-pub(super) const GONE: f64 = 40.0;
+pub(crate) const GONE: f64 = 40.0;
 
 /// Products over all samples, per unit of weight.
-pub(super) struct Normal {
+pub(crate) struct Normal {
     /// CᵀWC over the columns exp(−t/τ_j), then the constant; row-major.
-    pub(super) gram: Vec<f64>,
+    pub(crate) gram: Vec<f64>,
     /// CᵀWy.
-    pub(super) right: Vec<f64>,
+    pub(crate) right: Vec<f64>,
     /// yᵀWy.
-    pub(super) square: f64,
+    pub(crate) square: f64,
 }
 
 impl Normal {
     /// Forms them from samples with these square roots of their weights.
-    pub(super) fn new(times: &[f64], values: &[f64], roots: &[f64], grid: &[f64]) -> Self {
+    pub(crate) fn new(times: &[f64], values: &[f64], roots: &[f64], grid: &[f64]) -> Self {
         // The signal is one more column, which gives its products along with the others.
         let columns = grid.len() + 2;
         let mut block = vec![0.0; columns * BLOCK];
@@ -59,7 +60,7 @@ impl Normal {
     }
 
     /// Mean square that `numbers` leave, down to the rounding of these products.
-    pub(super) fn residual(&self, numbers: &[f64]) -> f64 {
+    pub(crate) fn residual(&self, numbers: &[f64]) -> f64 {
         let size = self.right.len();
         let explained: f64 = (0..size)
             .filter(|i| numbers[*i] != 0.0)

@@ -1,39 +1,39 @@
 //! How strongly a spectrum is smoothed: as strongly as the residual allows.
 
 use super::normal::Normal;
-use crate::fit::bounded::{BoundedProblem, BoundedSolver, Held};
-use crate::fit::linear_algebra::Cholesky;
+use crate::optimise::{BoundedProblem, BoundedSolver, Cholesky, Held};
 
 /// Weakest and strongest smoothing tried, as powers of ten.
 const DECADES: (i32, i32) = (-12, 1);
+
 /// Strengths per decade that are told apart.
 const STEPS: i32 = 8;
 
 /// A spectrum at one strength of smoothing, in units of the hold's duration and range.
 #[derive(Debug, Clone)]
-pub(super) struct Smoothed {
-    pub(super) strength: f64,
+pub(crate) struct Smoothed {
+    pub(crate) strength: f64,
     /// Amplitudes, then the constant; amplitudes have the sign of the relaxation.
-    pub(super) numbers: Vec<f64>,
+    pub(crate) numbers: Vec<f64>,
     held: Vec<Held>,
     /// Mean square left.
-    pub(super) residual: f64,
+    pub(crate) residual: f64,
 }
 
 /// One sign of the relaxation: all amplitudes at least zero, or at most zero.
-pub(super) struct Smoother<'a> {
+pub(crate) struct Smoother<'a> {
     normal: &'a Normal,
     solver: BoundedSolver,
     smoothed_gram: Vec<f64>,
     lower: Vec<f64>,
     upper: Vec<f64>,
     begun: bool,
-    pub(super) strengths: u64,
+    pub(crate) strengths: u64,
 }
 
 impl<'a> Smoother<'a> {
     /// For amplitudes of this sign and a constant that is free or fixed.
-    pub(super) fn new(normal: &'a Normal, sign: f64, constant: Option<f64>) -> Self {
+    pub(crate) fn new(normal: &'a Normal, sign: f64, constant: Option<f64>) -> Self {
         let size = normal.right.len();
         let (low, high) = if sign > 0.0 { (0.0, f64::INFINITY) } else { (f64::NEG_INFINITY, 0.0) };
         let (mut lower, mut upper) = (vec![low; size], vec![high; size]);
@@ -51,12 +51,12 @@ impl<'a> Smoother<'a> {
     }
 
     /// Systems of equations solved.
-    pub(super) fn pivots(&self) -> u64 {
+    pub(crate) fn pivots(&self) -> u64 {
         self.solver.pivots()
     }
 
     /// Mean square + strength × Σ (h_{j+1} − h_j)² at its least; `None` if that is lost in rounding.
-    pub(super) fn solve(&mut self, strength: f64) -> Option<Smoothed> {
+    pub(crate) fn solve(&mut self, strength: f64) -> Option<Smoothed> {
         self.smooth(strength);
         let problem = BoundedProblem {
             gram: &self.smoothed_gram,
@@ -79,14 +79,14 @@ impl<'a> Smoother<'a> {
     }
 
     /// The weakest smoothing and every decade above it, weakest last.
-    pub(super) fn decades(&mut self) -> Vec<Smoothed> {
+    pub(crate) fn decades(&mut self) -> Vec<Smoothed> {
         (DECADES.0..=DECADES.1).rev().filter_map(|power| self.solve(10f64.powi(power))).collect()
     }
 
     /// The strongest smoothing whose residual is at most `limit`, which the last of `decades` keeps.
     ///
     /// The residual grows with the strength, so halving finds it.
-    pub(super) fn strongest(&mut self, decades: &[Smoothed], limit: f64) -> Option<Smoothed> {
+    pub(crate) fn strongest(&mut self, decades: &[Smoothed], limit: f64) -> Option<Smoothed> {
         let mut best = decades.iter().find(|smoothed| smoothed.residual <= limit)?.clone();
         let decade = best.strength.log10().round() as i32;
         if decade == DECADES.1 {
@@ -106,7 +106,7 @@ impl<'a> Smoother<'a> {
     }
 
     /// Numbers that the samples, not the smoothing, determine: the trace of the hat matrix, (G + μL)⁻¹ G over the free numbers.
-    pub(super) fn effective_parameters(&mut self, smoothed: &Smoothed) -> f64 {
+    pub(crate) fn effective_parameters(&mut self, smoothed: &Smoothed) -> f64 {
         let size = self.normal.right.len();
         self.smooth(smoothed.strength);
         let free: Vec<usize> = (0..size).filter(|i| smoothed.held[*i] == Held::Free).collect();

@@ -1,7 +1,7 @@
 //! The dense relaxation spectrum: Prony's series on a fixed grid of times.
 //!
 //! y(t) = y_e ± Σ hⱼ exp(−t/τⱼ) with hⱼ ≥ 0 and τⱼ equally spaced in ln τ. Grid and smoothing follow a stated rule
-//! (`fit/spectrum.rs`); nothing but the signal's sign is left to choose. It has no standard errors.
+//! (`fit/spectrum/`); nothing but the signal's sign is left to choose. It has no standard errors.
 //!
 //! | number | unit | range | meaning |
 //! |---|---|---|---|

@@ -66,14 +66,14 @@ struct HoldLaw {
 impl HoldLaw {
     fn new(fit: &LatencyFit) -> Self {
         Self {
-            exponent: fit.exponent.value,
-            coefficient: fit.rate_coefficient.value,
-            relaxed: fit.equilibrium.value,
-            amplitude: fit.amplitude.value,
+            exponent: fit.exponent().value,
+            coefficient: fit.rate_coefficient().value,
+            relaxed: fit.equilibrium().value,
+            amplitude: fit.amplitude().value,
             square: fit.residual_square,
             samples: fit.samples,
             covariance: fit.covariance.as_ref().map(|c| [0, 1, 2].map(|i: usize| [c[i][0], c[i][1], c[i][2]])),
-            curve: Rc::new(ExcessCurve::new(fit.exponent.value)),
+            curve: Rc::new(ExcessCurve::new(fit.exponent().value)),
         }
     }
 }
@@ -299,10 +299,10 @@ fn laws(record: &Record, hold: &Segment) -> Option<Vec<HoldLaw>> {
     let force: Vec<f64> = samples.iter().map(|i| record.force()[*i]).collect();
     let fit = |choice| {
         let fit = fit_hold(&times, &force, choice, &FitOptions::default()).ok()?;
-        (fit.termination.is_good() && fit.amplitude.value > 0.0).then_some(fit)
+        (fit.termination.is_good() && fit.amplitude().value > 0.0).then_some(fit)
     };
     let free = fit(ExponentChoice::Free);
-    let near = free.as_ref().and_then(|free| Some((free.exponent.value, free.exponent.standard_error?)));
+    let near = free.as_ref().and_then(|free| Some((free.exponent().value, free.exponent().standard_error?)));
     let sides = near.map_or(Vec::new(), |(n, error)| vec![n - error, n + error]);
     let exponents = sides.into_iter().chain([1.0, 2.0, 3.0, 5.0, 7.0]).filter(|n| (0.2..=30.0).contains(n));
     let fixed = exponents.filter_map(|n| fit(ExponentChoice::Fixed(n)));

@@ -98,13 +98,16 @@ struct HoldAnswer {
 }
 
 fn hold_numbers(fit: &LatencyFit) -> Found {
-    let mut parameters = vec![fit.equilibrium.value, fit.amplitude.value, fit.relative_rate.value.ln()];
-    let relative_rate_error = fit.relative_rate.standard_error.unwrap() / fit.relative_rate.value;
-    let mut standard_errors =
-        vec![fit.equilibrium.standard_error.unwrap(), fit.amplitude.standard_error.unwrap(), relative_rate_error];
-    if fit.choice == ExponentChoice::Free {
-        parameters.push(fit.exponent.value);
-        standard_errors.push(fit.exponent.standard_error.unwrap());
+    let mut parameters = vec![fit.equilibrium().value, fit.amplitude().value, fit.relative_rate().value.ln()];
+    let relative_rate_error = fit.relative_rate().standard_error.unwrap() / fit.relative_rate().value;
+    let mut standard_errors = vec![
+        fit.equilibrium().standard_error.unwrap(),
+        fit.amplitude().standard_error.unwrap(),
+        relative_rate_error,
+    ];
+    if fit.choice() == ExponentChoice::Free {
+        parameters.push(fit.exponent().value);
+        standard_errors.push(fit.exponent().standard_error.unwrap());
     }
     Found {
         parameters,
@@ -139,8 +142,8 @@ fn holds_in_the_time_domain() {
         let gradient = [0.0, -(n - 1.0) / delta, 1.0, -delta.abs().ln()];
         let pairs = (0..c.len()).flat_map(|i| (0..c.len()).map(move |j| (i, j)));
         let error = v * pairs.map(|(i, j)| gradient[i] * c[i][j] * gradient[j]).sum::<f64>().sqrt();
-        assert!((fit.rate_coefficient.value - v).abs() <= 1e-4 * error, "{}: v", case.name);
-        let found = fit.rate_coefficient.standard_error.unwrap();
+        assert!((fit.rate_coefficient().value - v).abs() <= 1e-4 * error, "{}: v", case.name);
+        let found = fit.rate_coefficient().standard_error.unwrap();
         assert!((found / error - 1.0).abs() <= 2e-4, "{}: error of v {found} {error}", case.name);
     }
 }
@@ -148,7 +151,7 @@ fn holds_in_the_time_domain() {
 /// Says that a number is not determined: no error, no interval.
 fn assert_open(name: &str, fit: &LatencyFit) {
     assert!(fit.covariance.is_none(), "{name}");
-    for estimate in [fit.exponent, fit.equilibrium, fit.amplitude, fit.relative_rate, fit.rate_coefficient] {
+    for estimate in [fit.exponent(), fit.equilibrium(), fit.amplitude(), fit.relative_rate(), fit.rate_coefficient()] {
         assert!(estimate.standard_error.is_none() && estimate.interval.is_none(), "{name}: {estimate:?}");
     }
 }
@@ -199,17 +202,17 @@ fn holds_in_the_plane_of_strain_and_rate() {
     for case in &cases {
         let fit = fit_rates(&case.strain, &case.rate, choice(case.fixed_n), &options()).unwrap();
         assert_eq!(fit.termination, Termination::Converged, "{}", case.name);
-        let v = fit.rate_coefficient;
+        let v = fit.rate_coefficient();
         let mut found = Found {
-            parameters: vec![fit.equilibrium.value, v.value.ln()],
-            standard_errors: vec![fit.equilibrium.standard_error.unwrap(), v.standard_error.unwrap() / v.value],
+            parameters: vec![fit.equilibrium().value, v.value.ln()],
+            standard_errors: vec![fit.equilibrium().standard_error.unwrap(), v.standard_error.unwrap() / v.value],
             covariance: fit.covariance.clone().unwrap(),
             rss: fit.residual_square,
         };
         let mut parameters = vec![case.equilibrium_strain, case.ln_rate_coefficient];
         if case.fixed_n.is_none() {
-            found.parameters.push(fit.exponent.value);
-            found.standard_errors.push(fit.exponent.standard_error.unwrap());
+            found.parameters.push(fit.exponent().value);
+            found.standard_errors.push(fit.exponent().standard_error.unwrap());
             parameters.push(case.exponent);
         }
         let expected = Expected {
@@ -259,15 +262,15 @@ fn nist_problems() {
         let fit = fit_hold(&case.x, &case.y, ExponentChoice::Fixed(n), &options()).unwrap();
         assert_eq!(fit.termination, Termination::Converged, "{}", case.name);
         // NIST counts from x = 0, the fit from the first sample, at which λ has fallen to λ φ(λ x₀)ⁿ⁻¹ and Δ to Δ φ(λ x₀).
-        let (start, later) = (case.x[0], fit.relative_rate.value);
+        let (start, later) = (case.x[0], fit.relative_rate().value);
         let stretch = 1.0 / (1.0 - (n - 1.0) * later * start);
         let lambda = later * stretch;
         let phi = palpate::latency::decay(lambda * start, n);
-        let delta = fit.amplitude.value / phi;
+        let delta = fit.amplitude().value / phi;
         // ∂(y_e, Δ, ln λ)/∂(the same at the first sample); ∂ln φ/∂ln λ = −λ x₀ φⁿ⁻¹ = −λ' x₀.
         let jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0 / phi, delta * later * start * stretch], [0.0, 0.0, stretch]];
         let covariance = fit.covariance.as_ref().unwrap();
-        let parameters = [fit.equilibrium.value, delta, lambda.ln()];
+        let parameters = [fit.equilibrium().value, delta, lambda.ln()];
         let wanted = [expected.y_e, expected.delta, expected.ln_lambda];
         let (mut value, mut deviation) = (0.0f64, 0.0f64);
         for i in 0..3 {

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use crate::common::reference;
-use palpate::fit::{ConstantChoice, LawFit, LawOptions, Loss, Samples, Termination, fit_law};
+use palpate::fit::{ConstantChoice, Fit, LawOptions, Loss, Samples, Termination, fit_law};
 use palpate::forecast::criteria;
 use palpate::laws::{ExponentChoice, Law, Response};
 use serde::Deserialize;
@@ -41,10 +41,10 @@ struct Found {
 
 /// The searched numbers of a fit turned into those of the reference: the same but for fast and slow rates, flow per s
 /// and power per s^α.
-fn found(fit: &LawFit, parameters: &[String]) -> Found {
+fn found(fit: &Fit, parameters: &[String]) -> Found {
     let inner = &fit.values;
     let count = inner.len();
-    assert_eq!(count, parameters.len(), "{parameters:?} {:?}", fit.parameters);
+    assert_eq!(count, parameters.len(), "{parameters:?} {:?}", fit.searched);
     let mut values = inner.clone();
     let mut jacobian: Vec<Vec<f64>> =
         (0..count).map(|i| (0..count).map(|j| f64::from(u8::from(i == j))).collect()).collect();

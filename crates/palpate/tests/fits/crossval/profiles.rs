@@ -68,7 +68,7 @@ fn ends_of_intervals() {
             ..LawOptions::default()
         };
         let fit = fit_law(&samples, case.law(), &options).unwrap();
-        let names: Vec<String> = fit.numbers.iter().map(|number| number.name.clone()).collect();
+        let names: Vec<String> = fit.parameters.iter().map(|number| number.name.to_string()).collect();
         for (k, parameter) in case.parameters.iter().enumerate() {
             let (name, transformed, reversed) = case.number(parameter, &names);
             let found = profile_interval(&samples, case.law(), &options, &name).unwrap();

@@ -9,7 +9,7 @@ mod brute;
 mod double_double;
 
 use brute::{Subject, free_numbers, has_reference};
-use palpate::fit::{LawFit, LawOptions, Samples, Termination, fit_law};
+use palpate::fit::{Fit, LawOptions, Samples, Termination, fit_law};
 use palpate::laws::{BasisFunction, Law, LawCurve, Response, Term};
 use palpate::test_problems::Noise;
 
@@ -130,7 +130,7 @@ fn bounds(law: Law, response: Response, times: &[f64]) -> Vec<(f64, f64)> {
 }
 
 /// Residual square of the curve that a fit returns.
-fn honest(fit: &LawFit, problem: &Problem) -> f64 {
+fn honest(fit: &Fit, problem: &Problem) -> f64 {
     let curve = fit.curve.values(&problem.times);
     curve.iter().zip(&problem.values).map(|(f, y)| (y - f).powi(2)).sum()
 }

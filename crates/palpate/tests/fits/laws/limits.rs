@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::fit::{ConstantChoice, LawFit, LawOptions, NumberUnit, Samples, Termination, fit_law};
+use palpate::fit::{ConstantChoice, Fit, LawOptions, NumberUnit, Samples, Termination, fit_law};
 use palpate::laws::{Law, Response};
 use palpate::test_problems::Noise;
 
@@ -15,11 +15,11 @@ fn hold(noise: f64) -> (Vec<f64>, Vec<f64>) {
     (times, values)
 }
 
-fn fit_to(times: &[f64], values: &[f64], law: &str, options: &LawOptions) -> LawFit {
+fn fit_to(times: &[f64], values: &[f64], law: &str, options: &LawOptions) -> Fit {
     fit_law(&Samples::new(times, values), law.parse().unwrap(), options).unwrap()
 }
 
-fn fit(law: &str, options: &LawOptions) -> LawFit {
+fn fit(law: &str, options: &LawOptions) -> Fit {
     let (times, values) = hold(2e-3);
     fit_to(&times, &values, law, options)
 }
@@ -39,7 +39,7 @@ fn creep() -> LawOptions {
 }
 
 /// Both leave the same residual and draw the same curve.
-fn same(a: &LawFit, b: &LawFit, within: f64) {
+fn same(a: &Fit, b: &Fit, within: f64) {
     assert!(
         (a.residual_square / b.residual_square - 1.0).abs() < within,
         "{} {}",
@@ -158,7 +158,7 @@ fn all_laws() -> impl Iterator<Item = (Law, Response)> {
 }
 
 /// Relative change of a fit in other units, beyond that of the units.
-fn change(fit: &LawFit, plain: &LawFit, y_unit: f64, t_unit: f64) -> f64 {
+fn change(fit: &Fit, plain: &Fit, y_unit: f64, t_unit: f64) -> f64 {
     let unit = |unit: NumberUnit| match unit {
         NumberUnit::Signal => Some(y_unit),
         NumberUnit::Second => Some(t_unit),
@@ -169,7 +169,7 @@ fn change(fit: &LawFit, plain: &LawFit, y_unit: f64, t_unit: f64) -> f64 {
         NumberUnit::RateCoefficient | NumberUnit::SignalPerPower => None,
     };
     let mut worst = (fit.residual_square / plain.residual_square / y_unit / y_unit - 1.0).abs();
-    for (a, b) in fit.numbers.iter().zip(&plain.numbers) {
+    for (a, b) in fit.parameters.iter().zip(&plain.parameters) {
         if let Some(unit) = unit(a.unit) {
             let size = b.estimate.standard_error.unwrap_or(0.0).max(b.estimate.value.abs());
             if size > 0.0 {

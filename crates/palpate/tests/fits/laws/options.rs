@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::fit::{ConstantChoice, FitError, LawFit, LawOptions, SampleChoice, Samples, Termination, fit_law};
+use palpate::fit::{ConstantChoice, Fit, FitError, LawOptions, SampleChoice, Samples, Termination, fit_law};
 use palpate::laws::{Law, Response};
 use palpate::test_problems::Noise;
 
@@ -14,7 +14,7 @@ fn hold(noise: f64) -> (Vec<f64>, Vec<f64>) {
     (times, values)
 }
 
-fn fit(law: &str, options: &LawOptions, noise: f64) -> Result<LawFit, FitError> {
+fn fit(law: &str, options: &LawOptions, noise: f64) -> Result<Fit, FitError> {
     let (times, values) = hold(noise);
     fit_law(&Samples::new(&times, &values), law.parse().unwrap(), options)
 }
@@ -55,10 +55,10 @@ fn a_known_equilibrium_is_held_by_its_name_or_as_the_constant() {
     };
     for law in ["sls", "latency", "latency:3", "prony:2", "maxwell", "stretched"] {
         let (named, constant) = (fit(law, &named, 1e-3).unwrap(), fit(law, &constant, 1e-3).unwrap());
-        assert_eq!((&named.numbers, named.rmse), (&constant.numbers, constant.rmse), "{law}");
+        assert_eq!((&named.parameters, named.rmse), (&constant.parameters, constant.rmse), "{law}");
         let equilibrium = named.estimate("equilibrium").unwrap();
         assert_eq!((equilibrium.value, equilibrium.standard_error), (1.5, None));
-        assert!(!named.parameters.contains(&"equilibrium".to_owned()));
+        assert!(!named.searched.contains(&"equilibrium".to_owned()));
     }
 }
 

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::fit::{LawFit, LawOptions, Samples, fit_law};
+use palpate::fit::{Fit, LawOptions, Samples, fit_law};
 use palpate::laws::{BasisFunction, ExponentChoice, Law, LawCurve, Loading, LoadingError, Response, Term};
 use palpate::test_problems::Noise;
 
@@ -22,7 +22,7 @@ fn term(amplitude: f64, shape: BasisFunction, numbers: &[f64]) -> Term {
     }
 }
 
-fn fit(times: &[f64], values: &[f64], law: Law, loading: Option<&Loading>) -> LawFit {
+fn fit(times: &[f64], values: &[f64], law: Law, loading: Option<&Loading>) -> Fit {
     let options = LawOptions {
         loading: loading.cloned(),
         ..LawOptions::default()

@@ -140,8 +140,8 @@ fn one_ramp_alone_leaves_the_step_open() {
     let alone = fit(&loading, &values, ExponentChoice::Fixed(3.0), EquilibriumChoice::Each);
     let hold =
         palpate::fit::fit_hold(&times(), &values[0], ExponentChoice::Fixed(3.0), &FitOptions::default()).unwrap();
-    assert!((alone.holds[0].amplitude.value / hold.amplitude.value - 1.0).abs() < 1e-6);
-    assert!((alone.rate_coefficient.value / hold.rate_coefficient.value - 1.0).abs() < 1e-4);
+    assert!((alone.holds[0].amplitude.value / hold.amplitude().value - 1.0).abs() < 1e-6);
+    assert!((alone.rate_coefficient.value / hold.rate_coefficient().value - 1.0).abs() < 1e-4);
     assert!((alone.rmse / hold.rmse - 1.0).abs() < 1e-9);
 }
 

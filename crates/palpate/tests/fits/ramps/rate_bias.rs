@@ -29,8 +29,8 @@ fn bias(rate: f64, noise: f64) -> [f64; 2] {
         let in_time = fit_hold(&times, &strains, ExponentChoice::Fixed(5.0), &options).unwrap();
         let rates = strain_rates(&times, &strains, &RateWindow::default());
         let by_rate = fit_rates(&rates.strain, &rates.rate, ExponentChoice::Fixed(5.0), &options).unwrap();
-        sums[0] += in_time.rate_coefficient.value / TRUTH;
-        sums[1] += by_rate.rate_coefficient.value / TRUTH;
+        sums[0] += in_time.rate_coefficient().value / TRUTH;
+        sums[1] += by_rate.rate_coefficient().value / TRUTH;
     }
     sums.map(|sum| sum / 100.0)
 }
@@ -57,7 +57,7 @@ fn an_analysis_says_how_far_its_rate_domain_is_off() {
     let record = Record::new(time, Some(displacement), force).unwrap();
     let analysis = analyze(&record, &AnalysisOptions::default()).unwrap();
     let said = analysis.holds[0].rate_bias.unwrap();
-    let by_rate = analysis.holds[0].rate_fit_with(5.0).unwrap().rate_coefficient.value;
+    let by_rate = analysis.holds[0].rate_fit_with(5.0).unwrap().rate_coefficient().value;
     println!("said {said:?}, found {:.3}", by_rate / TRUTH);
     assert!((0.8..0.99).contains(&said.coefficient), "{said:?}");
 }

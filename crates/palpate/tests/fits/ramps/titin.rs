@@ -7,12 +7,12 @@
 mod stretches;
 
 use palpate::fit::{
-    EquilibriumChoice, ExponentChoice, FitOptions, LawFit, LawOptions, RampHold, Termination, fit_law, fit_ramps,
+    EquilibriumChoice, ExponentChoice, Fit, FitOptions, LawOptions, RampHold, Termination, fit_law, fit_ramps,
 };
 use palpate::laws::{Law, Loading};
 use stretches::{Record, records};
 
-fn fits(records: &[Record], law: Law, loading: impl Fn(&Record) -> Option<Loading>) -> Vec<LawFit> {
+fn fits(records: &[Record], law: Law, loading: impl Fn(&Record) -> Option<Loading>) -> Vec<Fit> {
     let fit = |record: &Record| {
         let options = LawOptions {
             loading: loading(record),
@@ -36,8 +36,8 @@ fn a_power_law_says_the_same_of_a_step_after_every_known_ramp() {
     let Some(records) = records() else { return };
     let steps = fits(&records, Law::Power, |_| None);
     let known = fits(&records, Law::Power, |record| Some(record.by_elastic_force(&records[3])));
-    let soon = |fits: &[LawFit]| ratio(fits.iter().map(|fit| fit.curve.at(0.01)));
-    let exponents = |fits: &[LawFit]| ratio(fits.iter().map(|fit| fit.value("exponent").unwrap()));
+    let soon = |fits: &[Fit]| ratio(fits.iter().map(|fit| fit.curve.at(0.01)));
+    let exponents = |fits: &[Fit]| ratio(fits.iter().map(|fit| fit.value("exponent").unwrap()));
     assert!(soon(&steps) > 1.7 && soon(&known) < 1.15, "{} {}", soon(&steps), soon(&known));
     assert!(exponents(&steps) > 1.3 && exponents(&known) < 1.1, "{} {}", exponents(&steps), exponents(&known));
 }

@@ -1,0 +1,170 @@
+//! Why a fit could not be made at all.
+
+use crate::laws::{Law, Response};
+use crate::watch::Cancelled;
+
+/// Why a fit could not be made at all.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FitError {
+    /// Columns of different lengths.
+    #[error("a fit needs as many values as abscissas, found {abscissas} and {values}")]
+    Lengths {
+        /// Number of times or strains.
+        abscissas: usize,
+        /// Number of values.
+        values: usize,
+    },
+    /// Fewer samples than numbers to find, and one over.
+    #[error("a fit of {parameters} numbers needs {needed} samples or more, found {found}")]
+    TooFewSamples {
+        /// Numbers to find.
+        parameters: usize,
+        /// Least number of samples.
+        needed: usize,
+        /// Samples found.
+        found: usize,
+    },
+    /// A standard deviation that is none.
+    #[error("the standard deviation of sample {index} must be above 0, found {found}")]
+    Deviation {
+        /// Which sample.
+        index: usize,
+        /// What was given.
+        found: f64,
+    },
+    /// A law that says nothing about what was measured.
+    #[error("the law {law} has no form for {}", match response { Response::Relaxation => "relaxation", Response::Creep => "creep" })]
+    NoForm {
+        /// The law.
+        law: Law,
+        /// What was measured.
+        response: Response,
+    },
+    /// An option for a number that the law does not have.
+    #[error("the law has no number {name:?}; it has {known}")]
+    UnknownNumber {
+        /// What was given.
+        name: String,
+        /// Its numbers.
+        known: String,
+    },
+    /// A number held at a value it cannot have.
+    #[error("{name} cannot be held at {found}")]
+    FixedNumber {
+        /// Which.
+        name: String,
+        /// What was given.
+        found: f64,
+    },
+    /// An amplitude that is to be held.
+    #[error("{name} cannot be held, only {held}; give it bounds instead")]
+    HeldAmplitude {
+        /// Which.
+        name: String,
+        /// The numbers of the law that can be held.
+        held: String,
+    },
+    /// Bounds that leave nothing between them.
+    #[error("the bounds of {name} must rise and leave room for what a hold can show, found {low} to {high}")]
+    Bounds {
+        /// Which number.
+        name: String,
+        /// Lower bound.
+        low: f64,
+        /// Upper bound.
+        high: f64,
+    },
+    /// NaN or infinity.
+    #[error("the {what} of sample {index} must be a finite number, found {found}")]
+    NotFinite {
+        /// Which sample.
+        index: usize,
+        /// Which of its numbers, such as "time".
+        what: &'static str,
+        /// What was found.
+        found: f64,
+    },
+    /// Times that do not rise.
+    #[error("times must rise, sample {index} does not")]
+    TimeNotRising {
+        /// Which sample.
+        index: usize,
+    },
+    /// All values are the same: nothing relaxes.
+    #[error("all {samples} samples have the value {value}: nothing relaxes")]
+    Constant {
+        /// The value.
+        value: f64,
+        /// How many.
+        samples: usize,
+    },
+    /// An exponent that is not a finite number above zero.
+    #[error("exponent n must be a number above 0, found {found}")]
+    Exponent {
+        /// What was given.
+        found: f64,
+    },
+    /// Values or times that span more than double precision can hold.
+    #[error("the samples span more than double precision holds")]
+    OutOfRange,
+    /// A range of exponents that is none.
+    #[error("the range of n must run upwards from a number above 0, found {low} to {high}")]
+    ExponentRange {
+        /// Lower end.
+        low: f64,
+        /// Upper end.
+        high: f64,
+    },
+    /// A coverage that is not between 0 and 1.
+    #[error("confidence must lie between 0 and 1, found {found}")]
+    Confidence {
+        /// What was given.
+        found: f64,
+    },
+    /// A square root of a weight that is not a finite number of zero or more.
+    #[error("weight {index} is not a finite number of zero or more")]
+    Weight {
+        /// Which sample.
+        index: usize,
+    },
+    /// A setting of the spectrum out of its range.
+    #[error("{setting} is out of range: {found}")]
+    SpectrumSetting {
+        /// Which setting, and its range.
+        setting: &'static str,
+        /// What was given.
+        found: f64,
+    },
+    /// Something is wrong with one of several holds.
+    #[error("hold {hold}: {source}")]
+    Hold {
+        /// Number of the hold, from 1.
+        hold: usize,
+        /// What.
+        source: Box<FitError>,
+    },
+    /// A joint fit of no hold, or of one.
+    #[error("a joint fit needs two holds or more, found {found}")]
+    TooFewHolds {
+        /// Holds found.
+        found: usize,
+    },
+    /// A joint fit of holds that share no number.
+    #[error("the law {law} has no number that holds could share")]
+    NothingShared {
+        /// The law.
+        law: Law,
+    },
+    /// Samples with deviations beside samples without cannot be weighed against each other.
+    #[error("all holds of a joint fit must have standard deviations, or none; hold {hold} has none")]
+    DeviationsOfSome {
+        /// Number of the first hold without, from 1.
+        hold: usize,
+    },
+    /// No number of the law brings the rates nearer than zero does: they point away from every equilibrium.
+    #[error("the strain rates do not point towards any equilibrium strain")]
+    NoDecay,
+    /// The watch ended it.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}

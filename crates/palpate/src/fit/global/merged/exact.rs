@@ -1,0 +1,306 @@
+//! Local searches by orthogonal columns: they keep the digits that normal equations lose.
+
+use super::apart::{apart, rounding};
+use super::confluent::Confluent;
+use super::valley::{Valley, valley};
+use crate::fit::problem::model::Sampled;
+use crate::optimise::{
+    Cholesky, Ending, Orthogonal, Shapes, Solution, Target, Termination, Work, distance, refine, standing, stepped,
+};
+use crate::vector::products::dot;
+
+/// The solution carried on to what doubles allow, where normal equations do not reach it: where numbers nearly imitate each other, and
+/// where next to nothing is left over. `inflation` as of the function of that name.
+pub(crate) fn exact(
+    shapes: &Sampled<'_>,
+    target: Target<'_>,
+    solution: Solution,
+    inflation: f64,
+    work: &mut Work,
+) -> Solution {
+    let signal = target.square();
+    let clean = solution.residual_square < CLEAN * signal && solution.residual_square > ROUNDING * signal;
+    if solution.nonlinear.is_empty() || !shapes.linear_bounds().is_empty() || !(clean || inflation > IMITATED) {
+        return solution;
+    }
+    // Straight to the last digit, with no regard for valleys elsewhere.
+    let at = |theta: &[f64]| {
+        let here = Orthogonal::new(shapes, theta, target);
+        let square = here.square;
+        Some(Plain { here, square, shapes })
+    };
+    let theta = descended(&solution.nonlinear, at, shapes, f64::EPSILON, work);
+    let valley = valley(flat(Orthogonal::new(shapes, &theta, target), shapes, target, work));
+    // To within rounding of the values the gradient decides.
+    if valley.square.sqrt() <= solution.residual_square.sqrt() + f64::EPSILON * signal.sqrt() {
+        standing(shapes, target, &valley.theta, &valley.linear, Termination::Converged)
+    } else {
+        solution
+    }
+}
+
+/// Undamped steps for as long as what the next one promises falls: the residual square is flat to rounding before its gradient is.
+fn flat(mut here: Orthogonal, shapes: &Sampled<'_>, target: Target<'_>, work: &mut Work) -> Orthogonal {
+    let outlook = |here: &Orthogonal| {
+        let (hessian, gradient) = here.projected(shapes);
+        let next = stepped(&here.theta, &hessian, &gradient, 0.0, shapes);
+        let gain: f64 = next.iter().zip(&here.theta).zip(&gradient).map(|((a, b), g)| (a - b) * g).sum();
+        (next, gain)
+    };
+    let slack = f64::EPSILON * dot(target.values(), target.values()).sqrt();
+    let (mut next, mut gain) = outlook(&here);
+    for _ in 0..STEPS {
+        let trial = Orthogonal::new(shapes, &next, target);
+        work.evaluations += 1;
+        let (after, less) = outlook(&trial);
+        if !(less < gain && trial.square.sqrt() <= here.square.sqrt() + slack) {
+            break;
+        }
+        (here, next, gain) = (trial, after, less);
+    }
+    here
+}
+
+/// Of the square of the signal: residuals whose square is below have lost digits in normal equations, and those of rounding.
+const CLEAN: f64 = 1e-20;
+
+const ROUNDING: f64 = 1e-30;
+
+/// Variance inflation from which the gradient of normal equations is no guide to the last step.
+const IMITATED: f64 = 1e7;
+
+/// The largest factor by which the other numbers widen the variance of one.
+pub(crate) fn inflation(solution: &Solution) -> f64 {
+    let Some(inverse) = &solution.inverse_normal else {
+        return f64::INFINITY;
+    };
+    let size = solution.linear.len() + solution.nonlinear.len();
+    let own = |i: usize| solution.column_squares[i] * inverse[i * (size + 1)];
+    (0..solution.linear.len()).map(own).fold(1.0, f64::max)
+}
+
+/// Steps of a local search.
+const STEPS: usize = 60;
+
+/// Levenberg's method, until the residual square falls by no more than `enough` of itself, with the linear numbers projected out by
+/// orthogonal columns; by normal equations where these are bounded.
+pub(crate) fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], enough: f64, work: &mut Work) -> Valley {
+    if !shapes.linear_bounds().is_empty() {
+        let refined = refine(shapes, target, start, Ending::tight(STEPS), work);
+        return Valley {
+            theta: refined.theta().to_vec(),
+            linear: refined.linear().to_vec(),
+            square: refined.square(),
+        };
+    }
+    work.starts += 1;
+    if Confluent::new(shapes, start, target).is_some() {
+        let at = |theta: &[f64]| Confluent::new(shapes, theta, target);
+        let theta = descended(start, at, shapes, enough, work);
+        let least = Confluent::new(shapes, &theta, target).map_or(0.0, |here| here.square());
+        let there = apart(shapes, target, &theta, work);
+        if there.square <= least * (1.0 + APART) {
+            return there;
+        }
+        // No amplitudes in doubles reach what merged terms do: the best of those that are apart, not above the start.
+        let at = |theta: &[f64]| {
+            let here = Orthogonal::new(shapes, theta, target);
+            let square = here.square + rounding(target, here.square, &here.linear());
+            Some(Plain { here, square, shapes })
+        };
+        let from = if at(start).is_some_and(|here| here.square() < there.square) { start } else { &there.theta };
+        let theta = descended(from, at, shapes, enough, work);
+        let after = apart(shapes, target, &theta, work);
+        return if after.square < there.square { after } else { there };
+    }
+    let at = |theta: &[f64]| {
+        let here = Orthogonal::new(shapes, theta, target);
+        let square = here.square;
+        Some(Plain { here, square, shapes })
+    };
+    let theta = descended(start, at, shapes, enough, work);
+    valley(Orthogonal::new(shapes, &theta, target))
+}
+
+/// Relative rise of the residual square that taking merged terms apart may cost.
+const APART: f64 = 1e-8;
+
+/// A place of a local search.
+trait Place {
+    fn theta(&self) -> &[f64];
+    fn square(&self) -> f64;
+    fn projected(&self) -> (Vec<f64>, Vec<f64>);
+    /// Whether a column is all but imitated, and a little further counts for nothing.
+    fn is_beside_cliff(&self) -> bool;
+}
+
+impl Place for Confluent {
+    fn theta(&self) -> &[f64] {
+        self.theta()
+    }
+    fn square(&self) -> f64 {
+        self.square()
+    }
+    fn projected(&self) -> (Vec<f64>, Vec<f64>) {
+        self.projected()
+    }
+    fn is_beside_cliff(&self) -> bool {
+        self.is_beside_cliff()
+    }
+}
+
+/// A place with the columns as they are.
+struct Plain<'a> {
+    here: Orthogonal,
+    /// What counts as the residual square.
+    square: f64,
+    shapes: &'a Sampled<'a>,
+}
+
+impl Place for Plain<'_> {
+    fn theta(&self) -> &[f64] {
+        &self.here.theta
+    }
+    fn square(&self) -> f64 {
+        self.square
+    }
+    fn projected(&self) -> (Vec<f64>, Vec<f64>) {
+        self.here.projected(self.shapes)
+    }
+    fn is_beside_cliff(&self) -> bool {
+        self.here.is_beside_cliff()
+    }
+}
+
+/// θ where Levenberg's method ends.
+fn descended<P: Place>(
+    start: &[f64],
+    at: impl Fn(&[f64]) -> Option<P>,
+    shapes: &Sampled<'_>,
+    enough: f64,
+    work: &mut Work,
+) -> Vec<f64> {
+    let Some(mut here) = at(start) else {
+        return start.to_vec();
+    };
+    work.evaluations += 1;
+    here = lowered(here, &at, None, shapes, enough, work);
+    // Steps that would cross a cliff are refused, however much the other numbers would gain: one after the other is held.
+    for number in 0..start.len() {
+        if here.is_beside_cliff() {
+            here = lowered(here, &at, Some(number), shapes, enough, work);
+        }
+    }
+    here.theta().to_vec()
+}
+
+/// The place where Levenberg's method ends, with one number held where it is if asked for.
+fn lowered<P: Place>(
+    mut here: P,
+    at: &impl Fn(&[f64]) -> Option<P>,
+    held: Option<usize>,
+    shapes: &Sampled<'_>,
+    enough: f64,
+    work: &mut Work,
+) -> P {
+    let mut damping = FIRST;
+    let mut idle = 0;
+    for _ in 0..STEPS {
+        let (hessian, gradient) = here.projected();
+        let before = here.square();
+        // Along a flat valley damping is what holds a step back: a small fall says nothing until there is next to none.
+        let is_free = damping <= FREE;
+        for _ in 0..TRIALS {
+            let theta = inside(here.theta(), (&hessian, &gradient), held, UNFELT * before, damping, shapes);
+            let Some(trial) = at(&theta) else {
+                break;
+            };
+            work.evaluations += 1;
+            if trial.square() < before {
+                here = trial;
+                damping = (damping * 0.1).max(LEAST);
+                work.iterations += 1;
+                break;
+            }
+            if distance(here.theta(), &theta) < NOWHERE {
+                break;
+            }
+            damping *= 8.0;
+        }
+        let idles = before - here.square() <= enough * before;
+        idle = if idles && is_free { idle + 1 } else { 0 };
+        if idle == 2 || before == here.square() {
+            break;
+        }
+        if idles && !is_free {
+            damping = (damping * 1e-2).max(LEAST);
+        }
+    }
+    here
+}
+
+/// θ after a damped step inside the bounds: numbers that would leave them stay at the bound, and the others take the best step beside
+/// those, as beside one that is `held`. Curvatures below `unfelt` are damped as if they were that: rounding alone makes up the steps of
+/// such numbers.
+fn inside(
+    theta: &[f64],
+    (hessian, gradient): (&[f64], &[f64]),
+    held: Option<usize>,
+    unfelt: f64,
+    damping: f64,
+    shapes: &Sampled<'_>,
+) -> Vec<f64> {
+    let count = theta.len();
+    let mut step: Vec<Option<f64>> = (0..count).map(|i| (Some(i) == held).then_some(0.0)).collect();
+    loop {
+        let free: Vec<usize> = (0..count).filter(|i| step[*i].is_none()).collect();
+        let entry = |i: usize, j: usize| {
+            let plain = hessian[i * count + j];
+            if i == j { plain.max(f64::MIN_POSITIVE) + damping * plain.max(unfelt) } else { plain }
+        };
+        let matrix: Vec<f64> = free.iter().flat_map(|&i| free.iter().map(move |&j| entry(i, j))).collect();
+        let known = |i: usize| -> f64 { (0..count).filter_map(|j| Some(hessian[i * count + j] * step[j]?)).sum() };
+        let mut change: Vec<f64> = free.iter().map(|&i| gradient[i] - known(i)).collect();
+        match Cholesky::new(&matrix, free.len()) {
+            Some(factor) => factor.solve(&mut change),
+            None => change.iter_mut().zip(&free).for_each(|(value, &i)| *value /= entry(i, i)),
+        }
+        let mut leaving = false;
+        for (&i, &by) in free.iter().zip(&change) {
+            let (low, high) = shapes.bounds(i);
+            let allowed = by.clamp(-LONGEST, LONGEST).clamp(low - theta[i], high - theta[i]);
+            if allowed != by {
+                step[i] = Some(allowed);
+                leaving = true;
+            }
+        }
+        if !leaving {
+            free.iter().zip(change).for_each(|(&i, by)| step[i] = Some(by));
+            let ended = theta.iter().zip(step).enumerate().map(|(i, (value, by))| {
+                let (low, high) = shapes.bounds(i);
+                (value + by.unwrap_or(0.0)).clamp(low, high)
+            });
+            return ended.collect();
+        }
+    }
+}
+
+/// Of the residual square: a curvature that hardly shows.
+const UNFELT: f64 = 1e-4;
+
+/// Largest change of ln λ that is none.
+const NOWHERE: f64 = 1e-15;
+
+/// Dampings tried for a step.
+const TRIALS: usize = 16;
+
+/// Damping of the first step, strong: valleys may be narrow, and a long step leaves them for others.
+const FIRST: f64 = 1.0;
+
+/// Longest step of a number: the model is trusted only so far.
+const LONGEST: f64 = 2.0;
+
+/// Damping below which a step is all but free, and the least.
+const FREE: f64 = 1e-8;
+
+const LEAST: f64 = 1e-12;

@@ -1,0 +1,25 @@
+//! From a problem to the global optimum, without starting values.
+//!
+//! A coarse grid shows valleys on a few dozen nodes; local searches lead to their bottoms, and the best of them on to the
+//! optimum over all samples. What that leaves in doubt is searched thoroughly.
+//!
+//! | file | what |
+//! |---|---|
+//! | `grid.rs`, `plane.rs` | values that are tried, and nodes with all that needs no search projected out |
+//! | `lattice.rs`, `starts.rs` | the exhaustive coarse search |
+//! | `growth.rs`, `exchange.rs` | exponentials added to a series, and replaced in it |
+//! | `kinks.rs` | laws that end in finite time |
+//! | `merged/` | local searches where terms merge |
+//! | `thorough.rs` | the search for hard cases |
+//! | `search.rs` | the whole way, and the doubts |
+
+mod exchange;
+pub(crate) mod grid;
+mod growth;
+mod kinks;
+mod lattice;
+mod merged;
+mod plane;
+pub(crate) mod search;
+pub(crate) mod starts;
+mod thorough;

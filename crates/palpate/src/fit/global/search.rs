@@ -1,0 +1,259 @@
+//! From a model and samples to the global optimum.
+
+use super::grid::ends;
+use super::growth::{Grown, grown};
+use super::kinks::near_kinks;
+use super::merged::exact::{exact, inflation, local};
+use super::starts::starts;
+use super::thorough::thorough;
+use crate::fit::problem::condensed::{Condensed, condense};
+use crate::fit::problem::ghosts::{Ghost, ghosts};
+use crate::fit::problem::model::{Model, Sampled};
+use crate::fit::samples::Scaled;
+use crate::optimise::{
+    Ending, Near, Refined, Solution, Square, Target, Termination, Work, curvature, descend, distance, polished, refine,
+    standing, stepped,
+};
+
+/// Valleys that are refined on condensed samples.
+const VALLEYS: usize = 6;
+
+/// Valleys that are refined on all samples, at most.
+const FINALISTS: usize = 3;
+
+/// Finds the best numbers of a model: a coarse grid and local searches on condensed samples, then the best of them on all.
+pub(crate) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, work: &mut Work) -> Option<Solution> {
+    let nodes = condense(scaled);
+    let valleys = valleys(model, &nodes, most_iterations, work);
+    let (shapes, target) = (model.at(&scaled.times), scaled.target());
+    let mut best: Option<Refined> = None;
+    for valley in valleys {
+        let refined = settle(&shapes, target, &valley, most_iterations, work);
+        if best.as_ref().is_none_or(|best| refined.square() < best.square()) {
+            best = Some(refined);
+        }
+    }
+    let mut solution = polished(&shapes, target, best?, work);
+    mark_merged(model, &mut solution);
+    solution = settled_between_kinks(model, scaled, solution, work);
+    let inflation = inflation(&solution);
+    let doubtful = solution.termination != Termination::Converged
+        || !ghosts(model, &solution).is_empty()
+        || inflation > BEYOND
+        || model.is_series() && widest(&solution) > WIDE
+        || is_hasty(model, scaled, &solution);
+    if doubtful && model.free().len() > 0 {
+        solution = thorough(model, scaled, &nodes, solution, most_iterations, work);
+        mark_merged(model, &mut solution);
+    } else {
+        solution = exact(&shapes, target, solution, inflation, work);
+    }
+    Some(solution)
+}
+
+/// The largest standard error of a nonlinear number.
+fn widest(solution: &Solution) -> f64 {
+    let Some(inverse) = &solution.inverse_normal else {
+        return f64::INFINITY;
+    };
+    let (linear, size) = (solution.linear.len(), solution.linear.len() + solution.nonlinear.len());
+    let error = |i: usize| (inverse[i * (size + 1)] * solution.variance).sqrt();
+    (linear..size).map(error).fold(0.0, f64::max)
+}
+
+/// Whether the relaxation is nearly over within so few samples that the noise of any of them opens valleys of its own.
+fn is_hasty(model: &Model, scaled: &Scaled, solution: &Solution) -> bool {
+    let &[shape] = model.moving().0.as_slice() else {
+        return false;
+    };
+    let last = scaled.times.len() - 1;
+    let times = [scaled.times[0], scaled.times[HASTY.min(last)], scaled.times[last]];
+    let mut values = [0.0; 3];
+    let numbers = &model.complete(&solution.nonlinear)[model.numbers_of(shape)];
+    model.shape_value(shape, &times, numbers, &mut values);
+    let [start, early, end] = values;
+    (early - end).abs() < OVER * (start - end).abs()
+}
+
+/// Samples that show the course of a relaxation whatever their noise.
+const HASTY: usize = 10;
+
+/// Share of a relaxation that is left when it is nearly over.
+const OVER: f64 = 0.1;
+
+/// Standard error of ln λ of a term that so few samples feel, or so weakly, that others may need it as much elsewhere.
+const WIDE: f64 = 0.15;
+
+/// Variance inflation beyond which doubles do not tell a valley from a plain.
+const BEYOND: f64 = 1e12;
+
+/// Where the law ends in finite time, the best of the valleys between samples that the errors of the end leave open.
+fn settled_between_kinks(model: &Model, scaled: &Scaled, solution: Solution, work: &mut Work) -> Solution {
+    if solution.termination != Termination::Converged || !ends(model, &solution.nonlinear) {
+        return solution;
+    }
+    let shapes = model.at(&scaled.times);
+    let beside = near_kinks(model, scaled, &solution);
+    let others = beside.iter().map(|theta| local(&shapes, scaled.target(), theta, f64::EPSILON, work));
+    match others.min_by(|a, b| a.square.total_cmp(&b.square)) {
+        Some(best) if best.square < solution.residual_square * (1.0 - ALIKE_AT_ALL) => {
+            standing(&shapes, scaled.target(), &best.theta, &best.linear, Termination::Converged)
+        }
+        _ => solution,
+    }
+}
+
+/// Relative difference of residual squares that is rounding.
+const ALIKE_AT_ALL: f64 = 1e-12;
+
+/// Says so if what ended well, or could not be told apart, are merged terms.
+fn mark_merged(model: &Model, solution: &mut Solution) {
+    let open = matches!(solution.termination, Termination::Converged | Termination::Singular);
+    if open && ghosts(model, solution).iter().any(|ghost| matches!(ghost, Ghost::Merged { .. })) {
+        solution.termination = Termination::TermsMerged;
+    }
+}
+
+/// The bottom of a valley of the condensed samples, or a start that only all samples can tell from it.
+struct Valley {
+    theta: Vec<f64>,
+    /// Curvature on the way there, where the valley is smooth.
+    curvature: Option<Square>,
+}
+
+/// From the bottom of a valley of the condensed samples to that of all samples: Newton's method where the valley is smooth.
+fn settle(
+    shapes: &Sampled<'_>,
+    target: Target<'_>,
+    valley: &Valley,
+    most_iterations: usize,
+    work: &mut Work,
+) -> Refined {
+    let hessian = valley.curvature.as_ref();
+    hessian
+        .and_then(|hessian| descend(shapes, target, &valley.theta, hessian, Near::of(target), work))
+        .unwrap_or_else(|| refine(shapes, target, &valley.theta, Ending::tight(most_iterations), work))
+}
+
+/// The nonlinear numbers at the deepest valleys of the condensed problem, deepest first.
+pub(crate) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut Work) -> Vec<Vec<f64>> {
+    valleys(model, nodes, most_iterations, work).into_iter().map(|valley| valley.theta).collect()
+}
+
+/// The deepest valleys of the condensed problem, deepest first, with every other that is as deep to the accuracy of condensing.
+fn valleys(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut Work) -> Vec<Valley> {
+    let (shapes, target) = (model.at(&nodes.times), nodes.target());
+    let mut aside = Work::default();
+    let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
+    let rough = Ending {
+        gain: ROUGH,
+        most_iterations,
+    };
+    let explore = |start: &[f64], aside: &mut Work| {
+        let refined = refine(&shapes, target, start, rough, aside);
+        (refined.square() + nodes.inside, refined.into_theta(&shapes))
+    };
+    let (kinked, smooth): (Vec<Vec<f64>>, Vec<Vec<f64>>) =
+        starts(model, nodes, VALLEYS, work).into_iter().partition(|start| ends(model, start));
+    found.extend(smooth.iter().map(|start| explore(start, &mut aside)));
+    let least = found.iter().map(|(square, _)| *square).fold(f64::INFINITY, f64::min);
+    let mut open: Vec<(f64, Vec<f64>)> = Vec::new();
+    for start in kinked {
+        let square = refine(&shapes, target, &start, AS_IT_IS, &mut aside).square() + nodes.inside;
+        if square <= HOPELESS * least {
+            found.push(explore(&start, &mut aside));
+            open.push((square, start));
+        }
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    if model.is_series()
+        && let Some((least, _)) = found.first()
+    {
+        let limit = least * (1.0 + nodes.noise(FELT));
+        for start in longer(model, nodes, most_iterations, work) {
+            if start.square + nodes.inside <= limit {
+                let valley = local(&shapes, target, &start.theta, ROUGH, &mut aside);
+                found.push((valley.square + nodes.inside, valley.theta));
+            }
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+    work.starts += aside.starts;
+    let Some(limit) = found
+        .first()
+        .map(|(least, _)| least * (1.0 + f64::max(ALIKE, nodes.noise(TOLD))) + f64::MIN_POSITIVE)
+    else {
+        return Vec::new();
+    };
+    let mut kept: Vec<Valley> = Vec::new();
+    for (square, theta) in found {
+        if kept.len() == FINALISTS || (!kept.is_empty() && square > limit) {
+            break;
+        }
+        let valley = bottom(&shapes, target, &theta, most_iterations, &mut aside);
+        if !kept.iter().any(|other| distance(&other.theta, &valley.theta) < 1e-3) {
+            kept.push(valley);
+        }
+    }
+    // Where the law ends in finite time nodes only tell roughly: such a start goes to all samples as it is.
+    let limit = limit * (1.0 + KINKED);
+    kept.extend(open.into_iter().filter(|(square, _)| *square <= limit).map(|(_, theta)| Valley {
+        curvature: curvature(&shapes, target, &theta, &mut aside).map(|(hessian, _)| hessian),
+        theta,
+    }));
+    work.condensed += aside.evaluations;
+    kept
+}
+
+/// Starts of a series from the best one of a term less.
+fn longer(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut Work) -> Vec<Grown> {
+    let fewer = model.first_shapes(model.form.shapes.len() - 1);
+    let best = finalists(&fewer, nodes, most_iterations, work).into_iter().next();
+    best.map(|theta| grown(&fewer, nodes, &theta)).unwrap_or_default()
+}
+
+/// Variances of the noise of a sample that a refinement may take off the residual square of a grown series.
+const FELT: f64 = 20.0;
+
+/// No step at all.
+const AS_IT_IS: Ending = Ending {
+    gain: 0.0,
+    most_iterations: 0,
+};
+
+/// Times the least residual square, above which a law that ends in finite time is not the best with another exponent: those tried are
+/// as near to each other as to the laws without an end.
+const HOPELESS: f64 = 100.0;
+
+/// Relative difference of residual squares below which a law that ends in finite time may be the best.
+const KINKED: f64 = 1e-2;
+
+/// Relative difference of residual squares below which condensed samples cannot say which valley is deeper.
+const ALIKE: f64 = 1e-3;
+
+/// Variances of the noise of a sample, the same.
+const TOLD: f64 = 0.2;
+
+/// Relative gain at which a valley has been searched well enough to tell it from others.
+const ROUGH: f64 = 1e-5;
+
+/// The very bottom of a valley of the condensed samples, as near as they tell.
+fn bottom(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], most_iterations: usize, aside: &mut Work) -> Valley {
+    let slope = curvature(shapes, target, theta, aside);
+    let last = slope.as_ref().map(|(hessian, gradient)| stepped(theta, hessian, gradient, 0.0, shapes));
+    if let Some(next) = last.filter(|next| Near::TELLING.holds(distance(theta, next), 0.0)) {
+        return Valley {
+            theta: next.to_vec(),
+            curvature: slope.map(|(hessian, _)| hessian),
+        };
+    }
+    let curvature = slope.map(|(hessian, _)| hessian);
+    let refined = curvature
+        .as_ref()
+        .and_then(|hessian| descend(shapes, target, theta, hessian, Near::TELLING, aside))
+        .unwrap_or_else(|| refine(shapes, target, theta, Ending::tight(most_iterations), aside));
+    Valley {
+        theta: refined.into_theta(shapes),
+        curvature,
+    }
+}

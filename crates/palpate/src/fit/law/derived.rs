@@ -1,0 +1,212 @@
+//! Numbers that follow from those that were searched, with their gradients.
+
+use super::fitted::Fitted;
+use crate::fit::noise::uncertainty::Scale;
+use crate::fit::parameter::{ParameterKind, ParameterName};
+use crate::fit::result::NumberUnit;
+use crate::laws::{BasisFunction, Kernel, Law, Response};
+
+/// A number that follows from others.
+pub(crate) struct Derived {
+    pub(crate) name: ParameterName,
+    pub(crate) unit: NumberUnit,
+    pub(crate) scale: Scale,
+    pub(crate) value: f64,
+    /// Derivatives by the searched numbers (of ln value on the logarithmic scale).
+    pub(crate) gradient: Vec<f64>,
+}
+
+/// The derived numbers of a law.
+pub(crate) fn derived(law: Law, fitted: &Fitted, values: &[f64]) -> Vec<Derived> {
+    let view = View::new(fitted, values);
+    match law {
+        Law::Latency { .. } => vec![view.start(), view.rate_coefficient()],
+        Law::Fung { .. } => view.fung(),
+        Law::FungContinuous => view.fung_continuous(),
+        Law::Power | Law::Burgers | Law::Maxwell if fitted.model.form.response == Response::Creep => view.growth(),
+        _ if fitted.model.form.shapes.iter().all(Kernel::decays) => vec![view.start()],
+        _ => Vec::new(),
+    }
+}
+
+/// The searched numbers by what they are.
+struct View<'a> {
+    fitted: &'a Fitted,
+    values: &'a [f64],
+    constant: f64,
+    /// Place of the first amplitude.
+    first: usize,
+    numbers: Vec<f64>,
+}
+
+impl<'a> View<'a> {
+    fn new(fitted: &'a Fitted, values: &'a [f64]) -> Self {
+        Self {
+            fitted,
+            values,
+            constant: if fitted.model.constant { values[0] } else { fitted.scaled.center },
+            first: usize::from(fitted.model.constant),
+            numbers: fitted.natural_numbers(),
+        }
+    }
+
+    fn amplitudes(&self) -> &[f64] {
+        &self.values[self.first..self.fitted.model.linear()]
+    }
+
+    /// Place of nonlinear number `index` among the searched ones, if it was not held.
+    fn place(&self, index: usize) -> Option<usize> {
+        let numbers = &self.fitted.model.numbers;
+        let before = numbers[..index].iter().filter(|number| number.fixed.is_none()).count();
+        numbers[index].fixed.is_none().then(|| self.fitted.model.linear() + before)
+    }
+
+    fn gradient(&self, entries: &[(Option<usize>, f64)]) -> Vec<f64> {
+        let mut gradient = vec![0.0; self.values.len()];
+        for (place, entry) in entries {
+            if let Some(place) = place {
+                gradient[*place] += entry;
+            }
+        }
+        gradient
+    }
+
+    /// ∂/∂ of constant + Σ amplitudes.
+    fn sum_gradient(&self) -> Vec<f64> {
+        (0..self.values.len()).map(|i| if i < self.fitted.model.linear() { 1.0 } else { 0.0 }).collect()
+    }
+
+    fn sum(&self) -> f64 {
+        self.constant + self.amplitudes().iter().sum::<f64>()
+    }
+
+    /// Signal at the start of relaxation; signal at the end of creep.
+    fn start(&self) -> Derived {
+        let creep = self.fitted.model.form.response == Response::Creep;
+        Derived {
+            name: if creep { ParameterKind::Final } else { ParameterKind::Start }.into(),
+            unit: NumberUnit::Signal,
+            scale: Scale::Linear,
+            value: self.sum(),
+            gradient: self.sum_gradient(),
+        }
+    }
+
+    /// v = λ |Δ|^(1 − n).
+    fn rate_coefficient(&self) -> Derived {
+        let amplitude = self.amplitudes()[0];
+        let log_amplitude = amplitude.abs().ln();
+        let (n, exponent) = match self.fitted.model.shape(0) {
+            BasisFunction::LatencyWith(n) => (n, None),
+            _ => (self.numbers[1], self.place(1)),
+        };
+        let entries = [(Some(self.first), -(n - 1.0) / amplitude), (self.place(0), 1.0), (exponent, -log_amplitude)];
+        Derived {
+            name: ParameterKind::RateCoefficient.into(),
+            unit: NumberUnit::RateCoefficient,
+            scale: Scale::Log,
+            value: (self.numbers[0] - (n - 1.0) * log_amplitude).exp(),
+            gradient: self.gradient(&entries),
+        }
+    }
+
+    /// N, c₀, cᵢ and νᵢ.
+    fn fung(&self) -> Vec<Derived> {
+        let total = self.sum();
+        let share = |term: usize, part: f64, place: Option<usize>| {
+            // ∂(part/total) = ∂part/total − part ∂total/total².
+            let mut gradient: Vec<f64> = self.sum_gradient().iter().map(|one| -part * one / (total * total)).collect();
+            if let Some(place) = place {
+                gradient[place] += 1.0 / total;
+            }
+            Derived {
+                name: ParameterName::of_term(ParameterKind::Share, term),
+                unit: NumberUnit::One,
+                scale: Scale::Linear,
+                value: part / total,
+                gradient,
+            }
+        };
+        let mut all = vec![Derived {
+            name: ParameterKind::ElasticResponse.into(),
+            ..self.start()
+        }];
+        all.push(share(0, self.constant, self.fitted.model.constant.then_some(0)));
+        for (i, amplitude) in self.amplitudes().iter().enumerate() {
+            all.push(share(i + 1, *amplitude, Some(self.first + i)));
+        }
+        for (i, number) in self.numbers.iter().enumerate() {
+            all.push(Derived {
+                name: ParameterName::of_term(ParameterKind::TermRate, i + 1),
+                unit: NumberUnit::PerSecond,
+                scale: Scale::Log,
+                value: number.exp(),
+                gradient: self.gradient(&[(self.place(i), 1.0)]),
+            });
+        }
+        all
+    }
+
+    /// N, C and τ_short.
+    fn fung_continuous(&self) -> Vec<Derived> {
+        let (amplitude, log_ratio) = (self.amplitudes()[0], self.numbers[1]);
+        let constant = self.fitted.model.constant.then_some(0);
+        let strength = amplitude / (self.constant * log_ratio);
+        // C = Δ/(y_e ln ϱ).
+        let entries = [
+            (constant, -strength / self.constant),
+            (Some(self.first), 1.0 / (self.constant * log_ratio)),
+            (self.place(1), -strength / log_ratio),
+        ];
+        vec![
+            Derived {
+                name: ParameterKind::ElasticResponse.into(),
+                ..self.start()
+            },
+            Derived {
+                name: ParameterKind::Strength.into(),
+                unit: NumberUnit::One,
+                scale: Scale::Linear,
+                value: strength,
+                gradient: self.gradient(&entries),
+            },
+            Derived {
+                name: ParameterKind::TimeShort.into(),
+                unit: NumberUnit::Second,
+                scale: Scale::Log,
+                value: (-self.numbers[0] - log_ratio).exp(),
+                gradient: self.gradient(&[(self.place(0), -1.0), (self.place(1), -1.0)]),
+            },
+        ]
+    }
+
+    /// Slope of a straight flow per s, coefficient of a power per s^α.
+    fn growth(&self) -> Vec<Derived> {
+        let mut all = Vec::new();
+        for (i, shape) in self.fitted.model.form.shapes.iter().enumerate() {
+            let numbers = self.fitted.model.numbers_of(i);
+            let (amplitude, log_rate) = (self.amplitudes()[i], self.numbers[numbers.start]);
+            let place = Some(self.first + i);
+            if *shape == BasisFunction::Straight {
+                all.push(Derived {
+                    name: ParameterKind::FlowRate.into(),
+                    unit: NumberUnit::SignalPerSecond,
+                    scale: Scale::Linear,
+                    value: amplitude * log_rate.exp(),
+                    gradient: self.gradient(&[(place, log_rate.exp())]),
+                });
+            } else if *shape == BasisFunction::PowerGrowth {
+                let factor = (log_rate * self.numbers[numbers.start + 1]).exp();
+                let entries = [(place, factor), (self.place(numbers.start + 1), amplitude * factor * log_rate)];
+                all.push(Derived {
+                    name: ParameterKind::Coefficient.into(),
+                    unit: NumberUnit::SignalPerPower,
+                    scale: Scale::Linear,
+                    value: amplitude * factor,
+                    gradient: self.gradient(&entries),
+                });
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,99 @@
+//! A law fitted, in the units of the fit and in those of the caller.
+
+use crate::fit::problem::model::{Model, searched_name};
+use crate::fit::samples::Scaled;
+use crate::laws::{LawCurve, NumberKind, Term};
+use crate::optimise::Solution;
+
+/// A model with its samples and its solution, in the units of the fit.
+pub(crate) struct Fitted {
+    pub(crate) model: Model,
+    pub(crate) scaled: Scaled,
+    pub(crate) solution: Solution,
+}
+
+impl Fitted {
+    /// Values of the free numbers in the caller's units: constant, amplitudes, ln of rates in 1/s, pure numbers.
+    pub(crate) fn values(&self) -> Vec<f64> {
+        let (model, scaled) = (&self.model, &self.scaled);
+        let linear = self.solution.linear.iter().enumerate().map(|(i, value)| {
+            let constant = model.constant && i == 0;
+            value * scaled.range + if constant { scaled.center } else { 0.0 }
+        });
+        let nonlinear = model.free().zip(&self.solution.nonlinear).map(|(number, value)| match number.kind {
+            NumberKind::Pure { .. } => *value,
+            _ => value - scaled.duration.ln(),
+        });
+        linear.chain(nonlinear).collect()
+    }
+
+    /// The law with the numbers found.
+    pub(crate) fn curve(&self) -> LawCurve {
+        self.curve_of(&self.values())
+    }
+
+    pub(crate) fn curve_of(&self, values: &[f64]) -> LawCurve {
+        let model = &self.model;
+        let numbers = self.natural_numbers();
+        let constants = usize::from(model.constant);
+        let constant = if model.constant { values[0] } else { self.scaled.center };
+        let terms = model.form.shapes.iter().enumerate().map(|(shape, kind)| Term {
+            amplitude: values[constants + shape],
+            shape: *kind,
+            numbers: numbers[model.numbers_of(shape)].to_vec(),
+        });
+        LawCurve {
+            response: model.form.response,
+            constant,
+            terms: terms.collect(),
+        }
+    }
+
+    /// All nonlinear numbers, fixed ones too, in the caller's units.
+    pub(crate) fn natural_numbers(&self) -> Vec<f64> {
+        let complete = self.model.complete(&self.solution.nonlinear);
+        let natural = |(number, value): (&crate::fit::problem::model::Number, f64)| match number.kind {
+            NumberKind::Pure { .. } => value,
+            _ => value - self.scaled.duration.ln(),
+        };
+        self.model.numbers.iter().zip(complete).map(natural).collect()
+    }
+
+    /// Names of the free numbers.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let constant = self.model.constant.then(|| self.model.form.constant_name().to_owned());
+        let nonlinear = self.model.free().map(|number| searched_name(&number.name, number.kind));
+        constant.into_iter().chain(self.model.form.amplitude_names()).chain(nonlinear).collect()
+    }
+
+    /// Puts exponentials whose times were searched in the order of their times, fastest first.
+    pub(crate) fn arrange(&mut self) {
+        let model = &self.model;
+        let (moving, _) = model.moving();
+        if moving.len() < 2 || model.free().len() != moving.len() {
+            return;
+        }
+        let solution = &mut self.solution;
+        let mut order: Vec<usize> = (0..moving.len()).collect();
+        order.sort_by(|a, b| solution.nonlinear[*b].total_cmp(&solution.nonlinear[*a]));
+        let constants = usize::from(model.constant);
+        let linear = model.linear();
+        // Only those whose times were searched change places; one that was held keeps its own.
+        let place = |i: usize| {
+            let slot = moving.iter().position(|shape| constants + shape == i);
+            slot.map_or(i, |slot| constants + moving[order[slot]])
+        };
+        let all: Vec<usize> = (0..linear).map(place).chain(order.iter().map(|i| linear + i)).collect();
+        let size = all.len();
+        let entry = |inverse: &[f64], i: usize| inverse[all[i / size] * size + all[i % size]];
+        solution.inverse_normal = solution
+            .inverse_normal
+            .as_ref()
+            .map(|inverse| (0..size * size).map(|i| entry(inverse, i)).collect());
+        solution.linear = (0..linear).map(|i| solution.linear[place(i)]).collect();
+        solution.nonlinear = order.iter().map(|i| solution.nonlinear[*i]).collect();
+        solution.columns = (0..linear).map(|i| solution.columns[place(i)].clone()).collect();
+        solution.column_squares = (0..linear).map(|i| solution.column_squares[place(i)]).collect();
+        solution.derivatives = order.iter().map(|i| solution.derivatives[*i].clone()).collect();
+    }
+}

@@ -1,0 +1,143 @@
+//! From a solution to the result: parameters with errors and intervals.
+
+use super::derived::derived;
+use super::fitted::Fitted;
+use crate::fit::estimate::Estimate;
+use crate::fit::noise::uncertainty::{Assessed, Scale};
+use crate::fit::options::{LawOptions, Loss};
+use crate::fit::problem::ghosts::ghosts;
+use crate::fit::result::{Domain, Fit, NumberUnit, Parameter};
+use crate::laws::{Law, NumberKind};
+use crate::optimise::{Few, Shapes, Termination, Work};
+
+impl Fitted {
+    pub(crate) fn report(&self, law: Law, options: &LawOptions, work: Work) -> Fit {
+        let solution = &self.solution;
+        let known = matches!(solution.termination, Termination::Converged | Termination::AmplitudeAtBound);
+        let (linear, scale) = (self.model.linear(), self.scaled.range);
+        let searched = linear + solution.nonlinear.len();
+        let units: Vec<f64> = (0..searched).map(|i| if i < linear { scale } else { 1.0 }).collect();
+        let assessed =
+            Assessed::new(solution, &self.amplitudes(), &units, scale, (options.confidence, options.noise), known);
+        let loading = if matches!(law, Law::Latency { .. }) { None } else { options.loading.clone() };
+        let mut fit = Fit {
+            loading,
+            ..self.report_with(law, assessed, work)
+        };
+        if !fit.termination.is_good() && options.loss == Loss::Squares {
+            fit.residual_square = self.left_by(&fit);
+        }
+        fit
+    }
+
+    /// χ² of a curve as it is returned: where large amplitudes cancel, rounding of its own numbers adds to it.
+    fn left_by(&self, fit: &Fit) -> f64 {
+        let scaled = &self.scaled;
+        let elapsed: Vec<f64> = scaled.times.iter().map(|t| t * scaled.duration).collect();
+        let curve = fit.predict_many(&elapsed);
+        let root = |i: usize| scaled.roots.as_ref().map_or(1.0, |roots| roots[i]);
+        let left = |i: usize| scaled.values[i] - root(i) * (curve[i] - scaled.center) / scaled.range;
+        let square: f64 = (0..curve.len()).map(|i| left(i).powi(2)).sum();
+        (square.sqrt() * scaled.range * scaled.precision).powi(2)
+    }
+
+    /// The result with these errors.
+    pub(crate) fn report_with(&self, law: Law, assessed: Assessed, work: Work) -> Fit {
+        let (solution, values, scale) = (&self.solution, self.values(), self.scaled.range);
+        let estimate = |value: f64, gradient: &[f64], scale: Scale| assessed.estimate(value, gradient, scale);
+        let mut numbers = self.direct(&values, &estimate);
+        for number in derived(law, self, &values) {
+            numbers.push(Parameter {
+                name: number.name,
+                unit: number.unit,
+                estimate: estimate(number.value, &number.gradient, number.scale),
+            });
+        }
+        let residual_square = (solution.residual_square.sqrt() * scale * self.scaled.precision).powi(2);
+        let samples = self.scaled.times.len();
+        let mean_square = match &self.scaled.roots {
+            None => solution.residual_square,
+            Some(roots) => solution.residuals.iter().zip(roots).map(|(r, root)| (r / root).powi(2)).sum(),
+        } / samples as f64;
+        Fit {
+            law,
+            response: self.model.form.response,
+            curve: self.curve_of(&values),
+            loading: None,
+            domain: Domain::Time,
+            parameters: numbers,
+            profiles: Vec::new(),
+            searched: self.names(),
+            values,
+            covariance: assessed.white,
+            residual_square,
+            rmse: mean_square.sqrt() * scale,
+            residual_correlation: assessed.correlation,
+            noise: assessed.noise,
+            uncertainty: assessed.uncertainty,
+            samples,
+            duration: self.scaled.duration,
+            termination: solution.termination,
+            ghosts: ghosts(&self.model, solution),
+            work,
+        }
+    }
+
+    /// s² (JᵀJ)⁻¹ in the caller's units for noise of this variance in the units of the fit; `None` where it is not known.
+    pub(crate) fn white_covariance(&self, variance: f64) -> Option<Vec<Vec<f64>>> {
+        let known = matches!(self.solution.termination, Termination::Converged | Termination::AmplitudeAtBound);
+        let inverse = self.solution.inverse_normal.as_deref().filter(|_| known)?;
+        let size = self.solution.linear.len() + self.solution.nonlinear.len();
+        let unit = |i: usize| if i < self.model.linear() { self.scaled.range } else { 1.0 };
+        let entry = |i: usize, j: usize| inverse[i * size + j] * variance * unit(i) * unit(j);
+        let rows: Vec<Vec<f64>> = (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect();
+        rows.iter().flatten().all(|entry| entry.is_finite()).then_some(rows)
+    }
+
+    /// The amplitude beside each free nonlinear number.
+    fn amplitudes(&self) -> Vec<f64> {
+        let shapes = self.model.at(&self.scaled.times);
+        (0..self.solution.nonlinear.len()).map(|i| self.solution.linear[shapes.column_of(i)]).collect()
+    }
+
+    /// The numbers that were searched, and those held, as they are reported: times for ln of rates.
+    pub(crate) fn direct(&self, values: &[f64], estimate: &impl Fn(f64, &[f64], Scale) -> Estimate) -> Vec<Parameter> {
+        let model = &self.model;
+        let row =
+            |i: usize, entry: f64| -> Few { (0..values.len()).map(|j| if i == j { entry } else { 0.0 }).collect() };
+        let mut numbers = Vec::with_capacity(1 + model.form.shapes.len() + model.numbers.len());
+        let constant = model.form.constant_name().to_owned();
+        let names = model.form.amplitude_names();
+        if model.constant {
+            numbers.push((constant, NumberUnit::Signal, estimate(values[0], &row(0, 1.0), Scale::Linear)));
+        } else {
+            numbers.push((constant, NumberUnit::Signal, Estimate::fixed(self.scaled.center)));
+        }
+        for (i, name) in names.into_iter().enumerate() {
+            let at = i + usize::from(model.constant);
+            numbers.push((name, NumberUnit::Signal, estimate(values[at], &row(at, 1.0), Scale::Linear)));
+        }
+        let mut at = model.linear();
+        for (number, value) in model.numbers.iter().zip(self.natural_numbers()) {
+            let (unit, shown, slope) = match number.kind {
+                NumberKind::Pure { .. } => (NumberUnit::One, value, 1.0 / value),
+                NumberKind::Time => (NumberUnit::Second, (-value).exp(), -1.0),
+                NumberKind::Rate => (NumberUnit::PerSecond, value.exp(), 1.0),
+                NumberKind::Reference => continue,
+            };
+            let shown = match number.fixed {
+                Some(_) => Estimate::fixed(shown),
+                None => {
+                    at += 1;
+                    estimate(shown, &row(at - 1, slope), Scale::Log)
+                }
+            };
+            numbers.push((number.name.clone(), unit, shown));
+        }
+        let named = |(name, unit, estimate): (String, NumberUnit, Estimate)| {
+            let name = name.parse().ok()?;
+            Some(Parameter { name, unit, estimate })
+        };
+        numbers.into_iter().filter_map(named).collect()
+    }
+}

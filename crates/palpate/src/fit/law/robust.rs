@@ -1,0 +1,168 @@
+//! Outliers made to count less: M-estimates by reweighting.
+//!
+//! With u = r/(σ · scale) the numbers solve Σ ψ(u) ∂f/∂p = 0 together with scale = median |r/σ|/0.6745. Their covariance is the
+//! asymptotic one of M-estimates (Huber, Robust Statistics, 1981, section 7.6), with the outliers' own weights left out of JᵀJ:
+//!
+//! ```text
+//! K² · scale² · Σ ψ(u)²/(N − p) / (mean ψ′(u))² · (JᵀJ)⁻¹,    K = 1 + (p/N) var ψ′ / (mean ψ′)²
+//! ```
+
+use super::fitted::Fitted;
+use crate::fit::error::FitError;
+use crate::fit::global::search::search;
+use crate::fit::options::{LawOptions, Loss};
+use crate::fit::samples::Scaled;
+use crate::optimise::{Ending, Solution, Termination, Work, polished, refine, standing};
+use crate::statistics::mean;
+
+/// Huber's bound, in noise deviations: 95 % efficiency on normal noise.
+const HUBER: f64 = 1.345;
+
+/// Tukey's bound, in noise deviations: 95 % efficiency on normal noise.
+const TUKEY: f64 = 4.685;
+
+/// A median absolute deviation of normal noise is this much of its standard deviation, in the four digits of the literature.
+const MEDIAN_SHARE: f64 = 0.6745;
+
+/// Rounds of reweighting after which it ends short.
+const ROUNDS: usize = 200;
+
+impl Fitted {
+    /// Reweights residuals until weights, scale and numbers agree: first by Huber, then, if asked for, by Tukey.
+    ///
+    /// The scale is found anew in every round. After the first rounds the whole range of the nonlinear numbers is searched again,
+    /// since outliers may have led the first search into the wrong valley. In the end the solution stands among all samples at
+    /// their own weights.
+    pub(crate) fn resist(&mut self, options: &LawOptions, work: &mut Work) -> Result<(), FitError> {
+        let base = self.scaled.clone();
+        let mut scale = self.reweigh(&base, Loss::Huber, options, work)?;
+        if options.loss == Loss::Tukey {
+            scale = self.reweigh(&base, Loss::Tukey, options, work)?;
+        }
+        self.scaled = base;
+        let found = &self.solution;
+        let shapes = self.model.at(&self.scaled.times);
+        let mut solution = standing(&shapes, self.scaled.target(), &found.nonlinear, &found.linear, found.termination);
+        solution.variance = variance(options.loss, scale, &solution);
+        self.solution = solution;
+        Ok(())
+    }
+
+    /// Reweights until nothing moves; returns the scale.
+    fn reweigh(&mut self, base: &Scaled, loss: Loss, options: &LawOptions, work: &mut Work) -> Result<f64, FitError> {
+        let mut before: Option<Vec<f64>> = None;
+        for round in 0..ROUNDS {
+            let residuals = self.residuals_of(base);
+            let scale = middle(&residuals) / MEDIAN_SHARE;
+            if scale <= f64::MIN_POSITIVE {
+                return Ok(0.0);
+            }
+            self.scaled = reweighted(base, residuals.iter().map(|r| weight(loss, r / scale).sqrt()));
+            if round == 2 {
+                self.solution =
+                    search(&self.model, &self.scaled, options.most_iterations, work).ok_or(FitError::NoDecay)?;
+            } else {
+                let shapes = self.model.at(&self.scaled.times);
+                let target = self.scaled.target();
+                let refined =
+                    refine(&shapes, target, &self.solution.nonlinear, Ending::tight(options.most_iterations), work);
+                self.solution = polished(&shapes, target, refined, work);
+            }
+            let now: Vec<f64> = self.solution.linear.iter().chain(&self.solution.nonlinear).copied().collect();
+            let settled =
+                |before: &Vec<f64>| before.iter().zip(&now).all(|(a, b)| (a - b).abs() <= 1e-12 * (1.0 + b.abs()));
+            if round > 2 && before.as_ref().is_some_and(settled) {
+                return Ok(scale);
+            }
+            before = Some(now);
+        }
+        if self.solution.termination == Termination::Converged {
+            self.solution.termination = Termination::IterationLimit;
+        }
+        Ok(middle(&self.residuals_of(base)) / MEDIAN_SHARE)
+    }
+
+    /// Residuals of the present solution, in units of each sample's own deviation.
+    fn residuals_of(&self, base: &Scaled) -> Vec<f64> {
+        let curve = self.model_values();
+        let root = |i: usize| base.roots.as_ref().map_or(1.0, |roots| roots[i]);
+        base.values.iter().enumerate().map(|(i, value)| value - curve[i] * root(i)).collect()
+    }
+
+    /// The fitted curve in the units of the fit.
+    fn model_values(&self) -> Vec<f64> {
+        let times = &self.scaled.times;
+        let constants = usize::from(self.model.constant);
+        let start = if self.model.constant { self.solution.linear[0] } else { 0.0 };
+        let mut values = vec![start; times.len()];
+        let numbers = self.model.complete(&self.solution.nonlinear);
+        let mut column = vec![0.0; times.len()];
+        for shape in 0..self.model.form.shapes.len() {
+            self.model.shape_value(shape, times, &numbers[self.model.numbers_of(shape)], &mut column);
+            let amplitude = self.solution.linear[constants + shape];
+            for (value, entry) in values.iter_mut().zip(&column) {
+                *value += amplitude * entry;
+            }
+        }
+        values
+    }
+}
+
+/// The samples with the square roots of their weights times `factors`.
+fn reweighted(base: &Scaled, factors: impl Iterator<Item = f64>) -> Scaled {
+    let mut scaled = base.clone();
+    let mut roots = base.roots.clone().unwrap_or_else(|| vec![1.0; base.times.len()]);
+    for ((value, root), factor) in scaled.values.iter_mut().zip(&mut roots).zip(factors) {
+        *value *= factor;
+        *root *= factor;
+    }
+    scaled.roots = Some(roots);
+    scaled
+}
+
+/// Median size, the mean of the middle two of an even number.
+fn middle(residuals: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = residuals.iter().map(|r| r.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let count = sizes.len();
+    0.5 * (sizes[(count - 1) / 2] + sizes[count / 2])
+}
+
+/// What stands for s² in the covariance s² (JᵀJ)⁻¹ of an M-estimate.
+fn variance(loss: Loss, scale: f64, solution: &Solution) -> f64 {
+    if scale == 0.0 {
+        return 0.0;
+    }
+    let (count, free) = (solution.residuals.len() as f64, (solution.linear.len() + solution.nonlinear.len()) as f64);
+    let units: Vec<f64> = solution.residuals.iter().map(|r| r / scale).collect();
+    let influence: f64 = units.iter().map(|u| (u * weight(loss, *u)).powi(2)).sum();
+    let slopes: Vec<f64> = units.iter().map(|u| slope(loss, *u)).collect();
+    let steepness = mean(&slopes);
+    let spread = slopes.iter().map(|slope| (slope - steepness).powi(2)).sum::<f64>() / count;
+    let correction = 1.0 + free / count * spread / (steepness * steepness);
+    (correction * scale / steepness).powi(2) * influence / (count - free)
+}
+
+/// ψ(u)/u: what a residual of u noise deviations counts.
+fn weight(loss: Loss, u: f64) -> f64 {
+    match loss {
+        Loss::Squares => 1.0,
+        Loss::Huber => (HUBER / u.abs()).min(1.0),
+        Loss::Tukey => {
+            let left = 1.0 - (u / TUKEY).powi(2);
+            if left > 0.0 { left * left } else { 0.0 }
+        }
+    }
+}
+
+/// ψ′(u).
+fn slope(loss: Loss, u: f64) -> f64 {
+    match loss {
+        Loss::Squares => 1.0,
+        Loss::Huber => f64::from(u8::from(u.abs() <= HUBER)),
+        Loss::Tukey => {
+            let share = (u / TUKEY).powi(2);
+            if share < 1.0 { (1.0 - share) * (1.0 - 5.0 * share) } else { 0.0 }
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! How noise correlates, by sample.
+
+use serde::{Deserialize, Serialize};
+
+/// How residuals correlate with their neighbours, by sample.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NoiseModel {
+    /// Not at all.
+    #[default]
+    White,
+    /// AR(1): ρ^k at k samples.
+    Autoregressive {
+        /// ρ, 0 to 1.
+        correlation: f64,
+    },
+    /// White noise and AR(1): s ρ^k at k samples.
+    WhiteAndAutoregressive {
+        /// ρ, 0 to 1.
+        correlation: f64,
+        /// s, the share of the correlated part in the variance, 0 to 1.
+        share: f64,
+    },
+}
+
+impl NoiseModel {
+    /// ρ and s.
+    pub(crate) fn numbers(self) -> (f64, f64) {
+        match self {
+            Self::White => (0.0, 0.0),
+            Self::Autoregressive { correlation } => (correlation, 1.0),
+            Self::WhiteAndAutoregressive { correlation, share } => (correlation, share),
+        }
+    }
+
+    /// Samples that say as much about a mean as `samples` of this noise: N / (1 + 2 s ρ/(1 − ρ)), two at least.
+    ///
+    /// ```
+    /// use palpate::fit::NoiseModel;
+    /// let noise = NoiseModel::Autoregressive { correlation: 0.5 };
+    /// assert_eq!(noise.effective_samples(300), 100.0);
+    /// ```
+    #[must_use]
+    pub fn effective_samples(self, samples: usize) -> f64 {
+        let (correlation, share) = self.numbers();
+        (samples as f64 / (1.0 + 2.0 * share * correlation / (1.0 - correlation))).max(2.0)
+    }
+}

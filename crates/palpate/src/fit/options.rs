@@ -1,0 +1,237 @@
+//! What may be asked of a fit.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::FitError;
+use crate::laws::{ExponentChoice, Law, Loading, Response};
+
+/// The constant beside the shapes.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ConstantChoice {
+    /// Found if the law has one, else 0.
+    #[default]
+    AsLaw,
+    /// Found, even if the law has none.
+    Free,
+    /// Held at this value, in the unit of the signal.
+    Fixed(f64),
+}
+
+/// How residuals count.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Loss {
+    /// By their square: least squares.
+    #[default]
+    Squares,
+    /// By their square up to 1.345 noise deviations, then by their size (Huber).
+    Huber,
+    /// Less and less, and from 4.685 noise deviations on not at all (Tukey's biweight).
+    Tukey,
+}
+
+/// Which samples are fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SampleChoice {
+    /// All of them: late times, which have most samples, count most.
+    #[default]
+    All,
+    /// About this many of them, equally spaced in ln t from the first sample after the start: every decade counts alike.
+    LogSpaced(usize),
+}
+
+/// What intervals take the noise for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NoiseChoice {
+    /// What the residuals show, see [`NoiseModel`](crate::fit::NoiseModel).
+    #[default]
+    FromResiduals,
+    /// White, whatever they show.
+    White,
+}
+
+/// What may be asked of [`bootstrap`](crate::fit::bootstrap).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct BootstrapOptions {
+    /// Times that residuals are drawn.
+    pub repetitions: usize,
+    /// Where the random sequence begins: the same seed, the same intervals.
+    pub seed: u64,
+    /// Samples a block; `None` for the length that suits the noise.
+    pub block: Option<usize>,
+}
+
+impl Default for BootstrapOptions {
+    fn default() -> Self {
+        Self {
+            repetitions: 999,
+            seed: 1,
+            block: None,
+        }
+    }
+}
+
+/// What confidence intervals rest on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum IntervalMethod {
+    /// The curvature at the optimum: symmetric, in ln for numbers that cannot change sign.
+    #[default]
+    Curvature,
+    /// The profile of the residual square: asymmetric, and open where the data do not close it.
+    Profile,
+    /// Resampled residuals: percentiles of fits to them, and their deviation as the standard error.
+    Bootstrap(BootstrapOptions),
+}
+
+/// What may be asked of [`fit_law`](crate::fit::fit_law).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct LawOptions {
+    /// Relaxation or creep.
+    pub response: Response,
+    /// The constant: equilibrium, start or instantaneous part.
+    pub constant: ConstantChoice,
+    /// Numbers held at a value, by name as in the result: nonlinear ones in s, 1/s or 1, the constant in the unit of the signal.
+    /// Amplitudes cannot be held, but bounded.
+    pub fixed: Vec<(String, f64)>,
+    /// Bounds of numbers, by name as in the result: nonlinear ones in s, 1/s or 1, the constant and amplitudes in the unit of the signal.
+    pub bounds: Vec<(String, (f64, f64))>,
+    /// Whether all amplitudes have the sign of the change, as those of a passive material must.
+    pub one_sign: bool,
+    /// How residuals count.
+    pub loss: Loss,
+    /// Which samples are fitted.
+    pub samples: SampleChoice,
+    /// What was imposed until the first sample, if that is not to count as a step. The numbers found are then those of a true step.
+    /// Laws are taken as linear in it; the latency law, which is not, is fitted to the hold alone, whose start says all
+    /// that it needs to know.
+    pub loading: Option<Loading>,
+    /// Coverage of confidence intervals, between 0 and 1.
+    pub confidence: f64,
+    /// What intervals take the noise for.
+    pub noise: NoiseChoice,
+    /// What intervals rest on.
+    pub intervals: IntervalMethod,
+    /// Steps of a refinement after which it ends short.
+    pub most_iterations: usize,
+}
+
+impl Default for LawOptions {
+    fn default() -> Self {
+        Self {
+            response: Response::default(),
+            constant: ConstantChoice::default(),
+            fixed: Vec::new(),
+            bounds: Vec::new(),
+            one_sign: false,
+            loss: Loss::default(),
+            samples: SampleChoice::default(),
+            loading: None,
+            confidence: 0.95,
+            noise: NoiseChoice::default(),
+            intervals: IntervalMethod::default(),
+            most_iterations: 200,
+        }
+    }
+}
+
+impl LawOptions {
+    /// Whether these ask the same of a law as others: an exponent may be sought where it is sought anyway, and what the latency law
+    /// is told of a loading changes nothing.
+    #[must_use]
+    pub fn same_for(&self, law: Law, other: &Self) -> bool {
+        let plain = |options: &Self| {
+            let widest =
+                |bound: &(String, (f64, f64))| *bound == ("exponent".to_owned(), FitOptions::default().exponent_range);
+            let is_latency = matches!(law, Law::Latency { .. });
+            Self {
+                bounds: options.bounds.iter().filter(|bound| !(is_latency && widest(bound))).cloned().collect(),
+                loading: if is_latency { None } else { options.loading.clone() },
+                ..options.clone()
+            }
+        };
+        plain(self) == plain(other)
+    }
+
+    /// What a number is held at.
+    pub(crate) fn held(&self, name: &str) -> Option<f64> {
+        self.fixed.iter().find(|(held, _)| held == name).map(|(_, value)| *value)
+    }
+
+    /// Refuses options that no fit can follow.
+    pub(crate) fn check(&self) -> Result<(), FitError> {
+        if !(self.confidence > 0.0 && self.confidence < 1.0) {
+            return Err(FitError::Confidence { found: self.confidence });
+        }
+        if let ConstantChoice::Fixed(value) = self.constant
+            && !value.is_finite()
+        {
+            return Err(FitError::FixedNumber {
+                name: "the constant".to_owned(),
+                found: value,
+            });
+        }
+        for (name, (low, high)) in &self.bounds {
+            if low.is_nan() || high.is_nan() || low >= high {
+                return Err(FitError::Bounds {
+                    name: name.clone(),
+                    low: *low,
+                    high: *high,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What may be asked of a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct FitOptions {
+    /// Range in which a free exponent is sought.
+    pub exponent_range: (f64, f64),
+    /// Coverage of confidence intervals, between 0 and 1.
+    pub confidence: f64,
+    /// Steps of the refinement after which it ends short.
+    pub most_iterations: usize,
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        Self {
+            exponent_range: (0.2, 30.0),
+            confidence: 0.95,
+            most_iterations: 200,
+        }
+    }
+}
+
+impl FitOptions {
+    /// The same as options of the fit of the latency law.
+    #[must_use]
+    pub fn of_latency(&self, choice: ExponentChoice) -> LawOptions {
+        let free = choice == ExponentChoice::Free;
+        LawOptions {
+            bounds: free.then(|| ("exponent".to_owned(), self.exponent_range)).into_iter().collect(),
+            confidence: self.confidence,
+            most_iterations: self.most_iterations,
+            ..LawOptions::default()
+        }
+    }
+
+    pub(crate) fn check(&self) -> Result<(), FitError> {
+        let (low, high) = self.exponent_range;
+        if !(low > 0.0 && low <= high && high.is_finite()) {
+            return Err(FitError::ExponentRange { low, high });
+        }
+        if !(self.confidence > 0.0 && self.confidence < 1.0) {
+            return Err(FitError::Confidence { found: self.confidence });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,200 @@
+//! What the parameters of laws are called.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use super::error::FitError;
+
+/// What a parameter of a law is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ParameterKind {
+    /// The value that a relaxation tends to.
+    Equilibrium,
+    /// The signal at the start of a relaxation.
+    Start,
+    /// The part of a creep that is there at once.
+    Instantaneous,
+    /// The value that a creep tends to.
+    Final,
+    /// The amplitude of a shape.
+    Amplitude,
+    /// The amplitude of a straight flow.
+    Flow,
+    /// The time constant of a shape.
+    Time,
+    /// The longest time of a continuous spectrum.
+    TimeLong,
+    /// The shortest time of a continuous spectrum.
+    TimeShort,
+    /// ln of the ratio of both.
+    LogRatio,
+    /// λ, the relative rate of the latency law at the start.
+    RelativeRate,
+    /// v, the rate coefficient of the latency law.
+    RateCoefficient,
+    /// The exponent of the latency law or of a power.
+    Exponent,
+    /// The order of a fractional derivative.
+    Order,
+    /// The exponent of a stretched exponential.
+    Stretching,
+    /// The elastic response of Fung's law.
+    ElasticResponse,
+    /// The share of a term of Fung's series in it.
+    Share,
+    /// The rate of such a term.
+    TermRate,
+    /// The strength of Fung's continuous spectrum.
+    Strength,
+    /// The slope of a straight flow.
+    FlowRate,
+    /// The coefficient of a power.
+    Coefficient,
+}
+
+impl ParameterKind {
+    /// All kinds with the words that stand for them.
+    const WORDS: [(Self, &str); 21] = [
+        (Self::Equilibrium, "equilibrium"),
+        (Self::Start, "start"),
+        (Self::Instantaneous, "instantaneous"),
+        (Self::Final, "final"),
+        (Self::Amplitude, "amplitude"),
+        (Self::Flow, "flow"),
+        (Self::Time, "time"),
+        (Self::TimeLong, "time_long"),
+        (Self::TimeShort, "time_short"),
+        (Self::LogRatio, "log_ratio"),
+        (Self::RelativeRate, "relative_rate"),
+        (Self::RateCoefficient, "rate_coefficient"),
+        (Self::Exponent, "exponent"),
+        (Self::Order, "order"),
+        (Self::Stretching, "stretching"),
+        (Self::ElasticResponse, "elastic_response"),
+        (Self::Share, "c"),
+        (Self::TermRate, "nu"),
+        (Self::Strength, "strength"),
+        (Self::FlowRate, "flow_rate"),
+        (Self::Coefficient, "coefficient"),
+    ];
+
+    fn word(self) -> &'static str {
+        Self::WORDS.iter().find(|(kind, _)| *kind == self).map_or("", |(_, word)| word)
+    }
+}
+
+/// Which parameter of a law: its kind, and the number of the term where there are several alike; `time_2` in writing.
+///
+/// ```
+/// use palpate::fit::{ParameterKind, ParameterName};
+/// let name: ParameterName = "time_2".parse()?;
+/// assert_eq!((name.kind, name.term), (ParameterKind::Time, Some(2)));
+/// assert_eq!(name.to_string(), "time_2");
+/// # Ok::<(), palpate::fit::FitError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub struct ParameterName {
+    /// What it is.
+    pub kind: ParameterKind,
+    /// Which of several alike.
+    pub term: Option<usize>,
+}
+
+impl ParameterName {
+    /// The one of this kind of a term of a series.
+    #[must_use]
+    pub fn of_term(kind: ParameterKind, term: usize) -> Self {
+        Self { kind, term: Some(term) }
+    }
+}
+
+impl From<ParameterKind> for ParameterName {
+    fn from(kind: ParameterKind) -> Self {
+        Self { kind, term: None }
+    }
+}
+
+impl fmt::Display for ParameterName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.term {
+            None => f.write_str(self.kind.word()),
+            Some(term) => write!(f, "{}_{term}", self.kind.word()),
+        }
+    }
+}
+
+impl FromStr for ParameterName {
+    type Err = FitError;
+
+    fn from_str(name: &str) -> Result<Self, FitError> {
+        let numbered = name.rsplit_once('_').and_then(|(word, term)| Some((word, Some(term.parse().ok()?))));
+        let (word, term) = numbered.unwrap_or((name, None));
+        match ParameterKind::WORDS.iter().find(|(_, known)| *known == word) {
+            Some((kind, _)) => Ok(Self { kind: *kind, term }),
+            None => Err(FitError::UnknownNumber {
+                name: name.to_owned(),
+                known: ParameterKind::WORDS.map(|(_, word)| word).join(", "),
+            }),
+        }
+    }
+}
+
+impl From<ParameterName> for String {
+    fn from(name: ParameterName) -> Self {
+        name.to_string()
+    }
+}
+
+impl TryFrom<String> for ParameterName {
+    type Error = FitError;
+
+    fn try_from(name: String) -> Result<Self, FitError> {
+        name.parse()
+    }
+}
+
+impl PartialEq<str> for ParameterName {
+    fn eq(&self, name: &str) -> bool {
+        name.parse() == Ok(*self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laws::{ExponentChoice, Law, NumberKind, Response};
+
+    #[test]
+    fn every_parameter_of_every_law_has_a_kind() {
+        let exponent = ExponentChoice::Free;
+        let laws = [
+            Law::Latency { exponent },
+            Law::StandardLinearSolid,
+            Law::Prony { terms: 3 },
+            Law::Fung { terms: 2 },
+            Law::FungContinuous,
+            Law::Stretched,
+            Law::FractionalZener,
+            Law::Power,
+            Law::Logarithmic,
+            Law::Diffusion,
+            Law::KelvinVoigt,
+            Law::Burgers,
+            Law::Maxwell,
+        ];
+        let mut seen = 0;
+        for form in laws.iter().flat_map(|law| [Response::Relaxation, Response::Creep].map(|r| law.form(r))).flatten() {
+            let numbers = form.numbers().into_iter().filter(|(_, _, kind)| *kind != NumberKind::Reference);
+            let names = numbers.map(|(_, name, _)| name).chain(form.amplitude_names());
+            for name in names.chain([form.constant_name().to_owned()]) {
+                assert_eq!(name.parse::<ParameterName>().unwrap().to_string(), name);
+                seen += 1;
+            }
+        }
+        assert!(seen > 60, "{seen}");
+        assert!("quickness".parse::<ParameterName>().is_err());
+    }
+}

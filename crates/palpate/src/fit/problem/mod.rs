@@ -1,0 +1,15 @@
+//! Law, samples and options made ready in the units of the fit.
+//!
+//! | file | what |
+//! |---|---|
+//! | `model.rs` | a law with its free numbers and their bounds, as columns of a separable model |
+//! | `build.rs` | options checked against a law, and the model that they ask for |
+//! | `condensed.rs` | a hold condensed to a few dozen nodes |
+//! | `ghosts.rs` | terms that a fit lists and the data do not have |
+
+pub(crate) mod build;
+pub(crate) mod condensed;
+pub(crate) mod ghosts;
+pub(crate) mod model;
+
+pub use ghosts::Ghost;

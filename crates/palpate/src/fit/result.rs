@@ -1,0 +1,173 @@
+//! What the fit of a law says.
+
+use serde::{Deserialize, Serialize};
+
+use super::estimate::{Estimate, Interval};
+use super::noise::model::NoiseModel;
+use super::noise::uncertainty::Uncertainty;
+use super::parameter::ParameterName;
+use super::problem::ghosts::Ghost;
+use crate::laws::{Law, LawCurve, Loading, Response};
+use crate::optimise::{Termination, Work};
+
+/// Unit of a number of a law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NumberUnit {
+    /// That of the signal.
+    Signal,
+    /// s.
+    Second,
+    /// 1/s.
+    PerSecond,
+    /// Unit of the signal per s.
+    SignalPerSecond,
+    /// A pure number.
+    One,
+    /// (Unit of the signal)^(1 − n)/s, of the rate coefficient v; 1/s if the signal is strain.
+    RateCoefficient,
+    /// Unit of the signal per s^α.
+    SignalPerPower,
+}
+
+/// In which plane a law was fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Domain {
+    /// The closed form, equations (4) and (5), against the signal over time.
+    #[default]
+    Time,
+    /// Equation (10) against strain rate over strain, as the paper does; biased by noise in both.
+    Rate,
+}
+
+impl Domain {
+    fn is_time(&self) -> bool {
+        *self == Self::Time
+    }
+}
+
+/// One parameter of a law.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Parameter {
+    /// Which it is, such as `equilibrium`, `time_1`, `exponent`.
+    pub name: ParameterName,
+    /// Its unit.
+    pub unit: NumberUnit,
+    /// Value, standard error, interval.
+    pub estimate: Estimate,
+}
+
+/// A law fitted: its parameters, how sure they are, and why the search ended.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Fit {
+    /// The law.
+    pub law: Law,
+    /// In which plane.
+    #[serde(default, skip_serializing_if = "Domain::is_time")]
+    pub domain: Domain,
+    /// Relaxation or creep.
+    pub response: Response,
+    /// The law with the numbers found: a function of the time since the first sample, in s, or since the step that would have stood
+    /// for the loading.
+    pub curve: LawCurve,
+    /// The loading that led to the hold; none if it counted as a step, as it must for the latency law.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loading: Option<Loading>,
+    /// Its parameters: constant, amplitudes, times or rates, pure numbers; then those that follow from them.
+    #[serde(rename = "numbers")]
+    pub parameters: Vec<Parameter>,
+    /// Intervals of the searched parameters by their profiles, where these were asked for: an end may be open.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub profiles: Vec<(ParameterName, Interval)>,
+    /// Names of the parameters that were searched, in the order of `values` and `covariance`: constant, amplitudes, ln of rates
+    /// (1/s), pure numbers.
+    #[serde(rename = "parameters")]
+    pub searched: Vec<String>,
+    /// Their values.
+    pub values: Vec<f64>,
+    /// Their covariance s² (JᵀJ)⁻¹ with s² = RSS/(N − p), for white noise; `None` where the data leave a number open.
+    pub covariance: Option<Vec<Vec<f64>>>,
+    /// χ² = Σ (r/σ)² over the samples fitted, σ = 1 for samples without deviations; under a robust loss too.
+    pub residual_square: f64,
+    /// Root mean square residual √(Σ r²/N) in the unit of the signal, all samples alike.
+    pub rmse: f64,
+    /// Correlation of neighbouring residuals.
+    pub residual_correlation: f64,
+    /// How residuals correlate; intervals rest on it.
+    pub noise: NoiseModel,
+    /// What intervals are made of; `None` where the data leave a number open.
+    pub uncertainty: Option<Uncertainty>,
+    /// Samples fitted.
+    pub samples: usize,
+    /// Time from the first to the last sample, s; 0 in the rate domain, which knows no time.
+    pub duration: f64,
+    /// Why it ended.
+    pub termination: Termination,
+    /// Terms that are none: merged or vanishing ones.
+    pub ghosts: Vec<Ghost>,
+    /// What it cost.
+    pub work: Work,
+}
+
+impl Fit {
+    /// A parameter.
+    #[must_use]
+    pub fn parameter(&self, name: impl Into<ParameterName>) -> Option<&Parameter> {
+        let name = name.into();
+        self.parameters.iter().find(|parameter| parameter.name == name)
+    }
+
+    /// The value of a parameter by its name in writing.
+    #[must_use]
+    pub fn value(&self, name: &str) -> Option<f64> {
+        self.estimate(name).map(|estimate| estimate.value)
+    }
+
+    /// A parameter by its name in writing.
+    #[must_use]
+    pub fn estimate(&self, name: &str) -> Option<&Estimate> {
+        let name: ParameterName = name.parse().ok()?;
+        self.parameter(name).map(|parameter| &parameter.estimate)
+    }
+
+    /// Numbers found from the data.
+    #[must_use]
+    pub fn free_numbers(&self) -> usize {
+        self.searched.len()
+    }
+
+    /// The signal a time `elapsed` (s) after the first sample, after the loading if there was one.
+    #[must_use]
+    pub fn predict(&self, elapsed: f64) -> f64 {
+        self.predict_many(&[elapsed])[0]
+    }
+
+    /// The signal at many times, as [`predict`](Self::predict).
+    #[must_use]
+    pub fn predict_many(&self, elapsed: &[f64]) -> Vec<f64> {
+        match &self.loading {
+            None => self.curve.values(elapsed),
+            Some(loading) => self.curve.after(loading, elapsed),
+        }
+    }
+
+    /// Correlations of the numbers in the order of `searched`.
+    #[must_use]
+    pub fn correlation(&self) -> Option<Vec<Vec<f64>>> {
+        let covariance = self.covariance.as_ref()?;
+        let deviation = |i: usize| covariance[i][i].sqrt();
+        let entry = |i: usize, j: usize| match deviation(i) * deviation(j) {
+            0.0 => 0.0,
+            product => covariance[i][j] / product,
+        };
+        let size = covariance.len();
+        Some((0..size).map(|i| (0..size).map(|j| if i == j { 1.0 } else { entry(i, j) }).collect()).collect())
+    }
+
+    /// Samples that count as independent, given how residuals correlate.
+    #[must_use]
+    pub fn effective_samples(&self) -> f64 {
+        self.noise.effective_samples(self.samples)
+    }
+}

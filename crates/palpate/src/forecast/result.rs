@@ -1,0 +1,97 @@
+//! What a comparison says: a row a law, and which law to use.
+
+use serde::{Deserialize, Serialize};
+
+use super::criteria::Criteria;
+use super::forward::ForwardScore;
+use crate::fit::{Fit, FitError, SpectrumFit};
+use crate::laws::Law;
+
+/// By what laws were ranked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ranking {
+    /// By the forward score.
+    Forward,
+    /// By BIC at the effective number of samples: the hold is too short, or too noisy, to foretell anything.
+    Information,
+}
+
+/// One law on one hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// The law.
+    pub law: Law,
+    /// Its fit to the whole hold (for the spectrum see `spectrum`).
+    pub fit: Result<Fit, FitError>,
+    /// The spectrum, if that is the law.
+    pub spectrum: Option<SpectrumFit>,
+    /// Numbers that the data determine; not a whole one for a smoothed spectrum.
+    pub numbers: f64,
+    /// Root mean square residual, in the unit of the signal.
+    pub rmse: f64,
+    /// Criteria as textbooks define them, at the number of samples.
+    pub criteria: Option<Criteria>,
+    /// BIC at the effective number of samples, less the lowest.
+    pub delta_bic: Option<f64>,
+    /// What it foretells.
+    pub forward: ForwardScore,
+}
+
+impl Row {
+    /// Whether the law was fitted, to an optimum inside its range.
+    #[must_use]
+    pub fn is_good(&self) -> bool {
+        self.spectrum.is_some() || self.fit.as_ref().is_ok_and(|fit| fit.termination.is_good())
+    }
+}
+
+/// Laws compared on one hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// One row a law, best first.
+    pub rows: Vec<Row>,
+    /// By what they are ranked.
+    pub ranking: Ranking,
+    /// Cut points, s after the first sample.
+    pub cuts: Vec<f64>,
+    /// Time from the first to the last sample, s.
+    pub duration: f64,
+    /// Change of the signal over the hold, in its unit: forward errors are shares of it.
+    pub change: f64,
+    /// Standard deviation of the noise, in the unit of the signal.
+    pub noise: f64,
+    /// Samples.
+    pub samples: usize,
+    /// Samples that count as independent, by the residuals of the closest fit.
+    pub effective_samples: f64,
+    /// Which law to use; `None` if none could be fitted.
+    pub verdict: Option<Verdict>,
+}
+
+/// How sure a verdict is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Certainty {
+    /// Best, or as good as the best, at every cut point, and every law that is not alike is at least twice as far off.
+    Clear,
+    /// Best in the mean.
+    Likely,
+    /// Most laws that are no generalisation of the chosen one do as well.
+    Open,
+}
+
+/// Which law to use.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// The law with the fewest numbers among those that do best; the spectrum only if nothing else does as well.
+    pub law: Law,
+    /// All laws that do as well, this one included, best first.
+    pub alike: Vec<Law>,
+    /// How sure that is.
+    pub certainty: Certainty,
+    /// Cut points at which it was best or alike.
+    pub cuts_won: usize,
+    /// What every other law costs: its error over that of the chosen one (forward), or its excess of BIC (information).
+    pub costs: Vec<(Law, f64)>,
+}
