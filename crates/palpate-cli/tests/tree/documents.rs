@@ -121,7 +121,7 @@ fn has_heading(path: &Path, anchor: &str) -> bool {
 #[test]
 fn architecture_is_short_enough_to_be_read() {
     let lines = read("ARCHITECTURE.md").lines().count();
-    assert!(lines <= 230, "ARCHITECTURE.md has {lines} lines, at most 230 are read");
+    assert!(lines <= 250, "ARCHITECTURE.md has {lines} lines, at most 250 are read");
 }
 
 /// Every equation of the paper stands in the theory once, followed by the files that implement it, which name it.
