@@ -1,54 +1,41 @@
 //! The study of one record.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
-use palpate::analysis::{Analysis as Studied, AnalysisOptions, Severity, analyze};
-use palpate::record::Record as Measured;
-use palpate_report::document::AnalysisDocument;
+use arrow_array::ArrayRef;
+use palpate::analysis::{AnalysisOptions, Severity};
+use palpate_jobs::input::Measurement;
+use palpate_jobs::output::write_bundle;
+use palpate_jobs::{Analyze, Analyzed, Outcome, Results};
+use palpate_report::document::{AnalysisDocument, FindingDocument, FitDocument};
 use palpate_report::result::Input;
-use palpate_report::study::{Pictures, analysis_bundle, analysis_text};
+use palpate_report::study::Pictures;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use serde::{Deserialize, Serialize};
 
-use crate::document::{Document, Fields};
-use crate::errors::{PalpateError, RecordError, refused, refused_plainly, unwritten, warn_of};
-use crate::record::Kept;
-use crate::table::Table;
-use crate::work::{Made, at_length};
+use crate::errors::{PalpateError, failed, refused_plainly, unwritten, warn_of};
+use crate::html::framed;
+use crate::kept::Kept;
+use crate::table::{Column, Table, columns};
+use crate::work::{Made, at_length, job, made_again, plain, printed, unpickled};
 
 /// Something about a record, or a hold, that its numbers alone do not tell.
-#[pyclass(name = "Finding", module = "palpate", frozen, get_all, eq)]
+#[pyclass(name = "Finding", module = "palpate", frozen, eq)]
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Finding {
-    /// Stable code, such as "saturated".
-    code: String,
-    /// "info", "caution" or "warning".
-    severity: String,
-    /// What was seen.
-    seen: String,
-    /// What it may mean.
-    meaning: String,
-    /// What helps.
-    remedy: String,
+    found: FindingDocument,
     /// Number of the hold, from 1; None for the record as a whole.
+    #[pyo3(get)]
     hold: Option<usize>,
 }
 
 impl Finding {
-    /// From the fields of a document.
-    fn of(fields: &Document, hold: Option<usize>) -> Self {
-        let text = |name: &str| match fields.get(name) {
-            Some(Document::Text(text)) => text.clone(),
-            _ => String::new(),
-        };
+    fn of(found: &FindingDocument, hold: Option<usize>) -> Self {
         Self {
-            code: text("code"),
-            severity: text("severity"),
-            seen: text("seen"),
-            meaning: text("meaning"),
-            remedy: text("remedy"),
+            found: found.clone(),
             hold,
         }
     }
@@ -56,19 +43,48 @@ impl Finding {
 
 #[pymethods]
 impl Finding {
+    /// Stable code, such as "saturated".
+    #[getter]
+    fn code(&self) -> &str {
+        &self.found.code
+    }
+
+    /// "info", "caution" or "warning".
+    #[getter]
+    fn severity(&self) -> &str {
+        &self.found.severity
+    }
+
+    /// What was seen.
+    #[getter]
+    fn seen(&self) -> &str {
+        &self.found.seen
+    }
+
+    /// What it may mean.
+    #[getter]
+    fn meaning(&self) -> &str {
+        &self.found.meaning
+    }
+
+    /// What helps.
+    #[getter]
+    fn remedy(&self) -> &str {
+        &self.found.remedy
+    }
+
     #[classmethod]
     fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
-        serde_json::from_str(json).map_err(refused_plainly::<PalpateError>)
+        unpickled(json)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
-        let json = serde_json::to_string(self).map_err(refused_plainly::<PalpateError>)?;
-        Ok((py.get_type::<Self>().getattr("_from_json")?, (json,)))
+        made_again::<Self>(py, self)
     }
 
     fn __repr__(&self) -> String {
         let place = self.hold.map_or(String::new(), |hold| format!(", hold {hold}"));
-        format!("<palpate.Finding {} ({}{place}): {}>", self.code, self.severity, self.seen)
+        format!("<palpate.Finding {} ({}{place}): {}>", self.code(), self.severity(), self.seen())
     }
 }
 
@@ -80,17 +96,21 @@ impl Finding {
 /// report is asked of an analysis that came from elsewhere.
 #[pyclass(name = "Analysis", module = "palpate", frozen, eq)]
 pub(crate) struct Analysis {
-    measured: Arc<(Measured, AnalysisOptions)>,
-    study: OnceLock<Arc<Studied>>,
-    input: Input,
-    json: String,
-    document: Document,
+    asked: Arc<Asked>,
+    done: OnceLock<Arc<Outcome<Analyzed>>>,
+    document: AnalysisDocument,
 }
 
 impl PartialEq for Analysis {
     fn eq(&self, other: &Self) -> bool {
-        self.json == other.json
+        self.document == other.document
     }
+}
+
+/// A record, and what was asked of it.
+struct Asked {
+    measured: Measurement,
+    job: Analyze,
 }
 
 /// What an analysis is made of again.
@@ -99,55 +119,56 @@ struct Parts {
     measured: Kept,
     options: AnalysisOptions,
     input: Input,
-    json: String,
+    job: Analyze,
+    document: serde_json::Value,
 }
 
 impl Analysis {
     /// Analyses a record, and warns of what its numbers must not be used for.
-    pub(crate) fn of(py: Python<'_>, record: Measured, options: AnalysisOptions, input: Input) -> PyResult<Self> {
-        let measured = Arc::new((record, options));
-        let study = studied(py, &measured)?;
-        let document = AnalysisDocument::new(&study, input.clone());
-        let json = serde_json::to_string(&document).map_err(refused_plainly::<PalpateError>)?;
-        let document = serde_json::from_str(&json).map_err(refused_plainly::<PalpateError>)?;
-        let of_holds = study.holds.iter().flat_map(|hold| &hold.findings);
-        let all = study.findings.iter().chain(of_holds);
+    pub(crate) fn of(py: Python<'_>, measured: Measurement, job: Analyze) -> PyResult<Self> {
+        let asked = Arc::new(Asked { measured, job });
+        let done = run(py, &asked)?;
+        let analysis = &done.result.analysis;
+        let of_holds = analysis.holds.iter().flat_map(|hold| &hold.findings);
+        let all = analysis.findings.iter().chain(of_holds);
         warn_of(py, all.filter(|finding| finding.severity() == Severity::Warning))?;
         Ok(Self {
-            measured,
-            study: OnceLock::from(Arc::new(study)),
-            input,
-            json,
-            document,
+            asked,
+            document: done.result.document(),
+            done: OnceLock::from(Arc::new(done)),
         })
     }
 
-    fn study(&self, py: Python<'_>) -> PyResult<Arc<Studied>> {
-        if let Some(study) = self.study.get() {
-            return Ok(Arc::clone(study));
+    /// The study behind the document, made anew for an analysis that came from elsewhere.
+    fn done(&self, py: Python<'_>) -> PyResult<Arc<Outcome<Analyzed>>> {
+        if let Some(done) = self.done.get() {
+            return Ok(Arc::clone(done));
         }
-        let study = Arc::new(studied(py, &self.measured)?);
-        Ok(Arc::clone(self.study.get_or_init(|| study)))
-    }
-
-    fn rows(&self, name: &str) -> &[Document] {
-        self.document.get(name).map_or(&[], Document::entries)
+        let done = Arc::new(run(py, &self.asked)?);
+        Ok(Arc::clone(self.done.get_or_init(|| done)))
     }
 }
 
-fn studied(py: Python<'_>, measured: &Arc<(Measured, AnalysisOptions)>) -> PyResult<Studied> {
-    let measured = Arc::clone(measured);
-    let study = at_length(py, move || analyze(&measured.0, &measured.1))?;
-    study.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))
+fn run(py: Python<'_>, asked: &Arc<Asked>) -> PyResult<Outcome<Analyzed>> {
+    let asked = Arc::clone(asked);
+    job(py, move |watch| asked.job.run(asked.measured.clone(), None, watch))
 }
 
-fn table_of(documents: &[Document]) -> PyResult<Table> {
-    let row = |document: &Document| {
-        let mut row = Fields::new();
-        document.flat(&mut row);
-        row
+/// What a number of a fit is known to, by the names of the numbers that any of the fits has.
+fn known(fits: &[(usize, &FitDocument)]) -> Vec<(String, ArrayRef)> {
+    let errors: BTreeSet<&String> = fits.iter().flat_map(|(_, fit)| fit.standard_error.keys()).collect();
+    let error = |name: &&String| {
+        let errors = fits.iter().map(|(_, fit)| fit.standard_error.get(*name).copied());
+        (format!("{name}_standard_error"), Column::column(errors))
     };
-    Table::of_documents(&documents.iter().map(row).collect::<Vec<_>>())
+    let intervals: BTreeSet<&String> = fits.iter().flat_map(|(_, fit)| fit.confidence_interval.keys()).collect();
+    let ends = |name: &&String| {
+        [("low", 0), ("high", 1)].map(|(end, index)| {
+            let ends = fits.iter().map(|(_, fit)| Some(fit.confidence_interval.get(*name)?[index]));
+            (format!("{name}_{end}"), Column::column(ends))
+        })
+    };
+    errors.iter().map(error).chain(intervals.iter().flat_map(ends)).collect()
 }
 
 #[pymethods]
@@ -155,51 +176,61 @@ impl Analysis {
     /// The phases, a row each.
     #[getter]
     fn segments(&self) -> PyResult<Table> {
-        table_of(self.rows("segments"))
+        Table::of(columns!(self.document.segments, row => phase, start_s, end_s, first_row, last_row))
     }
 
     /// The holds, a row each.
     #[getter]
     fn holds(&self) -> PyResult<Table> {
-        table_of(self.rows("holds"))
+        Table::of(columns!(self.document.holds, hold =>
+            index, start_s, end_s, fit_start_s, displacement_m, after, mode, relaxation, force_change_n,
+            force_change_standard_error_n, p_value, force_start_n, force_end_n, signal, preferred, lowest_order
+        ))
     }
 
     /// The laws fitted to every hold, a row each: ``hold``, ``domain``, ``exponent``, ``equilibrium_force_n``,
     /// ``rate_coefficient_per_s``, ..., each with its standard error and interval.
     #[getter]
     fn fits(&self) -> PyResult<Table> {
-        let mut rows = Vec::new();
-        for hold in self.rows("holds") {
-            for fit in hold.get("fits").map_or(&[][..], Document::entries) {
-                let number = hold.get("index").cloned().unwrap_or(Document::Null(()));
-                let mut row = Fields::from_iter([("hold".to_owned(), number)]);
-                fit.flat(&mut row);
-                rows.push(row);
-            }
-        }
-        Table::of_documents(&rows)
+        let holds = self.document.holds.iter();
+        let fits: Vec<_> = holds.flat_map(|hold| hold.fits.iter().map(|fit| (hold.index, fit))).collect();
+        let known = known(&fits);
+        let mut columns = columns!(fits, row =>
+            hold = row.0, law = row.1.law.as_str(), domain = row.1.domain.as_str(), exponent = row.1.exponent,
+            exponent_fixed = row.1.exponent_fixed, equilibrium_strain = row.1.equilibrium_strain,
+            equilibrium_force_n = row.1.equilibrium_force_n, excess_strain = row.1.excess_strain,
+            excess_force_n = row.1.excess_force_n, relative_rate_per_s = row.1.relative_rate_per_s,
+            rate_coefficient_per_s = row.1.rate_coefficient_per_s
+        );
+        columns.extend(known.iter().map(|(name, column)| (name.as_str(), Arc::clone(column))));
+        columns.extend(columns!(fits, row =>
+            rmse = row.1.rmse, residual_correlation = row.1.residual_correlation, samples = row.1.samples,
+            delta_bic = row.1.delta_bic, prediction_error = row.1.prediction_error,
+            termination = row.1.termination.as_str()
+        ));
+        Table::of(columns)
     }
 
     /// What to know besides the numbers.
     #[getter]
     fn findings(&self) -> Vec<Finding> {
-        let mut findings: Vec<Finding> =
-            self.rows("findings").iter().map(|finding| Finding::of(finding, None)).collect();
-        for (index, hold) in self.rows("holds").iter().enumerate() {
-            let of_hold = hold.get("findings").map_or(&[][..], Document::entries);
-            findings.extend(of_hold.iter().map(|finding| Finding::of(finding, Some(index + 1))));
-        }
-        findings
+        let whole = self.document.findings.iter().map(|found| Finding::of(found, None));
+        let of_holds = self
+            .document
+            .holds
+            .iter()
+            .flat_map(|hold| hold.findings.iter().map(|found| Finding::of(found, Some(hold.index))));
+        whole.chain(of_holds).collect()
     }
 
     /// The document that `palpate analyze --format json` prints, as plain objects.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        py.import("json")?.call_method1("loads", (&self.json,))
+        plain(py, &self.document)
     }
 
-    /// The same as text.
-    fn to_json(&self) -> &str {
-        &self.json
+    /// The same as text, as the command prints it.
+    fn to_json(&self) -> PyResult<String> {
+        printed(&self.document)
     }
 
     /// The table of laws, for polars, pandas and pyarrow.
@@ -227,60 +258,66 @@ impl Analysis {
     ///     The folder cannot be written to.
     #[pyo3(signature = (folder, *, png=false))]
     fn report(&self, py: Python<'_>, folder: PathBuf, png: bool) -> PyResult<PathBuf> {
-        let (analysis, input) = (self.study(py)?, self.input.clone());
+        let done = self.done(py)?;
         let report = folder.join("report.html");
-        let written = at_length(py, move || {
-            let bundle = analysis_bundle(&analysis, input, Pictures { png })?;
-            palpate_jobs::output::write_bundle(&folder, &bundle)
-        })?;
-        written.map_err(|error| unwritten(&error))?;
+        let written = at_length(py, move |_| write_bundle(&folder, &done.bundle(Pictures { png })?))?;
+        written.map_err(unwritten)?;
         Ok(report)
     }
 
     #[classmethod]
-    fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
-        let parts: Parts = serde_json::from_str(json).map_err(refused_plainly::<PalpateError>)?;
-        let document = serde_json::from_str(&parts.json).map_err(refused_plainly::<PalpateError>)?;
+    fn _from_json(class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
+        let Parts {
+            measured,
+            options,
+            input,
+            job,
+            document,
+        } = unpickled(json)?;
+        let measured = Measurement {
+            record: measured.record()?,
+            input,
+            options,
+            notes: Vec::new(),
+        };
+        let asked = Arc::new(Asked { measured, job });
+        // A number that is none has no form in JSON: the document is made anew then.
+        let document = match serde_json::from_value(document) {
+            Ok(document) => document,
+            Err(_) => run(class.py(), &asked)?.result.document(),
+        };
         Ok(Self {
-            measured: Arc::new((parts.measured.record()?, parts.options)),
-            study: OnceLock::new(),
-            input: parts.input,
-            json: parts.json,
+            asked,
+            done: OnceLock::new(),
             document,
         })
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
+        let Asked { measured, job } = &*self.asked;
         let parts = Parts {
-            measured: Kept::of(&self.measured.0),
-            options: self.measured.1.clone(),
-            input: self.input.clone(),
-            json: self.json.clone(),
+            measured: Kept::of(&measured.record),
+            options: measured.options.clone(),
+            input: measured.input.clone(),
+            job: job.clone(),
+            document: serde_json::to_value(&self.document).map_err(refused_plainly::<PalpateError>)?,
         };
-        let json = serde_json::to_string(&parts).map_err(refused_plainly::<PalpateError>)?;
-        Ok((py.get_type::<Self>().getattr("_from_json")?, (json,)))
+        made_again::<Self>(py, &parts)
     }
 
     fn __str__(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(analysis_text(&*self.study(py)?, &self.input))
+        Ok(self.done(py)?.text())
     }
 
     fn __repr__(&self) -> String {
-        let holds = self.rows("holds").len();
-        format!("<palpate.Analysis of {:?}: {holds} holds, {} findings>", self.input.title, self.findings().len())
+        let (title, holds) = (&self.document.input.title, self.document.holds.len());
+        format!("<palpate.Analysis of {title:?}: {holds} holds, {} findings>", self.findings().len())
     }
 
     /// Tables and figures of the report, for notebooks.
     fn _repr_html_(&self, py: Python<'_>) -> PyResult<Option<String>> {
-        let bundle = analysis_bundle(&*self.study(py)?, self.input.clone(), Pictures { png: false })
-            .map_err(refused_plainly::<PalpateError>)?;
+        let bundle = self.done(py)?.bundle(Pictures { png: false }).map_err(failed)?;
         let report = bundle.files.into_iter().find(|(name, _)| name == "report.html");
         Ok(report.and_then(|(_, page)| String::from_utf8(page).ok()).map(|page| framed(&page)))
     }
-}
-
-/// A page inside another one, with its own styles.
-pub(crate) fn framed(page: &str) -> String {
-    let page = page.replace('&', "&amp;").replace('"', "&quot;");
-    format!("<iframe srcdoc=\"{page}\" style=\"width:100%;height:40em;border:0\"></iframe>")
 }

@@ -3,23 +3,25 @@
 use palpate::fit::{LawOptions, Samples};
 use palpate::forecast::{CompareOptions, compare_laws};
 use palpate::laws::{Law, Response};
-use palpate_report::document::HoldComparisonDocument;
+use palpate_jobs::input::Measurement;
+use palpate_jobs::{Compare, Results};
+use palpate_report::document::{ComparisonDocument, HoldComparisonDocument, VerdictDocument};
 use palpate_report::result::Quantity;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
+use serde::{Deserialize, Serialize};
 
 use crate::arrays::doubles;
-use crate::document::{Document, Fields};
 use crate::errors::{FitError, OptionError, refused_plainly};
 use crate::fit::deviations_of;
-use crate::table::Table;
-use crate::work::{Made, at_length};
+use crate::table::{Table, columns};
+use crate::work::{Made, at_length, job, made_again, plain, printed, unpickled};
 
 /// Laws compared on one hold: each was fitted to its first part and held against the rest.
 #[pyclass(name = "Comparison", module = "palpate", frozen, eq)]
+#[derive(PartialEq)]
 pub(crate) struct Comparison {
-    json: String,
-    document: Document,
+    document: HoldComparisonDocument,
 }
 
 /// Compares laws; none named: all that suit the response.
@@ -57,30 +59,19 @@ pub(crate) fn compare(
         cuts: cuts.unwrap_or(usual.cuts),
         ..CompareOptions::default()
     };
-    let compared = at_length(py, move || {
+    let compared = at_length(py, move |_| {
         let samples = Samples::new(&times, &values);
         let samples = deviations.as_deref().map_or(samples, |deviations| samples.with_deviations(deviations));
         compare_laws(&samples, &options)
     })?;
     let compared = compared.map_err(refused_plainly::<FitError>)?;
-    let json = serde_json::to_string(&HoldComparisonDocument::new(&compared, quantity))
-        .map_err(refused_plainly::<FitError>)?;
-    let document = serde_json::from_str(&json).map_err(refused_plainly::<FitError>)?;
-    Ok(Comparison { json, document })
-}
-
-impl PartialEq for Comparison {
-    fn eq(&self, other: &Self) -> bool {
-        self.json == other.json
-    }
+    let document = HoldComparisonDocument::new(&compared, quantity);
+    Ok(Comparison { document })
 }
 
 impl Comparison {
-    fn verdict(&self, field: &str) -> Option<String> {
-        match self.document.get("verdict")?.get(field)? {
-            Document::Text(text) => Some(text.clone()),
-            _ => None,
-        }
+    fn verdict(&self, of: fn(&VerdictDocument) -> &String) -> Option<&str> {
+        self.document.verdict.as_ref().map(|verdict| of(verdict).as_str())
     }
 }
 
@@ -88,50 +79,111 @@ impl Comparison {
 impl Comparison {
     /// The law to use: that with the fewest numbers among those that do best; None if none could be fitted.
     #[getter]
-    fn law(&self) -> Option<String> {
-        self.verdict("law")
+    fn law(&self) -> Option<&str> {
+        self.verdict(|verdict| &verdict.law)
     }
 
     /// How sure that is: "clear", "likely" or "open".
     #[getter]
-    fn certainty(&self) -> Option<String> {
-        self.verdict("certainty")
+    fn certainty(&self) -> Option<&str> {
+        self.verdict(|verdict| &verdict.certainty)
     }
 
     /// All that in one sentence.
     #[getter]
-    fn sentence(&self) -> Option<String> {
-        self.verdict("sentence")
+    fn sentence(&self) -> Option<&str> {
+        self.verdict(|verdict| &verdict.sentence)
     }
 
     /// The laws, best first, a row each.
     #[getter]
     fn laws(&self) -> PyResult<Table> {
-        let row = |law: &Document| {
-            let mut row = Fields::new();
-            law.flat(&mut row);
-            row
-        };
-        let laws = self.document.get("laws").map_or(&[][..], Document::entries);
-        Table::of_documents(&laws.iter().map(row).collect::<Vec<_>>())
+        Table::of(columns!(self.document.laws, law =>
+            law, parameters, rmse, delta_aicc, delta_bic, forward_score, termination, error
+        ))
     }
 
     /// Everything as plain objects.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        py.import("json")?.call_method1("loads", (&self.json,))
+        plain(py, &self.document)
     }
 
     #[classmethod]
-    fn _from_json(_class: &Bound<'_, PyType>, json: String) -> PyResult<Self> {
-        let document = serde_json::from_str(&json).map_err(refused_plainly::<FitError>)?;
-        Ok(Self { json, document })
+    fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
+        unpickled(json).map(|document| Self { document })
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
-        Ok((py.get_type::<Self>().getattr("_from_json")?, (self.json.clone(),)))
+        made_again::<Self>(py, &self.document)
     }
 
     fn __repr__(&self) -> String {
-        format!("<palpate.Comparison: {}>", self.sentence().unwrap_or_else(|| "no law could be fitted".to_owned()))
+        format!("<palpate.Comparison: {}>", self.sentence().unwrap_or("no law could be fitted"))
+    }
+}
+
+/// Laws compared on all holds of a record.
+///
+/// Made by `Record.compare`. ``print(comparison)`` shows what ``palpate compare`` does.
+#[pyclass(name = "RecordComparison", module = "palpate", frozen, eq)]
+#[derive(PartialEq, Serialize, Deserialize)]
+pub(crate) struct RecordComparison {
+    document: ComparisonDocument,
+    text: String,
+}
+
+impl RecordComparison {
+    pub(crate) fn of(py: Python<'_>, measured: Measurement, question: Compare) -> PyResult<Self> {
+        let done = job(py, move |watch| question.run_on(measured, watch))?;
+        Ok(Self {
+            document: done.result.document(),
+            text: done.text(),
+        })
+    }
+}
+
+#[pymethods]
+impl RecordComparison {
+    /// The laws on every hold, best first, a row each: ``hold``, ``law``, ``parameters``, ``rmse``, ``delta_aicc``, ``delta_bic``,
+    /// ``forward_score``, ``termination``, ``error``.
+    #[getter]
+    fn laws(&self) -> PyResult<Table> {
+        let holds = self.document.records.iter().flat_map(|record| &record.holds);
+        let rows: Vec<_> = holds
+            .flat_map(|hold| hold.comparison.iter().flat_map(|found| &found.laws).map(|law| (hold.index, law)))
+            .collect();
+        Table::of(columns!(rows, row =>
+            hold = row.0, law = row.1.law.as_str(), parameters = row.1.parameters, rmse = row.1.rmse,
+            delta_aicc = row.1.delta_aicc, delta_bic = row.1.delta_bic, forward_score = row.1.forward_score,
+            termination = row.1.termination.as_deref(), error = row.1.error.as_deref()
+        ))
+    }
+
+    /// The document that ``palpate compare --format json`` prints, as plain objects.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.document)
+    }
+
+    /// The same as text, as the command prints it.
+    fn to_json(&self) -> PyResult<String> {
+        printed(&self.document)
+    }
+
+    #[classmethod]
+    fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
+        unpickled(json)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
+        made_again::<Self>(py, self)
+    }
+
+    fn __str__(&self) -> &str {
+        &self.text
+    }
+
+    fn __repr__(&self) -> String {
+        let holds = self.document.records.iter().map(|record| record.holds.len()).sum::<usize>();
+        format!("<palpate.RecordComparison of {holds} holds>")
     }
 }

@@ -4,13 +4,12 @@ use std::fmt::Display;
 use std::io;
 
 use palpate::analysis::Finding;
-use palpate_files::FileError;
 use palpate_files::description::DescriptionError;
-use palpate_files::record::ReadError;
-use palpate_jobs::{JobError, spelled};
+use palpate_jobs::{ErrorKind, JobError, spelled};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::{PyTypeInfo, create_exception};
+use serde::de::DeserializeOwned;
 
 create_exception!(
     palpate,
@@ -61,33 +60,60 @@ pub(crate) fn unfitted(error: palpate::fit::FitError) -> PyErr {
     }
 }
 
-/// What a file cannot be read for: an `OSError` where the operating system says so.
-pub(crate) fn unread(error: &ReadError) -> PyErr {
-    let told = told(error, error.hint());
-    match error {
-        ReadError::File(FileError::NotFound { source, .. } | FileError::Unreadable { source, .. }) => {
-            io::Error::new(source.kind(), told).into()
-        }
-        ReadError::File(FileError::Directory { .. }) => io::Error::new(io::ErrorKind::IsADirectory, told).into(),
-        _ => PyErr::new::<RecordError, _>(told),
-    }
-}
-
-/// What a description cannot be used for: an `OSError` where the operating system says so.
-pub(crate) fn undescribed(error: DescriptionError) -> PyErr {
-    let told = told(&error, error.hint());
-    match error {
-        DescriptionError::NotFound { source, .. } | DescriptionError::Unreadable { source, .. } => {
-            io::Error::new(source.kind(), told).into()
-        }
-        DescriptionError::Directory { .. } => io::Error::new(io::ErrorKind::IsADirectory, told).into(),
-        _ => PyErr::new::<OptionError, _>(told),
+/// Why a job gave nothing, with its options as keywords: an `OSError` where the operating system says so.
+pub(crate) fn failed(error: JobError) -> PyErr {
+    let JobError {
+        kind,
+        place,
+        message,
+        hint,
+    } = error;
+    let place = place.filter(|_| matches!(kind, ErrorKind::File(_)));
+    let message = place.map_or(message.clone(), |place| format!("{place}: {message}"));
+    let text = spelled(&told(message, hint), &keyword);
+    match kind {
+        ErrorKind::Option => PyErr::new::<OptionError, _>(text),
+        ErrorKind::File(kind) => io::Error::new(kind, text).into(),
+        ErrorKind::Record => PyErr::new::<RecordError, _>(text),
+        ErrorKind::Model => PyErr::new::<ModelError, _>(text),
+        ErrorKind::Fit => PyErr::new::<FitError, _>(text),
+        ErrorKind::Report | ErrorKind::Cancelled => PyErr::new::<PalpateError, _>(text),
     }
 }
 
 /// What a file cannot be written for.
-pub(crate) fn unwritten(error: &JobError) -> PyErr {
-    refused::<PalpateError>(error, error.hint.as_deref().map(|hint| spelled(hint, &|name, _| name.to_owned())))
+pub(crate) fn unwritten(error: JobError) -> PyErr {
+    let message = error.to_string();
+    PyErr::new::<PalpateError, _>(spelled(&told(message, error.hint), &keyword))
+}
+
+/// An option of a job as a keyword, with its unit.
+fn keyword(name: &str, value: Option<&str>) -> String {
+    let unit = match name {
+        "squeeze" | "stroke" | "tolerance" => "_m",
+        "force" | "most_force" | "band" => "_n",
+        "hold" | "close_within" | "shortest_pause" | "fit_until" | "at" => "_s",
+        _ => "",
+    };
+    match value {
+        Some(value) => format!("{name}{unit}=\"{value}\""),
+        None => format!("{name}{unit}"),
+    }
+}
+
+/// What a description cannot be used for.
+pub(crate) fn undescribed(error: DescriptionError) -> PyErr {
+    failed(error.into())
+}
+
+/// One of the choices of an option, by its name with hyphens.
+pub(crate) fn choice<T: DeserializeOwned>(option: &str, names: &[&str], found: &str) -> PyResult<T> {
+    let known = |word: String| serde_json::from_value(serde_json::Value::String(word)).ok();
+    let chosen = names.contains(&found).then(|| known(found.replace('-', "_")).or_else(|| known(found.to_owned())));
+    chosen.flatten().ok_or_else(|| {
+        let names: Vec<String> = names.iter().map(|name| format!("{name:?}")).collect();
+        refused_plainly::<OptionError>(format!("{option} is one of {}, found {found:?}", names.join(", ")))
+    })
 }
 
 /// Warns of findings, each with what it means.

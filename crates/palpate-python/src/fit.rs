@@ -5,10 +5,11 @@ use std::borrow::Cow;
 use numpy::{PyArray1, PyArray2};
 use palpate::fit::{
     BootstrapOptions, Estimate, Fit, IntervalMethod, LawOptions, Loss, NoiseChoice, NumberUnit, SampleChoice, Samples,
-    Termination, fit_law,
+    fit_law,
 };
 use palpate::laws::{Law, Response};
 use palpate::number::{significant, with_error};
+use palpate_report::result::termination_word;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 
@@ -98,15 +99,6 @@ fn unit_word(unit: NumberUnit) -> &'static str {
 #[derive(Clone, PartialEq)]
 pub(crate) struct PyFit {
     fit: Fit,
-}
-
-/// How a fit ended, in a word.
-pub(crate) fn ending(termination: Termination) -> String {
-    match serde_json::to_value(termination) {
-        Ok(serde_json::Value::String(word)) => word,
-        Ok(serde_json::Value::Object(map)) => map.keys().next().cloned().unwrap_or_default(),
-        _ => String::new(),
-    }
 }
 
 fn unequal(what: &str, found: usize, times: usize) -> PyErr {
@@ -223,8 +215,8 @@ impl PyFit {
 
     /// Why the fit ended: "converged", or what kept it from that.
     #[getter]
-    fn termination(&self) -> String {
-        ending(self.fit.termination)
+    fn termination(&self) -> &'static str {
+        termination_word(self.fit.termination)
     }
 
     /// Whether it ended at an optimum inside the range that was searched.
@@ -299,7 +291,7 @@ impl PyFit {
             fit.free_numbers(),
             significant(fit.residual_square, 6),
             significant(fit.rmse, 6),
-            ending(fit.termination),
+            termination_word(fit.termination),
         );
         let width = fit.parameters.iter().map(|number| number.name.to_string().len()).max().unwrap_or(0) + 1;
         for number in &fit.parameters {
@@ -360,7 +352,7 @@ impl PyFit {
             format!("{}={value}", number.name)
         });
         let numbers: Vec<String> = numbers.collect();
-        format!("<palpate.Fit {}: {}; {}>", self.fit.law, numbers.join(", "), ending(self.fit.termination))
+        format!("<palpate.Fit {}: {}; {}>", self.fit.law, numbers.join(", "), termination_word(self.fit.termination))
     }
 }
 

@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use arrow_array::cast::AsArray;
 use arrow_array::types::Float64Type;
@@ -13,15 +12,17 @@ use arrow_schema::{DataType, Field};
 use numpy::{PyArray1, PyArrayMethods};
 use palpate::fit::{Fit, LawOptions, NumberUnit, Parameter, Samples, fit_law};
 use palpate::laws::Response;
+use palpate::watch::Cancelled;
+use palpate_report::result::termination_word;
 use pyo3::prelude::*;
 use pyo3_arrow::PyChunkedArray;
 use pyo3_arrow::input::AnyArray;
 use rayon::prelude::*;
 
-use crate::errors::{OptionError, refused, refused_plainly, unfitted};
-use crate::fit::{Asked, Keywords, deviations, ending, fitted};
+use crate::errors::{OptionError, PalpateError, refused, refused_plainly, unfitted};
+use crate::fit::{Asked, Keywords, deviations, fitted};
 use crate::table::Table;
-use crate::work::{Progress, at_length_told};
+use crate::work::{Heard, at_length_told};
 
 /// One curve, or why it is none.
 type Curve = Result<ScalarBuffer<f64>, String>;
@@ -141,8 +142,8 @@ fn one_for_all(times: &Ragged, curves: usize, name: &str) -> PyResult<bool> {
     }
 }
 
-/// A fit, or why there is none; nothing at all after Ctrl-C.
-type Fitted = Option<Result<Fit, String>>;
+/// A fit, or why there is none.
+type Fitted = Result<Fit, String>;
 
 #[pyfunction]
 pub(crate) fn fit_many(
@@ -168,27 +169,19 @@ pub(crate) fn fit_many(
     };
     let asked = keywords.asked()?;
     let shape = asked.clone();
-    let stopped = Arc::new(AtomicBool::new(false));
-    let stop = Arc::clone(&stopped);
-    let progress = Progress::of(progress);
-    let told = progress.clone();
-    let work = move || -> Vec<Fitted> {
+    let work = move |heard: Heard| -> Result<Vec<Fitted>, Cancelled> {
         let fit = |index: usize| {
             let time = times.curve(if one_time { 0 } else { index })?;
             let deviations = weights.as_ref().map(|(one, found)| found.curve(if *one { 0 } else { index }));
             fitted(time, values.curve(index)?, deviations.transpose()?, &asked).map_err(|error| error.to_string())
         };
         let one = |index: usize| {
-            if stop.load(Ordering::Relaxed) {
-                return None;
-            }
             let fit = fit(index);
-            told.step();
-            Some(fit)
+            heard.step().map(|()| fit)
         };
         (0..curves).into_par_iter().map(one).collect()
     };
-    let fits = at_length_told(py, &progress, work).inspect_err(|_| stopped.store(true, Ordering::Relaxed))?;
+    let fits = at_length_told(py, progress, work)?.map_err(refused_plainly::<PalpateError>)?;
     table(&shape, &fits)
 }
 
@@ -215,7 +208,7 @@ fn suffix(unit: NumberUnit) -> &'static str {
 
 /// A row a curve; numbers that a fit does not have are missing.
 fn table(asked: &Asked, fits: &[Fitted]) -> PyResult<Table> {
-    let good = || fits.iter().map(|fit| fit.as_ref().and_then(|fit| fit.as_ref().ok()));
+    let good = || fits.iter().map(|fit| fit.as_ref().ok());
     let floats = |pick: &dyn Fn(&Fit) -> Option<f64>| -> ArrayRef {
         Arc::new(good().map(|fit| fit.and_then(pick)).collect::<Float64Array>())
     };
@@ -236,9 +229,9 @@ fn table(asked: &Asked, fits: &[Fitted]) -> PyResult<Table> {
     columns.push(("residual_correlation".to_owned(), floats(&|fit| Some(fit.residual_correlation))));
     let samples = good().map(|fit| fit.map(|fit| fit.samples as i64)).collect::<Int64Array>();
     columns.push(("samples".to_owned(), Arc::new(samples)));
-    let ended = good().map(|fit| fit.map(|fit| ending(fit.termination))).collect::<StringArray>();
+    let ended = good().map(|fit| fit.map(|fit| termination_word(fit.termination))).collect::<StringArray>();
     columns.push(("termination".to_owned(), Arc::new(ended)));
-    let errors = fits.iter().map(|fit| fit.as_ref()?.as_ref().err().cloned());
+    let errors = fits.iter().map(|fit| fit.as_ref().err().cloned());
     columns.push(("error".to_owned(), Arc::new(errors.collect::<StringArray>())));
     Table::of(columns.iter().map(|(name, values)| (name.as_str(), Arc::clone(values))).collect())
 }

@@ -2,7 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `record.rs` | `read`, `Record` |
+//! | `record.rs`, `kept.rs` | `read`, `Record`; a record in a pickle |
 //! | `analysis.rs` | `Analysis`, `Finding` |
 //! | `fit.rs`, `fit_many.rs` | `fit_hold`, `Fit`, `Estimate`; thousands of holds in one call |
 //! | `calibration.rs`, `material.rs`, `prediction.rs` | one set of numbers for a whole record, and what it predicts |
@@ -12,10 +12,11 @@
 //! | `simulate.rs`, `simulate_many.rs` | `simulate`, `Trajectory`; one protocol with many numbers |
 //! | `contact_state.rs` | `ContactState`, `ContactStates` |
 //! | `laws.rs` | laws as functions of arrays |
-//! | `table.rs`, `document.rs` | results as Arrow |
+//! | `table.rs`, `html.rs` | results as Arrow, and as notebooks show them |
 //! | `arrays.rs` | numbers in |
 //! | `work.rs` | long work without the GIL, ended by Ctrl-C |
 //! | `errors.rs` | exceptions and warnings |
+//! | `files.rs` | jobs from files to files |
 //! | `command.rs` | the command line |
 
 mod analysis;
@@ -24,12 +25,14 @@ mod calibration;
 mod command;
 mod compare;
 mod contact_state;
-mod document;
 mod errors;
+mod files;
 mod fit;
 mod fit_many;
 mod grip;
 mod grip_parts;
+mod html;
+mod kept;
 mod laws;
 mod material;
 mod observation;
@@ -53,11 +56,13 @@ mod _palpate {
     #[pymodule_export]
     use crate::command::command;
     #[pymodule_export]
-    use crate::compare::{Comparison, compare};
+    use crate::compare::{Comparison, RecordComparison, compare};
     #[pymodule_export]
     use crate::contact_state::{ContactState, ContactStates};
     #[pymodule_export]
     use crate::errors::{FitError, ModelError, OptionError, PalpateError, PalpateWarning, RecordError};
+    #[pymodule_export]
+    use crate::files::{batch, convert, inspect, reproduce, sweep, watch};
     #[pymodule_export]
     use crate::fit::{PyEstimate, PyFit, fit_hold};
     #[pymodule_export]

@@ -1,26 +1,23 @@
 //! A calibrated body.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use arrow_array::{ArrayRef, Float64Array, StringArray};
 use numpy::PyArray2;
 use palpate::calibrate::{EquilibriumLaw, Material as Body, MaterialNumber, MaterialUnit};
-use palpate::grip::{Grasp, Limits, Question};
 use palpate::number::{significant, with_error};
-use palpate::simulate::Sampling;
-use palpate_files::description::{MaterialFile, parse_material, parse_protocol_of, read_material, read_protocol_of};
+use palpate_files::description::{MaterialFile, parse_material, parse_protocol_of, read_protocol_of};
+use palpate_jobs::output::write_file;
+use palpate_jobs::{MaterialSource, PlanGrip, Predict};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 
 use crate::arrays::doubles;
-use crate::errors::{ModelError, refused_plainly, undescribed, unwritten, warn};
+use crate::errors::{ModelError, OptionError, choice, failed, refused, refused_plainly, undescribed, unwritten, warn};
 use crate::fit::PyEstimate;
-use crate::grip::{Asked, Grip, band, control, objective, regrip, ungripped};
+use crate::grip::Grip;
 use crate::prediction::Prediction;
-use crate::record::coverage;
-use crate::table::Table;
-use crate::work::{Made, at_length};
+use crate::table::{Table, columns};
+use crate::work::{Made, job};
 
 /// Said where intervals know nothing of the numbers.
 const OPEN: &str = "the calibration left a number open: the intervals hold noise alone";
@@ -31,35 +28,45 @@ const OPEN: &str = "the calibration left a number open: the intervals hold noise
 /// one, and a description may be one: ``palpate.simulate({"material": material, "step": [...]})``, ``palpate.ContactState(material)``,
 /// ``record.analyze(test=material)``.
 #[pyclass(name = "Material", module = "palpate", frozen, eq)]
-#[derive(Clone, PartialEq)]
+#[derive(Clone)]
 pub(crate) struct Material {
-    file: MaterialFile,
+    source: MaterialSource,
+}
+
+impl PartialEq for Material {
+    fn eq(&self, other: &Self) -> bool {
+        self.source.file == other.source.file
+    }
 }
 
 impl Material {
     /// Of a calibration; warns where it leaves a number open.
     pub(crate) fn of(py: Python<'_>, file: MaterialFile) -> PyResult<Self> {
-        let material = Self { file };
+        let material = Self {
+            source: MaterialSource::of(file),
+        };
         material.warn_of_open(py)?;
         Ok(material)
     }
 
     pub(crate) fn parsed(text: &str) -> PyResult<Self> {
         let file = parse_material(text, Path::new("material")).map_err(undescribed)?;
-        Ok(Self { file })
+        Ok(Self {
+            source: MaterialSource::of(file),
+        })
     }
 
     /// What the observer is told of it.
     pub(crate) fn body(&self) -> Body {
-        self.file.material.clone()
+        self.source.file.material.clone()
     }
 
     fn warn_of_open(&self, py: Python<'_>) -> PyResult<()> {
-        if self.file.material.uncertainty.is_none() { warn(py, OPEN) } else { Ok(()) }
+        if self.source.file.material.uncertainty.is_none() { warn(py, OPEN) } else { Ok(()) }
     }
 
     fn numbers_found(&self) -> &[MaterialNumber] {
-        &self.file.material.numbers
+        &self.source.file.material.numbers
     }
 }
 
@@ -92,8 +99,8 @@ impl Material {
     #[classmethod]
     #[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
     fn read(_class: &Bound<'_, PyType>, path: PathBuf) -> PyResult<Self> {
-        let file = read_material(&path).map_err(undescribed)?;
-        Ok(Self { file })
+        let source = MaterialSource::read(&path).map_err(failed)?;
+        Ok(Self { source })
     }
 
     /// Writes the file that ``palpate calibrate --out`` writes, whole or not at all.
@@ -109,24 +116,24 @@ impl Material {
     ///     The file cannot be written.
     #[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
     fn write(&self, path: PathBuf) -> PyResult<()> {
-        palpate_jobs::output::write_file(&path, self.to_toml().as_bytes()).map_err(|error| unwritten(&error))
+        write_file(&path, self.to_toml().as_bytes()).map_err(unwritten)
     }
 
     /// The same as text.
     pub(crate) fn to_toml(&self) -> String {
-        self.file.to_toml()
+        self.source.file.to_toml()
     }
 
     /// Name of the law as it was fitted, such as "latency", "latency:5" or "prony:2".
     #[getter]
     pub(crate) fn law(&self) -> String {
-        self.file.material.candidate.to_string()
+        self.source.file.material.candidate.to_string()
     }
 
     /// Law of the force once relaxation is over: "even-strain", "hertz" or "table".
     #[getter]
     fn equilibrium(&self) -> &'static str {
-        match self.file.material.candidate.equilibrium {
+        match self.source.file.material.candidate.equilibrium {
             EquilibriumLaw::EvenStrain => "even-strain",
             EquilibriumLaw::Hertz { .. } => "hertz",
             EquilibriumLaw::Table => "table",
@@ -137,20 +144,12 @@ impl Material {
     /// for a number that was given, or that the record leaves open.
     #[getter]
     fn numbers(&self) -> PyResult<Table> {
-        let texts = |text: fn(&MaterialNumber) -> &str| -> ArrayRef {
-            Arc::new(StringArray::from_iter_values(self.numbers_found().iter().map(text)))
-        };
-        let numbers = |number: fn(&MaterialNumber) -> Option<f64>| -> ArrayRef {
-            Arc::new(self.numbers_found().iter().map(number).collect::<Float64Array>())
-        };
-        Table::of(vec![
-            ("name", texts(|number| &number.name)),
-            ("unit", texts(|number| unit_word(number.unit))),
-            ("value", numbers(|number| Some(number.estimate.value))),
-            ("standard_error", numbers(|number| number.estimate.standard_error)),
-            ("low", numbers(|number| number.estimate.interval.map(|interval| interval.0))),
-            ("high", numbers(|number| number.estimate.interval.map(|interval| interval.1))),
-        ])
+        Table::of(columns!(self.numbers_found(), number =>
+            name, unit = unit_word(number.unit), value = number.estimate.value,
+            standard_error = number.estimate.standard_error,
+            low = number.estimate.interval.map(|interval| interval.0),
+            high = number.estimate.interval.map(|interval| interval.1)
+        ))
     }
 
     /// Every number by its name: "modulus" (or "equilibrium_force_1", ...), and "exponent", "rate_coefficient" and "layer_thickness" of the
@@ -181,27 +180,27 @@ impl Material {
     /// Covariance of the natural logarithms of the numbers, in their order; None where the record leaves one open.
     #[getter]
     fn log_covariance<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
-        let uncertainty = self.file.material.uncertainty.as_ref();
+        let uncertainty = self.source.file.material.uncertainty.as_ref();
         uncertainty.map(|found| Ok(PyArray2::from_vec2(py, &found.covariance)?)).transpose()
     }
 
     /// Coverage of the intervals of the numbers; None where they have none.
     #[getter]
     fn confidence(&self) -> Option<f64> {
-        self.file.material.uncertainty.as_ref().map(|uncertainty| uncertainty.confidence)
+        self.source.file.material.uncertainty.as_ref().map(|uncertainty| uncertainty.confidence)
     }
 
     /// Standard deviation of what the law left of the measured force, N: noise of one reading.
     #[getter]
     fn noise_n(&self) -> f64 {
-        self.file.material.noise
+        self.source.file.material.noise
     }
 
     /// What the test has shown, beyond which predictions are extrapolations: ``longest_hold_s``, ``deepest_m``, ``fastest_m_per_s``,
     /// ``slowest_m_per_s``, ``largest_force_n``.
     #[getter]
     fn shown<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let shown = &self.file.material.shown;
+        let shown = &self.source.file.material.shown;
         let dict = PyDict::new(py);
         for (name, value) in [
             ("longest_hold_s", shown.longest_hold),
@@ -218,7 +217,7 @@ impl Material {
     /// Where the numbers come from: ``record``, ``sha256`` of its file, ``test`` description, version of ``palpate``, ``samples`` fitted.
     #[getter]
     fn origin<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let origin = &self.file.origin;
+        let origin = &self.source.file.origin;
         let dict = PyDict::new(py);
         dict.set_item("record", &origin.record)?;
         dict.set_item("sha256", &origin.sha256)?;
@@ -268,21 +267,25 @@ impl Material {
     ) -> PyResult<Prediction> {
         let said = py.import("palpate")?.call_method1("_driven", (protocol,))?;
         let (path, text): (Option<PathBuf>, Option<String>) = said.extract()?;
+        let place = path.clone().unwrap_or_else(|| PathBuf::from("protocol"));
         let protocol = match path {
-            Some(path) => read_protocol_of(&path, &self.file),
-            None => parse_protocol_of(&text.unwrap_or_default(), Path::new("protocol"), &self.file),
+            Some(path) => read_protocol_of(&path, &self.source.file),
+            None => parse_protocol_of(&text.unwrap_or_default(), &place, &self.source.file),
         };
         let protocol = protocol.map_err(undescribed)?;
-        let confidence = coverage(confidence)?;
-        let sampling = match at_s {
-            Some(times) => Sampling::Times(doubles(times, "at_s")?),
-            None => protocol.sampling.clone(),
-        };
-        let material = self.file.material.clone();
-        let predicted = at_length(py, move || material.predict(protocol.drive(), &sampling, confidence))?;
-        let predicted = predicted.map_err(refused_plainly::<ModelError>)?;
+        let at_s = at_s.map(|times| doubles(times, "at_s")).transpose()?.unwrap_or_default();
+        // A row comes back for every time, in their order.
+        if let Some(index) = (1..at_s.len()).find(|index| at_s[*index] <= at_s[index - 1]) {
+            let message = format!("at_s: expected times that rise, found {} s at index {index}", at_s[index]);
+            return Err(refused_plainly::<ModelError>(message));
+        }
+        let (question, source) = (Predict { at_s, confidence }, self.source.clone());
+        let done = job(py, move |watch| {
+            let place = place.display().to_string();
+            question.run((&source.file, &source.name), (&protocol, &place), false, watch)
+        })?;
         self.warn_of_open(py)?;
-        Prediction::of(py, predicted)
+        Prediction::of(py, done.result.prediction)
     }
 
     /// How to squeeze the body between two jaws, and how long that holds: what ``palpate grip`` says.
@@ -404,42 +407,45 @@ impl Material {
         shortest_pause_s: Option<f64>,
         confidence: f64,
     ) -> PyResult<Grip> {
-        let question = Question {
-            control: self::control(control, squeeze_m, force_n)?,
-            squeeze: squeeze_m,
-            force: force_n,
-            duration: hold_s,
-            objective: self::objective(objective, squeeze_m)?,
-            assured,
-            band: band(band_n),
-            regrip: self::regrip(regrip, shortest_pause_s, band_n)?,
-        };
-        let grasp = Grasp {
-            mass: mass_kg,
+        if objective.is_some() && squeeze_m.is_some() {
+            let message = "objective: expected either this or squeeze_m, found both";
+            return Err(refused::<OptionError>(message, Some("leave squeeze_m out, and the squeeze is sought")));
+        }
+        for (option, given) in [("regrip", regrip.is_some()), ("shortest_pause_s", shortest_pause_s.is_some())] {
+            if given && band_n.is_none() {
+                let message = format!("{option} is for squeezes that keep the force in a band, and there is none");
+                return Err(refused::<OptionError>(message, Some("add band_n, such as band_n=(2.1, 3.0)")));
+            }
+        }
+        let usual = PlanGrip::default();
+        let question = PlanGrip {
+            mass_kg,
             friction,
-            gravity: gravity_m_per_s2,
-            acceleration_up: acceleration_up_m_per_s2,
-            acceleration_across: acceleration_across_m_per_s2,
-            acceleration_closing: acceleration_closing_m_per_s2,
-            torque: torque_n_m,
-            off_centre: off_centre_m,
             safety,
-        };
-        let speed = speed_m_per_s.unwrap_or(self.file.material.shown.fastest);
-        let limits = Limits {
-            stroke: stroke_m,
-            force: most_force_n,
-            closing: close_within_s,
-            ..Limits::new(speed).map_err(|error| ungripped(&error))?
-        };
-        let asked = Asked {
-            grasp,
-            limits,
-            question,
-            confidence: coverage(confidence)?,
+            acceleration_up_m_per_s2,
+            acceleration_across_m_per_s2,
+            acceleration_closing_m_per_s2,
+            torque_n_m,
+            off_centre_m,
+            gravity_m_per_s2: Some(gravity_m_per_s2),
+            speed_m_per_s,
+            stroke_m,
+            most_force_n,
+            close_within_s,
+            control: choice("control", &["position", "force"], control)?,
+            squeeze_m,
+            force_n,
+            hold_s: hold_s.filter(|time| *time != f64::INFINITY),
+            hold_always: hold_s == Some(f64::INFINITY),
+            objective: choice("objective", &["squeeze", "peak-force", "work"], objective.unwrap_or("squeeze"))?,
+            assured,
+            band_n,
+            regrip: choice("regrip", &["moves", "work"], regrip.unwrap_or("moves"))?,
+            shortest_pause_s: shortest_pause_s.unwrap_or(usual.shortest_pause_s),
+            confidence,
         };
         self.warn_of_open(py)?;
-        Grip::of(py, &self.file, asked)
+        Grip::of(py, self.source.clone(), question)
     }
 
     #[classmethod]

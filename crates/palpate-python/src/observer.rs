@@ -251,7 +251,7 @@ impl Observer {
         let displacement = displacement_m.map(|column| doubles(column, "displacement_m")).transpose()?;
         same_lengths(&time, &force, displacement.as_deref())?;
         let mut watcher = self.watcher.clone();
-        let watched = at_length(py, move || {
+        let watched = at_length(py, move |_| {
             let mut all = Vec::with_capacity(time.len());
             for (index, (time, force)) in time.iter().zip(&force).enumerate() {
                 let place = displacement.as_ref().map(|column| column[index]);

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use arrow_array::{ArrayRef, Float64Array};
 use numpy::PyArray1;
 use palpate::calibrate::Prediction as Predicted;
-use palpate_report::study::prediction_figure;
+use palpate_report::study::{prediction_figure, write_prediction};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
-use crate::analysis::framed;
 use crate::errors::{ModelError, PalpateError, refused_plainly, warn};
+use crate::html::framed;
 use crate::simulate::Trajectory;
 use crate::table::Table;
 use crate::work::Made;
@@ -155,6 +155,13 @@ impl Prediction {
 
     fn __len__(&self) -> usize {
         self.predicted.trajectory.len()
+    }
+
+    /// All series as the CSV that ``palpate predict`` prints.
+    fn to_csv(&self) -> PyResult<String> {
+        let mut out = Vec::new();
+        write_prediction(&mut out, &self.predicted)?;
+        Ok(String::from_utf8(out)?)
     }
 
     /// All series as a table.

@@ -1,6 +1,6 @@
 //! A measured record.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
@@ -8,13 +8,12 @@ use arrow_array::types::{Float32Type, Float64Type, Int32Type, Int64Type};
 use arrow_array::{Array, ArrayRef, Float64Array};
 use arrow_schema::DataType;
 use numpy::PyArray1;
-use palpate::analysis::{AnalysisOptions, corrected};
-use palpate::record::{Correction, Record as Measured};
-use palpate::segment::Segment;
-use palpate_files::description::{TestDescription, parse_test, read_test};
-use palpate_files::open::Contents;
-use palpate_files::record::{ReadError, RecordFile, read_part, tests};
-use palpate_report::result::Input;
+use palpate::analysis::corrected;
+use palpate::record::Record as Measured;
+use palpate::segment::HoldMode;
+use palpate_jobs::input::{Described, Measurement, OpenedFile};
+use palpate_jobs::{Analyze, Calibrate, Compare};
+use palpate_report::result::{Input, after_word, phase_word};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use pyo3_arrow::PyTable;
@@ -22,11 +21,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::Analysis;
 use crate::arrays::doubles;
-use crate::calibration::{Calibration, Wanted, equilibrium_law, laws, rate_law};
-use crate::document::{Document, Fields};
-use crate::errors::{OptionError, RecordError, refused, refused_plainly, undescribed, unread};
-use crate::table::Table;
-use crate::work::{Made, at_length, briefly};
+use crate::calibration::Calibration;
+use crate::compare::RecordComparison;
+use crate::errors::{OptionError, RecordError, choice, refused, refused_plainly};
+use crate::files::{self, described};
+use crate::kept::Kept;
+use crate::table::{Table, columns};
+use crate::work::{Made, at_length, briefly, job, made_again, unpickled};
 
 /// A record of time, force and, if there is one, displacement, in SI, checked; loading is positive.
 ///
@@ -44,40 +45,7 @@ use crate::work::{Made, at_length, briefly};
 pub(crate) struct Record {
     record: Measured,
     input: Input,
-    test: Option<Described>,
-}
-
-/// A description, and the text that it is made of again elsewhere.
-#[derive(Clone)]
-struct Described {
-    test: TestDescription,
-    text: String,
-}
-
-/// The columns of a record and what was done to them.
-#[derive(Serialize, Deserialize)]
-pub(crate) struct Kept {
-    time: Vec<f64>,
-    displacement: Option<Vec<f64>>,
-    force: Vec<f64>,
-    corrections: Vec<Correction>,
-}
-
-impl Kept {
-    pub(crate) fn of(record: &Measured) -> Self {
-        Self {
-            time: record.time().to_vec(),
-            displacement: record.displacement().map(<[f64]>::to_vec),
-            force: record.force().to_vec(),
-            corrections: record.corrections().to_vec(),
-        }
-    }
-
-    pub(crate) fn record(self) -> PyResult<Measured> {
-        let record = Measured::new(self.time, self.displacement, self.force);
-        let record = record.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
-        Ok(record.corrected_before(self.corrections))
-    }
+    described: Described,
 }
 
 /// What a record is made of again.
@@ -95,84 +63,32 @@ impl PartialEq for Record {
     }
 }
 
-/// A description in a file, or as text.
-fn description(path: Option<PathBuf>, text: Option<&str>) -> PyResult<Option<Described>> {
-    let (test, text) = match (path, text) {
-        (Some(path), _) => (read_test(&path).map_err(undescribed)?, std::fs::read_to_string(&path)?),
-        (None, Some(text)) => (parse_test(text, Path::new("test")).map_err(undescribed)?, text.to_owned()),
-        (None, None) => return Ok(None),
-    };
-    Ok(Some(Described { test, text }))
-}
-
-/// The name of a test, and what its reading came to.
-type ReadTest = (String, Result<RecordFile, ReadError>);
-
-/// Every test that was asked for in a file, each read or refused.
-fn opened(path: &Path, test: Option<&TestDescription>) -> Result<Vec<ReadTest>, ReadError> {
-    let usual = TestDescription::default();
-    let said = test.unwrap_or(&usual);
-    let contents = Contents::open(path, &said.reading).map_err(ReadError::File)?;
-    let found = tests(&contents, said)?;
-    let one = |part: &usize| {
-        let title = contents.parts()[*part].title().to_owned();
-        (title, read_part(&contents, *part, test, &mut |_, _| {}))
-    };
-    Ok(found.parts.iter().map(one).collect())
-}
-
 /// Reads the records in a file, `only` one of them or all; `test_path` or `test_text` describes them.
 #[pyfunction]
+#[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
 pub(crate) fn read(
     py: Python<'_>,
     path: PathBuf,
     test_path: Option<PathBuf>,
-    test_text: Option<&str>,
+    test_text: Option<String>,
     part: Option<String>,
     only: bool,
 ) -> PyResult<Vec<Record>> {
-    let described_by = test_path.clone();
-    let mut test = description(test_path, test_text)?;
-    if part.is_some() {
-        let mut said = test.unwrap_or_else(|| Described {
-            test: TestDescription::default(),
-            text: String::new(),
-        });
-        said.test.reading.part = part;
-        test = Some(said);
-    }
-    let (read, test, sha256, path) = at_length(py, move || {
-        let read = opened(&path, test.as_ref().map(|said| &said.test));
-        let sha256 = std::fs::read(&path).map(|bytes| palpate_jobs::output::sha256(&bytes));
-        (read, test, sha256, path)
+    let described = described(test_path.as_deref(), test_text, part.as_deref())?;
+    let said = described.clone();
+    let read = job(py, move |watch| {
+        let opened = OpenedFile::open(&path, &said)?;
+        if only {
+            opened.only()?;
+        }
+        opened.parts().iter().map(|part| opened.measurement(*part, watch)).collect::<Result<Vec<_>, _>>()
     })?;
-    let files = read.map_err(|error| unread(&error))?;
-    if only && files.len() > 1 {
-        let parts = files.into_iter().map(|(title, _)| title).collect();
-        return Err(unread(&ReadError::SeveralParts { path, parts }));
-    }
-    let sha256 = sha256?;
-    let stem = || path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let several = files.len() > 1;
-    let record = |(name, file): ReadTest| {
-        let file = file.map_err(|error| unread(&error))?;
-        let title = test.as_ref().and_then(|said| said.test.about.title.clone()).unwrap_or_else(stem);
-        let input = Input {
-            path: path.display().to_string(),
-            part: file.part.name.clone(),
-            sha256: sha256.clone(),
-            rows: file.rows,
-            rows_averaged: file.averaged,
-            test: described_by.as_ref().map(|path| path.display().to_string()),
-            title: if several { format!("{title}, {name}") } else { title },
-        };
-        Ok(Record {
-            record: file.record,
-            input,
-            test: test.clone(),
-        })
+    let record = |Measurement { record, input, .. }| Record {
+        record,
+        input,
+        described: described.clone(),
     };
-    files.into_iter().map(record).collect()
+    Ok(read.into_iter().map(record).collect())
 }
 
 /// A column of numbers by its name, none missing.
@@ -206,47 +122,6 @@ fn column(table: &PyTable, name: &str) -> PyResult<Vec<f64>> {
     Ok(values)
 }
 
-/// What the keywords of `Record.analyze` say.
-struct Asked {
-    exponents: Option<Vec<f64>>,
-    free_exponent: Option<bool>,
-    confidence: Option<f64>,
-    fit_until_s: Option<f64>,
-    compare: bool,
-}
-
-impl Asked {
-    fn over(self, mut options: AnalysisOptions) -> PyResult<AnalysisOptions> {
-        if let Some(mut exponents) = self.exponents {
-            if exponents.is_empty() || exponents.iter().any(|n| !(n.is_finite() && *n > 0.0)) {
-                let message = format!("exponents are numbers above 0, found {exponents:?}");
-                return Err(refused_plainly::<OptionError>(message));
-            }
-            exponents.sort_by(f64::total_cmp);
-            exponents.dedup();
-            options.exponents = exponents;
-        }
-        if let Some(confidence) = self.confidence {
-            options.fit.confidence = coverage(confidence)?;
-        }
-        options.free_exponent = self.free_exponent.unwrap_or(options.free_exponent);
-        options.fit_until = self.fit_until_s.or(options.fit_until);
-        if !self.compare {
-            options.compare = None;
-        }
-        Ok(options)
-    }
-}
-
-/// Coverage of intervals.
-pub(crate) fn coverage(confidence: f64) -> PyResult<f64> {
-    if confidence > 0.0 && confidence < 1.0 {
-        return Ok(confidence);
-    }
-    let message = format!("confidence is a share between 0 and 1, found {confidence}");
-    Err(refused_plainly::<OptionError>(message))
-}
-
 impl Record {
     /// A record of columns of Python: time, displacement, force.
     fn checked(
@@ -268,25 +143,28 @@ impl Record {
         Ok(Self {
             record,
             input,
-            test: None,
+            described: Described::default(),
         })
     }
 
-    fn options(&self) -> AnalysisOptions {
-        self.test.as_ref().map_or_else(AnalysisOptions::default, |said| said.test.analysis_options())
-    }
-
-    /// The options of a description in place of that of the record, and what results say of it.
-    fn described_by(&self, test: Option<&Bound<'_, PyAny>>) -> PyResult<(Input, AnalysisOptions)> {
+    /// What jobs take of it, described as it is or by `test`.
+    fn measured(&self, test: Option<&Bound<'_, PyAny>>) -> PyResult<Measurement> {
         let mut input = self.input.clone();
-        let Some(test) = test else {
-            return Ok((input, self.options()));
+        let options = match test {
+            None => self.described.options(),
+            Some(test) => {
+                let said = test.py().import("palpate")?.call_method1("_described", (test,))?;
+                let (path, text): (Option<PathBuf>, Option<String>) = said.extract()?;
+                input.test = path.as_ref().map(|path| path.display().to_string());
+                described(path.as_deref(), text, None)?.options()
+            }
         };
-        let said = test.py().import("palpate")?.call_method1("_described", (test,))?;
-        let (path, text): (Option<PathBuf>, Option<String>) = said.extract()?;
-        input.test = path.as_ref().map(|path| path.display().to_string());
-        let said = description(path, text.as_deref())?;
-        Ok((input, said.map_or_else(AnalysisOptions::default, |said| said.test.analysis_options())))
+        Ok(Measurement {
+            record: self.record.clone(),
+            input,
+            options,
+            notes: Vec::new(),
+        })
     }
 }
 
@@ -358,15 +236,11 @@ impl Record {
 
     #[classmethod]
     fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
-        let parts: Parts = serde_json::from_str(json).map_err(refused_plainly::<RecordError>)?;
-        let mut test = description(None, parts.test.as_deref())?;
-        if let Some(said) = &mut test {
-            said.test.reading.part = parts.part;
-        }
+        let parts: Parts = unpickled(json)?;
         Ok(Self {
             record: parts.measured.record()?,
             input: parts.input,
-            test,
+            described: described(None, parts.test, parts.part.as_deref())?,
         })
     }
 
@@ -374,11 +248,10 @@ impl Record {
         let parts = Parts {
             measured: Kept::of(&self.record),
             input: self.input.clone(),
-            test: self.test.as_ref().map(|said| said.text.clone()),
-            part: self.test.as_ref().and_then(|said| said.test.reading.part.clone()),
+            test: self.described.text.clone(),
+            part: self.described.test.as_ref().and_then(|said| said.reading.part.clone()),
         };
-        let json = serde_json::to_string(&parts).map_err(refused_plainly::<RecordError>)?;
-        Ok((py.get_type::<Self>().getattr("_from_json")?, (json,)))
+        made_again::<Self>(py, &parts)
     }
 
     /// Title of the record, for reports.
@@ -428,34 +301,19 @@ impl Record {
     /// RecordError
     ///     Nothing moves, or nothing stands still.
     fn segments(&self, py: Python<'_>) -> PyResult<Table> {
-        let (record, options) = (self.record.clone(), self.options());
-        let cut = at_length(py, move || corrected(&record, &options))?;
+        let (record, options) = (self.record.clone(), self.described.options());
+        let cut = at_length(py, move |_| corrected(&record, &options))?;
         let cut = cut.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
         let found = cut.segmentation.map_err(|error| refused::<RecordError>(&error, Some(error.hint())))?;
-        let (time, force) = (cut.record.time(), cut.record.force());
-        let number = |value: f64| Document::Number(value);
-        let count = |value: usize| Document::Integer(value as i64);
-        let row = |segment: &Segment| -> Fields {
-            let last = segment.end - 1;
-            let at =
-                |index: usize| cut.record.displacement().map_or(Document::Null(()), |values| number(values[index]));
-            let cells = [
-                ("phase", word(segment.phase)),
-                ("start_s", number(time[segment.start])),
-                ("end_s", number(time[last])),
-                ("first_row", count(segment.start)),
-                ("last_row", count(last)),
-                ("mode", segment.mode.map_or(Document::Null(()), word)),
-                ("after", segment.after.map_or(Document::Null(()), word)),
-                ("displacement_start_m", at(segment.start)),
-                ("displacement_end_m", at(last)),
-                ("force_start_n", number(force[segment.start])),
-                ("force_end_n", number(force[last])),
-            ];
-            cells.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
-        };
-        let rows: Vec<Fields> = found.segments.iter().map(row).collect();
-        Table::of_documents(&rows)
+        let (time, displacement, force) = (cut.record.time(), cut.record.displacement(), cut.record.force());
+        let at = |index: usize| displacement.map(|values| values[index]);
+        Table::of(columns!(found.segments, segment =>
+            phase = phase_word(segment.phase), start_s = time[segment.start], end_s = time[segment.end - 1],
+            first_row = segment.start, last_row = segment.end - 1, mode = segment.mode.map(word),
+            after = segment.after.map(after_word), displacement_start_m = at(segment.start),
+            displacement_end_m = at(segment.end - 1), force_start_n = force[segment.start],
+            force_end_n = force[segment.end - 1]
+        ))
     }
 
     /// Phases, strains, laws for every hold, findings: the study of ``palpate analyze``.
@@ -502,15 +360,15 @@ impl Record {
         fit_until_s: Option<f64>,
         compare: bool,
     ) -> PyResult<Analysis> {
-        let (input, options) = self.described_by(test)?;
-        let asked = Asked {
+        let job = Analyze {
             exponents,
             free_exponent,
             confidence,
             fit_until_s,
             compare,
+            ..Analyze::default()
         };
-        Analysis::of(py, self.record.clone(), asked.over(options)?, input)
+        Analysis::of(py, self.measured(test)?, job)
     }
 
     /// One set of numbers for the whole record, ramps and holds alike: what ``palpate calibrate`` finds.
@@ -599,16 +457,75 @@ impl Record {
         confidence: Option<f64>,
         profile: bool,
     ) -> PyResult<Calibration> {
-        let (input, options) = self.described_by(test)?;
-        let wanted = Wanted {
-            laws: laws(law, rivals)?,
-            equilibrium: equilibrium_law(equilibrium, poisson_ratio)?,
-            rate: rate_law(rate)?,
-            profile,
-            fit_until: fit_until_s,
-            confidence: coverage(confidence.unwrap_or(options.fit.confidence))?,
+        let usual = Calibrate::default();
+        let law = files::law(law)?;
+        let rivals = match rivals {
+            Some(rivals) => {
+                let names = rivals.extract::<Vec<String>>().map_err(|_| {
+                    refused_plainly::<OptionError>(format!("rivals: expected a list of laws, found {rivals:?}"))
+                })?;
+                names.iter().map(|name| files::law(name)).collect::<PyResult<_>>()?
+            }
+            None => usual.rivals,
         };
-        Calibration::of(py, self.record.clone(), options, input, wanted)
+        let job = Calibrate {
+            law,
+            rivals: rivals.into_iter().filter(|rival| *rival != law).collect(),
+            equilibrium: choice("equilibrium", &["even-strain", "hertz", "table"], equilibrium)?,
+            poisson_ratio,
+            rate: choice("rate", &["constant", "by-strain", "by-direction"], rate)?,
+            fit_until_s,
+            profile,
+            confidence,
+        };
+        Calibration::of(py, self.measured(test)?, job)
+    }
+
+    /// Which law predicts the holds of the record, how sure that is, and what another would cost: what ``palpate compare`` finds.
+    ///
+    /// Parameters
+    /// ----------
+    /// test : path, mapping or Material, optional
+    ///     A test description in place of that of the record.
+    /// laws : sequence of str, optional
+    ///     Laws to compare; all that suit if left out.
+    /// cuts : sequence of float, optional
+    ///     Parts of a hold that are fitted to predict the rest, as shares of its duration.
+    /// creep : bool
+    ///     Whether laws of creep are compared: displacement in holds of constant force.
+    /// fit_until_s : float, optional
+    ///     Compare only over this long from the start of each hold, s.
+    ///
+    /// Returns
+    /// -------
+    /// RecordComparison
+    ///
+    /// Raises
+    /// ------
+    /// RecordError
+    ///     No hold to compare on.
+    /// OptionError
+    ///     A law that is none, or has no such form.
+    #[pyo3(signature = (*, test=None, laws=None, cuts=None, creep=false, fit_until_s=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn compare(
+        &self,
+        py: Python<'_>,
+        test: Option<&Bound<'_, PyAny>>,
+        laws: Option<Vec<String>>,
+        cuts: Option<Vec<f64>>,
+        creep: bool,
+        fit_until_s: Option<f64>,
+    ) -> PyResult<RecordComparison> {
+        let laws = laws.map(|laws| laws.iter().map(|name| files::law(name)).collect::<PyResult<_>>()).transpose()?;
+        let question = Compare {
+            laws,
+            cuts,
+            creep,
+            fit_until_s,
+            ..Compare::default()
+        };
+        RecordComparison::of(py, self.measured(test)?, question)
     }
 
     /// Columns `time_s`, `displacement_m` and `force_n` as a table.
@@ -641,10 +558,11 @@ impl Record {
     }
 }
 
-/// The word of the library for one of its choices, as its documents write it.
-fn word(choice: impl Serialize) -> Document {
-    match serde_json::to_value(choice) {
-        Ok(serde_json::Value::String(word)) => Document::Text(word),
-        _ => Document::Null(()),
+/// The word of the library for what is held.
+fn word(mode: HoldMode) -> &'static str {
+    match mode {
+        HoldMode::DisplacementHeld => "displacement_held",
+        HoldMode::ForceHeld => "force_held",
+        HoldMode::Neither => "neither",
     }
 }

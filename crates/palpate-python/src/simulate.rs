@@ -7,6 +7,7 @@ use arrow_array::{ArrayRef, BooleanArray, Float64Array};
 use numpy::PyArray1;
 use palpate::simulate::{ContactEventKind, Trajectory as Simulated, simulate as walk};
 use palpate_files::description::{parse_protocol, read_protocol};
+use palpate_report::study::write_trajectory;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
@@ -29,7 +30,7 @@ pub(crate) fn simulate(py: Python<'_>, path: Option<PathBuf>, text: Option<&str>
         None => parse_protocol(text.unwrap_or_default(), Path::new("protocol")),
     };
     let protocol = protocol.map_err(undescribed)?;
-    let series = at_length(py, move || walk(protocol.drive(), &protocol.contact, &protocol.sampling))?;
+    let series = at_length(py, move |_| walk(protocol.drive(), &protocol.contact, &protocol.sampling))?;
     Ok(Trajectory {
         series: series.map_err(refused_plainly::<ModelError>)?,
     })
@@ -120,6 +121,13 @@ impl Trajectory {
 
     fn __len__(&self) -> usize {
         self.series.len()
+    }
+
+    /// All series as the CSV that ``palpate simulate`` prints.
+    fn to_csv(&self) -> PyResult<String> {
+        let mut out = Vec::new();
+        write_trajectory(&mut out, &self.series)?;
+        Ok(String::from_utf8(out)?)
     }
 
     /// All series as a table.

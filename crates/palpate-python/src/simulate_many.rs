@@ -1,23 +1,24 @@
 //! One protocol with many numbers.
 
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use arrow_array::{ArrayRef, FixedSizeListArray, Float64Array, Int64Array, StringArray};
 use arrow_schema::{DataType, Field};
 use palpate::simulate::{Sampling, simulate};
+use palpate::watch::{Cancelled, Progress};
 use palpate_files::description::{DescriptionError, parse_runs};
 use palpate_files::parquet_table::{Rows, Values};
+use palpate_jobs::{sweep_fields, sweep_rows};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::arrays::doubles;
-use crate::errors::{ModelError, refused_plainly, undescribed};
+use crate::errors::{ModelError, PalpateError, refused_plainly, undescribed};
 use crate::table::Table;
-use crate::work::{Progress, at_length_told};
+use crate::work::{Heard, at_length_told};
 
 /// Runs that are the work of one thread at a time.
 const SHARE: u64 = 16;
@@ -53,27 +54,19 @@ pub(crate) fn simulate_many(
         simulate(base.drive(), &base.contact, &Sampling::Times(times.clone()))
             .map_err(refused_plainly::<ModelError>)?;
     }
-    let (progress, stopped) = (Progress::of(progress), Arc::new(AtomicBool::new(false)));
-    let (told, stop) = (progress.clone(), Arc::clone(&stopped));
-    let fields = palpate_jobs::sweep_fields(&sweep);
-    let work = move || {
-        let shares = (0..sweep.runs().div_ceil(SHARE)).into_par_iter().map(|share| {
+    let fields = sweep_fields(&sweep);
+    let samples = times.as_ref().map_or(0, Vec::len);
+    let work = move |heard: Heard| {
+        let share = |share: u64| {
             let runs = share * SHARE..((share + 1) * SHARE).min(sweep.runs());
-            if stop.load(Ordering::Relaxed) {
-                return (Vec::new(), Vec::new());
-            }
-            let mut watch = |_: palpate::watch::Progress<'_>| {
-                told.step();
-                if stop.load(Ordering::Relaxed) { Err(palpate::watch::Cancelled) } else { Ok(()) }
-            };
             let times = times.as_deref().unwrap_or_default();
-            palpate_jobs::sweep_rows(&sweep, Path::new(&path), runs, times, &mut watch)
-                .map_or_else(|_| (Vec::new(), Vec::new()), |(Rows { columns }, forces)| (columns, forces))
-        });
-        (shares.collect::<Vec<_>>(), times.map_or(0, |times| times.len()))
+            let (Rows { columns }, forces) =
+                sweep_rows(&sweep, &path, runs, times, &mut |_: Progress<'_>| heard.step())?;
+            Ok((columns, forces))
+        };
+        (0..sweep.runs().div_ceil(SHARE)).into_par_iter().map(share).collect::<Result<Vec<_>, Cancelled>>()
     };
-    let done = at_length_told(py, &progress, work).inspect_err(|_| stopped.store(true, Ordering::Relaxed))?;
-    let (shares, samples) = done;
+    let shares = at_length_told(py, progress, work)?.map_err(refused_plainly::<PalpateError>)?;
     let columns = fields.iter().enumerate().map(|(index, field)| {
         let parts = shares.iter().filter_map(|(columns, _)| columns.get(index));
         (field.name.as_str(), joined(parts))

@@ -16,7 +16,6 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyType};
 use pyo3_arrow::PyTable;
 
-use crate::document::{Document, Fields};
 use crate::work::Made;
 
 /// Columns of results, each named with its unit.
@@ -46,52 +45,47 @@ impl Table {
             .map_err(|error: ArrowError| PyRuntimeError::new_err(error.to_string()))?;
         Ok(Self { batch })
     }
+}
 
-    /// From documents: the columns are the fields that stand in any of them, in order.
-    pub(crate) fn of_documents(rows: &[Fields]) -> PyResult<Self> {
-        let mut names: Vec<&str> = Vec::new();
-        for name in rows.iter().flat_map(Fields::keys) {
-            if !names.contains(&name.as_str()) {
-                names.push(name);
+/// What a column of a table is made of.
+pub(crate) trait Column: Sized {
+    /// The values of all rows as one column.
+    fn column(values: impl Iterator<Item = Self>) -> ArrayRef;
+}
+
+macro_rules! column {
+    ($($of:ty => $array:ident, $value:ident: $cell:expr;)*) => {$(
+        impl Column for $of {
+            fn column(values: impl Iterator<Item = Self>) -> ArrayRef {
+                Arc::new(values.map(|$value| $cell).collect::<$array>())
             }
         }
-        let column = |name: &str| -> ArrayRef {
-            let cells = || rows.iter().map(|row| row.get(name).unwrap_or(&Document::Null(())));
-            let found = |kind: fn(&Document) -> bool| cells().any(kind);
-            let texts = found(|cell| matches!(cell, Document::Text(_)));
-            let truths = found(|cell| matches!(cell, Document::Bool(_)));
-            let numbers = found(|cell| matches!(cell, Document::Number(_)));
-            let integers = found(|cell| matches!(cell, Document::Integer(_)));
-            if texts {
-                let text = |cell: &Document| match cell {
-                    Document::Text(text) => Some(text.clone()),
-                    _ => None,
-                };
-                Arc::new(cells().map(text).collect::<StringArray>())
-            } else if truths {
-                let truth = |cell: &Document| match cell {
-                    Document::Bool(truth) => Some(*truth),
-                    _ => None,
-                };
-                Arc::new(cells().map(truth).collect::<BooleanArray>())
-            } else if integers && !numbers {
-                let integer = |cell: &Document| match cell {
-                    Document::Integer(value) => Some(*value),
-                    _ => None,
-                };
-                Arc::new(cells().map(integer).collect::<Int64Array>())
-            } else {
-                let number = |cell: &Document| match cell {
-                    Document::Number(value) => Some(*value),
-                    Document::Integer(value) => Some(*value as f64),
-                    _ => None,
-                };
-                Arc::new(cells().map(number).collect::<Float64Array>())
-            }
-        };
-        Self::of(names.iter().map(|name| (*name, column(name))).collect())
-    }
+    )*};
 }
+column! {
+    f64 => Float64Array, value: Some(value);
+    Option<f64> => Float64Array, value: value;
+    usize => Int64Array, value: Some(value as i64);
+    Option<usize> => Int64Array, value: value.map(|value| value as i64);
+    bool => BooleanArray, value: Some(value);
+    String => StringArray, value: Some(value);
+    Option<String> => StringArray, value: value;
+    &str => StringArray, value: Some(value);
+    Option<&str> => StringArray, value: value;
+}
+
+/// Columns of rows: the fields of each, or an expression of it, by the name of the column.
+macro_rules! columns {
+    (@ $row:ident, $name:ident) => { $row.$name.clone() };
+    (@ $row:ident, $name:ident, $value:expr) => { $value };
+    ($rows:expr, $row:ident => $($name:ident $(= $value:expr)?),* $(,)?) => {
+        vec![$((
+            stringify!($name),
+            $crate::table::Column::column($rows.iter().map(|$row| $crate::table::columns!(@ $row, $name $(, $value)?))),
+        )),*]
+    };
+}
+pub(crate) use columns;
 
 /// Rows that a notebook shows of each end of a table.
 const ENDS: usize = 5;

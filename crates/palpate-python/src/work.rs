@@ -2,22 +2,42 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
+use palpate::watch::{Cancelled, Progress, Watch};
+use palpate_jobs::JobError;
 use pyo3::PyTypeInfo;
 use pyo3::prelude::*;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 
-use crate::errors::{PalpateError, refused, refused_plainly};
+use crate::errors::{PalpateError, failed, refused, refused_plainly};
 
 /// How often signals are looked for.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// What makes an object again: a function and its arguments.
 pub(crate) type Made<'py, T> = (Bound<'py, PyAny>, T);
+
+/// A document as plain objects.
+pub(crate) fn plain<'py>(py: Python<'py>, document: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let json = serde_json::to_string(document).map_err(refused_plainly::<PalpateError>)?;
+    py.import("json")?.call_method1("loads", (json,))
+}
+
+/// A document as the command prints it.
+pub(crate) fn printed(document: &impl Serialize) -> PyResult<String> {
+    let text = serde_json::to_string_pretty(document).map_err(refused_plainly::<PalpateError>)?;
+    Ok(text + "\n")
+}
+
+/// What an object was made of, from its pickle.
+pub(crate) fn unpickled<T: DeserializeOwned>(json: &str) -> PyResult<T> {
+    serde_json::from_str(json).map_err(refused_plainly::<PalpateError>)
+}
 
 /// What makes an object again from its parts as JSON: `_from_json` of its class.
 pub(crate) fn made_again<'py, T: PyTypeInfo>(
@@ -28,33 +48,25 @@ pub(crate) fn made_again<'py, T: PyTypeInfo>(
     Ok((py.get_type::<T>().getattr("_from_json")?, (json,)))
 }
 
-/// How much of some work is done, for those who wait for it.
+/// The watch of work on a thread of its own: it says how much is done, and hears whether it is to end.
 #[derive(Clone, Default)]
-pub(crate) struct Progress {
+pub(crate) struct Heard {
     done: Arc<AtomicU64>,
-    /// Called with how much is done, or nobody.
-    tell: Option<Arc<Py<PyAny>>>,
+    stop: Arc<AtomicBool>,
 }
 
-impl Progress {
-    /// Tells a callable of Python, or nobody.
-    pub(crate) fn of(tell: Option<Py<PyAny>>) -> Self {
-        Self {
-            done: Arc::default(),
-            tell: tell.map(Arc::new),
-        }
-    }
-
+impl Heard {
     /// One more is done.
-    pub(crate) fn step(&self) {
+    pub(crate) fn step(&self) -> Result<(), Cancelled> {
         self.done.fetch_add(1, Ordering::Relaxed);
+        if self.stop.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
     }
+}
 
-    fn look(&self, py: Python<'_>) -> PyResult<()> {
-        match &self.tell {
-            Some(tell) => tell.call1(py, (self.done.load(Ordering::Relaxed),)).map(drop),
-            None => Ok(()),
-        }
+impl Watch for Heard {
+    fn report(&mut self, progress: Progress<'_>) -> Result<(), Cancelled> {
+        self.done.store(progress.done, Ordering::Relaxed);
+        if self.stop.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
     }
 }
 
@@ -72,23 +84,30 @@ pub(crate) fn briefly<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) 
     py.detach(|| catch_unwind(AssertUnwindSafe(work))).map_err(|panic| broken(panic.as_ref()))
 }
 
-/// Does work of seconds on a thread of its own; Ctrl-C leaves it alone and returns.
-pub(crate) fn at_length<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
-    at_length_told(py, &Progress::default(), work)
+/// Does work of seconds on a thread of its own; Ctrl-C ends it.
+pub(crate) fn at_length<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(Heard) -> T + Send + 'static,
+) -> PyResult<T> {
+    at_length_told(py, None, work)
 }
 
-/// Likewise, and tells how much is done.
+/// Likewise, and calls `tell` with how much is done; an exception of it ends the work too.
 pub(crate) fn at_length_told<T: Send + 'static>(
     py: Python<'_>,
-    progress: &Progress,
-    work: impl FnOnce() -> T + Send + 'static,
+    tell: Option<Py<PyAny>>,
+    work: impl FnOnce(Heard) -> T + Send + 'static,
 ) -> PyResult<T> {
-    let (sender, receiver) = channel();
+    let (heard, (sender, mut receiver)) = (Heard::default(), channel());
+    let (stop, done) = (Arc::clone(&heard.stop), Arc::clone(&heard.done));
     thread::spawn(move || {
         // Nobody listens any more after Ctrl-C.
-        let _ = sender.send(catch_unwind(AssertUnwindSafe(work)));
+        let _ = sender.send(catch_unwind(AssertUnwindSafe(|| work(heard))));
     });
-    let mut receiver = receiver;
+    let look = || match &tell {
+        Some(tell) => tell.call1(py, (done.load(Ordering::Relaxed),)).map(drop),
+        None => Ok(()),
+    };
     loop {
         let (back, waited) = py.detach(move || {
             let waited = receiver.recv_timeout(LOOK);
@@ -97,14 +116,21 @@ pub(crate) fn at_length_told<T: Send + 'static>(
         receiver = back;
         match waited {
             Ok(done) => {
-                progress.look(py)?;
+                look()?;
                 return done.map_err(|panic| broken(panic.as_ref()));
             }
             Err(RecvTimeoutError::Timeout) => {
-                py.check_signals()?;
-                progress.look(py)?;
+                py.check_signals().and_then(|()| look()).inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
             }
             Err(RecvTimeoutError::Disconnected) => return Err(broken(&"the work ended without a result")),
         }
     }
+}
+
+/// Runs a job; Ctrl-C ends it.
+pub(crate) fn job<T: Send + 'static>(
+    py: Python<'_>,
+    run: impl FnOnce(&mut dyn Watch) -> Result<T, JobError> + Send + 'static,
+) -> PyResult<T> {
+    at_length(py, move |mut heard| run(&mut heard))?.map_err(failed)
 }

@@ -150,7 +150,7 @@ def test_all_tests_of_a_file_are_read(tmp_path: Path) -> None:
     path = tmp_path / "long.parquet"
     pyarrow.parquet.write_table(table, path)
     first, second = palpate.read_all(path)
-    assert (first.title, second.title) == ("long, a", "long, b")
+    assert (first.title, second.title) == ("long · a", "long · b")
     assert second.force_n[0] == 3.0 and second == palpate.read(path, part="b")
     with pytest.raises(palpate.RecordError, match="expected one test, found 2"):
         palpate.read(path)

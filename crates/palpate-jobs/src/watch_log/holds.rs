@@ -2,6 +2,7 @@
 
 use palpate::fit::Estimate;
 use palpate::observe::{ContactPhase, Held, Observation, Slip};
+use palpate_report::document::{ObservationDocument, WatchDocument, WatchedHoldDocument};
 
 /// Something that happens.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +15,20 @@ pub enum Event {
     Ended(f64, HoldSeen),
     /// Slip is near, or there.
     Warned(Observation),
+}
+
+impl Event {
+    /// The line of `palpate.watch/1` that tells of it.
+    #[must_use]
+    pub fn document(&self) -> WatchDocument {
+        let observation = |event, seen| WatchDocument::Observation(ObservationDocument::new(event, seen));
+        match self {
+            Self::Began(seen) => observation("hold_begins", seen),
+            Self::Changed(seen) => observation("hold_changes", seen),
+            Self::Ended(time, hold) => WatchDocument::Hold(hold.document().ended(*time)),
+            Self::Warned(seen) => observation("warning", seen),
+        }
+    }
 }
 
 /// A hold as it was seen.
@@ -91,6 +106,17 @@ impl Holds {
 }
 
 impl HoldSeen {
+    /// The hold in a line of `palpate.watch/1`.
+    #[must_use]
+    pub fn document(&self) -> WatchedHoldDocument {
+        WatchedHoldDocument {
+            warned_s: self.warned,
+            slipped_s: self.slipped,
+            ..WatchedHoldDocument::new(self.held, (self.since, self.until), self.forces)
+        }
+        .with_last(self.equilibrium, self.creep)
+    }
+
     fn follow(&mut self, seen: &Observation, held: Held) {
         self.ticks[usize::from(held == Held::Force)] += 1;
         self.held = if self.ticks[1] > self.ticks[0] { Held::Force } else { Held::Displacement };

@@ -10,6 +10,7 @@ use palpate::observe::{Observation, ObserveError, Observer, ObserverOptions};
 use palpate::record::Record;
 use palpate::watch::{Progress, Watch};
 use palpate_files::description::MaterialFile;
+use palpate_report::document::{ObservationDocument, WatchDocument};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -58,6 +59,18 @@ pub enum Seen {
     Event(Event),
     /// A sample, and whether it is one of those to be reported.
     Tick(Observation, bool),
+}
+
+impl Seen {
+    /// The line of `palpate.watch/1` that tells of it; none of what is not reported.
+    #[must_use]
+    pub fn document(&self) -> Option<WatchDocument> {
+        match self {
+            Self::Event(event) => Some(event.document()),
+            Self::Tick(seen, true) => Some(WatchDocument::Observation(ObservationDocument::new("tick", seen))),
+            Self::Next(_) | Self::Tick(_, false) => None,
+        }
+    }
 }
 
 /// Ticks between two reports to the watch.

@@ -21,6 +21,7 @@ from typing import Any, Union
 import numpy as np
 
 from palpate import laws
+from palpate._files import batch, convert, inspect, reproduce, sweep, watch
 from palpate._palpate import (
     Analysis,
     BackOff,
@@ -44,6 +45,7 @@ from palpate._palpate import (
     PalpateWarning,
     Prediction,
     Record,
+    RecordComparison,
     RecordError,
     Schedule,
     Table,
@@ -79,18 +81,25 @@ __all__ = [
     "PalpateWarning",
     "Prediction",
     "Record",
+    "RecordComparison",
     "RecordError",
     "Schedule",
     "Table",
     "Trajectory",
+    "batch",
     "compare",
+    "convert",
     "fit_hold",
     "fit_many",
+    "inspect",
     "laws",
     "read",
     "read_all",
+    "reproduce",
     "simulate",
     "simulate_many",
+    "sweep",
+    "watch",
 ]
 
 #: Lower and upper end of what a number may be; None leaves an end open.

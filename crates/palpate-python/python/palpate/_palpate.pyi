@@ -30,23 +30,31 @@ __all__ = [
     "PalpateWarning",
     "Prediction",
     "Record",
+    "RecordComparison",
     "RecordError",
     "Schedule",
     "Table",
     "Trajectory",
+    "batch",
     "command",
     "compare",
+    "convert",
     "fit_hold",
     "fit_many",
+    "inspect",
     "latency",
     "law_names",
     "read",
+    "reproduce",
     "simulate",
     "simulate_many",
+    "sweep",
+    "watch",
 ]
 
 _Doubles: TypeAlias = NDArray[np.float64]
 _Path: TypeAlias = str | os.PathLike[str]
+_Said: TypeAlias = tuple[_Path | None, str | None]
 _Described: TypeAlias = _Path | Mapping[str, Any] | Material
 # Numbers are arrays, texts and truths are lists; which of them only the name of the column tells.
 _Cells: TypeAlias = Any
@@ -121,6 +129,15 @@ class Record:
         fit_until_s: float | None = None,
         compare: bool = True,
     ) -> Analysis: ...
+    def compare(
+        self,
+        *,
+        test: _Described | None = None,
+        laws: Sequence[str] | None = None,
+        cuts: Sequence[float] | None = None,
+        creep: bool = False,
+        fit_until_s: float | None = None,
+    ) -> RecordComparison: ...
     def calibrate(
         self,
         *,
@@ -572,6 +589,7 @@ class Prediction:
     def extrapolations(self) -> list[str]: ...
     @property
     def trajectory(self) -> Trajectory: ...
+    def to_csv(self) -> str: ...
     def to_arrow(self) -> Table: ...
     def _repr_html_(self) -> str: ...
     def __len__(self) -> int: ...
@@ -668,6 +686,19 @@ class Comparison:
     __hash__: None  # type: ignore[assignment]
 
 @final
+class RecordComparison:
+    @property
+    def laws(self) -> Table: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def to_json(self) -> str: ...
+    @classmethod
+    def _from_json(cls, json: str) -> Self: ...
+    def __reduce__(self) -> tuple[Any, tuple[str]]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
+
+@final
 class Trajectory:
     @property
     def time_s(self) -> _Doubles: ...
@@ -689,6 +720,7 @@ class Trajectory:
     def in_contact(self) -> NDArray[np.bool_]: ...
     @property
     def events(self) -> list[tuple[str, float, float]]: ...
+    def to_csv(self) -> str: ...
     def to_arrow(self) -> Table: ...
     def __len__(self) -> int: ...
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
@@ -776,3 +808,33 @@ def simulate_many(
     times_s: ArrayLike | None,
     progress: Callable[[int], None] | None,
 ) -> Table: ...
+def inspect(path: _Path, said: _Said, part: str | None) -> str: ...
+def convert(path: _Path, out: _Path, said: _Said, part: str | None) -> None: ...
+def batch(
+    paths: Sequence[_Path],
+    out: _Path,
+    said: _Said,
+    laws: Sequence[str] | None,
+    fit_until_s: float | None,
+    restart: bool,
+    progress: Callable[[int], None] | None,
+) -> tuple[int, list[str]]: ...
+def sweep(
+    path: _Path,
+    out: _Path,
+    figure: _Path | None,
+    show: str | None,
+    restart: bool,
+    progress: Callable[[int], None] | None,
+) -> tuple[int, int]: ...
+def reproduce(folder: _Path, png: bool) -> bool: ...
+def watch(
+    path: _Path,
+    said: _Said,
+    part: str | None,
+    material: _Path | None,
+    exponent: float | None,
+    slip_force_n: float | None,
+    warn_before_s: float | None,
+    every_s: float | None,
+) -> list[dict[str, Any]]: ...

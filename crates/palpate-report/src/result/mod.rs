@@ -26,5 +26,7 @@ pub(crate) use grip_sentences::lasted;
 pub use gripped::GrippedBody;
 pub use input::Input;
 pub use reproduced::{Check, ReproducedTest, Reproduction};
-pub(crate) use words::{after_word, certainty_word, hold_start_word, percent, phase_word};
-pub use words::{held_word, mode_word, slip_word, slips_word, termination_word, watched_phase_word};
+pub use words::{
+    after_word, held_word, mode_word, phase_word, slip_word, slips_word, termination_word, watched_phase_word,
+};
+pub(crate) use words::{certainty_word, hold_start_word, percent};

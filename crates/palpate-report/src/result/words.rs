@@ -8,7 +8,8 @@ use palpate::observe::{ContactPhase, Held, Slip, SlipForecast};
 use palpate::segment::{After, HoldMode, HoldStart, Phase};
 
 /// The word for a phase.
-pub(crate) fn phase_word(phase: Phase) -> &'static str {
+#[must_use]
+pub fn phase_word(phase: Phase) -> &'static str {
     match phase {
         Phase::Rest => "rest",
         Phase::Loading => "loading",
@@ -18,7 +19,8 @@ pub(crate) fn phase_word(phase: Phase) -> &'static str {
 }
 
 /// The word for what came before a hold.
-pub(crate) fn after_word(after: After) -> &'static str {
+#[must_use]
+pub fn after_word(after: After) -> &'static str {
     match after {
         After::Loading => "loading",
         After::Unloading => "unloading",

@@ -1,0 +1,130 @@
+"""Every job says the same through both front ends, to the last byte."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import palpate
+import pytest
+from conftest import ROOT
+
+RECORD, TEST = "examples/records/ball.csv", "examples/records/ball.toml"
+MATERIAL = "examples/records/ball-material.toml"
+
+pytestmark = pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
+
+
+@pytest.fixture(autouse=True)
+def _in_the_root(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Documents name their files as they were given."""
+    monkeypatch.chdir(ROOT)
+
+
+def command(*arguments: str | Path) -> str:
+    ran = subprocess.run([sys.executable, "-m", "palpate", *map(str, arguments)], capture_output=True, check=False)
+    assert ran.returncode in (0, 1), ran.stderr.decode()
+    return ran.stdout.decode()
+
+
+def record() -> palpate.Record:
+    return palpate.read(RECORD, test=TEST)
+
+
+def test_inspect() -> None:
+    assert palpate.inspect(RECORD, test=TEST) == command("inspect", RECORD, "--test", TEST)
+
+
+def test_analyze() -> None:
+    assert record().analyze().to_json() == command("analyze", RECORD, "--test", TEST, "--format", "json")
+
+
+def test_compare() -> None:
+    laws = ["latency", "maxwell"]
+    its = command("compare", RECORD, "--test", TEST, "--laws", ",".join(laws), "--format", "json")
+    assert record().compare(laws=laws).to_json() == its
+
+
+def test_calibrate(tmp_path: Path) -> None:
+    its = command("calibrate", RECORD, "--test", TEST, "--out", tmp_path / "its.toml", "--format", "json")
+    calibration = record().calibrate()
+    assert calibration.to_json() == its
+    calibration.material.write(tmp_path / "own.toml")
+    assert (tmp_path / "own.toml").read_bytes() == (tmp_path / "its.toml").read_bytes()
+
+
+def test_predict(tmp_path: Path) -> None:
+    protocol = tmp_path / "protocol.toml"
+    protocol.write_text('[[step]]\nto = "5 mm"\nrate = "500 mm/min"\nhold = "10 s"\n')
+    command("predict", MATERIAL, "--protocol", protocol, "--out", tmp_path / "its.csv")
+    own = palpate.Material.read(MATERIAL).predict(protocol).to_csv()
+    assert own.encode() == (tmp_path / "its.csv").read_bytes()
+
+
+def test_grip() -> None:
+    its = command("grip", MATERIAL, "--mass", "250 g", "--friction", "0.6", "--squeeze", "5 mm", "--format", "json")
+    assert palpate.Material.read(MATERIAL).grip(mass_kg=0.25, friction=0.6, squeeze_m=0.005).to_json() == its
+
+
+def test_watch() -> None:
+    its = command("watch", RECORD, "--test", TEST, "--slip-force", "2 N", "--format", "jsonl")
+    own = [json.dumps(line, separators=(",", ":")) for line in palpate.watch(RECORD, test=TEST, slip_force_n=2.0)]
+    assert own == [json.dumps(json.loads(line), separators=(",", ":")) for line in its.splitlines()]
+
+
+def test_simulate(tmp_path: Path) -> None:
+    protocol = "examples/protocols/hold.toml"
+    command("simulate", protocol, "--out", tmp_path / "its.csv")
+    assert palpate.simulate(protocol).to_csv().encode() == (tmp_path / "its.csv").read_bytes()
+
+
+SWEEP = """
+[specimen]
+shape = "ball"
+radius = "35 mm"
+modulus = "28 kPa"
+[law]
+name = "latency"
+exponent = 5
+rate_coefficient = "2e4 /s"
+[[step]]
+to = "5 mm"
+rate = "500 mm/min"
+hold = "10 s"
+[sweep]
+"law.exponent" = [3, 5, 7]
+"""
+
+
+def test_sweep(tmp_path: Path) -> None:
+    protocol = tmp_path / "sweep.toml"
+    protocol.write_text(SWEEP)
+    command("sweep", protocol, "--out", tmp_path / "its.parquet")
+    assert palpate.sweep(protocol, tmp_path / "own.parquet") == (3, 0)
+    assert (tmp_path / "own.parquet").read_bytes() == (tmp_path / "its.parquet").read_bytes()
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+def test_batch(tmp_path: Path, ending: str) -> None:
+    command("batch", RECORD, "--test", TEST, "--out", tmp_path / f"its.{ending}")
+    rows, failures = palpate.batch([RECORD], tmp_path / f"own.{ending}", test=TEST)
+    assert rows > 0 and failures == []
+    assert (tmp_path / f"own.{ending}").read_bytes() == (tmp_path / f"its.{ending}").read_bytes()
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet", "json"])
+def test_convert(tmp_path: Path, ending: str) -> None:
+    command("convert", RECORD, "--test", TEST, "--out", tmp_path / f"its.{ending}")
+    own = palpate.convert(RECORD, tmp_path / f"own.{ending}", test=TEST)
+    assert own.read_bytes() == (tmp_path / f"its.{ending}").read_bytes()
+
+
+def test_reproduce(tmp_path: Path) -> None:
+    command("reproduce", "--out", tmp_path / "its")
+    assert palpate.reproduce(tmp_path / "own")
+    files = sorted(path.relative_to(tmp_path / "its") for path in (tmp_path / "its").rglob("*") if path.is_file())
+    assert files == sorted(path.relative_to(tmp_path / "own") for path in (tmp_path / "own").rglob("*") if path.is_file())
+    for file in files:
+        assert (tmp_path / "own" / file).read_bytes() == (tmp_path / "its" / file).read_bytes(), file
