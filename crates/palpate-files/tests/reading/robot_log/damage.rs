@@ -1,11 +1,11 @@
 //! Logs that are cut off, overwritten, or lie about lengths: an answer or an error, soon, and never a panic.
 
-use mcap::{Compression, WriteOptions};
+use mcap::WriteOptions;
 use palpate_files::FileError;
 
 use super::{
     look,
-    writing::{Cdr, Log, START, gripper, joint_state, wrench},
+    writing::{Cdr, Log, Packing, START, gripper, joint_state, wrench},
 };
 
 /// A small log of two topics.
@@ -22,9 +22,9 @@ fn small(mut log: Log) -> Vec<u8> {
 
 fn ways() -> [(&'static str, Log); 4] {
     [
-        ("plain", Log::packed(None)),
-        ("zstd", Log::packed(Some(Compression::Zstd))),
-        ("lz4", Log::packed(Some(Compression::Lz4))),
+        ("plain", Log::chunked()),
+        ("zstd", Log::chunked().packed(Packing::Zstd)),
+        ("lz4", Log::chunked().packed(Packing::Lz4)),
         ("no chunks", Log::new(WriteOptions::new().use_chunks(false))),
     ]
 }
@@ -45,7 +45,7 @@ fn a_log_cut_off_anywhere_is_refused_with_the_place() {
             assert!(all(&whole[..length]).is_err(), "{way}, {length} of {} bytes", whole.len());
         }
     }
-    let whole = gripper(Log::packed(Some(Compression::Zstd)));
+    let whole = gripper(Log::chunked().packed(Packing::Zstd));
     let error = all(&whole[..whole.len() / 2]).unwrap_err();
     let text = error.to_string();
     assert!(text.contains("record at byte ") && text.contains("expected a whole log"), "{text}");
@@ -69,8 +69,10 @@ fn a_byte_that_is_wrong_anywhere_is_noticed() {
 
 #[test]
 fn checksums_are_checked() {
-    for compression in [None, Some(Compression::Zstd), Some(Compression::Lz4)] {
-        let mut log = Log::new(WriteOptions::new().compression(compression)).wrenches("/ft");
+    for packing in [None, Some(Packing::Zstd), Some(Packing::Lz4)] {
+        let mut log = packing
+            .map_or_else(|| Log::new(WriteOptions::new()), |packing| Log::new(WriteOptions::new()).packed(packing))
+            .wrenches("/ft");
         for step in 0..50 {
             log.say("/ft", START + step, &wrench(true, START + step, 1.0 + step as f64 * 0.37));
         }
@@ -124,7 +126,7 @@ fn lengths_that_lie_cost_no_memory() {
 
 #[test]
 fn counts_inside_messages_that_lie_skip_the_topic() {
-    let mut log = Log::packed(None).joints("/joint_states").wrenches("/ft");
+    let mut log = Log::chunked().joints("/joint_states").wrenches("/ft");
     log.say("/ft", START, &wrench(true, START, 1.0));
     log.say("/joint_states", START, &Cdr::new(true).header(START).u32(u32::MAX).bytes());
     let contents = look(&log.finish()).unwrap();
@@ -134,6 +136,6 @@ fn counts_inside_messages_that_lie_skip_the_topic() {
 
 #[test]
 fn a_log_of_nothing_is_no_test() {
-    let empty = Log::packed(None).finish();
+    let empty = Log::chunked().finish();
     assert!(matches!(look(&empty).unwrap_err(), FileError::NoParts { .. }));
 }

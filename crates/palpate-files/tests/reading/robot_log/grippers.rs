@@ -16,7 +16,7 @@ fn travel(log: &[u8], test: &str) -> Vec<f64> {
 
 /// A log of joints and of a wrench, at the same times.
 fn joints(joints_at: impl Fn(f64) -> Vec<(&'static str, f64)>) -> Vec<u8> {
-    let mut log = Log::packed(None).joints("/gripper/joint_states").wrenches("/ft");
+    let mut log = Log::chunked().joints("/gripper/joint_states").wrenches("/ft");
     for step in 0..5_u64 {
         let time = START + step * 10 * MS;
         log.say("/gripper/joint_states", time, &joint_state(time, &joints_at(step as f64), 0.0));
@@ -61,7 +61,7 @@ fn feedback_of_an_action_holds_gap_and_force() {
         MSG: control_msgs/action/GripperCommand_Feedback\nfloat64 position\nfloat64 effort\nbool stalled\nbool reached_goal\n";
     let topic = "/gripper_controller/gripper_cmd/_action/feedback";
     let kind = "control_msgs/action/GripperCommand_FeedbackMessage";
-    let mut log = Log::packed(None).topic(topic, "cdr", (kind, "ros2msg", schema));
+    let mut log = Log::chunked().topic(topic, "cdr", (kind, "ros2msg", schema));
     for step in 0..4_u64 {
         let identified = (0..16).fold(Cdr::new(true), Cdr::u8);
         let message = identified.f64(0.05 - 0.002 * step as f64).f64(3.0 + step as f64).u8(0).u8(u8::from(step == 3));
@@ -83,7 +83,7 @@ fn width_in_mm() {
         "ros2msg",
         "string status\nfloat32 width\nfloat32 speed\nfloat32 force\n",
     );
-    let mut log = Log::packed(None).topic("/wsg/status", "cdr", schema);
+    let mut log = Log::chunked().topic("/wsg/status", "cdr", schema);
     for step in 0..4_u64 {
         let message = Cdr::new(true).text("HOLDING").f32(50.0 - step as f32).f32(0.0).f32(7.5 + step as f32);
         log.say("/wsg/status", START + step * 20 * MS, &message.bytes());

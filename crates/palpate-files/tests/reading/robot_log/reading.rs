@@ -1,6 +1,6 @@
 //! What is in a log, in every way in which it may be written.
 
-use mcap::{Compression, WriteOptions};
+use mcap::WriteOptions;
 use palpate_files::{
     input::Input,
     naming::Quantity,
@@ -11,7 +11,7 @@ use palpate_files::{
 
 use super::{
     names, opened, record, values,
-    writing::{Cdr, Log, START, force_at, gripper, joint_state, wrench},
+    writing::{Cdr, Log, Packing, START, force_at, gripper, joint_state, wrench},
 };
 
 const SAID: &str = r#"
@@ -21,7 +21,7 @@ const SAID: &str = r#"
 
 #[test]
 fn topics_become_columns_with_clocks() {
-    let contents = opened(&gripper(Log::packed(None)));
+    let contents = opened(&gripper(Log::chunked()));
     assert_eq!(contents.format(), Format::RobotLog);
     let part = &contents.parts()[0];
     let expected = [
@@ -58,7 +58,7 @@ fn topics_become_columns_with_clocks() {
 
 #[test]
 fn a_record_is_made_of_two_topics() {
-    let file = record(&gripper(Log::packed(None)), SAID).unwrap();
+    let file = record(&gripper(Log::chunked()), SAID).unwrap();
     let roles: Vec<Role> = file.columns.iter().map(|column| column.role).collect();
     let [displacement, force] = [Quantity::Displacement, Quantity::Force];
     let clocks = [Role::ClockOf(displacement), Role::ClockOf(force)];
@@ -76,12 +76,12 @@ fn a_record_is_made_of_two_topics() {
 
 #[test]
 fn every_way_to_write_it_gives_the_same() {
-    let plain = record(&gripper(Log::packed(None)), SAID).unwrap().record;
+    let plain = record(&gripper(Log::chunked()), SAID).unwrap().record;
     let chunked = || WriteOptions::new().chunk_size(Some(1500));
     let ways = [
-        ("zstd", Log::packed(Some(Compression::Zstd))),
-        ("lz4", Log::packed(Some(Compression::Lz4))),
-        ("one chunk", Log::new(WriteOptions::new().compression(Some(Compression::Zstd)))),
+        ("zstd", Log::chunked().packed(Packing::Zstd)),
+        ("lz4", Log::chunked().packed(Packing::Lz4)),
+        ("one chunk", Log::new(WriteOptions::new()).packed(Packing::Zstd)),
         ("no chunks", Log::new(WriteOptions::new().use_chunks(false))),
         ("no summary", Log::new(chunked().emit_summary_records(false).emit_summary_offsets(false))),
         ("no index", Log::new(chunked().emit_message_indexes(false).emit_chunk_indexes(false))),
@@ -96,7 +96,7 @@ fn every_way_to_write_it_gives_the_same() {
 fn a_packed_log_is_unpacked() {
     use std::io::Write;
     let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
-    packer.write_all(&gripper(Log::packed(None))).unwrap();
+    packer.write_all(&gripper(Log::chunked())).unwrap();
     let input = Input::from_bytes("log.mcap.gz", packer.finish().unwrap()).unwrap();
     let contents = palpate_files::open::Contents::of(input, &Default::default()).unwrap();
     assert_eq!(contents.format(), Format::RobotLog);
@@ -104,7 +104,7 @@ fn a_packed_log_is_unpacked() {
 
 #[test]
 fn a_field_may_be_named_without_its_topic_and_needs_no_name_if_it_is_alone() {
-    let log = gripper(Log::packed(None));
+    let log = gripper(Log::chunked());
     let short = r#"
         columns.displacement = { column = "position[finger]", unit = "m" }
         columns.force.column = "wrench.force.z"
@@ -114,7 +114,7 @@ fn a_field_may_be_named_without_its_topic_and_needs_no_name_if_it_is_alone() {
     let text = error.to_string();
     assert!(text.contains("expected one column of force, found column 9 (/ft.wrench.force.x) and"), "{text}");
 
-    let mut log = Log::packed(None)
+    let mut log = Log::chunked()
         .topic("/gripper/force", "cdr", ("std_msgs/msg/Float32", "ros2msg", "float32 data\n"))
         .topic("/gripper/target_force", "cdr", ("std_msgs/msg/Float32", "ros2msg", "float32 data\n"))
         .joints("/joint_states");
@@ -135,7 +135,7 @@ fn a_field_may_be_named_without_its_topic_and_needs_no_name_if_it_is_alone() {
 
 #[test]
 fn messages_without_stamps_take_the_time_of_the_log() {
-    let mut log = Log::packed(None).wrenches("/ft").wrenches("/sometimes");
+    let mut log = Log::chunked().wrenches("/ft").wrenches("/sometimes");
     for step in 0..4_u64 {
         let time = START + step * 500_000_000;
         log.say("/ft", time, &wrench(false, 0, step as f64));
@@ -153,7 +153,7 @@ fn messages_without_stamps_take_the_time_of_the_log() {
 
 #[test]
 fn two_drivers_on_one_topic_are_two_clocks() {
-    let mut log = Log::packed(None).joints("/joint_states");
+    let mut log = Log::chunked().joints("/joint_states");
     for step in 0..6_u64 {
         let time = START + step * 1_000_000;
         let value = step as f64;
@@ -176,7 +176,7 @@ fn two_drivers_on_one_topic_are_two_clocks() {
 fn json_is_read_like_cdr() {
     let schema = ("sensor_msgs/JointState", "jsonschema", "{}");
     let force = ("geometry_msgs/Wrench", "jsonschema", "{}");
-    let mut log = Log::packed(Some(Compression::Lz4)).topic("/joints", "json", schema).topic("/ft", "json", force);
+    let mut log = Log::chunked().packed(Packing::Lz4).topic("/joints", "json", schema).topic("/ft", "json", force);
     for step in 0..10_u64 {
         let time = START + step * 10_000_000;
         let stamp = format!("{{\"sec\":{},\"nanosec\":{}}}", time / 1_000_000_000, time % 1_000_000_000);
@@ -197,7 +197,7 @@ fn json_is_read_like_cdr() {
 
 #[test]
 fn what_is_not_read_is_listed_with_why() {
-    let mut log = Log::packed(None)
+    let mut log = Log::chunked()
         .wrenches("/ft")
         .topic("/proto", "protobuf", ("foxglove.Log", "protobuf", "x"))
         .topic("/idl", "cdr", ("a/msg/B", "ros2idl", "module a {};"))
@@ -233,7 +233,7 @@ fn what_is_not_read_is_listed_with_why() {
 
 #[test]
 fn a_log_without_numbers_is_no_test() {
-    let mut log = Log::packed(None).topic("/text", "cdr", ("std_msgs/msg/String", "ros2msg", "string data\n"));
+    let mut log = Log::chunked().topic("/text", "cdr", ("std_msgs/msg/String", "ros2msg", "string data\n"));
     log.say("/text", START, &Cdr::new(true).text("hello").bytes());
     let error = super::look(&log.finish()).unwrap_err().to_string();
     assert_eq!(error, "log.mcap: expected a test, found none: /text: no message of it holds a number");
@@ -241,7 +241,7 @@ fn a_log_without_numbers_is_no_test() {
 
 #[test]
 fn a_number_that_is_none_is_refused_where_it_is_used() {
-    let mut log = Log::packed(None).wrenches("/ft");
+    let mut log = Log::chunked().wrenches("/ft");
     for step in 0..10 {
         let force = if step == 4 { f64::NAN } else { 1.0 };
         log.say("/ft", START + step, &wrench(true, START + step, force));
@@ -253,7 +253,7 @@ fn a_number_that_is_none_is_refused_where_it_is_used() {
 
 #[test]
 fn what_is_missing_is_answered_with_lines_that_help() {
-    let mut log = Log::packed(None).topic("/a", "cdr", ("x/msg/Two", "ros2msg", "float32 gap\nfloat32 grip\n"));
+    let mut log = Log::chunked().topic("/a", "cdr", ("x/msg/Two", "ros2msg", "float32 gap\nfloat32 grip\n"));
     for step in 0..9 {
         log.say("/a", START + step, &Cdr::new(true).f32(step as f32).f32(step as f32 + 0.5).bytes());
     }
@@ -277,6 +277,6 @@ fn columns_of_two_clocks_do_not_add_up() {
         columns.displacement = { column = "position[finger]", also = "wrench.force.x", unit = "m" }
         columns.force.column = "wrench.force.z"
     "#;
-    let error = record(&gripper(Log::packed(None)), test).unwrap_err();
+    let error = record(&gripper(Log::chunked()), test).unwrap_err();
     assert!(matches!(error, ReadError::Column(ColumnError::ClocksDiffer { .. })), "{error}");
 }

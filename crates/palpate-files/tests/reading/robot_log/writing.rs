@@ -1,8 +1,14 @@
-//! Writing logs: messages by hand, the container by the reference library.
+//! Writing logs: messages by hand, the container by the reference library, its chunks packed here.
+//!
+//! The library packs chunks itself with features that the product does without; tests that asked for them would have all that
+//! depends on zstd compiled twice.
 
 use std::{collections::BTreeMap, io::Cursor};
 
-use mcap::{Compression, WriteOptions, Writer, records::MessageHeader};
+use mcap::{
+    WriteOptions, Writer,
+    records::{MessageHeader, op},
+};
 
 /// When the logs written here begin, ns since 1970.
 pub(crate) const START: u64 = 1_724_504_945_198_464_400;
@@ -100,24 +106,41 @@ pub(crate) fn wrench(little: bool, stamp: u64, force: f64) -> Vec<u8> {
     six.iter().fold(Cdr::new(little).header(stamp), |message, value| message.f64(*value)).bytes()
 }
 
+/// How chunks are packed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Packing {
+    Zstd,
+    Lz4,
+}
+
 /// A log in the making.
 pub(crate) struct Log {
     writer: Writer<Cursor<Vec<u8>>>,
+    packing: Option<Packing>,
     topics: BTreeMap<String, u16>,
 }
 
 impl Log {
     pub(crate) fn new(options: WriteOptions) -> Self {
-        let writer = options.profile("ros2").create(Cursor::new(Vec::new())).expect("a log in memory");
+        let options = options.profile("ros2").compression(None);
         Self {
-            writer,
+            writer: options.create(Cursor::new(Vec::new())).expect("a log in memory"),
+            packing: None,
             topics: BTreeMap::new(),
         }
     }
 
-    /// One chunk or several, packed so.
-    pub(crate) fn packed(compression: Option<Compression>) -> Self {
-        Self::new(WriteOptions::new().compression(compression).chunk_size(Some(2000)))
+    /// Several chunks.
+    pub(crate) fn chunked() -> Self {
+        Self::new(WriteOptions::new().chunk_size(Some(2000)))
+    }
+
+    /// The same log with its chunks packed.
+    pub(crate) fn packed(self, packing: Packing) -> Self {
+        Self {
+            packing: Some(packing),
+            ..self
+        }
     }
 
     /// A topic with the definition of its messages.
@@ -149,8 +172,65 @@ impl Log {
 
     pub(crate) fn finish(mut self) -> Vec<u8> {
         self.writer.finish().expect("a log in memory");
-        self.writer.into_inner().into_inner()
+        let log = self.writer.into_inner().into_inner();
+        match self.packing {
+            Some(packing) => packed(&log, packing),
+            None => log,
+        }
     }
+}
+
+/// A log with its chunks packed and the checksum of its data renewed.
+fn packed(log: &[u8], packing: Packing) -> Vec<u8> {
+    let (magic, mut rest) = log.split_at(mcap::MAGIC.len());
+    let mut written = magic.to_vec();
+    while let [kind, length @ ..] = rest
+        && let Some((length, after)) = length.split_first_chunk::<8>()
+        && after.len() >= mcap::MAGIC.len()
+    {
+        let (content, after) = after.split_at(u64::from_le_bytes(*length) as usize);
+        rest = after;
+        let content = match *kind {
+            op::CHUNK => packed_chunk(content, packing),
+            op::DATA_END => checksum(&written).to_le_bytes().to_vec(),
+            _ => content.to_vec(),
+        };
+        written.push(*kind);
+        written.extend((content.len() as u64).to_le_bytes());
+        written.extend(content);
+    }
+    [&written[..], rest].concat()
+}
+
+fn checksum(bytes: &[u8]) -> u32 {
+    let mut sum = flate2::Crc::new();
+    sum.update(bytes);
+    sum.sum()
+}
+
+/// The content of a chunk: two times, size and checksum of what it unpacks to, the name of its packing, then the records.
+fn packed_chunk(content: &[u8], packing: Packing) -> Vec<u8> {
+    let (head, rest) = content.split_at(8 + 8 + 8 + 4);
+    let (name, length, records) = (&rest[..4], &rest[4..12], &rest[12..]);
+    assert_eq!(
+        (name, length),
+        (&[0; 4][..], &(records.len() as u64).to_le_bytes()[..]),
+        "a chunk that is not packed"
+    );
+    let (name, packed) = match packing {
+        Packing::Zstd => ("zstd", zstd::encode_all(records, 0).expect("a packer in memory")),
+        Packing::Lz4 => {
+            let mut packer = lz4_flex::frame::FrameEncoder::new(Vec::new());
+            std::io::Write::write_all(&mut packer, records).expect("a packer in memory");
+            ("lz4", packer.finish().expect("a packer in memory"))
+        }
+    };
+    let lengths = [
+        (name.len() as u32).to_le_bytes().to_vec(),
+        name.as_bytes().to_vec(),
+        (packed.len() as u64).to_le_bytes().to_vec(),
+    ];
+    [head, &lengths.concat(), &packed].concat()
 }
 
 /// A gripper of one finger joint (m, 50 Hz) with a wrench (100 Hz): 4 mm in, at 10 mm/s, then still; the force falls.
