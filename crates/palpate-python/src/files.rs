@@ -6,7 +6,7 @@ use palpate::laws::Law;
 use palpate_files::description::read_material;
 use palpate_jobs::input::{Described, NamedRecords, OpenedFile};
 use palpate_jobs::output::write_bundle;
-use palpate_jobs::{Batch, Convert, Inspect, Reproduce, Seen, Sweep, WatchLog};
+use palpate_jobs::{Batch, Convert, HoldSeen, Inspect, Reproduce, Seen, Sweep, WatchLog};
 use palpate_report::document::{WatchDocument, WatchSummaryDocument};
 use palpate_report::study::Pictures;
 use pyo3::prelude::*;
@@ -26,6 +26,11 @@ pub(crate) fn described(path: Option<&Path>, text: Option<String>, part: Option<
     .map_err(failed)
 }
 
+/// Likewise, of arguments of Python.
+fn all_said(((path, text), part): (Said, Option<String>)) -> PyResult<Described> {
+    described(path.as_deref(), text, part.as_deref())
+}
+
 /// A law by its name.
 pub(crate) fn law(name: &str) -> PyResult<Law> {
     name.parse().map_err(refused_plainly::<OptionError>)
@@ -34,7 +39,7 @@ pub(crate) fn law(name: &str) -> PyResult<Law> {
 /// What is in a file of records, as text.
 #[pyfunction]
 pub(crate) fn inspect(py: Python<'_>, path: PathBuf, said: Said, part: Option<String>) -> PyResult<String> {
-    let described = described(said.0.as_deref(), said.1, part.as_deref())?;
+    let described = all_said((said, part))?;
     job(py, move |watch| {
         let found = Inspect::default().run(&OpenedFile::open(&path, &described)?, watch)?.result;
         found.refused.map_or(Ok(found.text), Err)
@@ -44,7 +49,7 @@ pub(crate) fn inspect(py: Python<'_>, path: PathBuf, said: Said, part: Option<St
 /// Writes the one record of a file as a table in SI.
 #[pyfunction]
 pub(crate) fn convert(py: Python<'_>, path: PathBuf, out: PathBuf, said: Said, part: Option<String>) -> PyResult<()> {
-    let described = described(said.0.as_deref(), said.1, part.as_deref())?;
+    let described = all_said((said, part))?;
     job(py, move |watch| Convert {}.run(&OpenedFile::open(&path, &described)?, watch)?.result.write(&out))
 }
 
@@ -61,7 +66,7 @@ pub(crate) fn batch(
     restart: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(usize, Vec<String>)> {
-    let described = described(said.0.as_deref(), said.1, None)?;
+    let described = all_said((said, None))?;
     let laws = laws.map(|laws| laws.iter().map(|name| law(name)).collect::<PyResult<_>>()).transpose()?;
     let job = Batch {
         laws,
@@ -123,7 +128,7 @@ pub(crate) fn watch<'py>(
     warn_before_s: Option<f64>,
     every_s: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let described = described(said.0.as_deref(), said.1, part.as_deref())?;
+    let described = all_said((said, part))?;
     let usual = WatchLog::default();
     let log = WatchLog {
         exponent: exponent.unwrap_or(usual.exponent),
@@ -141,7 +146,7 @@ pub(crate) fn watch<'py>(
             lines.extend(seen.document());
             true
         })?;
-        let holds = holds.result.iter().map(|hold| hold.document()).collect();
+        let holds = holds.result.iter().map(HoldSeen::document).collect();
         lines.push(WatchDocument::Summary(WatchSummaryDocument::new(holds)));
         Ok(lines)
     })?;
