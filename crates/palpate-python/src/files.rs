@@ -56,6 +56,7 @@ pub(crate) fn convert(py: Python<'_>, path: PathBuf, out: PathBuf, said: Said, p
 /// Analyses records into one table; the rows that it has, and why some tests gave none.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+#[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
 pub(crate) fn batch(
     py: Python<'_>,
     paths: Vec<PathBuf>,
@@ -74,7 +75,7 @@ pub(crate) fn batch(
         restart,
         ..Batch::default()
     };
-    let done = at_length_told(py, progress, move |mut heard| {
+    let done = at_length_told(py, progress.as_ref(), move |mut heard| {
         job.run(NamedRecords::find(&paths, described)?, &out, &mut heard)
     })?;
     let done = done.map_err(failed)?.result;
@@ -83,6 +84,7 @@ pub(crate) fn batch(
 
 /// Simulates the runs of a sweep into one table; how many runs it has, and how many were refused.
 #[pyfunction]
+#[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
 pub(crate) fn sweep(
     py: Python<'_>,
     path: PathBuf,
@@ -98,8 +100,9 @@ pub(crate) fn sweep(
         restart,
         threads: None,
     };
-    let done =
-        at_length_told(py, progress, move |mut heard| job.run(&path, Some(&out), figure.as_deref(), &mut heard))?;
+    let done = at_length_told(py, progress.as_ref(), move |mut heard| {
+        job.run(&path, Some(&out), figure.as_deref(), &mut heard)
+    })?;
     let done = done.map_err(failed)?.result;
     Ok((done.runs, done.refused))
 }

@@ -146,6 +146,7 @@ fn one_for_all(times: &Ragged, curves: usize, name: &str) -> PyResult<bool> {
 type Fitted = Result<Fit, String>;
 
 #[pyfunction]
+#[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
 pub(crate) fn fit_many(
     py: Python<'_>,
     time_s: &Bound<'_, PyAny>,
@@ -181,7 +182,7 @@ pub(crate) fn fit_many(
         };
         (0..curves).into_par_iter().map(one).collect()
     };
-    let fits = at_length_told(py, progress, work)?.map_err(refused_plainly::<PalpateError>)?;
+    let fits = at_length_told(py, progress.as_ref(), work)?.map_err(refused_plainly::<PalpateError>)?;
     table(&shape, &fits)
 }
 

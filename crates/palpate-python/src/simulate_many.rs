@@ -66,7 +66,7 @@ pub(crate) fn simulate_many(
         };
         (0..sweep.runs().div_ceil(SHARE)).into_par_iter().map(share).collect::<Result<Vec<_>, Cancelled>>()
     };
-    let shares = at_length_told(py, progress, work)?.map_err(refused_plainly::<PalpateError>)?;
+    let shares = at_length_told(py, progress.as_ref(), work)?.map_err(refused_plainly::<PalpateError>)?;
     let columns = fields.iter().enumerate().map(|(index, field)| {
         let parts = shares.iter().filter_map(|(columns, _)| columns.get(index));
         (field.name.as_str(), joined(parts))

@@ -95,7 +95,7 @@ pub(crate) fn at_length<T: Send + 'static>(
 /// Likewise, and calls `tell` with how much is done; an exception of it ends the work too.
 pub(crate) fn at_length_told<T: Send + 'static>(
     py: Python<'_>,
-    tell: Option<Py<PyAny>>,
+    tell: Option<&Py<PyAny>>,
     work: impl FnOnce(Heard) -> T + Send + 'static,
 ) -> PyResult<T> {
     let (heard, (sender, mut receiver)) = (Heard::default(), channel());
@@ -104,7 +104,7 @@ pub(crate) fn at_length_told<T: Send + 'static>(
         // Nobody listens any more after Ctrl-C.
         let _ = sender.send(catch_unwind(AssertUnwindSafe(|| work(heard))));
     });
-    let look = || match &tell {
+    let look = || match tell {
         Some(tell) => tell.call1(py, (done.load(Ordering::Relaxed),)).map(drop),
         None => Ok(()),
     };

@@ -69,6 +69,9 @@ pub fn fields(sweep: &Sweep) -> Vec<Field> {
         .collect()
 }
 
+/// Forces of a run at some times, N; none where the run was refused.
+type Forces = Option<Vec<f64>>;
+
 /// Simulates the runs of a sweep with these indices, from 0, as rows of that table; the watch hears of each once it is done, and `path` of
 /// the protocol stands in messages. Beside the rows stand the forces (N) of every run at `times` (s), if it has any then.
 ///
@@ -80,7 +83,7 @@ pub fn simulated(
     runs: std::ops::Range<u64>,
     times: &[f64],
     watch: &mut dyn Watch,
-) -> Result<(Rows, Vec<Option<Vec<f64>>>), Cancelled> {
+) -> Result<(Rows, Vec<Forces>), Cancelled> {
     let (first, total) = (runs.start, runs.end - runs.start);
     let results = results(sweep).len();
     let mut numbers: Vec<Vec<Option<f64>>> = vec![Vec::new(); sweep.numbers().len() + results];
@@ -124,7 +127,7 @@ pub(super) fn refusals(runs: &Values, reasons: &Values) -> (u64, Option<(i64, St
 }
 
 /// Numbers of a row, and the forces at some times.
-type RowAndForces = (Vec<Option<f64>>, Option<Vec<f64>>);
+type RowAndForces = (Vec<Option<f64>>, Forces);
 
 fn outcome(protocol: &Protocol, steps: usize, times: &[f64]) -> Result<RowAndForces, String> {
     let run = Run {
