@@ -124,7 +124,8 @@ impl Contents {
     /// Looks into the file at `path`.
     ///
     /// ```
-    /// use palpate_files::contents::{Contents, Format, ReadOptions};
+    /// use palpate_files::open::{Contents, Format};
+    /// use palpate_files::table::ReadOptions;
     ///
     /// # let folder = tempfile::tempdir()?;
     /// # let path = folder.path().join("press.csv");

@@ -1,5 +1,6 @@
 //! The body that is squeezed.
 
+#[cfg(feature = "alloc")]
 use serde::{Deserialize, Serialize};
 
 use super::equilibrium::{Equilibrium, EquilibriumError};
