@@ -12,13 +12,13 @@ pub fn schema_protocol() -> Value {
     schemars::schema_for!(ProtocolTables).to_value()
 }
 
-/// The JSON Schema of a material file, see [`read_material`](crate::description::material::convert::read_material).
+/// The JSON Schema of a material file, see [`read_material`](crate::description::read_material).
 #[must_use]
 pub fn schema_material() -> Value {
     schemars::schema_for!(MaterialTables).to_value()
 }
 
-/// The JSON Schema of a test description, see [`read_test`](crate::description::test::convert::read_test).
+/// The JSON Schema of a test description, see [`read_test`](crate::description::read_test).
 #[must_use]
 pub fn schema_test() -> Value {
     schemars::schema_for!(TestTables).to_value()

@@ -10,7 +10,7 @@ pub struct Estimate {
     /// Standard error from the curvature at the optimum, s² (JᵀJ)⁻¹ with s² = RSS/(N − p): white noise is assumed.
     /// `None` for a fixed number, or where the data do not determine it.
     pub standard_error: Option<f64>,
-    /// Confidence interval for residuals that correlate as they do ([`NoiseModel`]); in ln for numbers that cannot change sign.
+    /// Confidence interval for residuals that correlate as they do ([`NoiseModel`](crate::fit::NoiseModel)); in ln for numbers that cannot change sign.
     pub interval: Option<(f64, f64)>,
 }
 

@@ -22,7 +22,7 @@ use crate::laws::{ExponentChoice, Law};
 /// units of the hold's own duration and range, so no choice of units changes the answer.
 ///
 /// λ is sought from 10⁻³ per duration of the hold to 10³ per first sample step; an optimum at either end is reported as
-/// [`Termination::RateAtBound`](crate::fit::RateAtBound), with no errors, because the data then leave the law open.
+/// [`Termination::RateAtBound`](crate::fit::Termination::RateAtBound), with no errors, because the data then leave the law open.
 ///
 /// ```
 /// use palpate::fit::{ExponentChoice, FitOptions, fit_hold};

@@ -54,7 +54,7 @@ impl Record {
         &self.corrections
     }
 
-    /// What the columns are like now; [`RawColumns::report`] says what they were like before.
+    /// What the columns are like now; [`RawColumns::report`](crate::record::RawColumns::report) says what they were like before.
     #[must_use]
     pub fn signals(&self) -> SignalReport {
         SignalReport::of(&self.time, self.displacement(), &self.force)

@@ -53,7 +53,7 @@ pub struct Segment {
     pub after: Option<After>,
     /// For a hold: what is held in it.
     pub mode: Option<HoldMode>,
-    /// For a hold: the sample from which laws are fitted, see [`HoldStart`]. It lies before `start` where the force peaked
+    /// For a hold: the sample from which laws are fitted, see [`HoldStart`](crate::segment::HoldStart). It lies before `start` where the force peaked
     /// while the jaw was still settling.
     pub fit_start: usize,
 }

@@ -103,7 +103,7 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<(Option<String>, Contact),
 /// The text of a protocol with the body of the material file that it names, if it does: what says all by itself wherever it is read.
 ///
 /// # Errors
-/// As for [`read_material`](crate::description::material::convert::read_material), and where the text is no TOML.
+/// As for [`read_material`](crate::description::read_material), and where the text is no TOML.
 pub fn self_contained(text: &str, path: &Path) -> Result<String, DescriptionError> {
     let tables: toml::Table = protocol_tables(&Source { path, text })?;
     Ok(tables.to_string())

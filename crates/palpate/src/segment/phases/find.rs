@@ -12,7 +12,7 @@ const NEEDED: usize = 8;
 
 /// Finds the phases of a record: from its displacement and its force, or from its force alone where the displacement is missing.
 ///
-/// Every hold says what is held in it ([`HoldMode`]). Where the machine holds the force, the hold lasts as long as the force
+/// Every hold says what is held in it ([`HoldMode`](crate::segment::HoldMode)). Where the machine holds the force, the hold lasts as long as the force
 /// stays, however far the jaw creeps.
 ///
 /// # Errors
