@@ -130,6 +130,10 @@ impl Unplaced {
 pub(crate) fn unwritten_table(path: &Path, error: &TableError) -> JobError {
     match error {
         TableError::Io(error) => unwritten(path, error),
+        #[cfg(not(feature = "arrow"))]
+        TableError::NotInThisBuild => {
+            JobError::option(error, "build palpate with its feature `arrow`, or choose ⟨out⟩ as CSV").of(path.display())
+        }
         error => {
             let hint = "compute all runs again with ⟨restart⟩".to_owned();
             JobError::new(ErrorKind::File(io::ErrorKind::InvalidData), error, hint).of(path.display())

@@ -2,6 +2,7 @@
 
 use std::io;
 
+#[cfg(feature = "arrow")]
 use parquet::errors::ParquetError;
 
 /// Why a table cannot be written or read.
@@ -10,6 +11,10 @@ pub enum TableError {
     /// The operating system refuses.
     #[error(transparent)]
     Io(#[from] io::Error),
+    /// This build has no Parquet.
+    #[cfg(not(feature = "arrow"))]
+    #[error("expected a build that knows Parquet, found one without the feature `arrow`")]
+    NotInThisBuild,
     /// The file is no Parquet, or a damaged one.
     #[error("expected a whole Parquet file ({message})")]
     Parquet {
@@ -27,6 +32,7 @@ pub enum TableError {
     OtherColumns,
 }
 
+#[cfg(feature = "arrow")]
 impl From<ParquetError> for TableError {
     fn from(error: ParquetError) -> Self {
         match error {

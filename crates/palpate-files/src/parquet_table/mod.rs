@@ -8,6 +8,7 @@
 //! | `rows.rs` | rows in memory ([`Field`], [`Values`], [`Rows`]) |
 //! | `write.rs` | rows to a file ([`TableWriter`]) |
 //! | `read.rs` | a file to rows ([`TableReader`]) |
+//! | `absent.rs` | both where the feature `arrow` is missing |
 //! | `error.rs` | what can go wrong ([`TableError`]) |
 //!
 //! ```
@@ -26,12 +27,20 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(not(feature = "arrow"))]
+mod absent;
 mod error;
+#[cfg(feature = "arrow")]
 mod read;
 mod rows;
+#[cfg(feature = "arrow")]
 mod write;
 
+#[cfg(not(feature = "arrow"))]
+pub use absent::{TableReader, TableWriter};
 pub use error::TableError;
+#[cfg(feature = "arrow")]
 pub use read::TableReader;
 pub use rows::{Field, Kind, Rows, Values};
+#[cfg(feature = "arrow")]
 pub use write::TableWriter;

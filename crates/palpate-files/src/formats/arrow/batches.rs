@@ -1,21 +1,10 @@
-//! Batches of rows: how they are written, and who looks at them.
+//! Batches of rows: who looks at them.
 
 use std::ops::ControlFlow;
 
 use arrow_array::RecordBatch;
 
 use crate::{error::FileError, input::Input};
-
-/// How a file of typed columns is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
-    /// Parquet.
-    Parquet,
-    /// Arrow IPC, with a footer.
-    File,
-    /// Arrow IPC, without one.
-    Stream,
-}
 
 /// What is told of every batch: its first row, the batch, bytes or rows done, and how many there are.
 pub(super) type Visitor<'a> = dyn FnMut(u64, &RecordBatch, (u64, u64)) -> Result<ControlFlow<()>, FileError> + 'a;

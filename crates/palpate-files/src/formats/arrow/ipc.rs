@@ -13,16 +13,15 @@ use arrow_buffer::Buffer;
 use arrow_ipc::{Block, Message, MessageHeader, convert::fb_to_schema, reader, root_as_footer, root_as_message};
 use arrow_schema::SchemaRef;
 
-use super::batches::{Kind, Visitor, damaged};
+use super::{
+    batches::{Visitor, damaged},
+    kind::{Kind, MAGIC, MARK},
+};
 use crate::{
     error::FileError,
     input::{Input, InputReader, MOST_IN_MEMORY},
 };
 
-/// First and last bytes of a file.
-pub(super) const MAGIC: &[u8] = b"ARROW1";
-/// What stands before the length of a message.
-pub(super) const MARK: [u8; 4] = [0xFF; 4];
 /// Most zeros between the magic word of a file and its first message.
 const MOST_PADDING: usize = 64;
 /// Most bytes of the description of a message (64 MiB).

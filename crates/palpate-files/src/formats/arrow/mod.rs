@@ -1,26 +1,50 @@
 //! Parquet and Arrow (IPC files, streams, Feather version 2): tables of typed columns.
 //!
+//! Without the feature `arrow` such files are told by their content and refused.
+//!
 //! A file holds one test, or several one below the other where a column such as `test_id` tells them apart.
 //!
 //! | file | what |
 //! |---|---|
+//! | `kind.rs` | telling such files by their first bytes |
 //! | `part.rs` | a file as one test or several, and reading their columns |
 //! | `tests.rs` | which rows belong to which test |
-//! | `batches.rs` | how batches of rows are written, and who looks at them |
+//! | `batches.rs` | who looks at batches of rows |
 //! | `source.rs` | batches of rows, whatever the format |
 //! | `parquet.rs` | batches of a Parquet file |
 //! | `pages.rs` | what the pages of a Parquet file say they unpack to |
 //! | `ipc.rs` | batches of an Arrow file or stream |
 //! | `values.rs` | columns of a type as numbers or texts |
 
+mod kind;
+
+#[cfg(feature = "arrow")]
 mod batches;
+#[cfg(feature = "arrow")]
 mod ipc;
+#[cfg(feature = "arrow")]
 mod pages;
+#[cfg(feature = "arrow")]
 mod parquet;
+#[cfg(feature = "arrow")]
 mod part;
+#[cfg(feature = "arrow")]
 mod source;
+#[cfg(feature = "arrow")]
 mod tests;
+#[cfg(feature = "arrow")]
 mod values;
 
-pub(crate) use batches::Kind;
-pub(crate) use part::{look_into, recognise};
+pub(crate) use kind::{Kind, recognise};
+#[cfg(feature = "arrow")]
+pub(crate) use part::look_into;
+
+/// Says which build would read it.
+#[cfg(not(feature = "arrow"))]
+pub(crate) fn look_into(
+    input: &crate::input::Input,
+    _kind: Kind,
+    _options: &crate::table::ReadOptions,
+) -> Result<crate::table::Found, crate::FileError> {
+    Err(input.not_in_this_build("a build that reads Parquet and Arrow", "build palpate with its feature `arrow`"))
+}

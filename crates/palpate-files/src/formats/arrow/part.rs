@@ -5,8 +5,7 @@ use std::ops::ControlFlow;
 use arrow_schema::Field;
 
 use super::{
-    batches::Kind,
-    ipc,
+    kind::Kind,
     source::Source,
     tests::{self, Test},
     values::{self, Reading},
@@ -17,20 +16,6 @@ use crate::{
     input::Input,
     table::{ColumnInfo, ColumnKind, Columns, Found, Part, ReadOptions, ReadPart, SkippedPart},
 };
-
-/// Whether a file is one of these, and which.
-pub(crate) fn recognise(input: &Input) -> Option<Kind> {
-    let beginning = input.beginning();
-    if beginning.starts_with(b"PAR1") {
-        Some(Kind::Parquet)
-    } else if beginning.starts_with(ipc::MAGIC) {
-        Some(Kind::File)
-    } else {
-        // The mark and the length of a schema, which is small.
-        let small = beginning.get(4..8).is_some_and(|length| length[3] == 0 && length != [0; 4]);
-        (beginning.starts_with(&ipc::MARK) && small).then_some(Kind::Stream)
-    }
-}
 
 #[derive(Debug)]
 struct Table {

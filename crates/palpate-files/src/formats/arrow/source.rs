@@ -5,7 +5,8 @@ use std::ops::Range;
 use arrow_schema::SchemaRef;
 
 use super::{
-    batches::{Kind, Visitor},
+    batches::Visitor,
+    kind::Kind,
     ipc, parquet,
 };
 use crate::{

@@ -7,6 +7,8 @@
 //!
 //! Messages in CDR with a definition in `ros2msg`, and in JSON, are read; other topics are listed as skipped, with why.
 //!
+//! Without the feature `robot-log` logs are told by their content and refused.
+//!
 //! | file | what |
 //! |---|---|
 //! | `container.rs` | the records of an MCAP file in order, chunks unpacked |
@@ -18,15 +20,25 @@
 //! | `survey.rs` | looking through a log: topics, fields, counts |
 //! | `part.rs` | a log as a file that holds one test |
 
+#[cfg(feature = "robot-log")]
 mod cdr;
+#[cfg(feature = "robot-log")]
 mod channel;
+#[cfg(feature = "robot-log")]
 mod container;
+#[cfg(feature = "robot-log")]
 mod fields;
+#[cfg(feature = "robot-log")]
 mod json;
+#[cfg(feature = "robot-log")]
 mod part;
+#[cfg(feature = "robot-log")]
 mod record;
+#[cfg(feature = "robot-log")]
 mod schema;
+#[cfg(feature = "robot-log")]
 mod survey;
+#[cfg(feature = "robot-log")]
 mod units;
 
 use crate::{
@@ -37,10 +49,11 @@ use crate::{
 
 /// Whether a file begins as a log does.
 pub(crate) fn recognise(beginning: &[u8]) -> bool {
-    beginning.starts_with(&mcap::MAGIC[..5])
+    beginning.starts_with(b"\x89MCAP")
 }
 
 /// Looks through a log.
+#[cfg(feature = "robot-log")]
 pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, FileError> {
     let survey = survey::survey(input)?;
     let skipped = survey.skipped.clone();
@@ -50,4 +63,10 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
         skipped,
         reader: Box::new(log),
     })
+}
+
+/// Says which build would read it.
+#[cfg(not(feature = "robot-log"))]
+pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, FileError> {
+    Err(input.not_in_this_build("a build that reads logs of robots", "build palpate with its feature `robot-log`"))
 }

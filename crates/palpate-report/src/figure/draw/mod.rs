@@ -14,6 +14,7 @@ mod axes;
 mod decimate;
 mod heatmap;
 mod legend;
+#[cfg(feature = "png")]
 mod raster;
 mod reference;
 mod series;
@@ -49,9 +50,16 @@ impl Figure {
     ///
     /// # Errors
     ///
-    /// As for [`Self::to_svg`], and when the picture would be empty or far too large.
+    /// As for [`Self::to_svg`], and when the picture would be empty or far too large, or without the feature `png`.
+    #[cfg_attr(not(feature = "png"), expect(unused_variables, reason = "nothing is drawn"))]
     pub fn to_png(&self, dpi: f64) -> Result<Vec<u8>, FigureError> {
-        raster::png(&self.name, &self.to_svg()?, self.size_points(), dpi)
+        #[cfg(feature = "png")]
+        return raster::png(&self.name, &self.to_svg()?, self.size_points(), dpi);
+        #[cfg(not(feature = "png"))]
+        Err(FigureError::Raster {
+            figure: self.name.clone(),
+            reason: "this build draws SVG; build palpate with its feature `png`, or name the figure FILE.svg".to_owned(),
+        })
     }
 
     /// Places the panels; legends that would cover data get rows of their own above the axes.
