@@ -21,7 +21,7 @@ for name in "${names[@]}"; do
             --nocapture global_optimum recovery::no_search_finds_a_better_fit
         ;;
     properties)
-        PROPTEST_CASES="${PROPTEST_CASES:-20000}" cargo test --release -p palpate --test physics -- properties batch::single
+        PROPTEST_CASES="${PROPTEST_CASES:-20000}" cargo test --release -p palpate --test physics -- properties
         ;;
     segmentation) validation/segmentation.sh ;;
     calibration) validation/calibration.sh ;;

@@ -214,10 +214,7 @@ def main():
     lines += ["", "| work | palpate | wanted |", "|---|---:|---:|",
               f"| force of protocol (a) at 100 Hz, one output sample | {show(sample)} | 10 ns |",
               f"| one step of a controller | {show(tick)} | 50 ns |",
-              f"| 10,000 contacts, single precision: final force | {show(ours['batch_force_single'])} | - |",
               f"| 10,000 contacts with an exponent each: final force | {show(ours['batch_force_own_exponents'])} | - |",
-              f"| 10,000 contacts with an exponent each, single precision: final force "
-              f"| {show(ours['batch_force_single_own_exponents'])} | - |",
               f"| 10,000 contacts with an exponent each: all layers | {show(ours['batch_layers_own_exponents'])} | - |",
               "", f"Forces at the end agree with numba's to {off:.0e} of themselves. numba and JAX were run for {part} and "
                   f"{jax_part} of {steps} steps with all contacts. SciPy's right-hand sides are NumPy arrays."]

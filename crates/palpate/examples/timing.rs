@@ -73,7 +73,6 @@ fn batches() {
         let models: Vec<ContactModel> = (0..10_000).map(|index| ball(f64::from(index) / 10_000.0, spread)).collect();
         let batch = Batch::shared(&models, &motion).expect("the ball takes 5 mm");
         report(&format!("batch_force{name}"), 15, || black_box(batch.final_forces()).is_ok());
-        report(&format!("batch_force_single{name}"), 15, || black_box(batch.final_forces_single()).is_ok());
         report(&format!("batch_layers{name}"), 7, || black_box(batch.strains_at(&[10.6], 1e-7)).is_ok());
         let forces = batch.final_forces().expect("numbers in range");
         println!("{{\"name\":\"forces{name}\",\"seconds\":0,\"forces\":{:?}}}", &forces[9_996..]);

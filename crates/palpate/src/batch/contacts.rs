@@ -207,19 +207,6 @@ impl Batch {
         Ok(())
     }
 
-    /// What `simulated` says of the contacts that are simulated alone, with their indices.
-    pub(super) fn simulated_alone(
-        &self,
-        simulated: impl Fn(&ContactModel, &Motion) -> Result<Vec<f64>, SimulateError> + Sync + Send,
-    ) -> Result<Vec<(usize, Vec<f64>)>, BatchError> {
-        let alone = for_each(self.alone.len(), |i| simulated(&self.alone[i].1, &self.alone[i].2));
-        let named = alone.into_iter().zip(&self.alone).map(|(row, (index, ..))| match row {
-            Ok(row) => Ok((*index, row)),
-            Err(source) => Err(BatchError::Contact { index: *index, source }),
-        });
-        named.collect()
-    }
-
     /// Fills the rows of the contacts that are simulated alone with what `simulated` says.
     pub(super) fn one_by_one(
         &self,
@@ -227,20 +214,17 @@ impl Batch {
         len: usize,
         simulated: impl Fn(&ContactModel, &Motion) -> Result<Vec<f64>, SimulateError> + Sync + Send,
     ) -> Result<(), BatchError> {
-        for (index, row) in self.simulated_alone(simulated)? {
+        let alone = for_each(self.alone.len(), |i| simulated(&self.alone[i].1, &self.alone[i].2));
+        for (row, &(index, ..)) in alone.into_iter().zip(&self.alone) {
+            let row = row.map_err(|source| BatchError::Contact { index, source })?;
             rows[index * len..][..len].copy_from_slice(&row);
         }
         Ok(())
     }
 
     /// Rows of `len` finite numbers, or which contact has another.
-    pub(super) fn checked<T: Copy + Into<f64>>(
-        &self,
-        rows: Vec<T>,
-        len: usize,
-        times: Option<&[f64]>,
-    ) -> Result<Vec<T>, BatchError> {
-        match rows.iter().position(|number| !(*number).into().is_finite()) {
+    pub(super) fn checked(&self, rows: Vec<f64>, len: usize, times: Option<&[f64]>) -> Result<Vec<f64>, BatchError> {
+        match rows.iter().position(|number| !number.is_finite()) {
             None => Ok(rows),
             Some(place) => {
                 let index = place / len;
@@ -250,10 +234,5 @@ impl Batch {
                 Err(BatchError::Contact { index, source })
             }
         }
-    }
-
-    /// The contacts of the group that begins at `first`; past the last contact it is repeated.
-    pub(super) fn group<const L: usize>(&self, first: usize) -> [usize; L] {
-        std::array::from_fn(|lane| (first + lane).min(self.len() - 1))
     }
 }

@@ -1,4 +1,4 @@
-//! Forces of all contacts in double precision.
+//! Forces of all contacts.
 
 use fearless_simd::{Simd, dispatch};
 
@@ -17,10 +17,7 @@ impl Batch {
     /// # Errors
     /// [`BatchError::Contact`] if the numbers of a contact leave the range of doubles.
     pub fn final_forces(&self) -> Result<Vec<f64>, BatchError> {
-        let mut forces = vec![0.0; self.len()];
-        self.fill_forces(None, &mut forces);
-        self.one_by_one(&mut forces, 1, |model, motion| simulate_force(motion, model, &[motion.end()]))?;
-        self.checked(forces, 1, None)
+        self.forces(None)
     }
 
     /// Contact force (N) of every contact at rising `times` (s), which lie inside its motion: those of contact i are the i-th row of
@@ -32,36 +29,26 @@ impl Batch {
     /// [`BatchError::Contact`] for times that do not rise or lie outside a motion, and if numbers leave the range of doubles.
     pub fn forces_at(&self, times: &[f64]) -> Result<Vec<f64>, BatchError> {
         self.check_times(times)?;
-        let mut forces = vec![0.0; self.len() * times.len()];
-        self.fill_forces(Some(times), &mut forces);
-        self.one_by_one(&mut forces, times.len(), |model, motion| simulate_force(motion, model, times))?;
-        self.checked(forces, times.len(), Some(times))
+        self.forces(Some(times))
     }
 
-    /// Forces of some contacts in double precision, row by row.
-    pub(super) fn forces_in_double(&self, contacts: &[usize], times: Option<&[f64]>) -> Vec<f64> {
-        const L: usize = layer::GROUP;
+    fn forces(&self, times: Option<&[f64]>) -> Result<Vec<f64>, BatchError> {
         let row = times.map_or(1, <[f64]>::len);
-        let mut forces = vec![0.0; contacts.len() * row];
-        for_each_part(&mut forces, L * row, |index, part| {
-            let group = std::array::from_fn(|lane| contacts[(index * L + lane).min(contacts.len() - 1)]);
-            dispatch!(level(), simd => self.forces_of(simd, group, times, part));
+        let mut forces = vec![0.0; self.len() * row];
+        for_each_part(&mut forces, layer::GROUP * row, |index, part| {
+            dispatch!(level(), simd => self.forces_of(simd, index * layer::GROUP, times, part));
         });
-        forces
-    }
-
-    fn fill_forces(&self, times: Option<&[f64]>, forces: &mut [f64]) {
-        let row = times.map_or(1, <[f64]>::len);
-        for_each_part(forces, layer::GROUP * row, |index, part| {
-            dispatch!(level(), simd => self.forces_of(simd, self.group(index * layer::GROUP), times, part));
-        });
+        self.one_by_one(&mut forces, row, |model, motion| {
+            simulate_force(motion, model, times.unwrap_or(&[motion.end()]))
+        })?;
+        self.checked(forces, row, times)
     }
 
     /// The forces of one group, contact by contact.
     #[inline(always)]
-    fn forces_of<S: Simd>(&self, simd: S, group: [usize; layer::GROUP], times: Option<&[f64]>, part: &mut [f64]) {
+    fn forces_of<S: Simd>(&self, simd: S, first: usize, times: Option<&[f64]>, part: &mut [f64]) {
         const L: usize = layer::GROUP;
-        let mut stops = Stops::<L>::new(self, group);
+        let mut stops = Stops::<L>::new(self, first);
         let exponent = stops.column(&self.exponent);
         let laws = Laws {
             power: Power::of(&exponent),
@@ -108,7 +95,7 @@ mod tests {
             on_every_level(|| {
                 // On this thread, which is the one that pretends.
                 let mut forces = vec![0.0; 32];
-                dispatch!(level(), simd => batch.forces_of(simd, batch.group(0), None, &mut forces));
+                dispatch!(level(), simd => batch.forces_of(simd, 0, None, &mut forces));
                 let mut strains = vec![0.0; 8 * 8];
                 dispatch!(level(), simd => batch.strains_of(simd, 0, &[43.0], (1e-8, 8), &mut strains));
                 forces.extend(strains);

@@ -13,7 +13,6 @@
 //! | `body.rs` | force from excess strain and displacement |
 //! | `layer.rs` | contact layers: closed form in holds, regularised equation in ramps |
 //! | `cascade.rs` | all layers |
-//! | `single/` | forces in single precision |
 //! | `parallel.rs` | groups spread over cores |
 
 mod body;
@@ -22,7 +21,6 @@ mod contacts;
 mod forces;
 mod layer;
 mod parallel;
-mod single;
 mod stops;
 mod strains;
 mod summaries;

@@ -28,8 +28,9 @@ pub(super) struct Leg<const L: usize> {
 }
 
 impl<'a, const L: usize> Stops<'a, L> {
-    /// A group of contacts at the start of their motions.
-    pub(super) fn new(batch: &'a Batch, contact: [usize; L]) -> Self {
+    /// The group that begins at contact `first`, at the start of its motions; past the last contact it is repeated.
+    pub(super) fn new(batch: &'a Batch, first: usize) -> Self {
+        let contact: [usize; L] = std::array::from_fn(|lane| (first + lane).min(batch.len() - 1));
         let knot = contact.map(|contact| batch.knots(contact).start);
         Self {
             batch,

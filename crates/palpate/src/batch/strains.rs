@@ -94,7 +94,7 @@ impl Batch {
         part: &mut [f64],
     ) {
         const L: usize = cascade::GROUP;
-        let mut stops = Stops::<L>::new(self, self.group(first));
+        let mut stops = Stops::<L>::new(self, first);
         let (depth, layers) = (stops.column(&self.depth), stops.column(&self.layers));
         let (begin, end) = (stops.time, stops.ends());
         let stack = Stack::new(

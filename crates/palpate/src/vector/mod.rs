@@ -12,7 +12,6 @@
 //! | `elementary.rs` | exp, ln and ln(1 + z) without branches |
 //! | `moments.rs` | sums over a run of samples |
 //! | `products.rs` | scalar products, normal equations, residuals |
-//! | `single.rs` | exp and ln in single precision |
 //! | `shapes.rs` | exponential, stretched exponential and logarithm of time with their derivatives |
 
 pub(crate) mod aligned;
@@ -21,7 +20,6 @@ pub(crate) mod elementary;
 pub(crate) mod moments;
 pub(crate) mod products;
 mod shapes;
-pub(crate) mod single;
 
 pub(crate) use shapes::{
     exponential_many, exponential_values, logarithm_many, logarithm_values, stretched_many, stretched_values,

@@ -1,4 +1,3 @@
 //! Many contacts at once against one at a time.
 
 mod accuracy;
-mod single;
