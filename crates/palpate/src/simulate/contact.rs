@@ -112,9 +112,8 @@ impl<'a> From<&'a LinearContact> for ContactRef<'a> {
 macro_rules! by_law {
     ($contact:expr, $name:ident => $work:expr) => {
         match $contact {
-            $crate::simulate::ContactRef::Latency($name, $crate::contact::RateDependence::Constant) => $work,
             $crate::simulate::ContactRef::Latency(model, rate) => {
-                let $name = &$crate::simulate::latency::Varying { model, rate };
+                let $name = &$crate::simulate::latency::Latency { model, rate };
                 $work
             }
             $crate::simulate::ContactRef::Linear($name) => $work,

@@ -9,7 +9,7 @@
 //! | `model.rs` | the contact model: specimen, law, layers, and whether the jaw can pull |
 //! | `contact.rs` | a contact, whichever law it obeys |
 //! | `layer.rs` | what the walk asks of the contact layer, whichever law it obeys |
-//! | `latency/`, `linear/` | the contact layer by the latency law, and by linear laws |
+//! | `latency.rs`, `linear/` | the contact layer by the latency law, and by linear laws |
 //! | `walk/` | goes through a drive piece by piece: in contact, jaw off, in contact again |
 //! | `trajectory.rs` | the series at the asked times |
 //! | `energy.rs`, `cycles.rs` | work of the jaw, what is stored and what is lost; the same step by step and cycle by cycle |

@@ -14,10 +14,12 @@ mod tile;
 use fearless_simd::{Simd, dispatch};
 
 use self::tile::{Chain, Outer, TILE, Tile, surface};
+use super::latency::Latency;
 use super::trajectory::sample_times;
 use super::walk::Course;
 use super::walk::{Stretch, walk};
 use super::{ContactModel, Drive, Sampling, SimulateError, SimulationWork};
+use crate::contact::RateDependence;
 use crate::vector::level;
 use crate::watch::{Stages, Unwatched, Watch};
 
@@ -92,7 +94,11 @@ pub fn strain_wave_watched<'a>(
     watch: &mut dyn Watch,
 ) -> Result<StrainWave, SimulateError> {
     let mut stages = Stages::new("following the layers".to_owned(), watch);
-    let course = Course::new(drive.into(), model, &mut stages)?;
+    let layer = &Latency {
+        model,
+        rate: RateDependence::Constant,
+    };
+    let course = Course::new(drive.into(), layer, &mut stages)?;
     stages.enter(1.0);
     let layers = model.layers.whole().ok_or(SimulateError::FractionalLayers {
         found: model.layers.count(),
@@ -106,7 +112,7 @@ pub fn strain_wave_watched<'a>(
         work: SimulationWork::default(),
     };
     let last = course.end();
-    let (_, walked) = walk(course.drive, model, |stretch| {
+    let (_, walked) = walk(course.drive, layer, |stretch| {
         let passed = dispatch!(level(), simd => cascade.pass(simd, stretch, stretch.end == last, &mut wave));
         passed.map_err(|elapsed| SimulateError::StiffLayers {
             time: stretch.start + elapsed,
@@ -159,7 +165,7 @@ impl Cascade {
     fn pass<S: Simd>(
         &mut self,
         simd: S,
-        stretch: &Stretch<ContactModel>,
+        stretch: &Stretch<Latency<'_>>,
         is_last: bool,
         wave: &mut StrainWave,
     ) -> Result<(), f64> {

@@ -10,6 +10,7 @@ use super::path::{Knot, Path};
 use super::{ContactModel, SimulationWork};
 use crate::latency::lanes::{Power, block, by_power, each, signed_power};
 use crate::ode::{Column, Slopes, WIDTH};
+use crate::simulate::latency::Latency;
 use crate::simulate::walk::{Stretch, StretchState};
 use crate::vector::aligned::Aligned;
 
@@ -80,9 +81,9 @@ impl Chain {
 }
 
 /// What moves the first node of a tile.
-pub(super) enum Outer<'a> {
+pub(super) enum Outer<'a, 'm> {
     /// The surface.
-    Surface(&'a Stretch<ContactModel>),
+    Surface(&'a Stretch<Latency<'m>>),
     /// The last node of the tile before.
     Node(Path),
 }
@@ -126,7 +127,7 @@ impl Tile {
         &mut self,
         simd: S,
         chain: &Chain,
-        outer: &Outer<'_>,
+        outer: &Outer<'_, '_>,
         (duration, elapsed): (f64, &[f64]),
         columns: &mut [Vec<f64>],
         work: &mut SimulationWork,
@@ -179,7 +180,7 @@ impl Tile {
     }
 }
 
-impl Outer<'_> {
+impl Outer<'_, '_> {
     fn moves(&self) -> bool {
         match self {
             Self::Surface(_) => true,
@@ -189,14 +190,14 @@ impl Outer<'_> {
 }
 
 /// The nodes of a tile along one stretch.
-struct Along<'a> {
+struct Along<'a, 'm> {
     chain: &'a Chain,
-    outer: &'a Outer<'a>,
+    outer: &'a Outer<'a, 'm>,
     over_left: &'a [f64],
     is_node: &'a [f64],
 }
 
-impl Along<'_> {
+impl Along<'_, '_> {
     /// Largest excess strain of the nodes that are followed.
     #[inline(always)]
     fn steepest<S: Simd>(&self, simd: S, nodes: &Column) -> f64 {
@@ -231,7 +232,7 @@ impl Along<'_> {
     }
 }
 
-impl<S: Simd> Slopes<S> for Along<'_> {
+impl<S: Simd> Slopes<S> for Along<'_, '_> {
     fn input(&self, time: f64, first: f64) -> f64 {
         self.mover(time, first)
     }
@@ -258,7 +259,7 @@ impl<S: Simd> Slopes<S> for Along<'_> {
 }
 
 /// Displacement of the surface: the jaw's share while it touches, the first inner node once it is free of stress.
-pub(super) fn surface(stretch: &Stretch<ContactModel>, elapsed: f64, first: f64) -> f64 {
+pub(super) fn surface(stretch: &Stretch<Latency<'_>>, elapsed: f64, first: f64) -> f64 {
     match stretch.state {
         StretchState::Touching(_) | StretchState::Forced(_) => stretch.jaw_at(stretch.start + elapsed),
         StretchState::Free { .. } => first,

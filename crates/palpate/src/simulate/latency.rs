@@ -1,9 +1,12 @@
-//! The latency law with a rate coefficient that depends on the equilibrium strain or on the direction.
+//! The contact layer by the latency law, its rate coefficient one number or a function of the equilibrium strain or of the direction.
 //!
-//! A hold has the closed form (4), (5) with the coefficient of its place. A ramp is cut into parts over which ln v changes by no more than
-//! [`CHANGE`], each with the coefficient of its middle: second order, and good to 10⁻⁵ of the excess strain. Where the coefficient depends on the direction
-//! the parts meet at x = 0, and nothing is approximated. Under a force the law keeps a time of its own, in which the coefficient is one more
-//! factor. A surface without a jaw recovers in parts in the same way.
+//! A hold has the closed form (4), (5) with the coefficient of its place, a ramp of one coefficient is one [`Element`]. Where the coefficient
+//! depends on the strain, a ramp is cut into parts over which ln v changes by no more than [`CHANGE`], each with the coefficient of its middle:
+//! second order, and good to 10⁻⁵ of the excess strain. Where it depends on the direction the parts meet at x = 0, and nothing is
+//! approximated. Under a force the law keeps a time of its own, in which the coefficient is one more factor. A surface without a jaw
+//! recovers in parts in the same way.
+
+use smallvec::SmallVec;
 
 use crate::contact::{Body, Carried, Element, Forced, FreeSurface, Ramps, RateDependence, Specimen, Stopped};
 use crate::latency::LatencyLaw;
@@ -16,9 +19,9 @@ const CHANGE: f64 = 0.01;
 /// Most parts of a ramp: what a factor of e⁵ takes.
 const MOST_PARTS: f64 = 500.0;
 
-/// A contact whose rate coefficient depends on the state of its layer.
+/// A contact whose layer obeys the latency law.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::simulate) struct Varying<'a> {
+pub(in crate::simulate) struct Latency<'a> {
     /// The contact, with the rate coefficient at first touch, or while the strain falls.
     pub(in crate::simulate) model: &'a ContactModel,
     /// How it depends on the state.
@@ -27,7 +30,7 @@ pub(in crate::simulate) struct Varying<'a> {
 
 /// The layer through a straight piece of motion, part by part.
 #[derive(Debug)]
-pub(crate) struct Parts(Vec<Part>);
+pub(crate) struct Parts(SmallVec<[Part; 1]>);
 
 #[derive(Debug)]
 struct Part {
@@ -37,10 +40,6 @@ struct Part {
 }
 
 impl Parts {
-    fn one(element: Element) -> Self {
-        Self(vec![Part { from: 0.0, element }])
-    }
-
     fn excess_at(&self, elapsed: f64) -> f64 {
         let index = self.0.partition_point(|part| part.from <= elapsed).max(1) - 1;
         self.0[index].element.excess_at(elapsed - self.0[index].from)
@@ -71,7 +70,7 @@ impl Parts {
 
 /// A surface on its way back, part by part.
 #[derive(Debug, Clone)]
-pub(crate) struct Surface(Vec<(f64, FreeSurface)>);
+pub(crate) struct Surface(SmallVec<[(f64, FreeSurface); 1]>);
 
 impl Surface {
     fn displacement_at(&self, elapsed: f64) -> f64 {
@@ -81,7 +80,12 @@ impl Surface {
     }
 }
 
-impl Varying<'_> {
+/// Parts of a piece in which ln v changes by `change`.
+fn parts_over(change: f64) -> f64 {
+    if change > CHANGE { (change / CHANGE).ceil().min(MOST_PARTS) } else { 1.0 }
+}
+
+impl Latency<'_> {
     /// The law at an excess strain and a contact displacement (m).
     fn law_at(&self, excess: f64, u: f64) -> LatencyLaw {
         self.rate.law(self.model.law, excess, self.model.specimen.equilibrium_strain(u))
@@ -90,13 +94,17 @@ impl Varying<'_> {
     /// Rate of the whole strain, 1/s, with the jaw at contact displacement `u` (m) and going at `speed` (m/s).
     fn gain(&self, excess: f64, u: f64, speed: f64) -> f64 {
         let depth = self.model.specimen.depth();
-        self.law_at(excess, u).rate(excess) + self.model.layers.drive(speed, depth) + speed / depth
+        let (by_law, drive) = (self.law_at(excess, u).rate(excess), self.model.layers.drive(speed, depth));
+        match self.rate {
+            RateDependence::Constant => by_law + (drive + speed / depth),
+            RateDependence::Strain { .. } | RateDependence::Direction { .. } => by_law + drive + speed / depth,
+        }
     }
 
     /// Parts of a ramp over which v hardly changes.
     fn by_strain(
         &self,
-        mut excess: f64,
+        excess: f64,
         (from, speed): (f64, f64),
         duration: f64,
         known: &mut Ramps,
@@ -104,17 +112,17 @@ impl Varying<'_> {
     ) -> Parts {
         let depth = self.model.specimen.depth();
         let drive = self.model.layers.drive(speed, depth);
-        let change = (self.rate.slope() * speed * duration / depth).abs();
-        let count = (change / CHANGE).ceil().clamp(1.0, MOST_PARTS);
+        let count = parts_over((self.rate.slope() * speed * duration / depth).abs());
         let long = duration / count;
-        let parts = (0..count as usize).map(|index| {
+        let mut parts: SmallVec<[Part; 1]> = SmallVec::new();
+        for index in 0..count as usize {
+            let excess = parts.last().map_or(excess, |part| part.element.excess_at(long));
             let start = index as f64 * long;
             let law = self.law_at(excess, from + speed * (start + 0.5 * long));
             let element = Element::solve(law, excess, drive, long, known, work);
-            excess = element.excess_at(long);
-            Part { from: start, element }
-        });
-        Parts(parts.collect())
+            parts.push(Part { from: start, element });
+        }
+        Parts(parts)
     }
 
     /// A part before x = 0 is passed, and one after.
@@ -128,26 +136,19 @@ impl Varying<'_> {
     ) -> Parts {
         let drive = self.model.layers.drive(speed, self.model.specimen.depth());
         let side = if excess == 0.0 { drive } else { excess };
-        let first = Element::solve(self.law_at(side, from), excess, drive, duration, known, work);
-        if excess * first.excess_at(duration) >= 0.0 {
-            return Parts::one(first);
+        let element = Element::solve(self.law_at(side, from), excess, drive, duration, known, work);
+        let mut parts = Parts(SmallVec::from([Part { from: 0.0, element }]));
+        if excess * parts.excess_at(duration) >= 0.0 {
+            return parts;
         }
-        let passed = crossing(0.0, duration, |elapsed| excess.signum() * first.excess_at(elapsed));
-        let second = Element::solve(self.law_at(drive, from), 0.0, drive, duration - passed, known, work);
-        Parts(vec![
-            Part {
-                from: 0.0,
-                element: first,
-            },
-            Part {
-                from: passed,
-                element: second,
-            },
-        ])
+        let passed = crossing(0.0, duration, |elapsed| excess.signum() * parts.excess_at(elapsed));
+        let element = Element::solve(self.law_at(drive, from), 0.0, drive, duration - passed, known, work);
+        parts.0.push(Part { from: passed, element });
+        parts
     }
 }
 
-impl Layer for Varying<'_> {
+impl Layer for Latency<'_> {
     type Excess = f64;
     /// Displacement of the next node, m.
     type Behind = f64;
@@ -165,11 +166,11 @@ impl Layer for Varying<'_> {
     }
 
     fn relaxed(&self) -> f64 {
-        self.model.relaxed()
+        0.0
     }
 
-    fn strain_of(&self, excess: &f64, u: f64) -> f64 {
-        self.model.strain_of(excess, u)
+    fn strain_of(&self, excess: &f64, _: f64) -> f64 {
+        *excess
     }
 
     fn is_finite(excess: &f64) -> bool {
@@ -177,11 +178,20 @@ impl Layer for Varying<'_> {
     }
 
     fn behind(&self, excess: &f64, u: f64) -> f64 {
-        self.model.behind(excess, u)
+        let specimen = self.specimen();
+        let strain = excess + specimen.equilibrium_strain(u);
+        u - self.model.layers.thickness(specimen.depth()) * strain
     }
 
-    fn stored(&self, excess: &f64, u: f64) -> f64 {
-        self.model.stored(excess, u)
+    fn stored(&self, &excess: &f64, u: f64) -> f64 {
+        let depth = self.specimen().depth();
+        let (stiffness, _) = self.specimen().stiffness(u);
+        let elastic = 0.5 * stiffness * u * u / depth;
+        // A single layer has no excess.
+        if excess == 0.0 {
+            return elastic;
+        }
+        elastic + 0.5 * stiffness * depth * excess * excess / (self.model.layers.count() - 1.0)
     }
 
     fn moving(
@@ -193,10 +203,10 @@ impl Layer for Varying<'_> {
         work: &mut SimulationWork,
     ) -> Parts {
         match self.rate {
-            RateDependence::Strain { .. } => self.by_strain(excess, line, duration, known, work),
-            RateDependence::Direction { .. } | RateDependence::Constant => {
-                self.by_direction(excess, line, duration, known, work)
+            RateDependence::Constant | RateDependence::Strain { .. } => {
+                self.by_strain(excess, line, duration, known, work)
             }
+            RateDependence::Direction { .. } => self.by_direction(excess, line, duration, known, work),
         }
     }
 
@@ -222,7 +232,15 @@ impl Layer for Varying<'_> {
     ) {
         let from = strains.len();
         piece.extend_excess(start, times, strains);
-        rates.extend(strains[from..].iter().zip(places).map(|(excess, u)| self.gain(*excess, *u, speed)));
+        if self.rate == RateDependence::Constant {
+            // The same numbers, as vectors.
+            let depth = self.specimen().depth();
+            let by_jaw = self.model.layers.drive(speed, depth) + speed / depth;
+            self.model.law.extend_rates(&strains[from..], rates);
+            rates[from..].iter_mut().for_each(|rate| *rate += by_jaw);
+        } else {
+            rates.extend(strains[from..].iter().zip(places).map(|(excess, u)| self.gain(*excess, *u, speed)));
+        }
     }
 
     fn ends_in(piece: &Parts) -> Vec<f64> {
@@ -275,8 +293,8 @@ impl Layer for Varying<'_> {
     /// Without a jaw ε₁ = 0: the excess is below zero, and the equilibrium strain is that of the dent.
     fn left(&self, _: &f64, u: f64) -> Option<Surface> {
         let (depth, layers) = (self.model.specimen.depth(), self.model.layers.count());
-        let count = (self.rate.slope() * u / depth / CHANGE).abs().ceil().clamp(1.0, MOST_PARTS);
-        let (mut from, mut parts) = (0.0, Vec::with_capacity(count as usize));
+        let count = parts_over((self.rate.slope() * u / depth).abs());
+        let (mut from, mut parts) = (0.0, SmallVec::new());
         for index in 0..count as usize {
             let dent = u * (1.0 - index as f64 / count);
             let next = u * (1.0 - (index as f64 + 1.0) / count);
