@@ -10,17 +10,18 @@ use crate::calibrate::Prediction;
 use crate::watch::{Cancelled, Stages, Unwatched, Watch};
 
 /// What the gripper holds once it has closed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Control {
     /// Its jaws stand: the force relaxes.
+    #[default]
     Position,
     /// Its force: the body creeps.
     Force,
 }
 
-/// What is asked of a grip.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// What is asked of a grip; by default, of the least squeeze that holds for a minute.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Question {
     /// What is held, and which of the grips the verdict is on.
     pub control: Control,
@@ -67,42 +68,6 @@ pub struct Answer {
     pub force_hold: Result<Followed<ForceHold>, GripError>,
     /// Squeezes that keep the force in the band, if one was asked for.
     pub schedule: Option<Result<Followed<Schedule>, GripError>>,
-}
-
-impl Question {
-    /// The least squeeze, with the displacement held for a time (s).
-    #[must_use]
-    pub fn hold_for(duration: f64) -> Self {
-        Self {
-            duration: Some(duration),
-            ..Self::default()
-        }
-    }
-
-    /// How long a squeeze to a displacement (m) holds.
-    #[must_use]
-    pub fn how_long(squeeze: f64) -> Self {
-        Self {
-            squeeze: Some(squeeze),
-            ..Self::default()
-        }
-    }
-}
-
-impl Default for Question {
-    /// The least squeeze that holds for a minute.
-    fn default() -> Self {
-        Self {
-            control: Control::Position,
-            squeeze: None,
-            force: None,
-            duration: None,
-            objective: Objective::Squeeze,
-            assured: false,
-            band: None,
-            regrip: Regrip::FewestMoves,
-        }
-    }
 }
 
 /// How long the least squeeze holds if nothing is said, s.

@@ -143,29 +143,27 @@ fn when(duration: f64) -> String {
     if duration.is_finite() { format!("after {duration} s") } else { "once relaxed".to_owned() }
 }
 
+/// Whether a number holds what is `expected` of it.
+pub(super) fn check(
+    name: &'static str,
+    found: f64,
+    unit: &'static str,
+    expected: &'static str,
+    holds: bool,
+) -> Result<(), GripError> {
+    holds.then_some(()).ok_or(GripError::Number {
+        name,
+        expected,
+        found,
+        unit,
+    })
+}
+
 pub(super) fn at_least(name: &'static str, found: f64, least: f64, unit: &'static str) -> Result<(), GripError> {
     let expected = if least == 0.0 { "finite and not below 0" } else { "finite and not below 1" };
-    if found.is_finite() && found >= least {
-        Ok(())
-    } else {
-        Err(GripError::Number {
-            name,
-            expected,
-            found,
-            unit,
-        })
-    }
+    check(name, found, unit, expected, found.is_finite() && found >= least)
 }
 
 pub(super) fn above_zero(name: &'static str, found: f64, unit: &'static str) -> Result<(), GripError> {
-    if found.is_finite() && found > 0.0 {
-        Ok(())
-    } else {
-        Err(GripError::Number {
-            name,
-            expected: "finite and above 0",
-            found,
-            unit,
-        })
-    }
+    check(name, found, unit, "finite and above 0", found.is_finite() && found > 0.0)
 }

@@ -1,5 +1,6 @@
 //! The same grasp with the force held.
 
+use super::error::check;
 use super::holding::beyond;
 use super::least::{bisected, check_duration};
 use super::{Grip, GripError, Plan};
@@ -41,25 +42,13 @@ impl Grip<'_> {
     /// [`GripError::NoSqueeze`] if no force within the limits is enough, [`GripError::BeyondLimit`] for a force beyond them.
     pub fn force_hold(&self, force: Option<f64>, duration: f64) -> Result<ForceHold, GripError> {
         check_duration(duration)?;
-        if !duration.is_finite() {
-            return Err(GripError::Number {
-                name: "time to hold",
-                expected: "finite where the force is held",
-                found: duration,
-                unit: " s",
-            });
-        }
+        check("time to hold", duration, " s", "finite where the force is held", duration.is_finite())?;
         let force = match force {
             Some(force) => force,
             None => self.least_force()?,
         };
         if let Some(limit) = self.limits.force.filter(|limit| force > *limit) {
-            return Err(GripError::BeyondLimit {
-                name: "force",
-                found: force,
-                limit,
-                unit: " N",
-            });
+            return Err(beyond("force", force, limit, " N"));
         }
         let steps = vec![
             ProgramStep::MoveToForce {
@@ -72,12 +61,7 @@ impl Grip<'_> {
         let (start, end) = (ends[0], ends[1]);
         let (deepest, _) = self.limits.deepest(self.contact.specimen());
         if start.displacement > deepest {
-            return Err(GripError::BeyondLimit {
-                name: "squeeze",
-                found: start.displacement,
-                limit: deepest,
-                unit: " m",
-            });
+            return Err(beyond("squeeze", start.displacement, deepest, " m"));
         }
         if let Some(closing) = self.limits.closing.filter(|closing| start.time > closing * (1.0 + 1e-9)) {
             return Err(beyond("time to close", start.time, closing, " s"));

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 
 use super::GripError;
-use super::error::{above_zero, at_least};
+use super::error::{above_zero, at_least, check};
 use crate::contact::{Shape, Specimen};
 
 /// Standard gravity, m/s².
@@ -90,26 +90,11 @@ impl Grasp {
             ("acceleration along the closing axis", self.acceleration_closing, " m/s²"),
             ("torque", self.torque, " N m"),
         ] {
-            if !found.is_finite() {
-                return Err(GripError::Number {
-                    name,
-                    expected: "finite",
-                    found,
-                    unit,
-                });
-            }
+            check(name, found, unit, "finite", found.is_finite())?;
         }
         let load = self.tangential_force().hypot(self.torsion()) + self.unloading();
-        if load > 0.0 && load.is_finite() {
-            Ok(())
-        } else {
-            Err(GripError::Number {
-                name: "load",
-                expected: "finite and above 0: nothing pulls at this body",
-                found: load,
-                unit: " N",
-            })
-        }
+        let expected = "finite and above 0: nothing pulls at this body";
+        check("load", load, " N", expected, load > 0.0 && load.is_finite())
     }
 
     /// T, the tangential force at each contact, N.

@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 
+use super::error::check;
 use super::time_to_slip::ALWAYS;
 use super::{Grasp, GripError, Limits, Plan, PlanKind, TimeToSlip};
 use crate::calibrate::{Material, Prediction};
@@ -86,14 +87,7 @@ impl<'a> Grip<'a> {
     pub fn new(material: &'a Material, grasp: Grasp, limits: Limits, confidence: f64) -> Result<Self, GripError> {
         grasp.check()?;
         limits.check()?;
-        if !(confidence > 0.0 && confidence < 1.0) {
-            return Err(GripError::Number {
-                name: "confidence",
-                expected: "between 0 and 1",
-                found: confidence,
-                unit: "",
-            });
-        }
+        check("confidence", confidence, "", "between 0 and 1", confidence > 0.0 && confidence < 1.0)?;
         if material.body.separation == Separation::Bonded {
             return Err(GripError::Bonded);
         }

@@ -2,17 +2,18 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::error::check;
 use super::holding::peak;
 use super::time_to_slip::ALWAYS;
 use super::{Grip, GripError, Holding, Plan};
 use crate::number::significant;
-use crate::simulate::StepEnd;
 
 /// What a plan should have least of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Objective {
     /// Displacement of the jaw.
+    #[default]
     Squeeze,
     /// The largest force: do not bruise.
     PeakForce,
@@ -147,11 +148,7 @@ impl Grip<'_> {
     fn surplus(&self, plan: &Plan, duration: f64, assured: bool) -> Result<f64, GripError> {
         let program = plan.held(duration.min(ALWAYS));
         let ends = self.ends(&program)?;
-        let end = ends.last().copied().unwrap_or(StepEnd {
-            time: 0.0,
-            displacement: 0.0,
-            force: 0.0,
-        });
+        let end = ends.last().copied().unwrap_or_default();
         let force = if assured { self.predict(&program, vec![end.time])?.force_interval(0).0 } else { end.force };
         Ok(force - self.needed_force(end.displacement))
     }
@@ -173,16 +170,8 @@ impl Grip<'_> {
 }
 
 pub(super) fn check_duration(duration: f64) -> Result<(), GripError> {
-    if duration > 0.0 && (duration <= ALWAYS || duration.is_infinite()) {
-        Ok(())
-    } else {
-        Err(GripError::Number {
-            name: "time to hold",
-            expected: "above 0 and ten years at most, or always",
-            found: duration,
-            unit: " s",
-        })
-    }
+    let holds = duration > 0.0 && (duration <= ALWAYS || duration.is_infinite());
+    check("time to hold", duration, " s", "above 0 and ten years at most, or always", holds)
 }
 
 /// Neighbours between which a question goes over from no to yes, to the last bits: the last no and the first yes.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::error::above_zero;
+use super::error::{above_zero, check};
 use super::holding::beyond;
 use super::least::{bisected, check_duration};
 use super::{Grip, GripError};
@@ -10,10 +10,11 @@ use crate::calibrate::Prediction;
 use crate::simulate::ProgramStep;
 
 /// What a schedule should have least of.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum Regrip {
     /// Moves: each goes to the upper edge of the band.
+    #[default]
     FewestMoves,
     /// Work: moves go only as far up as pauses of a least length need.
     LeastWork {
@@ -87,22 +88,9 @@ impl Grip<'_> {
     pub fn regrip(&self, band: Band, objective: Regrip, duration: f64) -> Result<Schedule, GripError> {
         check_duration(duration)?;
         above_zero("lower edge of the band", band.low, " N")?;
-        if !(band.high.is_finite() && band.high > band.low * (1.0 + 1e-6)) {
-            return Err(GripError::Number {
-                name: "upper edge of the band",
-                expected: "finite and above the lower edge",
-                found: band.high,
-                unit: " N",
-            });
-        }
-        if !duration.is_finite() {
-            return Err(GripError::Number {
-                name: "time to hold",
-                expected: "finite for a schedule",
-                found: duration,
-                unit: " s",
-            });
-        }
+        let is_above = band.high.is_finite() && band.high > band.low * (1.0 + 1e-6);
+        check("upper edge of the band", band.high, " N", "finite and above the lower edge", is_above)?;
+        check("time to hold", duration, " s", "finite for a schedule", duration.is_finite())?;
         if let Some(limit) = self.limits.force.filter(|limit| band.high > *limit) {
             return Err(beyond("force", band.high, limit, " N"));
         }

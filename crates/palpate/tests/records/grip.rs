@@ -428,7 +428,8 @@ fn a_search_for_grips_reports_progress_and_ends_when_it_is_told_to() {
     let grip = grip(&material, 0.25);
     let question = Question {
         assured: true,
-        ..Question::hold_for(60.0)
+        duration: Some(60.0),
+        ..Question::default()
     };
     let mut heard = Vec::new();
     let answer = grip.answer_watched(&question, &mut |progress: Progress<'_>| {

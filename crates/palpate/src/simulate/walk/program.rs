@@ -9,7 +9,7 @@ use crate::simulate::{ProgramStep, SimulateError};
 use crate::watch::{Stages, Unwatched};
 
 /// Where a step of a program ended.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct StepEnd {
     /// Time, s.
     pub time: f64,
