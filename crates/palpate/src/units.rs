@@ -48,46 +48,36 @@ pub enum Dimension {
 }
 
 impl Dimension {
+    /// Name, an example, and the accepted units.
+    fn row(self) -> (&'static str, &'static str, &'static [(&'static str, f64)]) {
+        match self {
+            Self::Length => ("length", "35 mm", LENGTH),
+            Self::Area => ("area", "40 mm^2", AREA),
+            Self::Time => ("time", "10 s", TIME),
+            Self::Force => ("force", "5 N", FORCE),
+            Self::Pressure => ("pressure or modulus", "28 kPa", PRESSURE),
+            Self::Speed => ("speed", "500 mm/min", SPEED),
+            Self::Rate => ("rate", "2e4 /s", RATE),
+            Self::Frequency => ("frequency", "100 Hz", FREQUENCY),
+            Self::ForceRate => ("rate of force", "10 N/s", FORCE_RATE),
+            Self::Compliance => ("compliance", "0.5 um/N", COMPLIANCE),
+            Self::Voltage => ("voltage", "2.5 V", VOLTAGE),
+            Self::Mass => ("mass", "150 g", MASS),
+            Self::Acceleration => ("acceleration", "2 m/s^2", ACCELERATION),
+            Self::Torque => ("torque", "5 N mm", TORQUE),
+        }
+    }
+
     /// The name used in messages.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Length => "length",
-            Self::Area => "area",
-            Self::Time => "time",
-            Self::Force => "force",
-            Self::Pressure => "pressure or modulus",
-            Self::Speed => "speed",
-            Self::Rate => "rate",
-            Self::Frequency => "frequency",
-            Self::ForceRate => "rate of force",
-            Self::Compliance => "compliance",
-            Self::Voltage => "voltage",
-            Self::Mass => "mass",
-            Self::Acceleration => "acceleration",
-            Self::Torque => "torque",
-        }
+        self.row().0
     }
 
     /// Accepted unit symbols with the factor that turns them to SI; the SI unit stands first.
     #[must_use]
     pub fn units(self) -> &'static [(&'static str, f64)] {
-        match self {
-            Self::Length => LENGTH,
-            Self::Area => AREA,
-            Self::Time => TIME,
-            Self::Force => FORCE,
-            Self::Pressure => PRESSURE,
-            Self::Speed => SPEED,
-            Self::Rate => RATE,
-            Self::Frequency => FREQUENCY,
-            Self::ForceRate => FORCE_RATE,
-            Self::Compliance => COMPLIANCE,
-            Self::Voltage => VOLTAGE,
-            Self::Mass => MASS,
-            Self::Acceleration => ACCELERATION,
-            Self::Torque => TORQUE,
-        }
+        self.row().2
     }
 
     /// The accepted symbols as one line for a message: `m, mm, µm, …`.
@@ -221,7 +211,7 @@ const FREQUENCY: &[(&str, f64)] = &[("Hz", 1.0), ("kHz", 1e3), ("/s", 1.0), ("1/
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum UnitError {
     /// The text does not start with a number.
-    #[error("expected a {dimension} such as \"{example}\", found \"{found}\"", dimension = .dimension.name(), example = example(*.dimension))]
+    #[error("expected a {dimension} such as \"{example}\", found \"{found}\"", dimension = .dimension.name(), example = .dimension.row().1)]
     NotANumber {
         /// What was asked for.
         dimension: Dimension,
@@ -252,25 +242,6 @@ pub enum UnitError {
         /// What stood there.
         found: String,
     },
-}
-
-fn example(dimension: Dimension) -> &'static str {
-    match dimension {
-        Dimension::Length => "35 mm",
-        Dimension::Area => "40 mm^2",
-        Dimension::Time => "10 s",
-        Dimension::Force => "5 N",
-        Dimension::Pressure => "28 kPa",
-        Dimension::Speed => "500 mm/min",
-        Dimension::Rate => "2e4 /s",
-        Dimension::Frequency => "100 Hz",
-        Dimension::ForceRate => "10 N/s",
-        Dimension::Compliance => "0.5 um/N",
-        Dimension::Voltage => "2.5 V",
-        Dimension::Mass => "150 g",
-        Dimension::Acceleration => "2 m/s^2",
-        Dimension::Torque => "5 N mm",
-    }
 }
 
 /// The factor that turns a unit symbol into SI, or `None` if the symbol is not a unit of `dimension`.
