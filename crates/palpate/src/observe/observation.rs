@@ -21,9 +21,10 @@ pub enum ContactPhase {
 }
 
 /// What is held.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Held {
     /// The displacement: the force relaxes.
+    #[default]
     Displacement,
     /// The force: the displacement creeps.
     Force,
@@ -88,7 +89,7 @@ impl Kept for Slip {
 }
 
 /// What an observer says after a tick; SI units.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Observation {
     /// When, s.
     pub time: f64,

@@ -30,7 +30,7 @@ const READINGS: u32 = 8;
 const FORMAT: [u8; 8] = *b"observe1";
 
 /// A hold that goes on.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Hold {
     pub(super) held: Held,
     pub(super) since: f64,
@@ -50,12 +50,7 @@ impl Hold {
         Self {
             held,
             since,
-            fit: None,
-            crossing: None,
-            creep: None,
-            due: 0.0,
-            readings: 0,
-            slip: Slip::None,
+            ..Self::default()
         }
     }
 }
@@ -64,6 +59,13 @@ impl Hold {
 #[derive(Debug, Clone)]
 pub struct Observer {
     pub(super) options: ObserverOptions,
+    pub(super) seen: Seen,
+    pub(super) believed: Option<Believed>,
+}
+
+/// All that readings have changed, but for what a material makes of them.
+#[derive(Debug, Clone)]
+pub(super) struct Seen {
     pub(super) last: Option<f64>,
     pub(super) displacement_noise: NoiseMeter,
     pub(super) force_noise: NoiseMeter,
@@ -80,10 +82,13 @@ pub struct Observer {
     pub(super) displacement_seen: bool,
     pub(super) alone: Alone,
     pub(super) hold: Option<Hold>,
-    pub(super) believed: Option<Believed>,
     /// Readings off a place that the jaw has perhaps not left, kept from the material until the next tells: time (s), and displacement (m) and force (N).
     pub(super) doubted: Option<(f64, (f64, f64))>,
 }
+kept!(
+    Seen: last, displacement_noise, force_noise, smooth, jaw, grip, reached, relaxation, relaxes_from, creep,
+    displacement_seen, alone, hold, doubted
+);
 
 impl Observer {
     /// An observer that has seen nothing.
@@ -94,10 +99,7 @@ impl Observer {
         options.check()?;
         let noise = options.noise;
         let believed = options.material.as_ref().map(|material| Believed::new(material, &options)).transpose()?;
-        Ok(Self {
-            believed,
-            doubted: None,
-            options,
+        let seen = Seen {
             last: None,
             displacement_noise: NoiseMeter::new(noise.map(|noise| noise.0)),
             force_noise: NoiseMeter::new(noise.map(|noise| noise.1)),
@@ -111,6 +113,12 @@ impl Observer {
             displacement_seen: false,
             alone: Alone::default(),
             hold: None,
+            doubted: None,
+        };
+        Ok(Self {
+            options,
+            seen,
+            believed,
         })
     }
 
@@ -125,25 +133,25 @@ impl Observer {
     /// as before.
     pub fn feed(&mut self, time: f64, displacement: Option<f64>, force: f64) -> Result<Observation, ObserveError> {
         self.check(time, displacement, force)?;
-        let dt = self.last.map_or(0.0, |last| time - last);
-        self.last = Some(time);
-        self.force_noise.feed(time, force);
-        self.smooth.feed(dt, force, self.force_noise.deviation());
-        reach(&mut self.reached[1], force);
+        let dt = self.seen.last.map_or(0.0, |last| time - last);
+        self.seen.last = Some(time);
+        self.seen.force_noise.feed(time, force);
+        self.seen.smooth.feed(dt, force, self.seen.force_noise.deviation());
+        reach(&mut self.seen.reached[1], force);
         if let Some(displacement) = displacement {
-            self.displacement_noise.feed(time, displacement);
-            reach(&mut self.reached[0], displacement);
-            self.displacement_seen = true;
+            self.seen.displacement_noise.feed(time, displacement);
+            reach(&mut self.seen.reached[0], displacement);
+            self.seen.displacement_seen = true;
         }
         let began = self.follow(time, displacement, force);
         if let Some(displacement) = displacement {
             self.believe(time, displacement, force);
         }
-        if !self.jaw.is_doubtful() {
+        if !self.seen.jaw.is_doubtful() {
             self.fit(time);
         }
         let said = self.say(time, began);
-        if let Some(hold) = &mut self.hold {
+        if let Some(hold) = &mut self.seen.hold {
             hold.slip = said.slip;
         }
         Ok(said)
@@ -153,12 +161,12 @@ impl Observer {
     /// reading says whether it was left.
     fn believe(&mut self, time: f64, displacement: f64, force: f64) {
         let Some(believed) = &mut self.believed else { return };
-        if self.jaw.is_doubtful() {
-            self.doubted = Some((time, (displacement, force)));
+        if self.seen.jaw.is_doubtful() {
+            self.seen.doubted = Some((time, (displacement, force)));
             return;
         }
-        if let Some((time, (displacement, force))) = self.doubted.take()
-            && !self.jaw.stands()
+        if let Some((time, (displacement, force))) = self.seen.doubted.take()
+            && !self.seen.jaw.stands()
         {
             believed.feed(time, displacement, force);
         }
@@ -167,7 +175,7 @@ impl Observer {
 
     /// The material, once it has seen where the jaw is.
     pub(super) fn informed(&self) -> Option<&Believed> {
-        self.believed.as_ref().filter(|believed| self.displacement_seen && believed.is_met())
+        self.believed.as_ref().filter(|believed| self.seen.displacement_seen && believed.is_met())
     }
 
     /// What it was told before the first tick.
@@ -180,7 +188,10 @@ impl Observer {
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = FORMAT.to_vec();
-        self.keep(&mut bytes);
+        self.seen.keep(&mut bytes);
+        if let Some(believed) = &self.believed {
+            believed.keep(&mut bytes);
+        }
         bytes
     }
 
@@ -195,46 +206,13 @@ impl Observer {
         Ok(observer)
     }
 
-    fn keep(&self, into: &mut Vec<u8>) {
-        self.last.keep(into);
-        self.displacement_noise.keep(into);
-        self.force_noise.keep(into);
-        self.smooth.keep(into);
-        self.jaw.keep(into);
-        self.grip.keep(into);
-        self.reached.keep(into);
-        self.relaxation.keep(into);
-        self.relaxes_from.keep(into);
-        self.creep.keep(into);
-        self.displacement_seen.keep(into);
-        self.alone.keep(into);
-        self.hold.keep(into);
-        self.doubted.keep(into);
-        if let Some(believed) = &self.believed {
-            believed.keep(into);
-        }
-    }
-
     fn read(&mut self, from: &mut &[u8]) -> Option<()> {
-        self.last = Kept::read(from)?;
-        self.displacement_noise = Kept::read(from)?;
-        self.force_noise = Kept::read(from)?;
-        self.smooth = Kept::read(from)?;
-        self.jaw = Kept::read(from)?;
-        self.grip = Kept::read(from)?;
-        self.reached = Kept::read(from)?;
-        self.relaxation = Kept::read(from)?;
-        self.relaxes_from = Kept::read(from)?;
-        self.creep = Kept::read(from)?;
-        self.displacement_seen = Kept::read(from)?;
-        self.alone = Kept::read(from)?;
-        self.hold = Kept::read(from)?;
-        self.doubted = Kept::read(from)?;
+        self.seen = Kept::read(from)?;
         self.believed.as_mut().map_or(Some(()), |believed| believed.read(from))
     }
 
     fn check(&self, time: f64, displacement: Option<f64>, force: f64) -> Result<(), ObserveError> {
-        let place = self.last.unwrap_or(0.0);
+        let place = self.seen.last.unwrap_or(0.0);
         let readings =
             [("time", place, time), ("displacement", time, displacement.unwrap_or(0.0)), ("force", time, force)];
         for (what, at, found) in readings {
@@ -242,7 +220,7 @@ impl Observer {
                 return Err(ObserveError::NotFinite { what, time: at, found });
             }
         }
-        match self.last {
+        match self.seen.last {
             Some(last) if time <= last => return Err(ObserveError::TimeNotRising { last, found: time }),
             _ => {}
         }
@@ -262,44 +240,45 @@ impl Observer {
                     .max(1.01 * meter.quantum().min(reached.1 - reached.0)),
             )
         };
-        let force_tolerance = tolerance(&self.force_noise, self.reached[1], CONTROLLER);
-        let grip = self.grip.feed(time, force, force_tolerance, PATIENCE.1);
+        let force_tolerance = tolerance(&self.seen.force_noise, self.seen.reached[1], CONTROLLER);
+        let grip = self.seen.grip.feed(time, force, force_tolerance, PATIENCE.1);
         if matches!(grip, Change::Moved | Change::Left | Change::Crept) {
-            self.creep.clear();
+            self.seen.creep.clear();
         } else if let Some(displacement) = displacement {
-            self.creep.push(time - self.grip.start(), displacement);
+            self.seen.creep.push(time - self.seen.grip.start(), displacement);
         }
         let jaw = match displacement {
             Some(displacement) => {
-                let tolerance = tolerance(&self.displacement_noise, self.reached[0], SERVO);
-                self.jaw.feed(time, displacement, tolerance, PATIENCE.0)
+                let tolerance = tolerance(&self.seen.displacement_noise, self.seen.reached[0], SERVO);
+                self.seen.jaw.feed(time, displacement, tolerance, PATIENCE.0)
             }
-            None if self.displacement_seen => Change::Same,
+            None if self.seen.displacement_seen => Change::Same,
             None => {
-                let tolerance = self.force_noise.deviation().map(|noise| NOISE * noise * Smooth::kept());
-                let predicted = self.hold.and_then(|hold| hold.fit).map(|fit| fit.force(time - self.relaxes_from));
-                self.alone.feed(time, self.smooth.level(), tolerance, predicted)
+                let tolerance = self.seen.force_noise.deviation().map(|noise| NOISE * noise * Smooth::kept());
+                let predicted =
+                    self.seen.hold.and_then(|hold| hold.fit).map(|fit| fit.force(time - self.seen.relaxes_from));
+                self.seen.alone.feed(time, self.seen.smooth.level(), tolerance, predicted)
             }
         };
         if matches!(jaw, Change::Moved | Change::Left | Change::Crept) || self.is_open() {
             // The first reading at a place may still belong to the way there.
-            self.relaxation.clear();
-            self.relaxes_from = time;
-        } else if !self.jaw.is_doubtful() {
-            self.relaxation.push(time - self.relaxes_from, force);
+            self.seen.relaxation.clear();
+            self.seen.relaxes_from = time;
+        } else if !self.seen.jaw.is_doubtful() {
+            self.seen.relaxation.push(time - self.seen.relaxes_from, force);
         }
-        let told = force_tolerance.is_some_and(|tolerance| self.smooth.level().abs() > PLAIN * tolerance);
+        let told = force_tolerance.is_some_and(|tolerance| self.seen.smooth.level().abs() > PLAIN * tolerance);
         self.begin_or_end(jaw, grip, told)
     }
 
     /// `told` is whether the force is large enough for its standing still to mean anything.
     fn begin_or_end(&mut self, jaw: Change, grip: Change, told: bool) -> bool {
-        let jaw_stands = self.displacement_seen && self.jaw.stands();
-        let stands = jaw_stands || (!self.displacement_seen && self.alone.stands() && told);
-        if let Some(hold) = &mut self.hold {
+        let jaw_stands = self.seen.displacement_seen && self.seen.jaw.stands();
+        let stands = jaw_stands || (!self.seen.displacement_seen && self.seen.alone.stands() && told);
+        if let Some(hold) = &mut self.seen.hold {
             hold.readings = hold.readings.saturating_add(1);
             let goes_on = match hold.held {
-                Held::Displacement if jaw == Change::Crept && self.grip.stands() => {
+                Held::Displacement if jaw == Change::Crept && self.seen.grip.stands() => {
                     *hold = Hold::new(Held::Force, hold.since);
                     true
                 }
@@ -313,46 +292,46 @@ impl Observer {
                 Held::Force => false,
             };
             if !goes_on || self.is_open() {
-                self.hold = None;
+                self.seen.hold = None;
             }
             return false;
         }
         if self.is_open() {
             return false;
         }
-        self.hold = if stands {
-            Some(Hold::new(Held::Displacement, self.relaxes_from))
-        } else if self.displacement_seen && self.grip.stands() && self.jaw.slowed() && told {
-            Some(Hold::new(Held::Force, self.grip.start()))
+        self.seen.hold = if stands {
+            Some(Hold::new(Held::Displacement, self.seen.relaxes_from))
+        } else if self.seen.displacement_seen && self.seen.grip.stands() && self.seen.jaw.slowed() && told {
+            Some(Hold::new(Held::Force, self.seen.grip.start()))
         } else {
             None
         };
-        self.hold.is_some()
+        self.seen.hold.is_some()
     }
 
     /// Whether there is no contact.
     pub(super) fn is_open(&self) -> bool {
-        let Some(noise) = self.force_noise.deviation() else {
+        let Some(noise) = self.seen.force_noise.deviation() else {
             return true;
         };
         let noise = noise * Smooth::kept();
-        let largest = self.reached[1].1.abs().max(self.reached[1].0.abs());
+        let largest = self.seen.reached[1].1.abs().max(self.seen.reached[1].0.abs());
         let edge = (OPEN.0 * largest).max(OPEN.1 * noise);
         // What is held has to fall further to be lost.
-        self.smooth.level().abs() <= if self.hold.is_some() { 0.5 * edge } else { edge }
+        self.seen.smooth.level().abs() <= if self.seen.hold.is_some() { 0.5 * edge } else { edge }
     }
 
     fn fit(&mut self, time: f64) {
-        let Some(mut hold) = self.hold else { return };
-        let from = if hold.held == Held::Displacement { self.relaxes_from } else { self.grip.start() };
+        let Some(mut hold) = self.seen.hold else { return };
+        let from = if hold.held == Held::Displacement { self.seen.relaxes_from } else { self.seen.grip.start() };
         let elapsed = time - from;
         if elapsed < hold.due {
             return;
         }
         if hold.held == Held::Force {
-            hold.creep = self.creep.late_slope();
+            hold.creep = self.seen.creep.late_slope();
             hold.due = (1.0 + AGAIN) * elapsed;
-            self.hold = Some(hold);
+            self.seen.hold = Some(hold);
             return;
         }
         let slip = self.options.slip_force;
@@ -365,9 +344,9 @@ impl Observer {
             })
         });
         hold.due = (1.0 + AGAIN) * elapsed;
-        let bins = self.relaxation.as_slice();
+        let bins = self.seen.relaxation.as_slice();
         let readings: f64 = bins.iter().map(|bin| bin.count).sum();
-        if let Some(noise) = self.force_noise.deviation()
+        if let Some(noise) = self.seen.force_noise.deviation()
             && bins.len() > FEWEST
             && readings >= f64::from(READINGS)
         {
@@ -395,7 +374,7 @@ impl Observer {
             (Some(material), Some(itself)) if itself.width(elapsed) < material.width(elapsed) => Some(itself),
             (material, itself) => material.or(itself),
         };
-        self.hold = Some(hold);
+        self.seen.hold = Some(hold);
     }
 }
 

@@ -15,7 +15,7 @@ const STAYS: f64 = 2.0;
 impl Observer {
     /// What is said after the tick at `time` (s).
     pub(super) fn say(&self, time: f64, began: bool) -> Observation {
-        let phase = match &self.hold {
+        let phase = match &self.seen.hold {
             Some(_) => ContactPhase::Holding,
             None if self.is_open() => ContactPhase::Free,
             None if self.direction() < 0.0 => ContactPhase::Unloading,
@@ -24,23 +24,16 @@ impl Observer {
         let mut said = Observation {
             time,
             phase,
-            held: None,
-            held_since: None,
             began,
-            force: self.smooth.level(),
-            equilibrium_force: None,
-            excess_force: None,
-            excess_strain: None,
-            relative_rate: None,
-            creep_rate: None,
+            force: self.seen.smooth.level(),
             time_to_slip: self.options.slip_force.map(|_| SlipForecast::Unknown),
-            slip: Slip::None,
+            ..Observation::default()
         };
-        if let Some(hold) = &self.hold {
+        if let Some(hold) = &self.seen.hold {
             said.held = Some(hold.held);
             said.held_since = Some(hold.since);
             said.creep_rate = hold.creep.map(Into::into);
-            let elapsed = time - self.relaxes_from;
+            let elapsed = time - self.seen.relaxes_from;
             if let Some(fit) = &hold.fit {
                 said.force = fit.force(elapsed);
                 let equilibrium = fit.equilibrium();
@@ -85,7 +78,7 @@ impl Observer {
     }
 
     fn direction(&self) -> f64 {
-        if self.displacement_seen { self.jaw.direction() } else { self.grip.direction() }
+        if self.seen.displacement_seen { self.seen.jaw.direction() } else { self.seen.grip.direction() }
     }
 
     fn warning(&self, said: &Observation) -> Slip {
@@ -95,8 +88,8 @@ impl Observer {
         if said.phase != ContactPhase::Holding {
             return Slip::None;
         }
-        let noise = self.force_noise.deviation().unwrap_or(0.0) * Smooth::kept();
-        let before = self.hold.map_or(Slip::None, |hold| hold.slip);
+        let noise = self.seen.force_noise.deviation().unwrap_or(0.0) * Smooth::kept();
+        let before = self.seen.hold.map_or(Slip::None, |hold| hold.slip);
         // A warning stays until there is clearly no cause for it any more.
         let early = if before == Slip::None { 1.0 } else { STAYS };
         let margin = if before == Slip::Slipping { 3.0 * noise } else { 0.0 };

@@ -11,7 +11,7 @@ const FIRST: [usize; 2] = [8, 16];
 ///
 /// The distance of y₁ from the line through y₀ and y₂ has the variance σ²(1 + w² + (1 − w)²), w = (t₁ − t₀)/(t₂ − t₀), whatever the speed; a
 /// median of 32 leaves out corners of the motion. Estimates of successive stretches are averaged, the last eight counting most.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(in crate::observe) struct NoiseMeter {
     known: Option<f64>,
     last: [(f64, f64); 2],
@@ -29,13 +29,8 @@ impl NoiseMeter {
     pub(in crate::observe) fn new(known: Option<f64>) -> Self {
         Self {
             known,
-            last: [(0.0, 0.0); 2],
-            seen: 0,
-            room: [0.0; ROOM],
-            filled: 0,
-            found: None,
-            step: None,
             quantum: f64::INFINITY,
+            ..Self::default()
         }
     }
 
