@@ -84,6 +84,27 @@ enum Path {
     Changing(Vec<Step>),
 }
 
+/// A contact layer under a force that goes straight, a time `elapsed` (s) after the start of the piece.
+pub(crate) trait UnderForce {
+    /// What the layer has in excess of equilibrium.
+    type Excess;
+    /// What stands behind the layer and does not jump with the force.
+    type Behind;
+
+    /// Force, N.
+    fn force_at(&self, elapsed: f64) -> f64;
+    /// The contact; NaN where nothing carries the force.
+    fn at(&self, elapsed: f64) -> Carried;
+    /// Contact displacement, m.
+    fn displacement_at(&self, elapsed: f64) -> f64 {
+        self.at(elapsed).displacement
+    }
+    fn excess_at(&self, elapsed: f64) -> Self::Excess;
+    fn behind_at(&self, elapsed: f64) -> Self::Behind;
+    /// Ends of the integration steps (s from the start of the piece).
+    fn step_ends(&self) -> Vec<f64>;
+}
+
 /// Why a piece could not be followed to its end, and how long after its start, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Stopped {
@@ -201,14 +222,18 @@ impl Forced {
         work.evaluations += solver.evaluations;
         Ok(Path::Changing(steps))
     }
+}
 
-    /// Force a time `elapsed` (s) after the start of the piece, N.
-    pub(crate) fn force_at(&self, elapsed: f64) -> f64 {
+impl UnderForce for Forced {
+    type Excess = f64;
+    /// Displacement of the node behind the contact layer, m.
+    type Behind = f64;
+
+    fn force_at(&self, elapsed: f64) -> f64 {
         self.force.at(elapsed)
     }
 
-    /// The contact a time `elapsed` (s) after the start of the piece; NaN where nothing carries the force.
-    pub(crate) fn at(&self, elapsed: f64) -> Carried {
+    fn at(&self, elapsed: f64) -> Carried {
         let (body, force) = (&self.body, self.force_at(elapsed));
         let (displacement, excess) = match &self.path {
             Path::Held { initial, steps } => {
@@ -238,14 +263,16 @@ impl Forced {
         }
     }
 
-    /// Ends of the integration steps (s from the start of the piece).
-    pub(crate) fn step_ends(&self) -> impl Iterator<Item = f64> + '_ {
+    fn step_ends(&self) -> Vec<f64> {
         let (Path::Held { steps, .. } | Path::Changing(steps)) = &self.path;
-        steps.iter().map(Step::end)
+        steps.iter().map(Step::end).collect()
     }
 
-    /// Displacement of the node behind the contact layer a time `elapsed` (s) after the start of the piece, m.
-    pub(crate) fn behind_at(&self, elapsed: f64) -> f64 {
+    fn excess_at(&self, elapsed: f64) -> f64 {
+        self.at(elapsed).excess
+    }
+
+    fn behind_at(&self, elapsed: f64) -> f64 {
         match &self.path {
             Path::Changing(steps) => dense(steps, elapsed).unwrap_or(f64::NAN),
             Path::Held { .. } => {
@@ -264,7 +291,7 @@ fn dense(steps: &[Step], elapsed: f64) -> Option<f64> {
 }
 
 /// The last moment at which `good` holds, by bisection to the last bit.
-fn last_good(mut good_at: f64, mut bad_at: f64, good: impl Fn(f64) -> bool) -> f64 {
+pub(crate) fn last_good(mut good_at: f64, mut bad_at: f64, good: impl Fn(f64) -> bool) -> f64 {
     loop {
         let middle = 0.5 * (good_at + bad_at);
         if middle <= good_at || middle >= bad_at {

@@ -47,7 +47,7 @@ pub use specimen::{Specimen, SpecimenError};
 #[cfg(feature = "std")]
 pub(crate) use {
     element::{Element, Ramps, is_kinked, longest_step, rest_of},
-    forced::{Body, Carried, ForceLine, Forced, Stopped},
+    forced::{Body, Carried, ForceLine, Forced, Stopped, UnderForce, last_good},
     free_surface::FreeSurface,
 };
 #[cfg(feature = "std")]

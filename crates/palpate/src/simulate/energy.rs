@@ -3,11 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::contact::{ContactRef, by_law};
-use super::layer::Layer;
+use super::layer::{InMotion, Layer};
 use super::trajectory::sample_times;
 use super::walk::Course;
 use super::walk::{Stretch, StretchState, walk};
 use super::{Drive, Sampling, SimulateError};
+use crate::contact::UnderForce;
 use crate::watch::{Stages, Unwatched, Watch};
 
 /// Energy of a simulated body over time, in J; both contacts of a body that is squeezed from two sides.
@@ -148,7 +149,7 @@ impl Account {
         let duration = stretch.end - stretch.start;
         let kinks: Vec<f64> = match &stretch.state {
             StretchState::Touching(piece) if stretch.contact_speed != 0.0 => {
-                let mut kinks = L::ends_in(piece);
+                let mut kinks = piece.step_ends();
                 // What follows the last step decays: pieces that grow.
                 let last = kinks.last().copied().unwrap_or(0.0);
                 let mut width = kinks.first().copied().unwrap_or(duration).max(1e-6 * duration);
@@ -165,7 +166,7 @@ impl Account {
                 kinks.sort_by(f64::total_cmp);
                 kinks
             }
-            StretchState::Forced(forced) => L::ends_under(forced),
+            StretchState::Forced(forced) => forced.step_ends(),
             StretchState::Touching(_) | StretchState::Free { .. } => return,
         };
         let kinks = kinks.into_iter().map(|elapsed| stretch.start + elapsed);
@@ -190,9 +191,9 @@ fn power_at<L: Layer>(stretch: &Stretch<L>, model: &L, time: f64) -> f64 {
     match &stretch.state {
         StretchState::Touching(piece) => {
             let u = stretch.jaw_at(time);
-            specimen.force(model.strain_in(piece, elapsed) + specimen.equilibrium_strain(u), u) * stretch.contact_speed
+            specimen.force(piece.strain_at(elapsed) + specimen.equilibrium_strain(u), u) * stretch.contact_speed
         }
-        StretchState::Forced(forced) => L::force_under(forced, elapsed) * L::carried(forced, elapsed).speed,
+        StretchState::Forced(forced) => forced.force_at(elapsed) * forced.at(elapsed).speed,
         StretchState::Free { .. } => 0.0,
     }
 }
@@ -221,7 +222,7 @@ fn work_between<L: Layer>(stretch: &Stretch<L>, model: &L, (from, to): (f64, f64
     match &stretch.state {
         StretchState::Touching(_) => integral(|time| power_at(stretch, model, time), from, to),
         StretchState::Forced(forced) => {
-            let force = |time: f64| L::force_under(forced, time - stretch.start);
+            let force = |time: f64| forced.force_at(time - stretch.start);
             let u = |time: f64| stretch.jaw_at(time);
             let rise = force(to) - force(from);
             // Against the displacement at one end, so that a held force keeps its digits.
@@ -243,8 +244,8 @@ fn work_between<L: Layer>(stretch: &Stretch<L>, model: &L, (from, to): (f64, f64
 pub(super) fn stored_at<L: Layer>(stretch: &Stretch<L>, model: &L, time: f64) -> f64 {
     let elapsed = time - stretch.start;
     let (u, excess) = match &stretch.state {
-        StretchState::Touching(piece) => (stretch.jaw_at(time), model.excess_in(piece, elapsed)),
-        StretchState::Forced(forced) => (stretch.jaw_at(time), L::excess_under(forced, elapsed)),
+        StretchState::Touching(piece) => (stretch.jaw_at(time), piece.excess_at(elapsed)),
+        StretchState::Forced(forced) => (stretch.jaw_at(time), forced.excess_at(elapsed)),
         StretchState::Free { surface, since } => {
             let u = model.surface(surface, time - since);
             (u, model.met(surface, time - since, u))

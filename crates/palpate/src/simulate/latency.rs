@@ -8,9 +8,9 @@
 
 use smallvec::SmallVec;
 
-use crate::contact::{Body, Carried, Element, Forced, FreeSurface, Ramps, RateDependence, Specimen, Stopped};
+use crate::contact::{Body, Element, Forced, FreeSurface, Ramps, RateDependence, Specimen, Stopped};
 use crate::latency::LatencyLaw;
-use crate::simulate::layer::{Layer, crossing, lost, meeting};
+use crate::simulate::layer::{InMotion, Layer, crossing, lost, meeting};
 use crate::simulate::{ContactModel, Separation, SimulationWork};
 
 /// Most change of ln v within a part.
@@ -40,12 +40,24 @@ struct Part {
 }
 
 impl Parts {
+    fn ends(&self) -> impl Iterator<Item = f64> + '_ {
+        self.0.iter().enumerate().flat_map(|(index, part)| {
+            let next = self.0.get(index + 1).map(|next| next.from);
+            let inside = part.element.step_ends().map(|end| part.from + end);
+            inside.filter(move |end| next.is_none_or(|next| *end < next)).chain(next)
+        })
+    }
+}
+
+impl InMotion for Parts {
+    type Excess = f64;
+
     fn excess_at(&self, elapsed: f64) -> f64 {
         let index = self.0.partition_point(|part| part.from <= elapsed).max(1) - 1;
         self.0[index].element.excess_at(elapsed - self.0[index].from)
     }
 
-    fn extend_excess(&self, start: f64, times: &[f64], out: &mut Vec<f64>) {
+    fn extend_strains(&self, start: f64, times: &[f64], out: &mut Vec<f64>) {
         let mut done = 0;
         for (index, part) in self.0.iter().enumerate() {
             let until = match self.0.get(index + 1) {
@@ -59,12 +71,12 @@ impl Parts {
         }
     }
 
-    fn ends(&self) -> impl Iterator<Item = f64> + '_ {
-        self.0.iter().enumerate().flat_map(|(index, part)| {
-            let next = self.0.get(index + 1).map(|next| next.from);
-            let inside = part.element.step_ends().map(|end| part.from + end);
-            inside.filter(move |end| next.is_none_or(|next| *end < next)).chain(next)
-        })
+    fn strain_at(&self, elapsed: f64) -> f64 {
+        self.excess_at(elapsed)
+    }
+
+    fn step_ends(&self) -> Vec<f64> {
+        self.ends().collect()
     }
 }
 
@@ -210,18 +222,6 @@ impl Layer for Latency<'_> {
         }
     }
 
-    fn excess_in(&self, piece: &Parts, elapsed: f64) -> f64 {
-        piece.excess_at(elapsed)
-    }
-
-    fn strain_in(&self, piece: &Parts, elapsed: f64) -> f64 {
-        piece.excess_at(elapsed)
-    }
-
-    fn extend_strains(&self, piece: &Parts, start: f64, times: &[f64], strains: &mut Vec<f64>) {
-        piece.extend_excess(start, times, strains);
-    }
-
     fn extend(
         &self,
         piece: &Parts,
@@ -231,7 +231,7 @@ impl Layer for Latency<'_> {
         rates: &mut Vec<f64>,
     ) {
         let from = strains.len();
-        piece.extend_excess(start, times, strains);
+        piece.extend_strains(start, times, strains);
         if self.rate == RateDependence::Constant {
             // The same numbers, as vectors.
             let depth = self.specimen().depth();
@@ -241,10 +241,6 @@ impl Layer for Latency<'_> {
         } else {
             rates.extend(strains[from..].iter().zip(places).map(|(excess, u)| self.gain(*excess, *u, speed)));
         }
-    }
-
-    fn ends_in(piece: &Parts) -> Vec<f64> {
-        piece.ends().collect()
     }
 
     fn loss(&self, piece: &Parts, (start, end): (f64, f64), speed: f64, jaw: &impl Fn(f64) -> f64) -> Option<f64> {
@@ -268,26 +264,6 @@ impl Layer for Latency<'_> {
             bonded: self.is_bonded(),
         };
         Forced::solve(body, forces, behind, duration, work)
-    }
-
-    fn force_under(piece: &Forced, elapsed: f64) -> f64 {
-        piece.force_at(elapsed)
-    }
-
-    fn carried(piece: &Forced, elapsed: f64) -> Carried {
-        piece.at(elapsed)
-    }
-
-    fn excess_under(piece: &Forced, elapsed: f64) -> f64 {
-        piece.at(elapsed).excess
-    }
-
-    fn behind_under(piece: &Forced, elapsed: f64) -> f64 {
-        piece.behind_at(elapsed)
-    }
-
-    fn ends_under(piece: &Forced) -> Vec<f64> {
-        piece.step_ends().collect()
     }
 
     /// Without a jaw ε₁ = 0: the excess is below zero, and the equilibrium strain is that of the dent.

@@ -3,7 +3,20 @@
 //! The walk through a drive asks for no more than this: the layer while the jaw moves, under a force, and the surface without a jaw.
 
 use super::{Separation, SimulationWork};
-use crate::contact::{Carried, Specimen, Stopped};
+use crate::contact::{Specimen, Stopped, UnderForce};
+
+/// The layer through a straight piece of motion, a time `elapsed` (s) after its start.
+pub(super) trait InMotion {
+    type Excess;
+
+    fn excess_at(&self, elapsed: f64) -> Self::Excess;
+    /// Excess strain.
+    fn strain_at(&self, elapsed: f64) -> f64;
+    /// Appends the excess strain at times (s) in a piece that began at `start`.
+    fn extend_strains(&self, start: f64, times: &[f64], strains: &mut Vec<f64>);
+    /// Times (s from its start) between which it is smooth.
+    fn step_ends(&self) -> Vec<f64>;
+}
 
 /// A contact with a law of its layer.
 pub(super) trait Layer {
@@ -12,11 +25,11 @@ pub(super) trait Layer {
     /// What stands behind the layer and does not jump with the force.
     type Behind;
     /// The layer through a straight piece of motion.
-    type Moving;
+    type Moving: InMotion<Excess = Self::Excess>;
     /// What such pieces leave to later ones.
     type Known: Default;
     /// The layer under a force that goes straight.
-    type Pressed;
+    type Pressed: UnderForce<Excess = Self::Excess, Behind = Self::Behind>;
     /// The surface without a jaw.
     type Surface: Clone;
 
@@ -48,11 +61,8 @@ pub(super) trait Layer {
         known: &mut Self::Known,
         work: &mut SimulationWork,
     ) -> Self::Moving;
-    fn excess_in(&self, piece: &Self::Moving, elapsed: f64) -> Self::Excess;
-    fn strain_in(&self, piece: &Self::Moving, elapsed: f64) -> f64;
-    /// Appends the excess strain at times (s) in a piece that began at `start`.
-    fn extend_strains(&self, piece: &Self::Moving, start: f64, times: &[f64], strains: &mut Vec<f64>);
-    /// The same, and the rates (1/s) of the whole strain at `speed` (m/s), with the jaw at `places` (m).
+    /// Appends the excess strain at times (s) in a piece that began at `start`, and the rates (1/s) of the whole strain at `speed` (m/s), with
+    /// the jaw at `places` (m).
     fn extend(
         &self,
         piece: &Self::Moving,
@@ -61,8 +71,6 @@ pub(super) trait Layer {
         strains: &mut Vec<f64>,
         rates: &mut Vec<f64>,
     );
-    /// Times (s from its start) between which a piece is smooth.
-    fn ends_in(piece: &Self::Moving) -> Vec<f64>;
     /// When (s) the strain of the layer reaches zero in a piece between two times, with the jaw at `jaw` and going at `speed` (m/s).
     fn loss(&self, piece: &Self::Moving, times: (f64, f64), speed: f64, jaw: &impl Fn(f64) -> f64) -> Option<f64>;
 
@@ -73,14 +81,6 @@ pub(super) trait Layer {
         duration: f64,
         work: &mut SimulationWork,
     ) -> Result<Self::Pressed, Stopped>;
-    fn force_under(piece: &Self::Pressed, elapsed: f64) -> f64;
-    fn carried(piece: &Self::Pressed, elapsed: f64) -> Carried;
-    fn displacement_under(piece: &Self::Pressed, elapsed: f64) -> f64 {
-        Self::carried(piece, elapsed).displacement
-    }
-    fn excess_under(piece: &Self::Pressed, elapsed: f64) -> Self::Excess;
-    fn behind_under(piece: &Self::Pressed, elapsed: f64) -> Self::Behind;
-    fn ends_under(piece: &Self::Pressed) -> Vec<f64>;
 
     /// The surface that the jaw leaves at contact displacement `u` (m); `None` if the numbers ran out.
     fn left(&self, excess: &Self::Excess, u: f64) -> Option<Self::Surface>;

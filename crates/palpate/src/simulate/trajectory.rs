@@ -3,10 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::contact::{ContactRef, by_law};
-use super::layer::Layer;
+use super::layer::{InMotion, Layer};
 use super::walk::Course;
 use super::walk::{Stretch, StretchState, walk};
 use super::{ContactEvent, Drive, Motion, SimulateError, SimulationWork};
+use crate::contact::UnderForce;
 use crate::vector::columns::{all_finite, rises_or_stays};
 use crate::watch::{Stages, Unwatched, Watch};
 
@@ -104,11 +105,11 @@ impl Trajectory {
             StretchState::Forced(forced) => {
                 for time in times {
                     let elapsed = time - stretch.start;
-                    let state = L::carried(forced, elapsed);
+                    let state = forced.at(elapsed);
                     let equilibrium = specimen.equilibrium_strain(state.displacement);
                     self.displacement.push(state.displacement * per_side);
                     self.contact_displacement.push(state.displacement);
-                    self.force.push(L::force_under(forced, elapsed));
+                    self.force.push(forced.force_at(elapsed));
                     self.equilibrium_strain.push(equilibrium);
                     self.excess_strain.push(state.excess);
                     self.strain.push(equilibrium + state.excess);
@@ -292,7 +293,7 @@ pub(super) fn extend_forces<L: Layer>(stretch: &Stretch<L>, model: &L, times: &[
     let (next, specimen) = (force.len(), model.specimen());
     match &stretch.state {
         StretchState::Touching(piece) => {
-            model.extend_strains(piece, stretch.start, times, force);
+            piece.extend_strains(stretch.start, times, force);
             if stretch.contact_speed == 0.0 {
                 // In a hold, where nearly all samples lie, only the excess changes.
                 let u = stretch.contact_from;
@@ -306,7 +307,7 @@ pub(super) fn extend_forces<L: Layer>(stretch: &Stretch<L>, model: &L, times: &[
             }
         }
         StretchState::Forced(forced) => {
-            force.extend(times.iter().map(|time| L::force_under(forced, time - stretch.start)));
+            force.extend(times.iter().map(|time| forced.force_at(time - stretch.start)));
         }
         StretchState::Free { .. } => force.resize(next + times.len(), 0.0),
     }

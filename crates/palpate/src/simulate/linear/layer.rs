@@ -1,7 +1,7 @@
 //! A linear contact as the walk through a drive asks for it.
 
 use super::{LinearContact, Memory, Moving, Pressed, Surface};
-use crate::contact::{Carried, Specimen, Stopped};
+use crate::contact::{Specimen, Stopped};
 use crate::simulate::layer::Layer;
 use crate::simulate::{Separation, SimulationWork};
 
@@ -66,18 +66,6 @@ impl Layer for LinearContact {
         Moving::solve(self, line, excess.clone(), duration)
     }
 
-    fn excess_in(&self, piece: &Moving, elapsed: f64) -> Vec<f64> {
-        piece.memory(elapsed)
-    }
-
-    fn strain_in(&self, piece: &Moving, elapsed: f64) -> f64 {
-        piece.excess(elapsed)
-    }
-
-    fn extend_strains(&self, piece: &Moving, start: f64, times: &[f64], strains: &mut Vec<f64>) {
-        strains.extend(times.iter().map(|time| piece.excess(time - start)));
-    }
-
     fn extend(
         &self,
         piece: &Moving,
@@ -93,10 +81,6 @@ impl Layer for LinearContact {
         }
     }
 
-    fn ends_in(piece: &Moving) -> Vec<f64> {
-        piece.step_ends()
-    }
-
     fn loss(&self, piece: &Moving, times: (f64, f64), _: f64, _: &impl Fn(f64) -> f64) -> Option<f64> {
         piece.loss(times)
     }
@@ -109,30 +93,6 @@ impl Layer for LinearContact {
         work: &mut SimulationWork,
     ) -> Result<Pressed, Stopped> {
         Pressed::solve(self, forces, behind, duration, work)
-    }
-
-    fn force_under(piece: &Pressed, elapsed: f64) -> f64 {
-        piece.force_at(elapsed)
-    }
-
-    fn carried(piece: &Pressed, elapsed: f64) -> Carried {
-        piece.at(elapsed)
-    }
-
-    fn displacement_under(piece: &Pressed, elapsed: f64) -> f64 {
-        piece.displacement(elapsed)
-    }
-
-    fn excess_under(piece: &Pressed, elapsed: f64) -> Vec<f64> {
-        piece.memory(elapsed)
-    }
-
-    fn behind_under(piece: &Pressed, elapsed: f64) -> Vec<f64> {
-        piece.behind(elapsed)
-    }
-
-    fn ends_under(piece: &Pressed) -> Vec<f64> {
-        piece.step_ends()
     }
 
     fn left(&self, excess: &Vec<f64>, _: f64) -> Option<Surface> {

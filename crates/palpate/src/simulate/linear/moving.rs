@@ -5,7 +5,7 @@
 
 use super::contact::{LinearContact, Memory};
 use super::stage::{DEGREE, GAUSS, Stage, legendre};
-use crate::simulate::layer::crossing;
+use crate::simulate::layer::{InMotion, crossing};
 
 /// Difference of q from its polynomial, relative to the largest q.
 const TOLERANCE: f64 = 1e-13;
@@ -81,26 +81,16 @@ impl Moving {
         if self.speed == 0.0 { self.from } else { self.from + self.speed * elapsed }
     }
 
-    fn stage(&self, elapsed: f64) -> &Stage {
-        let index = self.stages.partition_point(|stage| stage.end() < elapsed);
-        &self.stages[index.min(self.stages.len() - 1)]
-    }
-
-    /// x_k.
-    pub(super) fn memory(&self, elapsed: f64) -> Vec<f64> {
-        let stage = self.stage(elapsed);
-        stage.memory(stage.part(elapsed), &self.contact.law)
-    }
-
     /// Excess strain of the contact layer, and its whole strain rate (1/s).
     pub(super) fn excess_and_rate(&self, elapsed: f64) -> (f64, f64) {
-        let (stage, law, specimen) = (self.stage(elapsed), &self.contact.law, &self.contact.specimen);
-        let part = stage.part(elapsed);
-        let memory = stage.memory(part, law);
+        let (law, specimen) = (&self.contact.law, &self.contact.specimen);
+        let memory = self.excess_at(elapsed);
         let sum: f64 = memory.iter().sum();
         let relaxing: f64 = memory.iter().zip(law.terms()).map(|(x, term)| term.rate * x).sum();
         let u = self.jaw(elapsed);
-        let pushed = if stage.is_straight() { stage.slope(part) } else { self.contact.slope(u) * self.speed };
+        let pushed = Stage::within(&self.stages, elapsed, |stage, part| {
+            if stage.is_straight() { stage.slope(part) } else { self.contact.slope(u) * self.speed }
+        });
         let rate = pushed * (1.0 + law.overshoot()) - relaxing;
         match self.contact.memory {
             Memory::Strain => (sum, rate),
@@ -117,23 +107,6 @@ impl Moving {
         }
     }
 
-    /// Excess strain of the contact layer.
-    pub(super) fn excess(&self, elapsed: f64) -> f64 {
-        self.contact.excess_strain(self.memory(elapsed).iter().sum(), self.jaw(elapsed))
-    }
-
-    /// Times (s from the start) between which nothing changes by much: ever further apart from the fastest rate on.
-    pub(super) fn step_ends(&self) -> Vec<f64> {
-        const GROWTH: f64 = 1.5;
-        let fastest = self.contact.law.terms().last().map_or(1.0, |term| term.rate);
-        let first = 0.5 / fastest;
-        let rungs = std::iter::successors(Some(first), |time| Some(GROWTH * time));
-        let mut ends: Vec<f64> = rungs.take_while(|end| *end < self.duration).collect();
-        ends.extend(self.stages.iter().map(Stage::end).filter(|end| *end < self.duration));
-        ends.sort_by(f64::total_cmp);
-        ends
-    }
-
     /// When q + Σ x_k, and with it the force, reaches zero.
     ///
     /// Sums of exponentials may do so more than once in a hold; intervals are halved until bounds of every term tell that it does not, or
@@ -141,7 +114,7 @@ impl Moving {
     pub(super) fn loss(&self, (start, end): (f64, f64)) -> Option<f64> {
         let look = |time: f64| {
             let elapsed = time - start;
-            let (value, memory) = (self.contact.value(self.jaw(elapsed)), self.memory(elapsed));
+            let (value, memory) = (self.contact.value(self.jaw(elapsed)), self.excess_at(elapsed));
             Look { time, value, memory }
         };
         let below = self.first_below(&look(start), &look(end), &look)?;
@@ -177,6 +150,35 @@ impl Moving {
         };
         let terms: f64 = a.memory.iter().zip(&b.memory).zip(self.contact.law.terms()).map(each).sum();
         a.value.min(b.value) + terms
+    }
+}
+
+impl InMotion for Moving {
+    /// x_k.
+    type Excess = Vec<f64>;
+
+    fn excess_at(&self, elapsed: f64) -> Vec<f64> {
+        Stage::within(&self.stages, elapsed, |stage, part| stage.memory(part, &self.contact.law))
+    }
+
+    fn strain_at(&self, elapsed: f64) -> f64 {
+        self.contact.excess_strain(self.excess_at(elapsed).iter().sum(), self.jaw(elapsed))
+    }
+
+    fn extend_strains(&self, start: f64, times: &[f64], strains: &mut Vec<f64>) {
+        strains.extend(times.iter().map(|time| self.strain_at(time - start)));
+    }
+
+    /// Ever further apart from the fastest rate on.
+    fn step_ends(&self) -> Vec<f64> {
+        const GROWTH: f64 = 1.5;
+        let fastest = self.contact.law.terms().last().map_or(1.0, |term| term.rate);
+        let first = 0.5 / fastest;
+        let rungs = std::iter::successors(Some(first), |time| Some(GROWTH * time));
+        let mut ends: Vec<f64> = rungs.take_while(|end| *end < self.duration).collect();
+        ends.extend(self.stages.iter().map(Stage::end).filter(|end| *end < self.duration));
+        ends.sort_by(f64::total_cmp);
+        ends
     }
 }
 

@@ -12,7 +12,7 @@ use std::sync::LazyLock;
 use super::recovery::Recovery;
 use super::stage::{DEGREE, Stage, dot, fading, integrated};
 use super::{LinearContact, LinearTerm, Memory};
-use crate::contact::{Carried, ForceLine, Stopped};
+use crate::contact::{Carried, ForceLine, Stopped, UnderForce, last_good};
 use crate::simulate::SimulationWork;
 
 /// Error of q, relative to the largest that the forces of a piece ask for at once.
@@ -235,35 +235,13 @@ impl Pressed {
     /// Whether the body takes where a closed form goes; the time when it no longer does.
     fn check(&self, duration: f64) -> Result<(), f64> {
         let good = |elapsed: f64| self.contact.place(self.value_at(elapsed)).is_some();
-        if good(duration) {
-            return Ok(());
-        }
-        let (mut good_at, mut bad_at) = (0.0, duration);
-        loop {
-            let middle = 0.5 * (good_at + bad_at);
-            if middle <= good_at || middle >= bad_at {
-                return Err(good_at);
-            }
-            if good(middle) {
-                good_at = middle;
-            } else {
-                bad_at = middle;
-            }
-        }
-    }
-
-    /// Force, N.
-    pub(super) fn force_at(&self, elapsed: f64) -> f64 {
-        self.force.at(elapsed)
+        if good(duration) { Ok(()) } else { Err(last_good(0.0, duration, good)) }
     }
 
     fn value_at(&self, elapsed: f64) -> f64 {
         match &self.path {
             Path::Fading { rest, recovery } => rest + recovery.value(elapsed),
-            Path::Stages(stages) => {
-                let stage = stage_at(stages, elapsed);
-                stage.value(stage.part(elapsed))
-            }
+            Path::Stages(stages) => Stage::within(stages, elapsed, Stage::value),
         }
     }
 
@@ -271,40 +249,41 @@ impl Pressed {
     fn slope_at(&self, elapsed: f64) -> f64 {
         match &self.path {
             Path::Fading { recovery, .. } => recovery.slope(elapsed),
-            Path::Stages(stages) => {
-                let stage = stage_at(stages, elapsed);
-                stage.slope(stage.part(elapsed))
-            }
+            Path::Stages(stages) => Stage::within(stages, elapsed, Stage::slope),
         }
     }
+}
 
+impl UnderForce for Pressed {
     /// x_k.
-    pub(super) fn memory(&self, elapsed: f64) -> Vec<f64> {
+    type Excess = Vec<f64>;
+    /// x_k − g_k q.
+    type Behind = Vec<f64>;
+
+    fn force_at(&self, elapsed: f64) -> f64 {
+        self.force.at(elapsed)
+    }
+
+    fn excess_at(&self, elapsed: f64) -> Vec<f64> {
         match &self.path {
             Path::Fading { recovery, .. } => recovery.excess(elapsed),
-            Path::Stages(stages) => {
-                let stage = stage_at(stages, elapsed);
-                stage.memory(stage.part(elapsed), &self.contact.law)
-            }
+            Path::Stages(stages) => Stage::within(stages, elapsed, |stage, part| stage.memory(part, &self.contact.law)),
         }
     }
 
-    /// x_k − g_k q.
-    pub(super) fn behind(&self, elapsed: f64) -> Vec<f64> {
+    fn behind_at(&self, elapsed: f64) -> Vec<f64> {
         let value = self.value_at(elapsed);
         let each = |(x, term): (f64, &LinearTerm)| x - term.overshoot * value;
-        self.memory(elapsed).into_iter().zip(self.contact.law.terms()).map(each).collect()
+        self.excess_at(elapsed).into_iter().zip(self.contact.law.terms()).map(each).collect()
     }
 
-    /// Contact displacement, m; NaN where nothing carries the force.
-    pub(super) fn displacement(&self, elapsed: f64) -> f64 {
+    fn displacement_at(&self, elapsed: f64) -> f64 {
         self.contact.place(self.value_at(elapsed)).unwrap_or(f64::NAN)
     }
 
-    /// The contact.
-    pub(super) fn at(&self, elapsed: f64) -> Carried {
+    fn at(&self, elapsed: f64) -> Carried {
         let specimen = &self.contact.specimen;
-        let displacement = self.displacement(elapsed);
+        let displacement = self.displacement_at(elapsed);
         let (stiffness, growth) = specimen.stiffness(displacement);
         if stiffness == 0.0 {
             // First touch of a ball: u begins like √t.
@@ -327,18 +306,12 @@ impl Pressed {
         }
     }
 
-    /// Ends of the stages (s from the start of the piece).
-    pub(super) fn step_ends(&self) -> Vec<f64> {
+    fn step_ends(&self) -> Vec<f64> {
         match &self.path {
             Path::Stages(stages) => stages.iter().map(Stage::end).collect(),
             Path::Fading { .. } => Vec::new(),
         }
     }
-}
-
-fn stage_at(stages: &[Stage], elapsed: f64) -> &Stage {
-    let index = stages.partition_point(|stage| stage.end() < elapsed);
-    &stages[index.min(stages.len() - 1)]
 }
 
 /// Where a stage is looked at, with the integrals of the polynomials up to there: nodes that crowd towards its ends, and one place early and
@@ -407,7 +380,7 @@ mod tests {
         let mut piece =
             Pressed::solve(&contact, (2.0, 9.0), &[0.0, 0.0], 20.0, &mut SimulationWork::default()).unwrap();
         let exact = piece.value_at(20.0);
-        let (first, memory) = (piece.value_at(0.0), piece.memory(0.0));
+        let (first, memory) = (piece.value_at(0.0), piece.excess_at(0.0));
         piece.path = Path::Stages(Vec::new());
         let error = |count: u32| {
             let (mut value, mut memory) = (first, memory.clone());
@@ -457,7 +430,7 @@ mod tests {
         let short =
             Pressed::solve(&contact, (150.0, 150.0), &[0.0, 0.0], 0.99 * elapsed, &mut SimulationWork::default())
                 .unwrap();
-        assert!(short.displacement(0.99 * elapsed) < 0.035);
+        assert!(short.displacement_at(0.99 * elapsed) < 0.035);
         assert!(Pressed::solve(&contact, (500.0, 500.0), &[0.0, 0.0], 1.0, &mut SimulationWork::default()).is_err());
     }
 }

@@ -46,8 +46,15 @@ impl Stage {
         self.start + self.width
     }
 
+    /// What `of` says of the stage that holds a time, and of c there.
+    pub(super) fn within<T>(stages: &[Self], time: f64, of: impl Fn(&Self, f64) -> T) -> T {
+        let index = stages.partition_point(|stage| stage.end() < time);
+        let stage = &stages[index.min(stages.len() - 1)];
+        of(stage, stage.part(time))
+    }
+
     /// c at a time.
-    pub(super) fn part(&self, time: f64) -> f64 {
+    fn part(&self, time: f64) -> f64 {
         if self.width > 0.0 { (time - self.start) / self.width } else { 0.0 }
     }
 

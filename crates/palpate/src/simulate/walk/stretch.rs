@@ -1,6 +1,7 @@
 //! A stretch of time in which nothing changes its course.
 
-use crate::simulate::layer::Layer;
+use crate::contact::UnderForce;
+use crate::simulate::layer::{InMotion, Layer};
 
 /// A stretch of time over which the jaw moves at constant speed, or its force changes at a constant rate, and the contact does not change
 /// its state.
@@ -24,7 +25,7 @@ impl<L: Layer> Stretch<L> {
     /// One contact's share of the jaw's travel at `time`, m.
     pub(in crate::simulate) fn jaw_at(&self, time: f64) -> f64 {
         if let StretchState::Forced(forced) = &self.state {
-            return L::displacement_under(forced, time - self.start);
+            return forced.displacement_at(time - self.start);
         }
         if self.contact_speed == 0.0 {
             return self.contact_from;
@@ -36,8 +37,8 @@ impl<L: Layer> Stretch<L> {
     pub(in crate::simulate) fn end_force(&self, model: &L, u: f64) -> f64 {
         let elapsed = self.end - self.start;
         match &self.state {
-            StretchState::Touching(piece) => force_of(model, &model.excess_in(piece, elapsed), u),
-            StretchState::Forced(forced) => L::force_under(forced, elapsed),
+            StretchState::Touching(piece) => force_of(model, &piece.excess_at(elapsed), u),
+            StretchState::Forced(forced) => forced.force_at(elapsed),
             StretchState::Free { .. } => 0.0,
         }
     }

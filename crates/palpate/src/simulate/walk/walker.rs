@@ -3,8 +3,8 @@
 use super::checks::{check_displacements, check_force};
 use super::event::{ContactEvent, ContactEventKind};
 use super::stretch::{Stretch, StretchState};
-use crate::contact::{SimulationWork, Stopped};
-use crate::simulate::layer::{Layer, crossing};
+use crate::contact::{SimulationWork, Stopped, UnderForce};
+use crate::simulate::layer::{InMotion, Layer, crossing};
 use crate::simulate::{ForceHistory, Motion, SimulateError};
 
 /// The state carried from one stretch to the next.
@@ -144,8 +144,8 @@ impl<'a, L: Layer, V: FnMut(&Stretch<L>) -> Result<(), SimulateError>> Walker<'a
             },
             Stopped::TooStiff { elapsed } => SimulateError::TooStiff { time: start + elapsed },
         })?;
-        let (first, last) = (L::carried(&forced, 0.0), L::displacement_under(&forced, duration));
-        let (excess, behind) = (L::excess_under(&forced, duration), L::behind_under(&forced, duration));
+        let (first, last) = (forced.at(0.0), forced.displacement_at(duration));
+        let (excess, behind) = (forced.excess_at(duration), forced.behind_at(duration));
         if !(L::is_finite(&excess) && last.is_finite()) {
             return Err(SimulateError::OutOfRange { time: end });
         }
@@ -177,9 +177,9 @@ fn reaching<L: Layer>(stretch: &Stretch<L>, target: f64, model: &L) -> Option<f6
         let force = match &stretch.state {
             StretchState::Touching(piece) => {
                 let u = stretch.jaw_at(stretch.start + elapsed);
-                specimen.force(model.strain_in(piece, elapsed) + specimen.equilibrium_strain(u), u)
+                specimen.force(piece.strain_at(elapsed) + specimen.equilibrium_strain(u), u)
             }
-            StretchState::Forced(forced) => L::force_under(forced, elapsed),
+            StretchState::Forced(forced) => forced.force_at(elapsed),
             StretchState::Free { .. } => 0.0,
         };
         if approaches { target - force } else { force - target }
@@ -193,7 +193,7 @@ fn reaching<L: Layer>(stretch: &Stretch<L>, target: f64, model: &L) -> Option<f6
     let duration = stretch.end - stretch.start;
     let mut before = 0.0;
     // Between two ends of steps the force bends a little; a step of a long ramp is cut once more.
-    for end in L::ends_in(piece).into_iter().filter(|end| *end < duration).chain([duration]) {
+    for end in piece.step_ends().into_iter().filter(|end| *end < duration).chain([duration]) {
         for part in 1..=PARTS {
             let elapsed = before + (end - before) * f64::from(part) / f64::from(PARTS);
             if missing(elapsed) <= 0.0 {
@@ -220,7 +220,7 @@ fn after<L: Layer>(
     let elapsed = stretch.end - stretch.start;
     Ok(match (&stretch.state, event) {
         (StretchState::Touching(piece), None) => {
-            let excess = model.excess_in(piece, elapsed);
+            let excess = piece.excess_at(elapsed);
             if !L::is_finite(&excess) {
                 return Err(out_of_range);
             }
@@ -228,7 +228,7 @@ fn after<L: Layer>(
         }
         (StretchState::Touching(piece), Some(event)) => {
             work.closed_forms += 1;
-            let excess = model.excess_in(piece, elapsed);
+            let excess = piece.excess_at(elapsed);
             Contact::Free {
                 surface: model.left(&excess, event.contact_displacement).ok_or(out_of_range)?,
                 since: event.time,
@@ -239,7 +239,7 @@ fn after<L: Layer>(
             since: *since,
         },
         (StretchState::Forced(forced), _) => Contact::Touching {
-            excess: L::excess_under(forced, elapsed),
+            excess: forced.excess_at(elapsed),
         },
         (StretchState::Free { surface, since }, Some(event)) => Contact::Touching {
             excess: model.met(surface, event.time - since, event.contact_displacement),
