@@ -25,46 +25,37 @@ pub enum Sides {
     serde(rename_all = "snake_case", tag = "kind")
 )]
 pub enum Shape {
-    /// A ball pressed by flat plates; the contact circle grows with the squeeze, equation (7).
+    /// A ball pressed by flat plates; the contact circle, in which a plane cuts the undeformed ball, grows with the squeeze: A = π (2 r u − u²)
+    /// and ε_e = u/r, equations (7) and (8), for 0 ≤ u < r. The plane through the centre does not move, from one side as from two.
     Ball {
         /// Radius r in m.
         radius: f64,
     },
     /// A spherical fingertip: a soft pad of even thickness over a rigid core, pressed by a flat; equation (7) with the pad as deep as it is
-    /// thick.
+    /// thick: A = π (2 R u − u²), and ε_e = u/thickness spreads evenly down to the core. For 0 ≤ u < thickness; good while the contact is wider
+    /// than the pad is thick, and the pad free to bulge.
     Pad {
         /// Outer radius R in m.
         radius: f64,
         /// Thickness of the soft layer in m, at most the radius; equal to it, the pad is a ball without a core.
         thickness: f64,
     },
-    /// A body of constant section: strip, block, cylinder or a flat punch on a layer.
+    /// A body of constant section: strip, block, cylinder or a flat punch on a layer. ε_e = u/length, of a body moved at both ends
+    /// u/(length/2); u < length in compression, any length of a strip in grips; ends that slip or lie free of bulging.
     Prism {
         /// Cross-section that carries the force, in m².
         area: f64,
         /// Length along the force, in m: the whole length between the two grips or plates.
         length: f64,
     },
-    /// Any other body, by a table of its contact area.
+    /// Any other body, by a table of its contact area, a rising cubic between its rows; ε_e = u/depth. For 0 ≤ u up to the last row, and below
+    /// the depth.
     Profile {
         /// Distance from an undeformed contact to the plane that does not move, in m.
         depth: f64,
         /// Contact area in m² at contact displacements in m, from first touch on.
         area: Curve,
     },
-}
-
-/// What a body takes its contact area and its equilibrium strain from, and how far that holds: for people to read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Statement {
-    /// Contact area A at contact displacement u.
-    pub area: &'static str,
-    /// Equilibrium strain of the contact layer.
-    pub equilibrium_strain: &'static str,
-    /// Where both come from.
-    pub source: &'static str,
-    /// Contact displacements for which they are meant.
-    pub range: &'static str,
 }
 
 impl Shape {
@@ -79,43 +70,6 @@ impl Shape {
             (Self::Prism { length, .. }, Sides::One) => *length,
             (Self::Prism { length, .. }, Sides::Two) => length / 2.0,
             (Self::Profile { depth, .. }, _) => *depth,
-        }
-    }
-
-    /// Where area and equilibrium strain come from, and how far they hold.
-    ///
-    /// ```
-    /// use palpate::contact::Shape;
-    /// let said = Shape::Ball { radius: 0.035 }.statement();
-    /// assert_eq!(said.area, "A = π (2 r u − u²)");
-    /// ```
-    #[must_use]
-    pub fn statement(&self) -> Statement {
-        match self {
-            Self::Ball { .. } => Statement {
-                area: "A = π (2 r u − u²)",
-                equilibrium_strain: "ε_e = u/r",
-                source: "Tsai, Kao et al., equations (7) and (8): the circle in which a plane cuts the undeformed ball",
-                range: "0 ≤ u < r; the plane through the centre does not move, from one side as from two",
-            },
-            Self::Pad { .. } => Statement {
-                area: "A = π (2 R u − u²)",
-                equilibrium_strain: "ε_e = u/thickness",
-                source: "equation (7) with the outer radius; the strain spreads evenly down to the rigid core",
-                range: "0 ≤ u < thickness; good while the contact is wider than the pad is thick, and the pad free to bulge",
-            },
-            Self::Prism { .. } => Statement {
-                area: "A constant",
-                equilibrium_strain: "ε_e = u/length, of a body moved at both ends u/(length/2)",
-                source: "uniform bar",
-                range: "u < length in compression, any length of a strip in grips; ends that slip or lie free of bulging",
-            },
-            Self::Profile { .. } => Statement {
-                area: "A from a table, a rising cubic between its rows",
-                equilibrium_strain: "ε_e = u/depth",
-                source: "measured or drawn",
-                range: "0 ≤ u up to the last row, and below the depth",
-            },
         }
     }
 
