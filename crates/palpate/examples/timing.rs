@@ -16,6 +16,7 @@ use palpate::simulate::{
     ContactModel, ContactState, Motion, Sampling, Separation, simulate, simulate_force, strain_wave_within,
 };
 use palpate::test_problems::{Noise, noisy_hold, paper_ball, paper_test_a};
+use palpate::watch::Unwatched;
 
 fn main() {
     let (motion, model) = (paper_test_a(), paper_ball(Separation::Bonded));
@@ -61,7 +62,7 @@ fn cascades() {
         let sampling = Sampling::Times(vec![66.0]);
         let runs = if layers < 100.0 { 200 } else { 9 };
         report(&format!("strain_wave_{layers}_layers"), runs, || {
-            black_box(strain_wave_within(black_box(&paper_test_a()), &model, &sampling, 1e-8)).is_ok()
+            black_box(strain_wave_within(black_box(&paper_test_a()), &model, &sampling, 1e-8, &mut Unwatched)).is_ok()
         });
     }
 }

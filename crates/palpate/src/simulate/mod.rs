@@ -60,7 +60,7 @@ pub use {
     summary::{RunSummary, Summary, summary},
     trajectory::{Sampling, Trajectory, simulate, simulate_force, simulate_watched},
     walk::{ContactEvent, ContactEventKind, StepEnd, step_ends},
-    wave::{StrainWave, strain_wave, strain_wave_watched, strain_wave_within},
+    wave::{StrainWave, strain_wave, strain_wave_within},
 };
 #[cfg(feature = "std")]
 pub(crate) use {summary::run_summary, walk::check_displacements};

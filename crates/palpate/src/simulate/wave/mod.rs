@@ -53,40 +53,30 @@ pub fn strain_wave<'a>(
     model: &ContactModel,
     sampling: &Sampling,
 ) -> Result<StrainWave, SimulateError> {
-    strain_wave_within(drive, model, sampling, TOLERANCE)
+    strain_wave_within(drive, model, sampling, TOLERANCE, &mut Unwatched)
 }
 
 /// As [`strain_wave`], with the error that a step may make in a node as a part of the largest contact displacement: a looser one costs fewer
-/// steps. From 10⁻¹³, which `strain_wave` uses, to 0.01; other numbers are taken as the nearer of these.
+/// steps. From 10⁻¹³, which `strain_wave` uses, to 0.01; other numbers are taken as the nearer of these. `watch` hears of every straight piece
+/// of the drive.
 ///
 /// ```
 /// use palpate::simulate::{Sampling, Separation, strain_wave, strain_wave_within};
 /// use palpate::test_problems::{paper_ball, paper_test_a};
+/// use palpate::watch::Unwatched;
 ///
 /// let (motion, model) = (paper_test_a(), paper_ball(Separation::Bonded));
 /// let sampling = Sampling::Times(vec![43.0]);
-/// let (fine, coarse) = (strain_wave(&motion, &model, &sampling)?, strain_wave_within(&motion, &model, &sampling, 1e-8)?);
+/// let fine = strain_wave(&motion, &model, &sampling)?;
+/// let coarse = strain_wave_within(&motion, &model, &sampling, 1e-8, &mut Unwatched)?;
 /// assert!((fine.displacement[4][0] - coarse.displacement[4][0]).abs() < 1e-8 * 0.0125); // m
 /// assert!(2 * coarse.work.steps < fine.work.steps);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// As for [`strain_wave`].
-pub fn strain_wave_within<'a>(
-    drive: impl Into<Drive<'a>>,
-    model: &ContactModel,
-    sampling: &Sampling,
-    tolerance: f64,
-) -> Result<StrainWave, SimulateError> {
-    strain_wave_watched(drive, model, sampling, tolerance, &mut Unwatched)
-}
-
-/// As [`strain_wave_within`], heard by `watch` at every straight piece of the drive.
-///
-/// # Errors
 /// As for [`strain_wave`], and [`SimulateError::Cancelled`].
-pub fn strain_wave_watched<'a>(
+pub fn strain_wave_within<'a>(
     drive: impl Into<Drive<'a>>,
     model: &ContactModel,
     sampling: &Sampling,

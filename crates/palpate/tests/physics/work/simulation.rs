@@ -9,6 +9,7 @@ use palpate::simulate::{
     simulate, strain_wave, strain_wave_within,
 };
 use palpate::test_problems::{paper_ball, paper_test_a};
+use palpate::watch::Unwatched;
 
 /// At most as many steps and evaluations as once counted, and at least half of them: fewer would not be the same work.
 fn is_near(work: SimulationWork, steps: u64, evaluations: u64) {
@@ -45,12 +46,12 @@ fn a_fast_law_costs_no_more() {
 fn all_layers() {
     let (motion, model) = (paper_test_a(), paper_ball(Separation::Bonded));
     is_near(strain_wave(&motion, &model, &end()).unwrap().work, 853, 11_330);
-    is_near(strain_wave_within(&motion, &model, &end(), 1e-8).unwrap().work, 297, 4_394);
+    is_near(strain_wave_within(&motion, &model, &end(), 1e-8, &mut Unwatched).unwrap().work, 297, 4_394);
     let thin = ContactModel {
         layers: Layers::new(512.0).unwrap(),
         ..model
     };
-    is_near(strain_wave_within(&motion, &thin, &end(), 1e-8).unwrap().work, 8_554, 105_021);
+    is_near(strain_wave_within(&motion, &thin, &end(), 1e-8, &mut Unwatched).unwrap().work, 8_554, 105_021);
 }
 
 #[test]

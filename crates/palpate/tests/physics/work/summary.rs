@@ -8,7 +8,7 @@ use palpate::latency::LatencyLaw;
 use palpate::simulate::{
     Contact, ContactModel, Drive, ForceHistory, LinearContact, LinearLaw, Memory, Motion, ProgramStep, ProtocolStep,
     Sampling, Separation, SimulateError, energy, energy_watched, protocol, simulate, simulate_watched, step_ends,
-    strain_wave_watched, summary, work_by_step_watched,
+    strain_wave_within, summary, work_by_step_watched,
 };
 use palpate::watch::{Cancelled, Progress, Unwatched, Watch};
 
@@ -209,7 +209,7 @@ fn long_simulations_report_progress_and_end_when_they_are_told_to() {
         &|watch| simulate_watched(&motion, &model, &sampling, watch).map(drop),
         &|watch| energy_watched(&motion, &model, &sampling, watch).map(drop),
         &|watch| work_by_step_watched(&motion, &model, watch).map(drop),
-        &|watch| strain_wave_watched(&motion, &model, &sampling, 1e-6, watch).map(drop),
+        &|watch| strain_wave_within(&motion, &model, &sampling, 1e-6, watch).map(drop),
     ];
     for work in works {
         let mut heard = Vec::new();
