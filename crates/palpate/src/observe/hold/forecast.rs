@@ -1,7 +1,7 @@
 //! From a force that falls and its interval to the time when it has fallen to the force of slip.
 
 use crate::grip::TimeToSlip;
-use crate::observe::kept::Kept;
+use crate::observe::kept::kept;
 use crate::observe::observation::SlipForecast;
 
 /// What lies later than this (s) is called never.
@@ -9,40 +9,21 @@ const END: f64 = 1e9;
 /// Halvings of the logarithm of a time: to a thousandth of it.
 const HALVINGS: usize = 16;
 
-/// Times on the clock of a hold (s since it began) when its force falls to that of slip.
+/// When, on the clock of a hold, its force falls to that of slip; `None` where its interval stays above for good.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::observe) enum Crossing {
-    /// The interval of the force stays above for good.
-    Never,
-    /// Somewhere from `low` on; `value` and `high` are `None` where the force, or its upper end, stays above.
-    At {
-        value: Option<f64>,
-        low: f64,
-        high: Option<f64>,
-    },
+pub(in crate::observe) struct Crossing {
+    falls: Option<Falls>,
 }
+kept!(Crossing: falls);
 
-impl Kept for Crossing {
-    fn keep(&self, into: &mut Vec<u8>) {
-        match *self {
-            Self::Never => false.keep(into),
-            Self::At { value, low, high } => {
-                true.keep(into);
-                low.keep(into);
-                (value, high).keep(into);
-            }
-        }
-    }
-
-    fn read(from: &mut &[u8]) -> Option<Self> {
-        if !bool::read(from)? {
-            return Some(Self::Never);
-        }
-        let low = f64::read(from)?;
-        let (value, high) = Kept::read(from)?;
-        Some(Self::At { value, low, high })
-    }
+/// Times (s since the hold began): somewhere from `low` on; `value` and `high` are `None` where the force, or its upper end, stays above.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Falls {
+    low: f64,
+    value: Option<f64>,
+    high: Option<f64>,
 }
+kept!(Falls: low, value, high);
 
 impl Crossing {
     /// Where the interval `force(t)` = (low, best, high) falls to `slip`, from `now` (s) on.
@@ -51,36 +32,29 @@ impl Crossing {
     /// upper end does. It covers as often as those of the forces do.
     pub(in crate::observe) fn find(now: f64, slip: f64, force: impl Fn(f64) -> (f64, f64, f64)) -> Self {
         let falls = |end: fn((f64, f64, f64)) -> f64| crossing(now, |time| end(force(time)) - slip);
-        let Some(low) = falls(|force| force.0) else {
-            return Self::Never;
-        };
-        let value = falls(|force| force.1).map(|value| value.max(low));
-        let high = falls(|force| force.2).map(|high| high.max(value.unwrap_or(low)));
-        Self::At { value, low, high }
+        let falls = falls(|force| force.0).map(|low| {
+            let value = falls(|force| force.1).map(|value| value.max(low));
+            let high = falls(|force| force.2).map(|high| high.max(value.unwrap_or(low)));
+            Falls { low, value, high }
+        });
+        Self { falls }
     }
 
     /// How much is left open: ln of the ratio of the ends of the interval, as seen `now` seconds after the hold began.
     pub(in crate::observe) fn width(self, now: f64) -> f64 {
-        match self {
-            Self::Never => 0.0,
-            Self::At { high: None, .. } => f64::INFINITY,
+        self.falls.map_or(0.0, |Falls { low, high, .. }| {
             // Less than a millisecond is now.
-            Self::At {
-                low, high: Some(high), ..
-            } => ((high - now).max(1e-3) / (low - now).max(1e-3)).ln(),
-        }
+            high.map_or(f64::INFINITY, |high| ((high - now).max(1e-3) / (low - now).max(1e-3)).ln())
+        })
     }
 
     /// As seen `now` seconds after the hold began.
     pub(in crate::observe) fn seen(self, now: f64) -> SlipForecast {
         let left = |time: Option<f64>| time.map_or(TimeToSlip::Never, |time| TimeToSlip::After((time - now).max(0.0)));
-        match self {
-            Self::Never => SlipForecast::NEVER,
-            Self::At { value, low, high } => SlipForecast::Known {
-                best: left(value),
-                low: left(Some(low)),
-                high: left(high),
-            },
+        SlipForecast::Known {
+            best: left(self.falls.and_then(|falls| falls.value)),
+            low: left(self.falls.map(|falls| falls.low)),
+            high: left(self.falls.and_then(|falls| falls.high)),
         }
     }
 }
@@ -117,20 +91,15 @@ mod tests {
             let f = 1.0 + 1.0 / (1.0 + t);
             (f - 0.05, f, f + 0.05)
         };
-        let Crossing::At { value, low, high } = Crossing::find(2.0, 1.1, force) else {
-            panic!()
-        };
+        let Falls { low, value, high } = Crossing::find(2.0, 1.1, force).falls.unwrap();
         for (found, truth) in [(low, 1.0 / 0.15 - 1.0), (value.unwrap(), 9.0), (high.unwrap(), 19.0)] {
             assert!((found / truth - 1.0).abs() < 1e-3, "{found} {truth}");
         }
-        assert_eq!(Crossing::find(2.0, 0.9, force), Crossing::Never);
-        let Crossing::At { value, high, .. } = Crossing::find(2.0, 0.96, force) else {
-            panic!()
-        };
+        assert_eq!(Crossing::find(2.0, 0.9, force).falls, None);
+        assert_eq!(Crossing::find(2.0, 0.9, force).seen(2.0), SlipForecast::NEVER);
+        let Falls { value, high, .. } = Crossing::find(2.0, 0.96, force).falls.unwrap();
         assert_eq!((value, high), (None, None));
-        let Crossing::At { low, .. } = Crossing::find(60.0, 1.1, force) else {
-            panic!()
-        };
+        let low = Crossing::find(60.0, 1.1, force).falls.unwrap().low;
         assert_eq!(
             Crossing::find(60.0, 1.1, force).seen(60.0),
             SlipForecast::Known {
