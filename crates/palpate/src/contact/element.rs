@@ -20,7 +20,7 @@ use super::SimulationWork;
 use crate::latency::{LatencyLaw, signed_power};
 use crate::ode::{Dop853, Step};
 use crate::vector::elementary::exp_m1;
-use crate::vector::replace;
+use crate::vector::{fill, in_place};
 
 /// Distance from the steady state, times n, below which the law expanded to second order is exact to rounding: what the
 /// expansion leaves out is of third order.
@@ -286,11 +286,14 @@ impl Ramp {
             done += 1;
         }
         let rest = &mut times[done..];
-        replace(
-            rest,
-            #[inline(always)]
-            |elapsed| steady * self.approach.excess_at(rate * elapsed),
-        );
+        in_place(rest, |elapsed, out| {
+            fill(
+                elapsed,
+                [out],
+                #[inline(always)]
+                |elapsed| [steady * self.approach.excess_at(rate * elapsed)],
+            );
+        });
     }
 }
 

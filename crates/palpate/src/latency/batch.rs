@@ -11,7 +11,7 @@
 
 use super::LatencyLaw;
 use crate::vector::elementary::{Logarithm, exp};
-use crate::vector::fill;
+use crate::vector::{fill, in_place};
 
 /// (n − 1) λt beyond which the logarithm is taken of this.
 const LARGEST: f64 = 1e308;
@@ -24,20 +24,11 @@ pub fn decay_many(times: &[f64], rate: f64, exponent: f64, out: &mut [f64]) {
     decay_columns(times, rate, exponent, [out]);
 }
 
-/// Replaces every time by φ(λ t; n).
-pub(crate) fn decay_in_place(times: &mut [f64], rate: f64, exponent: f64) {
-    let mut copy = [0.0; 256];
-    for part in times.chunks_mut(copy.len()) {
-        let copy = &mut copy[..part.len()];
-        copy.copy_from_slice(part);
-        decay_many(copy, rate, exponent, part);
-    }
-}
-
 impl LatencyLaw {
     /// Replaces every elapsed time (s) by the excess strain then, as [`excess_after`](Self::excess_after).
     pub(crate) fn relax(&self, initial: f64, elapsed: &mut [f64]) {
-        decay_in_place(elapsed, self.relative_rate(initial), self.exponent());
+        let (rate, exponent) = (self.relative_rate(initial), self.exponent());
+        in_place(elapsed, |times, phi| decay_many(times, rate, exponent, phi));
         elapsed.iter_mut().for_each(|phi| *phi *= initial);
     }
 
@@ -244,11 +235,11 @@ mod tests {
         let times: Vec<f64> = (0..600).map(|i| 0.02 * f64::from(i)).collect();
         for exponent in [0.5, 1.0, 2.0, 3.0, 4.33, 5.0] {
             let [mut alone, mut value, mut slope] = [vec![0.0; 600], vec![0.0; 600], vec![0.0; 600]];
-            let mut in_place = times.clone();
+            let mut replaced = times.clone();
             decay_many(&times, 0.7, exponent, &mut alone);
             decay_with_log_rate_many(&times, 0.7, exponent, &mut value, &mut slope);
-            decay_in_place(&mut in_place, 0.7, exponent);
-            assert_eq!((&alone, &alone), (&value, &in_place), "n = {exponent}");
+            in_place(&mut replaced, |times, phi| decay_many(times, 0.7, exponent, phi));
+            assert_eq!((&alone, &alone), (&value, &replaced), "n = {exponent}");
         }
     }
 }

@@ -15,24 +15,19 @@ pub(crate) fn all_finite(column: &[f64]) -> bool {
 
 /// Whether no number is less than the one before it, and none is NaN.
 pub(crate) fn rises_or_stays(column: &[f64]) -> bool {
-    let later = column.get(1..).unwrap_or(&[]);
-    accelerated(
-        #[inline(always)]
-        || {
-            column
-                .iter()
-                .zip(later)
-                .fold(!column.first().is_some_and(|x| x.is_nan()), |good, (before, after)| good & (before <= after))
-        },
-    )
+    !column.first().is_some_and(|x| x.is_nan()) && is_ordered(column, |before, after| before <= after)
 }
 
 /// Whether every number is above the one before it.
 pub(crate) fn rises(column: &[f64]) -> bool {
+    is_ordered(column, |before, after| before < after)
+}
+
+fn is_ordered(column: &[f64], is_good: impl Fn(&f64, &f64) -> bool) -> bool {
     let later = column.get(1..).unwrap_or(&[]);
     accelerated(
         #[inline(always)]
-        || column.iter().zip(later).fold(true, |good, (before, after)| good & (before < after)),
+        || column.iter().zip(later).fold(true, |good, (before, after)| good & is_good(before, after)),
     )
 }
 

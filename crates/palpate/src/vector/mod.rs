@@ -75,33 +75,14 @@ pub(crate) fn fill<const N: usize>(inputs: &[f64], mut outputs: [&mut [f64]; N],
     );
 }
 
-/// Replaces every number x by f(x), as fast as the machine can if `f` has no branch.
-#[inline(always)]
-pub(crate) fn replace(values: &mut [f64], f: impl Fn(f64) -> f64 + Copy) {
-    accelerated(
-        #[inline(always)]
-        || {
-            let (blocks, rest) = values.as_chunks_mut::<BLOCK>();
-            for block in blocks {
-                let [replaced] = results_of(
-                    block,
-                    #[inline(always)]
-                    |x| [f(x)],
-                );
-                *block = replaced;
-            }
-            if let Some(&last) = rest.last() {
-                let mut block = [last; BLOCK];
-                block[..rest.len()].copy_from_slice(rest);
-                let [replaced] = results_of(
-                    &block,
-                    #[inline(always)]
-                    |x| [f(x)],
-                );
-                rest.copy_from_slice(&replaced[..rest.len()]);
-            }
-        },
-    );
+/// Replaces numbers by what `work` makes of a copy of them, part by part.
+pub(crate) fn in_place(values: &mut [f64], work: impl Fn(&[f64], &mut [f64])) {
+    let mut copy = [0.0; 256];
+    for part in values.chunks_mut(copy.len()) {
+        let copy = &mut copy[..part.len()];
+        copy.copy_from_slice(part);
+        work(copy, part);
+    }
 }
 
 /// `f` of a block, one row a result: the loop that becomes vector code.
