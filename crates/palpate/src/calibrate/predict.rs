@@ -147,7 +147,17 @@ impl Material {
         confidence: f64,
         watch: &mut dyn Watch,
     ) -> Result<Prediction, SimulateError> {
-        let drive = drive.into();
+        self.predicted(drive.into(), sampling, confidence, watch)
+    }
+
+    /// Without generics, so that it is compiled here, once, and not wherever it is called.
+    fn predicted(
+        &self,
+        drive: Drive<'_>,
+        sampling: &Sampling,
+        confidence: f64,
+        watch: &mut dyn Watch,
+    ) -> Result<Prediction, SimulateError> {
         let best = self.contact();
         let directions = self.directions();
         let share = 1.0 / (1.0 + 2.0 * directions.len() as f64);

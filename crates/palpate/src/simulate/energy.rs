@@ -88,8 +88,18 @@ pub fn energy_watched<'a, 'b>(
     sampling: &Sampling,
     watch: &mut dyn Watch,
 ) -> Result<Energy, SimulateError> {
+    integrated(drive.into(), contact.into(), sampling, watch)
+}
+
+/// Without generics, so that it is compiled here, once, and not wherever it is called.
+fn integrated(
+    drive: Drive<'_>,
+    contact: ContactRef<'_>,
+    sampling: &Sampling,
+    watch: &mut dyn Watch,
+) -> Result<Energy, SimulateError> {
     let mut stages = Stages::new("integrating work".to_owned(), watch);
-    let result = by_law!(contact.into(), contact => energy_of(drive.into(), contact, sampling, &mut stages))?;
+    let result = by_law!(contact, contact => energy_of(drive, contact, sampling, &mut stages))?;
     stages.finish()?;
     Ok(result)
 }

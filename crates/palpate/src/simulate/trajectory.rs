@@ -213,8 +213,18 @@ pub fn simulate_watched<'a, 'b>(
     sampling: &Sampling,
     watch: &mut dyn Watch,
 ) -> Result<Trajectory, SimulateError> {
+    simulated(drive.into(), contact.into(), sampling, watch)
+}
+
+/// Without generics, so that it is compiled here, once, and not wherever it is called.
+fn simulated(
+    drive: Drive<'_>,
+    contact: ContactRef<'_>,
+    sampling: &Sampling,
+    watch: &mut dyn Watch,
+) -> Result<Trajectory, SimulateError> {
     let mut stages = Stages::new("simulating".to_owned(), watch);
-    let result = by_law!(contact.into(), contact => trajectory(drive.into(), contact, sampling, &mut stages))?;
+    let result = by_law!(contact, contact => trajectory(drive, contact, sampling, &mut stages))?;
     stages.finish()?;
     Ok(result)
 }
@@ -265,10 +275,14 @@ pub fn simulate_force<'a>(
     contact: impl Into<ContactRef<'a>>,
     times: &[f64],
 ) -> Result<Vec<f64>, SimulateError> {
-    by_law!(contact.into(), contact => forces(motion, contact, times))
+    forces(motion, contact.into(), times)
 }
 
-fn forces<L: Layer>(motion: &Motion, model: &L, times: &[f64]) -> Result<Vec<f64>, SimulateError> {
+fn forces(motion: &Motion, contact: ContactRef<'_>, times: &[f64]) -> Result<Vec<f64>, SimulateError> {
+    by_law!(contact, contact => forces_of(motion, contact, times))
+}
+
+fn forces_of<L: Layer>(motion: &Motion, model: &L, times: &[f64]) -> Result<Vec<f64>, SimulateError> {
     check_times((motion.start(), motion.end()), times)?;
     let last = motion.end();
     let mut force: Vec<f64> = Vec::with_capacity(times.len());

@@ -27,9 +27,14 @@ pub fn step_ends<'a>(
     program: &[ProgramStep],
     contact: impl Into<ContactRef<'a>>,
 ) -> Result<Vec<StepEnd>, SimulateError> {
+    step_ends_of(program, contact.into())
+}
+
+/// Without generics, so that it is compiled here, once, and not wherever it is called.
+fn step_ends_of(program: &[ProgramStep], contact: ContactRef<'_>) -> Result<Vec<StepEnd>, SimulateError> {
     let mut unwatched = Unwatched;
     let mut stages = Stages::new(String::new(), &mut unwatched);
-    by_law!(contact.into(), contact => ends_of(program, contact, &mut stages))
+    by_law!(contact, contact => ends_of(program, contact, &mut stages))
 }
 
 pub(in crate::simulate) fn ends_of<L: Layer>(

@@ -83,12 +83,23 @@ pub fn strain_wave_within<'a>(
     tolerance: f64,
     watch: &mut dyn Watch,
 ) -> Result<StrainWave, SimulateError> {
+    followed(drive.into(), model, sampling, tolerance, watch)
+}
+
+/// Without generics, so that it is compiled here, once, and not wherever it is called.
+fn followed(
+    drive: Drive<'_>,
+    model: &ContactModel,
+    sampling: &Sampling,
+    tolerance: f64,
+    watch: &mut dyn Watch,
+) -> Result<StrainWave, SimulateError> {
     let mut stages = Stages::new("following the layers".to_owned(), watch);
     let layer = &Latency {
         model,
         rate: RateDependence::Constant,
     };
-    let course = Course::new(drive.into(), layer, &mut stages)?;
+    let course = Course::new(drive, layer, &mut stages)?;
     stages.enter(1.0);
     let layers = model.layers.whole().ok_or(SimulateError::FractionalLayers {
         found: model.layers.count(),
