@@ -117,7 +117,7 @@ fn energy_of<L: Layer>(
     let mut account = Account::default();
     let (mut work, mut given_back, mut stored) = (Vec::new(), Vec::new(), Vec::new());
     let last = course.end();
-    walk(course.drive, model, |stretch| {
+    walk(course.drive, model, &mut |stretch| {
         let inside = |time: f64| time < stretch.end || stretch.end == last;
         let mut at = stretch.start;
         while let Some(&next) = time.get(work.len()).filter(|time| inside(**time)) {

@@ -112,7 +112,7 @@ fn summed_up<L: Layer>(
     let mut end = Trajectory::default();
     let mut ends = course.ends().to_vec();
     let mut forces = check_times((course.start(), last), wanted).is_ok().then(Vec::new);
-    let (events, _) = walk(course.drive, model, |stretch| {
+    let (events, _) = walk(course.drive, model, &mut |stretch| {
         let inside = |time: &f64| *time < stretch.end || stretch.end == last;
         let until = next + times[next..].partition_point(inside);
         for times in times[next..until].chunks(CHUNK) {

@@ -242,7 +242,7 @@ fn trajectory<L: Layer>(
     let mut result = Trajectory::with_times(sample_times(&course, sampling)?);
     let (last, mut next) = (course.end(), 0);
     stages.enter(1.0);
-    let (events, work) = walk(course.drive, model, |stretch| {
+    let (events, work) = walk(course.drive, model, &mut |stretch| {
         let inside = |time: &f64| *time < stretch.end || stretch.end == last;
         let until = next + result.time[next..].partition_point(inside);
         while next < until {
@@ -286,7 +286,7 @@ fn forces_of<L: Layer>(motion: &Motion, model: &L, times: &[f64]) -> Result<Vec<
     check_times((motion.start(), motion.end()), times)?;
     let last = motion.end();
     let mut force: Vec<f64> = Vec::with_capacity(times.len());
-    walk(motion.into(), model, |stretch| {
+    walk(motion.into(), model, &mut |stretch| {
         let next = force.len();
         let inside = |time: &f64| *time < stretch.end || stretch.end == last;
         let times = &times[next..next + times[next..].partition_point(inside)];

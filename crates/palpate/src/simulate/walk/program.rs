@@ -42,14 +42,14 @@ pub(in crate::simulate) fn ends_of<L: Layer>(
     model: &L,
     stages: &mut Stages<'_>,
 ) -> Result<Vec<StepEnd>, SimulateError> {
-    let ends = Walker::new(model, |_: &Stretch<L>| Ok(stages.hear()?)).run(program)?;
+    let ends = Walker::new(model, &mut |_: &Stretch<L>| Ok(stages.hear()?)).run(program)?;
     if ends.last().is_none_or(|end| end.time == 0.0) {
         return Err(SimulateError::EmptyProgram);
     }
     Ok(ends)
 }
 
-impl<L: Layer, V: FnMut(&Stretch<L>) -> Result<(), SimulateError>> Walker<'_, L, V> {
+impl<L: Layer> Walker<'_, L> {
     /// Walks through a program that begins at time 0 with the jaw at first touch; returns where each step ended.
     pub(super) fn run(&mut self, program: &[ProgramStep]) -> Result<Vec<StepEnd>, SimulateError> {
         let mut runner = Runner {
@@ -75,8 +75,8 @@ impl<L: Layer, V: FnMut(&Stretch<L>) -> Result<(), SimulateError>> Walker<'_, L,
 }
 
 /// Where the program stands; `jaw` is one contact's share.
-struct Runner<'w, 'a, L: Layer, V> {
-    walker: &'w mut Walker<'a, L, V>,
+struct Runner<'w, 'a, L: Layer> {
+    walker: &'w mut Walker<'a, L>,
     model: &'a L,
     time: f64,
     jaw: f64,
@@ -84,7 +84,7 @@ struct Runner<'w, 'a, L: Layer, V> {
     kept: Option<f64>,
 }
 
-impl<L: Layer, V: FnMut(&Stretch<L>) -> Result<(), SimulateError>> Runner<'_, '_, L, V> {
+impl<L: Layer> Runner<'_, '_, L> {
     fn take(&mut self, number: usize, step: ProgramStep) -> Result<StepEnd, SimulateError> {
         match step {
             ProgramStep::Move { to, rate } => {

@@ -13,18 +13,21 @@ enum Contact<L: Layer> {
     Free { surface: L::Surface, since: f64 },
 }
 
+/// What is shown every stretch. Called once a stretch, so that one walk serves all who look on.
+pub(in crate::simulate) type Visit<'a, L> = dyn FnMut(&Stretch<L>) -> Result<(), SimulateError> + 'a;
+
 /// Goes from one stretch to the next.
-pub(super) struct Walker<'a, L: Layer, V> {
+pub(super) struct Walker<'a, L: Layer> {
     pub(super) model: &'a L,
-    visit: V,
+    visit: &'a mut Visit<'a, L>,
     contact: Contact<L>,
     known: L::Known,
     pub(super) events: Vec<ContactEvent>,
     pub(super) work: SimulationWork,
 }
 
-impl<'a, L: Layer, V: FnMut(&Stretch<L>) -> Result<(), SimulateError>> Walker<'a, L, V> {
-    pub(super) fn new(model: &'a L, visit: V) -> Self {
+impl<'a, L: Layer> Walker<'a, L> {
+    pub(super) fn new(model: &'a L, visit: &'a mut Visit<'a, L>) -> Self {
         Self {
             model,
             visit,

@@ -1,17 +1,16 @@
 //! Goes through whatever drives a contact, from its start to its end.
 
 use super::event::ContactEvent;
-use super::stretch::Stretch;
-use super::walker::Walker;
+use super::walker::{Visit, Walker};
 use crate::contact::SimulationWork;
 use crate::simulate::layer::Layer;
 use crate::simulate::{Drive, SimulateError};
 
 /// Walks through what drives the contact, handing every stretch to `visit` in order, and returns the events and the work.
-pub(in crate::simulate) fn walk<L: Layer>(
+pub(in crate::simulate) fn walk<'a, L: Layer>(
     drive: Drive<'_>,
-    model: &L,
-    visit: impl FnMut(&Stretch<L>) -> Result<(), SimulateError>,
+    model: &'a L,
+    visit: &'a mut Visit<'a, L>,
 ) -> Result<(Vec<ContactEvent>, SimulationWork), SimulateError> {
     let mut walker = Walker::new(model, visit);
     match drive {

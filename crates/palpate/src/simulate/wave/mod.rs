@@ -113,7 +113,7 @@ fn followed(
         work: SimulationWork::default(),
     };
     let last = course.end();
-    let (_, walked) = walk(course.drive, layer, |stretch| {
+    let (_, walked) = walk(course.drive, layer, &mut |stretch| {
         let passed = dispatch!(level(), simd => cascade.pass(simd, stretch, stretch.end == last, &mut wave));
         passed.map_err(|elapsed| SimulateError::StiffLayers {
             time: stretch.start + elapsed,
