@@ -6,7 +6,6 @@ use std::path::Path;
 
 use palpate::analysis::AnalysisError;
 use palpate::watch::Cancelled;
-use palpate_files::FileError;
 use palpate_files::description::DescriptionError;
 use palpate_files::record::ReadError;
 use palpate_report::figure::FigureError;
@@ -123,10 +122,7 @@ impl From<Cancelled> for JobError {
 impl From<ReadError> for JobError {
     fn from(error: ReadError) -> Self {
         let kind = match &error {
-            ReadError::File(FileError::NotFound { source, .. } | FileError::Unreadable { source, .. }) => {
-                ErrorKind::File(source.kind())
-            }
-            ReadError::File(FileError::Directory { .. }) => ErrorKind::File(io::ErrorKind::IsADirectory),
+            ReadError::File(error) => error.io_kind().map_or(ErrorKind::Record, ErrorKind::File),
             _ => ErrorKind::Record,
         };
         let hint = error.hint();
@@ -137,10 +133,7 @@ impl From<ReadError> for JobError {
 impl From<DescriptionError> for JobError {
     fn from(error: DescriptionError) -> Self {
         let kind = match &error {
-            DescriptionError::NotFound { source, .. } | DescriptionError::Unreadable { source, .. } => {
-                ErrorKind::File(source.kind())
-            }
-            DescriptionError::Directory { .. } => ErrorKind::File(io::ErrorKind::IsADirectory),
+            DescriptionError::File(error) => error.io_kind().map_or(ErrorKind::Option, ErrorKind::File),
             _ => ErrorKind::Option,
         };
         let hint = error.hint();

@@ -8,7 +8,8 @@ use arrow_array::{ArrayRef, FixedSizeListArray, Float64Array, Int64Array, String
 use arrow_schema::{DataType, Field};
 use palpate::simulate::{Sampling, simulate};
 use palpate::watch::{Cancelled, Progress};
-use palpate_files::description::{DescriptionError, parse_runs};
+use palpate_files::FileError;
+use palpate_files::description::parse_runs;
 use palpate_files::parquet_table::{Rows, Values};
 use palpate_jobs::{sweep_fields, sweep_rows};
 use pyo3::exceptions::PyRuntimeError;
@@ -38,9 +39,9 @@ pub(crate) fn simulate_many(
         Some(path) => match std::fs::read_to_string(&path) {
             Ok(text) => (path, text),
             Err(source) if source.kind() == ErrorKind::NotFound => {
-                return Err(undescribed(DescriptionError::NotFound { path, source }));
+                return Err(undescribed(FileError::NotFound { path, source }.into()));
             }
-            Err(source) => return Err(undescribed(DescriptionError::Unreadable { path, source })),
+            Err(source) => return Err(undescribed(FileError::Unreadable { path, source }.into())),
         },
         None => (PathBuf::from("protocol"), text.unwrap_or_default()),
     };

@@ -72,12 +72,10 @@ impl LawTable {
         let above = |key: &str, factor: f64| source.number(key, factor, "a number above 0", |factor| factor > 0.0);
         match (self.strain_factor, self.unloading_factor) {
             (None, None) => Ok(RateDependence::Constant),
-            (Some(factor), None) => Ok(RateDependence::Strain {
-                factor: above("law.strain_factor", factor)?,
-            }),
-            (None, Some(factor)) => Ok(RateDependence::Direction {
-                factor: above("law.unloading_factor", factor)?,
-            }),
+            (Some(factor), None) => above("law.strain_factor", factor).map(|factor| RateDependence::Strain { factor }),
+            (None, Some(factor)) => {
+                above("law.unloading_factor", factor).map(|factor| RateDependence::Direction { factor })
+            }
             (Some(_), Some(_)) => {
                 let reason = "with strain_factor: v depends on one of them";
                 Err(source.unused("law.unloading_factor", reason, "remove strain_factor or unloading_factor"))
@@ -106,12 +104,13 @@ impl LawTable {
 
     /// All numbers of the law must be there, and no other but those it may have.
     fn check_numbers(&self, source: &Source<'_>) -> Result<(), DescriptionError> {
-        let (law, wanted) = (self.name.name(), self.name.numbers());
+        let wanted = self.name.numbers();
+        let is_latency = self.name == LawName::Latency;
         let given = [
             ("exponent", self.exponent.is_some(), "a number above 0, such as 5"),
             ("rate_coefficient", self.rate_coefficient.is_some(), "a rate, such as \"2e4 /s\""),
-            ("strain_factor", self.strain_factor.is_some(), "a number above 0"),
-            ("unloading_factor", self.unloading_factor.is_some(), "a number above 0"),
+            ("strain_factor", self.strain_factor.is_some() && !is_latency, ""),
+            ("unloading_factor", self.unloading_factor.is_some() && !is_latency, ""),
             ("overshoot", self.overshoot.is_some(), "a number above 0, such as 3"),
             ("time", self.time.is_some(), "a time, such as \"2 s\""),
             ("order", self.order.is_some(), "an order from 0.05 to below 1, such as 0.5"),
@@ -120,16 +119,16 @@ impl LawTable {
         ];
         for (name, is_given, expected) in given {
             let key = format!("law.{name}");
-            let may_be = self.name == LawName::Latency && name.ends_with("_factor");
-            if is_given && !may_be && !wanted.contains(&name) {
-                let reason = format!("with name = \"{law}\", which takes {}", wanted.join(", "));
-                return Err(source.unused(&key, &reason, &format!("remove {name}")));
-            }
-            if !is_given && wanted.contains(&name) {
-                return Err(source.missing(key, expected));
+            match (is_given, wanted.contains(&name)) {
+                (true, false) => {
+                    let reason = format!("with name = \"{}\", which takes {}", self.name, wanted.join(", "));
+                    return Err(source.unused(key, reason, format!("remove {name}")));
+                }
+                (false, true) => return Err(source.missing(key, expected)),
+                _ => {}
             }
         }
-        if self.memory.is_some() && self.name == LawName::Latency {
+        if self.memory.is_some() && is_latency {
             let reason = "with name = \"latency\", whose memory is its layers";
             return Err(source.unused("law.memory", reason, "remove memory"));
         }

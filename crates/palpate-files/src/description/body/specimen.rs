@@ -46,7 +46,8 @@ impl SpecimenTable {
             },
             ShapeName::Profile => {
                 let key = "specimen.areas";
-                let rows = rows(source, key, self.areas.as_deref().unwrap_or_default(), Dimension::Area)?;
+                let rows = self.areas.as_deref().unwrap_or_default();
+                let rows = source.rows(key, rows, (Dimension::Length, Dimension::Area))?;
                 let expected = "rows of contact displacement and contact area";
                 Shape::Profile {
                     depth: length("depth", &self.depth)?,
@@ -58,8 +59,7 @@ impl SpecimenTable {
 
     /// Young's modulus in Pa, if it is given.
     pub(crate) fn modulus(&self, source: &Source<'_>) -> Result<Option<f64>, DescriptionError> {
-        let modulus = self.modulus.as_ref();
-        modulus.map(|modulus| source.positive("specimen.modulus", modulus, Dimension::Pressure)).transpose()
+        source.positive_if("specimen.modulus", self.modulus.as_ref(), Dimension::Pressure)
     }
 
     /// The body of a protocol, pressed from `sides`.
@@ -100,7 +100,7 @@ impl SpecimenTable {
                 Ok((named, Equilibrium::Hertz { poisson_ratio }))
             }
             (None, None, Some(forces)) => {
-                let rows = rows(source, measured, forces, Dimension::Force)?;
+                let rows = source.rows(measured, forces, (Dimension::Length, Dimension::Force))?;
                 let expected = "rows of contact displacement and force";
                 let law = Equilibrium::measured(&rows).map_err(|error| source.value(measured, expected, &error))?;
                 Ok((measured, law))
@@ -135,7 +135,7 @@ impl SpecimenTable {
 
     /// All sizes of the shape must be there, and no other.
     fn check_sizes(&self, source: &Source<'_>) -> Result<(), DescriptionError> {
-        let shape = self.shape.name();
+        let shape = self.shape;
         let wanted = self.shape.sizes();
         let areas = self.areas.as_ref().map(|rows| format!("{} rows", rows.len()));
         let written = |size: &Option<QuantityText>| size.as_ref().map(ToString::to_string);
@@ -182,17 +182,4 @@ pub(crate) fn usual_sides(shape: &Shape) -> Sides {
         Shape::Ball { .. } => Sides::Two,
         Shape::Pad { .. } | Shape::Prism { .. } | Shape::Profile { .. } => Sides::One,
     }
-}
-
-/// Rows of contact displacement and what belongs to it, in SI.
-fn rows(
-    source: &Source<'_>,
-    key: &str,
-    rows: &[(QuantityText, QuantityText)],
-    dimension: Dimension,
-) -> Result<Vec<(f64, f64)>, DescriptionError> {
-    let row = |(place, value): &(QuantityText, QuantityText)| {
-        Ok((source.si(key, place, Dimension::Length)?, source.si(key, value, dimension)?))
-    };
-    rows.iter().map(row).collect()
 }

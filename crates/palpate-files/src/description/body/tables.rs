@@ -1,8 +1,10 @@
 //! The tables `[specimen]`, `[law]` and `[contact]` of a body, as they stand in a protocol or a material.
 
+use std::fmt;
+
 use palpate::contact::Sides;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::description::text::quantity::QuantityText;
 
@@ -53,7 +55,7 @@ pub(crate) enum EquilibriumName {
     Hertz,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum ShapeName {
     /// A ball between flat plates; the contact grows with the squeeze.
@@ -72,19 +74,13 @@ pub(crate) enum ShapeName {
     None,
 }
 
-impl ShapeName {
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Ball => "ball",
-            Self::Pad => "pad",
-            Self::Strip => "strip",
-            Self::Cylinder => "cylinder",
-            Self::Block => "block",
-            Self::Profile => "profile",
-            Self::None => "none",
-        }
+impl fmt::Display for ShapeName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(f)
     }
+}
 
+impl ShapeName {
     /// The sizes that describe it.
     pub(crate) fn sizes(self) -> &'static [&'static str] {
         match self {
@@ -159,7 +155,7 @@ pub(crate) struct ShareTable {
     pub(crate) rate: QuantityText,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum LawName {
     /// The nonlinear latency law: strain rate = −v · sign(excess strain) · |excess strain|ⁿ.
@@ -183,17 +179,13 @@ pub(crate) enum MemoryName {
     Force,
 }
 
-impl LawName {
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Latency => "latency",
-            Self::StandardLinearSolid => "standard-linear-solid",
-            Self::Prony => "prony",
-            Self::Fung => "fung",
-            Self::FractionalZener => "fractional-zener",
-        }
+impl fmt::Display for LawName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(f)
     }
+}
 
+impl LawName {
     /// The numbers that it needs.
     pub(crate) fn numbers(self) -> &'static [&'static str] {
         match self {

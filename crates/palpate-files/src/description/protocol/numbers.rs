@@ -2,15 +2,8 @@
 
 use palpate::units::Dimension;
 
-use super::tables::{ProtocolTables, StepTable};
+use super::tables::ProtocolTables;
 use crate::description::text::quantity::QuantityText;
-
-/// A number that stands in a protocol.
-pub(crate) struct Number<'t> {
-    /// Its path, such as `law.exponent` or `step[2].rate`.
-    pub(crate) path: String,
-    pub(crate) slot: Slot<'t>,
-}
 
 /// Where a number stands.
 pub(crate) enum Slot<'t> {
@@ -20,10 +13,9 @@ pub(crate) enum Slot<'t> {
     Quantity(&'t mut QuantityText, Dimension),
 }
 
-/// All numbers that stand in the tables, in their order.
-pub(crate) fn numbers(tables: &mut ProtocolTables) -> Vec<Number<'_>> {
+/// All numbers that stand in the tables, in their order, by their paths, such as `law.exponent` or `step[2].rate`.
+pub(crate) fn numbers(tables: &mut ProtocolTables) -> Vec<(String, Slot<'_>)> {
     let mut found = Vec::new();
-    let mut bare = |path: &str, number| found.push(of(path, Slot::Bare(number)));
     let (law, specimen) = (&mut tables.law, &mut tables.specimen);
     for (path, number) in [
         ("law.exponent", &mut law.exponent),
@@ -35,20 +27,20 @@ pub(crate) fn numbers(tables: &mut ProtocolTables) -> Vec<Number<'_>> {
         ("specimen.poisson_ratio", &mut specimen.poisson_ratio),
     ] {
         if let Some(number) = number {
-            bare(path, number);
+            found.push((path.to_owned(), Slot::Bare(number)));
         }
     }
     for (index, term) in law.terms.iter_mut().flatten().enumerate() {
         let path = |name: &str| format!("law.terms[{}].{name}", index + 1);
-        found.push(of(&path("overshoot"), Slot::Bare(&mut term.overshoot)));
-        found.push(of(&path("time"), Slot::Quantity(&mut term.time, Dimension::Time)));
+        found.push((path("overshoot"), Slot::Bare(&mut term.overshoot)));
+        found.push((path("time"), Slot::Quantity(&mut term.time, Dimension::Time)));
     }
     for (index, term) in law.shares.iter_mut().flatten().enumerate() {
         let path = |name: &str| format!("law.shares[{}].{name}", index + 1);
-        found.push(of(&path("share"), Slot::Bare(&mut term.share)));
-        found.push(of(&path("rate"), Slot::Quantity(&mut term.rate, Dimension::Rate)));
+        found.push((path("share"), Slot::Bare(&mut term.share)));
+        found.push((path("rate"), Slot::Quantity(&mut term.rate, Dimension::Rate)));
     }
-    let mut quantity = |path: &str, text, dimension| found.push(of(path, Slot::Quantity(text, dimension)));
+    let mut quantity = |path: String, text, dimension| found.push((path, Slot::Quantity(text, dimension)));
     for (path, text, dimension) in [
         ("law.rate_coefficient", &mut law.rate_coefficient, Dimension::Rate),
         ("law.time", &mut law.time, Dimension::Time),
@@ -64,36 +56,25 @@ pub(crate) fn numbers(tables: &mut ProtocolTables) -> Vec<Number<'_>> {
         ("output.sample_rate", &mut tables.output.sample_rate, Dimension::Frequency),
     ] {
         if let Some(text) = text {
-            quantity(path, text, dimension);
+            quantity(path.to_owned(), text, dimension);
         }
     }
     for (index, time) in tables.output.times.iter_mut().flatten().enumerate() {
-        quantity(&format!("output.times[{}]", index + 1), time, Dimension::Time);
+        quantity(format!("output.times[{}]", index + 1), time, Dimension::Time);
     }
     for (index, step) in tables.step.iter_mut().enumerate() {
-        for (name, text, dimension) in in_step(step) {
+        for (name, text, dimension) in [
+            ("to", &mut step.to, Dimension::Length),
+            ("to_force", &mut step.to_force, Dimension::Force),
+            ("rate", &mut step.rate, Dimension::Speed),
+            ("force_rate", &mut step.force_rate, Dimension::ForceRate),
+            ("hold", &mut step.hold, Dimension::Time),
+            ("hold_force", &mut step.hold_force, Dimension::Time),
+        ] {
             if let Some(text) = text {
-                quantity(&format!("step[{}].{name}", index + 1), text, dimension);
+                quantity(format!("step[{}].{name}", index + 1), text, dimension);
             }
         }
     }
     found
-}
-
-fn in_step(step: &mut StepTable) -> [(&'static str, &mut Option<QuantityText>, Dimension); 6] {
-    [
-        ("to", &mut step.to, Dimension::Length),
-        ("to_force", &mut step.to_force, Dimension::Force),
-        ("rate", &mut step.rate, Dimension::Speed),
-        ("force_rate", &mut step.force_rate, Dimension::ForceRate),
-        ("hold", &mut step.hold, Dimension::Time),
-        ("hold_force", &mut step.hold_force, Dimension::Time),
-    ]
-}
-
-fn of<'t>(path: &str, slot: Slot<'t>) -> Number<'t> {
-    Number {
-        path: path.to_owned(),
-        slot,
-    }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use palpate::units::Dimension;
 
 use super::{
-    plan::{At, Plan, of_grid},
+    plan::{At, Plan},
     table::{self, Entry, Table, Written},
     values::{self, Value, Values, Wrong},
 };
@@ -13,12 +13,12 @@ use crate::description::{
     protocol::{
         convert::{Protocol, check},
         named_body::protocol_tables,
-        numbers::{Slot, numbers},
+        numbers::{Slot, numbers as slots},
         sweep_schema::Method,
         tables::ProtocolTables,
     },
     text::{
-        error::DescriptionError,
+        error::{DescriptionError, KeyProblem},
         places::Places,
         quantity::QuantityText,
         source::{self, Source},
@@ -73,18 +73,18 @@ impl SweptNumber {
     pub fn grid(&self) -> Option<Vec<f64>> {
         match &self.values {
             Values::List(list) => Some(list.iter().map(|value| value.si).collect()),
-            Values::Range(range) => {
-                let count = range.count?;
-                Some((0..count).map(|place| of_grid(range, place, count)).collect())
-            }
+            Values::Range(range) => Some((0..range.count? as u64).map(|place| range.of_grid(place)).collect()),
         }
     }
 
     fn new(path: String, dimension: Option<Dimension>, values: Values) -> Self {
-        let unit = dimension.map_or("", |dimension| dimension.units()[0].0);
+        let unit = si_unit(dimension);
         let plain: String = path.replace(']', "").replace(['[', '.'], "_");
+        // The unit of a column's name: `_m_per_s` for m/s.
+        let words = unit.to_lowercase().replace('/', " per ").replace('²', "2");
+        let suffix: String = words.split_whitespace().map(|word| format!("_{word}")).collect();
         Self {
-            column: [plain.as_str(), suffix(dimension)].concat(),
+            column: plain + &suffix,
             path,
             unit,
             spacing: match &values {
@@ -96,37 +96,26 @@ impl SweptNumber {
         }
     }
 
-    /// The value at a place, and the same as a protocol writes it.
+    /// The value that the number takes, and the same as a protocol writes it.
     fn value(&self, at: &At) -> (f64, QuantityText) {
-        match (at, &self.values) {
-            (At::Entry(place), Values::List(list)) => (list[*place].si, QuantityText::of(list[*place].text.clone())),
-            (At::Number(si), _) => (*si, QuantityText::of(format!("{si} {}", self.unit))),
-            (At::Entry(_), Values::Range(range)) => {
-                (range.first, QuantityText::of(format!("{} {}", range.first, self.unit)))
+        let si = match (&self.values, at) {
+            (Values::List(list), at) => {
+                let place = match at {
+                    At::Place(place) => *place as usize,
+                    At::Share(share) => ((share * list.len() as f64) as usize).min(list.len().saturating_sub(1)),
+                };
+                return (list[place].si, list[place].text.clone());
             }
-        }
+            (Values::Range(range), At::Place(place)) => range.of_grid(*place),
+            (Values::Range(range), At::Share(share)) => range.at(*share),
+        };
+        (si, QuantityText::of(format!("{si} {}", self.unit)))
     }
 }
 
-/// End of a column's name.
-fn suffix(dimension: Option<Dimension>) -> &'static str {
-    match dimension {
-        None => "",
-        Some(Dimension::Length) => "_m",
-        Some(Dimension::Area) => "_m2",
-        Some(Dimension::Time) => "_s",
-        Some(Dimension::Force) => "_n",
-        Some(Dimension::Pressure) => "_pa",
-        Some(Dimension::Speed) => "_m_per_s",
-        Some(Dimension::Rate) => "_per_s",
-        Some(Dimension::Frequency) => "_hz",
-        Some(Dimension::ForceRate) => "_n_per_s",
-        Some(Dimension::Compliance) => "_m_per_n",
-        Some(Dimension::Voltage) => "_v",
-        Some(Dimension::Mass) => "_kg",
-        Some(Dimension::Acceleration) => "_m_per_s2",
-        Some(Dimension::Torque) => "_n_m",
-    }
+/// Symbol of the SI unit of a dimension, none of a pure number.
+fn si_unit(dimension: Option<Dimension>) -> &'static str {
+    dimension.map_or("", |dimension| dimension.units()[0].0)
 }
 
 impl Sweep {
@@ -171,17 +160,16 @@ impl Sweep {
     /// # Errors
     /// Beside the values: as for [`parse_protocol`](crate::description::protocol::convert::parse_protocol), where they make no protocol.
     pub fn run(&self, run: u64) -> (Vec<f64>, Result<Protocol, DescriptionError>) {
-        let values: Vec<&Values> = self.numbers.iter().map(|number| &number.values).collect();
-        let places = self.plan.of(run, &values);
+        let places = self.plan.of(run, self.numbers.len());
         let mut tables = self.tables.clone();
         let mut found = Vec::with_capacity(places.len());
-        let mut slots = numbers(&mut tables);
+        let mut slots = slots(&mut tables);
         for (number, at) in self.numbers.iter().zip(&places) {
             let (si, text) = number.value(at);
             found.push(si);
-            match slots.iter_mut().find(|slot| slot.path == number.path).map(|found| &mut found.slot) {
-                Some(Slot::Bare(slot)) => **slot = si,
-                Some(Slot::Quantity(slot, _)) => **slot = text,
+            match slots.iter_mut().find(|(path, _)| *path == number.path) {
+                Some((_, Slot::Bare(slot))) => **slot = si,
+                Some((_, Slot::Quantity(slot, _))) => **slot = text,
                 None => {}
             }
         }
@@ -227,35 +215,21 @@ pub fn read_sweep(path: &Path) -> Result<Sweep, DescriptionError> {
 /// # Errors
 /// As for [`read_sweep`], less those of the file.
 pub fn parse_sweep(text: &str, path: &Path) -> Result<Sweep, DescriptionError> {
-    let source = Source { path, text };
-    let mut tables: ProtocolTables = protocol_tables(&source)?;
-    let base = check(&source, &tables)?;
-    let table = table::table(&source)?;
-    if table.entries.is_empty() {
-        return Err(source.missing("sweep", "a number and its values, such as law.exponent = \"1, 2, 5\""));
-    }
-    let known = known(&mut tables);
-    let mut swept: Vec<SweptNumber> = Vec::with_capacity(table.entries.len());
-    for entry in &table.entries {
-        let number = swept_number(&source, entry, &known, table.method)?;
-        if let Some(before) = swept.iter().position(|before| before.path == number.path) {
-            return Err(source.both(&entry.key, &table.entries[before].key));
+    sweep(text, path, "sweep", |source, known| {
+        let table = table::table(source)?;
+        if table.entries.is_empty() {
+            return Err(source.missing("sweep", "a number and its values, such as law.exponent = \"1, 2, 5\""));
         }
-        swept.push(number);
-    }
-    let plan = plan(&source, &table, &swept)?;
-    let runs = plan.runs().filter(|runs| *runs <= MOST_RUNS).ok_or_else(|| {
-        let found = plan.runs().map_or_else(|| "far more".to_owned(), |runs| runs.to_string());
-        source.value("sweep", format!("at most {MOST_RUNS} runs"), &found)
-    })?;
-    Ok(Sweep {
-        path: path.to_owned(),
-        text: text.to_owned(),
-        tables,
-        base,
-        numbers: swept,
-        plan,
-        runs,
+        let mut swept: Vec<SweptNumber> = Vec::with_capacity(table.entries.len());
+        for entry in &table.entries {
+            let number = swept_number(source, entry, known, table.method)?;
+            if let Some(before) = swept.iter().position(|before| before.path == number.path) {
+                return Err(source.both(&entry.key, &table.entries[before].key));
+            }
+            swept.push(number);
+        }
+        let plan = plan(source, &table, &swept)?;
+        Ok((swept, plan))
     })
 }
 
@@ -281,73 +255,77 @@ pub fn parse_sweep(text: &str, path: &Path) -> Result<Sweep, DescriptionError> {
 /// # Errors
 /// As for [`parse_sweep`], and for columns of different lengths.
 pub fn parse_runs(text: &str, path: &Path, columns: &[(&str, Vec<f64>)]) -> Result<Sweep, DescriptionError> {
+    sweep(text, path, "runs", |source, known| {
+        let runs = columns.first().map_or(0, |(_, values)| values.len());
+        let number = |(path, values): &(&str, Vec<f64>)| {
+            let Some((_, dimension)) = known.iter().find(|(known, _)| known == path) else {
+                return Err(unknown(source, path, path, known));
+            };
+            if values.len() != runs {
+                let expected = format!("{runs} values, as the other numbers have");
+                return Err(source.value(*path, expected, &values.len()));
+            }
+            let value = |si: &f64| Value::of(*si, format!("{si} {}", si_unit(*dimension)));
+            let values = Values::List(values.iter().map(value).collect());
+            Ok(SweptNumber::new((*path).to_owned(), *dimension, values))
+        };
+        let numbers = columns.iter().map(number).collect::<Result<_, _>>()?;
+        Ok((numbers, Plan::Together { runs: runs as u64 }))
+    })
+}
+
+/// Paths and dimensions of the numbers that stand in a protocol.
+type Known = [(String, Option<Dimension>)];
+
+/// The protocol in a text with the `numbers` of it that take many values; where they make too many runs, `key` is to blame.
+fn sweep(
+    text: &str,
+    path: &Path,
+    key: &str,
+    numbers: impl FnOnce(&Source<'_>, &Known) -> Result<(Vec<SweptNumber>, Plan), DescriptionError>,
+) -> Result<Sweep, DescriptionError> {
     let source = Source { path, text };
     let mut tables: ProtocolTables = protocol_tables(&source)?;
     let base = check(&source, &tables)?;
-    let known = known(&mut tables);
-    let runs = columns.first().map_or(0, |(_, values)| values.len());
-    let mut swept = Vec::with_capacity(columns.len());
-    for (path, values) in columns {
-        let Some((_, dimension)) = known.iter().find(|(known, _)| known == path) else {
-            return Err(DescriptionError::UnknownNumber {
-                place: source.place(*path),
-                number: (*path).to_owned(),
-                accepted: known.iter().map(|(path, _)| path.clone()).collect(),
-            });
-        };
-        if values.len() != runs {
-            let expected = format!("{runs} values, as the other numbers have");
-            return Err(source.value(*path, expected, &values.len().to_string()));
-        }
-        let unit = dimension.map_or("", |dimension| dimension.units()[0].0);
-        let value = |si: &f64| Value {
-            si: *si,
-            text: format!("{si} {unit}"),
-        };
-        swept.push(SweptNumber::new((*path).to_owned(), *dimension, Values::List(values.iter().map(value).collect())));
-    }
-    let runs = runs as u64;
-    if runs > MOST_RUNS {
-        return Err(source.value("runs", format!("at most {MOST_RUNS} runs"), &runs.to_string()));
-    }
+    let known = slots(&mut tables).into_iter().map(|(path, slot)| match slot {
+        Slot::Bare(_) => (path, None),
+        Slot::Quantity(_, dimension) => (path, Some(dimension)),
+    });
+    let (numbers, plan) = numbers(&source, &known.collect::<Vec<_>>())?;
+    let runs = plan.runs().filter(|runs| *runs <= MOST_RUNS).ok_or_else(|| {
+        let found = plan.runs().map_or_else(|| "far more".to_owned(), |runs| runs.to_string());
+        source.value(key, format!("at most {MOST_RUNS} runs"), &found)
+    })?;
     Ok(Sweep {
         path: path.to_owned(),
         text: text.to_owned(),
         tables,
         base,
-        numbers: swept,
-        plan: Plan::Together { runs },
+        numbers,
+        plan,
         runs,
     })
 }
 
-/// Paths and dimensions of the numbers that stand in the protocol.
-fn known(tables: &mut ProtocolTables) -> Vec<(String, Option<Dimension>)> {
-    let dimension = |slot: &Slot<'_>| match slot {
-        Slot::Bare(_) => None,
-        Slot::Quantity(_, dimension) => Some(*dimension),
-    };
-    numbers(tables).into_iter().map(|number| (number.path, dimension(&number.slot))).collect()
+/// No number of the protocol has this path.
+fn unknown(source: &Source<'_>, key: &str, path: &str, known: &Known) -> DescriptionError {
+    let (number, accepted) = (path.to_owned(), known.iter().map(|(path, _)| path.clone()).collect());
+    source.wrong(key, KeyProblem::UnknownNumber { number, accepted })
 }
 
 fn swept_number(
     source: &Source<'_>,
     entry: &Entry,
-    known: &[(String, Option<Dimension>)],
+    known: &Known,
     method: Method,
 ) -> Result<SweptNumber, DescriptionError> {
     let Some((_, dimension)) = known.iter().find(|(path, _)| *path == entry.path) else {
-        let accepted: Vec<String> = known.iter().map(|(path, _)| path.clone()).collect();
-        let stands = Places::of(source.text).start_exactly(&entry.path).is_some();
-        if stands {
-            let expected = format!("a number of the protocol ({})", accepted.join(", "));
-            return Err(source.value(&entry.key, expected, &format!("{}, which is none", entry.path)));
+        if Places::of(source.text).start_exactly(&entry.path).is_none() {
+            return Err(unknown(source, &entry.key, &entry.path, known));
         }
-        return Err(DescriptionError::UnknownNumber {
-            place: source.place(&entry.key),
-            number: entry.path.clone(),
-            accepted,
-        });
+        let accepted: Vec<&str> = known.iter().map(|(path, _)| path.as_str()).collect();
+        let expected = format!("a number of the protocol ({})", accepted.join(", "));
+        return Err(source.value(&entry.key, expected, &format!("{}, which is none", entry.path)));
     };
     let (values, found) = match &entry.written {
         Written::Text(text) => (values::parse(text, *dimension), format!("\"{text}\"")),
@@ -358,24 +336,16 @@ fn swept_number(
     };
     let values = values.map_err(|wrong| match wrong {
         Wrong::Expected(expected) => source.value(&entry.key, expected, &found),
-        Wrong::Quantity(quantity, error) => DescriptionError::Quantity {
-            place: source.place(&entry.key),
-            found: format!("\"{quantity}\""),
-            source: error,
-        },
+        Wrong::Quantity(quantity, error) => source.no_quantity(&entry.key, &quantity, error),
     })?;
-    if let Values::Range(range) = &values {
-        match (method, range.count) {
-            (Method::Grid, None) => {
-                let expected = "the number of values after a comma, as in \"log 1e3..1e6 /s, 50\"";
-                return Err(source.value(&entry.key, expected, &found));
-            }
-            (Method::LatinHypercube, Some(_)) => {
-                let expected = "a range without a number of values: a latin hypercube has samples of its own";
-                return Err(source.value(&entry.key, expected, &found));
-            }
-            _ => {}
-        }
+    if let Values::Range(range) = &values
+        && range.count.is_some() != (method == Method::Grid)
+    {
+        let expected = match method {
+            Method::Grid => "the number of values after a comma, as in \"log 1e3..1e6 /s, 50\"",
+            Method::LatinHypercube => "a range without a number of values: a latin hypercube has samples of its own",
+        };
+        return Err(source.value(&entry.key, expected, &found));
     }
     Ok(SweptNumber::new(entry.path.clone(), *dimension, values))
 }

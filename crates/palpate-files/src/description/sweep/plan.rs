@@ -2,8 +2,6 @@
 
 use palpate::random::{Noise, Shuffle, seed_of};
 
-use super::values::{Range, Values};
-
 /// How runs are put together. Any run is computed on its own, so that a sweep of any length takes no memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Plan {
@@ -26,12 +24,12 @@ pub enum Plan {
     },
 }
 
-/// A value by its place.
+/// Which of its values a number takes.
 pub(super) enum At {
-    /// Entry of the list.
-    Entry(usize),
-    /// The number itself, from a range.
-    Number(f64),
+    /// The one at this place.
+    Place(u64),
+    /// The one at this share of the way from the first to the last.
+    Share(f64),
 }
 
 impl Plan {
@@ -45,43 +43,29 @@ impl Plan {
         }
     }
 
-    /// The values of a run, from 0, one a number.
-    pub(super) fn of(&self, run: u64, values: &[&Values]) -> Vec<At> {
+    /// Which value each of so many numbers takes in a run, from 0.
+    pub(super) fn of(&self, run: u64, numbers: usize) -> Vec<At> {
         match self {
             Self::Grid { counts } => {
                 let mut rest = run;
-                let mut places: Vec<At> = Vec::with_capacity(values.len());
-                for (values, count) in values.iter().zip(counts).rev() {
-                    let place = (rest % *count as u64) as usize;
+                let place = |count: &usize| {
+                    let place = rest % *count as u64;
                     rest /= *count as u64;
-                    places.push(match values {
-                        Values::List(_) => At::Entry(place),
-                        Values::Range(range) => At::Number(of_grid(range, place, *count)),
-                    });
-                }
+                    At::Place(place)
+                };
+                let mut places: Vec<At> = counts.iter().rev().map(place).collect();
                 places.reverse();
                 places
             }
-            Self::Together { .. } => values.iter().map(|_| At::Entry(run as usize)).collect(),
+            Self::Together { .. } => (0..numbers).map(|_| At::Place(run)).collect(),
             Self::LatinHypercube { samples, seed } => {
-                let share = |number: usize| {
-                    let slices = Shuffle::new(seed_of(*seed, 2 * number as u64), *samples);
-                    let inside = Noise::after(seed_of(*seed, 2 * number as u64 + 1), run).uniform();
-                    (slices.at(run) as f64 + inside) / *samples as f64
+                let share = |number: u64| {
+                    let slices = Shuffle::new(seed_of(*seed, 2 * number), *samples);
+                    let inside = Noise::after(seed_of(*seed, 2 * number + 1), run).uniform();
+                    At::Share((slices.at(run) as f64 + inside) / *samples as f64)
                 };
-                let of = |(number, values): (usize, &&Values)| match values {
-                    Values::List(list) => {
-                        At::Entry(((share(number) * list.len() as f64) as usize).min(list.len().saturating_sub(1)))
-                    }
-                    Values::Range(range) => At::Number(range.at(share(number))),
-                };
-                values.iter().enumerate().map(of).collect()
+                (0..numbers as u64).map(share).collect()
             }
         }
     }
-}
-
-/// One value of a range that is cut into `count`.
-pub(super) fn of_grid(range: &Range, place: usize, count: usize) -> f64 {
-    range.at(place as f64 / (count.max(2) - 1) as f64)
 }

@@ -1,7 +1,5 @@
 //! The table `[sweep]`: which numbers, and how their values are put together.
 
-use std::{borrow::Cow, collections::BTreeMap, ops::Range};
-
 use toml::{
     Spanned,
     de::{DeTable, DeValue},
@@ -48,16 +46,11 @@ pub(super) fn table(source: &Source<'_>) -> Result<Table, DescriptionError> {
     let DeValue::Table(sweep) = sweep.get_ref() else {
         return Err(source.value("sweep", "a table", "another value"));
     };
-    let mut found = Found {
-        source,
-        entries: Vec::new(),
-        options: BTreeMap::new(),
-    };
-    found.collect(sweep, &[])?;
-    let Found {
-        mut entries, options, ..
-    } = found;
-    let method = match options.get("method") {
+    let mut entries = Vec::new();
+    collect(source, sweep, &[], &mut entries)?;
+    entries.sort_by_key(|(start, _)| *start);
+    let option = |name: &str| sweep.get(name).map(Spanned::get_ref);
+    let method = match option("method") {
         None => Method::Grid,
         Some(DeValue::String(name)) if name.as_ref() == "grid" => Method::Grid,
         Some(DeValue::String(name)) if name.as_ref() == "latin hypercube" => Method::LatinHypercube,
@@ -73,58 +66,48 @@ pub(super) fn table(source: &Source<'_>) -> Result<Table, DescriptionError> {
             _ => None,
         };
         let read = |value| whole(value).ok_or_else(|| source.value(&key, "a whole number of 0 or more", &shown(value)));
-        options.get(name).copied().map(read).transpose()
+        option(name).map(read).transpose()
     };
-    let (samples, seed) = (count("samples")?, count("seed")?);
-    entries.sort_by_key(|(place, _)| place.start);
     Ok(Table {
         method,
-        samples,
-        seed,
+        samples: count("samples")?,
+        seed: count("seed")?,
         entries: entries.into_iter().map(|(_, entry)| entry).collect(),
     })
 }
 
-struct Found<'s, 'd> {
-    source: &'s Source<'s>,
-    entries: Vec<(Range<usize>, Entry)>,
-    options: BTreeMap<String, &'d DeValue<'d>>,
-}
-
-impl<'d> Found<'_, 'd> {
-    fn collect(&mut self, table: &'d DeTable<'d>, above: &[String]) -> Result<(), DescriptionError> {
-        for (name, value) in table {
-            let name: &Spanned<Cow<'_, str>> = name;
-            let keys: Vec<String> = above.iter().cloned().chain([name.get_ref().to_string()]).collect();
-            if above.is_empty() && ["method", "samples", "seed"].contains(&name.get_ref().as_ref()) {
-                self.options.insert(name.get_ref().to_string(), value.get_ref());
+/// Finds the swept numbers of a table below these keys, each with where it starts in the text.
+fn collect(
+    source: &Source<'_>,
+    table: &DeTable<'_>,
+    above: &[String],
+    entries: &mut Vec<(usize, Entry)>,
+) -> Result<(), DescriptionError> {
+    for (name, value) in table {
+        let keys: Vec<String> = above.iter().cloned().chain([name.get_ref().to_string()]).collect();
+        if above.is_empty() && ["method", "samples", "seed"].contains(&keys[0].as_str()) {
+            continue;
+        }
+        let key = format!("sweep.{}", keys.join("."));
+        let refused = |expected: &str, value: &DeValue<'_>| source.value(&key, expected, &shown(value));
+        let part = |part: &Spanned<DeValue<'_>>| match part.get_ref() {
+            DeValue::String(text) => Ok(text.to_string()),
+            number @ (DeValue::Integer(_) | DeValue::Float(_)) => Ok(shown(number)),
+            other => Err(refused("a list of numbers or quantities", other)),
+        };
+        let written = match value.get_ref() {
+            DeValue::Table(table) => {
+                collect(source, table, &keys, entries)?;
                 continue;
             }
-            let key = format!("sweep.{}", keys.join("."));
-            let written = match value.get_ref() {
-                DeValue::Table(table) => {
-                    self.collect(table, &keys)?;
-                    continue;
-                }
-                DeValue::String(text) => Written::Text(text.to_string()),
-                DeValue::Array(list) => {
-                    let parts = list.iter().map(|part| match part.get_ref() {
-                        DeValue::String(text) => Ok(text.to_string()),
-                        number @ (DeValue::Integer(_) | DeValue::Float(_)) => Ok(shown(number)),
-                        other => Err(self.source.value(&key, "a list of numbers or quantities", &shown(other))),
-                    });
-                    Written::List(parts.collect::<Result<_, _>>()?)
-                }
-                other => {
-                    let expected = "values in quotes, such as \"1, 2, 5\"";
-                    return Err(self.source.value(&key, expected, &shown(other)));
-                }
-            };
-            let path = path(&keys);
-            self.entries.push((name.span(), Entry { key, path, written }));
-        }
-        Ok(())
+            DeValue::String(text) => Written::Text(text.to_string()),
+            DeValue::Array(list) => Written::List(list.iter().map(part).collect::<Result<_, _>>()?),
+            other => return Err(refused("values in quotes, such as \"1, 2, 5\"", other)),
+        };
+        let path = path(&keys);
+        entries.push((name.span().start, Entry { key, path, written }));
     }
+    Ok(())
 }
 
 /// `step`, `2`, `hold` is `step[2].hold`.

@@ -2,6 +2,8 @@
 
 use palpate::units::{self, Dimension, UnitError};
 
+use crate::description::text::quantity::{QuantityText, usual};
+
 /// The values that a number takes.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Values {
@@ -16,7 +18,14 @@ pub(super) enum Values {
 pub(super) struct Value {
     pub(super) si: f64,
     /// As written, with its unit.
-    pub(super) text: String,
+    pub(super) text: QuantityText,
+}
+
+impl Value {
+    pub(super) fn of(si: f64, text: impl Into<String>) -> Self {
+        let text = QuantityText::of(text);
+        Self { si, text }
+    }
 }
 
 /// Numbers from one end to another.
@@ -119,10 +128,7 @@ fn value(text: &str, unit: &str, dimension: Option<Dimension>) -> Result<Value, 
     let text = text.trim();
     let Some(dimension) = dimension else {
         return match text.parse::<f64>() {
-            Ok(si) if si.is_finite() => Ok(Value {
-                si,
-                text: text.to_owned(),
-            }),
+            Ok(si) if si.is_finite() => Ok(Value::of(si, text)),
             _ => Err(Wrong::Expected(format!("a number without a unit instead of \"{text}\""))),
         };
     };
@@ -131,34 +137,24 @@ fn value(text: &str, unit: &str, dimension: Option<Dimension>) -> Result<Value, 
         _ => text.to_owned(),
     };
     match units::parse(&whole, dimension) {
-        Ok(si) => Ok(Value { si, text: whole }),
+        Ok(si) => Ok(Value::of(si, whole)),
         Err(error) => Err(Wrong::Quantity(whole, error)),
     }
 }
 
 /// What may be written.
 fn forms(dimension: Option<Dimension>) -> String {
-    let (ends, list) = match dimension {
-        None => ("1..7", "1, 2, 5"),
-        Some(Dimension::Length) => ("20..40 mm", "20, 25, 40 mm"),
-        Some(Dimension::Area) => ("10..40 mm^2", "10, 20, 40 mm^2"),
-        Some(Dimension::Time) => ("1..100 s", "1, 10, 100 s"),
-        Some(Dimension::Force) => ("1..20 N", "1, 5, 20 N"),
-        Some(Dimension::Pressure) => ("10..100 kPa", "10, 30, 100 kPa"),
-        Some(Dimension::Speed) => ("5..500 mm/min", "5, 50, 500 mm/min"),
-        Some(Dimension::Rate) => ("1e3..1e6 /s", "1e3, 1e4, 1e5 /s"),
-        Some(Dimension::Frequency) => ("10..1000 Hz", "10, 100, 1000 Hz"),
-        Some(Dimension::ForceRate) => ("1..20 N/s", "1, 5, 20 N/s"),
-        Some(Dimension::Compliance) => ("0.1..10 um/N", "0.1, 1, 10 um/N"),
-        Some(Dimension::Voltage) => ("1..10 V", "1, 5, 10 V"),
-        Some(Dimension::Mass) => ("10..500 g", "10, 100, 500 g"),
-        Some(Dimension::Acceleration) => ("1..10 m/s^2", "1, 5, 10 m/s^2"),
-        Some(Dimension::Torque) => ("1..10 N mm", "1, 5, 10 N mm"),
-    };
+    let (unit, ends, list) = dimension.map_or(("", "1..7", "1, 2, 5"), usual);
+    let [ends, list] = [ends, list].map(|numbers| format!("{numbers} {unit}").trim_end().to_owned());
     format!("values such as \"linear {ends}, 9\", \"log {ends}, 50\" or \"{list}\"")
 }
 
 impl Range {
+    /// The value at a place of those that are counted.
+    pub(super) fn of_grid(&self, place: u64) -> f64 {
+        self.at(place as f64 / (self.count.unwrap_or(1).max(2) - 1) as f64)
+    }
+
     /// The value at a share of the way, to 14 digits: 10000 and not 9999.999999999998, the same on any machine.
     pub(super) fn at(&self, share: f64) -> f64 {
         if share <= 0.0 {

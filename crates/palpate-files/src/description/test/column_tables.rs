@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::columns::{ClockChoice, ColumnChoice, ColumnChoices};
 use crate::{
     description::text::{error::DescriptionError, quantity::QuantityText, source::Source},
-    naming::Quantity,
+    naming::{Quantity, unit_factor, volts_are},
     table::{ColumnRef, EPOCH},
 };
 
@@ -40,7 +40,7 @@ struct TimeTable {
 }
 
 /// The column of a measured quantity.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Column")]
 struct ColumnTable {
@@ -56,7 +56,7 @@ struct ColumnTable {
     #[schemars(extend("enum" = [1, -1]))]
     sign: Option<f64>,
     /// Time stamps of this quantity alone, where it has its own.
-    clock: Option<ClockTable>,
+    clock: Option<ClockChoice>,
 }
 
 /// The column of the travel of the jaw.
@@ -82,7 +82,7 @@ struct DisplacementTable {
     /// Instead of a unit: travel while the column rises by one, where it counts an angle or a share of the stroke.
     travel_per_unit: Option<QuantityText>,
     /// Time stamps of this quantity alone, where it has its own.
-    clock: Option<ClockTable>,
+    clock: Option<ClockChoice>,
 }
 
 /// The column of the deflection of a cantilever.
@@ -101,17 +101,6 @@ struct DeflectionTable {
     sign: Option<f64>,
 }
 
-/// The time stamps of one quantity alone.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Clock")]
-struct ClockTable {
-    /// Number of the column, from 1, or its name.
-    column: ColumnRef,
-    /// Unit, such as "s"; not needed where the header gives it.
-    unit: Option<String>,
-}
-
 impl ColumnsTable {
     pub(super) fn checked(self, source: &Source<'_>) -> Result<ColumnChoices, DescriptionError> {
         if self.force.is_some() && self.stress.is_some() {
@@ -119,17 +108,29 @@ impl ColumnsTable {
         }
         // What a header calls a displacement may be one of which the deflection is off already.
         let names_height = self.displacement.as_ref().is_some_and(|table| table.column.is_some());
+        let time = self.time.map(|TimeTable { column, unit }| ColumnTable {
+            column,
+            unit,
+            ..ColumnTable::default()
+        });
+        let deflection = self.deflection.map(|table| ColumnTable {
+            column: Some(table.column),
+            unit: table.unit,
+            scale: table.scale,
+            sign: table.sign,
+            ..ColumnTable::default()
+        });
         let measured = |table: Option<ColumnTable>, key, quantity| {
             table.map(|table| table.checked(source, key, quantity)).transpose()
         };
         Ok(ColumnChoices {
-            time: measured(self.time.map(TimeTable::plain), "time", Quantity::Time)?,
+            time: measured(time, "time", Quantity::Time)?,
             displacement: self.displacement.map(|table| table.checked(source)).transpose()?,
             force: measured(self.force, "force", Quantity::Force)?,
             stress: measured(self.stress, "stress", Quantity::Stress)?,
-            deflection: match self.deflection {
+            deflection: match deflection {
                 Some(_) if !names_height => return Err(source.missing("columns.displacement", HEIGHT)),
-                deflection => deflection.map(|table| table.checked(source)).transpose()?,
+                deflection => measured(deflection, "deflection", Quantity::Displacement)?,
             },
         })
     }
@@ -137,33 +138,6 @@ impl ColumnsTable {
 
 /// What a deflection is taken off.
 const HEIGHT: &str = "the column of the height, such as { column = \"measuredHeight\", sign = -1 }";
-
-impl TimeTable {
-    fn plain(self) -> ColumnTable {
-        ColumnTable {
-            column: self.column,
-            unit: self.unit,
-            scale: None,
-            offset: None,
-            sign: None,
-            clock: None,
-        }
-    }
-}
-
-impl DeflectionTable {
-    fn checked(self, source: &Source<'_>) -> Result<ColumnChoice, DescriptionError> {
-        let plain = ColumnTable {
-            column: Some(self.column),
-            unit: self.unit,
-            scale: self.scale,
-            offset: None,
-            sign: self.sign,
-            clock: None,
-        };
-        plain.checked(source, "deflection", Quantity::Displacement)
-    }
-}
 
 impl DisplacementTable {
     fn checked(self, source: &Source<'_>) -> Result<ColumnChoice, DescriptionError> {
@@ -174,7 +148,7 @@ impl DisplacementTable {
         if self.also.is_some() && self.doubled == Some(true) {
             return Err(source.both("columns.displacement.doubled", "columns.displacement.also"));
         }
-        let travel = self.travel_per_unit.map(|travel| source.positive(key, &travel, Dimension::Length)).transpose()?;
+        let travel_per_unit = source.positive_if(key, self.travel_per_unit.as_ref(), Dimension::Length)?;
         let plain = ColumnTable {
             column: self.column,
             unit: self.unit,
@@ -186,7 +160,7 @@ impl DisplacementTable {
         Ok(ColumnChoice {
             also: self.also,
             doubled: self.doubled.unwrap_or(false),
-            travel_per_unit: travel,
+            travel_per_unit,
             ..plain.checked(source, "displacement", Quantity::Displacement)?
         })
     }
@@ -204,8 +178,7 @@ impl ColumnTable {
         let sign = self.sign.unwrap_or(1.0);
         let sign = source.number(&key("sign"), sign, "1 or -1", |sign| sign.abs() == 1.0)?;
         if let Some(clock) = &self.clock {
-            let key = key("clock.unit");
-            check_unit(source, &key, clock.unit.as_deref(), Dimension::Time)?;
+            check_unit(source, &key("clock.unit"), clock.unit.as_deref(), Dimension::Time)?;
         }
         Ok(ColumnChoice {
             column: self.column,
@@ -217,16 +190,13 @@ impl ColumnTable {
             also: None,
             doubled: false,
             travel_per_unit: None,
-            clock: self.clock.map(|clock| ClockChoice {
-                column: clock.column,
-                unit: clock.unit,
-            }),
+            clock: self.clock,
         })
     }
 }
 
 fn checked_scale(source: &Source<'_>, key: &str, scale: &str, quantity: Quantity) -> Result<f64, DescriptionError> {
-    crate::naming::volts_are(scale, quantity.dimension()).ok_or_else(|| {
+    volts_are(scale, quantity.dimension()).ok_or_else(|| {
         let symbol = quantity.dimension().units()[0].0;
         let expected = format!("a {quantity} per volt other than 0, such as \"12.5 {symbol}/V\"");
         source.value(key, expected, &format!("\"{scale}\""))
@@ -241,14 +211,10 @@ fn check_unit(
 ) -> Result<(), DescriptionError> {
     match unit {
         Some(unit) if dimension == Dimension::Time && unit.trim().eq_ignore_ascii_case(EPOCH) => Ok(()),
-        Some(unit) if crate::naming::unit_factor(unit, dimension).is_none() => Err(DescriptionError::Quantity {
-            place: source.place(key),
-            found: format!("\"{unit}\""),
-            source: UnitError::UnknownUnit {
-                dimension,
-                unit: unit.to_owned(),
-            },
-        }),
+        Some(unit) if unit_factor(unit, dimension).is_none() => {
+            let found = unit.to_owned();
+            Err(source.no_quantity(key, unit, UnitError::UnknownUnit { dimension, unit: found }))
+        }
         _ => Ok(()),
     }
 }

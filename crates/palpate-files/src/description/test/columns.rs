@@ -1,5 +1,8 @@
 //! Which column of a file holds what.
 
+use schemars::JsonSchema;
+use serde::Deserialize;
+
 use crate::{naming::Quantity, table::ColumnRef};
 
 /// What is said about one quantity; what is left out is taken from the header of the file.
@@ -28,11 +31,13 @@ pub struct ColumnChoice {
 }
 
 /// The time stamps of one quantity alone.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Clock")]
 pub struct ClockChoice {
-    /// The column of the clock.
+    /// Number of the column, from 1, or its name.
     pub column: ColumnRef,
-    /// Its unit.
+    /// Unit, such as "s"; not needed where the header gives it.
     pub unit: Option<String>,
 }
 

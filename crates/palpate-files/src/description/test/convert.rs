@@ -6,11 +6,12 @@ use palpate::{
     analysis::{Geometry, LayersChoice},
     contact::{Shape, Sides},
     segment::ContactChoice,
+    units::Dimension,
 };
 
 use super::{
     corrections,
-    description::{About, TestDescription},
+    description::TestDescription,
     preset, settings,
     tables::{ContactTable, TestTables},
 };
@@ -74,11 +75,7 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
     let (fit, exponents) = settings::fit(&source, &tables.fit)?;
     let layers = layers(&source, contact, geometry.as_ref())?;
     Ok(TestDescription {
-        about: About {
-            title: tables.about.title,
-            source: tables.about.source,
-            note: tables.about.note,
-        },
+        about: tables.about,
         reading: tables.file.checked(),
         columns,
         geometry,
@@ -91,33 +88,25 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
         fit,
         exponents,
         free_exponent: tables.fit.free_exponent.unwrap_or(true),
-        until: settings::until(&source, &tables.fit)?,
+        until: source.positive_if("fit.until", tables.fit.until.as_ref(), Dimension::Time)?,
     })
 }
 
 fn geometry(source: &Source<'_>, tables: &TestTables) -> Result<Option<Geometry>, DescriptionError> {
     let sides = tables.contact.squeezed_from.map(Sides::from);
-    let shape = match &tables.specimen {
-        Some(specimen) => {
-            if tables.calibration.is_none() {
-                specimen.no_equilibrium(source)?;
-            }
-            specimen.shape(source)?
+    let (mut shape, mut modulus) = (None, None);
+    if let Some(specimen) = &tables.specimen {
+        if tables.calibration.is_none() {
+            specimen.no_equilibrium(source)?;
         }
-        None => None,
-    };
-    let modulus = match &tables.specimen {
-        Some(specimen) => specimen.modulus(source)?,
-        None => None,
-    };
+        (shape, modulus) = (specimen.shape(source)?, specimen.modulus(source)?);
+    }
     let Some(shape) = shape else {
-        if sides.is_some() {
-            return Err(needs_body(source, "contact.squeezed_from"));
-        }
-        if modulus.is_some() {
-            return Err(needs_body(source, "specimen.modulus"));
-        }
-        return Ok(None);
+        return match (sides, modulus) {
+            (Some(_), _) => Err(needs_body(source, "contact.squeezed_from")),
+            (None, Some(_)) => Err(needs_body(source, "specimen.modulus")),
+            (None, None) => Ok(None),
+        };
     };
     Ok(Some(Geometry {
         sides: sides.unwrap_or_else(|| specimen::usual_sides(&shape)),

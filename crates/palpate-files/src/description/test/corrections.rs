@@ -6,7 +6,7 @@ use palpate::{
 };
 
 use super::tables::{BaselineName, ClocksTable, ForceTable, MachineTable};
-use crate::description::text::{error::DescriptionError, quantity::QuantityText, source::Source};
+use crate::description::text::{error::DescriptionError, source::Source};
 
 const SKEW: &str = "\"report\", \"auto\" or a time such as \"35 ms\"";
 
@@ -17,7 +17,6 @@ pub(super) fn checked(
     force: &ForceTable,
     machine: &MachineTable,
 ) -> Result<CorrectionOptions, DescriptionError> {
-    let resample = clock.resample.as_ref();
     let baseline = match force.baseline {
         None | Some(BaselineName::None) => None,
         Some(BaselineName::Constant) => Some(Baseline::Constant),
@@ -27,11 +26,21 @@ pub(super) fn checked(
         let reason = "without a baseline that is taken off";
         return Err(source.unused("force.baseline_window", reason, "set baseline = \"constant\" or \"sloped\""));
     }
+    let skew = clock.skew.as_deref().map_or(Ok(SkewChoice::Report), |text| skew(source, text))?;
+    let resample = source.positive_if("clock.resample", clock.resample.as_ref(), Dimension::Frequency)?;
+    let key = "force.baseline_window";
+    let window = force.baseline_window.as_slice();
+    let baseline_window = source.rows(key, window, (Dimension::Time, Dimension::Time))?.pop();
+    if let (Some((start, end)), [(from, until)]) = (baseline_window, window)
+        && start >= end
+    {
+        return Err(source.value(key, "two times, the earlier first", &format!("[{from}, {until}]")));
+    }
     Ok(CorrectionOptions {
-        skew: clock.skew.as_deref().map_or(Ok(SkewChoice::Report), |text| skew(source, text))?,
-        resample: resample.map(|rate| source.positive("clock.resample", rate, Dimension::Frequency)).transpose()?,
+        skew,
+        resample,
         baseline,
-        baseline_window: force.baseline_window.as_ref().map(|window| span(source, window)).transpose()?,
+        baseline_window,
         compliance: compliance(source, machine)?,
     })
 }
@@ -44,22 +53,9 @@ fn skew(source: &Source<'_>, text: &str) -> Result<SkewChoice, DescriptionError>
         other => match units::parse(other, Dimension::Time) {
             Ok(seconds) => Ok(SkewChoice::Given(seconds)),
             Err(units::UnitError::NotANumber { .. }) => Err(source.value(key, SKEW, &format!("\"{text}\""))),
-            Err(error) => Err(DescriptionError::Quantity {
-                place: source.place(key),
-                found: format!("\"{text}\""),
-                source: error,
-            }),
+            Err(error) => Err(source.no_quantity(key, text, error)),
         },
     }
-}
-
-fn span(source: &Source<'_>, (from, until): &(QuantityText, QuantityText)) -> Result<(f64, f64), DescriptionError> {
-    let key = "force.baseline_window";
-    let (start, end) = (source.si(key, from, Dimension::Time)?, source.si(key, until, Dimension::Time)?);
-    if start < end {
-        return Ok((start, end));
-    }
-    Err(source.value(key, "two times, the earlier first", &format!("[{from}, {until}]")))
 }
 
 fn compliance(source: &Source<'_>, machine: &MachineTable) -> Result<Option<Compliance>, DescriptionError> {
@@ -73,16 +69,9 @@ fn compliance(source: &Source<'_>, machine: &MachineTable) -> Result<Option<Comp
             compliance.map(Some).map_err(|_| source.value(key, "a compliance of 0 m/N or more", written))
         }
         (None, Some(rows)) => {
-            let row = |(force, deflection): &(QuantityText, QuantityText)| {
-                Ok((
-                    source.si(table_key, force, Dimension::Force)?,
-                    source.si(table_key, deflection, Dimension::Length)?,
-                ))
-            };
-            let rows: Vec<(f64, f64)> = rows.iter().map(row).collect::<Result<_, _>>()?;
-            let table = ComplianceTable::new(&rows);
-            let table = table.map_err(|error| source.value(table_key, "rows of force and deflection", &error))?;
-            Ok(Some(Compliance::Table(table)))
+            let rows = source.rows(table_key, rows, (Dimension::Force, Dimension::Length))?;
+            let table = ComplianceTable::new(&rows).map(|table| Some(Compliance::Table(table)));
+            table.map_err(|error| source.value(table_key, "rows of force and deflection", &error))
         }
     }
 }

@@ -8,13 +8,17 @@ use palpate::{
     simulate::Separation,
 };
 
+use schemars::JsonSchema;
+use serde::Deserialize;
+
 use super::{columns::ColumnChoices, settings};
 use crate::table::ReadOptions;
 
-/// What a test is about, in the words of whoever made it.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+/// What the test is about.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct About {
-    /// Title.
+    /// Title for reports.
     pub title: Option<String>,
     /// Where the record comes from.
     pub source: Option<String>,

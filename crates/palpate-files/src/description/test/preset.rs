@@ -6,7 +6,12 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::{columns::ColumnChoices, tables::TestTables};
-use crate::description::text::{error::DescriptionError, places::Places, source::Source, words};
+use crate::description::text::{
+    error::{DescriptionError, KeyProblem},
+    places::Places,
+    source::Source,
+    words,
+};
 
 /// A part of a test description that belongs to a gripper or machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,12 +97,9 @@ pub(super) fn over_preset(source: &Source<'_>, own: TestTables) -> Result<TestTa
         let names: Vec<String> = MACHINES.iter().map(|machine| format!("\"{}\"", machine.name)).collect();
         return Err(source.value(KEY, words::any_of(&names), &format!("\"{name}\"")));
     };
-    let other = |message: String| DescriptionError::Other {
-        place: source.place(KEY),
-        message,
-    };
-    let said: Table = source.text.parse().map_err(|error: toml::de::Error| other(error.message().to_owned()))?;
-    let mut tables: Table = machine.text.parse().map_err(|error: toml::de::Error| other(error.message().to_owned()))?;
+    let other = |error: toml::de::Error| source.wrong(KEY, KeyProblem::Other(error.message().to_owned()));
+    let said: Table = source.text.parse().map_err(other)?;
+    let mut tables: Table = machine.text.parse().map_err(other)?;
     for (one, another) in EXCLUSIVE {
         for (kept, dropped) in [(one, another), (another, one)] {
             if at(&said, kept).is_some() {
@@ -106,7 +108,7 @@ pub(super) fn over_preset(source: &Source<'_>, own: TestTables) -> Result<TestTa
         }
     }
     lay_over(&mut tables, said);
-    TestTables::deserialize(Value::Table(tables)).map_err(|error| other(error.message().to_owned()))
+    TestTables::deserialize(Value::Table(tables)).map_err(other)
 }
 
 fn at<'t>(table: &'t Table, path: &str) -> Option<&'t Value> {

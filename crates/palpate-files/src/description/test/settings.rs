@@ -7,24 +7,19 @@ use palpate::{
 };
 
 use super::{
-    choices,
+    choices::{self, ChoiceError},
     tables::{FitTable, HoldModeName, PhasesTable},
 };
-use crate::description::text::{error::DescriptionError, quantity::QuantityText, source::Source};
+use crate::description::text::{error::DescriptionError, source::Source};
 
 /// The exponents compared where nothing is said.
 pub(crate) const USUAL_EXPONENTS: [f64; 5] = [1.0, 2.0, 3.0, 5.0, 7.0];
 
 pub(crate) fn touch(source: &Source<'_>, text: &str) -> Result<ContactChoice, DescriptionError> {
     let key = "contact.touch";
-    let found = format!("\"{text}\"");
     choices::parse_touch(text).map_err(|error| match error.source {
-        Some(unit) => DescriptionError::Quantity {
-            place: source.place(key),
-            found,
-            source: unit,
-        },
-        None => source.value(key, error.expected, &found),
+        Some(unit) => source.no_quantity(key, text, unit),
+        None => source.value(key, error.expected, &format!("\"{text}\"")),
     })
 }
 
@@ -35,13 +30,12 @@ pub(crate) fn segment(source: &Source<'_>, phases: &PhasesTable) -> Result<Segme
         source.number("phases.still_below", share, expected, |share| share > 0.0 && share < 1.0)
     });
     let hold_start = phases.hold_start.as_deref().map(|text| {
-        let parsed = choices::parse_hold_start(text);
-        let found = format!("\"{text}\"");
-        parsed.map_err(|error| source.value("phases.hold_start", error.expected, &found))
+        let refused = |error: ChoiceError| source.value("phases.hold_start", error.expected, &format!("\"{text}\""));
+        choices::parse_hold_start(text).map_err(refused)
     });
     Ok(SegmentOptions {
-        tolerance: positive(source, "phases.tolerance", phases.tolerance.as_ref(), Dimension::Length)?,
-        minimum_hold: positive(source, "phases.minimum_hold", phases.minimum_hold.as_ref(), Dimension::Time)?,
+        tolerance: source.positive_if("phases.tolerance", phases.tolerance.as_ref(), Dimension::Length)?,
+        minimum_hold: source.positive_if("phases.minimum_hold", phases.minimum_hold.as_ref(), Dimension::Time)?,
         still_below: still_below.transpose()?,
         hold_start: hold_start.transpose()?.unwrap_or(usual.hold_start),
     })
@@ -83,8 +77,7 @@ pub(crate) fn fit(source: &Source<'_>, fit: &FitTable) -> Result<(FitOptions, Ve
     if let Some([low, high]) = fit.exponent_range {
         if !(low > 0.0 && low < high && high.is_finite()) {
             let expected = "two numbers above 0, the smaller first";
-            let found = format!("[{low}, {high}]");
-            return Err(source.value("fit.exponent_range", expected, &found));
+            return Err(source.value("fit.exponent_range", expected, &format!("[{low}, {high}]")));
         }
         options.exponent_range = (low, high);
     }
@@ -101,17 +94,4 @@ pub(crate) fn fit(source: &Source<'_>, fit: &FitTable) -> Result<(FitOptions, Ve
         source.number(&key, *exponent, "a number above 0", |exponent| exponent > 0.0)?;
     }
     Ok((options, exponents))
-}
-
-pub(crate) fn until(source: &Source<'_>, fit: &FitTable) -> Result<Option<f64>, DescriptionError> {
-    positive(source, "fit.until", fit.until.as_ref(), Dimension::Time)
-}
-
-fn positive(
-    source: &Source<'_>,
-    key: &str,
-    written: Option<&QuantityText>,
-    dimension: Dimension,
-) -> Result<Option<f64>, DescriptionError> {
-    written.map(|written| source.positive(key, written, dimension)).transpose()
 }

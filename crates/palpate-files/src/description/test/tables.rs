@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, de::IgnoredAny};
 
-use super::{column_tables::ColumnsTable, file::FileTable};
+use super::{column_tables::ColumnsTable, description::About, file::FileTable};
 use crate::description::{
     body::tables::{SidesName, SpecimenTable},
     text::quantity::QuantityText,
@@ -16,7 +16,7 @@ use crate::description::{
 #[schemars(title = "palpate test description", rename = "Test")]
 pub(crate) struct TestTables {
     #[serde(default)]
-    pub(crate) about: AboutTable,
+    pub(crate) about: About,
     #[serde(default)]
     pub(crate) file: FileTable,
     #[serde(default)]
@@ -41,19 +41,6 @@ pub(crate) struct TestTables {
     #[serde(default)]
     #[schemars(skip)]
     pub(crate) calibration: Option<IgnoredAny>,
-}
-
-/// What the test is about.
-#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "About")]
-pub(crate) struct AboutTable {
-    /// Title for reports.
-    pub(crate) title: Option<String>,
-    /// Where the record comes from.
-    pub(crate) source: Option<String>,
-    /// Anything else.
-    pub(crate) note: Option<String>,
 }
 
 /// How the jaw meets the body.

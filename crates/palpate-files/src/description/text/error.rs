@@ -1,10 +1,11 @@
 //! What can be wrong with a description.
 
-use std::{fmt, io, path::PathBuf};
+use std::{fmt, path::PathBuf};
 
 use palpate::units::{Dimension, UnitError};
 
-use crate::error::{allowed, plain, reason, shown};
+use super::quantity::usual;
+use crate::error::{FileError, plain, shown};
 
 /// Ends the words for what is accepted where a value is out of all proportion.
 pub(crate) const BELIEVABLE: &str = "as bodies have it";
@@ -36,28 +37,9 @@ impl fmt::Display for KeyPlace {
 /// Why a description cannot be used. [`DescriptionError::hint`] says what would help.
 #[derive(Debug, thiserror::Error)]
 pub enum DescriptionError {
-    /// There is no such file.
-    #[error("{}: no such file", path.display())]
-    NotFound {
-        /// The file.
-        path: PathBuf,
-        /// What the operating system says.
-        source: io::Error,
-    },
-    /// The path leads to a directory.
-    #[error("{}: expected a file, found a directory", path.display())]
-    Directory {
-        /// The directory.
-        path: PathBuf,
-    },
     /// The operating system does not hand the file out.
-    #[error("{}: cannot be read ({})", path.display(), reason(source))]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What the operating system says.
-        source: io::Error,
-    },
+    #[error(transparent)]
+    File(#[from] FileError),
     /// The file is far longer than anybody writes.
     #[error("{}: expected a description of at most {limit} bytes, found {bytes} bytes", path.display())]
     TooLong {
@@ -90,78 +72,63 @@ pub enum DescriptionError {
         /// The line.
         text: String,
     },
-    /// A key that means nothing here.
-    #[error("{place}: unknown key (accepted: {})", accepted.join(", "))]
-    UnknownKey {
+    /// Something is wrong with a key or its value.
+    #[error("{place}{problem}")]
+    Key {
         /// The key.
         place: KeyPlace,
-        /// The keys that have a meaning here.
-        accepted: Vec<String>,
+        /// What is wrong with it.
+        problem: KeyProblem,
     },
+}
+
+/// What can be wrong with a key of a description, as it is said behind its place.
+#[derive(Debug, thiserror::Error)]
+pub enum KeyProblem {
+    /// It means nothing here; these would.
+    #[error(": unknown key (accepted: {})", .0.join(", "))]
+    Unknown(Vec<String>),
     /// A sweep over a number that does not stand in the protocol.
-    #[error("{place}: no such number in this protocol (its numbers: {})", accepted.join(", "))]
+    #[error(": no such number in this protocol (its numbers: {})", accepted.join(", "))]
     UnknownNumber {
-        /// The key of the sweep.
-        place: KeyPlace,
         /// The path of the number that it names.
         number: String,
         /// The numbers that stand in the protocol.
         accepted: Vec<String>,
     },
-    /// A key that is needed is not there.
-    #[error("{place}: missing, expected {expected}")]
-    Missing {
-        /// The key.
-        place: KeyPlace,
-        /// What it should hold.
-        expected: String,
-    },
+    /// It is needed and not there; what it should hold.
+    #[error(": missing, expected {0}")]
+    Missing(String),
     /// A quantity that cannot be read.
-    #[error("{place} = {}: {}", shown(found), shown(&source.to_string()))]
+    #[error(" = {}: {}", shown(found), shown(&error.to_string()))]
     Quantity {
-        /// The key.
-        place: KeyPlace,
         /// What it holds, as written.
         found: String,
         /// What is wrong with it.
-        source: UnitError,
+        error: UnitError,
     },
     /// A value of the wrong kind or size.
-    #[error("{place}: expected {expected}, found {}", shown(found))]
+    #[error(": expected {expected}, found {}", shown(found))]
     Value {
-        /// The key.
-        place: KeyPlace,
         /// What would be accepted.
         expected: String,
         /// What it holds.
         found: String,
     },
-    /// A key that has no effect beside the others.
-    #[error("{place}: not used {reason}")]
+    /// It has no effect beside the others.
+    #[error(": not used {reason}")]
     Unused {
-        /// The key.
-        place: KeyPlace,
         /// When and why it has none.
         reason: String,
         /// What would help.
         remedy: String,
     },
-    /// Two keys that exclude each other.
-    #[error("{place}: expected either this or {other}, found both")]
-    Both {
-        /// One of the keys.
-        place: KeyPlace,
-        /// The other.
-        other: String,
-    },
-    /// Something else that the TOML reader says about a value.
-    #[error("{place}: {}", shown(message))]
-    Other {
-        /// The key.
-        place: KeyPlace,
-        /// What the reader says.
-        message: String,
-    },
+    /// It and this other key exclude each other.
+    #[error(": expected either this or {0}, found both")]
+    Both(String),
+    /// Something else that the TOML reader says about the value.
+    #[error(": {}", shown(.0))]
+    Other(String),
 }
 
 impl DescriptionError {
@@ -169,14 +136,7 @@ impl DescriptionError {
     #[must_use]
     pub fn key(&self) -> Option<&str> {
         match self {
-            Self::UnknownKey { place, .. }
-            | Self::UnknownNumber { place, .. }
-            | Self::Missing { place, .. }
-            | Self::Quantity { place, .. }
-            | Self::Value { place, .. }
-            | Self::Unused { place, .. }
-            | Self::Both { place, .. }
-            | Self::Other { place, .. } => Some(&place.key),
+            Self::Key { place, .. } => Some(&place.key),
             _ => None,
         }
     }
@@ -184,44 +144,39 @@ impl DescriptionError {
     /// What would help, if that is known.
     #[must_use]
     pub fn hint(&self) -> Option<String> {
-        self.help().map(|text| plain(&text))
-    }
-
-    fn help(&self) -> Option<String> {
-        match self {
-            Self::NotFound { .. } => Some("check the spelling of the path".to_owned()),
-            Self::Directory { .. } => Some("name the TOML file inside it".to_owned()),
-            Self::Unreadable { source, .. } => allowed(source),
-            Self::Other { place, .. } => Some(format!("change or remove {}", last_key(&place.key))),
-            Self::TooLong { .. } => Some("give a description in TOML here, not the record itself".to_owned()),
-            Self::NotText { .. } => Some("save the description as UTF-8".to_owned()),
-            Self::Syntax { text, message, .. } => Some(syntax(text, message)),
-            Self::UnknownKey { place, accepted } => Some(nearest(last_key(&place.key), accepted).map_or_else(
-                || "remove the key, or write one of those that are accepted".to_owned(),
-                |key| format!("did you mean {key}?"),
-            )),
-            Self::UnknownNumber { number, accepted, .. } => Some(nearest(number, accepted).map_or_else(
-                || "a sweep replaces numbers that stand in the file: write it where it belongs first".to_owned(),
-                |number| format!("did you mean {number}?"),
-            )),
-            Self::Missing { place, expected } => {
-                let key = last_key(&place.key);
-                Some(match expected.split_once("such as ") {
-                    Some((_, example)) if example.contains(" = ") => format!("add a line such as {example}"),
-                    Some((_, example)) => format!("add a line such as {key} = {example}"),
-                    None => format!("add {expected}"),
-                })
-            }
-            Self::Quantity { place, source, found } => Some(quantity(last_key(&place.key), source, found)),
-            Self::Value { place, expected, found } => Some(value(last_key(&place.key), expected, found)),
-            Self::Unused { remedy, .. } => Some(remedy.clone()),
-            Self::Both { place, other } => Some(format!("remove {} or {other}", last_key(&place.key))),
-        }
+        let help = match self {
+            Self::File(FileError::Directory { .. }) => "name the TOML file inside it".to_owned(),
+            Self::File(error) => error.hint()?,
+            Self::TooLong { .. } => "give a description in TOML here, not the record itself".to_owned(),
+            Self::NotText { .. } => "save the description as UTF-8".to_owned(),
+            Self::Syntax { text, message, .. } => syntax(text, message),
+            Self::Key { place, problem } => problem.help(place.key.rsplit('.').next().unwrap_or(&place.key)),
+        };
+        Some(plain(&help))
     }
 }
 
-fn last_key(key: &str) -> &str {
-    key.rsplit('.').next().unwrap_or(key)
+impl KeyProblem {
+    /// What would help, of a key by its last name.
+    fn help(&self, key: &str) -> String {
+        match self {
+            Self::Unknown(accepted) => meant(key, accepted, "remove the key, or write one of those that are accepted"),
+            Self::UnknownNumber { number, accepted } => {
+                let otherwise = "a sweep replaces numbers that stand in the file: write it where it belongs first";
+                meant(number, accepted, otherwise)
+            }
+            Self::Missing(expected) => match expected.split_once("such as ") {
+                Some((_, example)) if example.contains(" = ") => format!("add a line such as {example}"),
+                Some((_, example)) => format!("add a line such as {key} = {example}"),
+                None => format!("add {expected}"),
+            },
+            Self::Quantity { found, error } => quantity(key, error, found),
+            Self::Value { expected, found } => value(key, expected, found),
+            Self::Unused { remedy, .. } => remedy.clone(),
+            Self::Both(other) => format!("remove {key} or {other}"),
+            Self::Other(_) => format!("change or remove {key}"),
+        }
+    }
 }
 
 /// The line that most often goes wrong is a quantity without quotes.
@@ -279,13 +234,13 @@ fn quantity(key: &str, error: &UnitError, found: &str) -> String {
     match error {
         UnitError::MissingUnit { dimension, found } => {
             // Of both the usual and the SI unit, lest one of them be taken for what was meant.
-            let usual = usual_unit(*dimension);
+            let (usual, ..) = usual(*dimension);
             let si = dimension.units().iter().find(|(symbol, factor)| *factor == 1.0 && *symbol != usual);
             let other = si.map_or_else(String::new, |(si, _)| format!(" or \"{} {si}\"", found.trim()));
             format!("add the unit, such as {}{other}", named(&format!("{} {usual}", found.trim())))
         }
         UnitError::NotANumber { dimension, .. } | UnitError::NotFinite { dimension, .. } => {
-            let unit = usual_unit(*dimension);
+            let (unit, ..) = usual(*dimension);
             format!("write a number and a unit, such as {}", named(&format!("10 {unit}")))
         }
         UnitError::UnknownUnit { dimension, unit } => {
@@ -294,7 +249,7 @@ fn quantity(key: &str, error: &UnitError, found: &str) -> String {
             let volts = key == "unit" && crate::naming::unit_factor(unit, Dimension::Voltage).is_some();
             match same {
                 _ if volts => {
-                    format!("say what a volt stands for as well, such as scale = \"12.5 {}/V\"", usual_unit(*dimension))
+                    format!("say what a volt stands for as well, such as scale = \"12.5 {}/V\"", usual(*dimension).0)
                 }
                 _ if digits => {
                     format!("write a decimal point: {}", named(&found.trim_matches('"').replacen(',', ".", 1)))
@@ -306,23 +261,9 @@ fn quantity(key: &str, error: &UnitError, found: &str) -> String {
     }
 }
 
-fn usual_unit(dimension: Dimension) -> &'static str {
-    match dimension {
-        Dimension::Length => "mm",
-        Dimension::Area => "mm^2",
-        Dimension::Time => "s",
-        Dimension::Force => "N",
-        Dimension::Pressure => "kPa",
-        Dimension::Speed => "mm/min",
-        Dimension::Rate => "/s",
-        Dimension::Frequency => "Hz",
-        Dimension::ForceRate => "N/s",
-        Dimension::Compliance => "um/N",
-        Dimension::Voltage => "V",
-        Dimension::Mass => "g",
-        Dimension::Acceleration => "m/s^2",
-        Dimension::Torque => "N mm",
-    }
+/// Asks whether the accepted key that differs little from `key` was meant, or else says `otherwise`.
+fn meant(key: &str, accepted: &[String], otherwise: &str) -> String {
+    nearest(key, accepted).map_or_else(|| otherwise.to_owned(), |near| format!("did you mean {near}?"))
 }
 
 /// The accepted key that differs least from `key`, if it differs little.

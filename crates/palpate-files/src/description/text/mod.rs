@@ -14,4 +14,4 @@ pub(super) mod quantity;
 pub(super) mod source;
 pub(super) mod words;
 
-pub use error::{DescriptionError, KeyPlace};
+pub use error::{DescriptionError, KeyPlace, KeyProblem};

@@ -2,6 +2,7 @@
 
 use std::{borrow::Cow, fmt};
 
+use palpate::units::Dimension;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{
     Deserialize, Deserializer,
@@ -23,6 +24,13 @@ impl QuantityText {
         Self {
             text: text.into(),
             bare: false,
+        }
+    }
+
+    fn bare(number: impl ToString) -> Self {
+        Self {
+            text: number.to_string(),
+            bare: true,
         }
     }
 }
@@ -64,17 +72,34 @@ impl Visitor<'_> for Written {
     }
 
     fn visit_str<E: Error>(self, text: &str) -> Result<QuantityText, E> {
-        let text = text.to_owned();
-        Ok(QuantityText { text, bare: false })
+        Ok(QuantityText::of(text))
     }
 
     fn visit_i64<E: Error>(self, number: i64) -> Result<QuantityText, E> {
-        let text = number.to_string();
-        Ok(QuantityText { text, bare: true })
+        Ok(QuantityText::bare(number))
     }
 
     fn visit_f64<E: Error>(self, number: f64) -> Result<QuantityText, E> {
-        let text = number.to_string();
-        Ok(QuantityText { text, bare: true })
+        Ok(QuantityText::bare(number))
+    }
+}
+
+/// How quantities of a dimension are mostly written: their unit, and numbers of it as a range and as a list.
+pub(crate) fn usual(dimension: Dimension) -> (&'static str, &'static str, &'static str) {
+    match dimension {
+        Dimension::Length => ("mm", "20..40", "20, 25, 40"),
+        Dimension::Area => ("mm^2", "10..40", "10, 20, 40"),
+        Dimension::Time => ("s", "1..100", "1, 10, 100"),
+        Dimension::Force => ("N", "1..20", "1, 5, 20"),
+        Dimension::Pressure => ("kPa", "10..100", "10, 30, 100"),
+        Dimension::Speed => ("mm/min", "5..500", "5, 50, 500"),
+        Dimension::Rate => ("/s", "1e3..1e6", "1e3, 1e4, 1e5"),
+        Dimension::Frequency => ("Hz", "10..1000", "10, 100, 1000"),
+        Dimension::ForceRate => ("N/s", "1..20", "1, 5, 20"),
+        Dimension::Compliance => ("um/N", "0.1..10", "0.1, 1, 10"),
+        Dimension::Voltage => ("V", "1..10", "1, 5, 10"),
+        Dimension::Mass => ("g", "10..500", "10, 100, 500"),
+        Dimension::Acceleration => ("m/s^2", "1..10", "1, 5, 10"),
+        Dimension::Torque => ("N mm", "1..10", "1, 5, 10"),
     }
 }

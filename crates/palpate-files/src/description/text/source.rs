@@ -1,33 +1,27 @@
 //! The text of a description: reading it, and saying where in it something is wrong.
 
-use std::{fs, io, ops::Range, path::Path};
+use std::{fs, path::Path};
 
-use palpate::units::{self, Dimension};
+use palpate::units::{self, Dimension, UnitError};
 use serde::de::DeserializeOwned;
 
 use super::{
-    error::{BELIEVABLE, DescriptionError, KeyPlace},
+    error::{BELIEVABLE, DescriptionError, KeyPlace, KeyProblem},
     places::Places,
     quantity::QuantityText,
     words,
 };
+use crate::error::FileError;
 
 /// The longest description that is read, in bytes.
 pub(crate) const LONGEST: u64 = 1 << 20;
 
 /// The text of the file at `path`, which may have `longest` bytes.
 pub(crate) fn read(path: &Path, longest: u64) -> Result<String, DescriptionError> {
-    let failed = |source: io::Error| {
-        let path = path.to_owned();
-        match source.kind() {
-            io::ErrorKind::NotFound => DescriptionError::NotFound { path, source },
-            io::ErrorKind::IsADirectory => DescriptionError::Directory { path },
-            _ => DescriptionError::Unreadable { path, source },
-        }
-    };
+    let failed = |source| FileError::from_io(path, source);
     let about = fs::metadata(path).map_err(failed)?;
     if about.is_dir() {
-        return Err(DescriptionError::Directory { path: path.to_owned() });
+        return Err(FileError::Directory { path: path.to_owned() }.into());
     }
     if about.len() > longest {
         return Err(DescriptionError::TooLong {
@@ -75,11 +69,16 @@ impl Source<'_> {
         }
     }
 
-    pub(crate) fn missing(&self, key: impl Into<String>, expected: &str) -> DescriptionError {
-        DescriptionError::Missing {
+    /// Something is wrong with a key.
+    pub(crate) fn wrong(&self, key: impl Into<String>, problem: KeyProblem) -> DescriptionError {
+        DescriptionError::Key {
             place: self.place(key),
-            expected: expected.to_owned(),
+            problem,
         }
+    }
+
+    pub(crate) fn missing(&self, key: impl Into<String>, expected: impl Into<String>) -> DescriptionError {
+        self.wrong(key, KeyProblem::Missing(expected.into()))
     }
 
     pub(crate) fn value(
@@ -88,35 +87,37 @@ impl Source<'_> {
         expected: impl Into<String>,
         found: &(impl ToString + ?Sized),
     ) -> DescriptionError {
-        DescriptionError::Value {
-            place: self.place(key),
-            expected: expected.into(),
-            found: found.to_string(),
-        }
+        let (expected, found) = (expected.into(), found.to_string());
+        self.wrong(key, KeyProblem::Value { expected, found })
     }
 
-    pub(crate) fn unused(&self, key: &str, reason: &str, remedy: &str) -> DescriptionError {
-        DescriptionError::Unused {
-            place: self.place(key),
-            reason: reason.to_owned(),
-            remedy: remedy.to_owned(),
-        }
+    pub(crate) fn unused(
+        &self,
+        key: impl Into<String>,
+        reason: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> DescriptionError {
+        let (reason, remedy) = (reason.into(), remedy.into());
+        self.wrong(key, KeyProblem::Unused { reason, remedy })
     }
 
-    pub(crate) fn both(&self, key: &str, other: &str) -> DescriptionError {
-        DescriptionError::Both {
-            place: self.place(key),
-            other: other.to_owned(),
-        }
+    pub(crate) fn both(&self, key: impl Into<String>, other: impl Into<String>) -> DescriptionError {
+        self.wrong(key, KeyProblem::Both(other.into()))
+    }
+
+    /// A text in quotes that is no quantity.
+    pub(crate) fn no_quantity(&self, key: impl Into<String>, text: &str, error: UnitError) -> DescriptionError {
+        let found = format!("\"{text}\"");
+        self.wrong(key, KeyProblem::Quantity { found, error })
     }
 
     /// A quantity in SI.
     pub(crate) fn si(&self, key: &str, quantity: &QuantityText, dimension: Dimension) -> Result<f64, DescriptionError> {
-        units::parse(&quantity.text, dimension).map_err(|source| DescriptionError::Quantity {
-            place: self.place(key),
+        let wrong = |error| KeyProblem::Quantity {
             found: quantity.to_string(),
-            source,
-        })
+            error,
+        };
+        units::parse(&quantity.text, dimension).map_err(|error| self.wrong(key, wrong(error)))
     }
 
     /// A quantity in SI that must be above zero.
@@ -132,6 +133,26 @@ impl Source<'_> {
         }
         let expected = format!("a {} above 0 {}", dimension.name(), dimension.units()[0].0);
         Err(self.value(key, expected, quantity))
+    }
+
+    /// Likewise, if it is given.
+    pub(crate) fn positive_if(
+        &self,
+        key: &str,
+        quantity: Option<&QuantityText>,
+        dimension: Dimension,
+    ) -> Result<Option<f64>, DescriptionError> {
+        quantity.map(|quantity| self.positive(key, quantity, dimension)).transpose()
+    }
+
+    /// Rows of two quantities in SI.
+    pub(crate) fn rows(
+        &self,
+        key: &str,
+        rows: &[(QuantityText, QuantityText)],
+        (first, second): (Dimension, Dimension),
+    ) -> Result<Vec<(f64, f64)>, DescriptionError> {
+        rows.iter().map(|row| Ok((self.si(key, &row.0, first)?, self.si(key, &row.1, second)?))).collect()
     }
 
     /// Refuses sizes and moduli that no body has: a slip of the exponent or of the unit.
@@ -192,21 +213,12 @@ impl Source<'_> {
     /// TOML that does not have the shape of the description.
     fn unfit(&self, error: &toml::de::Error) -> DescriptionError {
         let span = error.span().unwrap_or(0..0);
-        let place = self.place_at(&span);
-        words::explain(error.message().trim(), place, |place, key| {
-            let parent = std::mem::take(&mut place.key);
-            let path = if parent.is_empty() { key.to_owned() } else { format!("{parent}.{key}") };
-            *place = self.place(path);
-        })
-    }
-
-    fn place_at(&self, span: &Range<usize>) -> KeyPlace {
-        let key = Places::of(self.text).key_at(span);
-        let line = (!key.is_empty()).then(|| self.line_and_column(span.start).0);
-        KeyPlace {
-            path: self.path.to_owned(),
-            line,
-            key,
+        let at = Places::of(self.text).key_at(&span);
+        let (key, problem) = words::explain(error.message().trim(), &at);
+        let mut place = self.place(&key);
+        if key == at {
+            place.line = (!key.is_empty()).then(|| self.line_and_column(span.start).0);
         }
+        DescriptionError::Key { place, problem }
     }
 }

@@ -1,72 +1,43 @@
 //! What the TOML reader says about a value, in words for people who do not program.
 
-use super::error::{DescriptionError, KeyPlace};
+use super::error::KeyProblem;
 
-/// Turns a message of the reader about the value at `place` into an error. `into_child` moves a place to
-/// one of its keys.
-pub(crate) fn explain(
-    message: &str,
-    mut place: KeyPlace,
-    into_child: impl Fn(&mut KeyPlace, &str),
-) -> DescriptionError {
+/// What a message of the reader about the value of the key `at` means: which key is wrong, that one or one of its own, and why.
+pub(crate) fn explain(message: &str, at: &str) -> (String, KeyProblem) {
+    let child = |key: &str| if at.is_empty() { key.to_owned() } else { format!("{at}.{key}") };
+    let value = |expected, found| (at.to_owned(), KeyProblem::Value { expected, found });
+    let mut names = quoted(message).into_iter();
     if message.starts_with("unknown field ") {
-        let mut names = quoted(message);
-        let unknown = if names.is_empty() { String::new() } else { names.remove(0) };
-        if !place.key.ends_with(&unknown) {
-            into_child(&mut place, &unknown);
-        }
-        return DescriptionError::UnknownKey { place, accepted: names };
+        let unknown = names.next().unwrap_or_default();
+        let key = if at.ends_with(&unknown) { at.to_owned() } else { child(&unknown) };
+        return (key, KeyProblem::Unknown(names.collect()));
     }
     if message.starts_with("missing field ") {
-        let missing = quoted(message).into_iter().next().unwrap_or_default();
-        // A table that is missing stands in no other.
-        if needed(&missing).contains(&format!("[{missing}]")) {
-            place.key.clear();
-            place.line = None;
-        }
-        into_child(&mut place, &missing);
+        let missing = names.next().unwrap_or_default();
         let expected = needed(&missing).to_owned();
-        return DescriptionError::Missing { place, expected };
+        // A table that is missing stands in no other.
+        let key = if expected.contains(&format!("[{missing}]")) { missing } else { child(&missing) };
+        return (key, KeyProblem::Missing(expected));
     }
     if message.starts_with("unknown variant ") {
-        let mut names = quoted(message);
-        let found = if names.is_empty() { String::new() } else { names.remove(0) };
-        let names: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
-        return DescriptionError::Value {
-            place,
-            expected: any_of(&names),
-            found: format!("\"{found}\""),
-        };
+        let found = names.next().unwrap_or_default();
+        let names: Vec<String> = names.map(|name| format!("\"{name}\"")).collect();
+        return value(any_of(&names), format!("\"{found}\""));
     }
     if message.ends_with("overflowed") {
-        return DescriptionError::Value {
-            place,
-            expected: "a number that is not beyond all others, such as 1e300".to_owned(),
-            found: "one beyond 1.8e308".to_owned(),
-        };
+        let expected = "a number that is not beyond all others, such as 1e300";
+        return value(expected.to_owned(), "one beyond 1.8e308".to_owned());
     }
-    if let Some((length, expected)) =
-        message.strip_prefix("invalid length ").and_then(|body| body.split_once(", expected "))
-    {
-        return DescriptionError::Value {
-            place,
-            expected: plain_expected(expected),
-            found: format!("a list of {length}"),
-        };
+    if let Some((said, expected)) = message.split_once(", expected ") {
+        if let Some(length) = said.strip_prefix("invalid length ") {
+            return value(plain_expected(expected), format!("a list of {length}"));
+        }
+        let found = said.strip_prefix("invalid type: ").or_else(|| said.strip_prefix("invalid value: "));
+        if let Some(found) = found {
+            return value(plain_expected(expected), plain_found(found));
+        }
     }
-    let kinds = ["invalid type: ", "invalid value: "];
-    let body = kinds.iter().find_map(|kind| message.strip_prefix(kind));
-    match body.and_then(|body| body.split_once(", expected ")) {
-        Some((found, expected)) => DescriptionError::Value {
-            place,
-            expected: plain_expected(expected),
-            found: plain_found(found),
-        },
-        None => DescriptionError::Other {
-            place,
-            message: message.to_owned(),
-        },
-    }
+    (at.to_owned(), KeyProblem::Other(message.to_owned()))
 }
 
 /// `a`, `a or b`, `a, b or c`.
@@ -105,27 +76,24 @@ fn needed(key: &str) -> &'static str {
 
 fn plain_expected(expected: &str) -> String {
     match expected {
-        "f64" => "a number".to_owned(),
-        "usize" | "u64" | "i64" | "i32" => "a whole number".to_owned(),
-        "a boolean" => "true or false".to_owned(),
-        "a string" => "text in quotes".to_owned(),
-        "a sequence" => "a list in square brackets".to_owned(),
-        "a tuple of size 2" | "an array of length 2" => "two numbers in square brackets".to_owned(),
-        "string or table" => "text in quotes".to_owned(),
-        _ if expected.starts_with("struct ") || expected == "a map" => "a table".to_owned(),
-        _ => expected.to_owned(),
+        "f64" => "a number",
+        "usize" | "u64" | "i64" | "i32" => "a whole number",
+        "a boolean" => "true or false",
+        "a string" | "string or table" => "text in quotes",
+        "a sequence" => "a list in square brackets",
+        "a tuple of size 2" | "an array of length 2" => "two numbers in square brackets",
+        _ if expected.starts_with("struct ") || expected == "a map" => "a table",
+        _ => expected,
     }
+    .to_owned()
 }
 
 fn plain_found(found: &str) -> String {
-    match found {
-        "sequence" => return "a list".to_owned(),
-        "map" => return "a table".to_owned(),
-        _ => {}
+    match (found, quoted(found).as_slice()) {
+        ("sequence", _) => "a list",
+        ("map", _) => "a table",
+        (_, [value]) => value,
+        _ => found.strip_prefix("string ").unwrap_or(found),
     }
-    if let [value] = quoted(found).as_slice() {
-        return value.clone();
-    }
-    let text = found.strip_prefix("string ");
-    text.map_or_else(|| found.to_owned(), ToOwned::to_owned)
+    .to_owned()
 }
