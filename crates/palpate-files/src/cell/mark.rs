@@ -36,12 +36,7 @@ impl Delimiter {
 
 impl fmt::Display for Delimiter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Tab => "tab",
-            Self::Semicolon => "semicolon",
-            Self::Comma => "comma",
-            Self::Blanks => "blanks",
-        })
+        self.serialize(f)
     }
 }
 
@@ -67,9 +62,6 @@ impl DecimalMark {
 
 impl fmt::Display for DecimalMark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Point => "point",
-            Self::Comma => "comma",
-        })
+        self.serialize(f)
     }
 }

@@ -36,27 +36,20 @@ impl fmt::Display for CellPlace {
 }
 
 /// Why it is uncertain which character marks decimals.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum DecimalDoubt {
     /// Commas seem to stand both between cells and inside numbers.
+    #[error("expected commas either between cells or inside numbers, they seem to be both")]
     CommaSplitsNumbers,
     /// Every comma is followed by three digits, as between thousands.
+    #[error("expected a decimal comma, but every comma could also set off thousands")]
     Thousands,
     /// Every point is followed by three digits, as between thousands, beside whole numbers or semicolons.
+    #[error("expected a decimal point, but every point could also set off thousands")]
     PointThousands,
     /// Some numbers have a decimal point, others a decimal comma.
+    #[error("expected one decimal mark, found both points and commas")]
     Mixed,
-}
-
-impl fmt::Display for DecimalDoubt {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::CommaSplitsNumbers => "expected commas either between cells or inside numbers, they seem to be both",
-            Self::Thousands => "expected a decimal comma, but every comma could also set off thousands",
-            Self::PointThousands => "expected a decimal point, but every point could also set off thousands",
-            Self::Mixed => "expected one decimal mark, found both points and commas",
-        })
-    }
 }
 
 /// Why a file cannot be read.
@@ -360,17 +353,11 @@ impl FileError {
 }
 
 /// Why the operating system does not hand a file out, in words.
-pub(crate) fn reason(source: &io::Error) -> String {
+fn reason(source: &io::Error) -> String {
     match source.kind() {
         io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
         _ => shown(&source.to_string()),
     }
-}
-
-/// What helps against that.
-pub(crate) fn allowed(source: &io::Error) -> Option<String> {
-    (source.kind() == io::ErrorKind::PermissionDenied)
-        .then(|| "check who owns the file and that you may read it".to_owned())
 }
 
 /// `text` cut to a length that fits into a message.

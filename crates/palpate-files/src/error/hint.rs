@@ -1,7 +1,9 @@
 //! What would help against an error, in words that go with any front end.
 
+use std::io;
+
 use super::{
-    file_error::{DecimalDoubt, FileError, allowed},
+    file_error::{DecimalDoubt, FileError},
     foreign::Foreign,
 };
 use crate::cell::{Cell, DecimalMark, number};
@@ -10,50 +12,48 @@ impl FileError {
     /// What would help, if that is known.
     #[must_use]
     pub fn hint(&self) -> Option<String> {
-        match self {
-            Self::NotFound { .. } => Some("check the spelling of the path".to_owned()),
-            Self::Directory { .. } => Some("name one file inside it".to_owned()),
-            Self::NoFile { .. } => Some("write what comes through the pipe to a file first".to_owned()),
-            Self::Unreadable { source, .. } => allowed(source),
-            Self::Empty { .. } => Some("export the record again".to_owned()),
-            Self::Foreign { looks_like, .. } => Some(foreign(*looks_like).to_owned()),
-            Self::Archive { members, .. } if members.is_empty() => Some("pack the record again".to_owned()),
-            Self::Archive { .. } => Some("unpack it and name the files one by one, or their folder".to_owned()),
-            Self::Damaged { .. } => Some("copy or export the file again; it may be cut off".to_owned()),
-            Self::BadCell { hint, .. } | Self::Unfit { hint, .. } => Some((*hint).to_owned()),
-            Self::Encrypted { .. } => Some("open it where it was made and save it without a password".to_owned()),
-            Self::TooLarge { .. } => Some("split the file, or export less of it".to_owned()),
-            Self::Swells { .. } => Some(
-                "copy or export it again; if you trust it, unpack it, or write it anew without compression".to_owned(),
-            ),
-            Self::NoParts { .. } => Some("a test needs a table of numbers with time and force side by side".to_owned()),
-            Self::LineTooLong { .. } => Some("check that the file has line ends and the right encoding".to_owned()),
-            Self::OneColumn { delimiter, .. } => Some(match delimiter {
-                Some(delimiter) => format!("the delimiter was fixed to {delimiter}: leave it to be found out"),
-                None => "a record needs a time and a force side by side, separated by tab, semicolon, comma or blanks"
-                    .to_owned(),
-            }),
-            Self::NoDataRows {
-                header_line: Some(line),
-                ..
-            } => Some(format!("line {line} looks like names of columns, but no numbers follow")),
-            Self::NoDataRows { header_line: None, .. } => {
-                Some("check that this is the record itself, or skip the lines before it".to_owned())
+        let help = match self {
+            Self::NotFound { .. } => "check the spelling of the path",
+            Self::Directory { .. } => "name one file inside it",
+            Self::NoFile { .. } => "write what comes through the pipe to a file first",
+            Self::Unreadable { source, .. } if source.kind() == io::ErrorKind::PermissionDenied => {
+                "check who owns the file and that you may read it"
             }
-            Self::AmbiguousDecimal { doubt, .. } => Some(doubtful(*doubt).to_owned()),
-            Self::NoSuchColumn { .. } => Some("columns count from 1 at the left".to_owned()),
-            Self::TextInNumbers { found, decimal, .. } => Some(hint_of_text(found, *decimal)),
-            Self::NotFinite { .. } | Self::EmptyCell { .. } => {
-                Some("remove the row, or choose another column".to_owned())
+            Self::Unreadable { .. } => return None,
+            Self::Empty { .. } => "export the record again",
+            Self::Foreign { looks_like, .. } => foreign(*looks_like),
+            Self::Archive { members, .. } if members.is_empty() => "pack the record again",
+            Self::Archive { .. } => "unpack it and name the files one by one, or their folder",
+            Self::Damaged { .. } => "copy or export the file again; it may be cut off",
+            Self::BadCell { hint, .. } | Self::Unfit { hint, .. } => hint,
+            Self::Encrypted { .. } => "open it where it was made and save it without a password",
+            Self::TooLarge { .. } => "split the file, or export less of it",
+            Self::Swells { .. } => {
+                "copy or export it again; if you trust it, unpack it, or write it anew without compression"
             }
-            Self::TooFewCells { .. } => Some("the row is cut off or lacks a cell: complete it or remove it".to_owned()),
+            Self::NoParts { .. } => "a test needs a table of numbers with time and force side by side",
+            Self::LineTooLong { .. } => "check that the file has line ends and the right encoding",
+            Self::OneColumn { delimiter, .. } => match delimiter {
+                Some(by) => return Some(format!("the delimiter was fixed to {by}: leave it to be found out")),
+                None => "a record needs a time and a force side by side, separated by tab, semicolon, comma or blanks",
+            },
+            Self::NoDataRows { header_line, .. } => match header_line {
+                Some(line) => {
+                    return Some(format!("line {line} looks like names of columns, but no numbers follow"));
+                }
+                None => "check that this is the record itself, or skip the lines before it",
+            },
+            Self::AmbiguousDecimal { doubt, .. } => doubtful(*doubt),
+            Self::NoSuchColumn { .. } => "columns count from 1 at the left",
+            Self::TextInNumbers { found, decimal, .. } => hint_of_text(found, *decimal),
+            Self::NotFinite { .. } | Self::EmptyCell { .. } => "remove the row, or choose another column",
+            Self::TooFewCells { .. } => "the row is cut off or lacks a cell: complete it or remove it",
             Self::TooManyCells { .. } => {
-                Some("look for a delimiter inside a cell, such as a decimal comma, that wants quotes".to_owned())
+                "look for a delimiter inside a cell, such as a decimal comma, that wants quotes"
             }
-            Self::Interrupted { .. } => {
-                Some("where the file holds several records, split it into one file each".to_owned())
-            }
-        }
+            Self::Interrupted { .. } => "where the file holds several records, split it into one file each",
+        };
+        Some(help.to_owned())
     }
 }
 
@@ -81,7 +81,7 @@ fn doubtful(doubt: DecimalDoubt) -> &'static str {
 }
 
 /// What would help against a text where a number should stand.
-pub(crate) fn hint_of_text(found: &str, decimal: DecimalMark) -> String {
+pub(crate) fn hint_of_text(found: &str, decimal: DecimalMark) -> &'static str {
     let cell = found.as_bytes();
     let gaps = |letter: char| matches!(letter, '\u{a0}' | '\u{202f}' | '\u{2009}' | '\'' | '\u{2019}' | ' ');
     match (number::classify(cell), decimal) {
@@ -97,5 +97,4 @@ pub(crate) fn hint_of_text(found: &str, decimal: DecimalMark) -> String {
         _ if number::looks_numeric(found) => "these are numbers kept as texts: export them as numbers",
         _ => "mend or remove the line; where the data begin further down, set skip_lines",
     }
-    .to_owned()
 }

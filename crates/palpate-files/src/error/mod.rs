@@ -12,8 +12,8 @@ mod foreign;
 mod hint;
 mod shown;
 
+pub(crate) use file_error::shorten;
 pub use file_error::{CellPlace, DecimalDoubt, FileError};
-pub(crate) use file_error::{allowed, reason, shorten};
 pub use foreign::Foreign;
 pub(crate) use foreign::{mostly_control, recognise_foreign};
 pub(crate) use hint::hint_of_text;

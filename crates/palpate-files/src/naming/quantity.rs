@@ -55,11 +55,6 @@ impl Quantity {
 impl fmt::Display for Quantity {
     /// Its key in a description: `time`, `displacement`, `force` or `stress`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Time => "time",
-            Self::Displacement => "displacement",
-            Self::Force => "force",
-            Self::Stress => "stress",
-        })
+        self.serialize(f)
     }
 }

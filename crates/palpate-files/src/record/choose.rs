@@ -1,10 +1,9 @@
 //! Choosing the columns of a file: from a description, else by the header.
 
-use std::path::Path;
-
 use palpate::contact::Shape;
 
 use super::{
+    choose_units::unknown_unit,
     column_use::{ColumnUse, Role},
     error::ColumnError,
     named::NamedColumn,
@@ -44,9 +43,7 @@ impl Found<'_> {
             Role::ClockOf(quantity) => format!("columns.{quantity}.clock.unit"),
         }
     }
-}
 
-impl Found<'_> {
     pub(super) fn used(&self, unit: String, factor: f64) -> ColumnUse {
         let doubled = self.choice.is_some_and(|choice| choice.doubled);
         ColumnUse {
@@ -71,18 +68,12 @@ const INDENTATIONS: [&str; 4] = ["indentation", "tip position", "tipposition", "
 
 #[derive(Clone, Copy)]
 pub(super) struct Chooser<'a> {
-    pub(super) path: &'a Path,
-    columns: &'a [ColumnInfo],
     part: &'a Part,
 }
 
-/// Chooses the columns of one test in the file at `path`.
-pub(super) fn choose(path: &Path, part: &Part, test: &TestDescription) -> Result<Plan, ColumnError> {
-    let chooser = Chooser {
-        path,
-        columns: &part.columns,
-        part,
-    };
+/// Chooses the columns of one test.
+pub(super) fn choose(part: &Part, test: &TestDescription) -> Result<Plan, ColumnError> {
+    let chooser = Chooser { part };
     let said = &test.columns;
     let (load, load_said) = chooser.force_or_stress(test)?;
     let displacement = chooser.find(Quantity::Displacement, said.displacement.as_ref())?;
@@ -132,20 +123,18 @@ impl<'a> Chooser<'a> {
     /// The column of force, or that of stress where the description says so or there is no force.
     fn force_or_stress(&self, test: &'a TestDescription) -> Result<(Found<'a>, Option<&'a ColumnChoice>), ColumnError> {
         let said = &test.columns;
-        let missing = || self.missing(Quantity::Force);
-        if let Some(stress) = &said.stress {
-            let found = self.find(Quantity::Stress, Some(stress))?;
-            return Ok((found.ok_or_else(|| self.missing(Quantity::Stress))?, Some(stress)));
-        }
-        if let Some(force) = &said.force {
-            let found = self.find(Quantity::Force, Some(force))?;
-            return Ok((found.ok_or_else(missing)?, Some(force)));
+        let missing = |quantity| move || self.missing(quantity);
+        for (quantity, choice) in [(Quantity::Stress, &said.stress), (Quantity::Force, &said.force)] {
+            if choice.is_some() {
+                let found = self.find(quantity, choice.as_ref())?;
+                return Ok((found.ok_or_else(missing(quantity))?, choice.as_ref()));
+            }
         }
         let found = match self.find(Quantity::Force, None)? {
             Some(force) => Some(force),
             None => self.find(Quantity::Stress, None)?,
         };
-        Ok((found.ok_or_else(missing)?, None))
+        Ok((found.ok_or_else(missing(Quantity::Force))?, None))
     }
 
     /// The column of a quantity; `None` if nothing says which.
@@ -153,12 +142,11 @@ impl<'a> Chooser<'a> {
         let named = choice.and_then(|choice| choice.column.as_ref());
         let column = match named {
             Some(named) => Some(self.named(&format!("columns.{quantity}.column"), named)?),
-            None => match recognise::candidates(self.columns, quantity)[..] {
+            None => match recognise::candidates(&self.part.columns, quantity)[..] {
                 [] => None,
                 [only] => Some(only),
                 ref several => {
                     return Err(ColumnError::Ambiguous {
-                        path: self.path.to_owned(),
                         quantity,
                         candidates: several.iter().map(|column| NamedColumn::from(*column)).collect(),
                     });
@@ -181,7 +169,7 @@ impl<'a> Chooser<'a> {
         let clock = self.part.clock_of(values.column.number)?;
         Some(Found {
             role: Role::ClockOf(quantity),
-            column: self.columns.get(clock.column.wrapping_sub(1))?,
+            column: self.part.columns.get(clock.column.wrapping_sub(1))?,
             unit: None,
             choice: None,
         })
@@ -205,10 +193,7 @@ impl<'a> Chooser<'a> {
     fn deflection(&self, height: &Found<'a>, choice: &'a ColumnChoice) -> Result<Found<'a>, ColumnError> {
         let name = height.column.name.as_deref().unwrap_or("").to_lowercase();
         if INDENTATIONS.iter().any(|known| name.contains(known)) {
-            return Err(ColumnError::NoHeight {
-                path: self.path.to_owned(),
-                column: height.column.into(),
-            });
+            return Err(ColumnError::NoHeight(height.column.into()));
         }
         // A description without the column is refused when it is checked.
         let named = choice.column.as_ref().unwrap_or(&ColumnRef::Number(0));
@@ -224,15 +209,12 @@ impl<'a> Chooser<'a> {
     /// Another column that is named under a key, and must have the clock of `values`.
     fn beside(&self, values: &Found<'a>, key: &str, named: &ColumnRef) -> Result<&'a ColumnInfo, ColumnError> {
         let column = self.named(key, named)?;
-        let path = self.path.to_owned();
         if self.part.clock_of(column.number) != self.part.clock_of(values.column.number) {
-            let columns = (values.column.into(), column.into());
-            return Err(ColumnError::ClocksDiffer { path, columns });
+            return Err(ColumnError::ClocksDiffer(values.column.into(), column.into()));
         }
         if column.number == values.column.number {
             let quantity = values.role.measured();
             return Err(ColumnError::Twice {
-                path,
                 column: column.into(),
                 quantities: (quantity, quantity),
             });
@@ -252,43 +234,32 @@ impl<'a> Chooser<'a> {
 
     fn named(&self, key: &str, named: &ColumnRef) -> Result<&'a ColumnInfo, ColumnError> {
         self.part.column_of(named).ok_or_else(|| ColumnError::NoSuchColumn {
-            path: self.path.to_owned(),
             key: key.to_owned(),
             found: named.clone(),
-            columns: self.columns.to_vec(),
+            columns: self.part.columns.clone(),
         })
     }
 
     /// No column holds a quantity; perhaps one is named after it, but its unit is one of another.
     fn missing(&self, quantity: Quantity) -> ColumnError {
-        if let Some((column, unit)) = recognise::misfits(self.columns, quantity).next() {
-            return self.unknown_unit(column, quantity, format!("columns.{quantity}.unit"), unit);
+        if let Some((column, unit)) = recognise::misfits(&self.part.columns, quantity).next() {
+            return unknown_unit(column, quantity, format!("columns.{quantity}.unit"), unit);
         }
-        if let Some(column) = recognise::text_named(self.columns, quantity) {
-            return self.as_text(column, quantity);
+        if let Some(column) = recognise::text_named(&self.part.columns, quantity) {
+            return Self::as_text(column, quantity);
         }
         ColumnError::Missing {
-            path: self.path.to_owned(),
             quantity,
-            columns: self.columns.to_vec(),
+            columns: self.part.columns.clone(),
         }
     }
 
     /// A column that is named after a quantity, but holds texts.
-    fn as_text(&self, column: &ColumnInfo, quantity: Quantity) -> ColumnError {
-        let (path, named, found) = (self.path.to_owned(), NamedColumn::from(column), column.sample.clone());
-        let is_clock = quantity == Quantity::Time && !number::looks_numeric(&found);
-        match is_clock {
-            true => ColumnError::TimeAsText {
-                path,
-                column: named,
-                found,
-            },
-            false => ColumnError::NotNumbers {
-                path,
-                column: named,
-                found,
-            },
+    fn as_text(column: &ColumnInfo, quantity: Quantity) -> ColumnError {
+        let found = column.sample.clone();
+        match quantity == Quantity::Time && !number::looks_numeric(&found) {
+            true => ColumnError::TimeAsText(column.into(), found),
+            false => ColumnError::NotNumbers(column.into(), found),
         }
     }
 
@@ -296,21 +267,20 @@ impl<'a> Chooser<'a> {
     /// the force, but none of the displacement, has no displacement.
     fn refuse_unclear(&self, used: &[ColumnUse]) -> Result<(), ColumnError> {
         let free = |column: &&ColumnInfo| used.iter().all(|used| used.number != column.number);
-        let possible = recognise::possible_displacements(self.columns).filter(free);
+        let possible = recognise::possible_displacements(&self.part.columns).filter(free);
         let candidates: Vec<NamedColumn> = possible.map(NamedColumn::from).collect();
-        let text = recognise::text_named(self.columns, Quantity::Displacement);
+        let text = recognise::text_named(&self.part.columns, Quantity::Displacement);
         match text {
             _ if !candidates.is_empty() => {}
             // What begins with a digit was meant as a number.
             Some(column) if number::looks_numeric(&column.sample) => {
-                return Err(self.as_text(column, Quantity::Displacement));
+                return Err(Self::as_text(column, Quantity::Displacement));
             }
             _ => return Ok(()),
         }
         Err(ColumnError::Unclear {
-            path: self.path.to_owned(),
             candidates,
-            columns: self.columns.to_vec(),
+            columns: self.part.columns.clone(),
         })
     }
 
@@ -326,8 +296,7 @@ impl<'a> Chooser<'a> {
             let same = values[index + 1..].iter().find(|(_, other)| other == number);
             if let Some((second, _)) = same {
                 return Err(ColumnError::Twice {
-                    path: self.path.to_owned(),
-                    column: NamedColumn::from(&self.columns[number - 1]),
+                    column: NamedColumn::from(&self.part.columns[number - 1]),
                     quantities: (*first, *second),
                 });
             }
@@ -344,10 +313,9 @@ impl<'a> Chooser<'a> {
         match test.geometry.as_ref().map(|body| &body.shape) {
             None => Ok((1.0, true)),
             Some(Shape::Prism { area, .. }) => Ok((*area, false)),
-            Some(Shape::Ball { .. } | Shape::Pad { .. } | Shape::Profile { .. }) => Err(ColumnError::NoSection {
-                path: self.path.to_owned(),
-                column: NamedColumn::from(stress.column),
-            }),
+            Some(Shape::Ball { .. } | Shape::Pad { .. } | Shape::Profile { .. }) => {
+                Err(ColumnError::NoSection(stress.column.into()))
+            }
         }
     }
 }

@@ -14,17 +14,16 @@ use crate::{
     table::{ColumnInfo, ColumnKind, epoch},
 };
 
-impl Chooser<'_> {
-    pub(super) fn unknown_unit(&self, column: &ColumnInfo, quantity: Quantity, key: String, unit: &str) -> ColumnError {
-        ColumnError::UnknownUnit {
-            path: self.path.to_owned(),
-            column: column.into(),
-            quantity,
-            key,
-            unit: unit.to_owned(),
-        }
+pub(super) fn unknown_unit(column: &ColumnInfo, quantity: Quantity, key: String, unit: &str) -> ColumnError {
+    ColumnError::UnknownUnit {
+        column: column.into(),
+        quantity,
+        key,
+        unit: unit.to_owned(),
     }
+}
 
+impl Chooser<'_> {
     /// A column whose unit is none that a header could give: a travel said for each unit of it, or a time since 1970.
     fn without_plain_unit(&self, found: &Found<'_>) -> Result<Option<ColumnUse>, ColumnError> {
         if let Some(travel) = found.choice.and_then(|choice| choice.travel_per_unit) {
@@ -46,11 +45,7 @@ impl Chooser<'_> {
         let is_named = found.unit.or(found.column.unit.as_deref()).is_none() && epoch::is_named(found.column);
         match epoch::unit(found.column) {
             Some((unit, factor)) if is_said || is_named => Ok(Some(found.used(format!("{unit} since 1970"), factor))),
-            None if is_said => Err(ColumnError::NoEpoch {
-                path: self.path.to_owned(),
-                column: found.column.into(),
-                found: found.column.sample.clone(),
-            }),
+            None if is_said => Err(ColumnError::NoEpoch(found.column.into(), found.column.sample.clone())),
             _ => Ok(None),
         }
     }
@@ -61,7 +56,6 @@ impl Chooser<'_> {
         match (&choice.unit_by, &choice.unit, &found.column.unit) {
             (Some(machine), Some(said), Some(written)) if contradicts(found.role.measured(), choice, found.column) => {
                 Err(ColumnError::OtherUnit {
-                    path: self.path.to_owned(),
                     column: found.column.into(),
                     key: found.key(),
                     units: Box::new(MachineUnit {
@@ -86,7 +80,6 @@ impl Chooser<'_> {
         };
         match (unit_factor(&in_name, dimension), unit_factor(beside, dimension)) {
             (Some(one), Some(other)) if (one / other - 1.0).abs() > 1e-9 => Err(ColumnError::TwoUnits {
-                path: self.path.to_owned(),
                 column: found.column.into(),
                 key: found.key(),
                 units: Box::new((in_name, beside.clone())),
@@ -111,22 +104,17 @@ impl Chooser<'_> {
                 without.push((found.key(), quantity.usual_unit(), found.column.into()));
                 continue;
             };
-            let volts = found.choice.and_then(|choice| choice.scale);
-            let factor = match volts {
-                Some(scale) => match unit_factor(unit, Dimension::Voltage) {
-                    Some(volts) => Some(volts * scale),
-                    None => {
-                        return Err(ColumnError::ScaleOfNoVolts {
-                            path: self.path.to_owned(),
-                            column: found.column.into(),
-                            key: found.key(),
-                            unit: unit.to_owned(),
-                        });
+            let factor = match found.choice.and_then(|choice| choice.scale) {
+                Some(scale) => unit_factor(unit, Dimension::Voltage).map(|volts| volts * scale).ok_or_else(|| {
+                    ColumnError::ScaleOfNoVolts {
+                        column: found.column.into(),
+                        key: found.key(),
+                        unit: unit.to_owned(),
                     }
-                },
-                None => unit_factor(unit, quantity.dimension()),
+                })?,
+                None => unit_factor(unit, quantity.dimension())
+                    .ok_or_else(|| unknown_unit(found.column, quantity, found.key(), unit))?,
             };
-            let factor = factor.ok_or_else(|| self.unknown_unit(found.column, quantity, found.key(), unit))?;
             used.push(found.used(unit.to_owned(), factor));
         }
         if without.is_empty() {
@@ -140,12 +128,9 @@ impl Chooser<'_> {
         if let ([_], Some(found)) = (&without[..], found.iter().find(bare))
             && let Some(unit) = found.column.name.as_deref().and_then(in_brackets)
         {
-            return Err(self.unknown_unit(found.column, found.role.measured(), found.key(), unit));
+            return Err(unknown_unit(found.column, found.role.measured(), found.key(), unit));
         }
-        Err(ColumnError::NoUnit {
-            path: self.path.to_owned(),
-            columns: without,
-        })
+        Err(ColumnError::NoUnit { columns: without })
     }
 }
 

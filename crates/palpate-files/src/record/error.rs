@@ -27,68 +27,48 @@ pub struct MachineUnit {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ColumnError {
     /// No column was found for a quantity that a record needs.
-    #[error("{}: expected a column of {quantity}, found {}", path.display(), snippet::described(columns))]
+    #[error("expected a column of {quantity}, found {}", snippet::described(columns))]
     Missing {
-        /// The record.
-        path: PathBuf,
         /// What is missing.
         quantity: Quantity,
         /// All columns of the file.
         columns: Vec<ColumnInfo>,
     },
-    /// A column is named as the time, but holds texts.
-    #[error("{}: {column}: expected a time, found texts such as \"{found}\"", path.display())]
-    TimeAsText {
-        /// The record.
-        path: PathBuf,
-        /// The column.
-        column: NamedColumn,
-        /// What it begins with.
-        found: String,
-    },
-    /// A column is named after a quantity, but some of its cells are no numbers.
-    #[error("{}: {column}: expected numbers in every row, found `{found}`", path.display())]
-    NotNumbers {
-        /// The record.
-        path: PathBuf,
-        /// The column.
-        column: NamedColumn,
-        /// The first of them that is none, as far as known.
-        found: String,
-    },
+    /// A column is named as the time, but holds texts such as this.
+    #[error("{0}: expected a time, found texts such as \"{1}\"")]
+    TimeAsText(NamedColumn, String),
+    /// A column is named after a quantity, but some of its cells are no numbers: this is the first of them, as far as known.
+    #[error("{0}: expected numbers in every row, found `{1}`")]
+    NotNumbers(NamedColumn, String),
     /// Several columns could hold a quantity.
-    #[error("{}: expected one column of {quantity}, found {}", path.display(), listed(candidates))]
+    #[error("expected one column of {quantity}, found {}", listed(candidates))]
     Ambiguous {
-        /// The record.
-        path: PathBuf,
         /// What they could hold.
         quantity: Quantity,
         /// The columns.
         candidates: Vec<NamedColumn>,
     },
     /// No column is named as the displacement, but some could hold it.
-    #[error("{}: expected a name that says whether {} {}, found none that is known", path.display(), listed(candidates), is_displacement(candidates))]
+    #[error(
+        "expected a name that says whether {} {}, found none that is known",
+        listed(candidates),
+        is_displacement(candidates)
+    )]
     Unclear {
-        /// The record.
-        path: PathBuf,
         /// The columns that could hold the displacement.
         candidates: Vec<NamedColumn>,
         /// All columns of the file.
         columns: Vec<ColumnInfo>,
     },
     /// The units of some columns are written nowhere.
-    #[error("{}: expected a unit for {}, found {}", path.display(), units_of(columns), none(columns))]
+    #[error("expected a unit for {}, found {}", units_of(columns), none(columns))]
     NoUnit {
-        /// The record.
-        path: PathBuf,
         /// Keys of the description that would say the unit, a usual unit, and the columns.
         columns: Vec<(String, &'static str, NamedColumn)>,
     },
     /// A header gives a unit that is not understood.
-    #[error("{}: {column}: \"{unit}\" is not a unit of {quantity} (accepted: {})", path.display(), quantity.dimension().accepted())]
+    #[error("{column}: \"{unit}\" is not a unit of {quantity} (accepted: {})", quantity.dimension().accepted())]
     UnknownUnit {
-        /// The record.
-        path: PathBuf,
         /// The column.
         column: NamedColumn,
         /// What it holds.
@@ -99,10 +79,8 @@ pub enum ColumnError {
         unit: String,
     },
     /// The conventions of a machine say one unit, the header another.
-    #[error("{}: {column}: expected {}, the unit of machine.preset = \"{}\", found {} in the header", path.display(), units.said, units.machine, units.written)]
+    #[error("{column}: expected {}, the unit of machine.preset = \"{}\", found {} in the header", units.said, units.machine, units.written)]
     OtherUnit {
-        /// The record.
-        path: PathBuf,
         /// The column.
         column: NamedColumn,
         /// Key of the description that would say the unit.
@@ -111,10 +89,8 @@ pub enum ColumnError {
         units: Box<MachineUnit>,
     },
     /// A scale is given for a column that is not in volts.
-    #[error("{}: {column}: expected volts, which `scale` is for, found {unit}", path.display())]
+    #[error("{column}: expected volts, which `scale` is for, found {unit}")]
     ScaleOfNoVolts {
-        /// The record.
-        path: PathBuf,
         /// The column.
         column: NamedColumn,
         /// Key of the description that would say the unit.
@@ -123,10 +99,8 @@ pub enum ColumnError {
         unit: String,
     },
     /// The file says two units for one column.
-    #[error("{}: {column}: expected one unit, found {} in its name and {} beside it", path.display(), units.0, units.1)]
+    #[error("{column}: expected one unit, found {} in its name and {} beside it", units.0, units.1)]
     TwoUnits {
-        /// The record.
-        path: PathBuf,
         /// The column.
         column: NamedColumn,
         /// Key of the description that would say the unit.
@@ -135,10 +109,8 @@ pub enum ColumnError {
         units: Box<(String, String)>,
     },
     /// The description names a column that the file does not have, or has more than once.
-    #[error("{}: {key}: expected {}, found {found} in the description", path.display(), snippet::choices(columns))]
+    #[error("{key}: expected {}, found {found} in the description", snippet::choices(columns))]
     NoSuchColumn {
-        /// The record.
-        path: PathBuf,
         /// Key of the description.
         key: String,
         /// What it says.
@@ -147,49 +119,27 @@ pub enum ColumnError {
         columns: Vec<ColumnInfo>,
     },
     /// One column is said to hold two quantities.
-    #[error("{}: {column}: expected one quantity in a column, found {} and {}", path.display(), quantities.0, quantities.1)]
+    #[error("{column}: expected one quantity in a column, found {} and {}", quantities.0, quantities.1)]
     Twice {
-        /// The record.
-        path: PathBuf,
         /// The column.
         column: NamedColumn,
         /// What it is said to hold.
         quantities: (Quantity, Quantity),
     },
     /// A column is to be added to one that was stamped by another clock.
-    #[error("{}: expected two columns of one clock to add up, found {} and {}", path.display(), columns.0, columns.1)]
-    ClocksDiffer {
-        /// The record.
-        path: PathBuf,
-        /// The columns.
-        columns: (NamedColumn, NamedColumn),
-    },
-    /// The description says that a time counts from 1970, but in no unit does it lie in our days.
-    #[error("{}: {column}: expected a time since 1970 (of 2000 to 2100, in s, ms, us or ns), found {found}", path.display())]
-    NoEpoch {
-        /// The record.
-        path: PathBuf,
-        /// The column.
-        column: NamedColumn,
-        /// Its first value.
-        found: String,
-    },
+    #[error("expected two columns of one clock to add up, found {0} and {1}")]
+    ClocksDiffer(NamedColumn, NamedColumn),
+    /// The description says that a time counts from 1970, but in no unit does its first value, this one, lie in our days.
+    #[error("{0}: expected a time since 1970 (of 2000 to 2100, in s, ms, us or ns), found {1}")]
+    NoEpoch(NamedColumn, String),
     /// A deflection is to be taken off a column of which it is off already.
-    #[error("{}: {column}: expected the height of the cantilever's base, of which its deflection is taken off, found a column that is named as if it were off already", path.display())]
-    NoHeight {
-        /// The record.
-        path: PathBuf,
-        /// The column of the displacement.
-        column: NamedColumn,
-    },
+    #[error(
+        "{0}: expected the height of the cantilever's base, of which its deflection is taken off, found a column that is named as if it were off already"
+    )]
+    NoHeight(NamedColumn),
     /// Stress on a ball, which has no section that would turn it into force.
-    #[error("{}: {column}: expected force for a ball, whose contact area changes, found stress", path.display())]
-    NoSection {
-        /// The record.
-        path: PathBuf,
-        /// The column of stress.
-        column: NamedColumn,
-    },
+    #[error("{0}: expected force for a ball, whose contact area changes, found stress")]
+    NoSection(NamedColumn),
 }
 
 impl ColumnError {
@@ -200,10 +150,10 @@ impl ColumnError {
             Self::Missing { columns, .. } => {
                 format!("say which column holds what in a test description:\n{}", snippet::of_columns(columns))
             }
-            Self::TimeAsText { .. } => {
+            Self::TimeAsText(..) => {
                 "write seconds, or 2024-03-12 10:11:12.5, 12.03.2024 10:11:12.5 or 10:11:12.5 in every row".to_owned()
             }
-            Self::NotNumbers { found, .. } => crate::error::hint_of_text(found, DecimalMark::Point),
+            Self::NotNumbers(_, found) => crate::error::hint_of_text(found, DecimalMark::Point).to_owned(),
             Self::Ambiguous {
                 quantity, candidates, ..
             } => {
@@ -218,20 +168,19 @@ impl ColumnError {
                 let lines: Vec<String> = lines.collect();
                 format!("say it in a test description:\n{}", lines.join("\n"))
             }
-            Self::UnknownUnit { key, column, unit, .. }
-                if key == "columns.force.unit"
-                    && column.name.as_deref() == Some(UNCALIBRATED)
-                    && unit_factor(unit, Dimension::Voltage).is_some() =>
-            {
-                snippet::of_bending(column, unit)
-            }
             Self::UnknownUnit {
                 key,
                 quantity,
                 column,
                 unit,
-                ..
-            } if unit_factor(unit, Dimension::Voltage).is_some() => {
+            } => {
+                if unit_factor(unit, Dimension::Voltage).is_none() {
+                    let lines = snippet::of_unit_and_column(key, quantity.unit_meant(unit), column);
+                    return format!("if another unit is meant, say it in a test description:\n{lines}");
+                }
+                if key == "columns.force.unit" && column.name.as_deref() == Some(UNCALIBRATED) {
+                    return snippet::of_bending(column, unit);
+                }
                 let table = key.rsplit_once('.').map_or("columns", |(table, _)| table);
                 format!(
                     "say what a volt stands for in a test description:\n[{table}]\nunit = \"{unit}\"\nscale = \"1 {}/V\"\ncolumn = {}",
@@ -239,16 +188,6 @@ impl ColumnError {
                     column.number
                 )
             }
-            Self::UnknownUnit {
-                key,
-                quantity,
-                column,
-                unit,
-                ..
-            } => format!(
-                "if another unit is meant, say it in a test description:\n{}",
-                snippet::of_unit_and_column(key, quantity.unit_meant(unit), column)
-            ),
             Self::OtherUnit { key, column, units, .. } => format!(
                 "choose another of `palpate inspect --machines`, or say in the test description:\n{}",
                 snippet::of_unit(key, &units.written, column)
@@ -267,12 +206,12 @@ impl ColumnError {
             Self::Twice { quantities, .. } => {
                 format!("correct columns.{} or columns.{}", quantities.0, quantities.1)
             }
-            Self::ClocksDiffer { .. } => "name two columns of one topic".to_owned(),
-            Self::NoEpoch { .. } => "give the unit that the time has, such as \"s\"".to_owned(),
-            Self::NoHeight { .. } => {
+            Self::ClocksDiffer(..) => "name two columns of one topic".to_owned(),
+            Self::NoEpoch(..) => "give the unit that the time has, such as \"s\"".to_owned(),
+            Self::NoHeight(..) => {
                 "remove [columns.deflection], or name the column of the height in columns.displacement".to_owned()
             }
-            Self::NoSection { .. } => {
+            Self::NoSection(..) => {
                 "choose a column of force, or describe the body as a strip, cylinder or block".to_owned()
             }
         }
@@ -328,8 +267,13 @@ pub enum ReadError {
     #[error(transparent)]
     File(#[from] FileError),
     /// It is not clear which column holds what.
-    #[error(transparent)]
-    Column(#[from] ColumnError),
+    #[error("{}: {source}", path.display())]
+    Column {
+        /// The record.
+        path: PathBuf,
+        /// What is not clear.
+        source: ColumnError,
+    },
     /// The numbers make no record.
     #[error("{}{}{}: {}", path.display(), in_part(part.as_deref()), at_line(*line), said(source, line.is_some()))]
     Record {
@@ -368,7 +312,7 @@ impl ReadError {
     pub fn hint(&self) -> Option<String> {
         match self {
             Self::File(error) => error.hint(),
-            Self::Column(error) => Some(error.hint()),
+            Self::Column { source, .. } => Some(source.hint()),
             Self::Record { source, .. } => Some(source.hint().to_owned()),
             Self::SeveralParts { parts, .. } => {
                 let first = parts.first().map_or("1", String::as_str);

@@ -38,7 +38,7 @@ pub fn tests(contents: &Contents, description: &TestDescription) -> Result<Tests
     let several = contents.parts().len() > 1;
     let mut first = None;
     for (index, part) in contents.parts().iter().enumerate() {
-        match choose::choose(contents.path(), part, description) {
+        match choose::choose(part, description) {
             Err(error @ (ColumnError::Missing { .. } | ColumnError::NoSuchColumn { .. })) if several => {
                 tests.skipped.push(SkippedPart {
                     name: part.title().to_owned(),
@@ -50,7 +50,10 @@ pub fn tests(contents: &Contents, description: &TestDescription) -> Result<Tests
         }
     }
     match first {
-        Some(error) if tests.parts.is_empty() => Err(error.into()),
+        Some(source) if tests.parts.is_empty() => Err(ReadError::Column {
+            path: contents.path().to_owned(),
+            source,
+        }),
         _ => Ok(tests),
     }
 }

@@ -107,7 +107,11 @@ pub fn read_part(
     let test = description.unwrap_or(&usual);
     let path = contents.path();
     let about = &contents.parts()[part];
-    let mut plan = choose::choose(path, about, test)?;
+    let unclear = |source| ReadError::Column {
+        path: path.to_owned(),
+        source,
+    };
+    let mut plan = choose::choose(about, test).map_err(unclear)?;
     let numbers: Vec<usize> = plan.columns.iter().map(|column| column.number).collect();
     let mut read = contents.read(part, &numbers, progress)?;
     let mut values = std::mem::take(&mut read.values);

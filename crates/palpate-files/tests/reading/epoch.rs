@@ -74,10 +74,28 @@ fn the_unit_is_told_by_the_size_and_said() {
 #[test]
 fn a_plain_time_of_that_size_is_asked_for_its_unit() {
     let error = record(&rows("Time", SECONDS), "").unwrap_err();
-    assert!(matches!(&error, ReadError::Column(ColumnError::NoUnit { .. })), "{error}");
+    assert!(
+        matches!(
+            &error,
+            ReadError::Column {
+                source: ColumnError::NoUnit { .. },
+                ..
+            }
+        ),
+        "{error}"
+    );
     // Named as such a time, but in no unit of our days.
     let error = record(&rows("timestamp", ["0.1", "0.2", "0.3", "0.4"]), "").unwrap_err();
-    assert!(matches!(&error, ReadError::Column(ColumnError::NoUnit { .. })), "{error}");
+    assert!(
+        matches!(
+            &error,
+            ReadError::Column {
+                source: ColumnError::NoUnit { .. },
+                ..
+            }
+        ),
+        "{error}"
+    );
     let said = "columns.time.unit = \"epoch\"";
     let error = record(&rows("Time", ["0.1", "0.2", "0.3", "0.4"]), said).unwrap_err();
     let text = error.to_string();

@@ -256,7 +256,7 @@ fn volts_without_calibration_are_asked_about() {
     let path = folder.path().join("curve.jpk-force");
     std::fs::write(&path, packed(&members)).unwrap();
     let error = read_record(&path, None, &mut |_, _| {}).expect_err("an error");
-    assert!(matches!(error, ReadError::Column(_)), "{error}");
+    assert!(matches!(error, ReadError::Column { .. }), "{error}");
     assert!(error.to_string().contains("column 2 (uncalibrated force): \"V\" is not a unit of force"), "{error}");
     assert!(error.hint().unwrap().contains("[columns.force]"));
 }

@@ -257,7 +257,16 @@ fn volts_without_calibration_are_asked_about() {
     let contents = opened(&written(&exports));
     assert_eq!(names(&contents.parts()[0])[..2], ["time", "uncalibrated force"]);
     let error = refused_as_record(&exports);
-    assert!(matches!(error, ReadError::Column(ColumnError::UnknownUnit { .. })), "{error}");
+    assert!(
+        matches!(
+            error,
+            ReadError::Column {
+                source: ColumnError::UnknownUnit { .. },
+                ..
+            }
+        ),
+        "{error}"
+    );
     assert!(error.to_string().contains("column 2 (uncalibrated force): \"V\" is not a unit of force"), "{error}");
     assert!(error.hint().unwrap().contains("[columns.force]"), "{:?}", error.hint());
     // With both numbers it is a force, and the tip is where it should be.

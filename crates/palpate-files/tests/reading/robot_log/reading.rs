@@ -259,7 +259,16 @@ fn what_is_missing_is_answered_with_lines_that_help() {
     }
     let log = log.finish();
     let error = record(&log, "").unwrap_err();
-    assert!(matches!(&error, ReadError::Column(ColumnError::Missing { .. })), "{error}");
+    assert!(
+        matches!(
+            &error,
+            ReadError::Column {
+                source: ColumnError::Missing { .. },
+                ..
+            }
+        ),
+        "{error}"
+    );
     let hint = error.hint().unwrap();
     let lines: Vec<&str> = hint.lines().skip(1).collect();
     assert!(lines[0] == "[columns]" && lines.len() == 3, "{hint}");
@@ -278,5 +287,14 @@ fn columns_of_two_clocks_do_not_add_up() {
         columns.force.column = "wrench.force.z"
     "#;
     let error = record(&gripper(Log::chunked()), test).unwrap_err();
-    assert!(matches!(error, ReadError::Column(ColumnError::ClocksDiffer { .. })), "{error}");
+    assert!(
+        matches!(
+            error,
+            ReadError::Column {
+                source: ColumnError::ClocksDiffer { .. },
+                ..
+            }
+        ),
+        "{error}"
+    );
 }
