@@ -15,8 +15,7 @@
 //! use palpate_files::parquet_table::{Field, Kind, Rows, TableReader, TableWriter, Values};
 //!
 //! let fields = vec![Field::new("run", Kind::Count), Field::new("force_n", Kind::Number)];
-//! let mut rows = Rows::empty(&fields);
-//! rows.columns = vec![Values::Count(vec![1, 2]), Values::Number(vec![Some(2.5), None])];
+//! let rows = Rows { columns: vec![Values::Count(vec![1, 2]), Values::Number(vec![Some(2.5), None])] };
 //! let file = tempfile::tempfile()?;
 //! let mut writer = TableWriter::new(file.try_clone()?, &fields)?;
 //! writer.write(rows.clone())?;

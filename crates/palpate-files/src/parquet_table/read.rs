@@ -2,12 +2,13 @@
 
 use std::fs::File;
 
+use arrow_schema::DataType;
 use parquet::{
-    basic::Type as PhysicalType,
-    column::reader::ColumnReader,
-    data_type::ByteArray,
+    arrow::{
+        ProjectionMask,
+        arrow_reader::{ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReaderBuilder},
+    },
     errors::ParquetError,
-    file::{reader::FileReader, serialized_reader::SerializedFileReader},
 };
 
 use super::{
@@ -18,7 +19,8 @@ use crate::input::caught;
 
 /// A table that [`TableWriter`](super::write::TableWriter) wrote.
 pub struct TableReader {
-    reader: SerializedFileReader<File>,
+    file: File,
+    about: ArrowReaderMetadata,
     fields: Vec<Field>,
 }
 
@@ -32,21 +34,21 @@ impl TableReader {
     }
 
     fn of(file: File) -> Result<Self, TableError> {
-        let reader = SerializedFileReader::new(file)?;
-        let columns = reader.metadata().file_metadata().schema_descr().columns();
-        let fields = columns.iter().map(|column| {
-            let name = column.name();
-            match (column.physical_type(), column.max_def_level()) {
-                (PhysicalType::INT64, 0) => Ok(Field::new(name, Kind::Count)),
-                (PhysicalType::DOUBLE, 1) => Ok(Field::new(name, Kind::Number)),
-                (PhysicalType::BYTE_ARRAY, 1) => Ok(Field::new(name, Kind::Text)),
-                _ => Err(TableError::Foreign {
-                    column: name.to_owned(),
-                }),
-            }
+        let about = ArrowReaderMetadata::load(&file, ArrowReaderOptions::new().with_skip_arrow_metadata(true))?;
+        let fields = about.schema().fields().iter().map(|field| {
+            let kind = match (field.data_type(), field.is_nullable()) {
+                (DataType::Int64, false) => Kind::Count,
+                (DataType::Float64, true) => Kind::Number,
+                (DataType::Utf8, true) => Kind::Text,
+                _ => {
+                    let column = field.name().clone();
+                    return Err(TableError::Foreign { column });
+                }
+            };
+            Ok(Field::new(field.name(), kind))
         });
         let fields = fields.collect::<Result<_, _>>()?;
-        Ok(Self { reader, fields })
+        Ok(Self { file, about, fields })
     }
 
     /// The columns.
@@ -58,20 +60,20 @@ impl TableReader {
     /// How many rows there are.
     #[must_use]
     pub fn rows(&self) -> u64 {
-        u64::try_from(self.reader.metadata().file_metadata().num_rows()).unwrap_or(0)
+        u64::try_from(self.about.metadata().file_metadata().num_rows()).unwrap_or(0)
     }
 
     /// The text that the writer put under a key.
     #[must_use]
     pub fn mark(&self, key: &str) -> Option<&str> {
-        let marks = self.reader.metadata().file_metadata().key_value_metadata()?;
+        let marks = self.about.metadata().file_metadata().key_value_metadata()?;
         marks.iter().find(|mark| mark.key == key)?.value.as_deref()
     }
 
     /// How many row groups there are.
     #[must_use]
     pub fn groups(&self) -> usize {
-        self.reader.num_row_groups()
+        self.about.metadata().num_row_groups()
     }
 
     /// The rows of one row group, by its index.
@@ -99,12 +101,13 @@ impl TableReader {
     }
 
     fn decoded(&self, group: usize, column: usize) -> Result<Values, TableError> {
-        let group = self.reader.get_row_group(group)?;
-        let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        let found = read_column(group.get_column_reader(column)?, rows)?;
-        found.ok_or_else(|| TableError::Foreign {
-            column: self.fields[column].name.clone(),
-        })
+        let builder = ParquetRecordBatchReaderBuilder::new_with_metadata(self.file.try_clone()?, self.about.clone());
+        let mask = ProjectionMask::leaves(builder.parquet_schema(), [column]);
+        let mut values = Values::empty(self.fields[column].kind);
+        for batch in builder.with_row_groups(vec![group]).with_projection(mask).build()? {
+            values.extend(batch.map_err(ParquetError::from)?.column(0));
+        }
+        Ok(values)
     }
 }
 
@@ -113,33 +116,4 @@ fn out_of_bounds() -> TableError {
     TableError::Parquet {
         message: "places in the file that are out of bounds".to_owned(),
     }
-}
-
-fn read_column(column: ColumnReader, rows: usize) -> Result<Option<Values>, ParquetError> {
-    let mut there = Vec::new();
-    Ok(match column {
-        ColumnReader::Int64ColumnReader(mut reader) => {
-            let mut values = Vec::new();
-            reader.read_records(rows, None, None, &mut values)?;
-            Some(Values::Count(values))
-        }
-        ColumnReader::DoubleColumnReader(mut reader) => {
-            let mut values = Vec::new();
-            reader.read_records(rows, Some(&mut there), None, &mut values)?;
-            Some(Values::Number(spread(values, &there)))
-        }
-        ColumnReader::ByteArrayColumnReader(mut reader) => {
-            let mut values: Vec<ByteArray> = Vec::new();
-            reader.read_records(rows, Some(&mut there), None, &mut values)?;
-            let texts = values.iter().map(|text| text.as_utf8().map(str::to_owned));
-            Some(Values::Text(spread(texts.collect::<Result<_, _>>()?, &there)))
-        }
-        _ => None,
-    })
-}
-
-/// Puts values back beside the ones that are missing.
-fn spread<T>(values: Vec<T>, there: &[i16]) -> Vec<Option<T>> {
-    let mut values = values.into_iter();
-    there.iter().map(|level| if *level > 0 { values.next() } else { None }).collect()
 }

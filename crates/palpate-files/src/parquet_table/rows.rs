@@ -1,5 +1,13 @@
 //! Rows in memory, column by column.
 
+use std::sync::Arc;
+
+use arrow_array::{
+    ArrayRef, Float64Array, Int64Array, StringArray,
+    cast::AsArray,
+    types::{Float64Type, Int64Type},
+};
+
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -43,7 +51,8 @@ pub enum Values {
 }
 
 impl Values {
-    fn empty(kind: Kind) -> Self {
+    /// No values of this kind.
+    pub(super) fn empty(kind: Kind) -> Self {
         match kind {
             Kind::Count => Self::Count(Vec::new()),
             Kind::Number => Self::Number(Vec::new()),
@@ -51,29 +60,22 @@ impl Values {
         }
     }
 
-    fn len(&self) -> usize {
+    /// Adds the values of a column of the same kind.
+    pub(super) fn extend(&mut self, column: &ArrayRef) {
         match self {
-            Self::Count(values) => values.len(),
-            Self::Number(values) => values.len(),
-            Self::Text(values) => values.len(),
+            Self::Count(values) => values.extend(column.as_primitive::<Int64Type>().values()),
+            Self::Number(values) => values.extend(column.as_primitive::<Float64Type>()),
+            Self::Text(values) => values.extend(column.as_string::<i32>().iter().map(|text| text.map(str::to_owned))),
         }
     }
+}
 
-    pub(super) fn kind(&self) -> Kind {
-        match self {
-            Self::Count(_) => Kind::Count,
-            Self::Number(_) => Kind::Number,
-            Self::Text(_) => Kind::Text,
-        }
-    }
-
-    /// Moves the values of another column of the same kind to the end of this one; another kind is left out.
-    fn append(&mut self, other: Self) {
-        match (self, other) {
-            (Self::Count(values), Self::Count(more)) => values.extend(more),
-            (Self::Number(values), Self::Number(more)) => values.extend(more),
-            (Self::Text(values), Self::Text(more)) => values.extend(more),
-            _ => {}
+impl From<Values> for ArrayRef {
+    fn from(values: Values) -> Self {
+        match values {
+            Values::Count(values) => Arc::new(Int64Array::from(values)),
+            Values::Number(values) => Arc::new(Float64Array::from(values)),
+            Values::Text(values) => Arc::new(StringArray::from(values)),
         }
     }
 }
@@ -83,38 +85,4 @@ impl Values {
 pub struct Rows {
     /// The columns in order, all of one length.
     pub columns: Vec<Values>,
-}
-
-impl Rows {
-    /// No rows of these columns.
-    #[must_use]
-    pub fn empty(fields: &[Field]) -> Self {
-        Self {
-            columns: fields.iter().map(|field| Values::empty(field.kind)).collect(),
-        }
-    }
-
-    /// How many rows there are.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.columns.first().map_or(0, Values::len)
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// Whether these are rows of a table with these columns.
-    pub(super) fn fit(&self, fields: &[Field]) -> bool {
-        let kinds = self.columns.iter().map(Values::kind).eq(fields.iter().map(|field| field.kind));
-        kinds && self.columns.iter().all(|column| column.len() == self.len())
-    }
-
-    pub(super) fn append(&mut self, other: Self) {
-        for (column, more) in self.columns.iter_mut().zip(other.columns) {
-            column.append(more);
-        }
-    }
 }

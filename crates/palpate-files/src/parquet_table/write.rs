@@ -2,21 +2,16 @@
 
 use std::{io::Write, sync::Arc};
 
+use arrow_array::{ArrayRef, RecordBatch};
+use arrow_schema::{DataType, Field as Column, Schema, SchemaRef};
 use parquet::{
-    basic::{LogicalType, Repetition, Type as PhysicalType},
-    data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type},
-    errors::ParquetError,
-    file::{
-        metadata::KeyValue,
-        properties::WriterProperties,
-        writer::{SerializedColumnWriter, SerializedFileWriter},
-    },
-    schema::types::Type,
+    arrow::arrow_writer::{ArrowWriter, ArrowWriterOptions},
+    file::{metadata::KeyValue, properties::WriterProperties},
 };
 
 use super::{
     error::TableError,
-    rows::{Field, Kind, Rows, Values},
+    rows::{Field, Kind, Rows},
 };
 
 /// Rows that are held back until they make a row group.
@@ -24,9 +19,8 @@ const GROUP: usize = 1 << 16;
 
 /// Writes rows as they come, in memory for one row group.
 pub struct TableWriter<W: Write + Send> {
-    writer: SerializedFileWriter<W>,
-    fields: Vec<Field>,
-    pending: Rows,
+    writer: ArrowWriter<W>,
+    schema: SchemaRef,
 }
 
 impl<W: Write + Send> TableWriter<W> {
@@ -35,15 +29,22 @@ impl<W: Write + Send> TableWriter<W> {
     /// # Errors
     /// [`TableError`] where two columns share a name, or `out` refuses.
     pub fn new(out: W, fields: &[Field]) -> Result<Self, TableError> {
-        let columns = fields.iter().map(column).collect::<Result<_, _>>()?;
-        let schema = Type::group_type_builder("table").with_fields(columns).build()?;
-        let properties =
-            WriterProperties::builder().set_created_by(format!("palpate {}", env!("CARGO_PKG_VERSION"))).build();
-        Ok(Self {
-            writer: SerializedFileWriter::new(out, Arc::new(schema), Arc::new(properties))?,
-            fields: fields.to_vec(),
-            pending: Rows::empty(fields),
-        })
+        let columns = fields.iter().map(|field| match field.kind {
+            Kind::Count => Column::new(&field.name, DataType::Int64, false),
+            Kind::Number => Column::new(&field.name, DataType::Float64, true),
+            Kind::Text => Column::new(&field.name, DataType::Utf8, true),
+        });
+        let schema = Arc::new(Schema::new(columns.collect::<Vec<_>>()));
+        let properties = WriterProperties::builder()
+            .set_created_by(format!("palpate {}", env!("CARGO_PKG_VERSION")))
+            .set_max_row_group_row_count(Some(GROUP))
+            .build();
+        let options = ArrowWriterOptions::new()
+            .with_properties(properties)
+            .with_schema_root("table".to_owned())
+            .with_skip_arrow_metadata(true);
+        let writer = ArrowWriter::try_new_with_options(out, schema.clone(), options)?;
+        Ok(Self { writer, schema })
     }
 
     /// Adds rows.
@@ -51,11 +52,9 @@ impl<W: Write + Send> TableWriter<W> {
     /// # Errors
     /// [`TableError`] where the rows have other columns, or the file cannot be written.
     pub fn write(&mut self, rows: Rows) -> Result<(), TableError> {
-        if !rows.fit(&self.fields) {
-            return Err(TableError::OtherColumns);
-        }
-        self.pending.append(rows);
-        if self.pending.len() >= GROUP { self.flush() } else { Ok(()) }
+        let columns = rows.columns.into_iter().map(ArrayRef::from).collect();
+        let batch = RecordBatch::try_new(self.schema.clone(), columns).map_err(|_| TableError::OtherColumns)?;
+        Ok(self.writer.write(&batch)?)
     }
 
     /// Writes what is left and closes the table, with texts that say what it is.
@@ -63,9 +62,6 @@ impl<W: Write + Send> TableWriter<W> {
     /// # Errors
     /// [`TableError`] where the file cannot be written.
     pub fn finish(mut self, marks: &[(&str, &str)]) -> Result<(), TableError> {
-        if !self.pending.is_empty() {
-            self.flush()?;
-        }
         for (key, value) in marks {
             let mark = KeyValue::new((*key).to_owned(), (*value).to_owned());
             self.writer.append_key_value_metadata(mark);
@@ -74,48 +70,4 @@ impl<W: Write + Send> TableWriter<W> {
         self.writer.inner_mut().flush()?;
         Ok(())
     }
-
-    fn flush(&mut self) -> Result<(), TableError> {
-        let rows = std::mem::replace(&mut self.pending, Rows::empty(&self.fields));
-        let mut group = self.writer.next_row_group()?;
-        for values in rows.columns {
-            let Some(mut column) = group.next_column()? else {
-                return Err(TableError::OtherColumns);
-            };
-            write_column(&mut column, values)?;
-            column.close()?;
-        }
-        group.close()?;
-        Ok(())
-    }
-}
-
-fn column(field: &Field) -> Result<Arc<Type>, ParquetError> {
-    let (physical, repetition, logical) = match field.kind {
-        Kind::Count => (PhysicalType::INT64, Repetition::REQUIRED, None),
-        Kind::Number => (PhysicalType::DOUBLE, Repetition::OPTIONAL, None),
-        Kind::Text => (PhysicalType::BYTE_ARRAY, Repetition::OPTIONAL, Some(LogicalType::String)),
-    };
-    let builder = Type::primitive_type_builder(&field.name, physical);
-    builder.with_repetition(repetition).with_logical_type(logical).build().map(Arc::new)
-}
-
-fn write_column(column: &mut SerializedColumnWriter<'_>, values: Values) -> Result<(), ParquetError> {
-    match values {
-        Values::Count(values) => {
-            column.typed::<Int64Type>().write_batch(&values, None, None)?;
-        }
-        Values::Number(values) => {
-            let there: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
-            let values: Vec<f64> = values.into_iter().flatten().collect();
-            column.typed::<DoubleType>().write_batch(&values, Some(&there), None)?;
-        }
-        Values::Text(values) => {
-            let there: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
-            let values: Vec<ByteArray> =
-                values.into_iter().flatten().map(|text| ByteArray::from(text.into_bytes())).collect();
-            column.typed::<ByteArrayType>().write_batch(&values, Some(&there), None)?;
-        }
-    }
-    Ok(())
 }
