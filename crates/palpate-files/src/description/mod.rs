@@ -36,4 +36,5 @@ pub use test::{
     About, ChoiceError, ClockChoice, ColumnChoice, ColumnChoices, Machine, TestDescription, machines, machines_of,
     parse_hold_start, parse_test, parse_touch, read_test,
 };
+pub(crate) use text::quoted;
 pub use text::{DescriptionError, KeyPlace, KeyProblem};

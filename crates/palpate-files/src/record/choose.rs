@@ -310,7 +310,7 @@ impl<'a> Chooser<'a> {
         let Some(stress) = stress else {
             return Ok((1.0, false));
         };
-        match test.geometry.as_ref().map(|body| &body.shape) {
+        match test.analysis.geometry.as_ref().map(|body| &body.shape) {
             None => Ok((1.0, true)),
             Some(Shape::Prism { area, .. }) => Ok((*area, false)),
             Some(Shape::Ball { .. } | Shape::Pad { .. } | Shape::Profile { .. }) => {

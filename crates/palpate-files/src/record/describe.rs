@@ -12,7 +12,7 @@ use super::{
     read::RecordFile,
 };
 use crate::{
-    description::machines_of,
+    description::{machines_of, quoted},
     naming::{Quantity, unit_factor},
     open::Contents,
     table::{ColumnInfo, ColumnKind, EPOCH, Part, epoch, recognise},
@@ -52,11 +52,6 @@ pub fn describe(
         write_phases(&mut out, file, segmentation);
     }
     out
-}
-
-/// A text as TOML writes it.
-fn quoted(text: &str) -> String {
-    toml::Value::String(text.to_owned()).to_string()
 }
 
 /// Machines that name their columns so: a person knows which it was, the file does not.
@@ -177,52 +172,37 @@ fn write_questions(out: &mut String, part: &Part) {
     out.push('\n');
     for quantity in [Quantity::Time, Quantity::Displacement, Quantity::Force] {
         let candidates = recognise::candidates(&part.columns, quantity);
-        let _ = writeln!(out, "[columns.{quantity}]");
-        match candidates[..] {
-            [only] => {
-                let _ = writeln!(out, "column = {}    # guessed by its name", reference(part, only));
-                match only.unit.as_deref().filter(|unit| unit_factor(unit, quantity.dimension()).is_some()) {
-                    Some(unit) => {
-                        let _ = writeln!(out, "unit = {}    # from the file", quoted(unit));
-                    }
-                    None => ask_unit(out, quantity, &[only]),
-                }
+        let column = match candidates[..] {
+            [only] => format!("{}    # guessed by its name", reference(part, only)),
+            [] if quantity == Quantity::Displacement => {
+                format!("\"{ASK}\"    # no name says which; remove the table if there is none")
             }
-            [] => {
-                let optional =
-                    if quantity == Quantity::Displacement { "; remove the table if there is none" } else { "" };
-                let _ = writeln!(out, "column = \"{ASK}\"    # no name says which{optional}");
-                ask_unit(out, quantity, &[]);
-            }
+            [] => format!("\"{ASK}\"    # no name says which"),
             ref several => {
                 let numbers: Vec<String> = several.iter().map(|column| column.number.to_string()).collect();
-                let _ = writeln!(out, "column = \"{ASK}\"    # {} could all hold it", numbers.join(", "));
-                ask_unit(out, quantity, several);
+                format!("\"{ASK}\"    # {} could all hold it", numbers.join(", "))
             }
-        }
-        out.push('\n');
+        };
+        let unit = asked_unit(quantity, &candidates);
+        let _ = writeln!(out, "[columns.{quantity}]\ncolumn = {column}\nunit = {unit}\n");
     }
 }
 
 /// The unit that all columns have which could hold a quantity, or a question for it.
-fn ask_unit(out: &mut String, quantity: Quantity, possible: &[&ColumnInfo]) {
+fn asked_unit(quantity: Quantity, possible: &[&ColumnInfo]) -> String {
     let accepted = quantity.dimension().accepted();
     let mut units: Vec<Option<&str>> = possible.iter().map(|column| column.unit.as_deref()).collect();
     units.dedup();
-    let _ = match units[..] {
+    match units[..] {
         [Some(unit)] if unit_factor(unit, quantity.dimension()).is_some() => {
-            writeln!(out, "unit = {}    # from the file", quoted(unit))
+            format!("{}    # from the file", quoted(unit))
         }
         [Some(unit)] => {
-            let meant = quantity.unit_meant(unit);
-            writeln!(
-                out,
-                "unit = \"{ASK}\"    # the file says {}, no unit of {quantity}; \"{meant}\", or one of {accepted}",
-                quoted(unit)
-            )
+            let (said, meant) = (quoted(unit), quantity.unit_meant(unit));
+            format!("\"{ASK}\"    # the file says {said}, no unit of {quantity}; \"{meant}\", or one of {accepted}")
         }
-        _ => writeln!(out, "unit = \"{ASK}\"    # the file does not say; one of {accepted}"),
-    };
+        _ => format!("\"{ASK}\"    # the file does not say; one of {accepted}"),
+    }
 }
 
 /// Line breaks in a cell would end a comment.

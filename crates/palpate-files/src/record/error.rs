@@ -219,8 +219,7 @@ impl ColumnError {
 }
 
 fn listed(columns: &[NamedColumn]) -> String {
-    let columns: Vec<String> = columns.iter().map(ToString::to_string).collect();
-    columns.join(" and ")
+    columns.iter().map(ToString::to_string).collect::<Vec<_>>().join(" and ")
 }
 
 fn is_displacement(columns: &[NamedColumn]) -> &'static str {
@@ -238,8 +237,7 @@ fn none(columns: &[(String, &'static str, NamedColumn)]) -> &'static str {
 }
 
 fn units_of(columns: &[(String, &'static str, NamedColumn)]) -> String {
-    let columns: Vec<String> = columns.iter().map(|(_, _, column)| column.to_string()).collect();
-    columns.join(", ")
+    columns.iter().map(|(_, _, column)| column.to_string()).collect::<Vec<_>>().join(", ")
 }
 
 /// Where a row stands in a file, from 1.
@@ -275,7 +273,7 @@ pub enum ReadError {
         source: ColumnError,
     },
     /// The numbers make no record.
-    #[error("{}{}{}: {}", path.display(), in_part(part.as_deref()), at_line(*line), said(source, line.is_some()))]
+    #[error("{}{}{}: {}", path.display(), behind_comma(part.as_ref()), behind_comma(line.as_ref()), said(source, line.is_some()))]
     Record {
         /// The file.
         path: PathBuf,
@@ -327,12 +325,8 @@ impl ReadError {
     }
 }
 
-fn in_part(part: Option<&str>) -> String {
-    part.map_or_else(String::new, |part| format!(", {part}"))
-}
-
-fn at_line(line: Option<Counted>) -> String {
-    line.map_or_else(String::new, |line| format!(", {line}"))
+fn behind_comma(what: Option<&impl fmt::Display>) -> String {
+    what.map_or_else(String::new, |what| format!(", {what}"))
 }
 
 /// The first few names of parts.

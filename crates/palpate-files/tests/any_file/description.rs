@@ -24,7 +24,7 @@ pub(crate) fn read_description(kind: DescriptionKind, name: &str, bytes: &[u8]) 
     };
     let complaint = |error: DescriptionError| Complaint::of(name, error.to_string(), error.hint());
     match kind {
-        DescriptionKind::Test => parse_test(text, path).map(|test| drop(test.analysis_options())).map_err(complaint),
+        DescriptionKind::Test => parse_test(text, path).map(|test| drop(test.analysis)).map_err(complaint),
         DescriptionKind::Protocol => parse_protocol(text, path).map(drop).map_err(complaint),
         DescriptionKind::Sweep => {
             let sweep = parse_sweep(text, path).map_err(complaint)?;

@@ -60,7 +60,7 @@ impl Described {
     /// The options of an analysis that it says.
     #[must_use]
     pub fn options(&self) -> AnalysisOptions {
-        self.test.as_ref().map_or_else(AnalysisOptions::default, TestDescription::analysis_options)
+        self.test.as_ref().map_or_else(AnalysisOptions::default, |test| test.analysis.clone())
     }
 
     /// Its path as results name it.

@@ -32,7 +32,7 @@ pub(super) struct Cut {
 impl Cut {
     /// Corrects a record as the description asks and cuts it.
     pub(super) fn of(record: &Record, test: Option<&TestDescription>) -> Result<Self, AnalysisError> {
-        let options = test.map_or_else(AnalysisOptions::default, TestDescription::analysis_options);
+        let options = test.map_or_else(AnalysisOptions::default, |test| test.analysis.clone());
         let before = record.corrections().len();
         let corrected = corrected(record, &options)?;
         Ok(Self {
@@ -167,8 +167,10 @@ impl Cut {
 
     /// Where the body was first touched, if the jaw went through air before.
     fn contact(&self, segmentation: &Segmentation, test: Option<&TestDescription>) -> String {
-        let body = test.and_then(|test| test.geometry.as_ref()).map(|geometry| (&geometry.shape, geometry.sides));
-        let choice = test.map(|test| test.touch).unwrap_or_default();
+        let body = test
+            .and_then(|test| test.analysis.geometry.as_ref())
+            .map(|geometry| (&geometry.shape, geometry.sides));
+        let choice = test.map(|test| test.analysis.touch).unwrap_or_default();
         let contact = find_contact_of(&self.record, segmentation, body, choice);
         let mut out = String::new();
         if contact.air_travel > 0.0 {

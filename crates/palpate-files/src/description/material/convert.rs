@@ -10,14 +10,14 @@ use palpate::{
     contact::{Equilibrium, RateDependence},
     fit::Estimate,
     laws::Law,
-    simulate::{Contact, ContactModel},
+    simulate::Contact,
     units::Dimension,
 };
 use serde::Deserialize;
 
 use super::{
     file::{MATERIAL_VERSION, MaterialFile, MaterialOrigin},
-    tables::{CalibratedEquilibriumName, CalibrationTable, MaterialTables, NumberTable, ShownTable, unit_of},
+    tables::{CalibratedEquilibriumName, CalibrationTable, MaterialTables, NumberTable, ShownTable, UNITS},
 };
 use crate::description::{
     body::model::model,
@@ -54,10 +54,13 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
         law,
         equilibrium: equilibrium(source, table.equilibrium, &model)?,
         rate: match &model {
-            Contact::Latency { rate, .. } => rate_law(*rate),
+            Contact::Latency { rate, .. } => rate_law(*rate).0,
             Contact::Linear(_) => RateLaw::Constant,
         },
     };
+    let numbers = numbers(source, &table.number)?;
+    let uncertainty = uncertainty(source, table)?;
+    let residual = source.si("calibration.residual", &table.residual, Dimension::Force)?;
     let material = Material {
         body: Body {
             shape: model.specimen().shape().clone(),
@@ -66,14 +69,9 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
             levels: levels(&model),
         },
         candidate,
-        numbers: numbers(source, &table.number)?,
-        uncertainty: uncertainty(source, table)?,
-        noise: source.number(
-            "calibration.residual",
-            source.si("calibration.residual", &table.residual, Dimension::Force)?,
-            "0 N or more",
-            |noise| noise >= 0.0,
-        )?,
+        numbers,
+        uncertainty,
+        noise: source.number("calibration.residual", residual, "0 N or more", |noise| noise >= 0.0)?,
         shown: shown(source, &table.shown)?,
     };
     if !material.is_whole() {
@@ -82,15 +80,6 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
         return Err(source.value("calibration.number", expected, &names.join(", ")));
     }
     if let Some((key, there, here)) = disagreement(&model, &material.contact()) {
-        let unit = match key.rsplit('.').next().unwrap_or_default() {
-            "modulus" => " Pa",
-            "layer_thickness" => " m",
-            "rate_coefficient" => " /s",
-            "time" => " s",
-            row if row.starts_with("equilibrium_forces") => " N",
-            _ => "",
-        };
-        let (there, here) = (format!("{there}{unit}"), format!("{here}{unit}"));
         let expected = format!("{here}, the number of [calibration]; what was changed by hand is calibrated no more");
         return Err(source.value(key, expected, &there));
     }
@@ -136,43 +125,27 @@ fn equilibrium(
     name: CalibratedEquilibriumName,
     model: &Contact,
 ) -> Result<EquilibriumLaw, DescriptionError> {
-    match (name, model.specimen().equilibrium()) {
-        (CalibratedEquilibriumName::EvenStrain, Equilibrium::EvenStrain) => Ok(EquilibriumLaw::EvenStrain),
-        (CalibratedEquilibriumName::Hertz, Equilibrium::Hertz { poisson_ratio }) => Ok(EquilibriumLaw::Hertz {
+    let law = match model.specimen().equilibrium() {
+        Equilibrium::EvenStrain => EquilibriumLaw::EvenStrain,
+        Equilibrium::Hertz { poisson_ratio } => EquilibriumLaw::Hertz {
             poisson_ratio: *poisson_ratio,
-        }),
-        (CalibratedEquilibriumName::Table, Equilibrium::Measured { .. }) => Ok(EquilibriumLaw::Table),
-        (written, other) => {
-            let of_body = match other {
-                Equilibrium::EvenStrain => "\"even strain\"",
-                Equilibrium::Hertz { .. } => "\"hertz\"",
-                Equilibrium::Measured { .. } => "\"table\"",
-            };
-            let written = match written {
-                CalibratedEquilibriumName::EvenStrain => "\"even strain\"",
-                CalibratedEquilibriumName::Hertz => "\"hertz\"",
-                CalibratedEquilibriumName::Table => "\"table\"",
-            };
-            let expected = format!("{of_body} as in [specimen], what was changed by hand is calibrated no more");
-            Err(source.value("calibration.equilibrium", expected, written))
-        }
+        },
+        Equilibrium::Measured { .. } => EquilibriumLaw::Table,
+    };
+    let of_body = CalibratedEquilibriumName::from(law);
+    if name == of_body {
+        return Ok(law);
     }
+    let expected = format!("\"{of_body}\" as in [specimen], what was changed by hand is calibrated no more");
+    Err(source.value("calibration.equilibrium", expected, &format!("\"{name}\"")))
 }
 
-/// The law by which v differs.
-pub(crate) fn rate_law(rate: RateDependence) -> RateLaw {
+/// The law by which v differs, and the factor if it does.
+pub(super) fn rate_law(rate: RateDependence) -> (RateLaw, Option<f64>) {
     match rate {
-        RateDependence::Constant => RateLaw::Constant,
-        RateDependence::Strain { .. } => RateLaw::ByStrain,
-        RateDependence::Direction { .. } => RateLaw::ByDirection,
-    }
-}
-
-/// The factor by which v differs, if it does.
-pub(crate) fn factor(rate: RateDependence) -> Option<f64> {
-    match rate {
-        RateDependence::Constant => None,
-        RateDependence::Strain { factor } | RateDependence::Direction { factor } => Some(factor),
+        RateDependence::Constant => (RateLaw::Constant, None),
+        RateDependence::Strain { factor } => (RateLaw::ByStrain, Some(factor)),
+        RateDependence::Direction { factor } => (RateLaw::ByDirection, Some(factor)),
     }
 }
 
@@ -190,9 +163,10 @@ fn numbers(source: &Source<'_>, tables: &[NumberTable]) -> Result<Vec<MaterialNu
     let number = |(index, table): (usize, &NumberTable)| {
         let key = |name: &str| format!("calibration.number[{}].{name}", index + 1);
         let above = |name: &str, value: f64| source.number(&key(name), value, "a number above 0", |value| value > 0.0);
-        let unit = unit_of(table.unit.as_deref()).ok_or_else(|| {
-            source.value(key("unit"), "Pa, N, m, s or /s, or none", table.unit.as_deref().unwrap_or_default())
-        })?;
+        let written = table.unit.as_deref();
+        let Some((unit, _)) = UNITS.iter().find(|(_, symbol)| *symbol == written) else {
+            return Err(source.value(key("unit"), "Pa, N, m, s or /s, or none", written.unwrap_or_default()));
+        };
         let value = above("value", table.value)?;
         let interval = match table.interval.as_deref() {
             None => None,
@@ -210,7 +184,7 @@ fn numbers(source: &Source<'_>, tables: &[NumberTable]) -> Result<Vec<MaterialNu
         }
         Ok(MaterialNumber {
             name: table.name.clone(),
-            unit,
+            unit: *unit,
             estimate: Estimate {
                 value,
                 standard_error: table.standard_error,
@@ -308,65 +282,55 @@ fn shown(source: &Source<'_>, table: &ShownTable) -> Result<Shown, DescriptionEr
     Ok(shown)
 }
 
-/// Numbers of the latency law and its layers, there and here.
-fn latency_pairs(there: &ContactModel, here: &ContactModel) -> [(String, f64, f64); 3] {
-    let thickness = |model: &ContactModel| model.specimen.depth() / model.layers.count();
-    [
-        ("law.exponent".to_owned(), there.law.exponent(), here.law.exponent()),
-        ("law.rate_coefficient".to_owned(), there.law.rate_coefficient(), here.law.rate_coefficient()),
-        ("contact.layer_thickness".to_owned(), thickness(there), thickness(here)),
-    ]
+/// Keys of the numbers of a body in the tables of a protocol, with their units behind a blank.
+fn keys(contact: &Contact) -> Vec<(String, f64, &'static str)> {
+    let mut keys = Vec::new();
+    let mut is = |key: String, value: f64, unit| keys.push((key, value, unit));
+    match contact {
+        Contact::Latency { model, rate } => {
+            is("law.exponent".to_owned(), model.law.exponent(), "");
+            is("law.rate_coefficient".to_owned(), model.law.rate_coefficient(), " /s");
+            is("contact.layer_thickness".to_owned(), model.specimen.depth() / model.layers.count(), " m");
+            let (law, factor) = rate_law(*rate);
+            if let (Some(name), Some(factor)) = (law.factor_name(), factor) {
+                is(format!("law.{name}"), factor, "");
+            }
+        }
+        Contact::Linear(linear) => {
+            let terms = linear.law.terms();
+            for (index, term) in terms.iter().enumerate() {
+                let of = if terms.len() == 1 { "law".to_owned() } else { format!("law.terms[{}]", index + 1) };
+                is(format!("{of}.overshoot"), term.overshoot, "");
+                is(format!("{of}.time"), 1.0 / term.rate, " s");
+            }
+        }
+    }
+    match contact.specimen().equilibrium() {
+        Equilibrium::Measured { force_per_displacement } => {
+            for (row, (place, ratio)) in force_per_displacement.points().into_iter().enumerate() {
+                is(format!("specimen.equilibrium_forces[{}]", row + 1), ratio * place, " N");
+            }
+        }
+        _ => is("specimen.modulus".to_owned(), contact.specimen().modulus(), " Pa"),
+    }
+    keys
 }
 
 /// A key whose number differs between the two, with both.
-fn disagreement(model: &Contact, contact: &Contact) -> Option<(String, f64, f64)> {
-    let mut pairs = Vec::new();
-    match (model, contact) {
-        (
-            Contact::Latency { model: there, rate },
-            Contact::Latency {
-                model: here,
-                rate: calibrated,
-            },
-        ) if rate_law(*rate) == rate_law(*calibrated) => {
-            pairs.extend(latency_pairs(there, here));
-            if let (Some(a), Some(b), Some(name)) =
-                (factor(*rate), factor(*calibrated), rate_law(*calibrated).factor_name())
-            {
-                pairs.push((format!("law.{name}"), a, b));
-            }
-        }
+fn disagreement(there: &Contact, here: &Contact) -> Option<(String, String, String)> {
+    let of = |key: &str, there: usize, here: usize| Some((key.to_owned(), there.to_string(), here.to_string()));
+    match (there, here) {
+        (Contact::Latency { rate: there, .. }, Contact::Latency { rate: here, .. })
+            if rate_law(*there).0 == rate_law(*here).0 => {}
         (Contact::Linear(there), Contact::Linear(here)) => {
-            let terms = [there, here].map(|contact| contact.law.terms());
-            let count = terms.map(<[_]>::len);
-            if count[0] != count[1] || there.memory != here.memory {
-                return Some(("law".to_owned(), count[0] as f64, count[1] as f64));
-            }
-            for (index, (a, b)) in terms[0].iter().zip(terms[1]).enumerate() {
-                let key = |name: &str| {
-                    if count[0] == 1 { format!("law.{name}") } else { format!("law.terms[{}].{name}", index + 1) }
-                };
-                pairs.push((key("overshoot"), a.overshoot, b.overshoot));
-                pairs.push((key("time"), 1.0 / a.rate, 1.0 / b.rate));
+            let counts = [there, here].map(|contact| contact.law.terms().len());
+            if counts[0] != counts[1] || there.memory != here.memory {
+                return of("law", counts[0], counts[1]);
             }
         }
-        _ => return Some(("law.name".to_owned(), 0.0, 0.0)),
+        _ => return of("law.name", 0, 0),
     }
-    let (there, here) = (model.specimen(), contact.specimen());
-    match (there.equilibrium(), here.equilibrium()) {
-        (
-            Equilibrium::Measured {
-                force_per_displacement: a,
-            },
-            Equilibrium::Measured {
-                force_per_displacement: b,
-            },
-        ) => {
-            let key = |row: usize| format!("specimen.equilibrium_forces[{}]", row + 1);
-            let rows = a.points().into_iter().zip(b.points()).enumerate();
-            pairs.extend(rows.map(|(row, ((place, a), (_, b)))| (key(row), a * place, b * place)));
-        }
-        _ => pairs.push(("specimen.modulus".to_owned(), there.modulus(), here.modulus())),
-    }
-    pairs.into_iter().find(|(_, a, b)| (a - b).abs() > 1e-9 * b.abs())
+    let mut pairs = keys(there).into_iter().zip(keys(here));
+    let ((key, there, unit), (_, here, _)) = pairs.find(|(a, b)| (a.1 - b.1).abs() > 1e-9 * b.1.abs())?;
+    Some((key, format!("{there}{unit}"), format!("{here}{unit}")))
 }

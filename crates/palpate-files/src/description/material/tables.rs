@@ -1,8 +1,10 @@
 //! The tables of a material file as they stand in it.
 
-use palpate::calibrate::MaterialUnit;
+use std::fmt;
+
+use palpate::calibrate::{EquilibriumLaw, MaterialUnit};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::description::{
     body::tables::{ContactTable, LawTable, SpecimenTable},
@@ -59,7 +61,7 @@ pub(crate) struct CalibrationTable {
     pub(crate) shown: ShownTable,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[schemars(rename = "CalibratedEquilibrium")]
 pub(crate) enum CalibratedEquilibriumName {
     /// Force = modulus × displacement/depth × contact area.
@@ -108,9 +110,20 @@ pub(crate) struct ShownTable {
     pub(crate) largest_force: QuantityText,
 }
 
-/// The unit that is written so.
-pub(crate) fn unit_of(name: Option<&str>) -> Option<MaterialUnit> {
-    UNITS.iter().find(|(_, symbol)| *symbol == name).map(|(unit, _)| *unit)
+impl From<EquilibriumLaw> for CalibratedEquilibriumName {
+    fn from(law: EquilibriumLaw) -> Self {
+        match law {
+            EquilibriumLaw::EvenStrain => Self::EvenStrain,
+            EquilibriumLaw::Hertz { .. } => Self::Hertz,
+            EquilibriumLaw::Table => Self::Table,
+        }
+    }
+}
+
+impl fmt::Display for CalibratedEquilibriumName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(f)
+    }
 }
 
 /// Units of numbers as they are written.

@@ -137,23 +137,19 @@ pub fn parse_protocol(text: &str, path: &Path) -> Result<Protocol, DescriptionEr
 
 /// Checks the tables of a protocol, all that is wrong with which is said of places in `source`.
 pub(crate) fn check(source: &Source<'_>, tables: &ProtocolTables) -> Result<Protocol, DescriptionError> {
-    let model = model(source, &tables.specimen, &tables.law, &tables.contact)?;
-    checked_steps(source, tables, model)
-}
-
-/// A protocol with this body and the steps of the tables.
-fn checked_steps(source: &Source<'_>, tables: &ProtocolTables, contact: Contact) -> Result<Protocol, DescriptionError> {
+    let contact = model(source, &tables.specimen, &tables.law, &tables.contact)?;
     let Steps {
         program,
         motion,
         tables: written,
     } = steps(source, &tables.step, &contact)?;
-    let refused = |found: String| source.value("step", "steps that can be simulated", &found);
     let end = match &motion {
         Some(motion) => motion.end(),
         None => {
-            let ends = step_ends(&program, &contact)
-                .map_err(|error| refused(error.in_step(|number| written[number - 1]).to_string()))?;
+            let ends = step_ends(&program, &contact).map_err(|error| {
+                let found = error.in_step(|number| written[number - 1]);
+                source.value("step", "steps that can be simulated", &found)
+            })?;
             ends.last().map_or(0.0, |end| end.time)
         }
     };

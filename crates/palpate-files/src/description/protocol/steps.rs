@@ -41,37 +41,19 @@ pub(crate) fn steps(source: &Source<'_>, tables: &[StepTable], model: &Contact) 
             None => at,
             Some(_) => None,
         };
-        match (ramp, hold, to) {
-            (Some(ProgramStep::Move { rate, .. }), None | Some(ProgramStep::HoldPosition { .. }), Some(to)) => {
-                let hold = if let Some(ProgramStep::HoldPosition { duration }) = hold { duration } else { 0.0 };
-                moves.push(ProtocolStep { to, rate, hold });
-            }
-            (None, Some(ProgramStep::HoldPosition { duration }), Some(to)) => {
-                let rate = 1.0;
-                moves.push(ProtocolStep {
-                    to,
-                    rate,
-                    hold: duration,
-                });
-            }
-            _ => {}
+        if let (Some(to), None | Some(ProgramStep::HoldPosition { .. })) = (to, hold) {
+            let rate = if let Some(ProgramStep::Move { rate, .. }) = ramp { rate } else { 1.0 };
+            let hold = if let Some(ProgramStep::HoldPosition { duration }) = hold { duration } else { 0.0 };
+            moves.push(ProtocolStep { to, rate, hold });
         }
         // Where the jaw stands after force control only the simulation knows.
         at = if matches!(hold, Some(ProgramStep::HoldForce { .. })) { None } else { to };
         program.extend(ramp.into_iter().chain(hold));
         written.resize(program.len(), index + 1);
     }
-    let in_displacement =
-        |step: &ProgramStep| matches!(step, ProgramStep::Move { .. } | ProgramStep::HoldPosition { .. });
-    let motion = if program.iter().all(in_displacement) {
-        let motion = simulate::protocol(&moves).map_err(|error| {
-            let found = error.to_string();
-            source.value("step", "steps that make a motion", &found)
-        })?;
-        Some(motion)
-    } else {
-        None
-    };
+    // Where every table asks for displacements alone.
+    let motion = (moves.len() == tables.len()).then(|| simulate::protocol(&moves));
+    let motion = motion.transpose().map_err(|error| source.value("step", "steps that make a motion", &error))?;
     Ok(Steps {
         program,
         motion,

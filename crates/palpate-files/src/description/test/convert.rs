@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use palpate::{
-    analysis::{Geometry, LayersChoice},
+    analysis::{AnalysisOptions, Geometry, LayersChoice},
     contact::{Shape, Sides},
     segment::ContactChoice,
     units::Dimension,
@@ -43,7 +43,7 @@ pub fn read_test(path: &Path) -> Result<TestDescription, DescriptionError> {
 ///     phases.hold_start = "peak + 0.5 s"
 /// "#;
 /// let test = parse_test(text, Path::new("ball.toml"))?;
-/// assert_eq!(test.geometry.map(|body| body.shape.depth(body.sides)), Some(0.035));
+/// assert_eq!(test.analysis.geometry.map(|body| body.shape.depth(body.sides)), Some(0.035));
 /// # Ok::<(), palpate_files::description::DescriptionError>(())
 /// ```
 ///
@@ -74,10 +74,7 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
     };
     let (fit, exponents) = settings::fit(&source, &tables.fit)?;
     let layers = layers(&source, contact, geometry.as_ref())?;
-    Ok(TestDescription {
-        about: tables.about,
-        reading: tables.file.checked(),
-        columns,
+    let analysis = AnalysisOptions {
         geometry,
         separation: contact::separation(contact.separation.unwrap_or(grows)),
         layers,
@@ -88,7 +85,14 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
         fit,
         exponents,
         free_exponent: tables.fit.free_exponent.unwrap_or(true),
-        until: source.positive_if("fit.until", tables.fit.until.as_ref(), Dimension::Time)?,
+        fit_until: source.positive_if("fit.until", tables.fit.until.as_ref(), Dimension::Time)?,
+        ..AnalysisOptions::default()
+    };
+    Ok(TestDescription {
+        about: tables.about,
+        reading: tables.file.checked(),
+        columns,
+        analysis,
     })
 }
 

@@ -1,6 +1,7 @@
 //! Checks of the settings in `[contact]`, `[phases]` and `[fit]` of a test.
 
 use palpate::{
+    analysis::AnalysisOptions,
     fit::FitOptions,
     segment::{ContactChoice, GivenHold, HoldMode, SegmentOptions},
     units::Dimension,
@@ -11,9 +12,6 @@ use super::{
     tables::{FitTable, HoldModeName, PhasesTable},
 };
 use crate::description::text::{error::DescriptionError, source::Source};
-
-/// The exponents compared where nothing is said.
-pub(crate) const USUAL_EXPONENTS: [f64; 5] = [1.0, 2.0, 3.0, 5.0, 7.0];
 
 pub(crate) fn touch(source: &Source<'_>, text: &str) -> Result<ContactChoice, DescriptionError> {
     let key = "contact.touch";
@@ -82,7 +80,7 @@ pub(crate) fn fit(source: &Source<'_>, fit: &FitTable) -> Result<(FitOptions, Ve
         options.exponent_range = (low, high);
     }
     let exponents = match &fit.exponents {
-        None => USUAL_EXPONENTS.to_vec(),
+        None => AnalysisOptions::default().exponents,
         Some(list) if list.is_empty() && fit.free_exponent == Some(false) => {
             let expected = "one exponent or more, or free_exponent = true";
             return Err(source.value("fit.exponents", expected, "an empty list"));

@@ -15,3 +15,8 @@ pub(super) mod source;
 pub(super) mod words;
 
 pub use error::{DescriptionError, KeyPlace, KeyProblem};
+
+/// A text as TOML writes it.
+pub(crate) fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}

@@ -25,7 +25,7 @@ fn all_that_can_be_asked_for() {
     assert_eq!((asked.skew, asked.resample), (SkewChoice::Given(-0.035), Some(1000.0)));
     assert_eq!((asked.baseline, asked.baseline_window), (Some(Baseline::Sloped), Some((0.0, 60.0))));
     assert_eq!(asked.compliance, Some(Compliance::Constant(5e-7)));
-    assert_eq!(test(text).unwrap().analysis_options().corrections, asked);
+    assert_eq!(test(text).unwrap().analysis.corrections, asked);
     assert_eq!(test("clock.skew = \"auto\"").unwrap().corrections.skew, SkewChoice::Auto);
     let table = "machine.compliance_table = [[\"0 N\", \"0 um\"], [\"10 N\", \"4 um\"]]";
     let Some(Compliance::Table(table)) = test(table).unwrap().corrections.compliance else {

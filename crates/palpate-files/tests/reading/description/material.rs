@@ -207,8 +207,8 @@ fn a_material_is_the_body_of_a_protocol_and_of_a_test() {
     assert!(read_protocol(&named).unwrap_err().to_string().contains("none.toml: no such file"));
 
     let test = parse_test(&file.to_toml(), &path).unwrap();
-    let body = test.geometry.unwrap();
-    assert_eq!((body.shape, body.sides, test.separation), (ball(), Sides::Two, Separation::Unilateral));
+    let body = test.analysis.geometry.unwrap();
+    assert_eq!((body.shape, body.sides, test.analysis.separation), (ball(), Sides::Two, Separation::Unilateral));
     assert_eq!(body.modulus, Some(1e5 * (1.0 / 3.0)));
     // A law in a test that is no material stays refused.
     let text = "law = { name = \"latency\", exponent = 2, rate_coefficient = \"1 /s\" }";

@@ -240,6 +240,5 @@ fn holds_can_be_given() {
     let text = "[[phases.hold]]\nfrom = \"500 ms\"\nto = \"2 s\"\n\n[[phases.hold]]\nfrom = \"1 min\"\nto = \"62 s\"\nmode = \"force\"";
     let test = test(text).unwrap();
     let hold = |from, to, mode| GivenHold { from, to, mode };
-    assert_eq!(test.given_holds, [hold(0.5, 2.0, None), hold(60.0, 62.0, Some(HoldMode::ForceHeld))]);
-    assert_eq!(test.analysis_options().given_holds, test.given_holds);
+    assert_eq!(test.analysis.given_holds, [hold(0.5, 2.0, None), hold(60.0, 62.0, Some(HoldMode::ForceHeld))]);
 }

@@ -50,7 +50,7 @@ fn silicone_has_two_clocks() {
     assert!(file.record.len() > 12_900 && file.record.len() <= file.rows);
     let most = file.record.displacement().unwrap().iter().fold(0.0f64, |most, d| most.max(*d));
     assert!((0.011..0.014).contains(&most), "{most}");
-    let phases = find_phases(&file.record, &test.segment).unwrap();
+    let phases = find_phases(&file.record, &test.analysis.segment).unwrap();
     // Four squeezes to each of three levels, and the releases between them.
     assert_eq!(phases.holds().count(), 24);
     let text = refused(&path).to_string();
@@ -125,7 +125,7 @@ fn silicone_is_held_up_and_down() {
     let Some(folder) = folder() else { return };
     let test = example("silicone-steps.toml");
     for (name, count) in [("1_7-5_Epin_20mm_v1.csv", 24), ("2_7-5_E2pin_20mm_capac_relax.csv", 9)] {
-        let found = holds(&open(&folder.join("silicone-steps").join(name), Some(&test)), &test.segment);
+        let found = holds(&open(&folder.join("silicone-steps").join(name), Some(&test)), &test.analysis.segment);
         println!("{name}: {found:?}");
         assert_eq!(found.len(), count, "{name}");
         let up = found.iter().filter(|hold| hold.2 == Some(After::Loading)).count();
@@ -148,7 +148,7 @@ fn a_tape_is_held_once_and_not_in_a_triangle() {
     assert!(matches!(found, Err(SegmentError::NoHold { .. })), "{found:?}");
     let test = example("silicone-steps.toml");
     let still = open(&folder.join("silicone-steps/1_10_E4pin_20mm_v7.csv"), Some(&test));
-    let found = phases(&still, &test.segment);
+    let found = phases(&still, &test.analysis.segment);
     assert!(found.is_err(), "{found:?}");
 }
 
@@ -158,7 +158,7 @@ fn a_gripper_holds_the_force() {
     let test = example("gripper.toml");
     let path = folder.join("gripper-fruit/banana_ForceData_20240824_210940_refined.csv");
     let file = open(&path, Some(&test));
-    let found = holds(&file, &test.segment);
+    let found = holds(&file, &test.analysis.segment);
     let begin = file.record.time()[0];
     for (start, end, after, mode) in &found {
         println!("banana {:.2} to {:.2} {after:?} {mode:?}", start - begin, end - begin);
