@@ -9,9 +9,9 @@ use super::{says, test};
 
 #[test]
 fn nothing_is_corrected_unasked() {
-    assert_eq!(test("").unwrap().corrections, CorrectionOptions::default());
+    assert_eq!(test("").unwrap().analysis.corrections, CorrectionOptions::default());
     let nothing = "clock.skew = \"report\"\nforce.baseline = \"none\"";
-    assert_eq!(test(nothing).unwrap().corrections, CorrectionOptions::default());
+    assert_eq!(test(nothing).unwrap().analysis.corrections, CorrectionOptions::default());
 }
 
 #[test]
@@ -21,14 +21,14 @@ fn all_that_can_be_asked_for() {
         force = { baseline = "sloped", baseline_window = ["0 s", "1 min"] }
         machine = { compliance = "0.5 um/N" }
     "#;
-    let asked = test(text).unwrap().corrections;
+    let asked = test(text).unwrap().analysis.corrections;
     assert_eq!((asked.skew, asked.resample), (SkewChoice::Given(-0.035), Some(1000.0)));
     assert_eq!((asked.baseline, asked.baseline_window), (Some(Baseline::Sloped), Some((0.0, 60.0))));
     assert_eq!(asked.compliance, Some(Compliance::Constant(5e-7)));
     assert_eq!(test(text).unwrap().analysis.corrections, asked);
-    assert_eq!(test("clock.skew = \"auto\"").unwrap().corrections.skew, SkewChoice::Auto);
+    assert_eq!(test("clock.skew = \"auto\"").unwrap().analysis.corrections.skew, SkewChoice::Auto);
     let table = "machine.compliance_table = [[\"0 N\", \"0 um\"], [\"10 N\", \"4 um\"]]";
-    let Some(Compliance::Table(table)) = test(table).unwrap().corrections.compliance else {
+    let Some(Compliance::Table(table)) = test(table).unwrap().analysis.corrections.compliance else {
         panic!("no table")
     };
     assert_eq!((table.range(), table.deflection(5.0)), ((0.0, 10.0), Some(2e-6)));
@@ -63,7 +63,7 @@ fn first_touch_by_a_rule() {
         ("ratio-of-variances", TouchMethod::VarianceRatio),
     ] {
         let text = format!("contact.touch = \"{name}\"");
-        assert_eq!(test(&text).unwrap().touch, ContactChoice::By(rule));
+        assert_eq!(test(&text).unwrap().analysis.touch, ContactChoice::By(rule));
     }
     says(test("contact.touch = \"magic\""), "contact.touch", "a rule (\"loading curve\", \"threshold\"", "");
 }

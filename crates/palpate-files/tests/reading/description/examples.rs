@@ -56,11 +56,11 @@ fn a_grip_loses_its_contact() {
 #[test]
 fn tests_say_what_they_should() {
     let ball = read_test(&folder("tests/ball-two-plates.toml")).expect("a test");
-    let body = ball.geometry.expect("a body");
+    let body = ball.analysis.geometry.expect("a body");
     assert_eq!((body.shape, body.sides), (Shape::Ball { radius: 0.035 }, Sides::Two));
-    assert_eq!((body.modulus, ball.touch), (Some(28e3), ContactChoice::Auto));
+    assert_eq!((body.modulus, ball.analysis.touch), (Some(28e3), ContactChoice::Auto));
     let silicone = read_test(&folder("tests/silicone-steps.toml")).expect("a test");
-    let body = silicone.geometry.expect("a body");
+    let body = silicone.analysis.geometry.expect("a body");
     assert_eq!(
         body.shape,
         Shape::Prism {
@@ -68,8 +68,8 @@ fn tests_say_what_they_should() {
             length: 0.02
         }
     );
-    assert_eq!((body.sides, silicone.separation), (Sides::One, Separation::Bonded));
+    assert_eq!((body.sides, silicone.analysis.separation), (Sides::One, Separation::Bonded));
     let tape = read_test(&folder("tests/vhb4910.toml")).expect("a test");
-    assert_eq!((tape.geometry, tape.until), (None, Some(600.0)));
-    assert_eq!(tape.segment.hold_start, HoldStart::AfterPeak(0.5));
+    assert_eq!((tape.analysis.geometry, tape.analysis.fit_until), (None, Some(600.0)));
+    assert_eq!(tape.analysis.segment.hold_start, HoldStart::AfterPeak(0.5));
 }

@@ -19,8 +19,8 @@ use super::{says, test};
 fn nothing_said_is_the_default() {
     let nothing = test("").unwrap();
     assert_eq!(nothing, TestDescription::default());
-    assert_eq!(nothing.exponents, [1.0, 2.0, 3.0, 5.0, 7.0]);
-    assert_eq!((nothing.touch, nothing.free_exponent), (ContactChoice::AsRecorded, true));
+    assert_eq!(nothing.analysis.exponents, [1.0, 2.0, 3.0, 5.0, 7.0]);
+    assert_eq!((nothing.analysis.touch, nothing.analysis.free_exponent), (ContactChoice::AsRecorded, true));
 }
 
 #[test]
@@ -66,29 +66,35 @@ fn everything_said() {
     assert_eq!((displacement.sign, displacement.unit.as_deref()), (-1.0, Some("mm")));
     assert_eq!(displacement.clock.unwrap().column, ColumnRef::Number(4));
     assert_eq!(all.columns.force.unwrap().column, None);
-    let body = all.geometry.unwrap();
+    let body = all.analysis.geometry.unwrap();
     assert_eq!((&body.shape, body.sides), (&Shape::Ball { radius: 0.035 }, Sides::One));
     assert_eq!(body.modulus, Some(28e3));
-    assert_eq!((all.separation, all.layers), (Separation::Bonded, Some(LayersChoice::Thickness(0.005))));
+    assert_eq!(
+        (all.analysis.separation, all.analysis.layers),
+        (Separation::Bonded, Some(LayersChoice::Thickness(0.005)))
+    );
     assert_eq!(LayersChoice::Thickness(0.005).layers(body.shape.depth(body.sides)).unwrap().count(), 0.035 / 0.005);
-    assert_eq!(all.touch, ContactChoice::Displacement(0.0025));
-    assert_eq!((all.segment.tolerance, all.segment.minimum_hold), (Some(5e-5), Some(2.0)));
-    assert_eq!((all.segment.still_below, all.segment.hold_start), (Some(0.03), HoldStart::AfterPeak(0.5)));
-    assert_eq!((all.exponents, all.free_exponent), (vec![1.0, 2.5], false));
-    assert_eq!((all.fit.exponent_range, all.fit.confidence), ((0.5, 9.0), 0.9));
-    assert_eq!(all.until, Some(600.0));
+    assert_eq!(all.analysis.touch, ContactChoice::Displacement(0.0025));
+    assert_eq!((all.analysis.segment.tolerance, all.analysis.segment.minimum_hold), (Some(5e-5), Some(2.0)));
+    assert_eq!(
+        (all.analysis.segment.still_below, all.analysis.segment.hold_start),
+        (Some(0.03), HoldStart::AfterPeak(0.5))
+    );
+    assert_eq!((all.analysis.exponents, all.analysis.free_exponent), (vec![1.0, 2.5], false));
+    assert_eq!((all.analysis.fit.exponent_range, all.analysis.fit.confidence), ((0.5, 9.0), 0.9));
+    assert_eq!(all.analysis.fit_until, Some(600.0));
 }
 
 #[test]
 fn the_shape_sets_what_is_usual() {
     let ball = test("[specimen]\nshape = \"ball\"\nradius = \"35 mm\"").unwrap();
-    assert_eq!((ball.touch, ball.separation), (ContactChoice::Auto, Separation::Unilateral));
-    assert_eq!(ball.geometry.unwrap().sides, Sides::Two);
+    assert_eq!((ball.analysis.touch, ball.analysis.separation), (ContactChoice::Auto, Separation::Unilateral));
+    assert_eq!(ball.analysis.geometry.unwrap().sides, Sides::Two);
     let block = test("[specimen]\nshape = \"block\"\narea = \"1 cm^2\"\nlength = \"2 cm\"").unwrap();
-    assert_eq!((block.touch, block.separation), (ContactChoice::AsRecorded, Separation::Bonded));
-    let body = block.geometry.unwrap();
+    assert_eq!((block.analysis.touch, block.analysis.separation), (ContactChoice::AsRecorded, Separation::Bonded));
+    let body = block.analysis.geometry.unwrap();
     assert_eq!((body.sides, body.shape.depth(body.sides), body.modulus), (Sides::One, 0.02, None));
-    assert_eq!(test("[specimen]\nshape = \"none\"").unwrap().geometry, None);
+    assert_eq!(test("[specimen]\nshape = \"none\"").unwrap().analysis.geometry, None);
 }
 
 #[test]

@@ -175,7 +175,7 @@ fn a_gripper_holds_the_force() {
     let path = std::fs::read_dir(folder.join("gripper-fruit")).unwrap().map(|entry| entry.unwrap().path());
     let path = path.into_iter().find(|path| path.to_string_lossy().contains("kiwi")).unwrap();
     let file = open(&path, Some(&kiwi));
-    let found = phases(&file, &kiwi.segment);
+    let found = phases(&file, &kiwi.analysis.segment);
     assert!(matches!(found, Err(SegmentError::Ruptured { .. })), "{found:?}");
 }
 
