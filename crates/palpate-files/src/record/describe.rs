@@ -139,26 +139,16 @@ fn write_unit(out: &mut String, column: &ColumnUse, info: &ColumnInfo) {
     let (dimension, factor) = (column.role.measured().dimension(), column.factor);
     let symbol = dimension.units()[0].0;
     let source = if info.unit.as_ref() == Some(&column.unit) { "from the file" } else { "as described" };
-    let unit = |out: &mut String, unit: &str| {
-        let _ = writeln!(out, "unit = {}    # {source}", quoted(unit));
+    let unit = |unit: &str| format!("unit = {}    # {source}\n", quoted(unit));
+    *out += &match (unit_factor(&column.unit, dimension), unit_factor(&column.unit, Dimension::Voltage)) {
+        _ if column.epoch && epoch::counts(info, factor) => unit(EPOCH),
+        _ if column.epoch && info.kind == ColumnKind::Number => unit(&column.unit),
+        _ if info.kind == ColumnKind::DateTime => String::new(),
+        (Some(plain), _) if factor == plain => unit(&column.unit),
+        (Some(_), _) => unit(&column.unit) + "doubled = true\n",
+        (None, Some(volts)) => format!("{}scale = \"{} {symbol}/V\"\n", unit(&column.unit), factor / volts),
+        (None, None) => format!("travel_per_unit = \"{factor} {symbol}\"\n"),
     };
-    match (unit_factor(&column.unit, dimension), unit_factor(&column.unit, Dimension::Voltage)) {
-        _ if column.epoch && epoch::counts(info, factor) => unit(out, EPOCH),
-        _ if column.epoch && info.kind == ColumnKind::Number => unit(out, &column.unit),
-        _ if info.kind == ColumnKind::DateTime => {}
-        (Some(plain), _) if factor == plain => unit(out, &column.unit),
-        (Some(_), _) => {
-            unit(out, &column.unit);
-            let _ = writeln!(out, "doubled = true");
-        }
-        (None, Some(volts)) => {
-            unit(out, &column.unit);
-            let _ = writeln!(out, "scale = \"{} {symbol}/V\"", factor / volts);
-        }
-        (None, None) => {
-            let _ = writeln!(out, "travel_per_unit = \"{factor} {symbol}\"");
-        }
-    }
 }
 
 fn write_questions(out: &mut String, part: &Part) {
