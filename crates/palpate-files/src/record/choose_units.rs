@@ -52,40 +52,38 @@ impl Chooser<'_> {
 
     /// A unit that nobody wrote down for this file, but the conventions of a machine, gives way to none in the header.
     fn refuse_contradiction(&self, found: &Found<'_>) -> Result<(), ColumnError> {
-        let Some(choice) = found.choice else { return Ok(()) };
-        match (&choice.unit_by, &choice.unit, &found.column.unit) {
-            (Some(machine), Some(said), Some(written)) if contradicts(found.role.measured(), choice, found.column) => {
-                Err(ColumnError::OtherUnit {
-                    column: found.column.into(),
-                    key: found.key(),
-                    units: Box::new(MachineUnit {
-                        machine: machine.clone(),
-                        said: said.clone(),
-                        written: written.clone(),
-                    }),
-                })
-            }
-            _ => Ok(()),
+        if let Some(choice) = found.choice
+            && let (Some(machine), Some(said), Some(written)) = (&choice.unit_by, &choice.unit, &found.column.unit)
+            && contradicts(found.role.measured(), choice, found.column)
+        {
+            return Err(ColumnError::OtherUnit {
+                column: found.column.into(),
+                key: found.key(),
+                units: Box::new(MachineUnit {
+                    machine: machine.clone(),
+                    said: said.clone(),
+                    written: written.clone(),
+                }),
+            });
         }
+        Ok(())
     }
 
     /// A unit in the name of a column and another one in the row of units, or beside the column in a typed file: nobody knows which holds.
     fn refuse_two_units(&self, found: &Found<'_>) -> Result<(), ColumnError> {
         let dimension = found.role.measured().dimension();
-        let (Some(name), Some(beside), None) = (&found.column.name, &found.column.unit, found.unit) else {
-            return Ok(());
-        };
-        let Some(in_name) = unit::split(name).1 else {
-            return Ok(());
-        };
-        match (unit_factor(&in_name, dimension), unit_factor(beside, dimension)) {
-            (Some(one), Some(other)) if (one / other - 1.0).abs() > 1e-9 => Err(ColumnError::TwoUnits {
+        if let (Some(name), Some(beside), None) = (&found.column.name, &found.column.unit, found.unit)
+            && let Some(in_name) = unit::split(name).1
+            && let (Some(one), Some(other)) = (unit_factor(&in_name, dimension), unit_factor(beside, dimension))
+            && (one / other - 1.0).abs() > 1e-9
+        {
+            return Err(ColumnError::TwoUnits {
                 column: found.column.into(),
                 key: found.key(),
                 units: Box::new((in_name, beside.clone())),
-            }),
-            _ => Ok(()),
+            });
         }
+        Ok(())
     }
 
     /// Units from the description, else from the header.

@@ -38,7 +38,7 @@ pub(crate) fn model(
             let given = [("layers", contact.layers.is_some()), ("layer_thickness", contact.layer_thickness.is_some())];
             if let Some((name, _)) = given.iter().find(|(_, given)| *given) {
                 let reason = "with a linear law, whose overshoot is a number of its own";
-                return Err(source.unused(&format!("contact.{name}"), reason, &format!("remove {name}")));
+                return Err(source.unused(format!("contact.{name}"), reason, format!("remove {name}")));
             }
             Ok(Contact::Linear(LinearContact {
                 specimen,

@@ -119,7 +119,7 @@ impl SpecimenTable {
         match given.iter().find(|(_, given)| *given) {
             Some((name, _)) => {
                 let reason = "in a test, whose strains are those of force over modulus and area";
-                Err(source.unused(&format!("specimen.{name}"), reason, &format!("keep {name} for a protocol")))
+                Err(source.unused(format!("specimen.{name}"), reason, format!("keep {name} for a protocol")))
             }
             None => Ok(()),
         }
@@ -158,7 +158,7 @@ impl SpecimenTable {
                         _ => format!("takes {}", wanted.join(", ")),
                     };
                     let reason = format!("with shape = \"{shape}\", which {sizes} (found {size})");
-                    return Err(source.unused(&key, &reason, &format!("remove {name}")));
+                    return Err(source.unused(&key, &reason, format!("remove {name}")));
                 }
                 None if wanted.contains(&name) => {
                     let example = match name {

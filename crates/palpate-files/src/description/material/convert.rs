@@ -50,9 +50,10 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
     let law: Law = table.law.parse().map_err(|error| {
         source.value("calibration.law", "a law such as \"latency\" or \"prony:2\"", &format!("{error}"))
     })?;
+    let (equilibrium, levels) = equilibrium(source, table.equilibrium, &model)?;
     let candidate = Candidate {
         law,
-        equilibrium: equilibrium(source, table.equilibrium, &model)?,
+        equilibrium,
         rate: match &model {
             Contact::Latency { rate, .. } => rate_law(*rate).0,
             Contact::Linear(_) => RateLaw::Constant,
@@ -66,7 +67,7 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
             shape: model.specimen().shape().clone(),
             sides: model.specimen().sides(),
             separation: model.separation(),
-            levels: levels(&model),
+            levels,
         },
         candidate,
         numbers,
@@ -120,21 +121,23 @@ fn version(source: &Source<'_>) -> Result<(), DescriptionError> {
     }
 }
 
+/// The law of the relaxed force, and the contact displacements of its table, if it is one, but for first touch.
 fn equilibrium(
     source: &Source<'_>,
     name: CalibratedEquilibriumName,
     model: &Contact,
-) -> Result<EquilibriumLaw, DescriptionError> {
-    let law = match model.specimen().equilibrium() {
-        Equilibrium::EvenStrain => EquilibriumLaw::EvenStrain,
-        Equilibrium::Hertz { poisson_ratio } => EquilibriumLaw::Hertz {
-            poisson_ratio: *poisson_ratio,
-        },
-        Equilibrium::Measured { .. } => EquilibriumLaw::Table,
+) -> Result<(EquilibriumLaw, Vec<f64>), DescriptionError> {
+    let (law, levels) = match model.specimen().equilibrium() {
+        Equilibrium::EvenStrain => (EquilibriumLaw::EvenStrain, Vec::new()),
+        Equilibrium::Hertz { poisson_ratio: ratio } => (EquilibriumLaw::Hertz { poisson_ratio: *ratio }, Vec::new()),
+        Equilibrium::Measured { force_per_displacement } => {
+            let places = force_per_displacement.points().into_iter().skip(1).map(|(place, _)| place);
+            (EquilibriumLaw::Table, places.collect())
+        }
     };
     let of_body = CalibratedEquilibriumName::from(law);
     if name == of_body {
-        return Ok(law);
+        return Ok((law, levels));
     }
     let expected = format!("\"{of_body}\" as in [specimen], what was changed by hand is calibrated no more");
     Err(source.value("calibration.equilibrium", expected, &format!("\"{name}\"")))
@@ -146,16 +149,6 @@ pub(super) fn rate_law(rate: RateDependence) -> (RateLaw, Option<f64>) {
         RateDependence::Constant => (RateLaw::Constant, None),
         RateDependence::Strain { factor } => (RateLaw::ByStrain, Some(factor)),
         RateDependence::Direction { factor } => (RateLaw::ByDirection, Some(factor)),
-    }
-}
-
-/// Contact displacements of the rows of a table of relaxed forces, but for first touch.
-fn levels(model: &Contact) -> Vec<f64> {
-    match model.specimen().equilibrium() {
-        Equilibrium::Measured { force_per_displacement } => {
-            force_per_displacement.points().into_iter().skip(1).map(|(place, _)| place).collect()
-        }
-        Equilibrium::EvenStrain | Equilibrium::Hertz { .. } => Vec::new(),
     }
 }
 

@@ -68,7 +68,7 @@ fn ramp(
     table: &StepTable,
     model: &Contact,
 ) -> Result<Option<ProgramStep>, DescriptionError> {
-    let both = |a: &str, b: &str| source.both(&key(a), &key(b));
+    let both = |a: &str, b: &str| source.both(key(a), key(b));
     match (&table.to, &table.to_force, &table.rate, &table.force_rate) {
         (Some(_), Some(_), ..) => Err(both("to", "to_force")),
         (_, _, Some(_), Some(_)) => Err(both("rate", "force_rate")),
@@ -113,7 +113,7 @@ fn hold(
         Ok((duration > 0.0).then_some(duration))
     };
     match (&table.hold, &table.hold_force) {
-        (Some(_), Some(_)) => Err(source.both(&key("hold"), &key("hold_force"))),
+        (Some(_), Some(_)) => Err(source.both(key("hold"), key("hold_force"))),
         (Some(hold), None) => Ok(duration("hold", hold)?.map(|duration| ProgramStep::HoldPosition { duration })),
         (None, Some(hold)) => Ok(duration("hold_force", hold)?.map(|duration| ProgramStep::HoldForce { duration })),
         (None, None) => Ok(None),

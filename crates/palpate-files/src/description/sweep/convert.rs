@@ -357,7 +357,7 @@ fn plan(source: &Source<'_>, table: &Table, numbers: &[SweptNumber]) -> Result<P
                 if let Some(given) = given {
                     let reason = format!("by a grid, whose runs are counted by its values (found {given})");
                     let remedy = format!("remove {key}, or set method = \"latin hypercube\"");
-                    return Err(source.unused(&format!("sweep.{key}"), &reason, &remedy));
+                    return Err(source.unused(format!("sweep.{key}"), &reason, &remedy));
                 }
             }
             let count = |number: &SweptNumber| match &number.values {

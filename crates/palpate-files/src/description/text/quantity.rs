@@ -27,7 +27,7 @@ impl QuantityText {
         }
     }
 
-    fn bare(number: impl ToString) -> Self {
+    fn bare(number: &impl ToString) -> Self {
         Self {
             text: number.to_string(),
             bare: true,
@@ -76,11 +76,11 @@ impl Visitor<'_> for Written {
     }
 
     fn visit_i64<E: Error>(self, number: i64) -> Result<QuantityText, E> {
-        Ok(QuantityText::bare(number))
+        Ok(QuantityText::bare(&number))
     }
 
     fn visit_f64<E: Error>(self, number: f64) -> Result<QuantityText, E> {
-        Ok(QuantityText::bare(number))
+        Ok(QuantityText::bare(&number))
     }
 }
 
