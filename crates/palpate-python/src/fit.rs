@@ -9,7 +9,7 @@ use palpate::fit::{
 };
 use palpate::laws::{Law, Response};
 use palpate::number::{significant, with_error};
-use palpate_report::result::termination_word;
+use palpate_report::result::word;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 
@@ -215,8 +215,8 @@ impl PyFit {
 
     /// Why the fit ended: "converged", or what kept it from that.
     #[getter]
-    fn termination(&self) -> &'static str {
-        termination_word(self.fit.termination)
+    fn termination(&self) -> String {
+        word(self.fit.termination)
     }
 
     /// Whether it ended at an optimum inside the range that was searched.
@@ -291,7 +291,7 @@ impl PyFit {
             fit.free_numbers(),
             significant(fit.residual_square, 6),
             significant(fit.rmse, 6),
-            termination_word(fit.termination),
+            word(fit.termination),
         );
         let width = fit.parameters.iter().map(|number| number.name.to_string().len()).max().unwrap_or(0) + 1;
         for number in &fit.parameters {
@@ -352,7 +352,7 @@ impl PyFit {
             format!("{}={value}", number.name)
         });
         let numbers: Vec<String> = numbers.collect();
-        format!("<palpate.Fit {}: {}; {}>", self.fit.law, numbers.join(", "), termination_word(self.fit.termination))
+        format!("<palpate.Fit {}: {}; {}>", self.fit.law, numbers.join(", "), word(self.fit.termination))
     }
 }
 

@@ -13,7 +13,7 @@ use numpy::{PyArray1, PyArrayMethods};
 use palpate::fit::{Fit, LawOptions, NumberUnit, Parameter, Samples, fit_law};
 use palpate::laws::Response;
 use palpate::watch::Cancelled;
-use palpate_report::result::termination_word;
+use palpate_report::result::word;
 use pyo3::prelude::*;
 use pyo3_arrow::PyChunkedArray;
 use pyo3_arrow::input::AnyArray;
@@ -230,7 +230,7 @@ fn table(asked: &Asked, fits: &[Fitted]) -> PyResult<Table> {
     columns.push(("residual_correlation".to_owned(), floats(&|fit| Some(fit.residual_correlation))));
     let samples = good().map(|fit| fit.map(|fit| fit.samples as i64)).collect::<Int64Array>();
     columns.push(("samples".to_owned(), Arc::new(samples)));
-    let ended = good().map(|fit| fit.map(|fit| termination_word(fit.termination))).collect::<StringArray>();
+    let ended = good().map(|fit| fit.map(|fit| word(fit.termination))).collect::<StringArray>();
     columns.push(("termination".to_owned(), Arc::new(ended)));
     let errors = fits.iter().map(|fit| fit.as_ref().err().cloned());
     columns.push(("error".to_owned(), Arc::new(errors.collect::<StringArray>())));

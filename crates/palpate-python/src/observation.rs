@@ -5,7 +5,7 @@ use palpate::grip::TimeToSlip;
 use palpate::number::significant;
 use palpate::observe::{Observation as Seen, Slip, SlipForecast};
 
-use palpate_report::result::{held_word, slip_word, slips_word, watched_phase_word};
+use palpate_report::result::{slips_word, word};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
@@ -83,9 +83,9 @@ attributes! { seen =>
     /// When, s.
     time_s: f64 = seen.time,
     /// What happens: "free", "loading", "holding" or "unloading".
-    phase: &'static str = watched_phase_word(seen.phase),
+    phase: String = word(seen.phase),
     /// What is held, "displacement" or "force"; None outside a hold.
-    held: Option<&'static str> = seen.held.map(held_word),
+    held: Option<String> = seen.held.map(word),
     /// When the hold began, s.
     held_since_s: Option<f64> = seen.held_since,
     /// True on the one tick that says that a hold began.
@@ -119,13 +119,13 @@ attributes! { seen =>
     /// Upper end of its interval, s; infinite where never lies inside.
     time_to_slip_high_s: Option<f64> = times(seen.time_to_slip).map(|times| times.2),
     /// "none", "soon" (slip within the time to warn cannot be excluded) or "slipping".
-    warning: &'static str = slip_word(seen.slip),
+    warning: String = word(seen.slip),
 }
 
 impl Observation {
     fn shown(&self) -> String {
         let seen = &self.seen;
-        let held = seen.held.map_or_else(String::new, |what| format!(" the {}", held_word(what)));
+        let held = seen.held.map_or_else(String::new, |what| format!(" the {}", word(what)));
         let slip = match (seen.slip, seen.time_to_slip) {
             (Slip::Slipping, _) => ", slipping".to_owned(),
             (
@@ -138,6 +138,6 @@ impl Observation {
             _ => String::new(),
         };
         let (time, force) = (significant(seen.time, 6), significant(seen.force, 4));
-        format!("<palpate.Observation at {time} s: {}{held}, {force} N{slip}>", watched_phase_word(seen.phase))
+        format!("<palpate.Observation at {time} s: {}{held}, {force} N{slip}>", word(seen.phase))
     }
 }

@@ -10,10 +10,9 @@ use arrow_schema::DataType;
 use numpy::PyArray1;
 use palpate::analysis::corrected;
 use palpate::record::Record as Measured;
-use palpate::segment::HoldMode;
 use palpate_jobs::input::{Described, Measurement, OpenedFile};
 use palpate_jobs::{Analyze, Calibrate, Compare};
-use palpate_report::result::{Input, after_word, phase_word};
+use palpate_report::result::{Input, word};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use pyo3_arrow::PyTable;
@@ -308,9 +307,9 @@ impl Record {
         let (time, displacement, force) = (cut.record.time(), cut.record.displacement(), cut.record.force());
         let at = |index: usize| displacement.map(|values| values[index]);
         Table::of(columns!(found.segments, segment =>
-            phase = phase_word(segment.phase), start_s = time[segment.start], end_s = time[segment.end - 1],
+            phase = word(segment.phase), start_s = time[segment.start], end_s = time[segment.end - 1],
             first_row = segment.start, last_row = segment.end - 1, mode = segment.mode.map(word),
-            after = segment.after.map(after_word), displacement_start_m = at(segment.start),
+            after = segment.after.map(word), displacement_start_m = at(segment.start),
             displacement_end_m = at(segment.end - 1), force_start_n = force[segment.start],
             force_end_n = force[segment.end - 1]
         ))
@@ -554,14 +553,5 @@ impl Record {
             self.input.title,
             self.record.len()
         )
-    }
-}
-
-/// The word of the library for what is held.
-fn word(mode: HoldMode) -> &'static str {
-    match mode {
-        HoldMode::DisplacementHeld => "displacement_held",
-        HoldMode::ForceHeld => "force_held",
-        HoldMode::Neither => "neither",
     }
 }

@@ -142,7 +142,7 @@ impl Cut {
             let end = record.displacement().map(|displacement| 1e3 * displacement[last]);
             table = table.row(vec![
                 Cell::text(format!("{:?}", segment.phase).to_lowercase()),
-                Cell::text(segment.mode.map_or("", mode_word)),
+                Cell::text(segment.mode.map(mode_word).unwrap_or_default()),
                 Cell::number(record.time()[segment.start], 6),
                 Cell::number(record.time()[last], 6),
                 Cell::Integer(segment.len() as i64),

@@ -1,8 +1,8 @@
 //! `palpate.analysis/1`: one analysed record.
 
-use palpate::analysis::{Analysis, HoldAnalysis, JointAnalysis, JointHolds, Signal};
-use palpate::fit::{Estimate, ExponentChoice, TrendVerdict};
-use palpate::segment::{After, RelaxationType};
+use palpate::analysis::{Analysis, HoldAnalysis, JointAnalysis, Signal};
+use palpate::fit::{Estimate, ExponentChoice};
+use palpate::segment::After;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ use super::fit::FitDocument;
 use super::settings::SettingsDocument;
 use super::signals::{CorrectionDocument, SignalsDocument, TouchDocument};
 use super::software::Software;
-use crate::result::{Input, after_word, mode_word, phase_word};
+use crate::result::{Input, mode_word, word};
 
 /// A stretch of the record in one phase.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -238,11 +238,7 @@ fn joint(joint: &JointAnalysis) -> JointDocument {
     let exponent = estimate("exponent").unwrap_or(Estimate::fixed(fixed));
     let trend = joint.comparison.trend.as_ref();
     JointDocument {
-        which: match joint.which {
-            JointHolds::Loading => "loading",
-            JointHolds::All => "all",
-        }
-        .to_owned(),
+        which: word(joint.which),
         holds: joint.holds.clone(),
         exponent: exponent.value,
         exponent_standard_error: exponent.standard_error,
@@ -253,20 +249,14 @@ fn joint(joint: &JointAnalysis) -> JointDocument {
         delta_bic: joint.comparison.delta_bic,
         trend_of_log_rate_coefficient: trend.map(|trend| trend.slope),
         trend_interval: trend.map(|trend| trend.interval.into()),
-        verdict: match joint.comparison.verdict {
-            TrendVerdict::Constant => "constant",
-            TrendVerdict::FallsWithStrain => "falls_with_strain",
-            TrendVerdict::RisesWithStrain => "rises_with_strain",
-            TrendVerdict::Undecided => "undecided",
-        }
-        .to_owned(),
+        verdict: word(joint.comparison.verdict),
     }
 }
 
 fn segments(analysis: &Analysis) -> Vec<SegmentDocument> {
     let time = analysis.record.time();
     let document = |segment: &palpate::segment::Segment| SegmentDocument {
-        phase: phase_word(segment.phase).to_owned(),
+        phase: word(segment.phase),
         start_s: time[segment.start],
         end_s: time[segment.end - 1],
         first_row: segment.start,
@@ -289,24 +279,15 @@ fn hold(hold: &HoldAnalysis) -> HoldDocument {
         end_s: hold.end,
         fit_start_s: hold.fit_start,
         displacement_m: hold.displacement,
-        after: hold.after.map(|after| after_word(after).to_owned()),
-        mode: hold.segment.mode.map(|mode| mode_word(mode).to_owned()),
-        relaxation: match hold.relaxation.kind {
-            RelaxationType::TypeI => "type_1",
-            RelaxationType::TypeII => "type_2",
-            RelaxationType::None => "none",
-        }
-        .to_owned(),
+        after: hold.after.map(word),
+        mode: hold.segment.mode.map(mode_word),
+        relaxation: word(hold.relaxation.kind),
         force_change_n: hold.relaxation.change,
         force_change_standard_error_n: hold.relaxation.standard_error,
         p_value: hold.relaxation.p_value,
         force_start_n: hold.force_start,
         force_end_n: hold.force_end,
-        signal: match hold.signal {
-            Signal::Strain => "strain",
-            Signal::Force => "force",
-        }
-        .to_owned(),
+        signal: word(hold.signal),
         fits: time.chain(rate).collect(),
         rate_bias: hold.rate_bias.map(|bias| RateBiasDocument {
             exponent: bias.exponent,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::comparison::NumberDocument;
 use super::software::Software;
-use crate::result::{CalibratedRecord, Input, termination_word};
+use crate::result::{CalibratedRecord, Input, word};
 
 /// A number of a calibrated law, in the unit at the end of its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -109,7 +109,7 @@ impl CalibrationDocument {
                 log_covariance: good
                     .and_then(|made| made.material.uncertainty.as_ref())
                     .map(|uncertainty| uncertainty.covariance.clone()),
-                termination: good.map(|made| termination_word(made.termination).to_owned()),
+                termination: good.map(|made| word(made.termination)),
                 error: made.as_ref().err().map(ToString::to_string),
             }
         };

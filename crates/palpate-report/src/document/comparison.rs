@@ -2,19 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use palpate::fit::{Estimate, Fit, Forecast, Loss, SampleChoice, SpectrumFit};
-use palpate::forecast::{CompareOptions, Comparison, RampChoice, Ranking, Row, Verdict};
-use palpate::laws::Response;
+use palpate::fit::{Estimate, Fit, Forecast, SampleChoice, SpectrumFit};
+use palpate::forecast::{CompareOptions, Comparison, Row, Verdict};
 use palpate::segment::HoldStart;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::finding::FindingDocument;
 use super::software::Software;
-use crate::result::{
-    ComparedHold, ComparedRecord, Input, LeftOut, Quantity, after_word, certainty_word, hold_start_word,
-    termination_word,
-};
+use crate::result::{ComparedHold, ComparedRecord, Input, LeftOut, Quantity, hold_start_word, word};
 
 /// A number of a law.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -229,24 +225,11 @@ impl ComparisonSettingsDocument {
     #[must_use]
     pub fn new(options: &CompareOptions, hold_start: HoldStart, fit_until: Option<f64>) -> Self {
         Self {
-            response: match options.fit.response {
-                Response::Relaxation => "relaxation",
-                Response::Creep => "creep",
-            }
-            .to_owned(),
+            response: word(options.fit.response),
             laws: options.laws().iter().map(ToString::to_string).collect(),
             cuts: options.cuts.clone(),
-            ramps: match options.ramps {
-                RampChoice::Step => "step",
-                RampChoice::Measured => "measured",
-            }
-            .to_owned(),
-            loss: match options.fit.loss {
-                Loss::Squares => "squares",
-                Loss::Huber => "huber",
-                Loss::Tukey => "tukey",
-            }
-            .to_owned(),
+            ramps: word(options.ramps),
+            loss: word(options.fit.loss),
             samples: match options.fit.samples {
                 SampleChoice::All => "all".to_owned(),
                 SampleChoice::LogSpaced(count) => format!("log:{count}"),
@@ -273,7 +256,7 @@ impl From<&ComparedHold> for ComparedHoldDocument {
         let is_creep = hold.quantity == Quantity::Displacement;
         Self {
             index: hold.number,
-            after: hold.after.map(|after| after_word(after).to_owned()),
+            after: hold.after.map(word),
             start_s: hold.start,
             end_s: hold.end,
             fit_start_s: hold.fit_start,
@@ -299,11 +282,7 @@ impl HoldComparisonDocument {
                 Quantity::Displacement => "m",
             }
             .to_owned(),
-            ranking: match comparison.ranking {
-                Ranking::Forward => "forward",
-                Ranking::Information => "information",
-            }
-            .to_owned(),
+            ranking: word(comparison.ranking),
             cuts_s: comparison.cuts.clone(),
             change: comparison.change,
             noise: comparison.noise,
@@ -318,7 +297,7 @@ impl HoldComparisonDocument {
 fn verdict(comparison: &Comparison, verdict: &Verdict) -> VerdictDocument {
     VerdictDocument {
         law: verdict.law.to_string(),
-        certainty: certainty_word(verdict.certainty).to_owned(),
+        certainty: word(verdict.certainty),
         alike: verdict.alike.iter().map(ToString::to_string).collect(),
         cuts_won: verdict.cuts_won,
         costs: verdict.costs.iter().map(|(law, cost)| (law.to_string(), finite(*cost))).collect(),
@@ -343,7 +322,7 @@ fn law(row: &Row, change: f64, lowest_aicc: f64, quantity: Quantity) -> LawDocum
         delta_bic: row.delta_bic.and_then(finite),
         forecasts: row.forward.forecasts.iter().map(|found| found.map(|found| forecast(&found, change))).collect(),
         forward_score: row.forward.score,
-        termination: fit.map(|fit| termination_word(fit.termination).to_owned()),
+        termination: fit.map(|fit| word(fit.termination)),
         error: without.map(ToString::to_string),
     }
 }

@@ -1,8 +1,10 @@
 //! A finding with its words.
 
-use palpate::analysis::{Finding, Severity};
+use palpate::analysis::Finding;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+use crate::result::word;
 
 /// A finding with its words.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -23,12 +25,7 @@ impl From<&Finding> for FindingDocument {
     fn from(finding: &Finding) -> Self {
         Self {
             code: finding.code().to_owned(),
-            severity: match finding.severity() {
-                Severity::Info => "info",
-                Severity::Caution => "caution",
-                Severity::Warning => "warning",
-            }
-            .to_owned(),
+            severity: word(finding.severity()),
             seen: finding.seen(),
             meaning: finding.meaning().to_owned(),
             remedy: finding.remedy().to_owned(),

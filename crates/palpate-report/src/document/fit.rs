@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use palpate::analysis::{HoldAnalysis, HoldoutError, Signal};
-use palpate::fit::{Domain, Estimate, ExponentChoice, LatencyFit};
+use palpate::fit::{Estimate, ExponentChoice, LatencyFit};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::result::termination_word;
+use crate::result::word;
 
 /// The latency law fitted to one hold.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -61,11 +61,7 @@ impl FitDocument {
         let newtons = hold.force_per_signal;
         let mut document = Self {
             law: "latency".to_owned(),
-            domain: match fit.domain {
-                Domain::Time => "time",
-                Domain::Rate => "rate",
-            }
-            .to_owned(),
+            domain: word(fit.domain),
             exponent: fit.exponent().value,
             exponent_fixed: fit.choice() != ExponentChoice::Free,
             equilibrium_strain: is_strain.then_some(fit.equilibrium().value),
@@ -81,7 +77,7 @@ impl FitDocument {
             samples: fit.samples,
             delta_bic,
             prediction_error: prediction.map(|prediction| prediction.relative),
-            termination: termination_word(fit.termination).to_owned(),
+            termination: word(fit.termination),
         };
         document.note("exponent", fit.exponent(), 1.0);
         document.note("equilibrium_force_n", fit.equilibrium(), newtons);

@@ -1,13 +1,11 @@
 //! `palpate.grip/1`: a planned grip.
 
-use palpate::grip::{
-    BackOff, Control, ForceHold, Holding, Move, Objective, PlanKind, Regrip, Schedule, Sensitivity, TimeToSlip,
-};
+use palpate::grip::{BackOff, ForceHold, Holding, Move, PlanKind, Regrip, Schedule, Sensitivity, TimeToSlip};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::software::Software;
-use crate::result::GrippedBody;
+use crate::result::{GrippedBody, word};
 
 /// The load and what holds it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -364,11 +362,6 @@ impl GripDocument {
     pub fn new(body: &GrippedBody<'_>) -> Self {
         let (answer, grasp, limits) = (&body.answer, body.grip.grasp(), body.grip.limits());
         let question = &answer.question;
-        let objective = match question.objective {
-            Objective::Squeeze => "squeeze",
-            Objective::PeakForce => "peak_force",
-            Objective::Work => "work",
-        };
         let refused = body.refused().into_iter().map(|(grip, error)| RefusedDocument {
             grip: grip.to_owned(),
             reason: error.to_string(),
@@ -400,15 +393,11 @@ impl GripDocument {
                 force_n: limits.force,
                 closing_s: limits.closing,
             },
-            control: match question.control {
-                Control::Position => "position",
-                Control::Force => "force",
-            }
-            .to_owned(),
+            control: word(question.control),
             duration: question
                 .duration
                 .map(|time| if time.is_finite() { TimeToSlip::After(time) } else { TimeToSlip::Never }.into()),
-            objective: question.squeeze.is_none().then(|| objective.to_owned()),
+            objective: question.squeeze.is_none().then(|| word(question.objective)),
             assured: question.assured,
             holds: answer.holds() == Ok(true),
             verdict: body.verdict(),

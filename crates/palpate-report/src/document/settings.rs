@@ -1,13 +1,13 @@
 //! The settings that an analysis ran with, defaults and derived thresholds included.
 
-use palpate::analysis::{Analysis, ModulusSource};
-use palpate::contact::{Shape, Sides};
+use palpate::analysis::Analysis;
+use palpate::contact::Sides;
 use palpate::segment::ContactChoice;
 use palpate::simulate::Separation;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::result::hold_start_word;
+use crate::result::{hold_start_word, word};
 
 /// Resolved settings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -74,41 +74,16 @@ pub struct SettingsDocument {
 impl SettingsDocument {
     pub(super) fn new(analysis: &Analysis) -> Self {
         let (options, segment) = (&analysis.options, &analysis.segmentation.settings);
-        let shape = options.geometry.as_ref().map(|geometry| &geometry.shape);
+        let shape = serde_json::to_value(options.geometry.as_ref().map(|geometry| &geometry.shape)).unwrap_or_default();
         let sides = options.geometry.as_ref().map(|geometry| geometry.sides);
         Self {
-            shape: match shape {
-                Some(Shape::Ball { .. }) => "ball",
-                Some(Shape::Pad { .. }) => "pad",
-                Some(Shape::Prism { .. }) => "prism",
-                Some(Shape::Profile { .. }) => "profile",
-                None => "none",
-            }
-            .to_owned(),
-            radius_m: match shape {
-                Some(Shape::Ball { radius } | Shape::Pad { radius, .. }) => Some(*radius),
-                _ => None,
-            },
-            thickness_m: match shape {
-                Some(Shape::Pad { thickness, .. }) => Some(*thickness),
-                _ => None,
-            },
-            area_m2: match shape {
-                Some(Shape::Prism { area, .. }) => Some(*area),
-                _ => None,
-            },
-            length_m: match shape {
-                Some(Shape::Prism { length, .. }) => Some(*length),
-                _ => None,
-            },
+            shape: shape["kind"].as_str().unwrap_or("none").to_owned(),
+            radius_m: shape["radius"].as_f64(),
+            thickness_m: shape["thickness"].as_f64(),
+            area_m2: shape["area"].as_f64(),
+            length_m: shape["length"].as_f64(),
             modulus_pa: analysis.specimen.as_ref().map(palpate::contact::Specimen::modulus),
-            modulus_source: analysis.modulus_source.map(|source| {
-                match source {
-                    ModulusSource::Given => "given",
-                    ModulusSource::Estimated => "estimated",
-                }
-                .to_owned()
-            }),
+            modulus_source: analysis.modulus_source.map(word),
             sides: sides.map(|sides| if sides == Sides::Two { 2 } else { 1 }),
             phases_from_displacement: segment.from_displacement,
             noise: segment.noise,

@@ -1,9 +1,11 @@
 //! What the columns of a record are like, and what was done to them.
 
 use palpate::analysis::Analysis;
-use palpate::record::{Baseline, Clock, Column, Correction, Stamps, Values};
+use palpate::record::{Correction, Stamps, Values};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+use crate::result::word;
 
 /// The columns of a record as they came into the analysis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -150,12 +152,6 @@ impl From<&Correction> for CorrectionDocument {
 type Numbers = Vec<(&'static str, serde_json::Value)>;
 
 fn parts(done: &Correction) -> (&'static str, Numbers) {
-    let clock = |clock: &Clock| match clock {
-        Clock::Common => "common",
-        Clock::Displacement => "displacement",
-        Clock::Force => "force",
-    };
-    let column = |column: &Column| column.name();
     match done {
         Correction::StampsSorted {
             clock: of,
@@ -163,7 +159,7 @@ fn parts(done: &Correction) -> (&'static str, Numbers) {
             largest,
         } => (
             "stamps_sorted",
-            vec![("clock", clock(of).into()), ("rows", (*rows).into()), ("largest_step_back_s", (*largest).into())],
+            vec![("clock", word(of).into()), ("rows", (*rows).into()), ("largest_step_back_s", (*largest).into())],
         ),
         Correction::StampsMerged {
             clock: of,
@@ -173,7 +169,7 @@ fn parts(done: &Correction) -> (&'static str, Numbers) {
         } => (
             "stamps_merged",
             vec![
-                ("clock", clock(of).into()),
+                ("clock", word(of).into()),
                 ("rows", (*rows).into()),
                 ("merged", (*merged).into()),
                 ("identical", (*identical).into()),
@@ -184,7 +180,7 @@ fn parts(done: &Correction) -> (&'static str, Numbers) {
         }
         Correction::ClocksJoined { left_out } => ("clocks_joined", vec![("rows_left_out", (*left_out).into())]),
         Correction::DropoutsReplaced { column: of, count } => {
-            ("dropouts_replaced", vec![("column", column(of).into()), ("rows", (*count).into())])
+            ("dropouts_replaced", vec![("column", word(of).into()), ("rows", (*count).into())])
         }
         Correction::Tared(tare) => {
             ("tared", vec![("force_n", tare.force.into()), ("displacement_m", tare.displacement.into())])
@@ -222,17 +218,14 @@ fn parts(done: &Correction) -> (&'static str, Numbers) {
             level,
             slope,
             samples,
-        } => {
-            let kind = if *baseline == Baseline::Sloped { "sloped" } else { "constant" };
-            (
-                "baseline_removed",
-                vec![
-                    ("baseline", kind.into()),
-                    ("level_n", (*level).into()),
-                    ("slope_n_per_s", (*slope).into()),
-                    ("samples", (*samples).into()),
-                ],
-            )
-        }
+        } => (
+            "baseline_removed",
+            vec![
+                ("baseline", word(baseline).into()),
+                ("level_n", (*level).into()),
+                ("slope_n_per_s", (*slope).into()),
+                ("samples", (*samples).into()),
+            ],
+        ),
     }
 }

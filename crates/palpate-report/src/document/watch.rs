@@ -6,7 +6,7 @@ use palpate::observe::{Held, Observation, Slip, SlipForecast};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::result::{held_word, slip_word, slips_word, watched_phase_word};
+use crate::result::{slips_word, word};
 
 /// One line: a tick or an event, the end of a hold, or the holds of the whole log. What is not known is left out.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -164,16 +164,16 @@ impl ObservationDocument {
             excess_strain: strain,
             excess_strain_deviation: strain_deviation,
             force_n: seen.force,
-            held: hold.map(|(held, _)| held_word(held).to_owned()),
+            held: hold.map(|(held, _)| word(held)),
             held_since_s: hold.map(|(_, since)| since),
-            phase: watched_phase_word(seen.phase).to_owned(),
+            phase: word(seen.phase),
             relative_rate_per_s: seen.relative_rate,
             slips: seen.time_to_slip.map(|time| slips_word(time).to_owned()),
             time_s: seen.time,
             time_to_slip_high_s: times.map(|(_, _, high)| high),
             time_to_slip_low_s: times.map(|(_, low, _)| low),
             time_to_slip_s: times.map(|(value, _, _)| value),
-            warning: (seen.time_to_slip.is_some() || seen.slip != Slip::None).then(|| slip_word(seen.slip).to_owned()),
+            warning: (seen.time_to_slip.is_some() || seen.slip != Slip::None).then(|| word(seen.slip)),
         }
     }
 }
@@ -191,7 +191,7 @@ impl WatchedHoldDocument {
             event: None,
             force_end_n: force_end,
             force_start_n: force_start,
-            held: held_word(held).to_owned(),
+            held: word(held),
             slipped_s: None,
             start_s: start,
             time_s: None,

@@ -5,7 +5,7 @@ use palpate::fit::{NoiseModel, Termination};
 use palpate::number::significant;
 
 use super::input::Input;
-use super::words::termination_word;
+use super::words::word;
 
 /// Candidates calibrated on one record; the first is the one that is asked for, the others are its rivals.
 #[derive(Debug)]
@@ -90,7 +90,7 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
             Termination::IterationLimit => "The search used up its steps on the way to an optimum.".to_owned(),
             at_bound => format!(
                 "The search ended at the edge of what is sought ({}): the record leaves a number open.",
-                termination_word(at_bound).replace('_', " ")
+                word(at_bound).replace('_', " ")
             ),
         };
         remarks.push(format!("{how} The numbers have no intervals."));

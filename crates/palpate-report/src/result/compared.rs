@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::input::Input;
-use super::words::after_word;
+use super::words::word;
 use crate::number::significant;
 
 /// What the laws were fitted to.
@@ -165,7 +165,7 @@ impl From<CreepHold> for ComparedHold {
 impl ComparedHold {
     /// "Hold 2, after loading, 10.00 mm", or "…, 6.00 N" in creep.
     pub(crate) fn title(&self) -> String {
-        let after = self.after.map_or(String::new(), |after| format!(", after {}", after_word(after)));
+        let after = self.after.map_or(String::new(), |after| format!(", after {}", word(after)));
         format!("Hold {}{after}{}", self.number, self.held())
     }
 

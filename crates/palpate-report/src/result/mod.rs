@@ -26,7 +26,5 @@ pub(crate) use grip_sentences::lasted;
 pub use gripped::GrippedBody;
 pub use input::Input;
 pub use reproduced::{Check, ReproducedTest, Reproduction};
-pub use words::{
-    after_word, held_word, mode_word, phase_word, slip_word, slips_word, termination_word, watched_phase_word,
-};
-pub(crate) use words::{certainty_word, hold_start_word, percent};
+pub(crate) use words::{hold_start_word, percent};
+pub use words::{mode_word, slips_word, word};

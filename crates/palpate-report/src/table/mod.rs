@@ -1,22 +1,24 @@
 //! Tables: written once, read as CSV by machines and as text or HTML by people.
 //!
 //! ```
-//! use palpate_report::table::{Cell, Table, TableColumn};
+//! use palpate_report::table::{Cell, Table};
 //!
-//! let table = Table::new("law", "Fitted law.")
-//!     .column(TableColumn::new("Hold", "hold", ""))
-//!     .column(TableColumn::new("Rate coefficient", "rate_coefficient_per_s", "s⁻¹"))
-//!     .row(vec![Cell::Integer(1), Cell::number(0.012_345, 3)])
-//!     .row(vec![Cell::Integer(2), Cell::missing("hold too short")]);
+//! let holds = [(1, Some(0.012_345)), (2, None)];
+//! let table = Table::of("law", "Fitted law.", &holds)
+//!     .column("Hold", "hold", "", |(number, _)| Cell::Integer(*number))
+//!     .column("Rate coefficient", "rate_coefficient_per_s", "s⁻¹", |(_, v)| Cell::number_or(*v, 3, "hold too short"))
+//!     .table();
 //! assert_eq!(table.to_csv(), "hold,rate_coefficient_per_s\r\n1,0.012345\r\n2,\r\n");
 //! ```
 
 mod cell;
+mod columns;
 mod csv;
 mod markdown;
 mod plain;
 
 pub use cell::Cell;
+pub use columns::Columns;
 
 /// One column of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use palpate::observe::{Held, Observation, Slip};
 use palpate_jobs::{Event, HoldSeen};
 use palpate_report::number::significant;
-use palpate_report::result::held_word;
+use palpate_report::result::word;
 use palpate_report::table::{Cell, Table, TableColumn};
 
 use super::Shown;
@@ -97,7 +97,7 @@ pub(super) fn summary(holds: &[HoldSeen], slip_force: Option<f64>) -> String {
     for hold in holds {
         let unknown = if hold.held == Held::Force { "force held" } else { "not known" };
         let mut row = vec![
-            Cell::text(held_word(hold.held)),
+            Cell::text(word(hold.held)),
             Cell::number(hold.since, 5),
             Cell::number(hold.until, 5),
             Cell::number(hold.forces.0, 4),

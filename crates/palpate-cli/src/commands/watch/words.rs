@@ -4,7 +4,7 @@ use palpate::fit::Estimate;
 use palpate::grip::TimeToSlip;
 use palpate::number::{significant, with_error};
 use palpate::observe::{Observation, Slip, SlipForecast};
-use palpate_report::result::{held_word, watched_phase_word};
+use palpate_report::result::word;
 
 /// A value ± its standard deviation, to the digits that it has.
 pub(super) fn uncertain(number: Estimate, unit: &str) -> String {
@@ -44,8 +44,8 @@ pub(super) fn slip(seen: &Observation) -> Option<String> {
 pub(super) fn state(seen: &Observation) -> String {
     match (seen.held, seen.held_since) {
         (Some(what), Some(since)) => {
-            format!("{} held since {} s", held_word(what), significant(since, 5))
+            format!("{} held since {} s", word(what), significant(since, 5))
         }
-        _ => watched_phase_word(seen.phase).to_owned(),
+        _ => word(seen.phase),
     }
 }

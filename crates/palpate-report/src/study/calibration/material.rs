@@ -6,7 +6,7 @@ use palpate::fit::Interval;
 use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
 use crate::number::{counted, significant};
 use crate::page::{Block, Page, Section};
-use crate::result::{CalibratedRecord, percent, termination_word};
+use crate::result::{CalibratedRecord, percent, word};
 use crate::study::bundle::StudyError;
 use crate::table::{Cell, Table, TableColumn};
 use crate::wrap::wrapped;
@@ -58,7 +58,7 @@ fn laws(record: &CalibratedRecord) -> Table {
                 if let Some(foretold) = made.foretold {
                     row.extend([Cell::number(foretold.rmse, 3), Cell::number(100.0 * foretold.relative, 3)]);
                 }
-                row.push(Cell::text(termination_word(made.termination).replace('_', " ")));
+                row.push(Cell::text(word(made.termination).replace('_', " ")));
                 row
             }
             Err(error) => {

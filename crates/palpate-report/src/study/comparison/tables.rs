@@ -4,7 +4,7 @@ use palpate::forecast::{Certainty, Comparison, Ranking, Row, Verdict};
 use palpate::laws::Law;
 
 use crate::number::significant;
-use crate::result::{ComparedHold, ComparedRecord, LeftOut, certainty_word, termination_word};
+use crate::result::{ComparedHold, ComparedRecord, LeftOut, word};
 use crate::study::findings;
 use crate::table::{Cell, Table, TableColumn};
 use crate::wrap::wrapped;
@@ -32,7 +32,7 @@ fn ending(row: &Row) -> Cell {
     match &row.fit {
         _ if row.spectrum.is_some() => Cell::text("converged"),
         Err(_) => Cell::missing(NO_FIT),
-        Ok(fit) => Cell::text(match termination_word(fit.termination) {
+        Ok(fit) => Cell::text(match word(fit.termination).as_str() {
             bound if bound.ends_with("_at_bound") => "at bound".to_owned(),
             "singular" => "merged".to_owned(),
             other => other.replace('_', " "),
@@ -145,7 +145,7 @@ pub(in crate::study) fn verdicts(record: &ComparedRecord) -> Option<Table> {
             Cell::text(verdict.law.to_string()),
             chosen.map_or(Cell::missing(NO_FIT), parameters),
             percent(chosen.and_then(|row| row.forward.score), 2, "too short to foretell: ranked by BIC"),
-            Cell::text(certainty_word(verdict.certainty)),
+            Cell::text(word(verdict.certainty)),
             Cell::Integer(verdict.alike.len() as i64 - 1),
             Cell::text(format!("{} of {}", verdict.cuts_won, comparison.cuts.len())),
         ]);
@@ -290,7 +290,7 @@ fn overview(comparison: &Comparison, law: Law) -> String {
 
 fn sure(verdict: &Verdict) -> String {
     match (verdict.certainty, verdict.alike.len()) {
-        (Certainty::Clear | Certainty::Likely, 1) => certainty_word(verdict.certainty).to_owned(),
-        (certainty, alike) => format!("{}, {} as good", certainty_word(certainty), alike - 1),
+        (Certainty::Clear | Certainty::Likely, 1) => word(verdict.certainty),
+        (certainty, alike) => format!("{}, {} as good", word(certainty), alike - 1),
     }
 }

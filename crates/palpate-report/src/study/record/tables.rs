@@ -1,19 +1,15 @@
 //! Tables of an analysed record.
 
-use palpate::analysis::{Analysis, HoldAnalysis, JointHolds, Signal};
-use palpate::fit::{Domain, Estimate, ExponentChoice, LatencyFit, Termination, TrendVerdict};
+use palpate::analysis::{Analysis, HoldAnalysis, HoldoutError, JointAnalysis, JointHolds, Signal};
+use palpate::fit::{Domain, Estimate, ExponentChoice, LatencyFit, SharedTrend, Termination};
 use palpate::record::Correction;
 use palpate::segment::{After, RelaxationType};
 
 use crate::number::significant;
-use crate::result::{ComparedRecord, Input, after_word, mode_word, termination_word};
+use crate::result::{ComparedRecord, Input, mode_word, word};
 use crate::study::comparison::tables as comparison_tables;
 use crate::study::findings;
-use crate::table::{Cell, Table, TableColumn};
-
-fn column(heading: &str, key: &str, unit: &str) -> TableColumn {
-    TableColumn::new(heading, key, unit)
-}
+use crate::table::{Cell, Table};
 
 /// An exponent as people write it: 5, not 5.000.
 fn order(n: f64) -> Cell {
@@ -78,75 +74,76 @@ fn untold(done: &Correction) -> Option<String> {
 
 /// One row a hold: where it lies, what the force does.
 pub(super) fn holds(analysis: &Analysis) -> Table {
-    let mut table = Table::new("holds", "The holds that were found.")
-        .column(column("Hold", "hold", ""))
-        .column(column("After", "after", ""))
-        .column(column("Held", "mode", ""))
-        .column(column("From", "start_s", "s"))
-        .column(column("To", "end_s", "s"))
-        .column(column("Fit from", "fit_start_s", "s"))
-        .column(column("Displacement", "displacement_mm", "mm"))
-        .column(column("Force at fit start", "force_start_n", "N"))
-        .column(column("Force at end", "force_end_n", "N"))
-        .column(column("Relaxation", "relaxation", ""))
-        .column(column("Significance", "p_value", ""));
-    for hold in &analysis.holds {
-        table = table.row(vec![
-            Cell::Integer(hold.number as i64),
-            Cell::text(hold.after.map_or("", after_word)),
-            Cell::text(hold.segment.mode.map_or("", mode_word)),
-            Cell::number(hold.start, 6),
-            Cell::number(hold.end, 6),
-            Cell::number(hold.fit_start, 6),
-            Cell::number_or(hold.displacement.map(|d| 1e3 * d), 4, "not recorded"),
-            Cell::number(hold.force_start, 4),
-            Cell::number(hold.force_end, 4),
+    Table::of("holds", "The holds that were found.", &analysis.holds)
+        .column("Hold", "hold", "", |hold| Cell::Integer(hold.number as i64))
+        .column("After", "after", "", |hold| Cell::text(hold.after.map(word).unwrap_or_default()))
+        .column("Held", "mode", "", |hold| Cell::text(hold.segment.mode.map(mode_word).unwrap_or_default()))
+        .column("From", "start_s", "s", |hold| Cell::number(hold.start, 6))
+        .column("To", "end_s", "s", |hold| Cell::number(hold.end, 6))
+        .column("Fit from", "fit_start_s", "s", |hold| Cell::number(hold.fit_start, 6))
+        .column("Displacement", "displacement_mm", "mm", displacement)
+        .column("Force at fit start", "force_start_n", "N", |hold| Cell::number(hold.force_start, 4))
+        .column("Force at end", "force_end_n", "N", |hold| Cell::number(hold.force_end, 4))
+        .column("Relaxation", "relaxation", "", |hold| {
             Cell::text(match hold.relaxation.kind {
                 RelaxationType::TypeI => "Type I",
                 RelaxationType::TypeII => "Type II",
                 RelaxationType::None => "none",
-            }),
-            if hold.relaxation.p_value < 1e-4 {
-                Cell::text("< 0.0001")
-            } else {
-                Cell::number(hold.relaxation.p_value, 2)
-            },
-        ]);
-    }
-    table
+            })
+        })
+        .column("Significance", "p_value", "", |hold| match hold.relaxation.p_value {
+            p if p < 1e-4 => Cell::text("< 0.0001"),
+            p => Cell::number(p, 2),
+        })
+        .table()
         .note("Held: what the machine kept, the displacement (the force relaxes), the force (the displacement creeps) or neither.")
         .note("Type I: the force falls; Type II: it rises. The laws are fitted from the time “Fit from” on, which may lie after the start of the hold.")
         .note("Significance: probability that noise alone makes a change of the force of this size.")
 }
 
+/// The displacement that was held.
+fn displacement(hold: &HoldAnalysis) -> Cell {
+    Cell::number_or(hold.displacement.map(|d| 1e3 * d), 4, "not recorded")
+}
+
 /// Every fit of every hold, both domains.
 pub(super) fn fits(analysis: &Analysis) -> Table {
-    let signal = analysis.holds.iter().map(|hold| hold.signal).next();
-    let (equilibrium, unit) = match signal {
+    let (key, unit) = match analysis.holds.first().map(|hold| hold.signal) {
         Some(Signal::Strain) => ("equilibrium_strain", ""),
         _ => ("equilibrium_force_n", "N"),
     };
-    let mut table = Table::new("fits", "Every law fitted to every hold.")
-        .column(column("Hold", "hold", ""))
-        .column(column("Domain", "domain", ""))
-        .column(column("n", "exponent", ""))
-        .column(column("Equilibrium", equilibrium, unit))
-        .column(column("λ", "relative_rate_per_s", "s⁻¹"))
-        .column(column("v", "rate_coefficient_per_s", "s⁻¹"))
-        .column(column("RMSE", "rmse", ""))
-        .column(column("ΔBIC", "delta_bic", ""))
-        .column(column("Beyond window", "prediction_error", ""))
-        .column(column("Ended", "termination", ""));
-    for note in analysis.holds.iter().filter_map(rate_bias_note) {
-        table = table.note(note);
-    }
+    let mut rows: Vec<(&HoldAnalysis, usize, &LatencyFit)> = Vec::new();
     for hold in &analysis.holds {
-        let rates = hold.rate_fits.iter().flatten();
-        for (i, fit) in hold.fits.iter().chain(rates).enumerate() {
-            table = table.row(fit_row(hold, fit, i));
-        }
+        let fits = hold.fits.iter().chain(hold.rate_fits.iter().flatten());
+        rows.extend(fits.enumerate().map(|(i, fit)| (hold, i, fit)));
     }
-    table
+    let in_time = |fit: &LatencyFit| fit.domain == Domain::Time;
+    let table = Table::of("fits", "Every law fitted to every hold.", &rows)
+        .column("Hold", "hold", "", |(hold, ..)| Cell::Integer(hold.number as i64))
+        .column("Domain", "domain", "", |(.., fit)| Cell::text(word(fit.domain)))
+        .column("n", "exponent", "", |(.., fit)| match fit.choice() {
+            ExponentChoice::Fixed(n) => order(n),
+            ExponentChoice::Free => free_exponent(fit),
+        })
+        .column("Equilibrium", key, unit, |(hold, _, fit)| equilibrium(hold, fit))
+        .column("λ", "relative_rate_per_s", "s⁻¹", |(.., fit)| rate(fit, fit.relative_rate()))
+        .column("v", "rate_coefficient_per_s", "s⁻¹", |(hold, _, fit)| match hold.signal {
+            Signal::Strain => rate(fit, fit.rate_coefficient()),
+            Signal::Force => Cell::missing("no strain"),
+        })
+        .column("RMSE", "rmse", "", |(.., fit)| Cell::number(fit.rmse, 3))
+        .column("ΔBIC", "delta_bic", "", |(hold, i, fit)| {
+            let order = hold.order.as_ref().filter(|_| in_time(fit));
+            Cell::number_or(order.map(|order| order.candidates[*i].delta_bic), 3, "time domain only")
+        })
+        .column("Beyond window", "prediction_error", "", |(hold, i, fit)| {
+            let beyond = hold.predictions.get(*i).copied().flatten().filter(|_| in_time(fit));
+            let why = if in_time(fit) { "whole hold fitted" } else { "time domain only" };
+            Cell::number_or(beyond.map(|prediction| prediction.relative), 3, why)
+        })
+        .column("Ended", "termination", "", |(.., fit)| Cell::text(word(fit.termination)))
+        .table();
+    analysis.holds.iter().filter_map(rate_bias_note).fold(table, Table::note)
         .note("± is one standard error for white noise; intervals widened for correlated residuals are in analysis.json.")
         .note("v is in 1/s where the signal is strain. ΔBIC: information criterion less the lowest of the hold. Beyond window: prediction error over the drop of the hold.")
 }
@@ -166,35 +163,6 @@ fn rate_bias_note(hold: &HoldAnalysis) -> Option<String> {
     ))
 }
 
-fn fit_row(hold: &HoldAnalysis, fit: &LatencyFit, index: usize) -> Vec<Cell> {
-    let in_time = fit.domain == Domain::Time;
-    let delta = hold.order.as_ref().filter(|_| in_time).map(|order| order.candidates[index].delta_bic);
-    let beyond = hold.predictions.get(index).copied().flatten().filter(|_| in_time);
-    vec![
-        Cell::Integer(hold.number as i64),
-        Cell::text(if in_time { "time" } else { "rate" }),
-        match fit.choice() {
-            ExponentChoice::Fixed(n) => order(n),
-            ExponentChoice::Free => free_exponent(fit),
-        },
-        equilibrium(hold, fit),
-        rate(fit, fit.relative_rate()),
-        if hold.signal == Signal::Strain {
-            rate(fit, fit.rate_coefficient())
-        } else {
-            Cell::missing("no strain")
-        },
-        Cell::number(fit.rmse, 3),
-        Cell::number_or(delta, 3, "time domain only"),
-        Cell::number_or(
-            beyond.map(|prediction| prediction.relative),
-            3,
-            if in_time { "whole hold fitted" } else { "time domain only" },
-        ),
-        Cell::text(termination_word(fit.termination)),
-    ]
-}
-
 /// Table I (after loading) or II (after unloading) of the paper for this record.
 pub(super) fn paper_table(analysis: &Analysis, after: After) -> Option<Table> {
     let n = analysis.across.common_exponent?;
@@ -204,171 +172,129 @@ pub(super) fn paper_table(analysis: &Analysis, after: After) -> Option<Table> {
     };
     let caption = format!(
         "Holds after {}: the law with n = {n}, in the layout of the paper's Table {number}. Time domain: the closed form fitted to the strain; rate domain: the paper's fit of strain rate against strain.",
-        after_word(after)
+        word(after)
     );
-    let mut table = Table::new(name, caption)
-        .column(column("Hold", "hold", ""))
-        .column(column("Displacement", "displacement_mm", "mm"))
-        .column(column("εₑ (time)", "equilibrium_strain", ""))
-        .column(column("v (time)", "rate_coefficient_per_s", "s⁻¹"))
-        .column(column("εₑ (rate)", "equilibrium_strain_rate_domain", ""))
-        .column(column("v (rate)", "rate_coefficient_rate_domain_per_s", "s⁻¹"))
-        .column(column("n (free)", "exponent_free", ""));
-    let mut rows = 0;
-    for hold in analysis.holds.iter().filter(|hold| hold.after == Some(after) && hold.signal == Signal::Strain) {
-        let Some(fit) = hold.fit_with(n) else { continue };
-        rows += 1;
-        let by_rate = hold.rate_fit_with(n);
-        let free = hold.fits.iter().find(|fit| fit.choice() == ExponentChoice::Free);
-        table = table.row(vec![
-            Cell::Integer(hold.number as i64),
-            Cell::number_or(hold.displacement.map(|d| 1e3 * d), 4, "not recorded"),
-            equilibrium(hold, fit),
-            rate(fit, fit.rate_coefficient()),
-            by_rate.map_or(Cell::missing("no fit"), |fit| equilibrium(hold, fit)),
-            by_rate.map_or(Cell::missing("no fit"), |fit| rate(fit, fit.rate_coefficient())),
-            free.map_or(Cell::missing("not asked"), free_exponent),
-        ]);
-    }
-    (rows > 0).then_some(table)
+    let holds = analysis.holds.iter().filter(|hold| hold.after == Some(after) && hold.signal == Signal::Strain);
+    let rows: Vec<(&HoldAnalysis, &LatencyFit)> = holds.filter_map(|hold| Some((hold, hold.fit_with(n)?))).collect();
+    let by_rate = |hold: &HoldAnalysis, cell: &dyn Fn(&LatencyFit) -> Cell| {
+        hold.rate_fit_with(n).map_or(Cell::missing("no fit"), cell)
+    };
+    let coefficient = |fit: &LatencyFit| rate(fit, fit.rate_coefficient());
+    let table = Table::of(name, caption, &rows)
+        .column("Hold", "hold", "", |(hold, _)| Cell::Integer(hold.number as i64))
+        .column("Displacement", "displacement_mm", "mm", |(hold, _)| displacement(hold))
+        .column("εₑ (time)", "equilibrium_strain", "", |(hold, fit)| equilibrium(hold, fit))
+        .column("v (time)", "rate_coefficient_per_s", "s⁻¹", |(_, fit)| coefficient(fit))
+        .column("εₑ (rate)", "equilibrium_strain_rate_domain", "", |(hold, _)| {
+            by_rate(hold, &|fit| equilibrium(hold, fit))
+        })
+        .column("v (rate)", "rate_coefficient_rate_domain_per_s", "s⁻¹", |(hold, _)| by_rate(hold, &coefficient))
+        .column("n (free)", "exponent_free", "", |(hold, _)| {
+            let free = hold.fits.iter().find(|fit| fit.choice() == ExponentChoice::Free);
+            free.map_or(Cell::missing("not asked"), free_exponent)
+        })
+        .table();
+    (!rows.is_empty()).then_some(table)
 }
 
 /// Evidence for the exponent over all holds: the paper's "lowest order which fits the best".
 pub(super) fn exponents(analysis: &Analysis) -> Table {
-    let mut table =
-        Table::new("exponents", "Which exponent fits all holds: sum of the information criteria less the lowest sum.")
-            .column(column("n", "exponent", ""))
-            .column(column("ΔBIC, all holds", "delta_bic", ""))
-            .column(column("Holds where it is as good as the best", "holds_as_good", ""))
-            .column(column("Verdict", "verdict", ""));
-    for (n, delta) in &analysis.across.evidence {
-        let orders = analysis.holds.iter().filter_map(|hold| hold.order.as_ref());
-        let good = orders
-            .flat_map(|order| &order.candidates)
-            .filter(|c| !c.free && c.exponent == *n && c.as_good_as_best);
-        let verdict = if analysis.across.common_exponent == Some(*n) {
-            "lowest order that fits best"
-        } else if *delta <= 2.0 {
-            "as good"
-        } else {
-            ""
-        };
-        table = table.row(vec![
-            order(*n),
-            Cell::number(*delta, 4),
-            Cell::Integer(good.count() as i64),
-            Cell::text(verdict),
-        ]);
-    }
-    table
+    let caption = "Which exponent fits all holds: sum of the information criteria less the lowest sum.";
+    Table::of("exponents", caption, &analysis.across.evidence)
+        .column("n", "exponent", "", |(n, _)| order(*n))
+        .column("ΔBIC, all holds", "delta_bic", "", |(_, delta)| Cell::number(*delta, 4))
+        .column("Holds where it is as good as the best", "holds_as_good", "", |(n, _)| {
+            let orders = analysis.holds.iter().filter_map(|hold| hold.order.as_ref());
+            let candidates = orders.flat_map(|order| &order.candidates);
+            Cell::Integer(candidates.filter(|c| !c.free && c.exponent == *n && c.as_good_as_best).count() as i64)
+        })
+        .column("Verdict", "verdict", "", |(n, delta)| {
+            Cell::text(match delta {
+                _ if analysis.across.common_exponent == Some(*n) => "lowest order that fits best",
+                delta if *delta <= 2.0 => "as good",
+                _ => "",
+            })
+        })
+        .table()
 }
 
 /// One law for several holds against one for each.
 pub(super) fn joint(analysis: &Analysis) -> Option<Table> {
     let joint = &analysis.across.joint;
-    let mut table = Table::new(
-        "joint",
-        "One law for several holds, each with its own εₑ, against a law for each: p of the F-test, ΔBIC (negative for one law), and the trend of v at one n.",
-    )
-    .column(column("Holds after", "holds", ""))
-    .column(column("Holds", "count", ""))
-    .column(column("n", "exponent", ""))
-    .column(column("v", "rate_coefficient_per_s", "s⁻¹"))
-    .column(column("p", "p_value", ""))
-    .column(column("ΔBIC", "delta_bic", ""))
-    .column(column("d ln v/dεₑ", "trend", ""))
-    .column(column("from", "trend_low", ""))
-    .column(column("to", "trend_high", ""))
-    .column(column("v is", "verdict", ""));
-    for one in joint {
-        let shared = |name: &str| one.fit.shared(name).map(|number| number.estimate.value);
-        let trend = one.comparison.trend.as_ref();
-        table = table.row(vec![
+    let caption = "One law for several holds, each with its own εₑ, against a law for each: p of the F-test, ΔBIC (negative for one law), and the trend of v at one n.";
+    let shared = |one: &JointAnalysis, name: &str| {
+        Cell::number_or(one.fit.shared(name).map(|number| number.estimate.value), 4, "not found")
+    };
+    let trend = |one: &JointAnalysis, of: fn(&SharedTrend) -> f64| {
+        Cell::number_or(one.comparison.trend.as_ref().map(of), 3, "one strain")
+    };
+    let table = Table::of("joint", caption, joint)
+        .column("Holds after", "holds", "", |one| {
             Cell::text(match one.which {
                 JointHolds::Loading => "loading",
                 JointHolds::All => "both",
-            }),
-            Cell::Integer(one.holds.len() as i64),
-            match one.choice {
-                ExponentChoice::Fixed(n) => order(n),
-                ExponentChoice::Free => Cell::number_or(shared("exponent"), 4, "not found"),
-            },
-            Cell::number_or(shared("rate_coefficient"), 4, "not found"),
-            Cell::number_or(one.comparison.p, 2, "too few independent samples"),
-            Cell::number(one.comparison.delta_bic, 4),
-            Cell::number_or(trend.map(|trend| trend.slope), 3, "one strain"),
-            Cell::number_or(trend.map(|trend| trend.interval.0), 3, "one strain"),
-            Cell::number_or(trend.map(|trend| trend.interval.1), 3, "one strain"),
-            Cell::text(match one.comparison.verdict {
-                TrendVerdict::Constant => "constant",
-                TrendVerdict::FallsWithStrain => "falls with strain",
-                TrendVerdict::RisesWithStrain => "rises with strain",
-                TrendVerdict::Undecided => "undecided",
-            }),
-        ]);
-    }
+            })
+        })
+        .column("Holds", "count", "", |one| Cell::Integer(one.holds.len() as i64))
+        .column("n", "exponent", "", |one| match one.choice {
+            ExponentChoice::Fixed(n) => order(n),
+            ExponentChoice::Free => shared(one, "exponent"),
+        })
+        .column("v", "rate_coefficient_per_s", "s⁻¹", |one| shared(one, "rate_coefficient"))
+        .column("p", "p_value", "", |one| Cell::number_or(one.comparison.p, 2, "too few independent samples"))
+        .column("ΔBIC", "delta_bic", "", |one| Cell::number(one.comparison.delta_bic, 4))
+        .column("d ln v/dεₑ", "trend", "", |one| trend(one, |trend| trend.slope))
+        .column("from", "trend_low", "", |one| trend(one, |trend| trend.interval.0))
+        .column("to", "trend_high", "", |one| trend(one, |trend| trend.interval.1))
+        .column("v is", "verdict", "", |one| Cell::text(word(one.comparison.verdict).replace('_', " ")))
+        .table();
     (!joint.is_empty()).then_some(table)
 }
 
 /// How well each law, fitted to the first part of the holds, foretells the rest.
 pub(super) fn predictions(analysis: &Analysis) -> Option<Table> {
     let until = analysis.options.fit_until?;
-    let mut table = Table::new(
-        "predictions",
-        format!("Laws fitted to the first {until} s of each hold: root mean square error over the rest."),
-    )
-    .column(column("Hold", "hold", ""))
-    .column(column("n", "exponent", ""))
-    .column(column("Numbers", "parameters", ""))
-    .column(column("Inside, over the drop", "relative_rmse_inside", "%"))
-    .column(column("Beyond, over the drop", "relative_rmse_beyond", "%"))
-    .column(column("Samples beyond", "samples_beyond", ""));
-    let mut rows = 0;
+    let caption = format!("Laws fitted to the first {until} s of each hold: root mean square error over the rest.");
+    let mut rows: Vec<(&HoldAnalysis, &LatencyFit, HoldoutError)> = Vec::new();
     for hold in &analysis.holds {
-        for (fit, prediction) in hold.fits.iter().zip(&hold.predictions) {
-            let Some(prediction) = prediction else { continue };
-            rows += 1;
-            table = table.row(vec![
-                Cell::Integer(hold.number as i64),
-                Cell::text(match fit.choice() {
-                    ExponentChoice::Fixed(n) => format!("{n}"),
-                    ExponentChoice::Free => format!("{:.3} (free)", fit.exponent().value),
-                }),
-                Cell::Integer(fit.free_numbers() as i64),
-                Cell::number(100.0 * fit.rmse * prediction.relative / prediction.rmse, 3),
-                Cell::number(100.0 * prediction.relative, 3),
-                Cell::Integer(prediction.samples as i64),
-            ]);
-        }
+        let fits = hold.fits.iter().zip(&hold.predictions);
+        rows.extend(fits.filter_map(|(fit, prediction)| Some((hold, fit, (*prediction)?))));
     }
-    (rows > 0).then_some(table)
+    let table = Table::of("predictions", caption, &rows)
+        .column("Hold", "hold", "", |(hold, ..)| Cell::Integer(hold.number as i64))
+        .column("n", "exponent", "", |(_, fit, _)| {
+            Cell::text(match fit.choice() {
+                ExponentChoice::Fixed(n) => format!("{n}"),
+                ExponentChoice::Free => format!("{:.3} (free)", fit.exponent().value),
+            })
+        })
+        .column("Numbers", "parameters", "", |(_, fit, _)| Cell::Integer(fit.free_numbers() as i64))
+        .column("Inside, over the drop", "relative_rmse_inside", "%", |(_, fit, beyond)| {
+            Cell::number(100.0 * fit.rmse * beyond.relative / beyond.rmse, 3)
+        })
+        .column("Beyond, over the drop", "relative_rmse_beyond", "%", |(.., beyond)| {
+            Cell::number(100.0 * beyond.relative, 3)
+        })
+        .column("Samples beyond", "samples_beyond", "", |(.., beyond)| Cell::Integer(beyond.samples as i64))
+        .table();
+    (!rows.is_empty()).then_some(table)
 }
 
 /// Equilibria after loading and after unloading at one displacement.
 pub(super) fn agreements(analysis: &Analysis) -> Option<Table> {
-    if analysis.across.agreements.is_empty() {
-        return None;
-    }
-    let mut table = Table::new("agreement", "Equilibrium after loading and after unloading at one displacement.")
-        .column(column("Displacement", "displacement_mm", "mm"))
-        .column(column("Hold after loading", "hold_loading", ""))
-        .column(column("Hold after unloading", "hold_unloading", ""))
-        .column(column("After loading", "equilibrium_loading", ""))
-        .column(column("After unloading", "equilibrium_unloading", ""))
-        .column(column("Difference", "difference", ""))
-        .column(column("Difference over its error", "z", ""));
-    for level in &analysis.across.agreements {
-        table = table.row(vec![
-            Cell::number(1e3 * level.displacement, 4),
-            Cell::Integer(level.loading as i64),
-            Cell::Integer(level.unloading as i64),
-            Cell::number(level.loading_equilibrium, 5),
-            Cell::number(level.unloading_equilibrium, 5),
-            Cell::number(level.loading_equilibrium - level.unloading_equilibrium, 2),
-            Cell::number_or(level.z, 3, "no errors"),
-        ]);
-    }
-    Some(table)
+    let levels = &analysis.across.agreements;
+    let table = Table::of("agreement", "Equilibrium after loading and after unloading at one displacement.", levels)
+        .column("Displacement", "displacement_mm", "mm", |level| Cell::number(1e3 * level.displacement, 4))
+        .column("Hold after loading", "hold_loading", "", |level| Cell::Integer(level.loading as i64))
+        .column("Hold after unloading", "hold_unloading", "", |level| Cell::Integer(level.unloading as i64))
+        .column("After loading", "equilibrium_loading", "", |level| Cell::number(level.loading_equilibrium, 5))
+        .column("After unloading", "equilibrium_unloading", "", |level| Cell::number(level.unloading_equilibrium, 5))
+        .column("Difference", "difference", "", |level| {
+            Cell::number(level.loading_equilibrium - level.unloading_equilibrium, 2)
+        })
+        .column("Difference over its error", "z", "", |level| Cell::number_or(level.z, 3, "no errors"))
+        .table();
+    (!levels.is_empty()).then_some(table)
 }
 
 /// All tables that a record gives rise to.
