@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use palpate_report::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
+use palpate_report::figure::{Arrangement, Axis, Figure, Layer, Map, Panel, Role};
 use palpate_report::page::{Block, Check, Finding, Outcome, Page, Section, Severity};
 use palpate_report::table::{Cell, Table, TableColumn};
 
@@ -162,13 +162,13 @@ fn layers(count: usize) -> Figure {
     }
     let mean = apply(&t, |t| squeeze(t) / 12.0 * 0.6);
     Figure::new(format!("layers-{count}"), format!("Strain in {count} layers over time (a) and its mean (b)."))
-        .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Depth", "mm")).layer(Layer::map(
+        .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Depth", "mm")).layer(Layer::map(Map::new(
             t.clone(),
             depth,
             values,
             "Layer strain",
             "",
-        )))
+        ))))
         .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Mean strain", "")).share(0.5).layer(Layer::line(
             t,
             mean,

@@ -26,4 +26,4 @@ mod content;
 mod draw;
 mod layout;
 
-pub use content::{Arrangement, Axis, Figure, FigureError, Layer, MOST_PANELS, Map, Panel, Role, Scale};
+pub use content::{Arrangement, Axis, Figure, FigureError, Layer, MOST_PANELS, Map, Mark, Panel, Role, Scale};

@@ -4,20 +4,27 @@ use super::axis::{Scale, shows};
 use super::error::FigureError;
 use super::role::Role;
 
-/// One thing drawn in a panel. Values that are not finite leave a gap.
+/// One thing drawn in a panel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layer {
+    /// What is drawn.
+    pub mark: Mark,
+    /// What it stands for.
+    pub role: Role,
+    /// Text in the legend; of a shaded stretch above the panel, of a level or position at its end.
+    pub label: Option<String>,
+}
+
+/// Marks of a layer. Values that are not finite leave a gap.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub enum Layer {
+pub enum Mark {
     /// A line through points in the given order.
     Line {
         /// Horizontal positions.
         x: Vec<f64>,
         /// Vertical positions.
         y: Vec<f64>,
-        /// What the line stands for.
-        role: Role,
-        /// Text in the legend.
-        label: Option<String>,
     },
     /// Separate points.
     Points {
@@ -27,10 +34,6 @@ pub enum Layer {
         y: Vec<f64>,
         /// Half-length of the vertical error bars, if there are any.
         error: Option<Vec<f64>>,
-        /// What the points stand for.
-        role: Role,
-        /// Text in the legend.
-        label: Option<String>,
     },
     /// The area between two lines.
     Band {
@@ -40,40 +43,13 @@ pub enum Layer {
         low: Vec<f64>,
         /// Upper edge.
         high: Vec<f64>,
-        /// What the band stands for.
-        role: Role,
-        /// Text in the legend.
-        label: Option<String>,
     },
-    /// A shaded stretch of the horizontal axis, named above the panel.
-    Span {
-        /// Start.
-        from: f64,
-        /// End.
-        to: f64,
-        /// Decides the tint.
-        role: Role,
-        /// Name of the stretch.
-        label: Option<String>,
-    },
+    /// A shaded stretch of the horizontal axis from start to end, named above the panel; its role decides the tint.
+    Span(f64, f64),
     /// A level across the panel.
-    Horizontal {
-        /// Where.
-        at: f64,
-        /// What it stands for.
-        role: Role,
-        /// Text at its right end.
-        label: Option<String>,
-    },
+    Horizontal(f64),
     /// A position on the horizontal axis.
-    Vertical {
-        /// Where.
-        at: f64,
-        /// What it stands for.
-        role: Role,
-        /// Text at its upper end.
-        label: Option<String>,
-    },
+    Vertical(f64),
     /// Values over two coordinates, as colours.
     Map(Map),
 }
@@ -95,89 +71,81 @@ pub struct Map {
     pub range: Option<(f64, f64)>,
 }
 
+impl Map {
+    /// A heat map coloured from its smallest to its largest value.
+    #[must_use]
+    pub fn new(x: Vec<f64>, y: Vec<f64>, values: Vec<f64>, label: impl Into<String>, unit: impl Into<String>) -> Self {
+        let (label, unit) = (label.into(), unit.into());
+        Self {
+            x,
+            y,
+            values,
+            label,
+            unit,
+            range: None,
+        }
+    }
+}
+
+impl Mark {
+    fn of(self, role: Role) -> Layer {
+        Layer {
+            mark: self,
+            role,
+            label: None,
+        }
+    }
+}
+
 impl Layer {
     /// A line without a legend entry.
     #[must_use]
     pub fn line(x: Vec<f64>, y: Vec<f64>, role: Role) -> Self {
-        Self::Line {
-            x,
-            y,
-            role,
-            label: None,
-        }
+        Mark::Line { x, y }.of(role)
     }
 
     /// Points without error bars and legend entry.
     #[must_use]
     pub fn points(x: Vec<f64>, y: Vec<f64>, role: Role) -> Self {
-        Self::Points {
-            x,
-            y,
-            error: None,
-            role,
-            label: None,
-        }
+        Mark::Points { x, y, error: None }.of(role)
     }
 
     /// A band without a legend entry.
     #[must_use]
     pub fn band(x: Vec<f64>, low: Vec<f64>, high: Vec<f64>, role: Role) -> Self {
-        Self::Band {
-            x,
-            low,
-            high,
-            role,
-            label: None,
-        }
+        Mark::Band { x, low, high }.of(role)
     }
 
     /// A shaded stretch of the horizontal axis without a name.
     #[must_use]
     pub fn span(from: f64, to: f64, role: Role) -> Self {
-        Self::Span {
-            from,
-            to,
-            role,
-            label: None,
-        }
+        Mark::Span(from, to).of(role)
     }
 
     /// A level across the panel.
     #[must_use]
     pub fn horizontal(at: f64, role: Role) -> Self {
-        Self::Horizontal { at, role, label: None }
+        Mark::Horizontal(at).of(role)
     }
 
     /// A position on the horizontal axis.
     #[must_use]
     pub fn vertical(at: f64, role: Role) -> Self {
-        Self::Vertical { at, role, label: None }
+        Mark::Vertical(at).of(role)
     }
 
-    /// A heat map coloured from its smallest to its largest value.
+    /// A heat map.
     #[must_use]
-    pub fn map(x: Vec<f64>, y: Vec<f64>, values: Vec<f64>, label: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self::Map(Map {
-            x,
-            y,
-            values,
-            label: label.into(),
-            unit: unit.into(),
-            range: None,
-        })
+    pub fn map(map: Map) -> Self {
+        Mark::Map(map).of(Role::Measured)
     }
 
     /// The same layer with a label; layers of one panel with equal labels share a legend entry.
     #[must_use]
     pub fn label(mut self, text: impl Into<String>) -> Self {
-        match &mut self {
-            Self::Line { label, .. }
-            | Self::Points { label, .. }
-            | Self::Band { label, .. }
-            | Self::Span { label, .. }
-            | Self::Horizontal { label, .. }
-            | Self::Vertical { label, .. } => *label = Some(text.into()),
-            Self::Map(map) => map.label = text.into(),
+        match &mut self.mark {
+            Mark::Map(map) => map.label = text.into(),
+            _ => self.label = Some(text.into()),
         }
         self
     }
@@ -185,7 +153,7 @@ impl Layer {
     /// The same points with vertical error bars; other layers stay as they are.
     #[must_use]
     pub fn error_bars(mut self, half_lengths: Vec<f64>) -> Self {
-        if let Self::Points { error, .. } = &mut self {
+        if let Mark::Points { error, .. } = &mut self.mark {
             *error = Some(half_lengths);
         }
         self
@@ -204,33 +172,33 @@ impl Layer {
                 expected,
             })
         };
-        match self {
-            Self::Line { x, y, .. } => need("y of a line", y.len(), x.len()),
-            Self::Points { x, y, error, .. } => {
+        match &self.mark {
+            Mark::Line { x, y } => need("y of a line", y.len(), x.len()),
+            Mark::Points { x, y, error } => {
                 need("y of points", y.len(), x.len())?;
                 need("error of points", error.as_ref().map_or(x.len(), Vec::len), x.len())
             }
-            Self::Band { x, low, high, .. } => {
+            Mark::Band { x, low, high } => {
                 need("lower edge of a band", low.len(), x.len())?;
                 need("upper edge of a band", high.len(), x.len())
             }
-            Self::Map(map) => need("values of a map", map.values.len(), map.x.len() * map.y.len()),
-            Self::Span { .. } | Self::Horizontal { .. } | Self::Vertical { .. } => Ok(()),
+            Mark::Map(map) => need("values of a map", map.values.len(), map.x.len() * map.y.len()),
+            Mark::Span(..) | Mark::Horizontal(_) | Mark::Vertical(_) => Ok(()),
         }
     }
 
     /// Whether nothing of the layer can be drawn; spans and reference lines alone do not count.
     pub(crate) fn is_empty(&self, x_scale: Scale, y_scale: Scale) -> bool {
         let none = |x: &[f64], y: &[f64]| !x.iter().zip(y).any(|(x, y)| shows(*x, x_scale) && shows(*y, y_scale));
-        match self {
-            Self::Line { x, y, .. } | Self::Points { x, y, .. } => none(x, y),
-            Self::Band { x, low, high, .. } => none(x, low) && none(x, high),
-            Self::Map(map) => {
+        match &self.mark {
+            Mark::Line { x, y } | Mark::Points { x, y, .. } => none(x, y),
+            Mark::Band { x, low, high } => none(x, low) && none(x, high),
+            Mark::Map(map) => {
                 !map.values.iter().any(|v| v.is_finite())
                     || !map.x.iter().any(|v| shows(*v, x_scale))
                     || !map.y.iter().any(|v| shows(*v, y_scale))
             }
-            Self::Span { .. } | Self::Horizontal { .. } | Self::Vertical { .. } => true,
+            Mark::Span(..) | Mark::Horizontal(_) | Mark::Vertical(_) => true,
         }
     }
 }

@@ -22,7 +22,7 @@ pub(super) use axis::shows;
 pub use axis::{Axis, Scale};
 pub use error::FigureError;
 pub use figure::{Arrangement, Figure, MOST_PANELS};
-pub use layer::{Layer, Map};
+pub use layer::{Layer, Map, Mark};
 pub use panel::Panel;
 pub use role::Role;
 pub(super) use role::{Marker, Style};

@@ -1,7 +1,7 @@
 //! One set of axes and what is drawn in it.
 
 use super::axis::Axis;
-use super::layer::{Layer, Map};
+use super::layer::{Layer, Map, Mark};
 use super::role::Role;
 
 /// One set of axes with its layers.
@@ -67,11 +67,7 @@ impl Panel {
     /// A dashed line at zero, as residual panels want it.
     #[must_use]
     pub fn zero_line(self) -> Self {
-        self.layer(Layer::Horizontal {
-            at: 0.0,
-            role: Role::Reference,
-            label: None,
-        })
+        self.layer(Layer::horizontal(0.0, Role::Reference))
     }
 
     /// Whether any layer holds a value that can be drawn.
@@ -80,8 +76,8 @@ impl Panel {
     }
 
     pub(crate) fn map(&self) -> Option<&Map> {
-        self.layers.iter().find_map(|layer| match layer {
-            Layer::Map(map) => Some(map),
+        self.layers.iter().find_map(|layer| match &layer.mark {
+            Mark::Map(map) => Some(map),
             _ => None,
         })
     }

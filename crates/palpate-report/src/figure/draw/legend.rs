@@ -2,7 +2,7 @@
 
 use super::series;
 use super::svg::{Anchor, Font, Svg, polyline};
-use crate::figure::content::{Layer, Panel, Style};
+use crate::figure::content::{Mark, Panel, Style};
 use crate::figure::layout::{CAPTION, LEGEND_ROW, Occupancy, Position, Rect, width};
 
 /// Width of the sample beside a legend text.
@@ -12,7 +12,7 @@ const SPACE: f64 = 4.0;
 /// Distance from the axes.
 const INSET: f64 = 4.0;
 /// One line of a legend.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Entry {
     label: String,
     line: Option<Style>,
@@ -26,42 +26,23 @@ pub(crate) struct Entry {
 pub(crate) fn entries(panel: &Panel) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     for layer in &panel.layers {
-        let (Layer::Line {
-            role,
-            label: Some(label),
-            ..
-        }
-        | Layer::Points {
-            role,
-            label: Some(label),
-            ..
-        }
-        | Layer::Band {
-            role,
-            label: Some(label),
-            ..
-        }) = layer
+        let drawn = matches!(layer.mark, Mark::Line { .. } | Mark::Points { .. } | Mark::Band { .. });
+        let Some(label) = layer.label.as_ref().filter(|_| drawn && !layer.is_empty(panel.x.scale, panel.y.scale))
         else {
             continue;
         };
-        if layer.is_empty(panel.x.scale, panel.y.scale) {
-            continue;
-        }
         let index = entries.iter().position(|e| &e.label == label).unwrap_or_else(|| {
             let label = label.clone();
             entries.push(Entry {
                 label,
-                line: None,
-                points: None,
-                crowd: false,
-                band: None,
+                ..Entry::default()
             });
             entries.len() - 1
         });
-        let style = Some(role.style());
-        match layer {
-            Layer::Line { .. } => entries[index].line = style,
-            Layer::Points { x, .. } => {
+        let style = Some(layer.role.style());
+        match &layer.mark {
+            Mark::Line { .. } => entries[index].line = style,
+            Mark::Points { x, .. } => {
                 entries[index].points = style;
                 entries[index].crowd = x.len() > series::CROWD;
             }

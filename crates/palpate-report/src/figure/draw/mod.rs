@@ -22,7 +22,7 @@ mod svg;
 
 use svg::Svg;
 
-use super::content::{Figure, FigureError, Layer};
+use super::content::{Figure, FigureError, Mark};
 use super::layout::{Frame, LEGEND_ROW, Occupancy, Rect, arrange};
 
 impl Figure {
@@ -87,21 +87,21 @@ impl Figure {
             self.draw_map(svg, frame)?;
         }
         for layer in &frame.panel.layers {
-            if let Layer::Band { x, low, high, role, .. } = layer {
-                series::draw_band(svg, frame, (x, low, high), *role);
+            if let Mark::Band { x, low, high } = &layer.mark {
+                series::draw_band(svg, frame, (x, low, high), layer.role);
             }
         }
         reference::draw_references(svg, frame);
         svg.close_clip();
         for layer in &frame.panel.layers {
-            match layer {
-                Layer::Line { x, y, role, .. } => {
+            match &layer.mark {
+                Mark::Line { x, y } => {
                     svg.open_clip(frame.area);
-                    series::draw_line(svg, frame, (x, y), *role);
+                    series::draw_line(svg, frame, (x, y), layer.role);
                     svg.close_clip();
                 }
-                Layer::Points { x, y, error, role, .. } => {
-                    series::draw_points(svg, frame, (x, y), error.as_deref(), *role);
+                Mark::Points { x, y, error } => {
+                    series::draw_points(svg, frame, (x, y), error.as_deref(), layer.role);
                 }
                 _ => {}
             }

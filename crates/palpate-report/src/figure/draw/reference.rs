@@ -3,7 +3,7 @@
 use super::axes::font;
 use super::series;
 use super::svg::{Anchor, Font, Svg, polyline};
-use crate::figure::content::{Layer, Role};
+use crate::figure::content::{Mark, Role};
 use crate::figure::layout::{Frame, Occupancy, Rect, TICK, width};
 
 /// Height of a name.
@@ -66,11 +66,11 @@ pub(crate) fn draw_span_names(svg: &mut Svg, frame: &Frame<'_>) {
 fn spans<'a>(frame: &'a Frame<'_>) -> Vec<(f64, f64, Role, Option<&'a str>)> {
     let mut spans = Vec::new();
     for layer in &frame.panel.layers {
-        if let Layer::Span { from, to, role, label } = layer {
+        if let Mark::Span(from, to) = &layer.mark {
             let (a, b) = (frame.x.at(from.min(*to)), frame.x.at(from.max(*to)));
             let (a, b) = (a.max(frame.area.x), b.min(frame.area.right()));
             if a < b {
-                spans.push((a, b, *role, label.as_deref()));
+                spans.push((a, b, layer.role, layer.label.as_deref()));
             }
         }
     }
@@ -89,17 +89,18 @@ fn references<'a>(frame: &'a Frame<'_>) -> Vec<(Ends, Role, Option<&'a str>)> {
     let Frame { area, .. } = frame;
     let mut references = Vec::new();
     for layer in &frame.panel.layers {
-        match layer {
-            Layer::Horizontal { at, role, label } if frame.y.contains(*at) => {
-                let y = frame.y.at(*at);
-                references.push(([(area.x, y), (area.right(), y)], *role, label.as_deref()));
+        let ends = match layer.mark {
+            Mark::Horizontal(at) if frame.y.contains(at) => {
+                let y = frame.y.at(at);
+                [(area.x, y), (area.right(), y)]
             }
-            Layer::Vertical { at, role, label } if frame.x.contains(*at) => {
-                let x = frame.x.at(*at);
-                references.push(([(x, area.y), (x, area.bottom())], *role, label.as_deref()));
+            Mark::Vertical(at) if frame.x.contains(at) => {
+                let x = frame.x.at(at);
+                [(x, area.y), (x, area.bottom())]
             }
-            _ => {}
-        }
+            _ => continue,
+        };
+        references.push((ends, layer.role, layer.label.as_deref()));
     }
     references
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::decimate;
 use super::svg::{Svg, polyline, short};
-use crate::figure::content::{Layer, Marker, Role, Style};
+use crate::figure::content::{Mark, Marker, Role, Style};
 use crate::figure::layout::{Frame, Occupancy, Position};
 
 /// Beyond this many points, simple dots replace the marker shapes.
@@ -170,26 +170,26 @@ fn marker(d: &mut String, shape: Marker, (x, y): Position, r: f64) {
 /// Notes where the data of a panel lie, so that text can keep away.
 pub(crate) fn occupy(frame: &Frame<'_>, taken: &mut Occupancy) {
     for layer in &frame.panel.layers {
-        match layer {
-            Layer::Line { x, y, .. } => {
+        match &layer.mark {
+            Mark::Line { x, y } => {
                 for piece in line_pieces(frame, (x, y)) {
                     taken.mark_line(&piece);
                 }
             }
-            Layer::Points { x, y, .. } => {
+            Mark::Points { x, y, .. } => {
                 for (x, y) in visible(frame, x, y) {
                     taken.mark_line(&[(x - 2.0, y), (x + 2.0, y)]);
                     taken.mark_line(&[(x, y - 2.0), (x, y + 2.0)]);
                 }
             }
-            Layer::Band { x, low, high, .. } => {
+            Mark::Band { x, low, high } => {
                 let at = |i: usize| (frame.x.at(x[i]), frame.y.at(low[i]), frame.y.at(high[i]));
                 for (x, low, high) in decimate::band(x.len(), at).into_iter().flatten() {
                     taken.mark_line(&[(x, low), (x, high)]);
                 }
             }
-            Layer::Map(_) => taken.mark_rect(frame.area),
-            Layer::Span { .. } | Layer::Horizontal { .. } | Layer::Vertical { .. } => {}
+            Mark::Map(_) => taken.mark_rect(frame.area),
+            Mark::Span(..) | Mark::Horizontal(_) | Mark::Vertical(_) => {}
         }
     }
 }

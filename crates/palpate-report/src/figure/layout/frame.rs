@@ -4,7 +4,7 @@ use super::rect::Rect;
 use super::scale::{Direction, Transform, colour_limits, limits};
 use super::text::width;
 use super::ticks::Ticks;
-use crate::figure::content::{Arrangement, Figure, Layer, Panel, Scale};
+use crate::figure::content::{Arrangement, Figure, Layer, Mark, Panel, Scale};
 
 /// Font size of captions, panel titles and legends.
 pub(crate) const CAPTION: f64 = 8.0;
@@ -175,7 +175,7 @@ impl Frame<'_> {
 
     /// Height of the strip above the axes that names shaded stretches.
     pub(crate) fn span_strip(&self) -> f64 {
-        let named = |l: &Layer| matches!(l, Layer::Span { label: Some(_), .. });
+        let named = |l: &Layer| l.label.is_some() && matches!(l.mark, Mark::Span(..));
         if self.panel.layers.iter().any(named) { SPAN_STRIP } else { 0.0 }
     }
 

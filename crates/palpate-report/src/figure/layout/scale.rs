@@ -1,6 +1,6 @@
 //! From values to positions on the page, and the limits of an axis.
 
-use crate::figure::content::{Axis, Layer, Map, Panel, Scale, shows};
+use crate::figure::content::{Axis, Layer, Map, Mark, Panel, Scale, shows};
 
 /// Positions beyond the plot are held to this, so that every number stays short.
 const FAR: f64 = 20_000.0;
@@ -121,9 +121,9 @@ impl Extent {
 
     fn include(&mut self, layer: &Layer, direction: Direction, scale: Scale) {
         let vertical = direction == Direction::Vertical;
-        match layer {
-            Layer::Line { x, y, .. } => self.take(if vertical { y } else { x }, scale),
-            Layer::Points { x, y, error, .. } => {
+        match &layer.mark {
+            Mark::Line { x, y } => self.take(if vertical { y } else { x }, scale),
+            Mark::Points { x, y, error } => {
                 self.fit = self.fit.max(Fit::Loose);
                 self.take(if vertical { y } else { x }, scale);
                 if let (true, Some(error)) = (vertical, error) {
@@ -132,20 +132,20 @@ impl Extent {
                     }
                 }
             }
-            Layer::Band { x, .. } if !vertical => self.take(x, scale),
-            Layer::Band { low, high, .. } => {
+            Mark::Band { x, .. } if !vertical => self.take(x, scale),
+            Mark::Band { low, high, .. } => {
                 self.take(low, scale);
                 self.take(high, scale);
             }
-            Layer::Span { from, to, .. } if !vertical => self.take(&[*from, *to], scale),
-            Layer::Horizontal { at, .. } if vertical => self.take(&[*at], scale),
-            Layer::Vertical { at, .. } if !vertical => self.take(&[*at], scale),
-            Layer::Map(map) => {
+            Mark::Span(from, to) if !vertical => self.take(&[*from, *to], scale),
+            Mark::Horizontal(at) if vertical => self.take(&[*at], scale),
+            Mark::Vertical(at) if !vertical => self.take(&[*at], scale),
+            Mark::Map(map) => {
                 self.fit = Fit::Tight;
                 let edges = edges(if vertical { &map.y } else { &map.x }, scale);
                 self.take(&edges, scale);
             }
-            Layer::Span { .. } | Layer::Horizontal { .. } | Layer::Vertical { .. } => {}
+            Mark::Span(..) | Mark::Horizontal(_) | Mark::Vertical(_) => {}
         }
     }
 

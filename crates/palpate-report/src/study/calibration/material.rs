@@ -1,6 +1,9 @@
 //! A whole record calibrated: tables, text and figure.
 
-use palpate::calibrate::{Material, MaterialUnit, NumberProfile};
+use palpate::analysis::HoldoutError;
+use palpate::calibrate::{
+    CalibrateError, Calibration, Candidate, Material, MaterialNumber, MaterialUnit, NumberProfile,
+};
 use palpate::fit::Interval;
 
 use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
@@ -8,7 +11,7 @@ use crate::number::{counted, significant};
 use crate::page::{Block, Page, Section};
 use crate::result::{CalibratedRecord, percent, word};
 use crate::study::bundle::StudyError;
-use crate::table::{Cell, Table, TableColumn};
+use crate::table::{Cell, Table};
 use crate::wrap::wrapped;
 
 /// Factor and unit in which people read a number of a material.
@@ -29,47 +32,31 @@ fn laws(record: &CalibratedRecord) -> Table {
     let until = record.data.times()[fitted - 1] - record.data.times()[0];
     let rest = if fitted < all { format!("; {} foretold", counted(all - fitted, "sample")) } else { String::new() };
     let caption = format!("Calibrated on {} over {} s{rest}.", counted(fitted, "sample"), significant(until, 4));
-    let mut table = Table::new("laws", caption)
-        .column(TableColumn::new("Law", "law", ""))
-        .column(TableColumn::new("p", "parameters", ""))
-        .column(TableColumn::new("RMSE", "rmse_n", "N"))
-        .column(TableColumn::new("of peak", "rmse_percent", "%"))
-        .column(TableColumn::new("ΔBIC", "delta_bic", ""));
+    let least = record.made().map(|made| made.criteria.bic).fold(f64::INFINITY, f64::min);
+    let mut table = Table::of("laws", caption, &record.rows)
+        .column("Law", "law", "", |(candidate, _)| Cell::text(candidate.to_string()))
+        .column("p", "parameters", "", of_made(|made| Cell::Integer(made.free_numbers as i64)))
+        .column("RMSE", "rmse_n", "N", of_made(|made| Cell::number(made.rmse, 3)))
+        .column("of peak", "rmse_percent", "%", of_made(|made| Cell::number(100.0 * made.relative, 3)))
+        .column("ΔBIC", "delta_bic", "", of_made(|made| Cell::number(made.criteria.bic - least, 3)));
     if fitted < all {
-        table = table.column(TableColumn::new("Foretold to", "foretold_rmse_n", "N")).column(TableColumn::new(
+        let foretold = |number: fn(&HoldoutError) -> f64| {
+            of_made(move |made| made.foretold.as_ref().map_or(Cell::text(""), |found| Cell::number(number(found), 3)))
+        };
+        table = table.column("Foretold to", "foretold_rmse_n", "N", foretold(|found| found.rmse)).column(
             "of peak",
             "foretold_percent",
             "%",
-        ));
+            foretold(|found| 100.0 * found.relative),
+        );
     }
-    table = table.column(TableColumn::new("Ended", "termination", ""));
-    let least = record.made().map(|made| made.criteria.bic).fold(f64::INFINITY, f64::min);
-    for (candidate, made) in &record.rows {
-        let law = Cell::text(candidate.to_string());
-        let row = match made {
-            Ok(made) => {
-                let mut row = vec![
-                    law,
-                    Cell::Integer(made.free_numbers as i64),
-                    Cell::number(made.rmse, 3),
-                    Cell::number(100.0 * made.relative, 3),
-                    Cell::number(made.criteria.bic - least, 3),
-                ];
-                if let Some(foretold) = made.foretold {
-                    row.extend([Cell::number(foretold.rmse, 3), Cell::number(100.0 * foretold.relative, 3)]);
-                }
-                row.push(Cell::text(word(made.termination).replace('_', " ")));
-                row
-            }
-            Err(error) => {
-                let mut row = vec![law];
-                row.resize(table.columns.len(), Cell::missing(error.to_string()));
-                row
-            }
-        };
-        table = table.row(row);
-    }
-    table
+    let ended = |made: &Calibration| Cell::text(word(made.termination).replace('_', " "));
+    table.column("Ended", "termination", "", of_made(ended)).table()
+}
+
+/// A cell of a calibration, or why there is none.
+fn of_made(cell: impl Fn(&Calibration) -> Cell) -> impl Fn(&(Candidate, Result<Calibration, CalibrateError>)) -> Cell {
+    move |(_, made)| made.as_ref().map_or_else(|error| Cell::missing(error.to_string()), &cell)
 }
 
 /// The numbers of a material with their intervals.
@@ -83,44 +70,33 @@ fn numbers_table(material: &Material, profiles: &[NumberProfile]) -> Table {
     const LEFT_OPEN: &str = "the record leaves it open";
     const OPEN: &str = "the record leaves it open, or it was given";
     let share = material.uncertainty.as_ref().map_or(0.95, |uncertainty| uncertainty.confidence);
-    let mut table = Table::new("numbers", format!("Numbers of the law {}.", material.candidate))
-        .column(TableColumn::new("Number", "number", ""))
-        .column(TableColumn::new("Unit", "unit", ""))
-        .column(TableColumn::new("Value", "value", ""))
-        .column(TableColumn::new(format!("{} from", percent(share)), "low", ""))
-        .column(TableColumn::new("to", "high", ""));
+    let interval = |number: &MaterialNumber, pick: fn((f64, f64)) -> f64| {
+        let factor = for_people(number.unit).0;
+        Cell::number_or(number.estimate.interval.map(|ends| factor * pick(ends)), 4, OPEN)
+    };
+    let mut table = Table::of("numbers", format!("Numbers of the law {}.", material.candidate), &material.numbers)
+        .column("Number", "number", "", |number| Cell::text(number.name.replace('_', " ")))
+        .column("Unit", "unit", "", |number| Cell::text(for_people(number.unit).1))
+        .column("Value", "value", "", |number| {
+            let (factor, estimate) = (for_people(number.unit).0, number.estimate);
+            match estimate.standard_error {
+                Some(error) => Cell::uncertain(factor * estimate.value, factor * error),
+                None => Cell::number(factor * estimate.value, 4),
+            }
+        })
+        .column(format!("{} from", percent(share)), "low", "", |number| interval(number, |ends| ends.0))
+        .column("to", "high", "", |number| interval(number, |ends| ends.1));
     if !profiles.is_empty() {
-        table = table.column(TableColumn::new("profile from", "profile_low", "")).column(TableColumn::new(
-            "to",
-            "profile_high",
-            "",
-        ));
-    }
-    for number in &material.numbers {
-        let ((factor, unit), estimate) = (for_people(number.unit), number.estimate);
-        let value = match estimate.standard_error {
-            Some(error) => Cell::uncertain(factor * estimate.value, factor * error),
-            None => Cell::number(factor * estimate.value, 4),
+        let profile = |number: &MaterialNumber, pick: fn(Interval) -> Option<f64>| {
+            let found = profiles.iter().find(|profile| profile.name == number.name);
+            let end = found.and_then(|found| pick(found.interval)).map(|end| for_people(number.unit).0 * end);
+            Cell::number_or(end, 4, if found.is_some() { LEFT_OPEN } else { OPEN })
         };
-        let end = |pick: fn((f64, f64)) -> f64| Cell::number_or(estimate.interval.map(|i| factor * pick(i)), 4, OPEN);
-        let mut row = vec![
-            Cell::text(number.name.replace('_', " ")),
-            Cell::text(unit),
-            value,
-            end(|interval| interval.0),
-            end(|interval| interval.1),
-        ];
-        if !profiles.is_empty() {
-            let profile = profiles.iter().find(|profile| profile.name == number.name);
-            let end = |pick: fn(Interval) -> Option<f64>| match profile {
-                Some(found) => Cell::number_or(pick(found.interval).map(|end| factor * end), 4, LEFT_OPEN),
-                None => Cell::number_or(None, 4, OPEN),
-            };
-            row.extend([end(|interval| interval.low), end(|interval| interval.high)]);
-        }
-        table = table.row(row);
+        table = table
+            .column("profile from", "profile_low", "", |number| profile(number, |interval| interval.low))
+            .column("to", "profile_high", "", |number| profile(number, |interval| interval.high));
     }
-    table
+    table.table()
 }
 
 /// A calibration as text for a terminal.

@@ -5,41 +5,31 @@ use std::io::{self, Write};
 use palpate::calibrate::Prediction;
 
 use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
-use crate::number::{exact, significant};
+use crate::number::significant;
 use crate::result::percent;
-use crate::table::{Cell, Table, TableColumn};
+use crate::study::simulate::write_series;
+use crate::table::{Cell, Table};
 
 /// Writes the course as CSV, one row a sample: force and displacement with the intervals of their means and of one reading, in SI.
 ///
 /// # Errors
 /// Whatever the writer says.
 pub fn write_prediction(out: &mut dyn Write, prediction: &Prediction) -> io::Result<()> {
-    write!(
-        out,
-        "time_s,displacement_m,displacement_low_m,displacement_high_m,force_n,force_low_n,force_high_n,reading_low_n,reading_high_n,force_error_n,noise_n\r\n"
-    )?;
     let course = &prediction.trajectory;
-    for i in 0..course.len() {
-        let (low, high) = prediction.force_interval(i);
-        let (reading_low, reading_high) = prediction.reading_interval(i);
-        let (near, far) = prediction.displacement_interval(i);
-        let numbers = [
-            course.time[i],
-            course.displacement[i],
-            near,
-            far,
-            course.force[i],
-            low,
-            high,
-            reading_low,
-            reading_high,
-            prediction.force_deviation[i],
-            prediction.noise,
-        ];
-        let cells: Vec<String> = numbers.iter().map(|number| exact(number + 0.0)).collect();
-        write!(out, "{}\r\n", cells.join(","))?;
-    }
-    Ok(())
+    let columns: [(&str, &dyn Fn(usize) -> f64); 11] = [
+        ("time_s", &|i| course.time[i]),
+        ("displacement_m", &|i| course.displacement[i]),
+        ("displacement_low_m", &|i| prediction.displacement_interval(i).0),
+        ("displacement_high_m", &|i| prediction.displacement_interval(i).1),
+        ("force_n", &|i| course.force[i]),
+        ("force_low_n", &|i| prediction.force_interval(i).0),
+        ("force_high_n", &|i| prediction.force_interval(i).1),
+        ("reading_low_n", &|i| prediction.reading_interval(i).0),
+        ("reading_high_n", &|i| prediction.reading_interval(i).1),
+        ("force_error_n", &|i| prediction.force_deviation[i]),
+        ("noise_n", &|_| prediction.noise),
+    ];
+    write_series(out, course.len(), &columns)
 }
 
 /// The forces at each sample: a row each, for people.
@@ -51,27 +41,17 @@ pub fn prediction_table(prediction: &Prediction) -> Table {
         "Force by the calibrated law: {share} intervals of its mean (what the calibration leaves open) and of one reading ({} N of noise besides).",
         significant(prediction.noise, 2)
     );
-    let mut table = Table::new("prediction", caption)
-        .column(TableColumn::new("Time", "time_s", "s"))
-        .column(TableColumn::new("Displacement", "displacement_mm", "mm"))
-        .column(TableColumn::new("Force", "force_n", "N"))
-        .column(TableColumn::new("mean from", "force_low_n", "N"))
-        .column(TableColumn::new("to", "force_high_n", "N"))
-        .column(TableColumn::new("reading from", "reading_low_n", "N"))
-        .column(TableColumn::new("to", "reading_high_n", "N"));
-    for i in 0..course.len() {
-        let ((low, high), (reading_low, reading_high)) = (prediction.force_interval(i), prediction.reading_interval(i));
-        table = table.row(vec![
-            Cell::number(course.time[i], 4),
-            Cell::number(1e3 * course.displacement[i], 4),
-            Cell::number(course.force[i], 4),
-            Cell::number(low, 4),
-            Cell::number(high, 4),
-            Cell::number(reading_low, 4),
-            Cell::number(reading_high, 4),
-        ]);
-    }
-    table
+    let samples: Vec<usize> = (0..course.len()).collect();
+    let number = |value: f64| Cell::number(value, 4);
+    Table::of("prediction", caption, &samples)
+        .column("Time", "time_s", "s", |i| number(course.time[*i]))
+        .column("Displacement", "displacement_mm", "mm", |i| number(1e3 * course.displacement[*i]))
+        .column("Force", "force_n", "N", |i| number(course.force[*i]))
+        .column("mean from", "force_low_n", "N", |i| number(prediction.force_interval(*i).0))
+        .column("to", "force_high_n", "N", |i| number(prediction.force_interval(*i).1))
+        .column("reading from", "reading_low_n", "N", |i| number(prediction.reading_interval(*i).0))
+        .column("to", "reading_high_n", "N", |i| number(prediction.reading_interval(*i).1))
+        .table()
 }
 
 /// Force with its bands, and the displacement of the jaw, over time.

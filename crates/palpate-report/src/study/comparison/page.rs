@@ -73,7 +73,7 @@ pub(in crate::study) fn blocks(record: &ComparedRecord, figures: &[Figure]) -> R
             blocks.push(Block::Subheading(hold.title()));
             blocks.extend(Comparison::sentence(comparison).map(Block::Paragraph));
         }
-        blocks.extend(tables::laws_of_hold(hold).map(Block::Table));
+        blocks.extend(tables::laws_of_hold(record, hold).map(Block::Table));
     }
     if judged.len() > MOST_PANELS {
         blocks.push(Block::paragraph(format!(

@@ -6,7 +6,7 @@ use palpate::laws::Law;
 use crate::number::significant;
 use crate::result::{ComparedHold, ComparedRecord, LeftOut, word};
 use crate::study::findings;
-use crate::table::{Cell, Table, TableColumn};
+use crate::table::{Cell, Columns, Table};
 use crate::wrap::wrapped;
 
 const NO_FIT: &str = "could not be fitted";
@@ -18,10 +18,6 @@ pub(super) const NOTES: [&str; 3] = [
     "Errors after fits to the first part of the hold (its share stands above), over all that follows, in % of the change; score: their root mean square.",
     "ΔBIC at the effective number of samples, ΔAICc at all samples, each less the lowest. Merged: terms that the data cannot tell apart.",
 ];
-
-fn column(heading: impl Into<String>, key: impl Into<String>, unit: &str) -> TableColumn {
-    TableColumn::new(heading, key, unit)
-}
 
 fn percent(share: Option<f64>, digits: usize, reason: &str) -> Cell {
     Cell::number_or(share.filter(|share| share.is_finite()).map(|share| 100.0 * share), digits, reason)
@@ -40,6 +36,10 @@ fn ending(row: &Row) -> Cell {
     }
 }
 
+fn row_of(comparison: &Comparison, law: Law) -> Option<&Row> {
+    comparison.rows.iter().find(|row| row.law == law)
+}
+
 /// Numbers of a law: a whole one, but for a smoothed spectrum.
 fn parameters(row: &Row) -> Cell {
     if row.spectrum.is_some() {
@@ -49,49 +49,38 @@ fn parameters(row: &Row) -> Cell {
     }
 }
 
-/// The columns of a table of laws, with errors after these cuts (shares of the hold).
-fn law_columns(table: Table, cuts: &[f64]) -> Table {
-    let mut table = table
-        .column(column("Law", "law", ""))
-        .column(column("p", "parameters", ""))
-        .column(column("RMSE", "rmse_percent", ""))
-        .column(column("ΔBIC", "delta_bic", ""))
-        .column(column("ΔAICc", "delta_aicc", ""));
-    for cut in cuts {
-        let heading = format!("{} %", significant(100.0 * cut, 2));
-        table = table.column(column(heading, format!("forward_error_at_{cut:.3}_percent"), ""));
-    }
-    if !cuts.is_empty() {
-        table = table.column(column("Score", "forward_score_percent", ""));
-    }
-    table.column(column("Ended", "termination", ""))
-}
+/// A law on a hold of a record.
+type LawRow<'a> = (&'a ComparedRecord, &'a ComparedHold, &'a Comparison, &'a Row);
 
-fn law_row(row: &Row, comparison: &Comparison, cuts: &[f64]) -> Vec<Cell> {
-    let lowest = comparison.rows.iter().filter_map(|row| row.criteria).map(|c| c.aicc).fold(f64::INFINITY, f64::min);
-    let aicc = row.criteria.map(|criteria| criteria.aicc - lowest).filter(|delta| delta.is_finite());
-    let mut cells = vec![
-        Cell::text(row.law.to_string()),
-        parameters(row),
-        percent(Some(row.rmse / comparison.change), 2, NO_FIT),
-        Cell::number_or(row.delta_bic, 3, NO_FIT),
-        Cell::number_or(aicc, 3, NO_FIT),
-    ];
+/// Adds the columns of a table of laws, with errors after these cuts (shares of the hold).
+fn law_columns<'a>(table: Columns<'a, LawRow<'a>>, cuts: &[f64]) -> Table {
+    let mut table = table
+        .column("Law", "law", "", |(.., row)| Cell::text(row.law.to_string()))
+        .column("p", "parameters", "", |(.., row)| parameters(row))
+        .column("RMSE", "rmse_percent", "", |(.., found, row)| percent(Some(row.rmse / found.change), 2, NO_FIT))
+        .column("ΔBIC", "delta_bic", "", |(.., row)| Cell::number_or(row.delta_bic, 3, NO_FIT))
+        .column("ΔAICc", "delta_aicc", "", |(.., found, row)| {
+            let lowest = found.rows.iter().filter_map(|row| row.criteria).map(|c| c.aicc).fold(f64::INFINITY, f64::min);
+            let aicc = row.criteria.map(|criteria| criteria.aicc - lowest).filter(|delta| delta.is_finite());
+            Cell::number_or(aicc, 3, NO_FIT)
+        });
     for share in cuts {
-        let cut = share * comparison.duration;
-        let index = comparison.cuts.iter().position(|found| (found - cut).abs() < 1e-9 * comparison.duration);
-        let error = index.and_then(|index| row.forward.relative(index, comparison.change));
-        cells.push(percent(error, 2, NO_FORECAST));
+        let heading = format!("{} %", significant(100.0 * share, 2));
+        table = table.column(heading, format!("forward_error_at_{share:.3}_percent"), "", |(.., found, row)| {
+            let cut = share * found.duration;
+            let index = found.cuts.iter().position(|made| (made - cut).abs() < 1e-9 * found.duration);
+            percent(index.and_then(|index| row.forward.relative(index, found.change)), 2, NO_FORECAST)
+        });
     }
     if !cuts.is_empty() {
-        cells.push(percent(row.forward.score, 2, NO_FORECAST));
+        table =
+            table.column("Score", "forward_score_percent", "", |(.., row)| percent(row.forward.score, 2, NO_FORECAST));
     }
-    cells.push(ending(row));
-    cells
+    table.column("Ended", "termination", "", |(.., row)| ending(row)).table()
 }
 
 /// The laws on one hold, best first.
-pub(super) fn laws_of_hold(hold: &ComparedHold) -> Option<Table> {
+pub(super) fn laws_of_hold(record: &ComparedRecord, hold: &ComparedHold) -> Option<Table> {
     let comparison = hold.comparison.as_ref()?;
     let (unit, factor) = hold.quantity.for_people();
     let change = significant(factor * comparison.change, 3);
@@ -104,53 +93,46 @@ pub(super) fn laws_of_hold(hold: &ComparedHold) -> Option<Table> {
         if unit.is_empty() { change } else { format!("{change} {unit}") }
     );
     let cuts: Vec<f64> = comparison.cuts.iter().map(|cut| cut / comparison.duration).collect();
-    let table = law_columns(Table::new(format!("laws_hold_{}", hold.number), caption), &cuts);
-    Some(comparison.rows.iter().fold(table, |table, row| table.row(law_row(row, comparison, &cuts))))
+    let rows: Vec<LawRow<'_>> = comparison.rows.iter().map(|row| (record, hold, comparison, row)).collect();
+    Some(law_columns(Table::of(format!("laws_hold_{}", hold.number), caption, &rows), &cuts))
 }
 
 /// The laws on all holds of records, for machines: one row a record, hold and law.
 pub(in crate::study) fn laws(records: &[ComparedRecord], cuts: &[f64]) -> Table {
-    let table = Table::new("laws", "Every law on every hold.")
-        .column(column("Record", "record", ""))
-        .column(column("Hold", "hold", ""));
-    let mut table = law_columns(table, cuts);
+    let mut rows: Vec<LawRow<'_>> = Vec::new();
     for record in records {
         for hold in &record.holds {
-            for row in hold.comparison.iter().flat_map(|comparison| &comparison.rows) {
-                let comparison = hold.comparison.as_ref();
-                let mut cells = vec![Cell::text(record.input.called()), Cell::Integer(hold.number as i64)];
-                cells.extend(comparison.map(|comparison| law_row(row, comparison, cuts)).unwrap_or_default());
-                table = table.row(cells);
-            }
+            let found = hold.comparison.iter().flat_map(|found| found.rows.iter().map(move |row| (found, row)));
+            rows.extend(found.map(|(found, row)| (record, hold, found, row)));
         }
     }
-    table
+    let table = Table::of("laws", "Every law on every hold.", &rows)
+        .column("Record", "record", "", |(record, ..)| Cell::text(record.input.called()))
+        .column("Hold", "hold", "", |(_, hold, ..)| Cell::Integer(hold.number as i64));
+    law_columns(table, cuts)
 }
 
 /// Which law to use on each hold of a record: one row a hold.
 pub(in crate::study) fn verdicts(record: &ComparedRecord) -> Option<Table> {
-    let mut table = Table::new("verdicts", "Which law to use, hold by hold.")
-        .column(column("Hold", "hold", ""))
-        .column(column("Law to use", "law", ""))
-        .column(column("p", "parameters", ""))
-        .column(column("Foretells to", "forward_score_percent", "%"))
-        .column(column("Sure", "certainty", ""))
-        .column(column("Laws as good", "alike", ""))
-        .column(column("Best at cuts", "cuts_won", ""));
-    for (hold, comparison) in record.verdicts() {
-        let Some(verdict) = &comparison.verdict else { continue };
-        let chosen = comparison.rows.iter().find(|row| row.law == verdict.law);
-        table = table.row(vec![
-            Cell::Integer(hold.number as i64),
-            Cell::text(verdict.law.to_string()),
-            chosen.map_or(Cell::missing(NO_FIT), parameters),
-            percent(chosen.and_then(|row| row.forward.score), 2, "too short to foretell: ranked by BIC"),
-            Cell::text(word(verdict.certainty)),
-            Cell::Integer(verdict.alike.len() as i64 - 1),
-            Cell::text(format!("{} of {}", verdict.cuts_won, comparison.cuts.len())),
-        ]);
-    }
-    (!table.rows.is_empty()).then_some(table)
+    let judged = record.verdicts();
+    let rows: Vec<_> = judged.filter_map(|(hold, found)| Some((hold, found, found.verdict.as_ref()?))).collect();
+    let table = Table::of("verdicts", "Which law to use, hold by hold.", &rows)
+        .column("Hold", "hold", "", |(hold, ..)| Cell::Integer(hold.number as i64))
+        .column("Law to use", "law", "", |(.., verdict)| Cell::text(verdict.law.to_string()))
+        .column("p", "parameters", "", |(_, found, verdict)| {
+            row_of(found, verdict.law).map_or(Cell::missing(NO_FIT), parameters)
+        })
+        .column("Foretells to", "forward_score_percent", "%", |(_, found, verdict)| {
+            let score = row_of(found, verdict.law).and_then(|row| row.forward.score);
+            percent(score, 2, "too short to foretell: ranked by BIC")
+        })
+        .column("Sure", "certainty", "", |(.., verdict)| Cell::text(word(verdict.certainty)))
+        .column("Laws as good", "alike", "", |(.., verdict)| Cell::Integer(verdict.alike.len() as i64 - 1))
+        .column("Best at cuts", "cuts_won", "", |(_, found, verdict)| {
+            Cell::text(format!("{} of {}", verdict.cuts_won, found.cuts.len()))
+        })
+        .table();
+    (!rows.is_empty()).then_some(table)
 }
 
 /// Which law to use, for a terminal: the table of all laws where there is one hold, else one row a hold.
@@ -159,7 +141,7 @@ pub(in crate::study) fn verdict_text(record: &ComparedRecord) -> String {
     match judged.as_slice() {
         [] => String::new(),
         [(hold, comparison)] => {
-            let table = laws_of_hold(hold).map(|table| table.to_plain_text()).unwrap_or_default();
+            let table = laws_of_hold(record, hold).map(|table| table.to_plain_text()).unwrap_or_default();
             let notes: String = NOTES.iter().map(|note| wrapped(note)).collect();
             let sentence = comparison.sentence().map(|sentence| wrapped(&sentence)).unwrap_or_default();
             format!("{table}{sentence}{notes}\n")
@@ -175,7 +157,7 @@ pub fn comparison_text(records: &[ComparedRecord], left_out: &[LeftOut]) -> Stri
     for record in records {
         text.push_str(&format!("{}\n\n", record.input.called()));
         for hold in &record.holds {
-            match laws_of_hold(hold) {
+            match laws_of_hold(record, hold) {
                 Some(table) => text.push_str(&table.to_plain_text()),
                 None => text.push_str(&format!("{}: nothing could be fitted.\n", hold.title())),
             }
@@ -202,19 +184,30 @@ pub fn comparison_text(records: &[ComparedRecord], left_out: &[LeftOut]) -> Stri
 /// One Markdown table of every record and hold, with a column a law.
 #[must_use]
 pub fn comparison_markdown(records: &[ComparedRecord], left_out: &[LeftOut], laws: &[Law]) -> String {
-    let mut table = Table::new("comparison", "")
-        .column(column("Record", "record", ""))
-        .column(column("Hold", "hold", ""));
-    table = laws.iter().fold(table, |table, law| table.column(column(law.to_string(), law.to_string(), "")));
-    table = table
-        .column(column("Law to use", "law", ""))
-        .column(column("Sure", "certainty", ""))
-        .column(column("Findings", "findings", ""));
-    for record in records {
-        for hold in &record.holds {
-            table = table.row(overview_row(record, hold, laws));
-        }
+    let rows: Vec<_> = records.iter().flat_map(|record| record.holds.iter().map(move |hold| (record, hold))).collect();
+    let verdict = |hold: &ComparedHold, told: fn(&Verdict) -> String| {
+        let verdict = hold.comparison.as_ref().and_then(|found| found.verdict.as_ref());
+        Cell::text(verdict.map_or("–".to_owned(), told))
+    };
+    let mut columns = Table::of("comparison", "", &rows)
+        .column("Record", "record", "", |(record, _)| Cell::text(record.input.called()))
+        .column("Hold", "hold", "", |(_, hold)| Cell::Integer(hold.number as i64));
+    for law in laws {
+        columns = columns.column(law.to_string(), law.to_string(), "", |(_, hold)| {
+            let told = hold.comparison.as_ref().and_then(|found| overview(found, *law));
+            Cell::text(told.unwrap_or("–".to_owned()))
+        });
     }
+    let mut table = columns
+        .column("Law to use", "law", "", |(_, hold)| verdict(hold, |verdict| verdict.law.to_string()))
+        .column("Sure", "certainty", "", |(_, hold)| verdict(hold, sure))
+        .column("Findings", "findings", "", |(record, hold)| {
+            let all = record.findings.iter().chain(&hold.findings);
+            let mut codes: Vec<String> = all.map(|finding| format!("`{}`", finding.code())).collect();
+            codes.dedup();
+            Cell::text(codes.join(", "))
+        })
+        .table();
     table.rows.extend(median_row(records, laws));
     let mut text = if table.rows.is_empty() { String::new() } else { table.to_markdown() };
     if !left_out.is_empty() {
@@ -250,34 +243,10 @@ pub(super) fn left_out_line(file: &LeftOut) -> String {
     format!("{}: {}", file.path, file.reason.lines().next().unwrap_or_default())
 }
 
-fn overview_row(record: &ComparedRecord, hold: &ComparedHold, laws: &[Law]) -> Vec<Cell> {
-    let comparison = hold.comparison.as_ref();
-    let verdict = comparison.and_then(|comparison| comparison.verdict.as_ref());
-    let mut cells = vec![Cell::text(record.input.called()), Cell::Integer(hold.number as i64)];
-    for law in laws {
-        cells.push(Cell::text(comparison.map_or("–".to_owned(), |comparison| overview(comparison, *law))));
-    }
-    cells.push(Cell::text(verdict.map_or("–".to_owned(), |verdict| verdict.law.to_string())));
-    cells.push(Cell::text(verdict.map_or("–".to_owned(), sure)));
-    let mut codes: Vec<String> = record
-        .findings
-        .iter()
-        .chain(&hold.findings)
-        .map(|finding| format!("`{}`", finding.code()))
-        .collect();
-    codes.dedup();
-    cells.push(Cell::text(codes.join(", ")));
-    cells
-}
-
 /// The figure of one law on one hold: forward error in %, or Δ and its excess of BIC; the best in bold.
-fn overview(comparison: &Comparison, law: Law) -> String {
-    let Some(row) = comparison.rows.iter().find(|row| row.law == law) else {
-        return "–".to_owned();
-    };
-    let Some(figure) = comparison.figure(row) else {
-        return "–".to_owned();
-    };
+fn overview(comparison: &Comparison, law: Law) -> Option<String> {
+    let row = row_of(comparison, law)?;
+    let figure = comparison.figure(row)?;
     let told = match comparison.ranking {
         Ranking::Forward => significant(100.0 * figure, 2),
         Ranking::Information => format!("Δ{}", significant(figure, 2)),
@@ -285,7 +254,7 @@ fn overview(comparison: &Comparison, law: Law) -> String {
     let best = comparison.rows.iter().filter(|row| row.is_good()).find_map(|row| comparison.figure(row));
     // What did not end at an optimum is set apart: its figure may be good, its numbers are not.
     let told = if row.is_good() { told } else { format!("({told})") };
-    if best == Some(figure) { format!("**{told}**") } else { told }
+    Some(if best == Some(figure) { format!("**{told}**") } else { told })
 }
 
 fn sure(verdict: &Verdict) -> String {

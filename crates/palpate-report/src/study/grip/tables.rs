@@ -1,6 +1,6 @@
 //! A planned grip: tables and text.
 
-use palpate::grip::{Holding, TimeToSlip};
+use palpate::grip::{Holding, Move, TimeToSlip};
 
 use crate::number::significant;
 use crate::result::{GrippedBody, lasted, percent};
@@ -29,14 +29,10 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
         .column(column(&format!("{share} from"), "lasts_low_s", "s"))
         .column(column("to", "lasts_high_s", "s"))
         .column(column("Work", "work_mj", "mJ"));
-    let time = |time: TimeToSlip| match time {
-        TimeToSlip::After(seconds) => Cell::number(seconds, 4),
-        TimeToSlip::Never => Cell::text("always"),
-    };
     let end = |course: &palpate::calibrate::Prediction| course.trajectory.force.last().copied().unwrap_or(0.0);
     let holding = |name: &str, found: &Holding, end: f64| {
         let interval = |pick: fn((TimeToSlip, TimeToSlip)) -> TimeToSlip| {
-            found.interval.map_or_else(|| Cell::missing(NO_INTERVAL), |interval| time(pick(interval)))
+            found.interval.map_or_else(|| Cell::missing(NO_INTERVAL), |interval| lasts(pick(interval)))
         };
         vec![
             Cell::text(name),
@@ -47,7 +43,7 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
             Cell::number(found.peak_force, 4),
             Cell::number(end, 4),
             Cell::number(found.needed_force, 4),
-            time(found.lasts),
+            lasts(found.lasts),
             interval(|(low, _)| low),
             interval(|(_, high)| high),
             Cell::number(1e3 * found.work, 3),
@@ -61,10 +57,10 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
     }
     if let Ok(pressed) = &answer.force_hold {
         let found = &pressed.found;
-        let lasts = match (found.holds, found.stroke_ends) {
-            (false, _) => Cell::number(0.0, 4),
-            (true, Some(time)) => Cell::number(time, 4),
-            (true, None) => Cell::text("always"),
+        let until = if found.holds {
+            found.stroke_ends.map_or(TimeToSlip::Never, TimeToSlip::After)
+        } else {
+            TimeToSlip::After(0.0)
         };
         table = table.row(vec![
             Cell::text("force held"),
@@ -78,7 +74,7 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
                 Some(_) => Cell::missing("the stroke ends before"),
             },
             Cell::number(found.needed_force, 4),
-            lasts,
+            lasts(until),
             Cell::missing("a force that is held does not fall"),
             Cell::missing("a force that is held does not fall"),
             Cell::number(1e3 * found.work, 3),
@@ -93,64 +89,52 @@ pub fn neighbour_table(body: &GrippedBody<'_>) -> Option<Table> {
     let answer = &body.answer;
     let squeeze = answer.squeeze.as_ref().ok().filter(|_| answer.neighbours.len() > 1)?;
     let speed = significant(1e3 * squeeze.found.plan.speed(), 3);
-    let mut table = Table::new("neighbours", format!("Squeezes beside it, at {speed} mm/s."))
-        .column(TableColumn::new("Squeeze", "displacement_mm", "mm"))
-        .column(TableColumn::new("beside it", "change_percent", "%"))
-        .column(TableColumn::new("Holds", "lasts_s", "s"));
-    for (place, time) in &answer.neighbours {
-        table = table.row(vec![
-            Cell::number(1e3 * place, 4),
-            Cell::number((100.0 * (place / squeeze.found.displacement - 1.0)).round(), 2),
-            time.seconds().map_or_else(|| Cell::text("always"), |seconds| Cell::number(seconds, 4)),
-        ]);
-    }
-    Some(table)
+    let table = Table::of("neighbours", format!("Squeezes beside it, at {speed} mm/s."), &answer.neighbours)
+        .column("Squeeze", "displacement_mm", "mm", |(place, _)| Cell::number(1e3 * place, 4))
+        .column("beside it", "change_percent", "%", |(place, _)| {
+            Cell::number((100.0 * (place / squeeze.found.displacement - 1.0)).round(), 2)
+        })
+        .column("Holds", "lasts_s", "s", |(_, time)| lasts(*time));
+    Some(table.table())
+}
+
+/// How long something holds.
+fn lasts(time: TimeToSlip) -> Cell {
+    time.seconds().map_or_else(|| Cell::text("always"), |seconds| Cell::number(seconds, 4))
 }
 
 /// What the numbers of the material do to squeeze and back off.
 #[must_use]
 pub fn sensitivity_table(body: &GrippedBody<'_>) -> Option<Table> {
-    let found = &body.answer.back_off.as_ref().ok()?.found;
+    let found = &body.answer.back_off.as_ref().ok()?.found.sensitivities;
     let caption = "Squeeze and back off: what happens if a number of the material is 1 % larger than was found.";
-    let mut table = Table::new("sensitivities", caption)
-        .column(TableColumn::new("Number", "number", ""))
-        .column(TableColumn::new("known to", "standard_error_percent", "%"))
-        .column(TableColumn::new("Force missed", "missed_mn", "mN"))
-        .column(TableColumn::new("Turn farther by", "over_um", "µm"));
-    for one in &found.sensitivities {
-        table = table.row(vec![
-            Cell::text(one.name.replace('_', " ")),
-            Cell::number_or(one.error.map(|error| 100.0 * error), 2, "it has no error"),
-            // Rounding alone is nothing.
-            Cell::number(if one.missed.abs() < 1e-9 { 0.0 } else { 1e3 * one.missed }, 3),
-            Cell::number(1e6 * one.over, 3),
-        ]);
-    }
-    (!found.sensitivities.is_empty()).then_some(table)
+    let table = Table::of("sensitivities", caption, found)
+        .column("Number", "number", "", |one| Cell::text(one.name.replace('_', " ")))
+        .column("known to", "standard_error_percent", "%", |one| {
+            Cell::number_or(one.error.map(|error| 100.0 * error), 2, "it has no error")
+        })
+        // Rounding alone is nothing.
+        .column("Force missed", "missed_mn", "mN", |one| {
+            Cell::number(if one.missed.abs() < 1e-9 { 0.0 } else { 1e3 * one.missed }, 3)
+        })
+        .column("Turn farther by", "over_um", "µm", |one| Cell::number(1e6 * one.over, 3))
+        .table();
+    (!found.is_empty()).then_some(table)
 }
 
 /// The squeezes of a schedule.
 #[must_use]
 pub fn schedule_table(body: &GrippedBody<'_>) -> Option<Table> {
     let found = &body.answer.schedule.as_ref()?.as_ref().ok()?.found;
-    let mut table = Table::new("schedule", "When to squeeze again; times since first touch.")
-        .column(TableColumn::new("Move", "move", ""))
-        .column(TableColumn::new("at", "time_s", "s"))
-        .column(TableColumn::new("Jaw from", "from_mm", "mm"))
-        .column(TableColumn::new("to", "to_mm", "mm"))
-        .column(TableColumn::new("Force from", "force_from_n", "N"))
-        .column(TableColumn::new("to", "force_to_n", "N"));
-    for (index, step) in found.moves.iter().enumerate() {
-        table = table.row(vec![
-            Cell::Integer(index as i64 + 1),
-            Cell::number(step.time, 5),
-            Cell::number(1e3 * step.from, 5),
-            Cell::number(1e3 * step.to, 5),
-            Cell::number(step.force_from, 4),
-            Cell::number(step.force_to, 4),
-        ]);
-    }
-    Some(table)
+    let moves: Vec<(i64, &Move)> = (1..).zip(&found.moves).collect();
+    let table = Table::of("schedule", "When to squeeze again; times since first touch.", &moves)
+        .column("Move", "move", "", |(number, _)| Cell::Integer(*number))
+        .column("at", "time_s", "s", |(_, step)| Cell::number(step.time, 5))
+        .column("Jaw from", "from_mm", "mm", |(_, step)| Cell::number(1e3 * step.from, 5))
+        .column("to", "to_mm", "mm", |(_, step)| Cell::number(1e3 * step.to, 5))
+        .column("Force from", "force_from_n", "N", |(_, step)| Cell::number(step.force_from, 4))
+        .column("to", "force_to_n", "N", |(_, step)| Cell::number(step.force_to, 4));
+    Some(table.table())
 }
 
 /// A planned grip as text for a terminal.

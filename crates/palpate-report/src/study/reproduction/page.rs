@@ -1,5 +1,6 @@
 //! Figures, tables and page of the reproduced study.
 
+use palpate::analysis::HoldAnalysis;
 use palpate::segment::After;
 use palpate::simulate::Trajectory;
 
@@ -10,7 +11,7 @@ use crate::result::{ReproducedTest, Reproduction};
 use crate::study::bundle::StudyError;
 use crate::study::record::figures as record_figures;
 use crate::study::simulate::wave_figure;
-use crate::table::{Cell, Table, TableColumn};
+use crate::table::{Cell, Table};
 
 /// Equilibrium strains of Table I as the authors measured them (compression negative in the paper).
 const MEASURED_EQUILIBRIUM: [f64; 5] = [0.1661, 0.2193, 0.2623, 0.3031, 0.3144];
@@ -91,38 +92,33 @@ fn paper_table(study: &Reproduction, test: &ReproducedTest, after: After) -> Tab
         After::Loading => ("table_1", "Table I, loading: the law re-identified in the simulated test (a), n = 5."),
         After::Unloading => ("table_2", "Table II, unloading: the law re-identified in the simulated test (b), n = 5."),
     };
-    let column = TableColumn::new;
-    let mut table = Table::new(name, caption)
-        .column(column("Step", "step", ""))
-        .column(column("Displacement", "displacement_mm", "mm"))
-        .column(column("εₑ", "equilibrium_strain", ""))
-        .column(column("v", "rate_coefficient_per_s", "s⁻¹"))
-        .column(column("n (free)", "exponent_free", ""))
-        .column(column("v (rate domain)", "rate_coefficient_rate_domain_per_s", "s⁻¹"))
-        .column(column("εₑ measured by the authors", "equilibrium_strain_measured_by_the_authors", ""))
-        .column(column("v measured by the authors", "rate_coefficient_measured_by_the_authors_per_s", "s⁻¹"));
-    let holds: Vec<_> = test.loaded().collect();
-    for (step, hold) in holds.iter().enumerate().filter(|(_, hold)| hold.after == Some(after)) {
-        let Some(fit) = hold.fit_with(n) else { continue };
-        let free = hold.fits.last();
-        let (equilibrium, coefficient) = match after {
-            After::Loading => {
-                (MEASURED_EQUILIBRIUM.get(step).copied(), MEASURED_COEFFICIENT.get(step).copied().flatten())
-            }
-            After::Unloading => (None, None),
-        };
-        table = table.row(vec![
-            Cell::Integer(step as i64 + 1),
-            Cell::number_or(hold.displacement.map(|d| 1e3 * d), 3, "not recorded"),
-            Cell::number(fit.equilibrium().value, 5),
-            Cell::number(fit.rate_coefficient().value, 5),
-            Cell::number_or(free.map(|fit| fit.exponent().value), 5, "no fit"),
-            Cell::number_or(hold.rate_fit_with(n).map(|fit| fit.rate_coefficient().value), 4, "no fit"),
-            Cell::number_or(equilibrium, 4, "illegible in the source"),
-            Cell::number_or(coefficient, 2, "illegible in the source"),
-        ]);
-    }
-    table.note("Compression is positive here; the paper prints it as negative. The authors' ball is stiffer than E and the geometry say at small squeezes, so their measured εₑ differ from u₁/r, which the simulation tends to. Their v falls with εₑ; the simulation has one v for all holds. The rate domain underestimates v: smoothing flattens the fast start of a hold.")
+    let loaded: Vec<&HoldAnalysis> = test.loaded().collect();
+    let of_kind = loaded.iter().enumerate().filter(|(_, hold)| hold.after == Some(after));
+    let rows: Vec<_> = of_kind.filter_map(|(step, hold)| Some((step, *hold, hold.fit_with(n)?))).collect();
+    let measured = |value: Option<f64>, digits: usize| {
+        Cell::number_or(value.filter(|_| after == After::Loading), digits, "illegible in the source")
+    };
+    Table::of(name, caption, &rows)
+        .column("Step", "step", "", |(step, ..)| Cell::Integer(*step as i64 + 1))
+        .column("Displacement", "displacement_mm", "mm", |(_, hold, _)| {
+            Cell::number_or(hold.displacement.map(|d| 1e3 * d), 3, "not recorded")
+        })
+        .column("εₑ", "equilibrium_strain", "", |(.., fit)| Cell::number(fit.equilibrium().value, 5))
+        .column("v", "rate_coefficient_per_s", "s⁻¹", |(.., fit)| Cell::number(fit.rate_coefficient().value, 5))
+        .column("n (free)", "exponent_free", "", |(_, hold, _)| {
+            Cell::number_or(hold.fits.last().map(|fit| fit.exponent().value), 5, "no fit")
+        })
+        .column("v (rate domain)", "rate_coefficient_rate_domain_per_s", "s⁻¹", |(_, hold, _)| {
+            Cell::number_or(hold.rate_fit_with(n).map(|fit| fit.rate_coefficient().value), 4, "no fit")
+        })
+        .column("εₑ measured by the authors", "equilibrium_strain_measured_by_the_authors", "", |(step, ..)| {
+            measured(MEASURED_EQUILIBRIUM.get(*step).copied(), 4)
+        })
+        .column("v measured by the authors", "rate_coefficient_measured_by_the_authors_per_s", "s⁻¹", |(step, ..)| {
+            measured(MEASURED_COEFFICIENT.get(*step).copied().flatten(), 2)
+        })
+        .table()
+        .note("Compression is positive here; the paper prints it as negative. The authors' ball is stiffer than E and the geometry say at small squeezes, so their measured εₑ differ from u₁/r, which the simulation tends to. Their v falls with εₑ; the simulation has one v for all holds. The rate domain underestimates v: smoothing flattens the fast start of a hold.")
 }
 
 /// The page.

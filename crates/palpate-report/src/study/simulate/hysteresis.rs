@@ -4,7 +4,7 @@ use palpate::simulate::{Cycle, StepWork, Trajectory};
 
 use crate::figure::{Axis, Figure, Layer, Panel, Role};
 use crate::number::significant;
-use crate::table::{Cell, Table, TableColumn};
+use crate::table::{Cell, Table};
 
 /// Cycles that get a curve of their own.
 const CURVES: usize = 6;
@@ -53,49 +53,35 @@ fn cost(cycle: &Cycle) -> String {
 /// Work between the knots of a drive, one row a step.
 #[must_use]
 pub fn step_work_table(steps: &[StepWork]) -> Table {
-    let mut table = Table::new("steps", "Work of the jaw in every step.")
-        .column(TableColumn::new("Step", "step", ""))
-        .column(TableColumn::new("From", "from_s", "s"))
-        .column(TableColumn::new("Until", "until_s", "s"))
-        .column(TableColumn::new("Displacement from", "displacement_from_m", "m"))
-        .column(TableColumn::new("Displacement until", "displacement_until_m", "m"))
-        .column(TableColumn::new("Work", "work_j", "J"))
-        .column(TableColumn::new("Given back", "given_back_j", "J"));
-    let splits = steps.iter().any(|step| step.lost.is_some());
-    if splits {
-        table = table.column(TableColumn::new("Lost", "lost_j", "J"));
+    let numbered: Vec<(i64, &StepWork)> = (1..).zip(steps).collect();
+    let number = |value: f64| Cell::number(value, 9);
+    let table = Table::of("steps", "Work of the jaw in every step.", &numbered)
+        .column("Step", "step", "", |(step, _)| Cell::Integer(*step))
+        .column("From", "from_s", "s", |(_, step)| number(step.from))
+        .column("Until", "until_s", "s", |(_, step)| number(step.until))
+        .column("Displacement from", "displacement_from_m", "m", |(_, step)| number(step.displacement_from))
+        .column("Displacement until", "displacement_until_m", "m", |(_, step)| number(step.displacement_until))
+        .column("Work", "work_j", "J", |(_, step)| number(step.work))
+        .column("Given back", "given_back_j", "J", |(_, step)| number(step.given_back));
+    if steps.iter().all(|step| step.lost.is_none()) {
+        return table.table();
     }
-    let row = |(i, step): (usize, &StepWork)| {
-        let numbers =
-            [step.from, step.until, step.displacement_from, step.displacement_until, step.work, step.given_back];
-        let lost = step.lost.filter(|_| splits);
-        std::iter::once(Cell::Integer(i as i64 + 1))
-            .chain(numbers.into_iter().chain(lost).map(|number| Cell::number(number, 9)))
-            .collect()
-    };
-    table.rows = steps.iter().enumerate().map(row).collect();
-    table
+    table.column("Lost", "lost_j", "J", |(_, step)| step.lost.map_or(Cell::text(""), number)).table()
 }
 
 /// What every cycle cost, one row a cycle.
 #[must_use]
 pub fn cycle_table(cycles: &[Cycle]) -> Table {
-    let mut table = Table::new("cycles", "What every cycle of squeeze and release cost.")
-        .column(TableColumn::new("Cycle", "cycle", ""))
-        .column(TableColumn::new("From", "from_s", "s"))
-        .column(TableColumn::new("Until", "until_s", "s"))
-        .column(TableColumn::new("Done", "done_j", "J"))
-        .column(TableColumn::new("Given back", "given_back_j", "J"))
-        .column(TableColumn::new("Lost", "lost_j", "J"))
-        .column(TableColumn::new("Share lost", "share_lost", ""))
-        .column(TableColumn::new("Closed", "closed", ""));
-    let row = |(i, cycle): (usize, &Cycle)| {
-        let numbers = [cycle.from, cycle.until, cycle.done, cycle.given_back, cycle.lost, cycle.share_lost];
-        std::iter::once(Cell::Integer(i as i64 + 1))
-            .chain(numbers.map(|number| Cell::number(number, 6)))
-            .chain([Cell::text(if cycle.is_closed { "yes" } else { "no" })])
-            .collect()
-    };
-    table.rows = cycles.iter().enumerate().map(row).collect();
-    table
+    let numbered: Vec<(i64, &Cycle)> = (1..).zip(cycles).collect();
+    let number = |value: f64| Cell::number(value, 6);
+    Table::of("cycles", "What every cycle of squeeze and release cost.", &numbered)
+        .column("Cycle", "cycle", "", |(cycle, _)| Cell::Integer(*cycle))
+        .column("From", "from_s", "s", |(_, cycle)| number(cycle.from))
+        .column("Until", "until_s", "s", |(_, cycle)| number(cycle.until))
+        .column("Done", "done_j", "J", |(_, cycle)| number(cycle.done))
+        .column("Given back", "given_back_j", "J", |(_, cycle)| number(cycle.given_back))
+        .column("Lost", "lost_j", "J", |(_, cycle)| number(cycle.lost))
+        .column("Share lost", "share_lost", "", |(_, cycle)| number(cycle.share_lost))
+        .column("Closed", "closed", "", |(_, cycle)| Cell::text(if cycle.is_closed { "yes" } else { "no" }))
+        .table()
 }

@@ -121,7 +121,7 @@ fn heat_map(
         unit: result.unit.clone(),
         range,
     };
-    Panel::new(x.axis(), y.axis()).layer(Layer::Map(map)).empty_note("Every run was refused")
+    Panel::new(x.axis(), y.axis()).layer(Layer::map(map)).empty_note("Every run was refused")
 }
 
 /// A value as people write it in a title: 2 and not 2.00.

@@ -9,29 +9,37 @@ use crate::number::exact;
 
 /// Writes the series as CSV, one row a sample: time, displacements, force, strains, rate, all in SI.
 ///
-/// Row by row, so that ten million samples need no more memory than the series itself.
-///
 /// # Errors
 /// Whatever the writer says.
 pub fn write_trajectory(out: &mut dyn Write, trajectory: &Trajectory) -> io::Result<()> {
-    let columns: [(&str, &[f64]); 8] = [
-        ("time_s", &trajectory.time),
-        ("displacement_m", &trajectory.displacement),
-        ("contact_displacement_m", &trajectory.contact_displacement),
-        ("force_n", &trajectory.force),
-        ("strain", &trajectory.strain),
-        ("equilibrium_strain", &trajectory.equilibrium_strain),
-        ("excess_strain", &trajectory.excess_strain),
-        ("strain_rate_per_s", &trajectory.strain_rate),
+    let columns: [(&str, &dyn Fn(usize) -> f64); 9] = [
+        ("time_s", &|i| trajectory.time[i]),
+        ("displacement_m", &|i| trajectory.displacement[i]),
+        ("contact_displacement_m", &|i| trajectory.contact_displacement[i]),
+        ("force_n", &|i| trajectory.force[i]),
+        ("strain", &|i| trajectory.strain[i]),
+        ("equilibrium_strain", &|i| trajectory.equilibrium_strain[i]),
+        ("excess_strain", &|i| trajectory.excess_strain[i]),
+        ("strain_rate_per_s", &|i| trajectory.strain_rate[i]),
+        ("in_contact", &|i| f64::from(trajectory.in_contact[i])),
     ];
-    let names = columns.map(|(name, _)| name);
-    write!(out, "{},in_contact\r\n", names.join(","))?;
-    for row in 0..trajectory.len() {
-        for (i, (_, values)) in columns.iter().enumerate() {
+    write_series(out, trajectory.len(), &columns)
+}
+
+/// Writes columns as CSV, row by row, so that ten million samples need no more memory than the series itself.
+pub(in crate::study) fn write_series(
+    out: &mut dyn Write,
+    rows: usize,
+    columns: &[(&str, &dyn Fn(usize) -> f64)],
+) -> io::Result<()> {
+    let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+    write!(out, "{}\r\n", names.join(","))?;
+    for row in 0..rows {
+        for (i, (_, value)) in columns.iter().enumerate() {
             // + 0.0 turns −0 into 0.
-            write!(out, "{}{}", if i > 0 { "," } else { "" }, exact(values[row] + 0.0))?;
+            write!(out, "{}{}", if i > 0 { "," } else { "" }, exact(value(row) + 0.0))?;
         }
-        write!(out, ",{}\r\n", u8::from(trajectory.in_contact[row]))?;
+        write!(out, "\r\n")?;
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use palpate::simulate::StrainWave;
 
-use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
+use crate::figure::{Arrangement, Axis, Figure, Layer, Map, Panel, Role};
 
 /// Strain of every layer as a map over time, and as lines.
 #[must_use]
@@ -11,7 +11,7 @@ pub fn wave_figure(name: &str, wave: &StrainWave, caption: &str) -> Figure {
     let depth: Vec<f64> = (1..=layers).map(|i| i as f64).collect();
     let values = wave.strain.iter().flatten().copied().collect();
     let map = Panel::new(Axis::linear("Time", "s"), Axis::linear("Layer (1 = contact)", ""))
-        .layer(Layer::map(wave.time.clone(), depth, values, "Strain", ""))
+        .layer(Layer::map(Map::new(wave.time.clone(), depth, values, "Strain", "")))
         .share(1.2);
     let mut lines = Panel::new(Axis::linear("Time", "s"), Axis::linear("Strain", ""));
     for (series, layer) in shown(layers).into_iter().enumerate() {
@@ -37,6 +37,7 @@ fn shown(layers: usize) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure::Mark;
 
     #[test]
     fn few_or_many_layers_each_have_a_colour_of_their_own() {
@@ -52,11 +53,9 @@ mod tests {
             work: palpate::simulate::SimulationWork::default(),
         };
         let figure = wave_figure("layers", &wave, "Many layers.");
-        let role = |layer: &Layer| match layer {
-            Layer::Line { role, .. } => *role,
-            _ => panic!("no line"),
-        };
-        let roles: Vec<Role> = figure.panels[1].layers.iter().map(role).collect();
+        let lines = &figure.panels[1].layers;
+        assert!(lines.iter().all(|layer| matches!(layer.mark, Mark::Line { .. })));
+        let roles: Vec<Role> = lines.iter().map(|layer| layer.role).collect();
         assert_eq!(roles, [0, 1, 2, 3, 4].map(Role::Series));
     }
 }
