@@ -9,8 +9,8 @@ use palpate::analysis::{AnalysisOptions, Severity};
 use palpate_jobs::input::Measurement;
 use palpate_jobs::output::write_bundle;
 use palpate_jobs::{Analyze, Analyzed, Outcome, Results};
-use palpate_report::document::{AnalysisDocument, FindingDocument, FitDocument};
-use palpate_report::result::Input;
+use palpate_report::document::{AnalysisDocument, FitDocument};
+use palpate_report::result::{Input, word};
 use palpate_report::study::Pictures;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
@@ -26,14 +26,14 @@ use crate::work::{Made, at_length, job, made_again, plain, printed, unpickled};
 #[pyclass(name = "Finding", module = "palpate", frozen, eq)]
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Finding {
-    found: FindingDocument,
+    found: palpate_report::page::Finding,
     /// Number of the hold, from 1; None for the record as a whole.
     #[pyo3(get)]
     hold: Option<usize>,
 }
 
 impl Finding {
-    fn of(found: &FindingDocument, hold: Option<usize>) -> Self {
+    fn of(found: &palpate_report::page::Finding, hold: Option<usize>) -> Self {
         Self {
             found: found.clone(),
             hold,
@@ -51,8 +51,8 @@ impl Finding {
 
     /// "info", "caution" or "warning".
     #[getter]
-    fn severity(&self) -> &str {
-        &self.found.severity
+    fn severity(&self) -> String {
+        word(self.found.severity)
     }
 
     /// What was seen.

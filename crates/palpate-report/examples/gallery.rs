@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use palpate_report::figure::{Arrangement, Axis, Figure, Layer, Map, Panel, Role};
-use palpate_report::page::{Block, Check, Finding, Outcome, Page, Section, Severity};
+use palpate_report::page::{Block, Check, Finding, Page, Section, Severity};
 use palpate_report::table::{Cell, Table, TableColumn};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -262,11 +262,11 @@ fn page(table: Table, figures: Section) -> Page {
         meaning: "The contact may not have settled when the hold began.".to_owned(),
         remedy: "Hold longer, or start the fit later.".to_owned(),
     };
-    let check = |name: &str, found: &str, outcome| Check {
+    let check = |name: &str, found: &str, passed| Check {
         name: name.to_owned(),
         criterion: "at most 5 %".to_owned(),
         found: found.to_owned(),
-        outcome,
+        passed,
     };
     let pairs = [("Record", "pad-a.csv"), ("Samples", "4000"), ("Rate", "33.3 s⁻¹")];
     Page::new("Gallery of figures", "What palpate can draw, from made-up data")
@@ -284,9 +284,8 @@ fn page(table: Table, figures: Section) -> Page {
                     finding(Severity::Info, "resampled", "Samples are uneven; 4 gaps were found."),
                 ]))
                 .block(Block::Checks(vec![
-                    check("Recovered rate", "1.3 %", Outcome::Pass),
-                    check("Recovered equilibrium strain", "7.9 %", Outcome::Fail),
-                    check("Recovered exponent", "no record", Outcome::NotRun),
+                    check("Recovered rate", "1.3 %", true),
+                    check("Recovered equilibrium strain", "7.9 %", false),
                 ])),
         )
         .section(figures)

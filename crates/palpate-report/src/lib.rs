@@ -5,7 +5,7 @@
 //! | module | what |
 //! |---|---|
 //! | [`number`] | how a value reads for a person and how it is stored for a machine |
-//! | [`sparkline`], `wrap`, `script`, `escape` | lines of a terminal; characters of SVG and HTML |
+//! | [`sparkline`], `wrap`, `script`, `escape`, `word` | lines of a terminal; characters of SVG and HTML; words for variants |
 //! | [`table`] | named columns once, written as CSV, plain text, Markdown or HTML |
 //! | [`figure`] | panels of lines, points, bands and heat maps as SVG and PNG |
 //! | [`page`] | both in one HTML file that opens without a network |
@@ -24,6 +24,7 @@ mod script;
 pub mod sparkline;
 pub mod study;
 pub mod table;
+mod word;
 mod wrap;
 
 pub use palpate::number;

@@ -1,25 +1,20 @@
 //! Sentences in lines of a terminal.
 
 /// Width of a terminal.
-const WIDTH: usize = 100;
+pub(crate) const WIDTH: usize = 100;
 
 /// A sentence in lines of a terminal.
 pub(crate) fn wrapped(sentence: &str) -> String {
-    let mut text = String::new();
-    indented(&mut text, ("", 0), sentence);
-    text
+    indented("", 0, WIDTH, sentence)
 }
 
-/// A text behind `head`, its further lines set in.
-pub(crate) fn indented(out: &mut String, (head, indent): (&str, usize), text: &str) {
-    let mut used = head.chars().count();
-    out.push_str(head);
-    let mut fresh = true;
+/// A text behind `head` in lines of this width, its further lines set in.
+pub(crate) fn indented(head: &str, indent: usize, width: usize, text: &str) -> String {
+    let (mut out, mut used, mut fresh) = (head.to_owned(), extent(head), true);
     for word in text.split_whitespace() {
-        let length = word.chars().count();
-        if !fresh && used + 1 + length > WIDTH {
-            out.push('\n');
-            out.push_str(&" ".repeat(indent));
+        let length = extent(word);
+        if !fresh && used + 1 + length > width {
+            out.push_str(&format!("\n{}", " ".repeat(indent)));
             (used, fresh) = (indent, true);
         }
         if !fresh {
@@ -31,6 +26,12 @@ pub(crate) fn indented(out: &mut String, (head, indent): (&str, usize), text: &s
         fresh = false;
     }
     out.push('\n');
+    out
+}
+
+/// Number of places a text takes in a terminal; accents that sit on a letter take none.
+pub(crate) fn extent(text: &str) -> usize {
+    text.chars().filter(|c| !('\u{300}'..='\u{36F}').contains(c)).count()
 }
 
 #[cfg(test)]
@@ -39,8 +40,7 @@ mod tests {
 
     #[test]
     fn terminal_lines_are_wrapped() {
-        let mut text = String::new();
-        indented(&mut text, ("info    code  ", 9), &"word ".repeat(40));
+        let text = indented("info    code  ", 9, WIDTH, &"word ".repeat(40));
         assert!(text.lines().count() > 2 && text.lines().all(|line| line.chars().count() <= WIDTH));
         assert!(text.lines().skip(1).all(|line| line.starts_with("         w")));
     }

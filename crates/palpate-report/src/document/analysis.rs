@@ -7,11 +7,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::comparison::HoldComparisonDocument;
-use super::finding::FindingDocument;
 use super::fit::FitDocument;
 use super::settings::SettingsDocument;
 use super::signals::{CorrectionDocument, SignalsDocument, TouchDocument};
 use super::software::Software;
+use crate::page::Finding;
 use crate::result::{Input, mode_word, word};
 
 /// A stretch of the record in one phase.
@@ -71,7 +71,7 @@ pub struct HoldDocument {
     /// Laws compared on this hold; `null` where that was left out or could not be done.
     pub comparison: Option<HoldComparisonDocument>,
     /// What to know about this hold.
-    pub findings: Vec<FindingDocument>,
+    pub findings: Vec<Finding>,
 }
 
 /// What the rate domain makes of simulated holds whose truth is the preferred fit in time, with the noise of the measured one.
@@ -194,7 +194,7 @@ pub struct AnalysisDocument {
     /// The simulated record.
     pub overlay: Option<OverlayDocument>,
     /// What to know about the record as a whole.
-    pub findings: Vec<FindingDocument>,
+    pub findings: Vec<Finding>,
     /// What wrote this.
     pub software: Software,
 }
@@ -222,7 +222,7 @@ impl AnalysisDocument {
                 rmse_n: overlay.rmse,
                 relative_rmse: overlay.relative,
             }),
-            findings: analysis.findings.iter().map(FindingDocument::from).collect(),
+            findings: analysis.findings.iter().map(Finding::from).collect(),
             software: Software::this(),
         }
     }
@@ -299,7 +299,7 @@ fn hold(hold: &HoldAnalysis) -> HoldDocument {
         preferred: hold.order.as_ref().and_then(|order| order.preferred),
         lowest_order: hold.order.as_ref().and_then(|order| order.lowest_order),
         comparison: hold.comparison.as_ref().map(|found| HoldComparisonDocument::new(found, hold.signal.into())),
-        findings: hold.findings.iter().map(FindingDocument::from).collect(),
+        findings: hold.findings.iter().map(Finding::from).collect(),
     }
 }
 

@@ -8,8 +8,8 @@ use palpate::segment::HoldStart;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::finding::FindingDocument;
 use super::software::Software;
+use crate::page::Finding;
 use crate::result::{ComparedHold, ComparedRecord, Input, LeftOut, Quantity, hold_start_word, word};
 
 /// A number of a law.
@@ -153,7 +153,7 @@ pub struct ComparedHoldDocument {
     /// The comparison; `null` where nothing could be fitted.
     pub comparison: Option<HoldComparisonDocument>,
     /// What to know about this hold.
-    pub findings: Vec<FindingDocument>,
+    pub findings: Vec<Finding>,
 }
 
 /// One compared record.
@@ -164,7 +164,7 @@ pub struct ComparedRecordDocument {
     /// Its holds.
     pub holds: Vec<ComparedHoldDocument>,
     /// What to know about the record as a whole.
-    pub findings: Vec<FindingDocument>,
+    pub findings: Vec<Finding>,
 }
 
 /// What a comparison ran with.
@@ -246,7 +246,7 @@ impl From<&ComparedRecord> for ComparedRecordDocument {
         Self {
             input: record.input.clone(),
             holds: record.holds.iter().map(ComparedHoldDocument::from).collect(),
-            findings: record.findings.iter().map(FindingDocument::from).collect(),
+            findings: record.findings.iter().map(Finding::from).collect(),
         }
     }
 }
@@ -263,7 +263,7 @@ impl From<&ComparedHold> for ComparedHoldDocument {
             displacement_m: hold.level.filter(|_| !is_creep),
             force_n: hold.level.filter(|_| is_creep),
             comparison: hold.comparison.as_ref().map(|found| HoldComparisonDocument::new(found, hold.quantity)),
-            findings: hold.findings.iter().map(FindingDocument::from).collect(),
+            findings: hold.findings.iter().map(Finding::from).collect(),
         }
     }
 }

@@ -33,7 +33,6 @@ pub use comparison::{
     ComparedHoldDocument, ComparedRecordDocument, ComparisonDocument, ComparisonSettingsDocument,
     HoldComparisonDocument, LawDocument, NumberDocument, VerdictDocument,
 };
-pub use finding::FindingDocument;
 pub use fit::FitDocument;
 pub use grip::{
     BackOffDocument, GraspDocument, GripDocument, GripLimitsDocument, HoldingDocument, LastsDocument, MoveDocument,

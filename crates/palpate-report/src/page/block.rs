@@ -1,5 +1,9 @@
 //! What can stand in a section of a page.
 
+use palpate::analysis::Severity;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use crate::figure::{Figure, FigureError};
 use crate::table::Table;
 
@@ -36,25 +40,16 @@ pub struct Picture {
     pub caption: String,
 }
 
-/// How much attention something deserves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Severity {
-    /// Good to know.
-    Info,
-    /// May change how far a result can be trusted.
-    Caution,
-    /// A result should not be used as it stands.
-    Warning,
-}
-
-/// Something noticed in the data or in the analysis.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// A finding with its words.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "FindingDocument")]
 pub struct Finding {
-    /// How much attention it deserves.
-    pub severity: Severity,
-    /// Short stable name.
+    /// Stable code.
     pub code: String,
-    /// What was seen; each line stands on one of its own.
+    /// `info`, `caution` or `warning`.
+    #[schemars(with = "String")]
+    pub severity: Severity,
+    /// What was seen.
     pub seen: String,
     /// What it may mean.
     pub meaning: String,
@@ -62,28 +57,18 @@ pub struct Finding {
     pub remedy: String,
 }
 
-/// How a comparison ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
-    /// The criterion is met.
-    Pass,
-    /// The criterion is not met.
-    Fail,
-    /// The comparison could not be made.
-    NotRun,
-}
-
-/// A comparison with a criterion.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// One thing that the paper reports, checked.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "CheckDocument")]
 pub struct Check {
-    /// What is compared.
+    /// What is checked.
     pub name: String,
-    /// What is required.
+    /// When it passes.
     pub criterion: String,
     /// What was found.
     pub found: String,
-    /// How it ended.
-    pub outcome: Outcome,
+    /// Whether it passes.
+    pub passed: bool,
 }
 
 impl Block {
@@ -103,29 +88,5 @@ impl Block {
             svg: figure.to_svg()?,
             caption: figure.caption.clone(),
         }))
-    }
-}
-
-impl Severity {
-    /// The word that stands for it, which is also its name in the style sheet.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Info => "info",
-            Self::Caution => "caution",
-            Self::Warning => "warning",
-        }
-    }
-}
-
-impl Outcome {
-    /// The word that stands for it.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Pass => "pass",
-            Self::Fail => "fail",
-            Self::NotRun => "not run",
-        }
     }
 }

@@ -2,10 +2,11 @@
 
 use std::collections::HashSet;
 
-use super::{Block, Check, Finding, Outcome, Page, Picture};
+use super::{Block, Check, Finding, Page, Picture};
 use crate::escape::escape;
 use crate::script::{Level, runs};
 use crate::table::{Cell, Table, mark};
+use crate::word::word;
 
 /// Tables of at most this many rows stay on one page of paper.
 const SHORT: usize = 25;
@@ -15,41 +16,28 @@ const STYLE: &str = include_str!("style.css");
 pub(crate) fn document(page: &Page) -> String {
     let ids = section_ids(page);
     let title = escape(&page.title);
-    let mut out = format!(
+    let subtitle = format!("<p class=\"subtitle\">{}</p>\n", rich(&page.subtitle));
+    let footer = format!("<footer>\n<h2>Provenance</h2>\n{}</footer>\n", key_values(&page.provenance));
+    let (mut figures, mut tables) = (0, 0);
+    let sections = each(page.sections.iter().zip(&ids), |(section, id)| {
+        let blocks = each(&section.blocks, |block| written(block, &mut figures, &mut tables));
+        let heading = rich(&section.heading);
+        format!("<section aria-labelledby=\"{id}\">\n<h2 id=\"{id}\">{heading}</h2>\n{blocks}</section>\n")
+    });
+    format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n\
-         <h1>{title}</h1>\n"
-    );
-    if !page.subtitle.is_empty() {
-        out.push_str(&format!("<p class=\"subtitle\">{}</p>\n", rich(&page.subtitle)));
-    }
-    out.push_str("</header>\n");
-    contents(&mut out, page, &ids);
-    out.push_str("<main>\n");
-    let mut counts = Counts::default();
-    for (section, id) in page.sections.iter().zip(&ids) {
-        let heading = rich(&section.heading);
-        out.push_str(&format!("<section aria-labelledby=\"{id}\">\n<h2 id=\"{id}\">{heading}</h2>\n"));
-        for block in &section.blocks {
-            write_block(&mut out, block, &mut counts);
-        }
-        out.push_str("</section>\n");
-    }
-    out.push_str("</main>\n");
-    if !page.provenance.is_empty() {
-        out.push_str("<footer>\n<h2>Provenance</h2>\n");
-        key_values(&mut out, &page.provenance);
-        out.push_str("</footer>\n");
-    }
-    out.push_str("</body>\n</html>\n");
-    out
+         <h1>{title}</h1>\n{}</header>\n{}<main>\n{sections}</main>\n{}</body>\n</html>\n",
+        if page.subtitle.is_empty() { "" } else { &subtitle },
+        contents(page, &ids),
+        if page.provenance.is_empty() { "" } else { &footer }
+    )
 }
 
-#[derive(Default)]
-struct Counts {
-    figures: usize,
-    tables: usize,
+/// What is written of each of several things, one after the other.
+fn each<T>(things: impl IntoIterator<Item = T>, written: impl FnMut(T) -> String) -> String {
+    things.into_iter().map(written).collect()
 }
 
 /// One anchor for each section: letters, digits and hyphens, no two alike.
@@ -74,152 +62,110 @@ fn section_ids(page: &Page) -> Vec<String> {
         .collect()
 }
 
-fn contents(out: &mut String, page: &Page, ids: &[String]) {
+fn contents(page: &Page, ids: &[String]) -> String {
     if page.sections.len() < 2 {
-        return;
+        return String::new();
     }
-    out.push_str("<nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ol>\n");
-    for (section, id) in page.sections.iter().zip(ids) {
-        out.push_str(&format!("<li><a href=\"#{id}\">{}</a></li>\n", rich(&section.heading)));
-    }
-    out.push_str("</ol>\n</nav>\n");
+    let items = each(page.sections.iter().zip(ids), |(section, id)| {
+        format!("<li><a href=\"#{id}\">{}</a></li>\n", rich(&section.heading))
+    });
+    format!("<nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ol>\n{items}</ol>\n</nav>\n")
 }
 
-fn write_block(out: &mut String, block: &Block, counts: &mut Counts) {
+/// A block; figures and tables are counted.
+fn written(block: &Block, figures: &mut usize, tables: &mut usize) -> String {
     match block {
-        Block::Subheading(text) => out.push_str(&format!("<h3>{}</h3>\n", rich(text))),
-        Block::Paragraph(text) => out.push_str(&format!("<p>{}</p>\n", rich(text))),
-        Block::List(items) => {
-            out.push_str("<ul>\n");
-            for item in items {
-                out.push_str(&format!("<li>{}</li>\n", rich(item)));
-            }
-            out.push_str("</ul>\n");
-        }
+        Block::Subheading(text) => format!("<h3>{}</h3>\n", rich(text)),
+        Block::Paragraph(text) => format!("<p>{}</p>\n", rich(text)),
+        Block::List(items) => format!("<ul>\n{}</ul>\n", each(items, |item| format!("<li>{}</li>\n", rich(item)))),
         Block::Table(table) => {
-            counts.tables += 1;
-            write_table(out, table, counts.tables);
+            *tables += 1;
+            table_written(table, *tables)
         }
-        Block::Figure(picture) => {
-            counts.figures += 1;
-            write_figure(out, picture, counts.figures);
+        Block::Figure(Picture { svg, caption }) => {
+            *figures += 1;
+            let (number, caption) = (figures, rich(caption));
+            format!(
+                "<figure id=\"figure-{number}\">\n{svg}<figcaption><b>Figure {number}.</b> {caption}</figcaption>\n</figure>\n"
+            )
         }
-        Block::Findings(findings) => write_findings(out, findings),
-        Block::KeyValues(pairs) => key_values(out, pairs),
-        Block::Code(text) => {
-            out.push_str(&format!("<pre tabindex=\"0\"><code>{}</code></pre>\n", escape(text)));
-        }
-        Block::Checks(checks) => write_checks(out, checks),
+        Block::Findings(findings) if findings.is_empty() => "<p>Nothing to report.</p>\n".to_owned(),
+        Block::Findings(findings) => each(findings, finding_written),
+        Block::KeyValues(pairs) => key_values(pairs),
+        Block::Code(text) => format!("<pre tabindex=\"0\"><code>{}</code></pre>\n", escape(text)),
+        Block::Checks(checks) => checks_written(checks),
     }
 }
 
-fn write_figure(out: &mut String, picture: &Picture, number: usize) {
-    out.push_str(&format!(
-        "<figure id=\"figure-{number}\">\n{}<figcaption><b>Figure {number}.</b> {}</figcaption>\n\
-         </figure>\n",
-        picture.svg,
-        rich(&picture.caption)
-    ));
-}
-
-fn write_table(out: &mut String, table: &Table, number: usize) {
+fn table_written(table: &Table, number: usize) -> String {
     let reasons = table.reasons();
-    let columns = table.columns.len();
-    let class: Vec<&str> = (0..columns).map(|c| if table.is_numeric(c) { " class=\"n\"" } else { "" }).collect();
-    out.push_str(&format!(
+    let class = |column: usize| if table.is_numeric(column) { " class=\"n\"" } else { "" };
+    let classes: Vec<&str> = (0..table.columns.len()).map(class).collect();
+    let heads = each(table.columns.iter().zip(&classes), |(column, class)| {
+        let unit = format!(" <span class=\"unit\">({})</span>", rich(&column.unit));
+        let unit = if column.unit.is_empty() { "" } else { &unit };
+        format!("<th scope=\"col\"{class}>{}{unit}</th>", rich(&column.heading))
+    });
+    let rows = each(0..table.rows.len(), |row| {
+        let cells = each(classes.iter().enumerate(), |(column, class)| {
+            format!("<td{class}>{}</td>", cell(table.cell(row, column), &reasons))
+        });
+        format!("<tr>{cells}</tr>\n")
+    });
+    let marked = each(reasons.iter().enumerate(), |(i, reason)| {
+        format!("<p class=\"note\"><sup>{}</sup> {}</p>\n", mark(i), rich(reason))
+    });
+    let notes = each(&table.notes, |note| format!("<p class=\"note\">{}</p>\n", rich(note)));
+    format!(
         "<div class=\"table{}\" id=\"table-{number}\">\n<table>\n\
-         <caption><b>Table {number}.</b> {}</caption>\n<thead>\n<tr>",
+         <caption><b>Table {number}.</b> {}</caption>\n<thead>\n<tr>{heads}</tr>\n</thead>\n<tbody>\n{rows}\
+         </tbody>\n</table>\n{marked}{notes}</div>\n",
         if table.rows.len() <= SHORT { " short" } else { "" },
         rich(&table.caption)
-    ));
-    for (column, class) in table.columns.iter().zip(&class) {
-        out.push_str(&format!("<th scope=\"col\"{class}>{}", rich(&column.heading)));
-        if !column.unit.is_empty() {
-            out.push_str(&format!(" <span class=\"unit\">({})</span>", rich(&column.unit)));
-        }
-        out.push_str("</th>");
-    }
-    out.push_str("</tr>\n</thead>\n<tbody>\n");
-    for row in 0..table.rows.len() {
-        out.push_str("<tr>");
-        for (c, class) in class.iter().enumerate() {
-            out.push_str(&format!("<td{class}>{}</td>", cell(table.cell(row, c), &reasons)));
-        }
-        out.push_str("</tr>\n");
-    }
-    out.push_str("</tbody>\n</table>\n");
-    for (i, reason) in reasons.iter().enumerate() {
-        out.push_str(&format!("<p class=\"note\"><sup>{}</sup> {}</p>\n", mark(i), rich(reason)));
-    }
-    for note in &table.notes {
-        out.push_str(&format!("<p class=\"note\">{}</p>\n", rich(note)));
-    }
-    out.push_str("</div>\n");
+    )
 }
 
 fn cell(cell: &Cell, reasons: &[&str]) -> String {
     let text = rich(&cell.shown());
-    match cell {
-        Cell::Missing(reason) => match reasons.iter().position(|r| r == reason) {
-            Some(i) => format!("{text}<sup>{}</sup>", mark(i)),
-            None => text,
-        },
-        _ => text,
+    match cell.reason_in(reasons) {
+        Some(i) => format!("{text}<sup>{}</sup>", mark(i)),
+        None => text,
     }
 }
 
-fn write_findings(out: &mut String, findings: &[Finding]) {
-    if findings.is_empty() {
-        out.push_str("<p>Nothing to report.</p>\n");
-        return;
-    }
-    for finding in findings {
-        let word = finding.severity.word();
-        out.push_str(&format!(
-            "<div class=\"finding {word}\">\n<p class=\"head\"><span class=\"word\">{word}</span> \
-             <code>{}</code></p>\n<p>{}</p>\n",
-            escape(&finding.code),
-            finding.seen.lines().map(rich).collect::<Vec<_>>().join("<br>\n")
-        ));
-        for (name, text) in [("May mean", &finding.meaning), ("What helps", &finding.remedy)] {
-            if !text.is_empty() {
-                out.push_str(&format!("<p><i>{name}:</i> {}</p>\n", rich(text)));
-            }
-        }
-        out.push_str("</div>\n");
-    }
+fn finding_written(finding: &Finding) -> String {
+    let word = word(finding.severity);
+    let advice = [("May mean", &finding.meaning), ("What helps", &finding.remedy)];
+    let advice = each(advice.into_iter().filter(|(_, text)| !text.is_empty()), |(name, text)| {
+        format!("<p><i>{name}:</i> {}</p>\n", rich(text))
+    });
+    format!(
+        "<div class=\"finding {word}\">\n<p class=\"head\"><span class=\"word\">{word}</span> \
+         <code>{}</code></p>\n<p>{}</p>\n{advice}</div>\n",
+        escape(&finding.code),
+        finding.seen.lines().map(rich).collect::<Vec<_>>().join("<br>\n")
+    )
 }
 
-fn write_checks(out: &mut String, checks: &[Check]) {
-    out.push_str(
+fn checks_written(checks: &[Check]) -> String {
+    let rows = each(checks, |check| {
+        let (outcome, sign) = if check.passed { ("pass", "✓") } else { ("fail", "✗") };
+        let [name, criterion, found] = [&check.name, &check.criterion, &check.found].map(|text| rich(text));
+        format!(
+            "<tr><th scope=\"row\">{name}</th><td>{criterion}</td><td>{found}</td>\
+             <td class=\"{outcome}\"><span aria-hidden=\"true\">{sign}</span> {outcome}</td></tr>\n"
+        )
+    });
+    format!(
         "<div class=\"table short\">\n<table class=\"checks\">\n<thead>\n<tr><th scope=\"col\">Check</th>\
          <th scope=\"col\">Criterion</th><th scope=\"col\">Found</th>\
-         <th scope=\"col\">Outcome</th></tr>\n</thead>\n<tbody>\n",
-    );
-    for check in checks {
-        let (class, sign) = match check.outcome {
-            Outcome::Pass => ("pass", "✓"),
-            Outcome::Fail => ("fail", "✗"),
-            Outcome::NotRun => ("not-run", "–"),
-        };
-        out.push_str(&format!(
-            "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td>\
-             <td class=\"{class}\"><span aria-hidden=\"true\">{sign}</span> {}</td></tr>\n",
-            rich(&check.name),
-            rich(&check.criterion),
-            rich(&check.found),
-            check.outcome.word()
-        ));
-    }
-    out.push_str("</tbody>\n</table>\n</div>\n");
+         <th scope=\"col\">Outcome</th></tr>\n</thead>\n<tbody>\n{rows}</tbody>\n</table>\n</div>\n"
+    )
 }
 
-fn key_values(out: &mut String, pairs: &[(String, String)]) {
-    out.push_str("<dl>\n");
-    for (key, value) in pairs {
-        out.push_str(&format!("<dt>{}</dt><dd>{}</dd>\n", rich(key), rich(value)));
-    }
-    out.push_str("</dl>\n");
+fn key_values(pairs: &[(String, String)]) -> String {
+    let items = each(pairs, |(key, value)| format!("<dt>{}</dt><dd>{}</dd>\n", rich(key), rich(value)));
+    format!("<dl>\n{items}</dl>\n")
 }
 
 /// Escaped text with superscripts and subscripts as elements.
@@ -230,5 +176,5 @@ fn rich(text: &str) -> String {
         Level::Lowered => format!("<sub>{}</sub>", escape(run)),
         Level::Dot => "\u{307}".to_owned(),
     };
-    runs(text).iter().map(element).collect()
+    each(&runs(text), element)
 }

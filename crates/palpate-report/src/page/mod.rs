@@ -12,7 +12,8 @@
 mod block;
 mod html;
 
-pub use block::{Block, Check, Finding, Outcome, Picture, Severity};
+pub use block::{Block, Check, Finding, Picture};
+pub use palpate::analysis::Severity;
 
 /// A page with its sections and where its content comes from.
 #[derive(Debug, Clone, PartialEq)]

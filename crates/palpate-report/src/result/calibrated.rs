@@ -5,7 +5,7 @@ use palpate::fit::{NoiseModel, Termination};
 use palpate::number::significant;
 
 use super::input::Input;
-use super::words::word;
+use crate::word::word;
 
 /// Candidates calibrated on one record; the first is the one that is asked for, the others are its rivals.
 #[derive(Debug)]

@@ -10,8 +10,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::input::Input;
-use super::words::word;
 use crate::number::significant;
+use crate::word::word;
 
 /// What the laws were fitted to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

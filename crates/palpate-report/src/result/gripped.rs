@@ -1,6 +1,6 @@
 //! What a planned grip is shown with.
 
-use palpate::calibrate::Extrapolation;
+use palpate::calibrate::{Extrapolation, Prediction};
 use palpate::grip::{Answer, Control, Grip, GripError};
 
 /// A body in a gripper with the answer to a question.
@@ -26,16 +26,19 @@ impl GrippedBody<'_> {
     /// Grips that there are not, by name, and why.
     #[must_use]
     pub fn refused(&self) -> Vec<(&'static str, &GripError)> {
+        let names = ["squeeze", "squeeze and back off", "force held", "squeeze again"];
+        names.into_iter().zip(self.grips()).filter_map(|(name, made)| Some((name, made?.err()?))).collect()
+    }
+
+    /// Squeeze, squeeze and back off, force held and schedule: the course of each, or why there is none; a schedule only if one was asked for.
+    pub(crate) fn grips(&self) -> [Option<Result<&Prediction, &GripError>>; 4] {
         let answer = &self.answer;
         [
-            ("squeeze", answer.squeeze.as_ref().err()),
-            ("squeeze and back off", answer.back_off.as_ref().err()),
-            ("force held", answer.force_hold.as_ref().err()),
-            ("squeeze again", answer.schedule.as_ref().and_then(|made| made.as_ref().err())),
+            Some(answer.squeeze.as_ref().map(|made| &made.course)),
+            Some(answer.back_off.as_ref().map(|made| &made.course)),
+            Some(answer.force_hold.as_ref().map(|made| &made.course)),
+            answer.schedule.as_ref().map(|made| made.as_ref().map(|made| &made.course)),
         ]
-        .into_iter()
-        .filter_map(|(name, error)| Some((name, error?)))
-        .collect()
     }
 
     /// The grip that is asked about, by name.

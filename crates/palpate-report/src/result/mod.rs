@@ -20,11 +20,13 @@ mod input;
 mod reproduced;
 mod words;
 
+pub use crate::page::Check;
+pub use crate::word::word;
 pub use calibrated::CalibratedRecord;
 pub use compared::{ComparedHold, ComparedRecord, LeftOut, Quantity};
 pub(crate) use grip_sentences::lasted;
 pub use gripped::GrippedBody;
 pub use input::Input;
-pub use reproduced::{Check, ReproducedTest, Reproduction};
+pub use reproduced::{ReproducedTest, Reproduction};
 pub(crate) use words::{hold_start_word, percent};
-pub use words::{mode_word, slips_word, word};
+pub use words::{mode_word, slips_word};

@@ -2,22 +2,8 @@
 
 use palpate::analysis::{Analysis, HoldAnalysis};
 use palpate::simulate::{ContactModel, StrainWave, Trajectory};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-/// One thing that the paper reports, checked.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[schemars(rename = "CheckDocument")]
-pub struct Check {
-    /// What is checked.
-    pub name: String,
-    /// When it passes.
-    pub criterion: String,
-    /// What was found.
-    pub found: String,
-    /// Whether it passes.
-    pub passed: bool,
-}
+use crate::page::Check;
 
 /// One test of the paper, simulated and analysed.
 #[derive(Debug, Clone)]

@@ -1,10 +1,10 @@
 //! What was found, gathered: one entry for each code, true for every hold that it names.
 
-use palpate::analysis::{Analysis, Finding as RecordFinding, HoldAnalysis, Severity as RecordSeverity};
+use palpate::analysis::{Analysis, Finding as RecordFinding, HoldAnalysis, Severity};
 
-use crate::page::{Finding, Severity};
-use crate::result::ComparedRecord;
-use crate::wrap::indented;
+use crate::page::Finding;
+use crate::result::{ComparedRecord, word};
+use crate::wrap::{WIDTH, indented};
 
 /// Different words for one code that are written out; more are counted.
 pub(super) const MOST_LINES: usize = 6;
@@ -81,31 +81,19 @@ struct Seen<'a> {
 impl<'a> Seen<'a> {
     fn new(analysis: &Analysis, finding: &'a RecordFinding, hold: Option<&HoldAnalysis>) -> Self {
         let released = matches!(finding, RecordFinding::NoContactArea) && hold.is_some_and(|hold| open(analysis, hold));
-        let severity = match finding.severity() {
-            _ if released => Severity::Info,
-            severity => shown(severity),
-        };
         Self {
-            severity,
+            severity: if released { Severity::Info } else { finding.severity() },
             ..Self::of(finding, hold.map(|hold| hold.number))
         }
     }
 
     fn of(finding: &'a RecordFinding, hold: Option<usize>) -> Self {
         Self {
-            severity: shown(finding.severity()),
+            severity: finding.severity(),
             finding,
             hold,
             text: finding.seen(),
         }
-    }
-}
-
-fn shown(severity: RecordSeverity) -> Severity {
-    match severity {
-        RecordSeverity::Info => Severity::Info,
-        RecordSeverity::Caution => Severity::Caution,
-        RecordSeverity::Warning => Severity::Warning,
     }
 }
 
@@ -208,11 +196,11 @@ pub(super) fn gathered_of(record: &ComparedRecord, most: usize) -> Vec<Gathered>
 fn lines(findings: &[Gathered]) -> String {
     let mut text = String::new();
     for finding in findings {
-        let mut head = format!("{:<9}{}  ", finding.severity.word(), finding.code);
+        let mut head = format!("{:<9}{}  ", word(finding.severity), finding.code);
         for (place, seen) in &finding.lines {
             let place = place.replacen("Hold", "hold", 1);
             let told = if place.is_empty() { seen.clone() } else { format!("{place}: {seen}") };
-            indented(&mut text, (&head, INDENT), &told);
+            text.push_str(&indented(&head, INDENT, WIDTH, &told));
             head = " ".repeat(INDENT);
         }
     }

@@ -83,6 +83,14 @@ impl Cell {
         }
     }
 
+    /// Which of these reasons is that of a missing value.
+    pub(crate) fn reason_in(&self, reasons: &[&str]) -> Option<usize> {
+        match self {
+            Self::Missing(reason) => reasons.iter().position(|other| other == reason),
+            _ => None,
+        }
+    }
+
     pub(crate) fn is_numeric(&self) -> bool {
         matches!(self, Self::Number { .. } | Self::Uncertain { .. } | Self::Integer(_))
     }

@@ -1,6 +1,7 @@
 //! Tables as aligned text for a terminal.
 
 use super::{Cell, Table, mark};
+use crate::wrap::{extent, indented};
 
 /// Room between columns.
 const GUTTER: &str = "  ";
@@ -9,22 +10,16 @@ pub(crate) fn write(table: &Table) -> String {
     let columns = table.columns.len();
     let reasons = table.reasons();
     let heads: Vec<String> = table.columns.iter().map(super::TableColumn::title).collect();
-    let body: Vec<Vec<String>> = (0..table.rows.len())
-        .map(|row| (0..columns).map(|c| shown(table.cell(row, c), &reasons)).collect())
-        .collect();
-    let widths: Vec<usize> = (0..columns)
-        .map(|c| {
-            let cells = body.iter().map(|row| extent(&row[c]));
-            cells.chain([extent(&heads[c])]).max().unwrap_or(0)
-        })
-        .collect();
+    let row = |row: usize| -> Vec<String> { (0..columns).map(|c| shown(table.cell(row, c), &reasons)).collect() };
+    let body: Vec<Vec<String>> = (0..table.rows.len()).map(row).collect();
+    let widest = |c: usize| body.iter().map(|row| extent(&row[c])).fold(extent(&heads[c]), usize::max);
+    let widths: Vec<usize> = (0..columns).map(widest).collect();
     let right: Vec<bool> = (0..columns).map(|c| table.is_numeric(c)).collect();
     let total = widths.iter().sum::<usize>() + GUTTER.len() * columns.saturating_sub(1);
+    // Sentences are as wide as the table, but never narrower than they are read.
+    let sentence = |text: &str| indented("", 0, total.clamp(72, 100), text);
 
-    let mut out = String::new();
-    if !table.caption.is_empty() {
-        out.push_str(&wrapped(&table.caption, total));
-    }
+    let mut out = if table.caption.is_empty() { String::new() } else { sentence(&table.caption) };
     let rule = format!("{}\n", "─".repeat(total));
     out.push_str(&rule);
     line(&mut out, &heads, &widths, &right);
@@ -37,44 +32,18 @@ pub(crate) fn write(table: &Table) -> String {
         out.push_str(&format!("[{}] {reason}\n", mark(i)));
     }
     for note in &table.notes {
-        out.push_str(&wrapped(note, total));
+        out.push_str(&sentence(note));
     }
-    out
-}
-
-/// Sentences in lines as wide as the table, but never narrower than they are read.
-fn wrapped(text: &str, width: usize) -> String {
-    let width = width.clamp(72, 100);
-    let (mut out, mut used) = (String::new(), 0);
-    for word in text.split_whitespace() {
-        let length = extent(word);
-        if used > 0 && used + 1 + length > width {
-            out.push('\n');
-            used = 0;
-        } else if used > 0 {
-            out.push(' ');
-            used += 1;
-        }
-        out.push_str(word);
-        used += length;
-    }
-    out.push('\n');
     out
 }
 
 /// A cell in one line, with the mark of its reason when it is missing.
 fn shown(cell: &Cell, reasons: &[&str]) -> String {
-    let index = match cell {
-        Cell::Missing(reason) => reasons.iter().position(|r| r == reason),
-        _ => None,
-    };
     let text = cell.shown().split_whitespace().collect::<Vec<_>>().join(" ");
-    index.map_or(text.clone(), |i| format!("{text} [{}]", mark(i)))
-}
-
-/// Number of places a text takes in a terminal; accents that sit on a letter take none.
-fn extent(text: &str) -> usize {
-    text.chars().filter(|c| !('\u{300}'..='\u{36F}').contains(c)).count()
+    match cell.reason_in(reasons) {
+        Some(i) => format!("{text} [{}]", mark(i)),
+        None => text,
+    }
 }
 
 fn line(out: &mut String, cells: &[String], widths: &[usize], right: &[bool]) {

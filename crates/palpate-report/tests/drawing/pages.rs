@@ -1,7 +1,7 @@
 //! Pages seen from outside: complete, escaped, and without anything fetched.
 
 use palpate_report::figure::{Axis, Figure, Layer, Panel, Role};
-use palpate_report::page::{Block, Check, Finding, Outcome, Page, Section, Severity};
+use palpate_report::page::{Block, Check, Finding, Page, Section, Severity};
 use palpate_report::table::{Cell, Table, TableColumn};
 
 const HOSTILE: &str = "<script>alert('&')</script>";
@@ -28,7 +28,7 @@ fn page() -> String {
         name: text(),
         criterion: text(),
         found: text(),
-        outcome: Outcome::Fail,
+        passed: false,
     };
     Page::new(HOSTILE, HOSTILE)
         .section(

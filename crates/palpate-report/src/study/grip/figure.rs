@@ -5,38 +5,20 @@ use palpate::calibrate::Prediction;
 use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
 use crate::result::{GrippedBody, percent};
 
-/// One grip of the figure.
-struct Shown<'a> {
-    name: &'static str,
-    role: Role,
-    course: &'a Prediction,
-}
-
 /// The grips over time: force with the limit at which it slips, margin over that limit, displacement of the jaws; the one that is asked about
 /// with its band.
 #[must_use]
 pub fn grip_figure(body: &GrippedBody<'_>, name: &str) -> Figure {
     let answer = &body.answer;
-    let all = [
-        ("displacement held", Role::Fitted, answer.squeeze.as_ref().ok().map(|made| &made.course)),
-        ("squeeze and back off", Role::Alternative(0), answer.back_off.as_ref().ok().map(|made| &made.course)),
-        ("force held", Role::Alternative(1), answer.force_hold.as_ref().ok().map(|made| &made.course)),
-        (
-            "squeezed again",
-            Role::Alternative(2),
-            answer.schedule.as_ref().and_then(|made| made.as_ref().ok()).map(|made| &made.course),
-        ),
+    let named = [
+        ("displacement held", Role::Fitted),
+        ("squeeze and back off", Role::Alternative(0)),
+        ("force held", Role::Alternative(1)),
+        ("squeezed again", Role::Alternative(2)),
     ];
-    let shown: Vec<Shown<'_>> = all
-        .into_iter()
-        .filter_map(|(name, role, course)| {
-            Some(Shown {
-                name,
-                role,
-                course: course?,
-            })
-        })
-        .collect();
+    let all = named.into_iter().zip(body.grips());
+    let shown: Vec<(&str, Role, &Prediction)> =
+        all.filter_map(|((name, role), course)| Some((name, role, course?.ok()?))).collect();
     let closing = answer.squeeze.as_ref().map_or(body.grip.limits().closing.unwrap_or(2.0), |made| made.found.closing);
     // A hold that is long beside the squeeze is told by its logarithm.
     let axis = || {
@@ -51,29 +33,24 @@ pub fn grip_figure(body: &GrippedBody<'_>, name: &str) -> Figure {
     let mut jaw = Panel::new(axis(), Axis::linear("Displacement", "mm"));
     let needed = |course: &Prediction, i: usize| body.grip.needed_force(course.trajectory.displacement[i]);
     if let Some(course) = answer.course() {
-        let role = shown.iter().find(|one| std::ptr::eq(one.course, course)).map_or(Role::Fitted, |one| one.role);
+        let role = shown.iter().find(|(.., one)| std::ptr::eq(*one, course)).map_or(Role::Fitted, |(_, role, _)| *role);
         let time = || course.trajectory.time.clone();
-        let ends =
-            |f: &dyn Fn(usize) -> (f64, f64)| -> (Vec<f64>, Vec<f64>) { (0..course.trajectory.len()).map(f).unzip() };
-        let (low, high) = ends(&|i| course.force_interval(i));
-        force = force.layer(Layer::band(time(), low, high, role).label(percent(course.confidence)));
-        let (low, high) = ends(&|i| {
-            let (low, high) = course.force_interval(i);
-            (low / needed(course, i), high / needed(course, i))
-        });
+        let (low, high): (Vec<f64>, Vec<f64>) = (0..course.trajectory.len()).map(|i| course.force_interval(i)).unzip();
+        let of_needed = |ends: &[f64]| ends.iter().enumerate().map(|(i, end)| end / needed(course, i)).collect();
         // Before the jaws touch there is nothing to need.
-        margin = margin.layer(Layer::band(time(), low, high, role));
+        margin = margin.layer(Layer::band(time(), of_needed(&low), of_needed(&high), role));
+        force = force.layer(Layer::band(time(), low, high, role).label(percent(course.confidence)));
         let limit = (0..course.trajectory.len()).map(|i| needed(course, i)).collect();
         force = force.layer(Layer::line(time(), limit, Role::Reference).label("slips below"));
     }
-    for one in &shown {
-        let course = &one.course.trajectory;
+    for (name, role, prediction) in shown {
+        let course = &prediction.trajectory;
         let time = || course.time.clone();
-        force = force.layer(Layer::line(time(), course.force.clone(), one.role).label(one.name));
-        let ratio = (0..course.len()).map(|i| course.force[i] / needed(one.course, i)).collect();
-        margin = margin.layer(Layer::line(time(), ratio, one.role));
+        force = force.layer(Layer::line(time(), course.force.clone(), role).label(name));
+        let ratio = (0..course.len()).map(|i| course.force[i] / needed(prediction, i)).collect();
+        margin = margin.layer(Layer::line(time(), ratio, role));
         let place = course.displacement.iter().map(|place| 1e3 * place).collect();
-        jaw = jaw.layer(Layer::line(time(), place, one.role));
+        jaw = jaw.layer(Layer::line(time(), place, role));
     }
     margin = margin.layer(Layer::horizontal(1.0, Role::Reference));
     Figure::new(name, "Planned grips: force of the jaws with the one below which the body slips, how many times it is there, and how far the jaws go.")

@@ -14,7 +14,6 @@ use crate::study::calibration::{material_table, write_prediction};
 /// [`StudyError`] when the figure or document cannot be made.
 pub fn grip_bundle(body: &GrippedBody<'_>, pictures: Pictures) -> Result<Bundle, StudyError> {
     let mut bundle = Bundle::default();
-    let answer = &body.answer;
     let mut verdict = Section::new("Will it hold?")
         .block(Block::Paragraph(body.question()))
         .block(Block::Paragraph(body.verdict()));
@@ -38,14 +37,8 @@ pub fn grip_bundle(body: &GrippedBody<'_>, pictures: Pictures) -> Result<Bundle,
         bundle.table(&table);
         page = page.section(Section::new(heading).block(Block::Table(table)));
     }
-    let courses = [
-        ("squeeze", answer.squeeze.as_ref().ok().map(|made| &made.course)),
-        ("back_off", answer.back_off.as_ref().ok().map(|made| &made.course)),
-        ("force_held", answer.force_hold.as_ref().ok().map(|made| &made.course)),
-        ("schedule", answer.schedule.as_ref().and_then(|made| made.as_ref().ok()).map(|made| &made.course)),
-    ];
-    for (name, course) in courses {
-        let Some(course) = course else { continue };
+    for (name, course) in ["squeeze", "back_off", "force_held", "schedule"].into_iter().zip(body.grips()) {
+        let Some(Ok(course)) = course else { continue };
         let mut content = Vec::new();
         write_prediction(&mut content, course)?;
         bundle.files.push((format!("series/{name}.csv"), content));

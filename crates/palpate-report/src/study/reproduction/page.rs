@@ -6,7 +6,7 @@ use palpate::simulate::Trajectory;
 
 use super::law_figures;
 use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
-use crate::page::{Block, Check, Outcome, Page, Section};
+use crate::page::{Block, Page, Section};
 use crate::result::{ReproducedTest, Reproduction};
 use crate::study::bundle::StudyError;
 use crate::study::record::figures as record_figures;
@@ -127,12 +127,6 @@ pub(super) fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -
         let chosen = figures.iter().filter(|figure| figure.name.starts_with(name));
         chosen.map(|figure| Ok(Block::figure(figure)?)).collect()
     };
-    let checks = study.checks.iter().map(|check| Check {
-        name: check.name.clone(),
-        criterion: check.criterion.clone(),
-        found: check.found.clone(),
-        outcome: if check.passed { Outcome::Pass } else { Outcome::Fail },
-    });
     let model = &study.model;
     let page = Page::new(
         PAPER,
@@ -149,7 +143,7 @@ pub(super) fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -
                 ("Layers".to_owned(), format!("{}", model.layers.count())),
                 ("Jaw".to_owned(), "500 mm/min, holds of 10 s, both jaws meet the ball: each contact takes half the travel".to_owned()),
             ]))
-            .block(Block::Checks(checks.collect())),
+            .block(Block::Checks(study.checks.clone())),
     )
     .section(Section::new("The law").blocks(picture("figure_1_")?).blocks(picture("figure_2")?))
     .section(

@@ -1,0 +1,14 @@
+//! Words for what is one of several.
+
+use serde::Serialize;
+
+/// The stable word for one of several: the name of a variant as it is stored, in small letters.
+///
+/// ```
+/// assert_eq!(palpate_report::result::word(palpate::fit::Termination::RateAtBound), "rate_at_bound");
+/// ```
+#[must_use]
+pub fn word(variant: impl Serialize) -> String {
+    let stored = serde_json::to_value(variant).unwrap_or_default();
+    stored.as_str().unwrap_or_default().to_lowercase()
+}
