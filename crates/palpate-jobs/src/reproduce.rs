@@ -11,7 +11,7 @@ use palpate::test_problems::{paper_ball, paper_test_a, paper_test_b};
 use palpate::watch::{Progress, Watch};
 use palpate_report::document::ReproductionDocument;
 use palpate_report::result::{Check, ReproducedTest, Reproduction};
-use palpate_report::study::{Bundle, Pictures, reproduction_bundle, reproduction_document, reproduction_text};
+use palpate_report::study::{Bundle, Pictures, reproduction_bundle, reproduction_text};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -52,7 +52,7 @@ impl Results for Reproduction {
     type Document = ReproductionDocument;
 
     fn document(&self) -> ReproductionDocument {
-        reproduction_document(self)
+        ReproductionDocument::new(self)
     }
 
     fn text(&self) -> String {

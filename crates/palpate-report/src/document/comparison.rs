@@ -2,372 +2,224 @@
 
 use std::collections::BTreeMap;
 
-use palpate::fit::{Estimate, Fit, Forecast, SampleChoice, SpectrumFit};
+use palpate::fit::{Estimate, Forecast, Parameter, SampleChoice, SpectrumFit, SpectrumPeak};
 use palpate::forecast::{CompareOptions, Comparison, Row, Verdict};
 use palpate::segment::HoldStart;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 use super::software::Software;
 use crate::page::Finding;
 use crate::result::{ComparedHold, ComparedRecord, Input, LeftOut, Quantity, hold_start_word, word};
 
-/// A number of a law.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct NumberDocument {
-    /// The best value.
-    pub value: f64,
-    /// Standard error for white noise; `null` where the data do not determine the number.
-    pub standard_error: Option<f64>,
-    /// Confidence interval, widened for correlated residuals.
-    pub interval: Option<[f64; 2]>,
-}
-
-/// What a law fitted to the first part of the hold says of the rest.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ForecastDocument {
-    /// Time up to which was fitted, s after the start of the fit.
-    pub cut_s: f64,
-    /// Samples fitted.
-    pub fitted: usize,
-    /// Samples foretold.
-    pub foretold: usize,
-    /// Root mean square error over those as a share of the change of the signal.
-    pub error: f64,
-    /// Mean error as such a share; above zero where the law runs above the data.
-    pub bias: f64,
-}
-
-/// A peak of the spectrum.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct PeakDocument {
-    /// Time, s.
-    pub time_s: f64,
-    /// Amplitude in the unit of the signal.
-    pub amplitude: f64,
-}
-
-/// The dense spectrum.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct SpectrumDocument {
-    /// The constant, in the unit of the signal.
-    pub equilibrium: f64,
-    /// Whether the slowest time carries weight, so that the equilibrium is a convention of the grid.
-    pub open_ended: bool,
-    /// Times of the grid, s.
-    pub times_s: Vec<f64>,
-    /// Amplitude of each, in the unit of the signal.
-    pub amplitudes: Vec<f64>,
-    /// Peaks, fastest first.
-    pub peaks: Vec<PeakDocument>,
-    /// Strength of smoothing.
-    pub smoothing: f64,
-}
-
-/// One law on one hold.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct LawDocument {
-    /// Name of the law, as `--laws` takes it.
-    pub law: String,
-    /// Numbers that the data determine; not a whole one for a smoothed spectrum.
-    pub parameters: f64,
-    /// Numbers of the law by name, with the unit at the end of the name.
-    pub numbers: BTreeMap<String, NumberDocument>,
-    /// The spectrum, if that is the law.
-    pub spectrum: Option<SpectrumDocument>,
-    /// Root mean square residual over the whole hold as a share of the change of the signal; `null` where there is no fit.
-    pub rmse: Option<f64>,
-    /// AICc at the number of samples, less the lowest.
-    pub delta_aicc: Option<f64>,
-    /// BIC at the effective number of samples, less the lowest.
-    pub delta_bic: Option<f64>,
-    /// One forecast a cut point; `null` where the first part could not be fitted.
-    pub forecasts: Vec<Option<ForecastDocument>>,
-    /// Root mean square of their errors.
-    pub forward_score: Option<f64>,
-    /// Why the fit ended, as in `palpate.analysis/1`; `null` where there is none.
-    pub termination: Option<String>,
-    /// Why there is no fit.
-    pub error: Option<String>,
-}
-
-/// Which law to use.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct VerdictDocument {
-    /// The law with the fewest numbers among those that do best.
-    pub law: String,
-    /// `clear`, `likely` or `open`.
-    pub certainty: String,
-    /// All laws that do as well, this one included.
-    pub alike: Vec<String>,
-    /// Cut points at which it is best or as good.
-    pub cuts_won: usize,
-    /// What each other law costs: its error over that of the chosen one (`forward`), or its excess of BIC (`information`).
-    pub costs: BTreeMap<String, Option<f64>>,
-    /// All that in one sentence.
-    pub sentence: String,
-}
-
-/// Laws compared on one hold.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct HoldComparisonDocument {
-    /// What the laws were fitted to: `strain`, `force` or `displacement`.
-    pub signal: String,
-    /// Its unit: `1`, `N` or `m`.
-    pub signal_unit: String,
-    /// Laws are ranked by `forward` (score) or `information` (BIC).
-    pub ranking: String,
-    /// Cut points at which something is left to foretell, s after the start of the fit.
-    pub cuts_s: Vec<f64>,
-    /// Change of the signal over the hold, in its unit.
-    pub change: f64,
-    /// Standard deviation of its noise, in its unit.
-    pub noise: f64,
-    /// Samples.
-    pub samples: usize,
-    /// Samples that count as independent.
-    pub effective_samples: f64,
-    /// The laws, best first.
-    pub laws: Vec<LawDocument>,
-    /// Which to use; `null` if none could be fitted.
-    pub verdict: Option<VerdictDocument>,
-}
-
-/// One hold of a compared record.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ComparedHoldDocument {
-    /// Number of the hold, from 1.
-    pub index: usize,
-    /// `loading` or `unloading`; in creep of the force.
-    pub after: Option<String>,
-    /// Time of its first sample, s.
-    pub start_s: f64,
-    /// Time of its last sample, s.
-    pub end_s: f64,
-    /// Time from which the laws are fitted, s.
-    pub fit_start_s: f64,
-    /// Displacement that was held, m; `null` in creep.
-    pub displacement_m: Option<f64>,
-    /// Force that was held, N; `null` in relaxation.
-    pub force_n: Option<f64>,
-    /// The comparison; `null` where nothing could be fitted.
-    pub comparison: Option<HoldComparisonDocument>,
-    /// What to know about this hold.
-    pub findings: Vec<Finding>,
-}
-
-/// One compared record.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ComparedRecordDocument {
-    /// The record.
-    pub input: Input,
-    /// Its holds.
-    pub holds: Vec<ComparedHoldDocument>,
-    /// What to know about the record as a whole.
-    pub findings: Vec<Finding>,
-}
-
-/// What a comparison ran with.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ComparisonSettingsDocument {
-    /// `relaxation` or `creep`.
-    pub response: String,
-    /// The laws, all defaults written out.
-    pub laws: Vec<String>,
-    /// Cut points as shares of the duration of a hold.
-    pub cuts: Vec<f64>,
-    /// What linear laws take the loading before a hold for: `step` or `measured`.
-    pub ramps: String,
-    /// `squares`, `huber` or `tukey`.
-    pub loss: String,
-    /// `all` or `log:N`.
-    pub samples: String,
-    /// Coverage of the intervals.
-    pub confidence: f64,
-    /// Fitted only this long from the start of the fit, s.
-    pub fit_until_s: Option<f64>,
-    /// `peak`, `settled` or `peak + … s`.
-    pub hold_start: String,
-}
-
-/// Laws compared on the holds of records.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(title = "palpate.comparison/1")]
-pub struct ComparisonDocument {
-    /// `palpate.comparison/1`.
-    pub schema: String,
-    /// What the comparison ran with.
-    pub settings: ComparisonSettingsDocument,
-    /// The records.
-    pub records: Vec<ComparedRecordDocument>,
-    /// Files on which nothing could be compared.
-    pub left_out: Vec<LeftOut>,
-    /// What wrote this.
-    pub software: Software,
-}
-
-impl ComparisonDocument {
-    /// The document of compared records.
-    #[must_use]
-    pub fn new(records: &[ComparedRecord], left_out: &[LeftOut], settings: ComparisonSettingsDocument) -> Self {
-        Self {
-            schema: "palpate.comparison/1".to_owned(),
-            settings,
-            records: records.iter().map(ComparedRecordDocument::from).collect(),
-            left_out: left_out.to_vec(),
-            software: Software::this(),
-        }
+documents! {
+    /// A number of a law.
+    NumberDocument(estimate: &Estimate) {
+        /// The best value.
+        value: f64 = estimate.value,
+        /// Standard error for white noise; `null` where the data do not determine the number.
+        standard_error: Option<f64> = estimate.standard_error,
+        /// Confidence interval, widened for correlated residuals.
+        interval: Option<[f64; 2]> = estimate.interval.map(Into::into),
     }
-}
 
-impl ComparisonSettingsDocument {
-    /// The settings of a comparison.
-    #[must_use]
-    pub fn new(options: &CompareOptions, hold_start: HoldStart, fit_until: Option<f64>) -> Self {
-        Self {
-            response: word(options.fit.response),
-            laws: options.laws().iter().map(ToString::to_string).collect(),
-            cuts: options.cuts.clone(),
-            ramps: word(options.ramps),
-            loss: word(options.fit.loss),
-            samples: match options.fit.samples {
-                SampleChoice::All => "all".to_owned(),
-                SampleChoice::LogSpaced(count) => format!("log:{count}"),
-            },
-            confidence: options.fit.confidence,
-            fit_until_s: fit_until,
-            hold_start: hold_start_word(hold_start),
-        }
+    /// What a law fitted to the first part of the hold says of the rest.
+    ForecastDocument(forecast: &Forecast, change: f64) {
+        /// Time up to which was fitted, s after the start of the fit.
+        cut_s: f64 = forecast.cut,
+        /// Samples fitted.
+        fitted: usize = forecast.fitted,
+        /// Samples foretold.
+        foretold: usize = forecast.foretold,
+        /// Root mean square error over those as a share of the change of the signal.
+        error: f64 = forecast.rmse / change,
+        /// Mean error as such a share; above zero where the law runs above the data.
+        bias: f64 = forecast.bias / change,
     }
-}
 
-impl From<&ComparedRecord> for ComparedRecordDocument {
-    fn from(record: &ComparedRecord) -> Self {
-        Self {
-            input: record.input.clone(),
-            holds: record.holds.iter().map(ComparedHoldDocument::from).collect(),
-            findings: record.findings.iter().map(Finding::from).collect(),
-        }
+    /// A peak of the spectrum.
+    PeakDocument(peak: &SpectrumPeak, sign: f64) {
+        /// Time, s.
+        time_s: f64 = peak.time,
+        /// Amplitude in the unit of the signal.
+        amplitude: f64 = sign * peak.amplitude,
     }
-}
 
-impl From<&ComparedHold> for ComparedHoldDocument {
-    fn from(hold: &ComparedHold) -> Self {
+    /// The dense spectrum.
+    SpectrumDocument(fit: &SpectrumFit) {
+        /// The constant, in the unit of the signal.
+        equilibrium: f64 = fit.equilibrium,
+        /// Whether the slowest time carries weight, so that the equilibrium is a convention of the grid.
+        open_ended: bool = fit.is_open_ended(),
+        /// Times of the grid, s.
+        times_s: Vec<f64> = fit.times.clone(),
+        /// Amplitude of each, in the unit of the signal.
+        amplitudes: Vec<f64> = fit.amplitudes.iter().map(|height| fit.sign * height).collect(),
+        /// Peaks, fastest first.
+        peaks: Vec<PeakDocument> = fit.peaks().iter().map(|peak| PeakDocument::new(peak, fit.sign)).collect(),
+        /// Strength of smoothing.
+        smoothing: f64 = fit.strength,
+    }
+
+    /// One law on one hold.
+    LawDocument(row: &Row, change: f64, lowest_aicc: f64, quantity: Quantity) with {
+        let fit = row.fit.as_ref().ok();
+        let without = row.spectrum.is_none().then(|| row.fit.as_ref().err()).flatten();
+        let named = |number: &Parameter| {
+            let suffix = quantity.suffix(number.unit).filter(|_| number.estimate.value.is_finite())?;
+            Some((format!("{}{suffix}", number.name), NumberDocument::new(&number.estimate)))
+        };
+        let forecast = |found: &Option<Forecast>| found.as_ref().map(|found| ForecastDocument::new(found, change));
+    } {
+        /// Name of the law, as `--laws` takes it.
+        law: String = row.law.to_string(),
+        /// Numbers that the data determine; not a whole one for a smoothed spectrum.
+        parameters: f64 = row.numbers,
+        /// Numbers of the law by name, with the unit at the end of the name.
+        numbers: BTreeMap<String, NumberDocument> =
+            fit.iter().flat_map(|fit| &fit.parameters).filter_map(named).collect(),
+        /// The spectrum, if that is the law.
+        spectrum: Option<SpectrumDocument> = row.spectrum.as_ref().map(SpectrumDocument::new),
+        /// Root mean square residual over the whole hold as a share of the change of the signal; `null` where there is no fit.
+        rmse: Option<f64> = finite(row.rmse / change),
+        /// AICc at the number of samples, less the lowest.
+        delta_aicc: Option<f64> = row.criteria.and_then(|criteria| finite(criteria.aicc - lowest_aicc)),
+        /// BIC at the effective number of samples, less the lowest.
+        delta_bic: Option<f64> = row.delta_bic.and_then(finite),
+        /// One forecast a cut point; `null` where the first part could not be fitted.
+        forecasts: Vec<Option<ForecastDocument>> = row.forward.forecasts.iter().map(forecast).collect(),
+        /// Root mean square of their errors.
+        forward_score: Option<f64> = row.forward.score,
+        /// Why the fit ended, as in `palpate.analysis/1`; `null` where there is none.
+        termination: Option<String> = fit.map(|fit| word(fit.termination)),
+        /// Why there is no fit.
+        error: Option<String> = without.map(ToString::to_string),
+    }
+
+    /// Which law to use.
+    VerdictDocument(comparison: &Comparison, verdict: &Verdict) {
+        /// The law with the fewest numbers among those that do best.
+        law: String = verdict.law.to_string(),
+        /// `clear`, `likely` or `open`.
+        certainty: String = word(verdict.certainty),
+        /// All laws that do as well, this one included.
+        alike: Vec<String> = verdict.alike.iter().map(ToString::to_string).collect(),
+        /// Cut points at which it is best or as good.
+        cuts_won: usize = verdict.cuts_won,
+        /// What each other law costs: its error over that of the chosen one (`forward`), or its excess of BIC (`information`).
+        costs: BTreeMap<String, Option<f64>> =
+            verdict.costs.iter().map(|(law, cost)| (law.to_string(), finite(*cost))).collect(),
+        /// All that in one sentence.
+        sentence: String = comparison.sentence().unwrap_or_default(),
+    }
+
+    /// Laws compared on one hold.
+    HoldComparisonDocument(comparison: &Comparison, quantity: Quantity) with {
+        let (rows, change) = (&comparison.rows, comparison.change);
+        let lowest = rows.iter().filter_map(|row| row.criteria).map(|c| c.aicc).fold(f64::INFINITY, f64::min);
+    } {
+        /// What the laws were fitted to: `strain`, `force` or `displacement`.
+        signal: String = quantity.name().to_owned(),
+        /// Its unit: `1`, `N` or `m`.
+        signal_unit: String = match quantity {
+            Quantity::Strain => "1",
+            Quantity::Force => "N",
+            Quantity::Displacement => "m",
+        }
+        .to_owned(),
+        /// Laws are ranked by `forward` (score) or `information` (BIC).
+        ranking: String = word(comparison.ranking),
+        /// Cut points at which something is left to foretell, s after the start of the fit.
+        cuts_s: Vec<f64> = comparison.cuts.clone(),
+        /// Change of the signal over the hold, in its unit.
+        change: f64 = comparison.change,
+        /// Standard deviation of its noise, in its unit.
+        noise: f64 = comparison.noise,
+        /// Samples.
+        samples: usize = comparison.samples,
+        /// Samples that count as independent.
+        effective_samples: f64 = comparison.effective_samples,
+        /// The laws, best first.
+        laws: Vec<LawDocument> = rows.iter().map(|row| LawDocument::new(row, change, lowest, quantity)).collect(),
+        /// Which to use; `null` if none could be fitted.
+        verdict: Option<VerdictDocument> =
+            comparison.verdict.as_ref().map(|verdict| VerdictDocument::new(comparison, verdict)),
+    }
+
+    /// One hold of a compared record.
+    ComparedHoldDocument(hold: &ComparedHold) with {
         let is_creep = hold.quantity == Quantity::Displacement;
-        Self {
-            index: hold.number,
-            after: hold.after.map(word),
-            start_s: hold.start,
-            end_s: hold.end,
-            fit_start_s: hold.fit_start,
-            displacement_m: hold.level.filter(|_| !is_creep),
-            force_n: hold.level.filter(|_| is_creep),
-            comparison: hold.comparison.as_ref().map(|found| HoldComparisonDocument::new(found, hold.quantity)),
-            findings: hold.findings.iter().map(Finding::from).collect(),
-        }
+    } {
+        /// Number of the hold, from 1.
+        index: usize = hold.number,
+        /// `loading` or `unloading`; in creep of the force.
+        after: Option<String> = hold.after.map(word),
+        /// Time of its first sample, s.
+        start_s: f64 = hold.start,
+        /// Time of its last sample, s.
+        end_s: f64 = hold.end,
+        /// Time from which the laws are fitted, s.
+        fit_start_s: f64 = hold.fit_start,
+        /// Displacement that was held, m; `null` in creep.
+        displacement_m: Option<f64> = hold.level.filter(|_| !is_creep),
+        /// Force that was held, N; `null` in relaxation.
+        force_n: Option<f64> = hold.level.filter(|_| is_creep),
+        /// The comparison; `null` where nothing could be fitted.
+        comparison: Option<HoldComparisonDocument> =
+            hold.comparison.as_ref().map(|found| HoldComparisonDocument::new(found, hold.quantity)),
+        /// What to know about this hold.
+        findings: Vec<Finding> = hold.findings.iter().map(Finding::from).collect(),
     }
-}
 
-impl HoldComparisonDocument {
-    /// The document of a comparison of laws on samples of a quantity.
-    #[must_use]
-    pub fn new(comparison: &Comparison, quantity: Quantity) -> Self {
-        let lowest =
-            comparison.rows.iter().filter_map(|row| row.criteria).map(|c| c.aicc).fold(f64::INFINITY, f64::min);
-        Self {
-            signal: quantity.name().to_owned(),
-            signal_unit: match quantity {
-                Quantity::Strain => "1",
-                Quantity::Force => "N",
-                Quantity::Displacement => "m",
-            }
-            .to_owned(),
-            ranking: word(comparison.ranking),
-            cuts_s: comparison.cuts.clone(),
-            change: comparison.change,
-            noise: comparison.noise,
-            samples: comparison.samples,
-            effective_samples: comparison.effective_samples,
-            laws: comparison.rows.iter().map(|row| law(row, comparison.change, lowest, quantity)).collect(),
-            verdict: comparison.verdict.as_ref().map(|verdict| self::verdict(comparison, verdict)),
-        }
+    /// One compared record.
+    ComparedRecordDocument(record: &ComparedRecord) {
+        /// The record.
+        input: Input = record.input.clone(),
+        /// Its holds.
+        holds: Vec<ComparedHoldDocument> = record.holds.iter().map(ComparedHoldDocument::new).collect(),
+        /// What to know about the record as a whole.
+        findings: Vec<Finding> = record.findings.iter().map(Finding::from).collect(),
     }
-}
 
-fn verdict(comparison: &Comparison, verdict: &Verdict) -> VerdictDocument {
-    VerdictDocument {
-        law: verdict.law.to_string(),
-        certainty: word(verdict.certainty),
-        alike: verdict.alike.iter().map(ToString::to_string).collect(),
-        cuts_won: verdict.cuts_won,
-        costs: verdict.costs.iter().map(|(law, cost)| (law.to_string(), finite(*cost))).collect(),
-        sentence: comparison.sentence().unwrap_or_default(),
+    /// What a comparison ran with.
+    ComparisonSettingsDocument(options: &CompareOptions, hold_start: HoldStart, fit_until: Option<f64>) {
+        /// `relaxation` or `creep`.
+        response: String = word(options.fit.response),
+        /// The laws, all defaults written out.
+        laws: Vec<String> = options.laws().iter().map(ToString::to_string).collect(),
+        /// Cut points as shares of the duration of a hold.
+        cuts: Vec<f64> = options.cuts.clone(),
+        /// What linear laws take the loading before a hold for: `step` or `measured`.
+        ramps: String = word(options.ramps),
+        /// `squares`, `huber` or `tukey`.
+        loss: String = word(options.fit.loss),
+        /// `all` or `log:N`.
+        samples: String = match options.fit.samples {
+            SampleChoice::All => "all".to_owned(),
+            SampleChoice::LogSpaced(count) => format!("log:{count}"),
+        },
+        /// Coverage of the intervals.
+        confidence: f64 = options.fit.confidence,
+        /// Fitted only this long from the start of the fit, s.
+        fit_until_s: Option<f64> = fit_until,
+        /// `peak`, `settled` or `peak + … s`.
+        hold_start: String = hold_start_word(hold_start),
+    }
+
+    /// Laws compared on the holds of records.
+    #[schemars(title = "palpate.comparison/1")]
+    ComparisonDocument(records: &[ComparedRecord], left_out: &[LeftOut], settings: ComparisonSettingsDocument) {
+        /// `palpate.comparison/1`.
+        schema: String = "palpate.comparison/1".to_owned(),
+        /// What the comparison ran with.
+        settings: ComparisonSettingsDocument = settings,
+        /// The records.
+        records: Vec<ComparedRecordDocument> = records.iter().map(ComparedRecordDocument::new).collect(),
+        /// Files on which nothing could be compared.
+        left_out: Vec<LeftOut> = left_out.to_vec(),
+        /// What wrote this.
+        software: Software = Software::this(),
     }
 }
 
 fn finite(value: f64) -> Option<f64> {
     Some(value).filter(|value| value.is_finite())
-}
-
-fn law(row: &Row, change: f64, lowest_aicc: f64, quantity: Quantity) -> LawDocument {
-    let fit = row.fit.as_ref().ok();
-    let without = row.spectrum.is_none().then(|| row.fit.as_ref().err()).flatten();
-    LawDocument {
-        law: row.law.to_string(),
-        parameters: row.numbers,
-        numbers: fit.map(|fit| numbers(fit, quantity)).unwrap_or_default(),
-        spectrum: row.spectrum.as_ref().map(SpectrumDocument::from),
-        rmse: finite(row.rmse / change),
-        delta_aicc: row.criteria.and_then(|criteria| finite(criteria.aicc - lowest_aicc)),
-        delta_bic: row.delta_bic.and_then(finite),
-        forecasts: row.forward.forecasts.iter().map(|found| found.map(|found| forecast(&found, change))).collect(),
-        forward_score: row.forward.score,
-        termination: fit.map(|fit| word(fit.termination)),
-        error: without.map(ToString::to_string),
-    }
-}
-
-fn numbers(fit: &Fit, quantity: Quantity) -> BTreeMap<String, NumberDocument> {
-    let named = |number: &palpate::fit::Parameter| {
-        let suffix = quantity.suffix(number.unit)?;
-        Some((format!("{}{suffix}", number.name), NumberDocument::from(&number.estimate)))
-    };
-    fit.parameters.iter().filter_map(named).filter(|(_, number)| number.value.is_finite()).collect()
-}
-
-fn forecast(forecast: &Forecast, change: f64) -> ForecastDocument {
-    ForecastDocument {
-        cut_s: forecast.cut,
-        fitted: forecast.fitted,
-        foretold: forecast.foretold,
-        error: forecast.rmse / change,
-        bias: forecast.bias / change,
-    }
-}
-
-impl From<&Estimate> for NumberDocument {
-    fn from(estimate: &Estimate) -> Self {
-        Self {
-            value: estimate.value,
-            standard_error: estimate.standard_error,
-            interval: estimate.interval.map(|(low, high)| [low, high]),
-        }
-    }
-}
-
-impl From<&SpectrumFit> for SpectrumDocument {
-    fn from(fit: &SpectrumFit) -> Self {
-        let peaks = fit.peaks().into_iter().map(|peak| PeakDocument {
-            time_s: peak.time,
-            amplitude: fit.sign * peak.amplitude,
-        });
-        Self {
-            equilibrium: fit.equilibrium,
-            open_ended: fit.is_open_ended(),
-            times_s: fit.times.clone(),
-            amplitudes: fit.amplitudes.iter().map(|height| fit.sign * height).collect(),
-            peaks: peaks.collect(),
-            smoothing: fit.strength,
-        }
-    }
 }

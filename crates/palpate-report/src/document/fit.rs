@@ -3,100 +3,67 @@
 use std::collections::BTreeMap;
 
 use palpate::analysis::{HoldAnalysis, HoldoutError, Signal};
-use palpate::fit::{Estimate, ExponentChoice, LatencyFit};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use palpate::fit::{ExponentChoice, LatencyFit};
 
 use crate::result::word;
 
-/// The latency law fitted to one hold.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct FitDocument {
-    /// Always `latency`.
-    pub law: String,
-    /// `time` (closed form against the signal) or `rate` (strain rate against strain).
-    pub domain: String,
-    /// n.
-    pub exponent: f64,
-    /// Whether n was given rather than found.
-    pub exponent_fixed: bool,
-    /// ε_e, where the signal is strain.
-    pub equilibrium_strain: Option<f64>,
-    /// Force at equilibrium, N.
-    pub equilibrium_force_n: f64,
-    /// Excess strain at the start of the fit, where the signal is strain.
-    pub excess_strain: Option<f64>,
-    /// Excess force at the start of the fit, N.
-    pub excess_force_n: f64,
-    /// λ, relative rate at the start of the fit, 1/s.
-    pub relative_rate_per_s: f64,
-    /// v, 1/s; only where the signal is strain.
-    pub rate_coefficient_per_s: Option<f64>,
-    /// Standard errors by the names above (white noise); a number without one is missing.
-    pub standard_error: BTreeMap<String, f64>,
-    /// Confidence intervals by the names above, widened for correlated residuals.
-    pub confidence_interval: BTreeMap<String, [f64; 2]>,
-    /// Root mean square residual in the unit of the fitted quantity: strain, N, or 1/s in the rate domain.
-    pub rmse: f64,
-    /// Correlation of neighbouring residuals.
-    pub residual_correlation: f64,
-    /// Samples fitted.
-    pub samples: usize,
-    /// Bayesian information criterion less the lowest of this hold (time domain).
-    pub delta_bic: Option<f64>,
-    /// Root mean square error beyond the fitted window as a share of the drop over the whole hold.
-    pub prediction_error: Option<f64>,
-    /// Why the fit ended: `converged`, `rate_at_bound`, `exponent_at_bound`, `equilibrium_at_bound`, `singular`, `iteration_limit`.
-    pub termination: String,
-}
-
-impl FitDocument {
-    pub(super) fn new(
-        fit: &LatencyFit,
-        hold: &HoldAnalysis,
-        delta_bic: Option<f64>,
-        prediction: Option<HoldoutError>,
-    ) -> Self {
-        let is_strain = hold.signal == Signal::Strain;
-        let newtons = hold.force_per_signal;
-        let mut document = Self {
-            law: "latency".to_owned(),
-            domain: word(fit.domain),
-            exponent: fit.exponent().value,
-            exponent_fixed: fit.choice() != ExponentChoice::Free,
-            equilibrium_strain: is_strain.then_some(fit.equilibrium().value),
-            equilibrium_force_n: fit.equilibrium().value * newtons,
-            excess_strain: is_strain.then_some(fit.amplitude().value),
-            excess_force_n: fit.amplitude().value * newtons,
-            relative_rate_per_s: fit.relative_rate().value,
-            rate_coefficient_per_s: is_strain.then_some(fit.rate_coefficient().value),
-            standard_error: BTreeMap::new(),
-            confidence_interval: BTreeMap::new(),
-            rmse: fit.rmse,
-            residual_correlation: fit.residual_correlation,
-            samples: fit.samples,
-            delta_bic,
-            prediction_error: prediction.map(|prediction| prediction.relative),
-            termination: word(fit.termination),
-        };
-        document.note("exponent", fit.exponent(), 1.0);
-        document.note("equilibrium_force_n", fit.equilibrium(), newtons);
-        document.note("excess_force_n", fit.amplitude(), newtons);
-        document.note("relative_rate_per_s", fit.relative_rate(), 1.0);
-        if is_strain {
-            document.note("equilibrium_strain", fit.equilibrium(), 1.0);
-            document.note("excess_strain", fit.amplitude(), 1.0);
-            document.note("rate_coefficient_per_s", fit.rate_coefficient(), 1.0);
-        }
-        document
-    }
-
-    fn note(&mut self, name: &str, estimate: Estimate, unit: f64) {
-        if let Some(error) = estimate.standard_error {
-            self.standard_error.insert(name.to_owned(), error * unit);
-        }
-        if let Some((low, high)) = estimate.interval {
-            self.confidence_interval.insert(name.to_owned(), [low * unit, high * unit]);
-        }
+documents! {
+    /// The latency law fitted to one hold.
+    FitDocument(fit: &LatencyFit, hold: &HoldAnalysis, delta_bic: Option<f64>, prediction: Option<HoldoutError>) with {
+        let (is_strain, newtons) = (hold.signal == Signal::Strain, hold.force_per_signal);
+        let of_any = [
+            ("exponent", fit.exponent(), 1.0),
+            ("equilibrium_force_n", fit.equilibrium(), newtons),
+            ("excess_force_n", fit.amplitude(), newtons),
+            ("relative_rate_per_s", fit.relative_rate(), 1.0),
+        ];
+        let of_strain = [
+            ("equilibrium_strain", fit.equilibrium(), 1.0),
+            ("excess_strain", fit.amplitude(), 1.0),
+            ("rate_coefficient_per_s", fit.rate_coefficient(), 1.0),
+        ];
+        let numbers = || of_any.iter().chain(of_strain.iter().filter(|_| is_strain));
+        let errors = numbers().filter_map(|(name, of, unit)| Some(((*name).to_owned(), of.standard_error? * unit)));
+        let intervals = numbers().filter_map(|(name, of, unit)| {
+            let (low, high) = of.interval?;
+            Some(((*name).to_owned(), [low * unit, high * unit]))
+        });
+    } {
+        /// Always `latency`.
+        law: String = "latency".to_owned(),
+        /// `time` (closed form against the signal) or `rate` (strain rate against strain).
+        domain: String = word(fit.domain),
+        /// n.
+        exponent: f64 = fit.exponent().value,
+        /// Whether n was given rather than found.
+        exponent_fixed: bool = fit.choice() != ExponentChoice::Free,
+        /// ε_e, where the signal is strain.
+        equilibrium_strain: Option<f64> = is_strain.then_some(fit.equilibrium().value),
+        /// Force at equilibrium, N.
+        equilibrium_force_n: f64 = fit.equilibrium().value * newtons,
+        /// Excess strain at the start of the fit, where the signal is strain.
+        excess_strain: Option<f64> = is_strain.then_some(fit.amplitude().value),
+        /// Excess force at the start of the fit, N.
+        excess_force_n: f64 = fit.amplitude().value * newtons,
+        /// λ, relative rate at the start of the fit, 1/s.
+        relative_rate_per_s: f64 = fit.relative_rate().value,
+        /// v, 1/s; only where the signal is strain.
+        rate_coefficient_per_s: Option<f64> = is_strain.then_some(fit.rate_coefficient().value),
+        /// Standard errors by the names above (white noise); a number without one is missing.
+        standard_error: BTreeMap<String, f64> = errors.collect(),
+        /// Confidence intervals by the names above, widened for correlated residuals.
+        confidence_interval: BTreeMap<String, [f64; 2]> = intervals.collect(),
+        /// Root mean square residual in the unit of the fitted quantity: strain, N, or 1/s in the rate domain.
+        rmse: f64 = fit.rmse,
+        /// Correlation of neighbouring residuals.
+        residual_correlation: f64 = fit.residual_correlation,
+        /// Samples fitted.
+        samples: usize = fit.samples,
+        /// Bayesian information criterion less the lowest of this hold (time domain).
+        delta_bic: Option<f64> = delta_bic,
+        /// Root mean square error beyond the fitted window as a share of the drop over the whole hold.
+        prediction_error: Option<f64> = prediction.map(|prediction| prediction.relative),
+        /// Why the fit ended: `converged`, `rate_at_bound`, `exponent_at_bound`, `equilibrium_at_bound`, `singular`, `iteration_limit`.
+        termination: String = word(fit.termination),
     }
 }

@@ -13,6 +13,31 @@
 //! | `watch.rs` | `palpate.watch/1`, a watched contact, one object a line |
 //! | `reproduction.rs` | `palpate.reproduction/1`, the summary of the reproduced study |
 
+/// Documents: of each field its meaning, its type, and what of the result it says.
+macro_rules! documents {
+    ($(
+        $(#[$about:meta])*
+        $name:ident($($from:ident: $source:ty),*) $(with { $($local:stmt;)* })? {
+            $($(#[$meaning:meta])* $field:ident: $type:ty = $value:expr,)*
+        }
+    )*) => { $(
+        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+        $(#[$about])*
+        pub struct $name {
+            $($(#[$meaning])* pub $field: $type,)*
+        }
+
+        impl $name {
+            /// The document of these.
+            #[must_use]
+            pub fn new($($from: $source),*) -> Self {
+                $($($local)*)?
+                Self { $($field: $value,)* }
+            }
+        }
+    )* };
+}
+
 mod analysis;
 mod calibration;
 mod comparison;
@@ -25,23 +50,13 @@ mod signals;
 mod software;
 mod watch;
 
-pub use analysis::{AnalysisDocument, HoldDocument, TableRow};
-pub use calibration::{
-    CalibratedLawDocument, CalibratedNumberDocument, CalibrationDocument, ForetoldDocument, ProfileDocument,
-};
+pub use analysis::{AnalysisDocument, HoldDocument};
+pub use calibration::{CalibratedLawDocument, CalibrationDocument};
 pub use comparison::{
-    ComparedHoldDocument, ComparedRecordDocument, ComparisonDocument, ComparisonSettingsDocument,
-    HoldComparisonDocument, LawDocument, NumberDocument, VerdictDocument,
+    ComparisonDocument, ComparisonSettingsDocument, HoldComparisonDocument, LawDocument, VerdictDocument,
 };
 pub use fit::FitDocument;
-pub use grip::{
-    BackOffDocument, GraspDocument, GripDocument, GripLimitsDocument, HoldingDocument, LastsDocument, MoveDocument,
-    NeighbourDocument, PressedDocument, RefusedDocument, ScheduleDocument, SensitivityDocument,
-};
+pub use grip::{BackOffDocument, GripDocument, HoldingDocument, LastsDocument, PressedDocument, ScheduleDocument};
 pub use reproduction::ReproductionDocument;
-pub use settings::SettingsDocument;
-pub use signals::{
-    CorrectionDocument, SignalsDocument, SkewDocument, TouchDocument, TouchEstimateDocument, ValuesDocument,
-};
 pub use software::Software;
 pub use watch::{ObservationDocument, WatchDocument, WatchSummaryDocument, WatchedHoldDocument};

@@ -1,40 +1,41 @@
 //! `palpate.reproduction/1`: the summary of the reproduced study.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use palpate::test_problems::PAPER_RATE;
 
-use super::analysis::TableRow;
+use super::analysis::{TableRow, tables};
 use super::software::Software;
-use crate::result::Check;
+use crate::page::Check;
+use crate::result::Reproduction;
 
-/// The whole summary.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(title = "palpate.reproduction/1")]
-pub struct ReproductionDocument {
-    /// `palpate.reproduction/1`.
-    pub schema: String,
-    /// Radius of the ball, m.
-    pub radius_m: f64,
-    /// Modulus, Pa.
-    pub modulus_pa: f64,
-    /// n.
-    pub exponent: f64,
-    /// v, 1/s.
-    pub rate_coefficient_per_s: f64,
-    /// m.
-    pub layers: f64,
-    /// Speed of the jaw, m/s.
-    pub rate_m_per_s: f64,
-    /// Table I, re-identified from the simulated test (a).
-    pub table_1: Vec<TableRow>,
-    /// Table II, re-identified from the simulated test (b).
-    pub table_2: Vec<TableRow>,
-    /// Largest relative error of a re-identified rate coefficient.
-    pub largest_rate_coefficient_error: f64,
-    /// What the paper reports in words.
-    pub checks: Vec<Check>,
-    /// Whether all of them pass.
-    pub all_passed: bool,
-    /// What wrote this.
-    pub software: Software,
+documents! {
+    /// The whole summary.
+    #[schemars(title = "palpate.reproduction/1")]
+    ReproductionDocument(study: &Reproduction) {
+        /// `palpate.reproduction/1`.
+        schema: String = "palpate.reproduction/1".to_owned(),
+        /// Radius of the ball, m.
+        radius_m: f64 = study.model.specimen.depth(),
+        /// Modulus, Pa.
+        modulus_pa: f64 = study.model.specimen.modulus(),
+        /// n.
+        exponent: f64 = study.model.law.exponent(),
+        /// v, 1/s.
+        rate_coefficient_per_s: f64 = study.model.law.rate_coefficient(),
+        /// m.
+        layers: f64 = study.model.layers.count(),
+        /// Speed of the jaw, m/s.
+        rate_m_per_s: f64 = PAPER_RATE,
+        /// Table I, re-identified from the simulated test (a).
+        table_1: Vec<TableRow> = tables(&study.test_a.analysis).map_or(Vec::new(), |tables| tables.loading),
+        /// Table II, re-identified from the simulated test (b).
+        table_2: Vec<TableRow> = tables(&study.test_b.analysis).map_or(Vec::new(), |tables| tables.unloading),
+        /// Largest relative error of a re-identified rate coefficient.
+        largest_rate_coefficient_error: f64 = study.largest_coefficient_error(),
+        /// What the paper reports in words.
+        checks: Vec<Check> = study.checks.clone(),
+        /// Whether all of them pass.
+        all_passed: bool = study.all_passed(),
+        /// What wrote this.
+        software: Software = Software::this(),
+    }
 }

@@ -21,18 +21,8 @@ pub enum WatchDocument {
     Observation(ObservationDocument),
 }
 
-/// The holds of a log.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct WatchSummaryDocument {
-    /// Always `summary`.
-    pub event: String,
-    /// The holds in order.
-    pub holds: Vec<WatchedHoldDocument>,
-}
-
 /// A hold as it was watched.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WatchedHoldDocument {
     /// Standard deviation of the speed of creep, m/s.
@@ -71,111 +61,92 @@ pub struct WatchedHoldDocument {
     pub warned_s: Option<f64>,
 }
 
-/// What an observer says after a tick.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ObservationDocument {
-    /// Standard deviation of the speed of creep, m/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub creep_rate_deviation_m_per_s: Option<f64>,
-    /// Speed of the creep while the force is held, m/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub creep_rate_m_per_s: Option<f64>,
-    /// Standard deviation of the equilibrium force, N.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub equilibrium_force_deviation_n: Option<f64>,
-    /// The force that a hold of the displacement tends to, N.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub equilibrium_force_n: Option<f64>,
-    /// `tick`, `hold_begins`, `hold_changes` or `warning`.
-    pub event: String,
-    /// Standard deviation of the excess force, N.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub excess_force_deviation_n: Option<f64>,
-    /// Force in excess of equilibrium, N.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub excess_force_n: Option<f64>,
-    /// Strain in excess of equilibrium.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub excess_strain: Option<f64>,
-    /// Standard deviation of the excess strain.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub excess_strain_deviation: Option<f64>,
-    /// The force without its noise, N.
-    pub force_n: f64,
-    /// What is held: `displacement` or `force`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub held: Option<String>,
-    /// When the hold began, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub held_since_s: Option<f64>,
-    /// `free`, `loading`, `holding` or `unloading`.
-    pub phase: String,
-    /// Rate at which the excess falls now, in shares of itself, 1/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub relative_rate_per_s: Option<f64>,
-    /// `not_known_yet`, `never`, `perhaps_never` or `after`; left out without a force of slip.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub slips: Option<String>,
-    /// When, s.
-    pub time_s: f64,
-    /// Upper end of the interval of the time to slip, s; `null` where never lies inside.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub time_to_slip_high_s: Option<Option<f64>>,
-    /// Its lower end, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub time_to_slip_low_s: Option<f64>,
-    /// How long until the force has fallen to that of slip, s; `null` where that is never.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub time_to_slip_s: Option<Option<f64>>,
-    /// `none`, `soon` or `slipping`; left out without a force of slip.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub warning: Option<String>,
-}
+documents! {
+    /// The holds of a log.
+    #[serde(deny_unknown_fields)]
+    WatchSummaryDocument(holds: Vec<WatchedHoldDocument>) {
+        /// Always `summary`.
+        event: String = "summary".to_owned(),
+        /// The holds in order.
+        holds: Vec<WatchedHoldDocument> = holds,
+    }
 
-fn parted(number: Option<Estimate>) -> (Option<f64>, Option<f64>) {
-    (number.map(|number| number.value), number.and_then(|number| number.standard_error))
-}
-
-impl ObservationDocument {
-    /// The document of an observation, for an event.
-    #[must_use]
-    pub fn new(event: &str, seen: &Observation) -> Self {
+    /// What an observer says after a tick.
+    ObservationDocument(event: &str, seen: &Observation) with {
         let (creep, creep_deviation) = parted(seen.creep_rate);
         let (equilibrium, equilibrium_deviation) = parted(seen.equilibrium_force);
         let (excess, excess_deviation) = parted(seen.excess_force);
         let (strain, strain_deviation) = parted(seen.excess_strain);
         let hold = seen.held.zip(seen.held_since);
         let times = match seen.time_to_slip {
-            Some(SlipForecast::Known {
-                best,
-                low: TimeToSlip::After(low),
-                high,
-            }) => Some((best.seconds(), low, high.seconds())),
+            Some(SlipForecast::Known { best, low: TimeToSlip::After(low), high }) => {
+                Some((best.seconds(), low, high.seconds()))
+            }
             _ => None,
         };
-        Self {
-            creep_rate_deviation_m_per_s: creep_deviation,
-            creep_rate_m_per_s: creep,
-            equilibrium_force_deviation_n: equilibrium_deviation,
-            equilibrium_force_n: equilibrium,
-            event: event.to_owned(),
-            excess_force_deviation_n: excess_deviation,
-            excess_force_n: excess,
-            excess_strain: strain,
-            excess_strain_deviation: strain_deviation,
-            force_n: seen.force,
-            held: hold.map(|(held, _)| word(held)),
-            held_since_s: hold.map(|(_, since)| since),
-            phase: word(seen.phase),
-            relative_rate_per_s: seen.relative_rate,
-            slips: seen.time_to_slip.map(|time| slips_word(time).to_owned()),
-            time_s: seen.time,
-            time_to_slip_high_s: times.map(|(_, _, high)| high),
-            time_to_slip_low_s: times.map(|(_, low, _)| low),
-            time_to_slip_s: times.map(|(value, _, _)| value),
-            warning: (seen.time_to_slip.is_some() || seen.slip != Slip::None).then(|| word(seen.slip)),
-        }
+        let warns = seen.time_to_slip.is_some() || seen.slip != Slip::None;
+    } {
+        /// Standard deviation of the speed of creep, m/s.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        creep_rate_deviation_m_per_s: Option<f64> = creep_deviation,
+        /// Speed of the creep while the force is held, m/s.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        creep_rate_m_per_s: Option<f64> = creep,
+        /// Standard deviation of the equilibrium force, N.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        equilibrium_force_deviation_n: Option<f64> = equilibrium_deviation,
+        /// The force that a hold of the displacement tends to, N.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        equilibrium_force_n: Option<f64> = equilibrium,
+        /// `tick`, `hold_begins`, `hold_changes` or `warning`.
+        event: String = event.to_owned(),
+        /// Standard deviation of the excess force, N.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        excess_force_deviation_n: Option<f64> = excess_deviation,
+        /// Force in excess of equilibrium, N.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        excess_force_n: Option<f64> = excess,
+        /// Strain in excess of equilibrium.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        excess_strain: Option<f64> = strain,
+        /// Standard deviation of the excess strain.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        excess_strain_deviation: Option<f64> = strain_deviation,
+        /// The force without its noise, N.
+        force_n: f64 = seen.force,
+        /// What is held: `displacement` or `force`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        held: Option<String> = hold.map(|(held, _)| word(held)),
+        /// When the hold began, s.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        held_since_s: Option<f64> = hold.map(|(_, since)| since),
+        /// `free`, `loading`, `holding` or `unloading`.
+        phase: String = word(seen.phase),
+        /// Rate at which the excess falls now, in shares of itself, 1/s.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        relative_rate_per_s: Option<f64> = seen.relative_rate,
+        /// `not_known_yet`, `never`, `perhaps_never` or `after`; left out without a force of slip.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        slips: Option<String> = seen.time_to_slip.map(|time| slips_word(time).to_owned()),
+        /// When, s.
+        time_s: f64 = seen.time,
+        /// Upper end of the interval of the time to slip, s; `null` where never lies inside.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        time_to_slip_high_s: Option<Option<f64>> = times.map(|(_, _, high)| high),
+        /// Its lower end, s.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        time_to_slip_low_s: Option<f64> = times.map(|(_, low, _)| low),
+        /// How long until the force has fallen to that of slip, s; `null` where that is never.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        time_to_slip_s: Option<Option<f64>> = times.map(|(value, _, _)| value),
+        /// `none`, `soon` or `slipping`; left out without a force of slip.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        warning: Option<String> = warns.then(|| word(seen.slip)),
     }
+}
+
+fn parted(number: Option<Estimate>) -> (Option<f64>, Option<f64>) {
+    (number.map(|number| number.value), number.and_then(|number| number.standard_error))
 }
 
 impl WatchedHoldDocument {
@@ -183,19 +154,12 @@ impl WatchedHoldDocument {
     #[must_use]
     pub fn new(held: Held, (start, end): (f64, f64), (force_start, force_end): (f64, f64)) -> Self {
         Self {
-            creep_rate_deviation_m_per_s: None,
-            creep_rate_m_per_s: None,
             end_s: end,
-            equilibrium_force_deviation_n: None,
-            equilibrium_force_n: None,
-            event: None,
             force_end_n: force_end,
             force_start_n: force_start,
             held: word(held),
-            slipped_s: None,
             start_s: start,
-            time_s: None,
-            warned_s: None,
+            ..Self::default()
         }
     }
 
@@ -212,16 +176,5 @@ impl WatchedHoldDocument {
     pub fn ended(mut self, time: f64) -> Self {
         (self.event, self.time_s) = (Some("hold_ends".to_owned()), Some(time));
         self
-    }
-}
-
-impl WatchSummaryDocument {
-    /// The last line of a log.
-    #[must_use]
-    pub fn new(holds: Vec<WatchedHoldDocument>) -> Self {
-        Self {
-            event: "summary".to_owned(),
-            holds,
-        }
     }
 }

@@ -1,11 +1,8 @@
 //! All files of the reproduced study.
 
-use palpate::segment::After;
-use palpate::test_problems::PAPER_RATE;
-
 use super::page;
-use crate::document::{AnalysisDocument, ReproductionDocument, Software};
-use crate::result::{Input, ReproducedTest, Reproduction};
+use crate::document::ReproductionDocument;
+use crate::result::Reproduction;
 use crate::study::bundle::{Bundle, Pictures, StudyError};
 
 /// All files of the reproduced study.
@@ -27,42 +24,8 @@ pub fn reproduction_bundle(study: &Reproduction, pictures: Pictures) -> Result<B
         bundle.series(&format!("test_{name}_unilateral"), &test.unilateral)?;
     }
     bundle.text("report.html", page::page(study, &figures, &tables)?.to_html());
-    bundle.json("summary.json", &reproduction_document(study))?;
+    bundle.json("summary.json", &ReproductionDocument::new(study))?;
     Ok(bundle)
-}
-
-/// The summary of the study.
-#[must_use]
-pub fn reproduction_document(study: &Reproduction) -> ReproductionDocument {
-    let rows = |test: &ReproducedTest, after: After| {
-        let input = Input {
-            path: String::new(),
-            sha256: String::new(),
-            part: None,
-            rows_averaged: 1,
-            rows: 0,
-            test: None,
-            title: String::new(),
-        };
-        let tables = AnalysisDocument::new(&test.analysis, input).tables;
-        tables.map_or(Vec::new(), |tables| if after == After::Loading { tables.loading } else { tables.unloading })
-    };
-    let depth = study.model.specimen.depth();
-    ReproductionDocument {
-        schema: "palpate.reproduction/1".to_owned(),
-        radius_m: depth,
-        modulus_pa: study.model.specimen.modulus(),
-        exponent: study.model.law.exponent(),
-        rate_coefficient_per_s: study.model.law.rate_coefficient(),
-        layers: study.model.layers.count(),
-        rate_m_per_s: PAPER_RATE,
-        table_1: rows(&study.test_a, After::Loading),
-        table_2: rows(&study.test_b, After::Unloading),
-        largest_rate_coefficient_error: study.largest_coefficient_error(),
-        checks: study.checks.clone(),
-        all_passed: study.all_passed(),
-        software: Software::this(),
-    }
 }
 
 /// Every check in two lines.

@@ -10,4 +10,4 @@ mod bundle;
 mod law_figures;
 mod page;
 
-pub use bundle::{reproduction_bundle, reproduction_document, reproduction_text};
+pub use bundle::{reproduction_bundle, reproduction_text};
