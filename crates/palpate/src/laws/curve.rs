@@ -1,13 +1,7 @@
 //! A law with its numbers put in.
 
+use super::{BasisFunction, Column, Kernel, Loading, Response, Superposition};
 use serde::{Deserialize, Serialize};
-
-use super::basis::BasisFunction;
-use super::form::Column;
-use super::kernel::Kernel;
-use super::loading::Loading;
-use super::response::Response;
-use super::superposition::Superposition;
 
 /// One term of a [`LawCurve`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

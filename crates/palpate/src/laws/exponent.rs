@@ -11,3 +11,13 @@ pub enum ExponentChoice {
     /// Found with the other numbers.
     Free,
 }
+
+impl ExponentChoice {
+    /// The exponent, if it was given.
+    pub(crate) fn given(self) -> Option<f64> {
+        match self {
+            Self::Fixed(n) => Some(n),
+            Self::Free => None,
+        }
+    }
+}

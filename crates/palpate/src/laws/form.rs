@@ -1,10 +1,7 @@
 //! What a law is made of: a constant or none, and shapes.
 
-use super::basis::BasisFunction;
-use super::kernel::{Kernel, NumberKind};
-use super::response::Response;
-
 /// Columns of a law, in the order of its linear numbers: the constant if it has one, then the shapes.
+use super::{BasisFunction, Kernel, NumberKind, Response};
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Form {
     /// Relaxation or creep.
@@ -23,22 +20,6 @@ pub(crate) struct Column {
 }
 
 impl Form {
-    pub(in crate::laws) fn with_constant(response: Response, shapes: Vec<BasisFunction>) -> Self {
-        Self {
-            response,
-            constant: true,
-            shapes,
-        }
-    }
-
-    pub(in crate::laws) fn without_constant(response: Response, shapes: Vec<BasisFunction>) -> Self {
-        Self {
-            response,
-            constant: false,
-            shapes,
-        }
-    }
-
     /// What the constant is called: the end of a relaxation that ends, else the start.
     pub(crate) fn constant_name(&self) -> &'static str {
         match self.response {

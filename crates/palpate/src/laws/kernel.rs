@@ -26,6 +26,34 @@ pub(crate) struct ShapeNumber {
     pub(crate) kind: NumberKind,
 }
 
+impl ShapeNumber {
+    /// A pure number.
+    pub(in crate::laws) const fn pure(name: &'static str, low: f64, high: f64, coarse: &'static [f64]) -> Self {
+        let kind = NumberKind::Pure { low, high, coarse };
+        Self { name, kind }
+    }
+}
+
+/// The time of a shape.
+pub(in crate::laws) const TIME: ShapeNumber = ShapeNumber {
+    name: "time",
+    kind: NumberKind::Time,
+};
+
+/// What sets the unit of a shape that grows.
+pub(in crate::laws) const REFERENCE: ShapeNumber = ShapeNumber {
+    name: "reference",
+    kind: NumberKind::Reference,
+};
+
+/// The derivatives of a shape of two numbers.
+pub(in crate::laws) fn two(derivatives: &mut [Vec<f64>]) -> [&mut Vec<f64>; 2] {
+    match derivatives {
+        [first, second] => [first, second],
+        _ => unreachable!("two numbers"),
+    }
+}
+
 /// One shape: a function of time and of one or two numbers θ.
 ///
 /// Rates enter as ln λ, so that a change of the unit of time adds a constant to them and no more.

@@ -6,11 +6,8 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use super::continuous::{diffusion, fractional_zener, fung_continuous, latency, logarithmic, power, stretched};
-use super::description::Description;
 use super::discrete::{burgers, fung, kelvin_voigt, maxwell, prony, spectrum, standard_linear_solid};
-use super::exponent::ExponentChoice;
-use super::form::Form;
-use super::response::Response;
+use super::{BasisFunction, Description, ExponentChoice, Form, Response};
 
 /// A law of relaxation or creep whose numbers are to be found; see the [table of laws](crate::laws).
 ///
@@ -96,6 +93,30 @@ impl Law {
         "diffusion",
     ];
 
+    /// The laws whose names hold no number.
+    const PLAIN: [(Self, &str); 12] = [
+        (Self::FREE_LATENCY, "latency"),
+        (Self::Maxwell, "maxwell"),
+        (Self::KelvinVoigt, "kelvin-voigt"),
+        (Self::StandardLinearSolid, "standard-linear-solid"),
+        (Self::Burgers, "burgers"),
+        (Self::Spectrum, "spectrum"),
+        (Self::FungContinuous, "fung-continuous"),
+        (Self::Stretched, "stretched"),
+        (Self::Power, "power"),
+        (Self::Logarithmic, "logarithmic"),
+        (Self::FractionalZener, "fractional-zener"),
+        (Self::Diffusion, "diffusion"),
+    ];
+
+    const FREE_LATENCY: Self = Self::Latency {
+        exponent: ExponentChoice::Free,
+    };
+
+    const LINEAR_LATENCY: Self = Self::Latency {
+        exponent: ExponentChoice::Fixed(1.0),
+    };
+
     /// What the law is, in words.
     #[must_use]
     pub fn description(self) -> Description {
@@ -135,16 +156,11 @@ impl Law {
             Self::Prony { terms } | Self::Fung { terms } => Some(terms),
             _ => None,
         };
-        let linear = Self::Latency {
-            exponent: ExponentChoice::Fixed(1.0),
-        };
-        let exponential = terms(other) == Some(1) || other == linear;
+        let exponential = terms(other) == Some(1) || other == Self::LINEAR_LATENCY;
         self == other
             || match self {
                 Self::Spectrum => true,
-                Self::Latency {
-                    exponent: ExponentChoice::Free,
-                } => matches!(other, Self::Latency { .. } | Self::Power) || exponential,
+                Self::FREE_LATENCY => matches!(other, Self::Latency { .. } | Self::Power) || exponential,
                 Self::Stretched | Self::FractionalZener | Self::FungContinuous => exponential,
                 Self::Burgers => other == Self::KelvinVoigt,
                 _ => terms(self).zip(terms(other)).is_some_and(|(own, its)| own >= its),
@@ -159,49 +175,47 @@ impl Law {
 
     /// Columns of the law; `None` where it has no form for the response, and for the spectrum, which is fitted another way.
     pub(crate) fn form(self, response: Response) -> Option<Form> {
-        match self {
-            Self::Latency { exponent } => Some(latency::form(exponent, response)),
-            Self::Maxwell => Some(maxwell::form(response)),
-            Self::KelvinVoigt => kelvin_voigt::form(response),
-            Self::StandardLinearSolid => Some(standard_linear_solid::form(response)),
-            Self::Burgers => Some(burgers::form(response)),
-            Self::Prony { terms } => Some(prony::form(terms, response)),
-            Self::Spectrum => None,
-            Self::Fung { terms } => fung::form(terms, response),
-            Self::FungContinuous => fung_continuous::form(response),
-            Self::Stretched => Some(stretched::form(response)),
-            Self::Power => Some(power::form(response)),
-            Self::Logarithmic => Some(logarithmic::form(response)),
-            Self::FractionalZener => Some(fractional_zener::form(response)),
-            Self::Diffusion => Some(diffusion::form(response)),
-        }
+        use BasisFunction::{Exponential, Straight};
+        use Response::{Creep, Relaxation};
+
+        let (constant, shapes) = match (self, response) {
+            (Self::Latency { exponent }, _) => (true, vec![exponent.shape()]),
+            (Self::Maxwell, Relaxation) => (false, vec![Exponential]),
+            (Self::Maxwell, Creep) => (true, vec![Straight]),
+            (Self::KelvinVoigt, Creep) => (false, vec![Exponential]),
+            (Self::StandardLinearSolid, _) => (true, vec![Exponential]),
+            (Self::Burgers, Relaxation) => (false, vec![Exponential; 2]),
+            (Self::Burgers, Creep) => (true, vec![Exponential, Straight]),
+            (Self::Prony { terms }, _) | (Self::Fung { terms }, Relaxation) => (true, vec![Exponential; terms]),
+            (Self::FungContinuous, Relaxation) => (true, vec![BasisFunction::FungContinuous]),
+            (Self::Stretched, _) => (true, vec![BasisFunction::Stretched]),
+            (Self::Power, Relaxation) => (false, vec![BasisFunction::PowerDecay]),
+            (Self::Power, Creep) => (true, vec![BasisFunction::PowerGrowth]),
+            (Self::Logarithmic, _) => (true, vec![BasisFunction::Logarithm]),
+            (Self::FractionalZener, _) => (true, vec![BasisFunction::MittagLeffler]),
+            (Self::Diffusion, _) => (true, vec![BasisFunction::Diffusion]),
+            (Self::KelvinVoigt, Relaxation)
+            | (Self::Fung { .. } | Self::FungContinuous, Creep)
+            | (Self::Spectrum, _) => return None,
+        };
+        Some(Form {
+            response,
+            constant,
+            shapes,
+        })
     }
 }
 
 impl fmt::Display for Law {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = match self {
-            Self::Latency {
-                exponent: ExponentChoice::Free,
-            } => "latency",
+        match self {
             Self::Latency {
                 exponent: ExponentChoice::Fixed(n),
-            } => return write!(f, "latency:{n}"),
-            Self::Prony { terms } => return write!(f, "prony:{terms}"),
-            Self::Fung { terms } => return write!(f, "fung:{terms}"),
-            Self::Maxwell => "maxwell",
-            Self::KelvinVoigt => "kelvin-voigt",
-            Self::StandardLinearSolid => "standard-linear-solid",
-            Self::Burgers => "burgers",
-            Self::Spectrum => "spectrum",
-            Self::FungContinuous => "fung-continuous",
-            Self::Stretched => "stretched",
-            Self::Power => "power",
-            Self::Logarithmic => "logarithmic",
-            Self::FractionalZener => "fractional-zener",
-            Self::Diffusion => "diffusion",
-        };
-        f.write_str(name)
+            } => write!(f, "latency:{n}"),
+            Self::Prony { terms } => write!(f, "prony:{terms}"),
+            Self::Fung { terms } => write!(f, "fung:{terms}"),
+            _ => f.write_str(Self::PLAIN.iter().find(|(law, _)| law == self).map_or("", |(_, name)| name)),
+        }
     }
 }
 
@@ -225,27 +239,13 @@ impl FromStr for Law {
             Some(("fung", k)) => Self::Fung { terms: terms(k)? },
             Some(_) => return Err(unknown()),
             None => match text {
-                "latency" => Self::Latency {
-                    exponent: ExponentChoice::Free,
-                },
-                "linear-latency" => Self::Latency {
-                    exponent: ExponentChoice::Fixed(1.0),
-                },
+                "linear-latency" => Self::LINEAR_LATENCY,
                 "peleg" => Self::Latency {
                     exponent: ExponentChoice::Fixed(2.0),
                 },
-                "maxwell" => Self::Maxwell,
-                "kelvin-voigt" => Self::KelvinVoigt,
-                "standard-linear-solid" | "sls" => Self::StandardLinearSolid,
-                "burgers" => Self::Burgers,
-                "spectrum" => Self::Spectrum,
-                "fung-continuous" => Self::FungContinuous,
-                "stretched" | "kww" => Self::Stretched,
-                "power" => Self::Power,
-                "logarithmic" => Self::Logarithmic,
-                "fractional-zener" => Self::FractionalZener,
-                "diffusion" => Self::Diffusion,
-                _ => return Err(unknown()),
+                "sls" => Self::StandardLinearSolid,
+                "kww" => Self::Stretched,
+                _ => Self::PLAIN.iter().find(|(_, name)| *name == text).ok_or_else(unknown)?.0,
             },
         })
     }

@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 /// # Ok::<(), palpate::laws::LoadingError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(into = "Columns", try_from = "Columns")]
+#[serde(try_from = "Columns")]
 pub struct Loading {
     /// Rising to 0, the start of the hold, s.
     times: Vec<f64>,
@@ -29,7 +29,7 @@ pub struct Loading {
 }
 
 /// A loading in JSON.
-#[derive(Serialize, Deserialize)]
+#[derive(Deserialize)]
 struct Columns {
     times: Vec<f64>,
     values: Vec<f64>,
@@ -206,15 +206,6 @@ impl Loading {
             to: -t[1],
             change: value[1] - value[0],
         })
-    }
-}
-
-impl From<Loading> for Columns {
-    fn from(loading: Loading) -> Self {
-        Self {
-            times: loading.times,
-            values: loading.values,
-        }
     }
 }
 

@@ -18,8 +18,8 @@
 //! | `fractional-zener` | y_e + Δ E_α(−(λt)^α) | y₀ + Δ (1 − same) | `continuous/fractional_zener.rs` |
 //! | `diffusion` | y_e + Δ (8/π²) Σ_odd exp(−k²λt)/k² | y₀ + Δ (1 − same) | `continuous/diffusion.rs` |
 //!
-//! A [`Law`] has its numbers free; a [`LawCurve`] has numbers put in. `law.rs` holds the list and its names, `form.rs` what a law
-//! is made of, `basis.rs` the list of basis functions, `kernel.rs` what one of them must be able to do, `kernels.rs` that they can,
+//! A [`Law`] has its numbers free; a [`LawCurve`] has numbers put in. `law.rs` holds the list, the names and what each law is made
+//! of, `form.rs` how that stands in a signal, `basis.rs` the list of basis functions, `kernel.rs` what one of them must be able to do, `kernels.rs` that they can,
 //! `curve.rs` a law with numbers. Two rooms hold the laws themselves: `discrete/` those with single relaxation times, `continuous/` all
 //! others. A hold that follows a ramp is no step: `loading.rs` holds what came before it, `superposition.rs` averages basis functions
 //! over that. `fit` fits them all; nothing here looks at data.

@@ -11,9 +11,8 @@
 
 use std::ops::Range;
 
-use super::basis::BasisFunction;
-use super::kernel::Kernel;
-use super::loading::{Loading, Piece};
+use super::loading::Piece;
+use super::{BasisFunction, Kernel, Loading};
 
 /// Nodes of a panel.
 const NODES: usize = 16;

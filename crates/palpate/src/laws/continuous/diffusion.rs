@@ -11,11 +11,8 @@
 //!
 //! Early, 1 − φ grows as the square root of time; late, φ falls as (8/π²) exp(−t/τ).
 
-use crate::laws::basis::BasisFunction;
 use crate::laws::description::Description;
-use crate::laws::form::Form;
-use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
-use crate::laws::response::Response;
+use crate::laws::kernel::{Kernel, ShapeNumber, TIME};
 use crate::special::diffusion_decay_many;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
@@ -24,19 +21,12 @@ pub(in crate::laws) const DESCRIPTION: Description = Description {
     source: "hole diffusion after Golik, cited by Tsai, Kao et al.; series: Crank, The Mathematics of Diffusion, section 4.3",
 };
 
-pub(in crate::laws) fn form(response: Response) -> Form {
-    Form::with_constant(response, vec![BasisFunction::Diffusion])
-}
-
 /// (8/π²) Σ_odd exp(−k²λt)/k².
 pub(in crate::laws) struct Diffusion;
 
 impl Kernel for Diffusion {
     fn numbers(&self) -> &'static [ShapeNumber] {
-        &[ShapeNumber {
-            name: "time",
-            kind: NumberKind::Time,
-        }]
+        &[TIME]
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {

@@ -9,11 +9,8 @@
 //! | time τ | s | above 0 | between the two powers, t^α before and t^(−α) after |
 //! | order α | 1 | 0.05 to 1 | 1: standard linear solid |
 
-use crate::laws::basis::BasisFunction;
 use crate::laws::description::Description;
-use crate::laws::form::Form;
-use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
-use crate::laws::response::Response;
+use crate::laws::kernel::{Kernel, ShapeNumber, TIME, two};
 use crate::special::{mittag_leffler_decay_many, mittag_leffler_decay_value_many};
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
@@ -22,30 +19,14 @@ pub(in crate::laws) const DESCRIPTION: Description = Description {
     source: "Bagley and Torvik 1983; Mainardi, Fractional Calculus and Waves in Linear Viscoelasticity, chapter 3",
 };
 
-pub(in crate::laws) fn form(response: Response) -> Form {
-    Form::with_constant(response, vec![BasisFunction::MittagLeffler])
-}
-
 /// E_α(−(λt)^α).
 pub(in crate::laws) struct MittagLeffler;
 
 impl Kernel for MittagLeffler {
     fn numbers(&self) -> &'static [ShapeNumber] {
         const COARSE: [f64; 10] = [0.05, 0.1, 0.18, 0.27, 0.38, 0.5, 0.63, 0.77, 0.9, 1.0];
-        &[
-            ShapeNumber {
-                name: "time",
-                kind: NumberKind::Time,
-            },
-            ShapeNumber {
-                name: "order",
-                kind: NumberKind::Pure {
-                    low: 0.05,
-                    high: 1.0,
-                    coarse: &COARSE,
-                },
-            },
-        ]
+        const NUMBERS: [ShapeNumber; 2] = [TIME, ShapeNumber::pure("order", 0.05, 1.0, &COARSE)];
+        &NUMBERS
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
@@ -53,9 +34,7 @@ impl Kernel for MittagLeffler {
     }
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
-        let [by_rate, by_order] = derivatives else {
-            unreachable!("two numbers")
-        };
+        let [by_rate, by_order] = two(derivatives);
         mittag_leffler_decay_many(times, theta[0].exp(), theta[1], value, by_rate, by_order);
     }
 }

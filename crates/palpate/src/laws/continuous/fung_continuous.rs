@@ -11,11 +11,8 @@
 //!
 //! Limit: ϱ → 1 is the standard linear solid.
 
-use crate::laws::basis::BasisFunction;
 use crate::laws::description::Description;
-use crate::laws::form::Form;
-use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
-use crate::laws::response::Response;
+use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber, two};
 use crate::special::fung_continuous_many;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
@@ -24,30 +21,18 @@ pub(in crate::laws) const DESCRIPTION: Description = Description {
     source: "Neubert 1963; Fung, Biomechanics, section 7.6",
 };
 
-pub(in crate::laws) fn form(response: Response) -> Option<Form> {
-    (response == Response::Relaxation).then(|| Form::with_constant(response, vec![BasisFunction::FungContinuous]))
-}
-
 /// [E₁(λt) − E₁(ϱλt)]/ln ϱ in θ = (ln λ, ln ϱ).
 pub(in crate::laws) struct FungContinuous;
 
 impl Kernel for FungContinuous {
     fn numbers(&self) -> &'static [ShapeNumber] {
         const COARSE: [f64; 10] = [0.05, 1.5, 3.0, 4.5, 6.0, 8.0, 10.0, 13.0, 17.0, 25.0];
-        &[
-            ShapeNumber {
-                name: "time_long",
-                kind: NumberKind::Time,
-            },
-            ShapeNumber {
-                name: "log_ratio",
-                kind: NumberKind::Pure {
-                    low: 0.05,
-                    high: 25.0,
-                    coarse: &COARSE,
-                },
-            },
-        ]
+        const TIME_LONG: ShapeNumber = ShapeNumber {
+            name: "time_long",
+            kind: NumberKind::Time,
+        };
+        const NUMBERS: [ShapeNumber; 2] = [TIME_LONG, ShapeNumber::pure("log_ratio", 0.05, 25.0, &COARSE)];
+        &NUMBERS
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
@@ -57,9 +42,7 @@ impl Kernel for FungContinuous {
     }
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
-        let [by_slow, by_ratio] = derivatives else {
-            unreachable!("two numbers")
-        };
+        let [by_slow, by_ratio] = two(derivatives);
         let (slow, fast) = (theta[0].exp(), (theta[0] + theta[1]).exp());
         fung_continuous_many(times, slow, fast, value, by_slow, by_ratio);
         // ln λ moves both ends, ln ϱ only the fast one.

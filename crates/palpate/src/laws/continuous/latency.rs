@@ -13,12 +13,8 @@
 //! t/(k₁ + k₂t) (Peleg 1980), with Δ = 1/k₂ and λ = k₂/k₁; large n the logarithm; without equilibrium a power law.
 
 use crate::latency::{decay_many, decay_with_gradient_many, decay_with_log_rate_many};
-use crate::laws::basis::BasisFunction;
-use crate::laws::description::Description;
-use crate::laws::exponent::ExponentChoice;
-use crate::laws::form::Form;
-use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
-use crate::laws::response::Response;
+use crate::laws::kernel::{ShapeNumber, two};
+use crate::laws::{BasisFunction, Description, ExponentChoice, Kernel, NumberKind};
 
 /// In words; two exponents have names of their own.
 pub(in crate::laws) fn description(exponent: ExponentChoice) -> Description {
@@ -41,12 +37,11 @@ pub(in crate::laws) fn description(exponent: ExponentChoice) -> Description {
     }
 }
 
-pub(in crate::laws) fn form(exponent: ExponentChoice, response: Response) -> Form {
-    let shape = match exponent {
-        ExponentChoice::Free => BasisFunction::Latency,
-        ExponentChoice::Fixed(n) => BasisFunction::LatencyWith(n),
-    };
-    Form::with_constant(response, vec![shape])
+impl ExponentChoice {
+    /// The basis function of the law.
+    pub(crate) fn shape(self) -> BasisFunction {
+        self.given().map_or(BasisFunction::Latency, BasisFunction::LatencyWith)
+    }
 }
 
 const RATE: ShapeNumber = ShapeNumber {
@@ -62,14 +57,7 @@ pub(in crate::laws) struct FreeLatency;
 
 impl Kernel for FreeLatency {
     fn numbers(&self) -> &'static [ShapeNumber] {
-        const EXPONENT: ShapeNumber = ShapeNumber {
-            name: "exponent",
-            kind: NumberKind::Pure {
-                low: 0.2,
-                high: 30.0,
-                coarse: &COARSE,
-            },
-        };
+        const EXPONENT: ShapeNumber = ShapeNumber::pure("exponent", 0.2, 30.0, &COARSE);
         &[RATE, EXPONENT]
     }
 
@@ -78,9 +66,7 @@ impl Kernel for FreeLatency {
     }
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
-        let [by_rate, by_exponent] = derivatives else {
-            unreachable!("two numbers")
-        };
+        let [by_rate, by_exponent] = two(derivatives);
         decay_with_gradient_many(times, theta[0].exp(), theta[1], value, by_rate, by_exponent);
     }
 }

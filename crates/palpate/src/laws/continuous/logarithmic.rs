@@ -8,11 +8,8 @@
 //! | amplitude Δ | of y | any | change per e-fold of time |
 //! | time 1/λ | s | above 0 | where the logarithm begins |
 
-use crate::laws::basis::BasisFunction;
 use crate::laws::description::Description;
-use crate::laws::form::Form;
-use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
-use crate::laws::response::Response;
+use crate::laws::kernel::{Kernel, ShapeNumber, TIME};
 use crate::vector::{logarithm_many, logarithm_values};
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
@@ -21,19 +18,12 @@ pub(in crate::laws) const DESCRIPTION: Description = Description {
     source: "Guiu and Pratt 1964; Kubát 1965",
 };
 
-pub(in crate::laws) fn form(response: Response) -> Form {
-    Form::with_constant(response, vec![BasisFunction::Logarithm])
-}
-
 /// ln(1 + λt).
 pub(in crate::laws) struct Logarithm;
 
 impl Kernel for Logarithm {
     fn numbers(&self) -> &'static [ShapeNumber] {
-        &[ShapeNumber {
-            name: "time",
-            kind: NumberKind::Time,
-        }]
+        &[TIME]
     }
 
     fn decays(&self) -> bool {

@@ -11,11 +11,8 @@
 //! | exponent α | 1 | 0.005 to 5; in creep 0.01 to 2 | 0: elastic, 1: viscous |
 
 use crate::latency::{decay_many, decay_with_gradient_many};
-use crate::laws::basis::BasisFunction;
 use crate::laws::description::Description;
-use crate::laws::form::Form;
-use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
-use crate::laws::response::Response;
+use crate::laws::kernel::{Kernel, REFERENCE, ShapeNumber, TIME, two};
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "power law",
@@ -23,33 +20,14 @@ pub(in crate::laws) const DESCRIPTION: Description = Description {
     source: "Nutting 1921; Fabry et al. 2001; as latency without equilibrium: NIST's Bennett5",
 };
 
-pub(in crate::laws) fn form(response: Response) -> Form {
-    match response {
-        Response::Relaxation => Form::without_constant(response, vec![BasisFunction::PowerDecay]),
-        Response::Creep => Form::with_constant(response, vec![BasisFunction::PowerGrowth]),
-    }
-}
-
 /// (1 + λt)^(−α).
 pub(in crate::laws) struct PowerDecay;
 
 impl Kernel for PowerDecay {
     fn numbers(&self) -> &'static [ShapeNumber] {
         const COARSE: [f64; 14] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.35, 0.6, 1.0, 1.6, 2.5, 4.0, 5.0];
-        &[
-            ShapeNumber {
-                name: "time",
-                kind: NumberKind::Time,
-            },
-            ShapeNumber {
-                name: "exponent",
-                kind: NumberKind::Pure {
-                    low: 0.005,
-                    high: 5.0,
-                    coarse: &COARSE,
-                },
-            },
-        ]
+        const NUMBERS: [ShapeNumber; 2] = [TIME, ShapeNumber::pure("exponent", 0.005, 5.0, &COARSE)];
+        &NUMBERS
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
@@ -57,9 +35,7 @@ impl Kernel for PowerDecay {
     }
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
-        let [by_rate, by_exponent] = derivatives else {
-            unreachable!("two numbers")
-        };
+        let [by_rate, by_exponent] = two(derivatives);
         let alpha = theta[1];
         decay_with_gradient_many(times, alpha * theta[0].exp(), 1.0 + 1.0 / alpha, value, by_rate, by_exponent);
         // The latency law in (ln λ', n) with λ' = αλ, n = 1 + 1/α.
@@ -75,20 +51,8 @@ pub(in crate::laws) struct PowerGrowth;
 impl Kernel for PowerGrowth {
     fn numbers(&self) -> &'static [ShapeNumber] {
         const COARSE: [f64; 14] = [0.01, 0.03, 0.06, 0.1, 0.15, 0.22, 0.32, 0.45, 0.6, 0.8, 1.0, 1.3, 1.6, 2.0];
-        &[
-            ShapeNumber {
-                name: "reference",
-                kind: NumberKind::Reference,
-            },
-            ShapeNumber {
-                name: "exponent",
-                kind: NumberKind::Pure {
-                    low: 0.01,
-                    high: 2.0,
-                    coarse: &COARSE,
-                },
-            },
-        ]
+        const NUMBERS: [ShapeNumber; 2] = [REFERENCE, ShapeNumber::pure("exponent", 0.01, 2.0, &COARSE)];
+        &NUMBERS
     }
 
     fn decays(&self) -> bool {
@@ -104,9 +68,7 @@ impl Kernel for PowerGrowth {
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
         self.value(times, theta, value);
-        let [by_rate, by_exponent] = derivatives else {
-            unreachable!("two numbers")
-        };
+        let [by_rate, by_exponent] = two(derivatives);
         for (i, t) in times.iter().enumerate() {
             by_rate[i] = theta[1] * value[i];
             by_exponent[i] = if *t > 0.0 { value[i] * (theta[0] + t.ln()) } else { 0.0 };

@@ -9,11 +9,8 @@
 //! | time τ = 1/λ | s | above 0 | where e⁻¹ of it is left |
 //! | stretching β | 1 | 0.05 to 2 | 1: exponential; smaller: wider |
 
-use crate::laws::basis::BasisFunction;
 use crate::laws::description::Description;
-use crate::laws::form::Form;
-use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
-use crate::laws::response::Response;
+use crate::laws::kernel::{Kernel, ShapeNumber, TIME, two};
 use crate::vector::{stretched_many, stretched_values};
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
@@ -22,30 +19,14 @@ pub(in crate::laws) const DESCRIPTION: Description = Description {
     source: "Kohlrausch 1854; Williams and Watts 1970",
 };
 
-pub(in crate::laws) fn form(response: Response) -> Form {
-    Form::with_constant(response, vec![BasisFunction::Stretched])
-}
-
 /// exp(−(λt)^β).
 pub(in crate::laws) struct Stretched;
 
 impl Kernel for Stretched {
     fn numbers(&self) -> &'static [ShapeNumber] {
         const COARSE: [f64; 12] = [0.05, 0.1, 0.15, 0.22, 0.3, 0.4, 0.53, 0.7, 0.9, 1.2, 1.6, 2.0];
-        &[
-            ShapeNumber {
-                name: "time",
-                kind: NumberKind::Time,
-            },
-            ShapeNumber {
-                name: "stretching",
-                kind: NumberKind::Pure {
-                    low: 0.05,
-                    high: 2.0,
-                    coarse: &COARSE,
-                },
-            },
-        ]
+        const NUMBERS: [ShapeNumber; 2] = [TIME, ShapeNumber::pure("stretching", 0.05, 2.0, &COARSE)];
+        &NUMBERS
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
@@ -53,9 +34,7 @@ impl Kernel for Stretched {
     }
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
-        let [by_rate, by_stretching] = derivatives else {
-            unreachable!("two numbers")
-        };
+        let [by_rate, by_stretching] = two(derivatives);
         stretched_many(times, theta[0].exp(), theta[1], value, by_rate, by_stretching);
     }
 }

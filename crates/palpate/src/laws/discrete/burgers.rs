@@ -9,20 +9,10 @@
 //! | time τ | s | above 0 | retardation time |
 //! | flow rate | of y per s | any | slope of the flow that never comes back |
 
-use crate::laws::basis::BasisFunction;
 use crate::laws::description::Description;
-use crate::laws::form::Form;
-use crate::laws::response::Response;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "Burgers",
     equation: "y₀ + Δ (1 − exp(−t/τ)) + rate · t",
     source: "Burgers 1935; Findley, Lai, Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, chapter 5",
 };
-
-pub(in crate::laws) fn form(response: Response) -> Form {
-    match response {
-        Response::Creep => Form::with_constant(response, vec![BasisFunction::Exponential, BasisFunction::Straight]),
-        Response::Relaxation => Form::without_constant(response, vec![BasisFunction::Exponential; 2]),
-    }
-}

@@ -1,6 +1,6 @@
 //! The shape exp(−λt) that Maxwell, Kelvin–Voigt, standard linear solid, Burgers, Prony and Fung share.
 
-use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
+use crate::laws::kernel::{Kernel, ShapeNumber, TIME};
 use crate::vector::{exponential_many, exponential_values};
 
 /// exp(−t/τ).
@@ -8,10 +8,7 @@ pub(in crate::laws) struct Exponential;
 
 impl Kernel for Exponential {
     fn numbers(&self) -> &'static [ShapeNumber] {
-        &[ShapeNumber {
-            name: "time",
-            kind: NumberKind::Time,
-        }]
+        &[TIME]
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {

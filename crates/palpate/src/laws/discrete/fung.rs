@@ -11,17 +11,10 @@
 //!
 //! It is Prony's series in other numbers: N = y_e + Σ Δᵢ, c₀ = y_e/N, cᵢ = Δᵢ/N, νᵢ = 1/τᵢ.
 
-use crate::laws::basis::BasisFunction;
 use crate::laws::description::Description;
-use crate::laws::form::Form;
-use crate::laws::response::Response;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "Fung, reduced relaxation function",
     equation: "N [c₀ + Σ cᵢ exp(−νᵢt)], Σ c = 1",
     source: "Fung, Biomechanics, section 7.6; Tiezzi and Kao 2007; Tsai, Kao et al., equation (1)",
 };
-
-pub(in crate::laws) fn form(terms: usize, response: Response) -> Option<Form> {
-    (response == Response::Relaxation).then(|| Form::with_constant(response, vec![BasisFunction::Exponential; terms]))
-}

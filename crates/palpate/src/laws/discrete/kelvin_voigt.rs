@@ -7,17 +7,10 @@
 //! | amplitude Δ | of y | any | what the creep tends to |
 //! | time τ | s | above 0 | retardation time, viscosity over stiffness |
 
-use crate::laws::basis::BasisFunction;
 use crate::laws::description::Description;
-use crate::laws::form::Form;
-use crate::laws::response::Response;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "Kelvin–Voigt",
     equation: "Δ (1 − exp(−t/τ))",
     source: "Voigt 1892; Ferry, Viscoelastic Properties of Polymers, chapter 1",
 };
-
-pub(in crate::laws) fn form(response: Response) -> Option<Form> {
-    (response == Response::Creep).then(|| Form::without_constant(response, vec![BasisFunction::Exponential]))
-}

@@ -9,11 +9,8 @@
 //! | instantaneous y₀ (creep) | of y | any | elastic part |
 //! | flow rate (creep) | of y per s | any | slope of the flow |
 
-use crate::laws::basis::BasisFunction;
 use crate::laws::description::Description;
-use crate::laws::form::Form;
-use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber};
-use crate::laws::response::Response;
+use crate::laws::kernel::{Kernel, REFERENCE, ShapeNumber};
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "Maxwell",
@@ -21,22 +18,12 @@ pub(in crate::laws) const DESCRIPTION: Description = Description {
     source: "Maxwell 1867; Ferry, Viscoelastic Properties of Polymers, chapter 1",
 };
 
-pub(in crate::laws) fn form(response: Response) -> Form {
-    match response {
-        Response::Relaxation => Form::without_constant(response, vec![BasisFunction::Exponential]),
-        Response::Creep => Form::with_constant(response, vec![BasisFunction::Straight]),
-    }
-}
-
 /// λt with λ one over the duration of the fit: flow.
 pub(in crate::laws) struct Straight;
 
 impl Kernel for Straight {
     fn numbers(&self) -> &'static [ShapeNumber] {
-        &[ShapeNumber {
-            name: "reference",
-            kind: NumberKind::Reference,
-        }]
+        &[REFERENCE]
     }
 
     fn decays(&self) -> bool {

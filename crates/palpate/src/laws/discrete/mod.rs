@@ -1,7 +1,7 @@
 //! Laws of few relaxation times, or many on a grid: springs and dashpots, sums of exponentials.
 //!
-//! Each file states its law, its numbers and where it comes from, and says of which basis functions it is made; `exponential.rs` and
-//! `maxwell.rs` hold those functions.
+//! Each file states its law, its numbers and where it comes from; `law.rs` says of which basis functions it is made, `exponential.rs` and
+//! `maxwell.rs` hold those.
 
 pub(super) mod burgers;
 pub(super) mod exponential;

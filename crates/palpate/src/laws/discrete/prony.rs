@@ -11,17 +11,10 @@
 //! With one term it is the standard linear solid. Two terms whose times lie too close for the data to part, and terms that
 //! vanish, are no terms: the fit reports them.
 
-use crate::laws::basis::BasisFunction;
 use crate::laws::description::Description;
-use crate::laws::form::Form;
-use crate::laws::response::Response;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "Prony series",
     equation: "y_e + Σ Δᵢ exp(−t/τᵢ)",
     source: "Wiechert 1893; Tschoegl, The Phenomenological Theory of Linear Viscoelastic Behavior, chapter 3",
 };
-
-pub(in crate::laws) fn form(terms: usize, response: Response) -> Form {
-    Form::with_constant(response, vec![BasisFunction::Exponential; terms])
-}

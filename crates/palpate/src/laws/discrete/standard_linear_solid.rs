@@ -11,17 +11,10 @@
 //!
 //! It is Prony with one term, the latency law with n = 1 and the fractional Zener solid of order 1.
 
-use crate::laws::basis::BasisFunction;
 use crate::laws::description::Description;
-use crate::laws::form::Form;
-use crate::laws::response::Response;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "standard linear solid",
     equation: "y_e + Δ exp(−t/τ)",
     source: "Zener 1948; Ferry, Viscoelastic Properties of Polymers, chapter 3",
 };
-
-pub(in crate::laws) fn form(response: Response) -> Form {
-    Form::with_constant(response, vec![BasisFunction::Exponential])
-}
