@@ -5,44 +5,11 @@
 use super::exponential_integral::{entire_exponential_integral, exponential_integral};
 use crate::vector::elementary::exp;
 
-/// Value and derivatives of the decay.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FungContinuous {
-    /// φ, from 1 at t = 0 towards 0.
-    pub value: f64,
-    /// ∂φ/∂ln λ_slow.
-    pub by_log_slow: f64,
-    /// ∂φ/∂ln λ_fast.
-    pub by_log_fast: f64,
-}
-
-/// φ = [E1(λ_slow t) − E1(λ_fast t)] / ln(λ_fast/λ_slow), the mean of exp(−λt) over ln λ between the two rates.
+/// φ = [E1(λ_slow t) − E1(λ_fast t)] / ln(λ_fast/λ_slow), the mean of exp(−λt) over ln λ between the two rates, and its derivatives by
+/// the logarithms of the rates, at many times.
 ///
-/// `time` t ≥ 0 in s, rates > 0 in 1/s; the order of the rates does not matter and equal rates give exp(−λt).
+/// Times t ≥ 0 in s, rates > 0 in 1/s; the order of the rates does not matter and equal rates give exp(−λt).
 /// Relative error below 1e-13. At λ_slow t = 0.5, λ_fast t = 1 φ = 0.491 078 (= 0.340 389/ln 2).
-///
-/// ```
-/// use palpate::special::fung_continuous;
-/// assert!((fung_continuous(1.0, 0.5, 1.0).value - 0.491_078).abs() < 1e-6);
-/// ```
-#[must_use]
-pub fn fung_continuous(time: f64, rate_slow: f64, rate_fast: f64) -> FungContinuous {
-    if rate_slow > rate_fast {
-        let FungContinuous {
-            value,
-            by_log_slow,
-            by_log_fast,
-        } = fung_continuous(time, rate_fast, rate_slow);
-        return FungContinuous {
-            value,
-            by_log_slow: by_log_fast,
-            by_log_fast: by_log_slow,
-        };
-    }
-    Spectrum::new(rate_slow, rate_fast).at(time)
-}
-
-/// φ and its derivatives for every time; arguments as for [`fung_continuous`].
 ///
 /// # Panics
 /// If the slices differ in length.
@@ -62,8 +29,7 @@ pub(crate) fn fung_continuous_many(
     assert_eq!(times.len(), by_log_fast.len(), "one output a time");
     let spectrum = Spectrum::new(rate_slow, rate_fast);
     for (((t, value), slow), fast) in times.iter().zip(value).zip(by_log_slow).zip(by_log_fast) {
-        let one = spectrum.at(*t);
-        (*value, *slow, *fast) = (one.value, one.by_log_slow, one.by_log_fast);
+        [*value, *slow, *fast] = spectrum.at(*t);
     }
 }
 
@@ -105,7 +71,7 @@ impl Spectrum {
     }
 
     #[inline]
-    fn at(&self, time: f64) -> FungContinuous {
+    fn at(&self, time: f64) -> [f64; 3] {
         let (slow, fast, span) = (self.rate_slow * time, self.rate_fast * time, self.span);
         if span < NARROW && fast - slow < 1.0 {
             return self.mean(time);
@@ -113,25 +79,17 @@ impl Spectrum {
         if fast < 1.0 {
             // 1 − φ, free of the logarithm that both E1 have.
             let lost = (entire_exponential_integral(fast) - entire_exponential_integral(slow)) / span;
-            return FungContinuous {
-                value: 1.0 - lost,
-                by_log_slow: (-(-slow).exp_m1() - lost) / span,
-                by_log_fast: ((-fast).exp_m1() + lost) / span,
-            };
+            return [1.0 - lost, (-(-slow).exp_m1() - lost) / span, ((-fast).exp_m1() + lost) / span];
         }
         let (integral_slow, exp_slow) = exponential_integral(slow);
         let (integral_fast, exp_fast) = exponential_integral(fast);
         let value = (integral_slow - integral_fast) / span;
-        FungContinuous {
-            value,
-            by_log_slow: (value - exp_slow) / span,
-            by_log_fast: (exp_fast - value) / span,
-        }
+        [value, (value - exp_slow) / span, (exp_fast - value) / span]
     }
 
     /// ∫₀¹ exp(−λ(w) t) dw with ln λ linear in w.
     #[inline]
-    fn mean(&self, time: f64) -> FungContinuous {
+    fn mean(&self, time: f64) -> [f64; 3] {
         let (mut value, mut by_log_slow, mut by_log_fast) = (0.0, 0.0, 0.0);
         for (rate, weight, place) in self.rates {
             let s = rate * time;
@@ -140,10 +98,6 @@ impl Spectrum {
             by_log_slow -= (1.0 - place) * s * part;
             by_log_fast -= place * s * part;
         }
-        FungContinuous {
-            value,
-            by_log_slow,
-            by_log_fast,
-        }
+        [value, by_log_slow, by_log_fast]
     }
 }

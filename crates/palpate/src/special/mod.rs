@@ -21,7 +21,6 @@ pub use diffusion::diffusion_decay;
 pub(crate) use diffusion::diffusion_decay_many;
 pub use exponential_integral::exponential_integral;
 pub(crate) use fung::fung_continuous_many;
-pub use fung::{FungContinuous, fung_continuous};
 pub use mittag_leffler::{MittagLeffler, mittag_leffler_decay};
 pub(crate) use mittag_leffler::{mittag_leffler_decay_many, mittag_leffler_decay_value_many};
 #[cfg(test)]
