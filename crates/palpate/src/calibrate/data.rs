@@ -9,8 +9,8 @@ use crate::simulate::{Motion, Separation};
 /// Samples of force along a motion of the jaw that starts at first touch, ready to be fitted; SI units, loading positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CalibrationData {
-    geometry: Geometry,
-    separation: Separation,
+    pub(super) geometry: Geometry,
+    pub(super) separation: Separation,
     motion: Motion,
     times: Vec<f64>,
     forces: Vec<f64>,
@@ -138,12 +138,6 @@ impl CalibrationData {
         Ok(self)
     }
 
-    /// The body.
-    #[must_use]
-    pub fn geometry(&self) -> &Geometry {
-        &self.geometry
-    }
-
     /// At how many depths the jaw stands in the fitted part; first touch is one where the jaw can pull.
     #[must_use]
     pub fn depths_held(&self) -> usize {
@@ -161,12 +155,6 @@ impl CalibrationData {
             }
         }
         depths.len()
-    }
-
-    /// Whether the jaw can pull.
-    #[must_use]
-    pub fn separation(&self) -> Separation {
-        self.separation
     }
 
     /// The motion of the jaw.

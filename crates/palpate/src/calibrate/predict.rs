@@ -238,37 +238,18 @@ impl Material {
                 }
             }
         }
-        let (deepest, largest) = (most(&course.displacement), most(&course.force));
-        let beyond = |asked: f64, shown: f64| asked > MORE * shown;
-        let mut found = Vec::new();
-        if beyond(longest, shown.longest_hold) {
-            found.push(Extrapolation::LongerHold {
-                asked: longest,
-                shown: shown.longest_hold,
-            });
-        }
-        if beyond(deepest, shown.deepest) {
-            found.push(Extrapolation::DeeperSqueeze {
-                asked: deepest,
-                shown: shown.deepest,
-            });
-        }
-        if beyond(fastest, shown.fastest) {
-            found.push(Extrapolation::FasterRamp {
-                asked: fastest,
-                shown: shown.fastest,
-            });
-        }
-        if beyond(largest, shown.largest_force) {
-            found.push(Extrapolation::LargerForce {
-                asked: largest,
-                shown: shown.largest_force,
-            });
-        }
-        if held {
-            found.push(Extrapolation::ForceHeld);
-        }
-        found
+        let kinds: [(f64, f64, fn(f64, f64) -> Extrapolation); 4] = [
+            (longest, shown.longest_hold, |asked, shown| Extrapolation::LongerHold { asked, shown }),
+            (most(&course.displacement), shown.deepest, |asked, shown| Extrapolation::DeeperSqueeze {
+                asked,
+                shown,
+            }),
+            (fastest, shown.fastest, |asked, shown| Extrapolation::FasterRamp { asked, shown }),
+            (most(&course.force), shown.largest_force, |asked, shown| Extrapolation::LargerForce { asked, shown }),
+        ];
+        let beyond = kinds.into_iter().filter(|(asked, shown, _)| *asked > MORE * shown);
+        let found = beyond.map(|(asked, shown, kind)| kind(asked, shown));
+        found.chain(held.then_some(Extrapolation::ForceHeld)).collect()
     }
 }
 

@@ -1,8 +1,6 @@
 //! A candidate made ready for its data: the numbers that are searched, and the contact that they make.
 
-use super::candidate::{Candidate, EquilibriumLaw, RateLaw};
-use super::material::Body;
-use super::{CalibrateError, CalibrationData};
+use super::{Body, CalibrateError, CalibrationData, Candidate, EquilibriumLaw, RateLaw};
 use crate::contact::{Equilibrium, Specimen};
 use crate::laws::{ExponentChoice, Law};
 use crate::simulate::Contact;
@@ -54,7 +52,7 @@ const EXPONENTS: (f64, f64) = (0.2, 30.0);
 
 impl Prepared {
     pub(super) fn new(candidate: Candidate, data: &CalibrationData) -> Result<Self, CalibrateError> {
-        let geometry = data.geometry();
+        let geometry = &data.geometry;
         let specimen = Specimen::new(geometry.shape.clone(), 1.0, geometry.sides)?;
         let specimen = match candidate.equilibrium {
             EquilibriumLaw::Hertz { poisson_ratio } => {
@@ -66,7 +64,7 @@ impl Prepared {
         let body = Body {
             shape: geometry.shape.clone(),
             sides: geometry.sides,
-            separation: data.separation(),
+            separation: data.separation,
             levels: if candidate.equilibrium == EquilibriumLaw::Table { data.levels().to_vec() } else { Vec::new() },
         };
         let log = |name: &str, low: f64, high: f64| Searched {
@@ -147,7 +145,10 @@ impl Prepared {
     }
 
     /// Searched stiffnesses whose relaxed forces are those of a body with one modulus, E.
-    pub(super) fn table_like(&self, modulus: f64) -> Vec<f64> {
+    pub(super) fn stiffnesses_like(&self, modulus: f64) -> Vec<f64> {
+        if self.candidate.equilibrium != EquilibriumLaw::Table {
+            return vec![modulus.ln()];
+        }
         let specimen = &self.specimen;
         let per_unit = |u: &f64| (modulus * specimen.force(specimen.equilibrium_strain(*u), *u) / u).ln();
         let logs: Vec<f64> = self.body.levels.iter().map(per_unit).collect();
@@ -172,10 +173,7 @@ impl Prepared {
         };
         match self.candidate.law {
             Law::Latency { exponent } => {
-                let (n, law) = match exponent {
-                    ExponentChoice::Fixed(n) => (n, law),
-                    ExponentChoice::Free => (law[0].exp(), &law[1..]),
-                };
+                let (n, law) = exponent.given().map_or_else(|| (law[0].exp(), &law[1..]), |n| (n, law));
                 let (rate, overshoot) = (law[0].exp(), law[1].exp());
                 values.push(n);
                 let factor = law.get(2).map(|log| log.exp());

@@ -1,7 +1,7 @@
 //! Residuals of a candidate, and damped steps to where they are least.
 
 use super::prepared::Prepared;
-use crate::optimise::{Cholesky, Termination};
+use crate::optimise::{Cholesky, Termination, distance};
 use crate::simulate::{Motion, simulate_force};
 use crate::watch::{Cancelled, Stages};
 
@@ -143,7 +143,7 @@ impl Problem<'_> {
                     // The model is trusted over a factor of e², no further.
                     next[*i] = (theta[*i] + by.clamp(-2.0, 2.0)).clamp(searched[*i].low, searched[*i].high);
                 }
-                let moved = next.iter().zip(&theta).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                let moved = distance(&next, &theta);
                 if moved < 1e-12 || damping > 1e12 {
                     termination = Termination::Converged;
                     break 'search;

@@ -1,9 +1,11 @@
 //! Where the search begins: a grid over the numbers of the law, the stiffness following from each point of it.
 
+use super::CalibrateError;
 use super::prepared::Prepared;
 use super::problem::{Problem, dot, sum_of_squares};
-use super::{CalibrateError, EquilibriumLaw};
+use crate::fit::{combinations, distinct};
 use crate::laws::{ExponentChoice, Law};
+use crate::optimise::distance;
 use crate::simulate::simulate_force;
 use crate::watch::{Cancelled, Stages};
 
@@ -24,38 +26,22 @@ pub(super) fn starts(
         stages.reach(index as f64 / count)?;
         *simulations += 1;
         if let Some((square, modulus)) = scaled(prepared, problem, &law) {
-            let mut theta = match prepared.candidate.equilibrium {
-                EquilibriumLaw::Table => prepared.table_like(modulus),
-                EquilibriumLaw::EvenStrain | EquilibriumLaw::Hertz { .. } => vec![modulus.ln()],
-            };
+            let mut theta = prepared.stiffnesses_like(modulus);
             theta.extend(law);
             found.push((square, theta));
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Neighbours on the grid end in the same valley.
-    let mut apart: Vec<Vec<f64>> = Vec::new();
     let skip = prepared.stiffnesses();
-    for (_, theta) in found {
-        let near = |other: &Vec<f64>| {
-            let steps = theta[skip..].iter().zip(&other[skip..]).map(|(a, b)| (a - b).abs());
-            steps.fold(0.0, f64::max) < 1.7
-        };
-        if !apart.iter().any(near) {
-            apart.push(theta);
-        }
-    }
-    Ok(apart)
+    let near = |a: &Vec<f64>, b: &Vec<f64>| distance(&a[skip..], &b[skip..]) < 1.7;
+    Ok(distinct(found.into_iter().map(|(_, theta)| theta), usize::MAX, near))
 }
 
 /// Why no point of the grid is one to start from: what keeps the first from being simulated, or a force that does not rise.
 pub(super) fn refusal(prepared: &Prepared, problem: &Problem<'_>) -> CalibrateError {
-    let unit = match prepared.candidate.equilibrium {
-        EquilibriumLaw::Table => prepared.table_like(1.0),
-        EquilibriumLaw::EvenStrain | EquilibriumLaw::Hertz { .. } => vec![0.0],
-    };
     let first = laws(prepared).into_iter().next().unwrap_or_default();
-    let theta: Vec<f64> = unit.into_iter().chain(first).collect();
+    let theta = [prepared.stiffnesses_like(1.0), first].concat();
     let simulated = prepared.contact(&theta).map(|contact| simulate_force(problem.motion, &contact, problem.times));
     match simulated {
         Some(Err(error)) => error.into(),
@@ -65,11 +51,7 @@ pub(super) fn refusal(prepared: &Prepared, problem: &Problem<'_>) -> CalibrateEr
 
 /// The best modulus with these numbers of the law, and the squared residual it leaves.
 fn scaled(prepared: &Prepared, problem: &Problem<'_>, law: &[f64]) -> Option<(f64, f64)> {
-    let unit = match prepared.candidate.equilibrium {
-        EquilibriumLaw::Table => prepared.table_like(1.0),
-        EquilibriumLaw::EvenStrain | EquilibriumLaw::Hertz { .. } => vec![0.0],
-    };
-    let theta: Vec<f64> = unit.iter().chain(law).copied().collect();
+    let theta = [prepared.stiffnesses_like(1.0).as_slice(), law].concat();
     let forces = problem.forces_with(&theta)?;
     let modulus = dot(&forces, problem.forces) / sum_of_squares(&forces);
     let residuals = problem.forces.iter().zip(&forces).map(|(measured, force)| (measured - modulus * force).powi(2));
@@ -84,15 +66,10 @@ fn laws(prepared: &Prepared) -> Vec<Vec<f64>> {
     let rates = |count: usize| spread((0.3 / scales.duration).ln(), (30.0 / scales.ramp).ln(), count);
     match prepared.candidate.law {
         Law::Latency { exponent } => {
-            let free: Vec<Vec<f64>> = match exponent {
-                ExponentChoice::Free => EXPONENTS.iter().map(|n| vec![n.ln()]).collect(),
-                ExponentChoice::Fixed(_) => vec![Vec::new()],
-            };
+            let free = EXPONENTS.iter().map(|n| vec![n.ln()]);
+            let free: Vec<Vec<f64>> = if exponent == ExponentChoice::Free { free.collect() } else { vec![Vec::new()] };
             // At the excess of a sudden squeeze a law of high order is faster by far than over the rest of a hold.
-            let n = match exponent {
-                ExponentChoice::Free => EXPONENTS[EXPONENTS.len() - 1],
-                ExponentChoice::Fixed(n) => n,
-            };
+            let n = exponent.given().unwrap_or(EXPONENTS[EXPONENTS.len() - 1]);
             let fastest = (30.0 / scales.ramp).ln() + n.clamp(1.0, 10.0).ln();
             let mut grid = Vec::new();
             for exponent in free {
@@ -107,20 +84,17 @@ fn laws(prepared: &Prepared) -> Vec<Vec<f64>> {
             }
             grid
         }
-        Law::Prony { terms } | Law::Fung { terms } if terms > 1 => {
-            let mut grid = Vec::new();
-            for chosen in combinations(&rates(7), terms) {
-                for overshoot in spread(0.03f64.ln(), 3f64.ln(), 4) {
-                    grid.push(chosen.iter().flat_map(|rate| [overshoot, *rate]).collect());
-                }
-            }
-            grid
-        }
         _ => {
+            let terms = prepared.candidate.terms().unwrap_or(1);
+            let (rates, overshoots) = if terms > 1 {
+                (rates(7), spread(0.03f64.ln(), 3f64.ln(), 4))
+            } else {
+                (rates(14), spread(0.03f64.ln(), 10f64.ln(), 8))
+            };
             let mut grid = Vec::new();
-            for rate in rates(14) {
-                for overshoot in spread(0.03f64.ln(), 10f64.ln(), 8) {
-                    grid.push(vec![overshoot, rate]);
+            for chosen in combinations(rates.len(), terms) {
+                for overshoot in &overshoots {
+                    grid.push(chosen.iter().flat_map(|i| [*overshoot, rates[*i]]).collect());
                 }
             }
             grid
@@ -131,19 +105,4 @@ fn laws(prepared: &Prepared) -> Vec<Vec<f64>> {
 /// Evenly spaced numbers from low to high.
 fn spread(low: f64, high: f64, count: usize) -> Vec<f64> {
     (0..count).map(|i| low + (high - low) * i as f64 / (count - 1) as f64).collect()
-}
-
-/// All choices of `count` of the numbers.
-fn combinations(numbers: &[f64], count: usize) -> Vec<Vec<f64>> {
-    if count == 0 {
-        return vec![Vec::new()];
-    }
-    let from = |index: usize| {
-        let rest = combinations(&numbers[index + 1..], count - 1);
-        rest.into_iter().map(move |mut rest| {
-            rest.insert(0, numbers[index]);
-            rest
-        })
-    };
-    (0..numbers.len()).flat_map(from).collect()
 }

@@ -168,3 +168,23 @@ pub enum FitError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
+
+impl FitError {
+    /// Refuses columns of different lengths.
+    pub(crate) fn check_lengths(abscissas: usize, values: usize) -> Result<(), Self> {
+        if abscissas == values { Ok(()) } else { Err(Self::Lengths { abscissas, values }) }
+    }
+
+    /// Refuses samples that leave fewer than two beside the numbers that are to be found.
+    pub(crate) fn check_samples(parameters: usize, found: usize) -> Result<(), Self> {
+        let needed = parameters + 2;
+        if found >= needed {
+            return Ok(());
+        }
+        Err(Self::TooFewSamples {
+            parameters,
+            needed,
+            found,
+        })
+    }
+}

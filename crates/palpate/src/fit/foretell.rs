@@ -2,14 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::error::FitError;
 use super::global::search::finalists;
 use super::law::fitted::Fitted;
-use super::options::LawOptions;
 use super::problem::build::build;
 use super::problem::condensed::{Condensed, condense};
-use super::samples::{Samples, Scaled};
-use super::spectrum::{SpectrumOptions, fit_spectrum};
+use super::samples::Scaled;
+use super::{FitError, LawOptions, Samples, SpectrumOptions, fit_spectrum};
 use crate::laws::{BasisFunction, Law, LawCurve, Term};
 use crate::optimise::{Ending, Work, polished, refine};
 
@@ -81,11 +79,7 @@ pub fn foretell(samples: &Samples<'_>, law: Law, options: &LawOptions, cut: f64)
 
 /// The law fitted to condensed samples.
 fn law_curve(samples: &Samples<'_>, law: Law, options: &LawOptions) -> Result<LawCurve, FitError> {
-    let form = law.form(options.response).ok_or(FitError::NoForm {
-        law,
-        response: options.response,
-    })?;
-    let (model, scaled) = build(form, samples, options)?;
+    let (model, scaled) = build(options.form(law)?, samples, options)?;
     let nodes = condense(&scaled);
     let mut work = Work::default();
     let theta = finalists(&model, &nodes, options.most_iterations, &mut work)

@@ -2,13 +2,7 @@
 
 use std::ops::Deref;
 
-use super::error::FitError;
-use super::estimate::Estimate;
-use super::law::fit_law::fit_law;
-use super::options::FitOptions;
-use super::parameter::{ParameterKind, ParameterName};
-use super::result::Fit;
-use super::samples::Samples;
+use super::{Estimate, Fit, FitError, FitOptions, ParameterKind, Samples, fit_law};
 use crate::latency::decay;
 use crate::laws::{ExponentChoice, Law};
 
@@ -46,12 +40,7 @@ pub fn fit_hold(
     choice: ExponentChoice,
     options: &FitOptions,
 ) -> Result<LatencyFit, FitError> {
-    options.check()?;
-    if let ExponentChoice::Fixed(n) = choice
-        && !(n.is_finite() && n > 0.0)
-    {
-        return Err(FitError::Exponent { found: n });
-    }
+    options.check(choice)?;
     let law_options = options.of_latency(choice);
     let fit = fit_law(&Samples::new(times, values), Law::Latency { exponent: choice }, &law_options)?;
     LatencyFit::new(fit).ok_or(FitError::NoDecay)
@@ -65,9 +54,8 @@ pub fn fit_hold(
 pub struct LatencyFit {
     fit: Fit,
     choice: ExponentChoice,
-    /// Where its parameters stand in the fit: y_e, Δ, λ and v; then n, where it was found.
-    places: [usize; 4],
-    exponent: Option<usize>,
+    /// y_e, Δ, λ, v and n.
+    numbers: [Estimate; 5],
 }
 
 impl LatencyFit {
@@ -77,22 +65,18 @@ impl LatencyFit {
         let Law::Latency { exponent: choice } = fit.law else {
             return None;
         };
-        let place = |kind: ParameterKind| {
-            fit.parameters.iter().position(|parameter| parameter.name == ParameterName::from(kind))
-        };
-        let places = [
-            place(ParameterKind::Equilibrium)?,
-            place(ParameterKind::Amplitude)?,
-            place(ParameterKind::RelativeRate)?,
-            place(ParameterKind::RateCoefficient)?,
+        let number = |kind: ParameterKind| fit.parameter(kind).map(|parameter| parameter.estimate);
+        let numbers = [
+            number(ParameterKind::Equilibrium)?,
+            number(ParameterKind::Amplitude)?,
+            number(ParameterKind::RelativeRate)?,
+            number(ParameterKind::RateCoefficient)?,
+            match choice {
+                ExponentChoice::Fixed(n) => Estimate::fixed(n),
+                ExponentChoice::Free => number(ParameterKind::Exponent)?,
+            },
         ];
-        let exponent = place(ParameterKind::Exponent);
-        (exponent.is_some() || choice != ExponentChoice::Free).then_some(Self {
-            fit,
-            choice,
-            places,
-            exponent,
-        })
+        Some(Self { fit, choice, numbers })
     }
 
     /// Whether n was given.
@@ -104,38 +88,31 @@ impl LatencyFit {
     /// n.
     #[must_use]
     pub fn exponent(&self) -> Estimate {
-        match (self.choice, self.exponent) {
-            (ExponentChoice::Fixed(n), _) => Estimate::fixed(n),
-            (ExponentChoice::Free, place) => self.at(place.unwrap_or_default()),
-        }
+        self.numbers[4]
     }
 
     /// y_e, the value that the signal tends to.
     #[must_use]
     pub fn equilibrium(&self) -> Estimate {
-        self.at(self.places[0])
+        self.numbers[0]
     }
 
     /// Δ = y(0) − y_e, the excess at the start of the fit.
     #[must_use]
     pub fn amplitude(&self) -> Estimate {
-        self.at(self.places[1])
+        self.numbers[1]
     }
 
     /// λ = v |Δ|ⁿ⁻¹ in 1/s, the relative rate at the start.
     #[must_use]
     pub fn relative_rate(&self) -> Estimate {
-        self.at(self.places[2])
+        self.numbers[2]
     }
 
     /// v in 1/s (in units of signal^(1−n)/s if the signal is not strain).
     #[must_use]
     pub fn rate_coefficient(&self) -> Estimate {
-        self.at(self.places[3])
-    }
-
-    fn at(&self, place: usize) -> Estimate {
-        self.fit.parameters[place].estimate
+        self.numbers[3]
     }
 
     /// The signal a time `elapsed` (s) after the start of the fit.

@@ -43,6 +43,7 @@ pub use crate::optimise::{Termination, Work};
 pub use error::FitError;
 pub use estimate::{Estimate, Interval};
 pub use foretell::{Forecast, foretell};
+pub(crate) use global::grid::{combinations, distinct};
 pub use joint::{
     EquilibriumChoice, HoldWeights, JointComparison, JointFit, JointOptions, RampFit, RampHold, RampHoldNumbers,
     SharedTrend, TrendPoint, TrendVerdict, compare_joint, fit_joint, fit_joint_watched, fit_ramps,
@@ -60,4 +61,4 @@ pub use rate_domain::fit_rates;
 pub use result::{Domain, Fit, NumberUnit, Parameter};
 pub use samples::Samples;
 pub use selection::{Candidate, OrderSelection, select_order};
-pub use spectrum::{Smoothing, SpectrumFit, SpectrumOptions, SpectrumPeak, SpectrumWork, fit_spectrum};
+pub use spectrum::{Smoothing, SpectrumFit, SpectrumOptions, SpectrumPeak, fit_spectrum};

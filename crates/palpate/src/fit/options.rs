@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::error::FitError;
-use crate::laws::{ExponentChoice, Law, Loading, Response};
+use crate::laws::{ExponentChoice, Form, Law, Loading, Response};
 
 /// The constant beside the shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -158,6 +158,12 @@ impl LawOptions {
         plain(self) == plain(other)
     }
 
+    /// The form of a law.
+    pub(crate) fn form(&self, law: Law) -> Result<Form, FitError> {
+        let response = self.response;
+        law.form(response).ok_or(FitError::NoForm { law, response })
+    }
+
     /// What a number is held at.
     pub(crate) fn held(&self, name: &str) -> Option<f64> {
         self.fixed.iter().find(|(held, _)| held == name).map(|(_, value)| *value)
@@ -224,14 +230,15 @@ impl FitOptions {
         }
     }
 
-    pub(crate) fn check(&self) -> Result<(), FitError> {
+    pub(crate) fn check(&self, choice: ExponentChoice) -> Result<(), FitError> {
         let (low, high) = self.exponent_range;
         if !(low > 0.0 && low <= high && high.is_finite()) {
             return Err(FitError::ExponentRange { low, high });
         }
-        if !(self.confidence > 0.0 && self.confidence < 1.0) {
-            return Err(FitError::Confidence { found: self.confidence });
+        self.of_latency(ExponentChoice::Fixed(1.0)).check()?;
+        match choice {
+            ExponentChoice::Fixed(n) if !(n.is_finite() && n > 0.0) => Err(FitError::Exponent { found: n }),
+            _ => Ok(()),
         }
-        Ok(())
     }
 }

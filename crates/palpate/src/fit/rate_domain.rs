@@ -1,14 +1,11 @@
 //! Strain rate fitted against strain, equation (10): the paper's way.
 
-use super::error::FitError;
-use super::estimate::Estimate;
-use super::latency::LatencyFit;
-use super::noise::uncertainty::{Assessed, Scale};
-use super::options::{FitOptions, NoiseChoice};
-use super::parameter::ParameterKind;
-use super::result::{Domain, Fit, NumberUnit, Parameter};
-use super::samples::not_finite;
-use crate::laws::{BasisFunction, ExponentChoice, Law, LawCurve, Response, Term};
+use super::samples::check_finite;
+use super::{
+    Assessed, Domain, Estimate, Fit, FitError, FitOptions, LatencyFit, NoiseChoice, NumberUnit, Parameter,
+    ParameterKind, Scale,
+};
+use crate::laws::{ExponentChoice, Law, LawCurve, Response, Term};
 use crate::optimise::{Ending, Refined, Shapes, Solution, Target, Termination, Work, polished, refine};
 
 /// Fits ε̇ = −v sgn(x) |x|ⁿ, x = ε − ε_e, to strain rates (1/s) over strains: equations (9) and (10).
@@ -38,8 +35,10 @@ pub fn fit_rates(
     choice: ExponentChoice,
     options: &FitOptions,
 ) -> Result<LatencyFit, FitError> {
-    options.check()?;
-    check(strains, rates, choice)?;
+    options.check(choice)?;
+    FitError::check_lengths(strains.len(), rates.len())?;
+    FitError::check_samples(if choice == ExponentChoice::Free { 3 } else { 2 }, strains.len())?;
+    check_finite([("strain", strains), ("strain rate", rates)])?;
     let scaled = Scaled::new(strains, rates)?;
     let shapes = RateShapes {
         strains: &scaled.strains,
@@ -51,39 +50,14 @@ pub fn fit_rates(
     let mut best: Option<Refined> = None;
     for start in shapes.starts(&scaled.rates, &mut work) {
         let refined = refine(&shapes, target, &start, Ending::tight(options.most_iterations), &mut work);
-        let better = best.as_ref().is_none_or(|best| refined.square() < best.square());
+        let better = best.as_ref().is_none_or(|best| refined.point.square < best.point.square);
         // A negative coefficient would run away from equilibrium.
-        if refined.linear()[0] > 0.0 && better {
+        if refined.point.linear[0] > 0.0 && better {
             best = Some(refined);
         }
     }
     let solution = polished(&shapes, target, best.ok_or(FitError::NoDecay)?, &mut work);
     LatencyFit::new(scaled.fit(strains, &solution, choice, options, work)).ok_or(FitError::NoDecay)
-}
-
-fn check(strains: &[f64], rates: &[f64], choice: ExponentChoice) -> Result<(), FitError> {
-    if strains.len() != rates.len() {
-        return Err(FitError::Lengths {
-            abscissas: strains.len(),
-            values: rates.len(),
-        });
-    }
-    let parameters = match choice {
-        ExponentChoice::Fixed(n) if !(n.is_finite() && n > 0.0) => return Err(FitError::Exponent { found: n }),
-        ExponentChoice::Fixed(_) => 2,
-        ExponentChoice::Free => 3,
-    };
-    if strains.len() < parameters + 2 {
-        return Err(FitError::TooFewSamples {
-            parameters,
-            needed: parameters + 2,
-            found: strains.len(),
-        });
-    }
-    match not_finite([("strain", strains), ("strain rate", rates)]) {
-        Some(error) => Err(error),
-        None => Ok(()),
-    }
 }
 
 /// Strains in units of their range about their middle, rates in units of the largest.
@@ -128,10 +102,7 @@ impl Scaled {
         work: Work,
     ) -> Fit {
         let scaled_v = solution.linear[0];
-        let n = match choice {
-            ExponentChoice::Fixed(n) => n,
-            ExponentChoice::Free => solution.nonlinear[1],
-        };
+        let n = choice.given().unwrap_or_else(|| solution.nonlinear[1]);
         let size = 1 + solution.nonlinear.len();
         let known = solution.termination == Termination::Converged;
         let (ones, amplitudes) = ([1.0; 3], [scaled_v; 2]);
@@ -161,56 +132,35 @@ impl Scaled {
         let covariance = covariance.filter(|rows: &Vec<Vec<f64>>| rows.iter().flatten().all(|entry| entry.is_finite()));
         let residual_square = solution.residual_square * self.fastest * self.fastest;
         let log_rate_value = coefficient.ln() + (n - 1.0) * log_amplitude;
-        let mut parameters = vec![
-            (
-                ParameterKind::Equilibrium,
-                NumberUnit::Signal,
-                estimate(equilibrium, &[0.0, 1.0, 0.0], Scale::Linear, self.range),
-            ),
-            (
-                ParameterKind::Amplitude,
-                NumberUnit::Signal,
-                estimate(amplitude, &[0.0, 1.0, 0.0], Scale::Linear, self.range),
-            ),
-            (
-                ParameterKind::RelativeRate,
-                NumberUnit::PerSecond,
-                estimate(log_rate_value.exp(), &log_rate, Scale::Log, 1.0),
-            ),
-            (
-                ParameterKind::RateCoefficient,
-                NumberUnit::RateCoefficient,
-                estimate(coefficient, &log_v, Scale::Log, 1.0),
-            ),
-        ];
-        if choice == ExponentChoice::Free {
-            let exponent = estimate(n, &[0.0, 0.0, 1.0 / n], Scale::Log, 1.0);
-            parameters.insert(3, (ParameterKind::Exponent, NumberUnit::One, exponent));
-        }
-        let (shape, numbers) = match choice {
-            ExponentChoice::Fixed(n) => (BasisFunction::LatencyWith(n), vec![log_rate_value]),
-            ExponentChoice::Free => (BasisFunction::Latency, vec![log_rate_value, n]),
-        };
-        let parameter = |(kind, unit, estimate): (ParameterKind, NumberUnit, Estimate)| Parameter {
+        let parameter = |kind: ParameterKind, unit: NumberUnit, estimate: Estimate| Parameter {
             name: kind.into(),
             unit,
             estimate,
         };
+        let level = |value: f64| estimate(value, &[0.0, 1.0, 0.0], Scale::Linear, self.range);
+        let log = |value: f64, weights: &[f64]| estimate(value, weights, Scale::Log, 1.0);
+        let mut parameters = vec![
+            parameter(ParameterKind::Equilibrium, NumberUnit::Signal, level(equilibrium)),
+            parameter(ParameterKind::Amplitude, NumberUnit::Signal, level(amplitude)),
+            parameter(ParameterKind::RelativeRate, NumberUnit::PerSecond, log(log_rate_value.exp(), &log_rate)),
+            parameter(ParameterKind::RateCoefficient, NumberUnit::RateCoefficient, log(coefficient, &log_v)),
+        ];
+        if choice == ExponentChoice::Free {
+            let exponent = log(n, &[0.0, 0.0, 1.0 / n]);
+            parameters.insert(3, parameter(ParameterKind::Exponent, NumberUnit::One, exponent));
+        }
+        let terms = vec![Term {
+            amplitude,
+            shape: choice.shape(),
+            numbers: [log_rate_value].into_iter().chain(choice.given().is_none().then_some(n)).collect(),
+        }];
         Fit {
             law: Law::Latency { exponent: choice },
             domain: Domain::Rate,
             response: Response::Relaxation,
-            curve: LawCurve::relaxing(
-                Response::Relaxation,
-                equilibrium,
-                vec![Term {
-                    amplitude,
-                    shape,
-                    numbers,
-                }],
-            ),
+            curve: LawCurve::relaxing(Response::Relaxation, equilibrium, terms),
             loading: None,
-            parameters: parameters.into_iter().map(parameter).collect(),
+            parameters,
             profiles: Vec::new(),
             searched: ["equilibrium", "log_rate_coefficient", "exponent"][..size]
                 .iter()
@@ -266,10 +216,7 @@ impl RateShapes<'_> {
                 work.grid_points += 1;
                 // Only a positive coefficient counts.
                 let gain = shared.max(0.0) * shared / square;
-                let start = match self.choice {
-                    ExponentChoice::Fixed(_) => vec![level],
-                    ExponentChoice::Free => vec![level, n],
-                };
+                let start = [level].into_iter().chain(self.choice.given().is_none().then_some(n)).collect();
                 found.push((gain, start));
             }
         }
@@ -296,10 +243,7 @@ impl Shapes for RateShapes<'_> {
     }
 
     fn fill(&self, theta: &[f64], columns: &mut [Vec<f64>], derivatives: &mut [Vec<f64>]) {
-        let n = match self.choice {
-            ExponentChoice::Fixed(n) => n,
-            ExponentChoice::Free => theta[1],
-        };
+        let n = self.choice.given().unwrap_or_else(|| theta[1]);
         for (i, e) in self.strains.iter().enumerate() {
             let x = e - theta[0];
             let size = x.abs();

@@ -2,11 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::estimate::{Estimate, Interval};
-use super::noise::model::NoiseModel;
-use super::noise::uncertainty::Uncertainty;
-use super::parameter::ParameterName;
-use super::problem::ghosts::Ghost;
+use super::{Estimate, Ghost, Interval, NoiseModel, ParameterName, Uncertainty};
 use crate::laws::{Law, LawCurve, Loading, Response};
 use crate::optimise::{Termination, Work};
 

@@ -20,9 +20,12 @@ use crate::vector::columns::{all_finite, extremes, multiply, rises, shifted};
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Samples<'a> {
-    pub(crate) times: &'a [f64],
-    pub(crate) values: &'a [f64],
-    pub(crate) deviations: Option<&'a [f64]>,
+    /// Times, s.
+    pub times: &'a [f64],
+    /// Values.
+    pub values: &'a [f64],
+    /// Their standard deviations, if they differ.
+    pub deviations: Option<&'a [f64]>,
 }
 
 impl<'a> Samples<'a> {
@@ -45,32 +48,10 @@ impl<'a> Samples<'a> {
         }
     }
 
-    /// Times, s.
-    #[must_use]
-    pub fn times(&self) -> &'a [f64] {
-        self.times
-    }
-
-    /// Values.
-    #[must_use]
-    pub fn values(&self) -> &'a [f64] {
-        self.values
-    }
-
     /// Whether a law with so many numbers can be fitted to these samples at all.
     pub(crate) fn check(&self, parameters: usize) -> Result<(), FitError> {
-        if self.times.len() != self.values.len() {
-            return Err(FitError::Lengths {
-                abscissas: self.times.len(),
-                values: self.values.len(),
-            });
-        }
-        if self.deviations.is_some_and(|deviations| deviations.len() != self.times.len()) {
-            return Err(FitError::Lengths {
-                abscissas: self.times.len(),
-                values: self.deviations.map_or(0, <[f64]>::len),
-            });
-        }
+        FitError::check_lengths(self.times.len(), self.values.len())?;
+        FitError::check_lengths(self.times.len(), self.deviations.map_or(self.times.len(), <[f64]>::len))?;
         let deviations = self.deviations.unwrap_or(&[]);
         if let Some(index) = deviations.iter().position(|deviation| deviation.is_nan() || *deviation <= 0.0) {
             return Err(FitError::Deviation {
@@ -82,23 +63,13 @@ impl<'a> Samples<'a> {
             Some(deviations) => deviations.iter().filter(|deviation| deviation.is_finite()).count(),
             None => self.times.len(),
         };
-        if found < parameters + 2 {
-            return Err(FitError::TooFewSamples {
-                parameters,
-                needed: parameters + 2,
-                found,
-            });
-        }
+        FitError::check_samples(parameters, found)?;
         if all_finite(self.times) && all_finite(self.values) && rises(self.times) {
             return Ok(());
         }
-        match not_finite([("time", self.times), ("value", self.values)]) {
-            Some(error) => Err(error),
-            None => {
-                let rising = self.times.windows(2).take_while(|pair| pair[0] < pair[1]).count();
-                Err(FitError::TimeNotRising { index: rising + 1 })
-            }
-        }
+        check_finite([("time", self.times), ("value", self.values)])?;
+        let rising = self.times.windows(2).take_while(|pair| pair[0] < pair[1]).count();
+        Err(FitError::TimeNotRising { index: rising + 1 })
     }
 
     /// These without the samples that may be off by anything, which say nothing; `None` if there is no such sample.
@@ -182,14 +153,15 @@ impl Scaled {
     }
 }
 
-/// The first sample of which a number is none, if there is one.
-pub(crate) fn not_finite(columns: [(&'static str, &[f64]); 2]) -> Option<FitError> {
+/// Refuses the first sample of which a number is none.
+pub(crate) fn check_finite(columns: [(&'static str, &[f64]); 2]) -> Result<(), FitError> {
     let first = |(what, column): (&'static str, &[f64])| {
         let index = column.iter().position(|value| !value.is_finite())?;
         let found = column[index];
         Some((index, FitError::NotFinite { index, what, found }))
     };
-    columns.into_iter().filter_map(first).min_by_key(|(index, _)| *index).map(|(_, error)| error)
+    let found = columns.into_iter().filter_map(first).min_by_key(|(index, _)| *index);
+    found.map_or(Ok(()), |(_, error)| Err(error))
 }
 
 /// 1/σ over its root mean square, and that, with care for σ near the limits of double precision.

@@ -1,10 +1,7 @@
 //! All laws on one hold, ranked.
 
-use super::criteria::criteria;
-use super::forward::ForwardScore;
-use super::options::CompareOptions;
-use super::result::{Comparison, Ranking, Row};
 use super::verdict::judge;
+use super::{CompareOptions, Comparison, ForwardScore, Ranking, Row, criteria};
 use crate::fit::{Fit, FitError, LawOptions, Samples, SpectrumOptions, fit_law_watched, fit_spectrum};
 use crate::laws::Law;
 use crate::statistics::{mean, noise_in_time};
@@ -57,7 +54,7 @@ pub fn compare_laws_watched(
         watch.report(Progress::counted("comparing laws", rows.len(), 2 * laws.len()))?;
         rows.push(row(samples, *law, options, known, watch)?);
     }
-    let (times, values) = (samples.times(), samples.values());
+    let (times, values) = (samples.times, samples.values);
     let duration = times[times.len() - 1] - times[0];
     let change = change(values);
     let noise = noise_in_time(times, values);
@@ -122,7 +119,7 @@ fn row(
         forward: ForwardScore::default(),
     };
     if law == Law::Spectrum {
-        let fit = fit_spectrum(samples.times(), samples.values(), None, &SpectrumOptions::default())?;
+        let fit = fit_spectrum(samples.times, samples.values, None, &SpectrumOptions::default())?;
         row.numbers = fit.effective_parameters;
         row.rmse = fit.rmse();
         row.spectrum = Some(fit);
@@ -157,7 +154,7 @@ fn cuts(samples: &Samples<'_>, options: &CompareOptions, duration: f64, noise: f
     const FEWEST: usize = 30;
     /// Least change after the cut, in standard deviations of the noise of the means that show it.
     const SEEN: f64 = 5.0;
-    let (times, values) = (samples.times(), samples.values());
+    let (times, values) = (samples.times, samples.values);
     let tells = |cut: &f64| {
         let first = times.partition_point(|t| t - times[0] <= *cut);
         let rest = &values[first..];

@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::criteria::Criteria;
-use super::forward::ForwardScore;
+use super::{Criteria, ForwardScore};
 use crate::fit::{Fit, FitError, SpectrumFit};
 use crate::laws::Law;
 

@@ -37,12 +37,13 @@ pub(crate) enum Held {
 /// Solves bounded problems of one size, one after the other, in the same memory.
 #[derive(Debug, Clone)]
 pub(crate) struct BoundedSolver {
-    solution: Vec<f64>,
-    held: Vec<Held>,
+    /// The numbers of the last solution.
+    pub(crate) solution: Vec<f64>,
+    /// Which of them are at a bound.
+    pub(crate) held: Vec<Held>,
     free: Vec<usize>,
     matrix: Vec<f64>,
     trial: Vec<f64>,
-    pivots: u64,
 }
 
 impl BoundedSolver {
@@ -54,23 +55,7 @@ impl BoundedSolver {
             free: Vec::with_capacity(size),
             matrix: Vec::with_capacity(size * size),
             trial: Vec::with_capacity(size),
-            pivots: 0,
         }
-    }
-
-    /// The numbers of the last solution.
-    pub(crate) fn solution(&self) -> &[f64] {
-        &self.solution
-    }
-
-    /// Which of them are at a bound.
-    pub(crate) fn held(&self) -> &[Held] {
-        &self.held
-    }
-
-    /// Systems of equations solved so far.
-    pub(crate) fn pivots(&self) -> u64 {
-        self.pivots
     }
 
     /// Solves `problem`; `None` if numbers that nothing bounds cannot be told apart.
@@ -220,7 +205,6 @@ impl BoundedSolver {
             }
             self.trial.push(right);
         }
-        self.pivots += 1;
         Cholesky::new(&self.matrix, self.free.len())?.solve(&mut self.trial);
         self.trial.iter().all(|value| value.is_finite()).then_some(())
     }
@@ -341,13 +325,13 @@ mod tests {
 
         /// Largest breach of the conditions of an optimum, in units of the terms that make up each gradient.
         fn breach(&self, solver: &BoundedSolver) -> f64 {
-            let (numbers, size) = (solver.solution(), self.right.len());
+            let (numbers, size) = (&solver.solution, self.right.len());
             let mut worst = 0.0f64;
             for i in 0..size {
                 let row = &self.gram[i * size..(i + 1) * size];
                 let gradient = dot(row, numbers) - self.right[i];
                 let terms = self.right[i].abs() + row.iter().zip(numbers).map(|(g, a)| (g * a).abs()).sum::<f64>();
-                let wrong = match solver.held()[i] {
+                let wrong = match solver.held[i] {
                     Held::Free => gradient.abs(),
                     _ if self.lower[i] >= self.upper[i] => 0.0,
                     Held::AtLower => -gradient,
@@ -355,7 +339,7 @@ mod tests {
                 };
                 worst = worst.max(wrong / terms);
                 assert!(numbers[i] >= self.lower[i] && numbers[i] <= self.upper[i]);
-                let bound = match solver.held()[i] {
+                let bound = match solver.held[i] {
                     Held::Free => numbers[i],
                     Held::AtLower => self.lower[i],
                     Held::AtUpper => self.upper[i],
@@ -374,10 +358,10 @@ mod tests {
             let owned = Owned::random(&mut noise, 1 + trial % 6, [0.0, 1.0, 30.0][trial % 3]);
             let mut solver = BoundedSolver::new(owned.right.len());
             solver.solve(&owned.problem()).unwrap();
-            let (found, least) = (owned.value(solver.solution()), owned.least_of_all());
-            let unit = owned.value(solver.solution()).abs().max(1e-3);
+            let (found, least) = (owned.value(&solver.solution), owned.least_of_all());
+            let unit = owned.value(&solver.solution).abs().max(1e-3);
             assert!((found - least).abs() < 1e-9 * unit, "trial {trial}: {found} and {least}");
-            bound += usize::from(solver.held().contains(&Held::AtUpper));
+            bound += usize::from(solver.held.contains(&Held::AtUpper));
         }
         assert!(bound > 100, "upper bounds came up {bound} times");
     }
@@ -390,7 +374,7 @@ mod tests {
             let mut solver = BoundedSolver::new(size);
             solver.solve(&owned.problem()).unwrap();
             assert!(owned.breach(&solver) < 1e-11, "{size}: {}", owned.breach(&solver));
-            assert!(solver.held().contains(&Held::AtLower));
+            assert!(solver.held.contains(&Held::AtLower));
         }
     }
 
@@ -405,8 +389,8 @@ mod tests {
             let mut cold = BoundedSolver::new(12);
             cold.solve(&owned.problem()).unwrap();
             warm.solve_from_last(&owned.problem()).unwrap();
-            assert_eq!(warm.held(), cold.held());
-            for (a, b) in warm.solution().iter().zip(cold.solution()) {
+            assert_eq!(warm.held, cold.held);
+            for (a, b) in warm.solution.iter().zip(cold.solution) {
                 assert!((a - b).abs() < 1e-10, "{a} {b}");
             }
         }
@@ -424,7 +408,7 @@ mod tests {
                 lower,
                 upper: &upper,
             };
-            solver.solve(&problem).map(|()| solver.solution().iter().sum::<f64>())
+            solver.solve(&problem).map(|()| solver.solution.iter().sum::<f64>())
         };
         // Any split of 3 is an optimum; one of the two stays at its bound.
         assert_eq!(both(&[0.0, 0.0]), Some(3.0));
@@ -469,10 +453,10 @@ mod tests {
             };
             let mut solver = BoundedSolver::new(case.solution.len());
             solver.solve(&owned.problem()).unwrap();
-            let found = owned.value(solver.solution());
+            let found = owned.value(&solver.solution);
             assert!((found / case.value - 1.0).abs() < reference.tolerance.value_relative, "{}: {found}", case.name);
             let unit = case.solution.iter().fold(0.0f64, |most, a| most.max(a.abs()));
-            for (a, b) in solver.solution().iter().zip(&case.solution) {
+            for (a, b) in solver.solution.iter().zip(&case.solution) {
                 assert!((a - b).abs() < reference.tolerance.solution * unit, "{}: {a} and {b}", case.name);
             }
         }

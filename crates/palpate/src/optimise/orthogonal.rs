@@ -13,7 +13,7 @@ pub(crate) struct Orthogonal {
     /// Parts of each column along the axes before it, and its length along its own.
     parts: Vec<Vec<f64>>,
     /// Whether a column is all but imitated.
-    beside_cliff: bool,
+    pub(crate) beside_cliff: bool,
     /// Parts of the values along the axes.
     along: Vec<f64>,
     rest: Vec<f64>,
@@ -22,7 +22,7 @@ pub(crate) struct Orthogonal {
 
 impl Orthogonal {
     pub(crate) fn new(shapes: &impl Shapes, theta: &[f64], target: Target<'_>) -> Self {
-        let samples = target.values().len();
+        let samples = target.values.len();
         let mut columns = vec![vec![0.0; samples]; shapes.columns()];
         let mut derivatives = vec![vec![0.0; samples]; theta.len()];
         shapes.fill(theta, &mut columns, &mut derivatives);
@@ -36,7 +36,7 @@ impl Orthogonal {
         mut derivatives: Vec<Vec<f64>>,
         target: Target<'_>,
     ) -> Self {
-        if let Some(roots) = target.roots() {
+        if let Some(roots) = target.roots {
             for column in columns.iter_mut().chain(&mut derivatives) {
                 multiply(column, roots);
             }
@@ -48,7 +48,7 @@ impl Orthogonal {
             parts: Vec::new(),
             beside_cliff: false,
             along: Vec::new(),
-            rest: target.values().to_vec(),
+            rest: target.values.to_vec(),
             derivatives,
         };
         for mut column in columns {
@@ -104,11 +104,6 @@ impl Orthogonal {
         linear
     }
 
-    /// Whether there is a column that those before it all but imitate: beside here it counts for nothing, and the square leaps.
-    pub(crate) fn is_beside_cliff(&self) -> bool {
-        self.beside_cliff
-    }
-
     /// What one more column would take off the square.
     pub(crate) fn gain(&self, mut column: Vec<f64>) -> f64 {
         let before = dot(&column, &column);
@@ -117,15 +112,15 @@ impl Orthogonal {
         if size > IMITATED * before && size > 0.0 { dot(&column, &self.rest).powi(2) / size } else { 0.0 }
     }
 
-    /// The Gauss–Newton matrix and gradient in θ with the linear numbers projected out (Kaufman).
-    pub(crate) fn projected(&self, shapes: &impl Shapes) -> (Vec<f64>, Vec<f64>) {
+    /// What the derivatives of plain columns count by: the linear number of each.
+    pub(crate) fn factors(&self, shapes: &impl Shapes) -> Vec<f64> {
         let linear = self.linear();
-        let factors: Vec<f64> = (0..self.theta.len()).map(|index| linear[shapes.column_of(index)]).collect();
-        self.projected_with(&factors)
+        (0..self.theta.len()).map(|index| linear[shapes.column_of(index)]).collect()
     }
 
-    /// The same for derivatives that are to be multiplied by `factors`.
-    pub(crate) fn projected_with(&self, factors: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    /// The Gauss–Newton matrix and gradient in θ with the linear numbers projected out (Kaufman), for derivatives that are to be
+    /// multiplied by `factors`.
+    pub(crate) fn projected(&self, factors: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let slope = |(derivative, factor): (&Vec<f64>, &f64)| {
             let mut slope: Vec<f64> = derivative.iter().map(|entry| factor * entry).collect();
             self.project(&mut slope);

@@ -3,7 +3,7 @@
 //! Where the signal is far above the noise a grid of all rates at once sees only the valley of the strongest terms. With these kept where
 //! they are, a grid of two shows what the others might be instead: one elsewhere, both, or both as one.
 
-use super::grid::{Grid, rates};
+use super::grid::{Grid, distinct, rates};
 use super::lattice::Lattice;
 use super::merged::exact::local;
 use super::merged::valley::Valley;
@@ -31,16 +31,8 @@ pub(crate) fn exchanged(model: &Model, nodes: &Condensed, valleys: Vec<Valley>, 
     for _ in 0..ROUNDS {
         all.sort_by(|a, b| a.square.total_cmp(&b.square));
         let fresh = |valley: &&Valley| seen.iter().all(|other| distance(other, &rising(&valley.theta)) > SAME);
-        let mut next: Vec<Vec<f64>> = Vec::new();
-        for valley in all.iter().filter(fresh) {
-            let theta = rising(&valley.theta);
-            if next.iter().all(|other| distance(other, &theta) > SAME) {
-                next.push(theta);
-            }
-            if next.len() == OPEN {
-                break;
-            }
-        }
+        let fresh = all.iter().filter(fresh).map(|valley| rising(&valley.theta));
+        let next = distinct(fresh, OPEN, |other, theta| distance(other, theta) <= SAME);
         let lowest = all.first().map_or(f64::INFINITY, |valley| valley.square);
         for theta in next {
             all.extend(replaced(model, nodes, &theta, work));
@@ -90,7 +82,7 @@ pub(crate) fn paired(model: &Model, nodes: &Condensed, kept: &[f64], work: &mut 
         model,
         nodes,
         shape: 0,
-        plane: Plane::with_rates(model, kept, nodes),
+        plane: Plane::new(model, kept.iter().map(|rate| nodes.column(model, 0, &[*rate])), nodes),
         grid: rates(model.numbers[0].bounds, None, Grid::Dense),
         terms: REPLACED,
     };

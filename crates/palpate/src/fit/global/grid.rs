@@ -1,5 +1,7 @@
 //! The grids of a coarse search: rates evenly spaced in ln λ, a few values of a pure number, and the ends of laws that have one.
 
+use std::iter;
+
 use crate::fit::problem::condensed::Condensed;
 use crate::fit::problem::model::Model;
 use crate::laws::{BasisFunction, NumberKind};
@@ -17,19 +19,27 @@ pub(crate) enum Grid {
     Finest,
 }
 
-/// The next combination of rising indices below `count`; `false` after the last.
-pub(crate) fn advance(chosen: &mut [usize], count: usize) -> bool {
-    let terms = chosen.len();
-    for place in (0..terms).rev() {
-        if chosen[place] + (terms - place) < count {
-            chosen[place] += 1;
-            for later in place + 1..terms {
-                chosen[later] = chosen[later - 1] + 1;
-            }
-            return true;
+/// All choices of `terms` of the first `count` places, each in rising order.
+pub(crate) fn combinations(count: usize, terms: usize) -> impl Iterator<Item = Vec<usize>> {
+    let first: Option<Vec<usize>> = (terms <= count).then(|| (0..terms).collect());
+    iter::successors(first, move |chosen| {
+        // The last place that can go on does, and those after it follow.
+        let moving = (0..terms).rev().find(|place| chosen[*place] + (terms - place) < count)?;
+        let mut next = chosen.clone();
+        next.splice(moving.., (chosen[moving] + 1..).take(terms - moving));
+        Some(next)
+    })
+}
+
+/// The first `most` of those that are like none kept before.
+pub(crate) fn distinct<T>(all: impl IntoIterator<Item = T>, most: usize, alike: impl Fn(&T, &T) -> bool) -> Vec<T> {
+    let mut kept: Vec<T> = Vec::new();
+    for one in all {
+        if kept.len() < most && !kept.iter().any(|other| alike(other, &one)) {
+            kept.push(one);
         }
     }
-    false
+    kept
 }
 
 /// Step of a coarse search in ln λ.
@@ -91,7 +101,7 @@ pub(crate) fn ends(model: &Model, theta: &[f64]) -> bool {
     let numbers = model.complete(theta);
     (0..model.form.shapes.len()).any(|shape| {
         let own = &numbers[model.numbers_of(shape)];
-        finite_end(model.shape(shape), own.last().copied().unwrap_or(1.0)).is_some()
+        finite_end(model.form.shapes[shape], own.last().copied().unwrap_or(1.0)).is_some()
     })
 }
 
@@ -110,8 +120,9 @@ pub(crate) fn ends_of(model: &Model) -> Vec<(f64, Vec<f64>)> {
     let between = others.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
     let others: Vec<f64> = others.iter().copied().chain(between).collect();
     let free = numbers.get(1).is_some_and(|number| number.fixed.is_none());
-    let end =
-        |other: f64| finite_end(model.shape(shape), other).map(|end| (end, if free { vec![other] } else { vec![] }));
+    let end = |other: f64| {
+        finite_end(model.form.shapes[shape], other).map(|end| (end, if free { vec![other] } else { vec![] }))
+    };
     others.into_iter().filter_map(end).collect()
 }
 

@@ -5,14 +5,6 @@
 use crate::fit::problem::condensed::Condensed;
 use crate::fit::problem::model::Model;
 use crate::optimise::{Orthogonal, Shapes};
-use crate::vector::columns::multiply;
-
-/// A series grown by a term.
-pub(crate) struct Grown {
-    /// Residual square over the nodes with the rates that were there before kept.
-    pub(crate) square: f64,
-    pub(crate) theta: Vec<f64>,
-}
 
 /// Step of the rate that is added, in ln λ.
 const STEP: f64 = 0.25;
@@ -21,28 +13,20 @@ const STEP: f64 = 0.25;
 const BESIDE: f64 = 0.1;
 
 /// The rates `theta` of the series `fewer` with one more: wherever that takes off more than a little faster or slower one would, and
-/// beside each of those there.
-pub(crate) fn grown(fewer: &Model, nodes: &Condensed, theta: &[f64]) -> Vec<Grown> {
+/// beside each of those there; with the residual square over the nodes with the rates that were there before kept.
+pub(crate) fn grown(fewer: &Model, nodes: &Condensed, theta: &[f64]) -> Vec<(f64, Vec<f64>)> {
     let shapes = fewer.at(&nodes.times);
     let here = Orthogonal::new(&shapes, theta, nodes.target());
     let (low, high) = shapes.bounds(0);
     let steps = ((high - low) / STEP).ceil() as usize;
     let rates: Vec<f64> = (0..=steps).map(|i| low + (high - low) * i as f64 / steps as f64).collect();
-    let gain = |rate: &f64| {
-        let mut column = vec![0.0; nodes.times.len()];
-        fewer.shape_value(0, &nodes.times, &[*rate], &mut column);
-        multiply(&mut column, &nodes.roots);
-        here.gain(column)
-    };
+    let gain = |rate: &f64| here.gain(nodes.column(fewer, 0, &[*rate]));
     let gains: Vec<f64> = rates.iter().map(gain).collect();
     let highest = |i: &usize| {
         let beside = [i.checked_sub(1), Some(i + 1)].map(|j| j.and_then(|j| gains.get(j)).copied().unwrap_or(0.0));
         gains[*i] > beside[0] && gains[*i] >= beside[1]
     };
-    let start = |(rate, gain): (f64, f64)| Grown {
-        square: here.square - gain,
-        theta: [theta, &[rate]].concat(),
-    };
+    let start = |(rate, gain): (f64, f64)| (here.square - gain, [theta, &[rate]].concat());
     let peaks = (0..=steps).filter(highest).map(|i| (rates[i], gains[i]));
     let twins = theta.iter().map(|rate| (rate + BESIDE).min(high)).map(|rate| (rate, gain(&rate)));
     peaks.chain(twins).map(start).collect()

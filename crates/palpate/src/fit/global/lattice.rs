@@ -7,7 +7,6 @@ use super::plane::Plane;
 use crate::fit::problem::condensed::Condensed;
 use crate::fit::problem::model::Model;
 use crate::optimise::Work;
-use crate::vector::columns::multiply;
 use crate::vector::products::dot;
 
 /// Distance in ln λ of terms that count as one taken twice.
@@ -41,7 +40,7 @@ impl Lattice<'_> {
     /// Rates at the bottoms of the deepest valleys, deepest first.
     pub(crate) fn valleys(&self, most: usize, work: &mut Work) -> Vec<Vec<f64>> {
         let mut squares = Squares::new(self.grid.len(), self.terms);
-        branch(&self.columns(), &[], self.plane.values(), self.terms, &mut squares);
+        branch(&self.columns(), &[], &self.plane.values, self.terms, &mut squares);
         work.grid_points += squares.values.iter().filter(|square| square.is_finite()).count() as u64;
         squares.valleys(self.terms).iter().take(most).map(|combination| self.rates(combination)).collect()
     }
@@ -61,9 +60,7 @@ impl Lattice<'_> {
     /// All columns, by place and then by copy.
     fn columns(&self) -> Vec<Column> {
         let column = |place: usize, copy: usize| {
-            let mut entries = vec![0.0; self.nodes.times.len()];
-            self.model.shape_value(self.shape, &self.nodes.times, &[self.rate(place, copy)], &mut entries);
-            multiply(&mut entries, &self.nodes.roots);
+            let mut entries = self.nodes.column(self.model, self.shape, &[self.rate(place, copy)]);
             let before = dot(&entries, &entries);
             self.plane.project(&mut entries);
             self.plane.project(&mut entries);

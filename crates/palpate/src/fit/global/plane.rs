@@ -3,52 +3,26 @@
 use crate::fit::problem::condensed::Condensed;
 use crate::fit::problem::model::Model;
 use crate::statistics::dot;
-use crate::vector::columns::multiply;
 
 /// The nodes with all that needs no search, the constant and shapes without free numbers, projected out.
 pub(crate) struct Plane {
     /// Orthonormal columns that need no search.
     pub(crate) basis: Vec<Vec<f64>>,
     /// The values less their part along those.
-    values: Vec<f64>,
+    pub(crate) values: Vec<f64>,
     pub(crate) square: f64,
 }
 
 impl Plane {
-    pub(crate) fn new(model: &Model, still: &[usize], nodes: &Condensed) -> Self {
-        let mut columns = Vec::new();
-        if model.constant {
-            columns.push(nodes.roots.clone());
-        }
-        let all = model.complete(&vec![0.0; model.free().len()]);
-        for &shape in still {
-            let mut column = vec![0.0; nodes.times.len()];
-            model.shape_value(shape, &nodes.times, &all[model.numbers_of(shape)], &mut column);
-            multiply(&mut column, &nodes.roots);
-            columns.push(column);
-        }
-        Self::spanned(columns, nodes)
-    }
-
-    /// The same for a series with the constant and exponentials of these rates projected out.
-    pub(crate) fn with_rates(model: &Model, kept: &[f64], nodes: &Condensed) -> Self {
-        let constant = model.constant.then(|| nodes.roots.clone());
-        let exponential = |rate: &f64| {
-            let mut column = vec![0.0; nodes.times.len()];
-            model.shape_value(0, &nodes.times, &[*rate], &mut column);
-            multiply(&mut column, &nodes.roots);
-            column
-        };
-        Self::spanned(constant.into_iter().chain(kept.iter().map(exponential)).collect(), nodes)
-    }
-
-    fn spanned(columns: Vec<Vec<f64>>, nodes: &Condensed) -> Self {
+    /// The nodes with the constant of the model and these columns projected out.
+    pub(crate) fn new(model: &Model, columns: impl Iterator<Item = Vec<f64>>, nodes: &Condensed) -> Self {
         let mut plane = Self {
             basis: Vec::new(),
             values: nodes.values.clone(),
             square: 0.0,
         };
-        for mut column in columns {
+        let constant = model.constant.then(|| nodes.roots.clone());
+        for mut column in constant.into_iter().chain(columns) {
             let before = dot(&column, &column);
             plane.project(&mut column);
             let after = dot(&column, &column);
@@ -64,11 +38,6 @@ impl Plane {
         plane.square = dot(&values, &values);
         plane.values = values;
         plane
-    }
-
-    /// The values less their part along the basis.
-    pub(crate) fn values(&self) -> &[f64] {
-        &self.values
     }
 
     /// Takes the part along the basis out of a column.

@@ -1,7 +1,7 @@
 //! From a model and samples to the global optimum.
 
 use super::grid::ends;
-use super::growth::{Grown, grown};
+use super::growth::grown;
 use super::kinks::near_kinks;
 use super::merged::exact::{exact, inflation, local};
 use super::starts::starts;
@@ -29,7 +29,7 @@ pub(crate) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
     let mut best: Option<Refined> = None;
     for valley in valleys {
         let refined = settle(&shapes, target, &valley, most_iterations, work);
-        if best.as_ref().is_none_or(|best| refined.square() < best.square()) {
+        if best.as_ref().is_none_or(|best| refined.point.square < best.point.square) {
             best = Some(refined);
         }
     }
@@ -151,7 +151,7 @@ fn valleys(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut 
     };
     let explore = |start: &[f64], aside: &mut Work| {
         let refined = refine(&shapes, target, start, rough, aside);
-        (refined.square() + nodes.inside, refined.into_theta(&shapes))
+        (refined.point.square + nodes.inside, refined.into_theta(&shapes))
     };
     let (kinked, smooth): (Vec<Vec<f64>>, Vec<Vec<f64>>) =
         starts(model, nodes, VALLEYS, work).into_iter().partition(|start| ends(model, start));
@@ -159,7 +159,7 @@ fn valleys(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut 
     let least = found.iter().map(|(square, _)| *square).fold(f64::INFINITY, f64::min);
     let mut open: Vec<(f64, Vec<f64>)> = Vec::new();
     for start in kinked {
-        let square = refine(&shapes, target, &start, AS_IT_IS, &mut aside).square() + nodes.inside;
+        let square = refine(&shapes, target, &start, AS_IT_IS, &mut aside).point.square + nodes.inside;
         if square <= HOPELESS * least {
             found.push(explore(&start, &mut aside));
             open.push((square, start));
@@ -170,9 +170,9 @@ fn valleys(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut 
         && let Some((least, _)) = found.first()
     {
         let limit = least * (1.0 + nodes.noise(FELT));
-        for start in longer(model, nodes, most_iterations, work) {
-            if start.square + nodes.inside <= limit {
-                let valley = local(&shapes, target, &start.theta, ROUGH, &mut aside);
+        for (square, theta) in longer(model, nodes, most_iterations, work) {
+            if square + nodes.inside <= limit {
+                let valley = local(&shapes, target, &theta, ROUGH, &mut aside);
                 found.push((valley.square + nodes.inside, valley.theta));
             }
         }
@@ -206,7 +206,7 @@ fn valleys(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut 
 }
 
 /// Starts of a series from the best one of a term less.
-fn longer(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut Work) -> Vec<Grown> {
+fn longer(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut Work) -> Vec<(f64, Vec<f64>)> {
     let fewer = model.first_shapes(model.form.shapes.len() - 1);
     let best = finalists(&fewer, nodes, most_iterations, work).into_iter().next();
     best.map(|theta| grown(&fewer, nodes, &theta)).unwrap_or_default()

@@ -1,6 +1,6 @@
 //! The exhaustive coarse search that makes starting values unnecessary.
 
-use super::grid::{Grid, advance, coarse, finite_end, rates, rates_with_end};
+use super::grid::{Grid, coarse, combinations, finite_end, rates, rates_with_end};
 use super::lattice::Lattice;
 use super::plane::Plane;
 use crate::fit::problem::condensed::Condensed;
@@ -21,7 +21,9 @@ pub(crate) fn starts(model: &Model, nodes: &Condensed, most: usize, work: &mut W
 /// The same on these very nodes, with a grid as fine as asked for.
 pub(crate) fn fine_starts(model: &Model, nodes: &Condensed, grid: Grid, most: usize, work: &mut Work) -> Vec<Vec<f64>> {
     let (moving, still) = model.moving();
-    let plane = Plane::new(model, &still, nodes);
+    let all = model.complete(&vec![0.0; model.free().len()]);
+    let column = |shape: &usize| nodes.column(model, *shape, &all[model.numbers_of(*shape)]);
+    let plane = Plane::new(model, still.iter().map(column), nodes);
     match *moving.as_slice() {
         [] => vec![Vec::new()],
         [shape] => plane.scan(model, shape, nodes, grid, most, work),
@@ -61,7 +63,7 @@ impl Plane {
         let mut column = vec![0.0; nodes.times.len()];
         let mut table = Table::new(self, nodes);
         let mut along = |rates: &[f64], other: f64| -> Few {
-            if fineness == Grid::Coarse && model.is_after_step() {
+            if fineness == Grid::Coarse && model.loading.is_none() {
                 return table.residuals(model, shape, rates, other);
             }
             let mut residual = |rate: &f64| {
@@ -75,7 +77,7 @@ impl Plane {
             numbers.get(1).map_or_else(|| vec![0.0], |number| coarse(number.kind, number.bounds, number.fixed));
         let mut found: Vec<Valley> = Vec::new();
         for (place, other) in others.into_iter().enumerate() {
-            let end = finite_end(model.shape(shape), other);
+            let end = finite_end(model.form.shapes[shape], other);
             let grid = match end {
                 Some(end) if numbers[0].fixed.is_none() => rates_with_end(numbers[0].bounds, end, nodes, fineness),
                 _ => rates(numbers[0].bounds, numbers[0].fixed, fineness),
@@ -138,9 +140,7 @@ impl Plane {
         let columns: Vec<Vec<f64>> = grid
             .iter()
             .map(|rate| {
-                let mut column = vec![0.0; nodes.times.len()];
-                model.shape_value(moving[0], &nodes.times, &[*rate], &mut column);
-                multiply(&mut column, &nodes.roots);
+                let mut column = nodes.column(model, moving[0], &[*rate]);
                 self.project(&mut column);
                 column
             })
@@ -154,12 +154,11 @@ impl Plane {
             .iter()
             .flat_map(|&i| useful.iter().map(|&j| dot(&columns[i], &columns[j])).collect::<Vec<_>>())
             .collect();
-        let right: Vec<f64> = useful.iter().map(|&i| dot(&columns[i], self.values())).collect();
+        let right: Vec<f64> = useful.iter().map(|&i| dot(&columns[i], &self.values)).collect();
         let terms = moving.len();
         let mut found: Vec<(f64, Vec<usize>)> = Vec::new();
         let (mut block, mut solution) = (vec![0.0; terms * terms], vec![0.0; terms]);
-        let mut chosen: Vec<usize> = (0..terms).collect();
-        while chosen.last().is_some_and(|last| *last < count) {
+        for chosen in combinations(count, terms) {
             for (a, &i) in chosen.iter().enumerate() {
                 solution[a] = right[i];
                 for (b, &j) in chosen.iter().enumerate() {
@@ -169,12 +168,9 @@ impl Plane {
             if let Some(factor) = Cholesky::new(&block, terms) {
                 factor.solve(&mut solution);
                 let gain: f64 = chosen.iter().zip(&solution).map(|(&i, amplitude)| right[i] * amplitude).sum();
-                found.push((self.square - gain, chosen.clone()));
+                found.push((self.square - gain, chosen));
             }
             work.grid_points += 1;
-            if !advance(&mut chosen, count) {
-                break;
-            }
         }
         let kept = lattice_valleys(found, most);
         kept.into_iter().map(|rates| rates.into_iter().rev().map(|i| grid[useful[i]]).collect()).collect()
@@ -231,7 +227,7 @@ impl<'a> Table<'a> {
         Self {
             nodes,
             weights: times_roots(&nodes.roots),
-            factors: std::iter::once(plane.values())
+            factors: std::iter::once(plane.values.as_slice())
                 .chain(plane.basis.iter().map(Vec::as_slice))
                 .map(times_roots)
                 .collect(),

@@ -5,7 +5,7 @@
 //! better.
 
 use super::exchange::{exchanged, paired, rising};
-use super::grid::Grid;
+use super::grid::{Grid, distinct};
 use super::growth::grown;
 use super::kinks::first_kinks;
 use super::merged::apart::rounding;
@@ -40,7 +40,7 @@ pub(crate) fn thorough(
     } else {
         // One number is cheap to search on all samples, and nodes miss what the noise of a single one does.
         let whole = if model.free().len() == 1 { condense_to(scaled, 0.0) } else { nodes.clone() };
-        distinct(valleys(model, &whole, work), FINALISTS)
+        deepest(valleys(model, &whole, work), FINALISTS)
     });
     ends.extend(first_kinks(model, scaled));
     if !model.is_series() {
@@ -77,7 +77,7 @@ fn valleys(model: &Model, nodes: &Condensed, work: &mut Work) -> Vec<Valley> {
         let mut starts = fine_starts(own, nodes, grid, VALLEYS, work);
         if let [.., (fewer, base)] = bases.as_slice() {
             let longer = distinct_of(base, BASES).into_iter().flat_map(|theta| grown(fewer, nodes, &theta));
-            starts.extend(longer.map(|start| start.theta));
+            starts.extend(longer.map(|(_, theta)| theta));
         }
         if let [.., (_, base), _] = bases.as_slice()
             && let Some(best) = base.first()
@@ -114,29 +114,23 @@ fn series(model: &Model, scaled: &Scaled, quick: &Solution, work: &mut Work) -> 
         .flat_map(|theta| among_the_first(&scaled.times, &theta));
     found.extend(hasty.map(|theta| local(&shapes, nodes.target(), &theta, ENOUGH, &mut aside)).collect::<Vec<_>>());
     work.condensed += aside.evaluations;
-    distinct(found, FINALISTS)
+    deepest(found, FINALISTS)
 }
 
 /// The numbers of the deepest valleys that are not the same, deepest first.
-fn distinct(mut valleys: Vec<Valley>, most: usize) -> Vec<Vec<f64>> {
+fn deepest(mut valleys: Vec<Valley>, most: usize) -> Vec<Vec<f64>> {
     valleys.sort_by(|a, b| a.square.total_cmp(&b.square));
     distinct_of(&valleys, most)
 }
 
 /// The same of valleys in their order.
 fn distinct_of(valleys: &[Valley], most: usize) -> Vec<Vec<f64>> {
-    let mut kept: Vec<&Valley> = Vec::new();
-    for valley in valleys {
-        // Numbers that are not felt differ, and the residual square does not.
-        let same = |other: &&Valley| {
-            (other.square - valley.square).abs() <= ALIKE * valley.square
-                || distance(&rising(&other.theta), &rising(&valley.theta)) <= 1e-3
-        };
-        if kept.len() < most && !kept.iter().any(same) {
-            kept.push(valley);
-        }
-    }
-    kept.iter().map(|valley| valley.theta.clone()).collect()
+    // Numbers that are not felt differ, and the residual square does not.
+    let same = |other: &&Valley, valley: &&Valley| {
+        (other.square - valley.square).abs() <= ALIKE * valley.square
+            || distance(&rising(&other.theta), &rising(&valley.theta)) <= 1e-3
+    };
+    distinct(valleys, most, same).iter().map(|valley| valley.theta.clone()).collect()
 }
 
 /// Relative width of the bins of nodes on which a series is sought: to 10⁻⁴ of what they leave over.

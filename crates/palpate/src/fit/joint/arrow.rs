@@ -5,7 +5,7 @@
 //! square with every hold's own numbers at their best. For a law that is linear in these it is variable projection.
 
 use super::hold::{Part, View, moved};
-use crate::optimise::{Termination, Work, stepped_within};
+use crate::optimise::{Ending, Termination, Work, stepped_within};
 
 /// All holds at one point.
 pub(crate) struct Point {
@@ -84,15 +84,6 @@ impl Point {
     }
 }
 
-/// How a search ends.
-#[derive(Clone, Copy)]
-pub(crate) struct Ending {
-    /// Share of the residual square that a full step must promise to be taken.
-    pub(crate) gain: f64,
-    /// Steps after which it ends short.
-    pub(crate) most_iterations: usize,
-}
-
 /// Share of the residual square below which steps are taken undamped, for as long as they promise ever less.
 const NEAR: f64 = 1e-9;
 
@@ -107,7 +98,7 @@ pub(crate) fn refine(
     work.starts += 1;
     let values = views
         .iter()
-        .map(|view| view.hold.weight.powi(2) * view.target.values().iter().map(|y| y * y).sum::<f64>());
+        .map(|view| view.hold.weight.powi(2) * view.target.values.iter().map(|y| y * y).sum::<f64>());
     let floor = 1e-31 * values.sum::<f64>();
     let mut trial = Point {
         shared: here.shared.clone(),

@@ -3,12 +3,8 @@
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use super::result::{JointFit, law_options};
-use super::trend::{SharedTrend, TrendPoint};
-use crate::fit::error::FitError;
-use crate::fit::law::fit_law::fit_law;
-use crate::fit::result::{Fit, NumberUnit};
-use crate::fit::samples::Samples;
+use super::result::law_options;
+use crate::fit::{Fit, FitError, JointFit, NumberUnit, Samples, SharedTrend, TrendPoint, fit_law};
 
 /// What a number does from hold to hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -88,12 +84,8 @@ pub fn compare_joint(
     strains: Option<&[f64]>,
 ) -> Result<JointComparison, FitError> {
     let count = joint.holds.len();
-    if let Some(found) = [holds.len(), strains.map_or(count, <[f64]>::len)].into_iter().find(|found| *found != count) {
-        return Err(FitError::Lengths {
-            abscissas: found,
-            values: count,
-        });
-    }
+    FitError::check_lengths(holds.len(), count)?;
+    FitError::check_lengths(strains.map_or(count, <[f64]>::len), count)?;
     let effective: f64 = joint.separate.iter().map(Fit::effective_samples).sum();
     let few = joint.free_numbers() as f64;
     let many: f64 = joint.separate.iter().map(|fit| fit.free_numbers() as f64).sum();

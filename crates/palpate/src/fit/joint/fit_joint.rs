@@ -1,18 +1,14 @@
 //! One law fitted to several holds.
 
-use super::arrow::{Ending, Point, refine};
+use super::arrow::{Point, refine};
 use super::hold::{Hold, View};
 use super::report::Joint;
-use super::result::{HoldWeights, JointFit, JointOptions, law_options};
+use super::result::law_options;
 use super::starts::{Start, finalists};
-use crate::fit::error::FitError;
-use crate::fit::global::search::search;
 use crate::fit::law::fitted::Fitted;
-use crate::fit::options::LawOptions;
-use crate::fit::problem::build::build;
-use crate::fit::samples::Samples;
+use crate::fit::{FitError, HoldWeights, JointFit, JointOptions, LawOptions, Samples};
 use crate::laws::{ExponentChoice, Law, NumberKind};
-use crate::optimise::{Shapes, Termination, Work};
+use crate::optimise::{Ending, Shapes, Termination, Work};
 use crate::statistics::mean;
 use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 
@@ -56,7 +52,7 @@ pub fn fit_joint_watched(
     options: &JointOptions,
     watch: &mut dyn Watch,
 ) -> Result<JointFit, FitError> {
-    options.fit.check()?;
+    options.fit.check(ExponentChoice::Free)?;
     if holds.len() < 2 {
         return Err(FitError::TooFewHolds { found: holds.len() });
     }
@@ -87,21 +83,10 @@ pub fn fit_joint_watched(
 
 /// A hold fitted alone.
 fn separate(samples: &Samples<'_>, law: Law, options: &LawOptions, work: &mut Work) -> Result<Fitted, FitError> {
-    let form = law.form(options.response).ok_or(FitError::NoForm {
-        law,
-        response: options.response,
-    })?;
-    let (model, scaled) = build(form, samples, options)?;
-    if model.free().len() == 0 {
+    let fitted = Fitted::new(samples, law, options, work)?;
+    if fitted.model.free().len() == 0 {
         return Err(FitError::NothingShared { law });
     }
-    let solution = search(&model, &scaled, options.most_iterations, work).ok_or(FitError::NoDecay)?;
-    let mut fitted = Fitted {
-        model,
-        scaled,
-        solution,
-    };
-    fitted.arrange();
     Ok(fitted)
 }
 
@@ -111,12 +96,7 @@ fn joined(samples: &[Samples<'_>], alone: Vec<Fitted>, law: Law, options: &Joint
     let (log_time, log_signal) = (logs(|fitted| fitted.scaled.duration), logs(|fitted| fitted.scaled.range));
     let log_weights = log_weights(samples, &alone, options.weights);
     let coupling = match law {
-        Law::Latency {
-            exponent: ExponentChoice::Free,
-        } => Some(None),
-        Law::Latency {
-            exponent: ExponentChoice::Fixed(n),
-        } => Some(Some(n)),
+        Law::Latency { exponent } => Some(exponent.given()),
         _ => None,
     };
     let mut holds = Vec::new();

@@ -24,19 +24,9 @@ pub(crate) struct Hold {
 const STEPS: usize = 30;
 
 impl Hold {
-    /// Constant and amplitudes.
-    pub(crate) fn own(&self) -> usize {
-        self.model.linear()
-    }
-
-    /// The exponent of a coupled law.
-    fn exponent(&self, shared: &[f64], held: Option<f64>) -> f64 {
-        held.unwrap_or_else(|| shared[1])
-    }
-
     /// ln |Δ| in the shared unit.
     fn log_amplitude(&self, own: &[f64]) -> f64 {
-        own[self.own() - 1].abs().ln() + self.log_range
+        own[own.len() - 1].abs().ln() + self.log_range
     }
 
     /// The nonlinear numbers of the hold, in its units.
@@ -47,16 +37,15 @@ impl Hold {
         };
         let mut theta: Vec<f64> = self.model.free().zip(shared).map(shift).collect();
         if let Some(held) = self.coupling {
-            theta[0] += (self.exponent(shared, held) - 1.0) * self.log_amplitude(own);
+            theta[0] += (held.unwrap_or_else(|| shared[1]) - 1.0) * self.log_amplitude(own);
         }
         theta
     }
 
     /// The shared numbers at which this hold has these.
     pub(crate) fn shared(&self, theta: &[f64], own: &[f64]) -> Vec<f64> {
-        let nothing = vec![0.0; theta.len()];
         // θ is the shared numbers plus what the duration adds, and what the amplitude adds at the exponent found.
-        let mut at = nothing;
+        let mut at = vec![0.0; theta.len()];
         if self.coupling == Some(None) {
             at[1] = theta[1];
         }
@@ -75,7 +64,7 @@ impl Hold {
             (0..size).map(|i| (0..size).map(|j| if i == j { 1.0 } else { 0.0 }).collect()).collect();
         if let Some(held) = self.coupling {
             let rate = &mut rows[own.len()];
-            rate[own.len() - 1] = (self.exponent(shared, held) - 1.0) / own[own.len() - 1];
+            rate[own.len() - 1] = (held.unwrap_or_else(|| shared[1]) - 1.0) / own[own.len() - 1];
             if held.is_none() {
                 rate[own.len() + 1] = self.log_amplitude(own);
             }
@@ -139,12 +128,12 @@ impl Part {
         let shapes = hold.model.at(view.times);
         let (columns, derivatives) = self.jacobian.split_at_mut(l);
         shapes.fill(&theta, columns, derivatives);
-        if let Some(roots) = view.target.roots() {
+        if let Some(roots) = view.target.roots {
             for column in columns.iter_mut().chain(derivatives.iter_mut()) {
                 column.iter_mut().zip(roots).for_each(|(entry, root)| *entry *= root);
             }
         }
-        self.square = form_residuals(view.target.values(), columns, own, &mut self.residuals);
+        self.square = form_residuals(view.target.values, columns, own, &mut self.residuals);
         for (p, derivative) in derivatives.iter_mut().enumerate() {
             let amplitude = own[shapes.column_of(p)];
             derivative.iter_mut().for_each(|entry| *entry *= amplitude);
@@ -176,7 +165,7 @@ impl Part {
     /// The best own numbers at given shared ones, from those at hand: one step where the law is linear in them.
     pub(crate) fn settle(&mut self, view: View<'_>, shared: &[f64], own: &[f64], work: &mut Work) {
         self.evaluate(view, shared, own, work);
-        let floor = dot(view.target.values(), view.target.values()) * 1e-31;
+        let floor = dot(view.target.values, view.target.values) * 1e-31;
         let mut trial = self.clone();
         for _ in 0..STEPS {
             let Some(factor) = self.own_block() else {

@@ -14,14 +14,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::contact::{Element, Ramps, SimulationWork as Effort};
-use crate::fit::error::FitError;
-use crate::fit::estimate::Estimate;
-use crate::fit::noise::uncertainty::{Assessed, Scale};
-use crate::fit::options::{FitOptions, NoiseChoice};
-use crate::fit::samples::Samples;
+use crate::fit::{Assessed, Estimate, FitError, FitOptions, NoiseChoice, Samples, Scale, distinct};
 use crate::latency::{LatencyLaw, decay_many, decay_with_gradient_many};
 use crate::laws::{ExponentChoice, Loading};
-use crate::optimise::{Ending, Shapes, Solution, Target, Termination, Work, polished, refine};
+use crate::optimise::{Ending, Shapes, Solution, Target, Termination, Work, polished, refine, square_at};
 
 /// A hold and the way to it.
 #[derive(Debug, Clone)]
@@ -135,18 +131,13 @@ pub fn fit_ramps(
     equilibria: EquilibriumChoice,
     options: &FitOptions,
 ) -> Result<RampFit, FitError> {
-    options.check()?;
-    if let ExponentChoice::Fixed(n) = choice
-        && !(n.is_finite() && n > 0.0)
-    {
-        return Err(FitError::Exponent { found: n });
-    }
+    options.check(choice)?;
     let problem = RampProblem::new(holds, choice, equilibria, options)?;
     let mut work = Work::default();
     let ending = Ending::tight(options.most_iterations);
     let starts = problem.starts(&mut work);
     let refined = starts.into_iter().map(|start| refine(&problem, problem.target(), &start, ending, &mut work));
-    let best = refined.min_by(|a, b| a.square().total_cmp(&b.square())).ok_or(FitError::NoDecay)?;
+    let best = refined.min_by(|a, b| a.point.square.total_cmp(&b.point.square)).ok_or(FitError::NoDecay)?;
     let solution = polished(&problem, problem.target(), best, &mut work);
     Ok(problem.report(&solution, options, work))
 }
@@ -204,13 +195,7 @@ impl RampProblem {
             count += times.len();
             (low, high) = hold.samples.values.iter().fold((low, high), |(low, high), y| (low.min(*y), high.max(*y)));
         }
-        if count < numbers + 2 {
-            return Err(FitError::TooFewSamples {
-                parameters: numbers,
-                needed: numbers + 2,
-                found: count,
-            });
-        }
+        FitError::check_samples(numbers, count)?;
         if low == high {
             return Err(FitError::Constant {
                 value: low,
@@ -251,10 +236,7 @@ impl RampProblem {
 
     /// ln κ and n of the free numbers.
     fn numbers(&self, theta: &[f64]) -> (f64, f64) {
-        match self.exponent {
-            ExponentChoice::Fixed(n) => (theta[0], n),
-            ExponentChoice::Free => (theta[0], theta[1]),
-        }
+        (theta[0], self.exponent.given().unwrap_or_else(|| theta[1]))
     }
 
     /// The best points of a grid of ln κ and n.
@@ -269,31 +251,16 @@ impl RampProblem {
             ExponentChoice::Free => EXPONENTS.map(|n| Some(n.clamp(self.bounds[1].0, self.bounds[1].1))).to_vec(),
         };
         let grid = rates.flat_map(|rate| exponents.iter().map(move |n| std::iter::once(rate).chain(*n).collect()));
-        let once = Ending {
-            gain: f64::INFINITY,
-            most_iterations: 0,
-        };
-        let mut aside = Work::default();
         let mut found: Vec<(f64, Vec<f64>)> = grid
             .map(|theta: Vec<f64>| {
-                let point = AtNumbers {
-                    problem: self,
-                    theta: &theta,
-                };
-                (refine(&point, self.target(), &[], once, &mut aside).square(), theta)
+                work.grid_points += 1;
+                (square_at(self, self.target(), &theta), theta)
             })
             .filter(|(square, _)| square.is_finite())
             .collect();
-        work.grid_points += aside.evaluations;
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut kept: Vec<Vec<f64>> = Vec::new();
-        for (_, theta) in found {
-            let far = |other: &Vec<f64>| other.iter().zip(&theta).any(|(a, b)| (a - b).abs() > 2.0);
-            if kept.len() < VALLEYS && kept.iter().all(far) {
-                kept.push(theta);
-            }
-        }
-        kept
+        let near = |a: &Vec<f64>, b: &Vec<f64>| !a.iter().zip(b).any(|(a, b)| (a - b).abs() > 2.0);
+        distinct(found.into_iter().map(|(_, theta)| theta), VALLEYS, near)
     }
 
     fn report(&self, solution: &Solution, options: &FitOptions, work: Work) -> RampFit {
@@ -458,32 +425,4 @@ impl Part {
 /// ln |ξ|; a loading may end without any excess.
 fn log_size(share: f64) -> f64 {
     share.abs().max(f64::MIN_POSITIVE).ln()
-}
-
-/// The problem at one point of the grid: only the linear numbers are left.
-struct AtNumbers<'a> {
-    problem: &'a RampProblem,
-    theta: &'a [f64],
-}
-
-impl Shapes for AtNumbers<'_> {
-    fn columns(&self) -> usize {
-        self.problem.columns()
-    }
-
-    fn column_of(&self, index: usize) -> usize {
-        self.problem.column_of(index)
-    }
-
-    fn bounds(&self, index: usize) -> (f64, f64) {
-        self.problem.bounds(index)
-    }
-
-    fn at_bound(&self, index: usize) -> Termination {
-        self.problem.at_bound(index)
-    }
-
-    fn fill(&self, _: &[f64], columns: &mut [Vec<f64>], derivatives: &mut [Vec<f64>]) {
-        self.problem.fill(self.theta, columns, derivatives);
-    }
 }

@@ -2,11 +2,8 @@
 
 use super::arrow::Point;
 use super::hold::Hold;
-use super::result::{JointFit, JointOptions};
 use crate::fit::law::fitted::Fitted;
-use crate::fit::noise::uncertainty::Assessed;
-use crate::fit::parameter::ParameterName;
-use crate::fit::result::Fit;
+use crate::fit::{Assessed, Fit, JointFit, JointOptions, ParameterName};
 use crate::laws::{Law, NumberKind};
 use crate::optimise::{Cholesky, Few, Solution, Termination, Work};
 use crate::statistics::{effective_count, lag_one_correlation};
@@ -76,12 +73,12 @@ impl Joint {
 
     /// All numbers.
     fn size(&self, point: &Point) -> usize {
-        point.shared.len() + self.holds.iter().map(Hold::own).sum::<usize>()
+        point.shared.len() + self.first(self.holds.len())
     }
 
     /// Place of the first own number of a hold among all.
     fn first(&self, index: usize) -> usize {
-        self.holds[..index].iter().map(Hold::own).sum()
+        self.holds[..index].iter().map(|hold| hold.model.linear()).sum()
     }
 
     /// (JᵀJ)⁻¹ over the own numbers of every hold, then the shared ones.
@@ -103,7 +100,7 @@ impl Joint {
     /// Where the numbers of a hold, own and shared, stand among all.
     fn places(&self, index: usize, shared: usize) -> Vec<usize> {
         let (first, after) = (self.first(index), self.first(self.holds.len()));
-        (first..first + self.holds[index].own()).chain(after..after + shared).collect()
+        (first..first + self.holds[index].model.linear()).chain(after..after + shared).collect()
     }
 
     /// A hold as if it had been fitted alone, with the errors of the joint fit.
@@ -151,7 +148,7 @@ impl Joint {
     }
 
     fn names(&self, holds: &[Fit]) -> Vec<String> {
-        let own = self.holds[0].own();
+        let own = self.holds[0].model.linear();
         let mut names = Vec::new();
         for (index, fit) in holds.iter().enumerate() {
             names.extend(fit.searched[..own].iter().map(|name| format!("{name}_hold_{}", index + 1)));
@@ -164,7 +161,7 @@ impl Joint {
     }
 
     fn values(&self, point: &Point, holds: &[Fit]) -> Vec<f64> {
-        let own = self.holds[0].own();
+        let own = self.holds[0].model.linear();
         let constants = holds.iter().flat_map(|fit| fit.values[..own].iter().copied());
         let exponent = self.holds[0].coupling.map_or(1.0, |held| held.unwrap_or_else(|| point.shared[1]));
         let natural = |(number, value): (&crate::fit::problem::model::Number, &f64)| match number.kind {
@@ -177,8 +174,12 @@ impl Joint {
     /// The covariance of all numbers in the caller's units.
     fn covariance(&self, point: &Point, inverse: &[f64], variance: f64) -> Vec<Vec<f64>> {
         let (size, q) = (self.size(point), point.shared.len());
-        let units: Vec<f64> =
-            self.holds.iter().flat_map(|hold| vec![hold.scaled.range; hold.own()]).chain(vec![1.0; q]).collect();
+        let units: Vec<f64> = self
+            .holds
+            .iter()
+            .flat_map(|hold| vec![hold.scaled.range; hold.model.linear()])
+            .chain(vec![1.0; q])
+            .collect();
         let rate = size - q;
         // ln v counts in shared units of the signal, to the power n − 1.
         let through = if self.holds[0].coupling == Some(None) { -self.log_signal } else { 0.0 };

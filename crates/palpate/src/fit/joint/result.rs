@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::fit::options::{FitOptions, LawOptions};
-use crate::fit::result::{Fit, Parameter};
+use crate::fit::{Fit, FitOptions, LawOptions, Parameter};
 use crate::laws::{ExponentChoice, Law, Response};
 use crate::optimise::{Termination, Work};
 

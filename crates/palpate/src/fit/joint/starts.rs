@@ -1,12 +1,12 @@
 //! Where a joint search starts: at the separate fits, at their mean, and at the valleys of a coarse grid over all holds.
 
-use super::arrow::{Ending, Point, refine};
+use super::arrow::{Point, refine};
 use super::hold::{Hold, View};
-use crate::fit::global::grid::{Grid, advance, coarse, rates};
+use crate::fit::global::grid::{Grid, coarse, combinations, distinct, rates};
 use crate::fit::global::starts::starts as valleys;
 use crate::fit::problem::condensed::{Condensed, condense};
 use crate::fit::problem::model::Model;
-use crate::optimise::{Ending as Local, Work, refine as refine_one};
+use crate::optimise::{Ending, Work, refine as refine_one};
 use crate::watch::{Cancelled, Progress, Watch};
 
 /// A point to start from.
@@ -68,7 +68,7 @@ pub(crate) fn finalists(
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let limit = found.first().map_or(0.0, |(least, _)| least * 1.001 + f64::MIN_POSITIVE);
     let alike = found.into_iter().take_while(|(square, _)| *square <= limit).map(|(_, start)| start);
-    Ok(distinct(alike, 1e-3, FINALISTS))
+    Ok(distinct(alike, FINALISTS, near(1e-3)))
 }
 
 fn view<'a>(hold: &'a Hold, nodes: &'a Condensed) -> View<'a> {
@@ -79,16 +79,9 @@ fn view<'a>(hold: &'a Hold, nodes: &'a Condensed) -> View<'a> {
     }
 }
 
-/// The first few starts that differ from each other by more than `apart` in some shared number.
-fn distinct(starts: impl Iterator<Item = Start>, apart: f64, most: usize) -> Vec<Start> {
-    let mut kept: Vec<Start> = Vec::new();
-    for start in starts {
-        let same = |other: &Start| other.shared.iter().zip(&start.shared).all(|(a, b)| (a - b).abs() < apart);
-        if kept.len() < most && !kept.iter().any(same) {
-            kept.push(start);
-        }
-    }
-    kept
+/// Whether starts differ by less than `apart` in all shared numbers.
+fn near(apart: f64) -> impl Fn(&Start, &Start) -> bool {
+    move |a, b| a.shared.iter().zip(&b.shared).all(|(a, b)| (a - b).abs() < apart)
 }
 
 /// The separate fits and their mean; fits that agree count once.
@@ -99,7 +92,7 @@ fn with_mean(separate: Vec<Start>) -> Vec<Start> {
         shared: (0..first.shared.len()).map(mean).collect(),
         own: first.own.clone(),
     });
-    distinct(middle.into_iter().chain(separate), 0.3, usize::MAX)
+    distinct(middle.into_iter().chain(separate), usize::MAX, near(0.3))
 }
 
 /// For each exponent of a coarse list: every hold fitted alone at it, and the mean of what they have in common.
@@ -116,15 +109,15 @@ fn by_exponent(holds: &[Hold], nodes: &[Condensed], work: &mut Work) -> Vec<Star
             numbers[1].fixed = Some(exponent);
             let model = Model::new(hold.model.form.clone(), hold.model.constant, numbers, Vec::new());
             let valley = valleys(&model, nodes, 1, work).into_iter().next()?;
-            let ending = Local {
+            let ending = Ending {
                 gain: 1e-5,
                 most_iterations: 50,
             };
             let mut aside = Work::default();
             let fit = refine_one(&model.at(&nodes.times), nodes.target(), &valley, ending, &mut aside);
             work.condensed += aside.evaluations;
-            let own = fit.linear().to_vec();
-            start.shared[0] += hold.shared(&[fit.theta()[0], exponent], &own)[0] / holds.len() as f64;
+            let own = fit.point.linear.to_vec();
+            start.shared[0] += hold.shared(&[fit.point.theta[0], exponent], &own)[0] / holds.len() as f64;
             start.own.push(own);
         }
         start.shared[0].is_finite().then_some(start)
@@ -136,7 +129,7 @@ fn by_exponent(holds: &[Hold], nodes: &[Condensed], work: &mut Work) -> Vec<Star
 fn grid(holds: &[Hold], nodes: &[Condensed], bounds: &[(f64, f64)], work: &mut Work) -> Vec<Start> {
     let nodes: Vec<Condensed> = nodes.iter().map(Condensed::coarser).collect();
     let views: Vec<View<'_>> = holds.iter().zip(&nodes).map(|(hold, nodes)| view(hold, nodes)).collect();
-    let own: Vec<Vec<f64>> = holds.iter().map(|hold| vec![0.0; hold.own()]).collect();
+    let own: Vec<Vec<f64>> = holds.iter().map(|hold| vec![0.0; hold.model.linear()]).collect();
     let mut aside = Work::default();
     let mut found: Vec<(f64, Start)> = Vec::new();
     for shared in places(&holds[0].model, bounds) {
@@ -149,7 +142,7 @@ fn grid(holds: &[Hold], nodes: &[Condensed], bounds: &[(f64, f64)], work: &mut W
     }
     work.condensed += aside.evaluations;
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    distinct(found.into_iter().map(|(_, start)| start), 1.6, KEPT)
+    distinct(found.into_iter().map(|(_, start)| start), KEPT, near(1.6))
 }
 
 /// The points of the grid: a rate and a pure number, or rates in all combinations, fastest first.
@@ -157,20 +150,14 @@ fn places(model: &Model, bounds: &[(f64, f64)]) -> Vec<Vec<f64>> {
     let (moving, _) = model.moving();
     if moving.len() > 1 {
         let mut grid = rates(bounds[0], None, Grid::Coarse);
-        let most = (moving.len()..).take_while(|m| combinations(*m, moving.len()) <= COMBINATIONS).last();
+        let most = (moving.len()..).take_while(|m| ways(*m, moving.len()) <= COMBINATIONS).last();
         let count = most.unwrap_or(moving.len()).min(grid.len());
         let (low, high) = bounds[0];
         if count < grid.len() {
             grid = (0..count).map(|i| low + (high - low) * i as f64 / (count - 1) as f64).collect();
         }
-        let mut chosen: Vec<usize> = (0..moving.len()).collect();
-        let mut all = Vec::new();
-        loop {
-            all.push(chosen.iter().rev().map(|&i| grid[i]).collect());
-            if !advance(&mut chosen, grid.len()) {
-                return all;
-            }
-        }
+        let chosen = combinations(grid.len(), moving.len());
+        return chosen.map(|chosen| chosen.iter().rev().map(|&i| grid[i]).collect()).collect();
     }
     let axis = |(number, bounds): (&crate::fit::problem::model::Number, &(f64, f64))| match number.kind {
         crate::laws::NumberKind::Pure { .. } => coarse(number.kind, *bounds, None),
@@ -186,6 +173,6 @@ fn places(model: &Model, bounds: &[(f64, f64)]) -> Vec<Vec<f64>> {
 }
 
 /// Ways to choose `terms` of `count`.
-fn combinations(count: usize, terms: usize) -> usize {
+fn ways(count: usize, terms: usize) -> usize {
     (0..terms).fold(1, |ways, i| ways * (count - i) / (i + 1))
 }

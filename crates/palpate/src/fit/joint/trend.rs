@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::statistics::{coverage_factor, normal_factor};
+use crate::statistics::{coverage_factor, normal_factor, range};
 
 /// ln of a number against an abscissa over the holds: ln v_h = a + b x_h + u_h + e_h.
 ///
@@ -72,10 +72,8 @@ impl SharedTrend {
     /// By how much ln of the number can still change over the range of x: the largest size of slope in the interval, times it.
     #[must_use]
     pub fn most_change(&self) -> f64 {
-        let x = |low: f64, point: &TrendPoint| (low.min(point.abscissa), point.abscissa);
-        let low = self.points.iter().fold(f64::INFINITY, |low, point| x(low, point).0);
-        let high = self.points.iter().fold(f64::NEG_INFINITY, |high, point| high.max(point.abscissa));
-        self.interval.0.abs().max(self.interval.1.abs()) * (high - low)
+        let abscissas: Vec<f64> = self.points.iter().map(|point| point.abscissa).collect();
+        self.interval.0.abs().max(self.interval.1.abs()) * range(&abscissas)
     }
 }
 

@@ -16,14 +16,10 @@ use serde::{Deserialize, Serialize};
 
 use super::derived::derived;
 use super::fitted::Fitted;
-use crate::fit::error::FitError;
-use crate::fit::estimate::Estimate;
-use crate::fit::noise::model::NoiseModel;
-use crate::fit::options::{BootstrapOptions, LawOptions};
-use crate::fit::parameter::ParameterName;
 use crate::fit::problem::condensed::condense;
-use crate::fit::result::{Fit, Parameter};
-use crate::fit::samples::Samples;
+use crate::fit::{
+    BootstrapOptions, Estimate, Fit, FitError, LawOptions, NoiseModel, Parameter, ParameterName, Samples, Scale,
+};
 use crate::laws::Law;
 use crate::optimise::{Ending, Work, refine};
 use crate::random::Noise as Random;
@@ -174,13 +170,12 @@ impl Fitted {
             most_iterations: options.most_iterations,
         };
         let refined = refine(&self.model.at(&nodes.times), nodes.target(), &best.1, ending, &mut Work::default());
-        self.solution.linear = refined.linear().to_vec();
-        self.solution.nonlinear = refined.theta().to_vec();
+        self.solution.linear = refined.point.linear.to_vec();
+        self.solution.nonlinear = refined.point.theta.to_vec();
         let searched = self.values();
-        let direct = self.direct(&searched, &|value, _, _| Estimate::fixed(value));
-        let numbers = direct.into_iter().map(|number| number.estimate.value);
-        let all: Vec<f64> =
-            numbers.chain(derived(law, self, &searched).into_iter().map(|number| number.value)).collect();
+        let plain = |value: f64, _: &[f64], _: Scale| Estimate::fixed(value);
+        let numbers = self.direct(&searched, &plain).into_iter().chain(derived(law, self, &searched, &plain));
+        let all: Vec<f64> = numbers.map(|number| number.estimate.value).collect();
         (self.solution.linear, self.solution.nonlinear) = best;
         self.scaled.values = measured;
         all.iter().all(|number| number.is_finite()).then_some(all)

@@ -1,24 +1,15 @@
 //! Numbers that follow from those that were searched, with their gradients.
 
 use super::fitted::Fitted;
-use crate::fit::noise::uncertainty::Scale;
-use crate::fit::parameter::{ParameterKind, ParameterName};
-use crate::fit::result::NumberUnit;
+use crate::fit::{Estimate, NumberUnit, Parameter, ParameterKind, ParameterName, Scale};
 use crate::laws::{BasisFunction, Kernel, Law, Response};
 
-/// A number that follows from others.
-pub(crate) struct Derived {
-    pub(crate) name: ParameterName,
-    pub(crate) unit: NumberUnit,
-    pub(crate) scale: Scale,
-    pub(crate) value: f64,
-    /// Derivatives by the searched numbers (of ln value on the logarithmic scale).
-    pub(crate) gradient: Vec<f64>,
-}
+/// What makes an estimate of a value, its derivatives by the searched numbers (of ln value on the logarithmic scale) and that scale.
+pub(crate) type Estimating<'a> = &'a dyn Fn(f64, &[f64], Scale) -> Estimate;
 
 /// The derived numbers of a law.
-pub(crate) fn derived(law: Law, fitted: &Fitted, values: &[f64]) -> Vec<Derived> {
-    let view = View::new(fitted, values);
+pub(crate) fn derived(law: Law, fitted: &Fitted, values: &[f64], estimate: Estimating<'_>) -> Vec<Parameter> {
+    let view = View::new(fitted, values, estimate);
     match law {
         Law::Latency { .. } => vec![view.start(), view.rate_coefficient()],
         Law::Fung { .. } => view.fung(),
@@ -37,16 +28,18 @@ struct View<'a> {
     /// Place of the first amplitude.
     first: usize,
     numbers: Vec<f64>,
+    estimate: Estimating<'a>,
 }
 
 impl<'a> View<'a> {
-    fn new(fitted: &'a Fitted, values: &'a [f64]) -> Self {
+    fn new(fitted: &'a Fitted, values: &'a [f64], estimate: Estimating<'a>) -> Self {
         Self {
             fitted,
             values,
             constant: if fitted.model.constant { values[0] } else { fitted.scaled.center },
             first: usize::from(fitted.model.constant),
             numbers: fitted.natural_numbers(),
+            estimate,
         }
     }
 
@@ -81,37 +74,37 @@ impl<'a> View<'a> {
     }
 
     /// Signal at the start of relaxation; signal at the end of creep.
-    fn start(&self) -> Derived {
+    fn start(&self) -> Parameter {
         let creep = self.fitted.model.form.response == Response::Creep;
-        Derived {
+        Parameter {
             name: if creep { ParameterKind::Final } else { ParameterKind::Start }.into(),
             unit: NumberUnit::Signal,
-            scale: Scale::Linear,
-            value: self.sum(),
-            gradient: self.sum_gradient(),
+            estimate: (self.estimate)(self.sum(), &self.sum_gradient(), Scale::Linear),
         }
     }
 
     /// v = λ |Δ|^(1 − n).
-    fn rate_coefficient(&self) -> Derived {
+    fn rate_coefficient(&self) -> Parameter {
         let amplitude = self.amplitudes()[0];
         let log_amplitude = amplitude.abs().ln();
-        let (n, exponent) = match self.fitted.model.shape(0) {
+        let (n, exponent) = match self.fitted.model.form.shapes[0] {
             BasisFunction::LatencyWith(n) => (n, None),
             _ => (self.numbers[1], self.place(1)),
         };
         let entries = [(Some(self.first), -(n - 1.0) / amplitude), (self.place(0), 1.0), (exponent, -log_amplitude)];
-        Derived {
+        Parameter {
             name: ParameterKind::RateCoefficient.into(),
             unit: NumberUnit::RateCoefficient,
-            scale: Scale::Log,
-            value: (self.numbers[0] - (n - 1.0) * log_amplitude).exp(),
-            gradient: self.gradient(&entries),
+            estimate: (self.estimate)(
+                (self.numbers[0] - (n - 1.0) * log_amplitude).exp(),
+                &self.gradient(&entries),
+                Scale::Log,
+            ),
         }
     }
 
     /// N, c₀, cᵢ and νᵢ.
-    fn fung(&self) -> Vec<Derived> {
+    fn fung(&self) -> Vec<Parameter> {
         let total = self.sum();
         let share = |term: usize, part: f64, place: Option<usize>| {
             // ∂(part/total) = ∂part/total − part ∂total/total².
@@ -119,15 +112,13 @@ impl<'a> View<'a> {
             if let Some(place) = place {
                 gradient[place] += 1.0 / total;
             }
-            Derived {
+            Parameter {
                 name: ParameterName::of_term(ParameterKind::Share, term),
                 unit: NumberUnit::One,
-                scale: Scale::Linear,
-                value: part / total,
-                gradient,
+                estimate: (self.estimate)(part / total, &gradient, Scale::Linear),
             }
         };
-        let mut all = vec![Derived {
+        let mut all = vec![Parameter {
             name: ParameterKind::ElasticResponse.into(),
             ..self.start()
         }];
@@ -136,19 +127,17 @@ impl<'a> View<'a> {
             all.push(share(i + 1, *amplitude, Some(self.first + i)));
         }
         for (i, number) in self.numbers.iter().enumerate() {
-            all.push(Derived {
+            all.push(Parameter {
                 name: ParameterName::of_term(ParameterKind::TermRate, i + 1),
                 unit: NumberUnit::PerSecond,
-                scale: Scale::Log,
-                value: number.exp(),
-                gradient: self.gradient(&[(self.place(i), 1.0)]),
+                estimate: (self.estimate)(number.exp(), &self.gradient(&[(self.place(i), 1.0)]), Scale::Log),
             });
         }
         all
     }
 
     /// N, C and τ_short.
-    fn fung_continuous(&self) -> Vec<Derived> {
+    fn fung_continuous(&self) -> Vec<Parameter> {
         let (amplitude, log_ratio) = (self.amplitudes()[0], self.numbers[1]);
         let constant = self.fitted.model.constant.then_some(0);
         let strength = amplitude / (self.constant * log_ratio);
@@ -159,51 +148,51 @@ impl<'a> View<'a> {
             (self.place(1), -strength / log_ratio),
         ];
         vec![
-            Derived {
+            Parameter {
                 name: ParameterKind::ElasticResponse.into(),
                 ..self.start()
             },
-            Derived {
+            Parameter {
                 name: ParameterKind::Strength.into(),
                 unit: NumberUnit::One,
-                scale: Scale::Linear,
-                value: strength,
-                gradient: self.gradient(&entries),
+                estimate: (self.estimate)(strength, &self.gradient(&entries), Scale::Linear),
             },
-            Derived {
+            Parameter {
                 name: ParameterKind::TimeShort.into(),
                 unit: NumberUnit::Second,
-                scale: Scale::Log,
-                value: (-self.numbers[0] - log_ratio).exp(),
-                gradient: self.gradient(&[(self.place(0), -1.0), (self.place(1), -1.0)]),
+                estimate: (self.estimate)(
+                    (-self.numbers[0] - log_ratio).exp(),
+                    &self.gradient(&[(self.place(0), -1.0), (self.place(1), -1.0)]),
+                    Scale::Log,
+                ),
             },
         ]
     }
 
     /// Slope of a straight flow per s, coefficient of a power per s^α.
-    fn growth(&self) -> Vec<Derived> {
+    fn growth(&self) -> Vec<Parameter> {
         let mut all = Vec::new();
         for (i, shape) in self.fitted.model.form.shapes.iter().enumerate() {
             let numbers = self.fitted.model.numbers_of(i);
             let (amplitude, log_rate) = (self.amplitudes()[i], self.numbers[numbers.start]);
             let place = Some(self.first + i);
             if *shape == BasisFunction::Straight {
-                all.push(Derived {
+                all.push(Parameter {
                     name: ParameterKind::FlowRate.into(),
                     unit: NumberUnit::SignalPerSecond,
-                    scale: Scale::Linear,
-                    value: amplitude * log_rate.exp(),
-                    gradient: self.gradient(&[(place, log_rate.exp())]),
+                    estimate: (self.estimate)(
+                        amplitude * log_rate.exp(),
+                        &self.gradient(&[(place, log_rate.exp())]),
+                        Scale::Linear,
+                    ),
                 });
             } else if *shape == BasisFunction::PowerGrowth {
                 let factor = (log_rate * self.numbers[numbers.start + 1]).exp();
                 let entries = [(place, factor), (self.place(numbers.start + 1), amplitude * factor * log_rate)];
-                all.push(Derived {
+                all.push(Parameter {
                     name: ParameterKind::Coefficient.into(),
                     unit: NumberUnit::SignalPerPower,
-                    scale: Scale::Linear,
-                    value: amplitude * factor,
-                    gradient: self.gradient(&entries),
+                    estimate: (self.estimate)(amplitude * factor, &self.gradient(&entries), Scale::Linear),
                 });
             }
         }

@@ -1,10 +1,7 @@
 //! Any law fitted to a hold.
 
 use super::fitted::Fitted;
-use crate::fit::error::FitError;
-use crate::fit::options::{IntervalMethod, LawOptions};
-use crate::fit::result::Fit;
-use crate::fit::samples::Samples;
+use crate::fit::{Fit, FitError, IntervalMethod, LawOptions, Samples};
 use crate::laws::Law;
 use crate::optimise::Work;
 use crate::watch::{Unwatched, Watch};

@@ -20,20 +20,13 @@ impl Fitted {
             let constant = model.constant && i == 0;
             value * scaled.range + if constant { scaled.center } else { 0.0 }
         });
-        let nonlinear = model.free().zip(&self.solution.nonlinear).map(|(number, value)| match number.kind {
-            NumberKind::Pure { .. } => *value,
-            _ => value - scaled.duration.ln(),
-        });
-        linear.chain(nonlinear).collect()
+        let nonlinear = model.numbers.iter().zip(self.natural_numbers()).filter(|(number, _)| number.fixed.is_none());
+        linear.chain(nonlinear.map(|(_, value)| value)).collect()
     }
 
     /// The law with the numbers found.
     pub(crate) fn curve(&self) -> LawCurve {
-        self.curve_of(&self.values())
-    }
-
-    pub(crate) fn curve_of(&self, values: &[f64]) -> LawCurve {
-        let model = &self.model;
+        let (model, values) = (&self.model, self.values());
         let numbers = self.natural_numbers();
         let constants = usize::from(model.constant);
         let constant = if model.constant { values[0] } else { self.scaled.center };
@@ -61,9 +54,7 @@ impl Fitted {
 
     /// Names of the free numbers.
     pub(crate) fn names(&self) -> Vec<String> {
-        let constant = self.model.constant.then(|| self.model.form.constant_name().to_owned());
-        let nonlinear = self.model.free().map(|number| searched_name(&number.name, number.kind));
-        constant.into_iter().chain(self.model.form.amplitude_names()).chain(nonlinear).collect()
+        self.model.names(|number| searched_name(&number.name, number.kind))
     }
 
     /// Puts exponentials whose times were searched in the order of their times, fastest first.

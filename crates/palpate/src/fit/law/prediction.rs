@@ -1,9 +1,8 @@
 //! What a fit says about a time, with an interval.
 
-use crate::fit::estimate::Estimate;
-use crate::fit::noise::uncertainty::{Scale, variance_of};
+use crate::fit::noise::uncertainty::variance_of;
 use crate::fit::problem::model::searched_name;
-use crate::fit::result::Fit;
+use crate::fit::{Estimate, Fit, Scale};
 use crate::laws::{Column, Kernel};
 
 impl Fit {

@@ -11,14 +11,10 @@
 //! white noise, and t has the degrees of freedom of that variance ([`Uncertainty`](super::Uncertainty)).
 
 use super::fitted::Fitted;
-use crate::fit::error::FitError;
-use crate::fit::estimate::Interval;
 use crate::fit::noise::uncertainty::variance_of;
-use crate::fit::options::LawOptions;
 use crate::fit::problem::condensed::condense;
 use crate::fit::problem::model::Model;
-use crate::fit::result::Fit;
-use crate::fit::samples::Samples;
+use crate::fit::{Fit, FitError, Interval, LawOptions, Samples};
 use crate::laws::{Law, NumberKind};
 use crate::optimise::{Ending, Shapes, Target, Work, refine};
 use crate::statistics::coverage_factor;
@@ -121,23 +117,13 @@ enum Searched {
 
 impl Searched {
     fn named(model: &Model, name: &str) -> Result<Self, FitError> {
-        let constant = model.constant.then(|| model.form.constant_name().to_owned());
-        let linear: Vec<String> = constant.into_iter().chain(model.form.amplitude_names()).collect();
-        if let Some(place) = linear.iter().position(|known| known == name) {
-            return Ok(Self::Linear(place));
-        }
-        match model.free().position(|number| number.name == name) {
-            Some(free) => {
-                let place = model.numbers.iter().position(|number| number.name == name);
-                Ok(Self::Nonlinear(place.unwrap_or(0), free))
-            }
+        let names = model.names(|number| number.name.clone());
+        match names.iter().position(|known| known == name) {
+            Some(place) if place < model.linear() => Ok(Self::Linear(place)),
+            Some(place) => Ok(Self::Nonlinear(model.free[place - model.linear()], place - model.linear())),
             None => Err(FitError::UnknownNumber {
                 name: name.to_owned(),
-                known: linear
-                    .into_iter()
-                    .chain(model.free().map(|number| number.name.clone()))
-                    .collect::<Vec<_>>()
-                    .join(", "),
+                known: names.join(", "),
             }),
         }
     }
@@ -305,8 +291,8 @@ impl Profile<'_> {
         let shapes = model.at(field.times);
         let ending = Ending::tight(self.most_iterations);
         let refined = refine(&shapes, field.target, theta, ending, &mut Work::default());
-        let excess = (refined.square() + field.inside) / self.fitted.solution.residual_square - 1.0;
-        let at_edge = refined.theta().iter().enumerate().any(|(i, value)| {
+        let excess = (refined.point.square + field.inside) / self.fitted.solution.residual_square - 1.0;
+        let at_edge = refined.point.theta.iter().enumerate().any(|(i, value)| {
             let (low, high) = shapes.bounds(i);
             let near = 1e-6 * (high - low);
             *value <= low + near || *value >= high - near
@@ -314,7 +300,7 @@ impl Profile<'_> {
         Reached {
             distance,
             z: (excess.max(0.0) * self.freedom).sqrt(),
-            theta: refined.theta().to_vec(),
+            theta: refined.point.theta.to_vec(),
             at_edge,
         }
     }

@@ -1,12 +1,9 @@
 //! From a solution to the result: parameters with errors and intervals.
 
-use super::derived::derived;
+use super::derived::{Estimating, derived};
 use super::fitted::Fitted;
-use crate::fit::estimate::Estimate;
-use crate::fit::noise::uncertainty::{Assessed, Scale};
-use crate::fit::options::{LawOptions, Loss};
 use crate::fit::problem::ghosts::ghosts;
-use crate::fit::result::{Domain, Fit, NumberUnit, Parameter};
+use crate::fit::{Assessed, Domain, Estimate, Fit, LawOptions, Loss, NumberUnit, Parameter, Scale};
 use crate::laws::{Law, NumberKind};
 use crate::optimise::{Few, Shapes, Termination, Work};
 
@@ -46,13 +43,7 @@ impl Fitted {
         let (solution, values, scale) = (&self.solution, self.values(), self.scaled.range);
         let estimate = |value: f64, gradient: &[f64], scale: Scale| assessed.estimate(value, gradient, scale);
         let mut numbers = self.direct(&values, &estimate);
-        for number in derived(law, self, &values) {
-            numbers.push(Parameter {
-                name: number.name,
-                unit: number.unit,
-                estimate: estimate(number.value, &number.gradient, number.scale),
-            });
-        }
+        numbers.extend(derived(law, self, &values, &estimate));
         let residual_square = (solution.residual_square.sqrt() * scale * self.scaled.precision).powi(2);
         let samples = self.scaled.times.len();
         let mean_square = match &self.scaled.roots {
@@ -62,7 +53,7 @@ impl Fitted {
         Fit {
             law,
             response: self.model.form.response,
-            curve: self.curve_of(&values),
+            curve: self.curve(),
             loading: None,
             domain: Domain::Time,
             parameters: numbers,
@@ -101,7 +92,7 @@ impl Fitted {
     }
 
     /// The numbers that were searched, and those held, as they are reported: times for ln of rates.
-    pub(crate) fn direct(&self, values: &[f64], estimate: &impl Fn(f64, &[f64], Scale) -> Estimate) -> Vec<Parameter> {
+    pub(crate) fn direct(&self, values: &[f64], estimate: Estimating<'_>) -> Vec<Parameter> {
         let model = &self.model;
         let row =
             |i: usize, entry: f64| -> Few { (0..values.len()).map(|j| if i == j { entry } else { 0.0 }).collect() };

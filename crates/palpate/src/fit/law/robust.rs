@@ -8,10 +8,9 @@
 //! ```
 
 use super::fitted::Fitted;
-use crate::fit::error::FitError;
 use crate::fit::global::search::search;
-use crate::fit::options::{LawOptions, Loss};
 use crate::fit::samples::Scaled;
+use crate::fit::{FitError, LawOptions, Loss};
 use crate::optimise::{Ending, Solution, Termination, Work, polished, refine, standing};
 use crate::statistics::mean;
 

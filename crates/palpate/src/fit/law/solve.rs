@@ -1,11 +1,9 @@
 //! From samples to the solution of a law, in the units of the fit.
 
 use super::fitted::Fitted;
-use crate::fit::error::FitError;
 use crate::fit::global::search::search;
-use crate::fit::options::{LawOptions, Loss, SampleChoice};
 use crate::fit::problem::build::build;
-use crate::fit::samples::Samples;
+use crate::fit::{FitError, LawOptions, Loss, SampleChoice, Samples};
 use crate::laws::Law;
 use crate::optimise::Work;
 
@@ -17,10 +15,7 @@ impl Fitted {
         options: &LawOptions,
         work: &mut Work,
     ) -> Result<Self, FitError> {
-        let form = law.form(options.response).ok_or(FitError::NoForm {
-            law,
-            response: options.response,
-        })?;
+        let form = options.form(law)?;
         let chosen = chosen(samples, options.samples)?;
         let samples = &chosen.samples(samples);
         let (model, scaled) = build(form, samples, options)?;

@@ -35,7 +35,7 @@ impl<'a> Mixture<'a> {
 
     fn filter(&self, x: &[f64]) -> Filter {
         let (rho, share) = Self::model(x).numbers();
-        Filter::new(rho, share, self.rows.samples())
+        Filter::new(rho, share, self.rows.samples)
     }
 
     /// The likelihood, between white noise and noise that is one sample in all.
@@ -44,12 +44,12 @@ impl<'a> Mixture<'a> {
             return None;
         }
         let filter = self.filter(x);
-        Likelihood::of(&self.rows.whitened(&filter), filter.log_determinant, self.rows.samples())
+        Likelihood::of(&self.rows.whitened(&filter), filter.log_determinant, self.rows.samples)
     }
 
     /// κ of noise that is one sample in all.
     fn longest(&self) -> f64 {
-        (self.rows.samples() as f64).ln()
+        (self.rows.samples as f64).ln()
     }
 
     /// The best ρ and s, if a first look finds a deviance that promises to fall below this one.
@@ -69,7 +69,7 @@ impl<'a> Mixture<'a> {
         let places: Vec<[f64; 2]> = kappas.flat_map(|kappa| [-2.5, 0.0, 2.5].map(|share| [kappa, share])).collect();
         let filters: Vec<Filter> = places.iter().map(|place| self.filter(place)).collect();
         let squares = whitened_squares(self.residuals, &filters);
-        let samples = self.rows.samples() as f64;
+        let samples = self.rows.samples as f64;
         let deviances = squares
             .iter()
             .zip(&filters)

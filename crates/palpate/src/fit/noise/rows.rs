@@ -11,7 +11,7 @@ const LANES: usize = 8;
 /// The columns of a fit, as many at a time as a vector holds; those beyond the last are zero.
 pub(crate) struct Rows {
     columns: usize,
-    samples: usize,
+    pub(crate) samples: usize,
     blocks: Vec<Vec<[f64; LANES]>>,
 }
 
@@ -32,11 +32,6 @@ impl Rows {
             samples,
             blocks: columns.chunks(LANES).map(block).collect(),
         }
-    }
-
-    /// Number of samples.
-    pub(crate) fn samples(&self) -> usize {
-        self.samples
     }
 
     /// ZᵀF with F_i = ρ (F_{i−1} + Z_{i−1}).

@@ -3,9 +3,8 @@
 use std::iter;
 
 use super::model::{Model, Number};
-use crate::fit::error::FitError;
-use crate::fit::options::{ConstantChoice, LawOptions};
-use crate::fit::samples::{Samples, Scaled};
+use crate::fit::samples::Scaled;
+use crate::fit::{ConstantChoice, FitError, LawOptions, Samples};
 use crate::laws::{Form, Law, NumberKind};
 
 impl LawOptions {
@@ -23,11 +22,7 @@ impl LawOptions {
     /// [`FitError`] for a law without a form for the response, for numbers that the law does not have or that cannot be held,
     /// values that they cannot have, bounds that do not rise, and a confidence that is none.
     pub fn suit(&self, law: Law) -> Result<(), FitError> {
-        let form = law.form(self.response).ok_or(FitError::NoForm {
-            law,
-            response: self.response,
-        })?;
-        suits(&form, self)
+        suits(&self.form(law)?, self)
     }
 }
 

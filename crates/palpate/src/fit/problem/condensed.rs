@@ -2,9 +2,11 @@
 
 use std::ops::Range;
 
+use super::model::Model;
 use crate::fit::samples::Scaled;
 use crate::optimise::Target;
 use crate::vector::accelerated;
+use crate::vector::columns::multiply;
 use crate::vector::moments::moments;
 use crate::vector::products::LANES;
 
@@ -105,6 +107,14 @@ impl Condensed {
     /// Share of the residual square by which noise alone makes one valley deeper than another: `variances` of the noise of a sample.
     pub(crate) fn noise(&self, variances: f64) -> f64 {
         variances / self.samples as f64
+    }
+
+    /// One shape at the nodes, times their roots.
+    pub(crate) fn column(&self, model: &Model, shape: usize, numbers: &[f64]) -> Vec<f64> {
+        let mut column = vec![0.0; self.times.len()];
+        model.shape_value(shape, &self.times, numbers, &mut column);
+        multiply(&mut column, &self.roots);
+        column
     }
 
     pub(crate) fn target(&self) -> Target<'_> {

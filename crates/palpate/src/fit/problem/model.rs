@@ -28,10 +28,10 @@ pub(crate) struct Model {
     /// Bounds of every linear number.
     pub(crate) linear_bounds: Vec<(f64, f64)>,
     /// Which of `numbers` are free.
-    free: Vec<usize>,
+    pub(crate) free: Vec<usize>,
     columns: Vec<Column>,
     /// What shapes are averaged over; none for a step.
-    loading: Option<Superposition>,
+    pub(crate) loading: Option<Superposition>,
 }
 
 impl Model {
@@ -61,6 +61,13 @@ impl Model {
     /// Linear numbers.
     pub(crate) fn linear(&self) -> usize {
         usize::from(self.constant) + self.form.shapes.len()
+    }
+
+    /// Names of the numbers that are sought, the nonlinear ones as asked for.
+    pub(crate) fn names(&self, of: impl Fn(&Number) -> String) -> Vec<String> {
+        let constant = self.constant.then(|| self.form.constant_name().to_owned());
+        let nonlinear = self.free().map(of);
+        constant.into_iter().chain(self.form.amplitude_names()).chain(nonlinear).collect()
     }
 
     /// Free nonlinear numbers.
@@ -100,11 +107,6 @@ impl Model {
         }
     }
 
-    /// Whether the loading counts as a step, so that shapes depend on the products of rates and times alone.
-    pub(crate) fn is_after_step(&self) -> bool {
-        self.loading.is_none()
-    }
-
     /// Shapes that have a free number, and those that have none.
     pub(crate) fn moving(&self) -> (Vec<usize>, Vec<usize>) {
         (0..self.form.shapes.len()).partition(|&shape| self.free().any(|number| number.shape == shape))
@@ -133,10 +135,6 @@ impl Model {
     pub(crate) fn is_series(&self) -> bool {
         let alike = self.form.shapes.iter().all(|shape| *shape == BasisFunction::Exponential);
         alike && self.form.shapes.len() > 1 && self.free.len() == self.numbers.len()
-    }
-
-    pub(crate) fn shape(&self, index: usize) -> BasisFunction {
-        self.form.shapes[index]
     }
 }
 

@@ -18,9 +18,9 @@ use serde::{Deserialize, Serialize};
 use strength::{Smoothed, Smoother};
 
 use crate::fit::error::FitError;
-use crate::fit::samples::not_finite;
+use crate::fit::samples::check_finite;
 use crate::latency::decay_many;
-pub use result::{SpectrumFit, SpectrumPeak, SpectrumWork};
+pub use result::{SpectrumFit, SpectrumPeak};
 
 /// Grid times are no shorter than this share of the hold, however early its second sample.
 const SHORTEST: f64 = 1e-6;
@@ -131,13 +131,11 @@ struct Chosen {
     least: f64,
     limit: f64,
     effective_parameters: f64,
-    work: SpectrumWork,
 }
 
 impl Chosen {
     /// The sign that fits better with next to no smoothing, and the smoothing that the options ask for.
     fn new(normal: &Normal, constant: Option<f64>, slack: f64, options: &SpectrumOptions) -> Option<Self> {
-        let mut work = SpectrumWork::default();
         let mut tried = Vec::with_capacity(2);
         for sign in [1.0, -1.0] {
             let mut smoother = Smoother::new(normal, sign, constant);
@@ -145,18 +143,13 @@ impl Chosen {
             let least = decades.last()?.residual;
             tried.push((least, sign, smoother, decades));
         }
-        work.strengths += tried.iter().map(|(_, _, smoother, _)| smoother.strengths).sum::<u64>();
-        work.pivots += tried.iter().map(|(_, _, smoother, _)| smoother.pivots()).sum::<u64>();
         tried.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (least, sign, mut smoother, decades) = tried.swap_remove(0);
-        let before = (smoother.strengths, smoother.pivots());
         let limit = least * (1.0 + slack);
         let smoothed = match options.smoothing {
             Smoothing::Automatic => smoother.strongest(&decades, limit)?,
             Smoothing::Given(strength) => smoother.solve(strength)?,
         };
-        work.strengths += smoother.strengths - before.0;
-        work.pivots += smoother.pivots() - before.1;
         let effective_parameters = smoother.effective_parameters(&smoothed);
         Some(Self {
             smoothed,
@@ -164,7 +157,6 @@ impl Chosen {
             least,
             limit,
             effective_parameters,
-            work,
         })
     }
 }
@@ -185,13 +177,7 @@ impl Scaled {
         check(times, values, roots)?;
         let root = |i: usize| roots.map_or(1.0, |roots| roots[i]);
         let kept: Vec<usize> = (0..times.len()).filter(|i| root(*i) > 0.0).collect();
-        if kept.len() < 5 {
-            return Err(FitError::TooFewSamples {
-                parameters: 3,
-                needed: 5,
-                found: kept.len(),
-            });
-        }
+        FitError::check_samples(3, kept.len())?;
         let span = |(low, high): (f64, f64), i: &usize| (low.min(values[*i]), high.max(values[*i]));
         let (low, high) = kept.iter().fold((f64::MAX, f64::MIN), span);
         if low == high {
@@ -255,7 +241,6 @@ impl Scaled {
             residual_limit: chosen.limit * unit,
             samples: self.times.len(),
             weight: self.weight,
-            work: chosen.work,
         }
     }
 
@@ -274,16 +259,9 @@ impl Scaled {
 
 /// Refuses what no fit can be made of.
 fn check(times: &[f64], values: &[f64], roots: Option<&[f64]>) -> Result<(), FitError> {
-    if let Some(found) = [values.len(), roots.map_or(times.len(), <[f64]>::len)].into_iter().find(|n| *n != times.len())
-    {
-        return Err(FitError::Lengths {
-            abscissas: times.len(),
-            values: found,
-        });
-    }
-    if let Some(error) = not_finite([("time", times), ("value", values)]) {
-        return Err(error);
-    }
+    FitError::check_lengths(times.len(), values.len())?;
+    FitError::check_lengths(times.len(), roots.map_or(times.len(), <[f64]>::len))?;
+    check_finite([("time", times), ("value", values)])?;
     if let Some(index) = roots.and_then(|roots| roots.iter().position(|root| !(root.is_finite() && *root >= 0.0))) {
         return Err(FitError::Weight { index });
     }

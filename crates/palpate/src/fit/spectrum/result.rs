@@ -32,8 +32,6 @@ pub struct SpectrumFit {
     pub samples: usize,
     /// Sum of their weights.
     pub weight: f64,
-    /// What it cost.
-    pub work: SpectrumWork,
 }
 
 /// Neighbouring times whose amplitudes form one peak.
@@ -45,15 +43,6 @@ pub struct SpectrumPeak {
     pub amplitude: f64,
     /// Grid times with an amplitude above zero.
     pub terms: usize,
-}
-
-/// What a spectrum cost, in counts that do not depend on the machine.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SpectrumWork {
-    /// Strengths of smoothing that were tried, of either sign.
-    pub strengths: u64,
-    /// Systems of equations solved.
-    pub pivots: u64,
 }
 
 impl SpectrumFit {

@@ -28,7 +28,6 @@ pub(crate) struct Smoother<'a> {
     lower: Vec<f64>,
     upper: Vec<f64>,
     begun: bool,
-    pub(crate) strengths: u64,
 }
 
 impl<'a> Smoother<'a> {
@@ -46,13 +45,7 @@ impl<'a> Smoother<'a> {
             lower,
             upper,
             begun: false,
-            strengths: 0,
         }
-    }
-
-    /// Systems of equations solved.
-    pub(crate) fn pivots(&self) -> u64 {
-        self.solver.pivots()
     }
 
     /// Mean square + strength × Σ (h_{j+1} − h_j)² at its least; `None` if that is lost in rounding.
@@ -64,16 +57,15 @@ impl<'a> Smoother<'a> {
             lower: &self.lower,
             upper: &self.upper,
         };
-        self.strengths += 1;
         let solved = if self.begun { self.solver.solve_from_last(&problem) } else { None };
         solved.or_else(|| self.solver.solve(&problem))?;
         self.begun = true;
-        let numbers = self.solver.solution().to_vec();
+        let numbers = self.solver.solution.clone();
         let residual = self.normal.residual(&numbers);
         Some(Smoothed {
             strength,
             numbers,
-            held: self.solver.held().to_vec(),
+            held: self.solver.held.clone(),
             residual,
         })
     }

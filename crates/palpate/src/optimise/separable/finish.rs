@@ -2,12 +2,9 @@
 
 use smallvec::SmallVec;
 
-use super::point::{Point, Shapes};
-use super::solution::Solution;
+use super::point::Point;
 use super::step::block;
-use super::target::Target;
-use crate::optimise::cholesky::Cholesky;
-use crate::optimise::termination::Termination;
+use crate::optimise::{Cholesky, Shapes, Solution, Target, Termination};
 use crate::vector::products::normal_equations;
 
 /// The solution at a point, with the `last` step still to be taken from there if there is one.
@@ -76,13 +73,13 @@ pub(crate) fn standing(
     linear: &[f64],
     termination: Termination,
 ) -> Solution {
-    let mut here = Point::new(shapes, theta.len(), target.values().len());
+    let mut here = Point::new(shapes, theta.len(), target.values.len());
     here.fill(shapes, theta, target);
-    normal_equations(&here.columns, target.values(), &mut here.gram, &mut here.linear);
+    normal_equations(&here.columns, target.values, &mut here.gram, &mut here.linear);
     here.linear.copy_from_slice(linear);
     for ((held, value), (low, high)) in here.held.iter_mut().zip(linear).zip(shapes.linear_bounds()) {
         *held = value <= low || value >= high;
     }
-    here.form_residuals(target.values());
+    here.form_residuals(target.values);
     finish(here, None, shapes, termination)
 }

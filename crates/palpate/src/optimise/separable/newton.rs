@@ -1,14 +1,9 @@
 //! Undamped steps close to the optimum, to where the gradient vanishes.
 
 use super::finish::finish;
-use super::point::{Point, Shapes};
-use super::refine::Refined;
-use super::solution::Solution;
-use super::step::{Slope, distance, projected, promise, stepped};
-use super::target::Target;
-use crate::optimise::cholesky::{Cholesky, Few, Square};
-use crate::optimise::termination::Termination;
-use crate::optimise::work::Work;
+use super::point::Point;
+use super::step::{Slope, projected, promise};
+use crate::optimise::{Cholesky, Few, Refined, Shapes, Solution, Square, Target, Termination, Work, distance, stepped};
 
 /// The slope of half the residual square by the nonlinear numbers, the linear ones at their best, from differences of its gradient.
 /// `None` where its curvature is not positive definite, or a number lies at a bound.
@@ -16,7 +11,7 @@ pub(crate) fn curvature(shapes: &impl Shapes, target: Target<'_>, theta: &[f64],
     /// Of the width of bounds; the error of the difference is some 10⁻⁸ of the curvature.
     const STEP: f64 = 1e-4;
     let count = theta.len();
-    let mut point = Point::new(shapes, count, target.values().len());
+    let mut point = Point::new(shapes, count, target.values.len());
     let (mut hessian, mut mean) = (Square::from_elem(0.0, count * count), Few::from_elem(0.0, count));
     for j in 0..count {
         let (low, high) = shapes.bounds(j);
@@ -63,7 +58,7 @@ pub(crate) fn descend(
     near: Near,
     work: &mut Work,
 ) -> Option<Refined> {
-    let mut here = Point::new(shapes, theta.len(), target.values().len());
+    let mut here = Point::new(shapes, theta.len(), target.values.len());
     here.evaluate(shapes, theta, target);
     work.evaluations += 1;
     work.starts += 1;
@@ -179,7 +174,7 @@ pub(crate) fn polished(shapes: &impl Shapes, target: Target<'_>, refined: Refine
         return finish(here, None, shapes, Termination::Converged);
     };
     // Few samples make wide errors and cost nothing to polish.
-    let samples = target.values().len();
+    let samples = target.values.len();
     let enough = 1e-32 * (samples as f64).powi(3);
     let mut trial = Point::new(shapes, here.theta.len(), samples);
     for _ in 0..POLISHING {

@@ -2,10 +2,7 @@
 
 use std::cell::RefCell;
 
-use super::target::Target;
-use crate::optimise::bounded::{BoundedProblem, BoundedSolver, Held};
-use crate::optimise::cholesky::{Cholesky, Few, Square};
-use crate::optimise::termination::Termination;
+use crate::optimise::{BoundedProblem, BoundedSolver, Cholesky, Few, Held, Square, Target, Termination};
 use crate::vector::columns::{add_multiple, multiply};
 use crate::vector::products::{cross_products, dot, form_residuals, normal_equations};
 
@@ -76,9 +73,10 @@ impl Point {
 
     /// Columns and derivatives at `theta`, times the roots of the weights.
     pub(crate) fn fill(&mut self, shapes: &impl Shapes, theta: &[f64], target: Target<'_>) {
-        self.theta.copy_from_slice(theta);
+        self.theta.clear();
+        self.theta.extend_from_slice(theta);
         shapes.fill(theta, &mut self.columns, &mut self.derivatives);
-        if let Some(roots) = target.roots() {
+        if let Some(roots) = target.roots {
             for column in self.columns.iter_mut().chain(&mut self.derivatives) {
                 multiply(column, roots);
             }
@@ -117,7 +115,7 @@ impl Point {
 
     /// Solves for the linear numbers and forms the residuals.
     fn solve(&mut self, shapes: &impl Shapes, target: Target<'_>) {
-        let values = target.values();
+        let values = target.values;
         let size = self.columns.len();
         normal_equations(&self.columns, values, &mut self.gram, &mut self.linear);
         let factor = Cholesky::new(&self.gram, size);
@@ -128,7 +126,7 @@ impl Point {
                 self.keep_bounds(shapes.linear_bounds(), values);
                 self.form_residuals(values);
                 // A round of refinement recovers what squaring the condition number lost.
-                let worth = target.exact || self.square < 1e-12 * target.square();
+                let worth = target.exact || self.square < 1e-12 * target.square;
                 if worth && !self.held.contains(&true) {
                     let mut correction: Few = self.columns.iter().map(|c| dot(c, &self.residuals)).collect();
                     factor.solve(&mut correction);
@@ -165,8 +163,8 @@ impl Point {
         };
         let mut solver = BoundedSolver::new(right.len());
         if solver.solve(&problem).is_some() {
-            self.linear.copy_from_slice(solver.solution());
-            for (held, end) in self.held.iter_mut().zip(solver.held()) {
+            self.linear.copy_from_slice(&solver.solution);
+            for (held, end) in self.held.iter_mut().zip(&solver.held) {
                 *held = *end != Held::Free;
             }
         } else {

@@ -1,11 +1,8 @@
 //! Damped steps (Levenberg 1944, Marquardt 1963) from anywhere to the nearest local optimum.
 
-use super::point::{Point, Shapes};
-use super::step::{distance, projected, promise, stepped};
-use super::target::{Ending, Target};
-use crate::optimise::cholesky::Few;
-use crate::optimise::termination::Termination;
-use crate::optimise::work::Work;
+use super::point::Point;
+use super::step::{projected, promise};
+use crate::optimise::{Ending, Few, Shapes, Target, Termination, Work, distance, stepped};
 
 /// Where a refinement ended.
 pub(crate) struct Refined {
@@ -16,21 +13,6 @@ pub(crate) struct Refined {
 }
 
 impl Refined {
-    /// Sum of squared residuals there.
-    pub(crate) fn square(&self) -> f64 {
-        self.point.square
-    }
-
-    /// The nonlinear numbers there.
-    pub(crate) fn theta(&self) -> &[f64] {
-        &self.point.theta
-    }
-
-    /// The linear numbers there.
-    pub(crate) fn linear(&self) -> &[f64] {
-        &self.point.linear
-    }
-
     /// The nonlinear numbers alone.
     pub(crate) fn into_theta(self, shapes: &impl Shapes) -> Vec<f64> {
         let mut theta = self.point.theta.clone();
@@ -39,6 +21,13 @@ impl Refined {
         self.point.release(shapes);
         theta
     }
+}
+
+/// The residual square at θ, without derivatives.
+pub(crate) fn square_at(shapes: &impl Shapes, target: Target<'_>, theta: &[f64]) -> f64 {
+    let mut here = Point::new(shapes, 0, target.values.len());
+    here.evaluate(shapes, theta, target);
+    here.square
 }
 
 /// Refines θ from `start` to the nearest local optimum inside the bounds.
@@ -50,7 +39,7 @@ pub(crate) fn refine(
     work: &mut Work,
 ) -> Refined {
     let numbers = start.len();
-    let samples = target.values().len();
+    let samples = target.values.len();
     let mut here = Point::new(shapes, numbers, samples);
     let mut trial = Point::new(shapes, numbers, samples);
     here.evaluate(shapes, start, target);

@@ -1,9 +1,7 @@
 //! Where a search ended: everything that estimates and errors are made of.
 
-use crate::optimise::cholesky::Few;
-use crate::optimise::termination::Termination;
-
 /// Where the search ended: everything that estimates and errors are made of.
+use crate::optimise::{Few, Termination};
 #[derive(Debug, Clone)]
 pub(crate) struct Solution {
     pub(crate) linear: Vec<f64>,

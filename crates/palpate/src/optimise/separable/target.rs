@@ -6,10 +6,11 @@ use crate::vector::products::dot;
 #[derive(Clone, Copy)]
 pub(crate) struct Target<'a> {
     /// Values, times `roots`.
-    values: &'a [f64],
-    roots: Option<&'a [f64]>,
+    pub(crate) values: &'a [f64],
+    /// The roots of their weights.
+    pub(crate) roots: Option<&'a [f64]>,
     /// Sum of the squared values.
-    square: f64,
+    pub(crate) square: f64,
     /// Whether the linear numbers are worth a second solution, for the digits that normal equations lose.
     pub(super) exact: bool,
 }
@@ -32,21 +33,6 @@ impl<'a> Target<'a> {
             exact: false,
             ..Self::new(values, Some(roots))
         }
-    }
-
-    /// Values, times the roots of their weights.
-    pub(crate) fn values(&self) -> &'a [f64] {
-        self.values
-    }
-
-    /// Sum of their squares.
-    pub(crate) fn square(&self) -> f64 {
-        self.square
-    }
-
-    /// Square roots of the weights; `None` if all are one.
-    pub(crate) fn roots(&self) -> Option<&'a [f64]> {
-        self.roots
     }
 
     /// Residual square below which everything is rounding.

@@ -34,7 +34,7 @@ pub(crate) fn apart(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], wor
 /// What rounding of large amplitudes and of their rates adds to a residual square: residuals are off by up to d = ε Σ|a| each, and
 /// Σ (r + d)² − Σ r² = 2 d Σ r + N d².
 pub(crate) fn rounding(target: Target<'_>, square: f64, linear: &[f64]) -> f64 {
-    let weights = target.roots().map_or(target.values().len() as f64, |roots| dot(roots, roots));
+    let weights = target.roots.map_or(target.values.len() as f64, |roots| dot(roots, roots));
     let off = f64::EPSILON * linear.iter().map(|factor| factor.abs()).sum::<f64>();
     // At worst is seldom: errors have either sign, and residuals too.
     0.2 * off * (weights * square).sqrt() + weights * off * off
@@ -42,14 +42,14 @@ pub(crate) fn rounding(target: Target<'_>, square: f64, linear: &[f64]) -> f64 {
 
 /// Residual square of a valley's curve.
 fn standing_square(shapes: &Sampled<'_>, target: Target<'_>, valley: &Valley) -> f64 {
-    let samples = target.values().len();
+    let samples = target.values.len();
     let mut columns = vec![vec![0.0; samples]; shapes.columns()];
     let mut derivatives = vec![vec![0.0; samples]; valley.theta.len()];
     shapes.fill(&valley.theta, &mut columns, &mut derivatives);
     let left = |i: usize| {
-        let root = target.roots().map_or(1.0, |roots| roots[i]);
+        let root = target.roots.map_or(1.0, |roots| roots[i]);
         let curve: f64 = columns.iter().zip(&valley.linear).map(|(column, factor)| factor * column[i]).sum();
-        (target.values()[i] - root * curve).powi(2)
+        (target.values[i] - root * curve).powi(2)
     };
     let square: f64 = (0..samples).map(left).sum();
     if square.is_finite() { square } else { f64::INFINITY }

@@ -9,15 +9,8 @@
 //!
 //! ∂/∂z_i Σ_j b_j f\[z₀ … z_j\] = B_i f\[z₀ … z_k, z_i\] + what the group itself spans, B_i = Σ_j b_j Π_{l>j} (z_i − z_l).
 
-use crate::fit::problem::model::Sampled;
 use crate::optimise::{Orthogonal, Target};
 use crate::vector::{accelerated, exponential_values};
-
-/// A series at one place.
-pub(crate) struct Confluent {
-    here: Orthogonal,
-    groups: Vec<Vec<Node>>,
-}
 
 /// A rate of a group, and which nonlinear number it belongs to; none for the constant.
 #[derive(Clone, Copy)]
@@ -26,65 +19,43 @@ struct Node {
     number: Option<usize>,
 }
 
-impl Confluent {
-    /// `None` where the columns are not a series of plain exponentials.
-    pub(crate) fn new(shapes: &Sampled<'_>, theta: &[f64], target: Target<'_>) -> Option<Self> {
-        let (times, constant) = shapes.exponentials()?;
-        let groups = groups(theta, constant);
-        let mut columns = Vec::new();
-        let mut derivatives = vec![Vec::new(); theta.len()];
-        for group in &groups {
-            let middle = group.iter().map(|node| node.rate).sum::<f64>() / group.len() as f64;
-            let mut decay = vec![1.0; times.len()];
-            if middle > 0.0 {
-                exponential_values(times, middle, &mut decay);
-            }
-            let apart: Vec<f64> = group.iter().map(|node| node.rate - middle).collect();
-            for j in 0..apart.len() {
-                columns.push(divided_difference(times, &decay, &apart[..=j]));
-            }
-            for (node, own) in group.iter().zip(&apart) {
-                if let Some(number) = node.number {
-                    derivatives[number] = divided_difference(times, &decay, &[apart.as_slice(), &[*own]].concat());
-                }
+/// Exponentials of these ln λ at one place, and what the derivatives of their columns count by.
+pub(crate) fn confluent(times: &[f64], constant: bool, theta: &[f64], target: Target<'_>) -> (Orthogonal, Vec<f64>) {
+    let groups = groups(theta, constant);
+    let mut columns = Vec::new();
+    let mut derivatives = vec![Vec::new(); theta.len()];
+    for group in &groups {
+        let middle = group.iter().map(|node| node.rate).sum::<f64>() / group.len() as f64;
+        let mut decay = vec![1.0; times.len()];
+        if middle > 0.0 {
+            exponential_values(times, middle, &mut decay);
+        }
+        let apart: Vec<f64> = group.iter().map(|node| node.rate - middle).collect();
+        for j in 0..apart.len() {
+            columns.push(divided_difference(times, &decay, &apart[..=j]));
+        }
+        for (node, own) in group.iter().zip(&apart) {
+            if let Some(number) = node.number {
+                derivatives[number] = divided_difference(times, &decay, &[apart.as_slice(), &[*own]].concat());
             }
         }
-        Some(Self {
-            here: Orthogonal::of(theta, columns, derivatives, target),
-            groups,
-        })
     }
-
-    pub(crate) fn square(&self) -> f64 {
-        self.here.square
-    }
-
-    pub(crate) fn theta(&self) -> &[f64] {
-        &self.here.theta
-    }
-
-    pub(crate) fn is_beside_cliff(&self) -> bool {
-        self.here.is_beside_cliff()
-    }
-
-    /// The Gauss–Newton matrix and gradient in ln λ with the linear numbers projected out (Kaufman).
-    pub(crate) fn projected(&self) -> (Vec<f64>, Vec<f64>) {
-        let linear = self.here.linear();
-        let mut factors = vec![0.0; self.here.theta.len()];
-        let mut from = 0;
-        for group in &self.groups {
-            let own = &linear[from..from + group.len()];
-            for node in group {
-                if let Some(number) = node.number {
-                    // Horner's scheme of Newton's polynomial from its end.
-                    let sum = own.iter().zip(group).fold(0.0, |sum, (b, other)| sum * (node.rate - other.rate) + b);
-                    factors[number] = node.rate * sum;
-                }
+    let here = Orthogonal::of(theta, columns, derivatives, target);
+    let linear = here.linear();
+    let mut factors = vec![0.0; theta.len()];
+    let mut from = 0;
+    for group in &groups {
+        let own = &linear[from..from + group.len()];
+        for node in group {
+            if let Some(number) = node.number {
+                // Horner's scheme of Newton's polynomial from its end.
+                let sum = own.iter().zip(group).fold(0.0, |sum, (b, other)| sum * (node.rate - other.rate) + b);
+                factors[number] = node.rate * sum;
             }
-            from += group.len();
         }
-        self.here.projected_with(&factors)
+        from += group.len();
     }
+    (here, factors)
 }
 
 /// The rates, and 0 for the constant, in groups of those near each other.

@@ -1,7 +1,7 @@
 //! Local searches by orthogonal columns: they keep the digits that normal equations lose.
 
 use super::apart::{apart, rounding};
-use super::confluent::Confluent;
+use super::confluent::confluent;
 use super::valley::{Valley, valley};
 use crate::fit::problem::model::Sampled;
 use crate::optimise::{
@@ -18,17 +18,13 @@ pub(crate) fn exact(
     inflation: f64,
     work: &mut Work,
 ) -> Solution {
-    let signal = target.square();
+    let signal = target.square;
     let clean = solution.residual_square < CLEAN * signal && solution.residual_square > ROUNDING * signal;
     if solution.nonlinear.is_empty() || !shapes.linear_bounds().is_empty() || !(clean || inflation > IMITATED) {
         return solution;
     }
     // Straight to the last digit, with no regard for valleys elsewhere.
-    let at = |theta: &[f64]| {
-        let here = Orthogonal::new(shapes, theta, target);
-        let square = here.square;
-        Some(Plain { here, square, shapes })
-    };
+    let at = |theta: &[f64]| Place::plain(shapes, theta, target);
     let theta = descended(&solution.nonlinear, at, shapes, f64::EPSILON, work);
     let valley = valley(flat(Orthogonal::new(shapes, &theta, target), shapes, target, work));
     // To within rounding of the values the gradient decides.
@@ -42,12 +38,12 @@ pub(crate) fn exact(
 /// Undamped steps for as long as what the next one promises falls: the residual square is flat to rounding before its gradient is.
 fn flat(mut here: Orthogonal, shapes: &Sampled<'_>, target: Target<'_>, work: &mut Work) -> Orthogonal {
     let outlook = |here: &Orthogonal| {
-        let (hessian, gradient) = here.projected(shapes);
+        let (hessian, gradient) = here.projected(&here.factors(shapes));
         let next = stepped(&here.theta, &hessian, &gradient, 0.0, shapes);
         let gain: f64 = next.iter().zip(&here.theta).zip(&gradient).map(|((a, b), g)| (a - b) * g).sum();
         (next, gain)
     };
-    let slack = f64::EPSILON * dot(target.values(), target.values()).sqrt();
+    let slack = f64::EPSILON * dot(target.values, target.values).sqrt();
     let (mut next, mut gain) = outlook(&here);
     for _ in 0..STEPS {
         let trial = Orthogonal::new(shapes, &next, target);
@@ -88,36 +84,39 @@ pub(crate) fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], eno
     if !shapes.linear_bounds().is_empty() {
         let refined = refine(shapes, target, start, Ending::tight(STEPS), work);
         return Valley {
-            theta: refined.theta().to_vec(),
-            linear: refined.linear().to_vec(),
-            square: refined.square(),
+            theta: refined.point.theta.to_vec(),
+            linear: refined.point.linear.to_vec(),
+            square: refined.point.square,
         };
     }
     work.starts += 1;
-    if Confluent::new(shapes, start, target).is_some() {
-        let at = |theta: &[f64]| Confluent::new(shapes, theta, target);
+    if let Some((times, constant)) = shapes.exponentials() {
+        let at = |theta: &[f64]| {
+            let (point, factors) = confluent(times, constant, theta, target);
+            Place {
+                square: point.square,
+                point,
+                factors,
+            }
+        };
         let theta = descended(start, at, shapes, enough, work);
-        let least = Confluent::new(shapes, &theta, target).map_or(0.0, |here| here.square());
+        let least = at(&theta).square;
         let there = apart(shapes, target, &theta, work);
         if there.square <= least * (1.0 + APART) {
             return there;
         }
         // No amplitudes in doubles reach what merged terms do: the best of those that are apart, not above the start.
         let at = |theta: &[f64]| {
-            let here = Orthogonal::new(shapes, theta, target);
-            let square = here.square + rounding(target, here.square, &here.linear());
-            Some(Plain { here, square, shapes })
+            let mut place = Place::plain(shapes, theta, target);
+            place.square += rounding(target, place.square, &place.point.linear());
+            place
         };
-        let from = if at(start).is_some_and(|here| here.square() < there.square) { start } else { &there.theta };
+        let from = if at(start).square < there.square { start } else { &there.theta };
         let theta = descended(from, at, shapes, enough, work);
         let after = apart(shapes, target, &theta, work);
         return if after.square < there.square { after } else { there };
     }
-    let at = |theta: &[f64]| {
-        let here = Orthogonal::new(shapes, theta, target);
-        let square = here.square;
-        Some(Plain { here, square, shapes })
-    };
+    let at = |theta: &[f64]| Place::plain(shapes, theta, target);
     let theta = descended(start, at, shapes, enough, work);
     valley(Orthogonal::new(shapes, &theta, target))
 }
@@ -126,110 +125,79 @@ pub(crate) fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], eno
 const APART: f64 = 1e-8;
 
 /// A place of a local search.
-trait Place {
-    fn theta(&self) -> &[f64];
-    fn square(&self) -> f64;
-    fn projected(&self) -> (Vec<f64>, Vec<f64>);
-    /// Whether a column is all but imitated, and a little further counts for nothing.
-    fn is_beside_cliff(&self) -> bool;
-}
-
-impl Place for Confluent {
-    fn theta(&self) -> &[f64] {
-        self.theta()
-    }
-    fn square(&self) -> f64 {
-        self.square()
-    }
-    fn projected(&self) -> (Vec<f64>, Vec<f64>) {
-        self.projected()
-    }
-    fn is_beside_cliff(&self) -> bool {
-        self.is_beside_cliff()
-    }
-}
-
-/// A place with the columns as they are.
-struct Plain<'a> {
-    here: Orthogonal,
+struct Place {
+    point: Orthogonal,
     /// What counts as the residual square.
     square: f64,
-    shapes: &'a Sampled<'a>,
+    /// What the derivatives of the columns count by.
+    factors: Vec<f64>,
 }
 
-impl Place for Plain<'_> {
-    fn theta(&self) -> &[f64] {
-        &self.here.theta
-    }
-    fn square(&self) -> f64 {
-        self.square
-    }
-    fn projected(&self) -> (Vec<f64>, Vec<f64>) {
-        self.here.projected(self.shapes)
-    }
-    fn is_beside_cliff(&self) -> bool {
-        self.here.is_beside_cliff()
+impl Place {
+    /// With the columns as they are.
+    fn plain(shapes: &Sampled<'_>, theta: &[f64], target: Target<'_>) -> Self {
+        let point = Orthogonal::new(shapes, theta, target);
+        Self {
+            square: point.square,
+            factors: point.factors(shapes),
+            point,
+        }
     }
 }
 
 /// θ where Levenberg's method ends.
-fn descended<P: Place>(
+fn descended(
     start: &[f64],
-    at: impl Fn(&[f64]) -> Option<P>,
+    at: impl Fn(&[f64]) -> Place,
     shapes: &Sampled<'_>,
     enough: f64,
     work: &mut Work,
 ) -> Vec<f64> {
-    let Some(mut here) = at(start) else {
-        return start.to_vec();
-    };
     work.evaluations += 1;
-    here = lowered(here, &at, None, shapes, enough, work);
+    let mut here = lowered(at(start), &at, None, shapes, enough, work);
     // Steps that would cross a cliff are refused, however much the other numbers would gain: one after the other is held.
     for number in 0..start.len() {
-        if here.is_beside_cliff() {
+        if here.point.beside_cliff {
             here = lowered(here, &at, Some(number), shapes, enough, work);
         }
     }
-    here.theta().to_vec()
+    here.point.theta
 }
 
 /// The place where Levenberg's method ends, with one number held where it is if asked for.
-fn lowered<P: Place>(
-    mut here: P,
-    at: &impl Fn(&[f64]) -> Option<P>,
+fn lowered(
+    mut here: Place,
+    at: &impl Fn(&[f64]) -> Place,
     held: Option<usize>,
     shapes: &Sampled<'_>,
     enough: f64,
     work: &mut Work,
-) -> P {
+) -> Place {
     let mut damping = FIRST;
     let mut idle = 0;
     for _ in 0..STEPS {
-        let (hessian, gradient) = here.projected();
-        let before = here.square();
+        let (hessian, gradient) = here.point.projected(&here.factors);
+        let before = here.square;
         // Along a flat valley damping is what holds a step back: a small fall says nothing until there is next to none.
         let is_free = damping <= FREE;
         for _ in 0..TRIALS {
-            let theta = inside(here.theta(), (&hessian, &gradient), held, UNFELT * before, damping, shapes);
-            let Some(trial) = at(&theta) else {
-                break;
-            };
+            let theta = inside(&here.point.theta, (&hessian, &gradient), held, UNFELT * before, damping, shapes);
+            let trial = at(&theta);
             work.evaluations += 1;
-            if trial.square() < before {
+            if trial.square < before {
                 here = trial;
                 damping = (damping * 0.1).max(LEAST);
                 work.iterations += 1;
                 break;
             }
-            if distance(here.theta(), &theta) < NOWHERE {
+            if distance(&here.point.theta, &theta) < NOWHERE {
                 break;
             }
             damping *= 8.0;
         }
-        let idles = before - here.square() <= enough * before;
+        let idles = before - here.square <= enough * before;
         idle = if idles && is_free { idle + 1 } else { 0 };
-        if idle == 2 || before == here.square() {
+        if idle == 2 || before == here.square {
             break;
         }
         if idles && !is_free {
