@@ -175,6 +175,11 @@ impl FitError {
         if abscissas == values { Ok(()) } else { Err(Self::Lengths { abscissas, values }) }
     }
 
+    /// Refuses samples that all have one value.
+    pub(crate) fn check_change(low: f64, high: f64, samples: usize) -> Result<(), Self> {
+        if low == high { Err(Self::Constant { value: low, samples }) } else { Ok(()) }
+    }
+
     /// Refuses samples that leave fewer than two beside the numbers that are to be found.
     pub(crate) fn check_samples(parameters: usize, found: usize) -> Result<(), Self> {
         let needed = parameters + 2;

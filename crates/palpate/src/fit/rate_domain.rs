@@ -73,12 +73,7 @@ impl Scaled {
     fn new(strains: &[f64], rates: &[f64]) -> Result<Self, FitError> {
         let (low, high) = strains.iter().fold((f64::MAX, f64::MIN), |(low, high), e| (low.min(*e), high.max(*e)));
         let fastest = rates.iter().fold(0.0, |most: f64, rate| most.max(rate.abs()));
-        if high == low || fastest == 0.0 {
-            return Err(FitError::Constant {
-                value: low,
-                samples: strains.len(),
-            });
-        }
+        FitError::check_change(low, if fastest == 0.0 { low } else { high }, strains.len())?;
         let (center, range) = (0.5 * (low + high), high - low);
         // The equilibrium is sought up to ten ranges away.
         if !((100.0 * range).is_finite() && center.is_finite()) {

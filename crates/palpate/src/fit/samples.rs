@@ -108,12 +108,7 @@ impl Scaled {
             .map_or(*samples, |[times, values, deviations]| Samples::new(times, values).with_deviations(deviations));
         let (times, values) = (samples.times, samples.values);
         let (low, high) = extremes(values);
-        if low == high {
-            return Err(FitError::Constant {
-                value: low,
-                samples: values.len(),
-            });
-        }
+        FitError::check_change(low, high, values.len())?;
         let center = constant.unwrap_or(low + 0.5 * (high - low));
         let range = if constant.is_some() { (high - center).abs().max((low - center).abs()) } else { high - low };
         let first = times.iter().map(|t| (t - start) / duration).find(|t| *t > 0.0).unwrap_or(1.0);

@@ -4,6 +4,7 @@ use crate::fit::problem::model::Model;
 use crate::fit::samples::Scaled;
 use crate::laws::NumberKind;
 use crate::optimise::{Cholesky, Shapes, Target, Work};
+use crate::vector::columns::multiply;
 use crate::vector::products::{dot, form_residuals, normal_equations};
 
 /// A hold in its own units, with what ties it to the others.
@@ -130,7 +131,7 @@ impl Part {
         shapes.fill(&theta, columns, derivatives);
         if let Some(roots) = view.target.roots {
             for column in columns.iter_mut().chain(derivatives.iter_mut()) {
-                column.iter_mut().zip(roots).for_each(|(entry, root)| *entry *= root);
+                multiply(column, roots);
             }
         }
         self.square = form_residuals(view.target.values, columns, own, &mut self.residuals);

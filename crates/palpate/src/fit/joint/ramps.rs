@@ -196,12 +196,7 @@ impl RampProblem {
             (low, high) = hold.samples.values.iter().fold((low, high), |(low, high), y| (low.min(*y), high.max(*y)));
         }
         FitError::check_samples(numbers, count)?;
-        if low == high {
-            return Err(FitError::Constant {
-                value: low,
-                samples: count,
-            });
-        }
+        FitError::check_change(low, high, count)?;
         let (center, range) = (low + 0.5 * (high - low), high - low);
         if !(range.is_finite() && (1.0 / range).is_finite() && duration.is_finite() && first / duration > 1e-300) {
             return Err(FitError::OutOfRange);

@@ -97,16 +97,15 @@ impl Fitted {
         let row =
             |i: usize, entry: f64| -> Few { (0..values.len()).map(|j| if i == j { entry } else { 0.0 }).collect() };
         let mut numbers = Vec::with_capacity(1 + model.form.shapes.len() + model.numbers.len());
-        let constant = model.form.constant_name().to_owned();
-        let names = model.form.amplitude_names();
-        if model.constant {
-            numbers.push((constant, NumberUnit::Signal, estimate(values[0], &row(0, 1.0), Scale::Linear)));
-        } else {
-            numbers.push((constant, NumberUnit::Signal, Estimate::fixed(self.scaled.center)));
-        }
-        for (i, name) in names.into_iter().enumerate() {
-            let at = i + usize::from(model.constant);
-            numbers.push((name, NumberUnit::Signal, estimate(values[at], &row(at, 1.0), Scale::Linear)));
+        let mut add = |name: &str, unit: NumberUnit, estimate: Estimate| {
+            numbers.extend(name.parse().ok().map(|name| Parameter { name, unit, estimate }));
+        };
+        let level = |at: usize| estimate(values[at], &row(at, 1.0), Scale::Linear);
+        let constants = usize::from(model.constant);
+        let constant = if model.constant { level(0) } else { Estimate::fixed(self.scaled.center) };
+        add(model.form.constant_name(), NumberUnit::Signal, constant);
+        for (i, name) in model.form.amplitude_names().iter().enumerate() {
+            add(name, NumberUnit::Signal, level(i + constants));
         }
         let mut at = model.linear();
         for (number, value) in model.numbers.iter().zip(self.natural_numbers()) {
@@ -123,12 +122,8 @@ impl Fitted {
                     estimate(shown, &row(at - 1, slope), Scale::Log)
                 }
             };
-            numbers.push((number.name.clone(), unit, shown));
+            add(&number.name, unit, shown);
         }
-        let named = |(name, unit, estimate): (String, NumberUnit, Estimate)| {
-            let name = name.parse().ok()?;
-            Some(Parameter { name, unit, estimate })
-        };
-        numbers.into_iter().filter_map(named).collect()
+        numbers
     }
 }

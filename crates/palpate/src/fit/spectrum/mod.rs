@@ -15,7 +15,7 @@ mod strength;
 
 use normal::{GONE, Normal};
 use serde::{Deserialize, Serialize};
-use strength::{Smoothed, Smoother};
+use strength::Smoother;
 
 use crate::fit::error::FitError;
 use crate::fit::samples::check_finite;
@@ -115,50 +115,11 @@ pub fn fit_spectrum(
     options.check()?;
     let scaled = Scaled::new(times, values, roots)?;
     let grid = scaled.grid(options);
-    let normal = Normal::new(&scaled.times, &scaled.values, &scaled.roots, &grid);
     let constant = options.equilibrium.map(|fixed| (fixed - scaled.center) / scaled.range);
     if constant.is_some_and(|fixed| !fixed.is_finite()) {
         return Err(FitError::OutOfRange);
     }
-    let chosen = Chosen::new(&normal, constant, scaled.slack(), options).ok_or(FitError::OutOfRange)?;
-    Ok(scaled.fit(&grid, &chosen))
-}
-
-/// A spectrum with what it was chosen by.
-struct Chosen {
-    smoothed: Smoothed,
-    sign: f64,
-    least: f64,
-    limit: f64,
-    effective_parameters: f64,
-}
-
-impl Chosen {
-    /// The sign that fits better with next to no smoothing, and the smoothing that the options ask for.
-    fn new(normal: &Normal, constant: Option<f64>, slack: f64, options: &SpectrumOptions) -> Option<Self> {
-        let mut tried = Vec::with_capacity(2);
-        for sign in [1.0, -1.0] {
-            let mut smoother = Smoother::new(normal, sign, constant);
-            let decades = smoother.decades();
-            let least = decades.last()?.residual;
-            tried.push((least, sign, smoother, decades));
-        }
-        tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let (least, sign, mut smoother, decades) = tried.swap_remove(0);
-        let limit = least * (1.0 + slack);
-        let smoothed = match options.smoothing {
-            Smoothing::Automatic => smoother.strongest(&decades, limit)?,
-            Smoothing::Given(strength) => smoother.solve(strength)?,
-        };
-        let effective_parameters = smoother.effective_parameters(&smoothed);
-        Some(Self {
-            smoothed,
-            sign,
-            least,
-            limit,
-            effective_parameters,
-        })
-    }
+    scaled.fit(&grid, constant, options.smoothing).ok_or(FitError::OutOfRange)
 }
 
 /// A hold in units of its own duration and range, without samples of no weight.
@@ -180,12 +141,7 @@ impl Scaled {
         FitError::check_samples(3, kept.len())?;
         let span = |(low, high): (f64, f64), i: &usize| (low.min(values[*i]), high.max(values[*i]));
         let (low, high) = kept.iter().fold((f64::MAX, f64::MIN), span);
-        if low == high {
-            return Err(FitError::Constant {
-                value: low,
-                samples: kept.len(),
-            });
-        }
+        FitError::check_change(low, high, kept.len())?;
         let (start, range) = (times[0], high - low);
         let duration = times[kept[kept.len() - 1]] - start;
         let weight: f64 = kept.iter().map(|i| root(*i) * root(*i)).sum();
@@ -223,25 +179,39 @@ impl Scaled {
         (0..=steps as u32).map(|j| shortest * 10f64.powf(decades * f64::from(j) / steps)).collect()
     }
 
-    /// Back to the units of the caller.
-    fn fit(&self, grid: &[f64], chosen: &Chosen) -> SpectrumFit {
-        let smoothed = &chosen.smoothed;
+    /// The sign that fits better with next to no smoothing, and the smoothing asked for; in the units of the caller.
+    fn fit(&self, grid: &[f64], constant: Option<f64>, smoothing: Smoothing) -> Option<SpectrumFit> {
+        let normal = Normal::new(&self.times, &self.values, &self.roots, grid);
+        let mut tried = Vec::with_capacity(2);
+        for sign in [1.0, -1.0] {
+            let mut smoother = Smoother::new(&normal, sign, constant);
+            let decades = smoother.decades();
+            let least = decades.last()?.residual;
+            tried.push((least, sign, smoother, decades));
+        }
+        tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (least, sign, mut smoother, decades) = tried.swap_remove(0);
+        let limit = least * (1.0 + self.slack());
+        let smoothed = match smoothing {
+            Smoothing::Automatic => smoother.strongest(&decades, limit)?,
+            Smoothing::Given(strength) => smoother.solve(strength)?,
+        };
         let (amplitudes, constant) = smoothed.numbers.split_at(grid.len());
         let unit = self.weight * self.range * self.range;
-        SpectrumFit {
+        Some(SpectrumFit {
             equilibrium: self.center + constant[0] * self.range,
-            sign: chosen.sign,
+            sign,
             times: grid.iter().map(|time| time * self.duration).collect(),
             amplitudes: amplitudes.iter().map(|height| height.abs() * self.range).collect(),
             duration: self.duration,
             strength: smoothed.strength,
-            effective_parameters: chosen.effective_parameters,
+            effective_parameters: smoother.effective_parameters(&smoothed),
             residual_square: self.residual_square(grid, &smoothed.numbers) * self.range * self.range,
-            least_residual_square: chosen.least * unit,
-            residual_limit: chosen.limit * unit,
+            least_residual_square: least * unit,
+            residual_limit: limit * unit,
             samples: self.times.len(),
             weight: self.weight,
-        }
+        })
     }
 
     /// Weighted sum of squares that `numbers` leave, from the samples themselves.

@@ -2,6 +2,7 @@
 
 use crate::latency::decay_many;
 use crate::statistics::dot;
+use crate::vector::columns::multiply;
 
 /// Samples taken at a time, so that all columns of a block stay in the nearest cache.
 const BLOCK: usize = 64;
@@ -32,12 +33,12 @@ impl Normal {
             let gone = grid.partition_point(|time| times[0] > GONE * time);
             for (column, time) in block.chunks_mut(BLOCK).zip(grid).skip(gone) {
                 decay_many(times, 1.0 / time, 1.0, &mut column[..rows]);
-                scale(&mut column[..rows], roots);
+                multiply(&mut column[..rows], roots);
             }
             let (constant, signal) = block[grid.len() * BLOCK..].split_at_mut(BLOCK);
             constant[..rows].copy_from_slice(roots);
             signal[..rows].copy_from_slice(values);
-            scale(&mut signal[..rows], roots);
+            multiply(&mut signal[..rows], roots);
             for i in gone..columns {
                 let column = &block[i * BLOCK..i * BLOCK + rows];
                 for j in gone..=i {
@@ -67,12 +68,6 @@ impl Normal {
             .map(|i| numbers[i] * (2.0 * self.right[i] - dot(&self.gram[i * size..(i + 1) * size], numbers)))
             .sum();
         (self.square - explained).max(size as f64 * f64::EPSILON * self.square)
-    }
-}
-
-fn scale(column: &mut [f64], roots: &[f64]) {
-    for (entry, root) in column.iter_mut().zip(roots) {
-        *entry *= root;
     }
 }
 
