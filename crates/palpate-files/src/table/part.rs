@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// A part of a file that holds one test: all of a text, one sheet of a workbook, one curve, one value of `test_id`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Part {
     /// What the file calls it; `None` where the file holds one test and gives it no name.
     pub name: Option<String>,

@@ -26,6 +26,9 @@ const HEIGHTS: [&str; 11] = [
 /// Names of height + deflection, where a program has added them up already.
 const TIPS: [&str; 2] = ["verticalTipPosition", "tip position"];
 
+/// The channel that JPK's programs write the cantilever's bending to.
+pub(super) const BENDING: &str = "vDeflection";
+
 /// A channel of a segment.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Channel {
@@ -81,11 +84,23 @@ impl Draft {
         self.channels.iter().find(|channel| channel.name == name)
     }
 
-    /// The line of a channel in m.
-    fn in_metres(&self, name: &str) -> Option<Line> {
-        let channel = self.channel(name)?;
-        (channel.unit.as_deref() == Some("m")).then_some(channel.line)
+    /// The line of a channel that is in `unit`.
+    pub(super) fn line(&self, name: &str, unit: &str) -> Option<Line> {
+        self.channel(name)
+            .filter(|channel| channel.unit.as_deref() == Some(unit))
+            .map(|channel| channel.line)
     }
+}
+
+/// Sets the clocks of all segments where each with rows has the time of the whole series; else says that it has not.
+pub(super) fn set_series_clock<'a>(drafts: impl Iterator<Item = &'a mut Draft>) -> bool {
+    let mut drafts: Vec<&mut Draft> = drafts.collect();
+    let time = |draft: &Draft| draft.line("seriesTime", "s").map(Formula::Line);
+    let known = drafts.iter().all(|draft| draft.rows == 0 || time(draft).is_some());
+    if known {
+        drafts.iter_mut().for_each(|draft| draft.clock = time(draft));
+    }
+    known
 }
 
 /// Puts the segments of a curve together; what had to be left out is said, with why.
@@ -122,7 +137,7 @@ pub(super) fn assemble(drafts: Vec<Draft>, mut about: About) -> (Option<Curve>, 
         columns: columns.iter().enumerate().map(info).collect(),
         metadata: about.metadata,
         labels: in_rows(&kept),
-        clocks: Vec::new(),
+        ..Part::default()
     };
     let segment = |(place, draft): (usize, &&Draft)| Segment {
         number: draft.number,
@@ -158,7 +173,7 @@ fn sort_out(drafts: Vec<Draft>, titles: &[String]) -> (Vec<(String, Draft)>, Vec
         } else if bends && draft.load.raw.is_none() {
             Some("it lacks the deflection of the cantilever".to_owned())
         } else {
-            height.filter(|name| draft.in_metres(name).is_none()).map(|name| format!("it lacks {name}"))
+            height.filter(|name| draft.line(name, "m").is_none()).map(|name| format!("it lacks {name}"))
         };
         match reason {
             None => kept.push((title.clone(), draft)),
@@ -173,7 +188,7 @@ fn sort_out(drafts: Vec<Draft>, titles: &[String]) -> (Vec<(String, Draft)>, Vec
 
 /// The best height that all segments have, or else that any has.
 fn height_of(drafts: &[&Draft]) -> Option<&'static str> {
-    let has = |draft: &Draft, name: &str| draft.in_metres(name).is_some();
+    let has = |draft: &Draft, name: &str| draft.line(name, "m").is_some();
     let in_all = |name: &&&str| !drafts.is_empty() && drafts.iter().all(|draft| has(draft, name));
     let in_any = |name: &&&str| drafts.iter().any(|draft| has(draft, name));
     HEIGHTS.iter().find(in_all).or_else(|| HEIGHTS.iter().find(in_any)).copied()
@@ -227,24 +242,16 @@ fn derived(segments: &[&Draft], about: &mut Vec<Metadata>) -> Vec<Column> {
 
 /// −(height + deflection) in every segment, and how it was had, or why not.
 fn indentation(segments: &[&Draft]) -> (Option<Vec<Formula>>, String) {
-    let from_height = height_of(segments).and_then(|name| {
+    let with = |name: &str, deflected: bool| -> Option<Vec<Formula>> {
         let formula = |draft: &&Draft| {
-            let (height, deflection) = (draft.in_metres(name)?, Some(draft.load.deflection?));
+            let height = draft.line(name, "m")?;
+            let deflection = if deflected { Some(draft.load.deflection?) } else { None };
             Some(Formula::Indentation { height, deflection })
         };
-        let formulas: Option<Vec<Formula>> = segments.iter().map(formula).collect();
-        Some((formulas?, format!("−({name} + deflection)")))
-    });
-    let from_tip = || {
-        TIPS.iter().find_map(|name| {
-            let formula = |draft: &&Draft| {
-                let (height, deflection) = (draft.in_metres(name)?, None);
-                Some(Formula::Indentation { height, deflection })
-            };
-            let formulas: Option<Vec<Formula>> = segments.iter().map(formula).collect();
-            Some((formulas?, format!("−{name}")))
-        })
+        segments.iter().map(formula).collect()
     };
+    let from_height = height_of(segments).and_then(|name| Some((with(name, true)?, format!("−({name} + deflection)"))));
+    let from_tip = || TIPS.iter().find_map(|name| Some((with(name, false)?, format!("−{name}"))));
     match from_height.or_else(from_tip) {
         Some((formulas, how)) => (Some(formulas), how),
         None => (None, "none: it needs a height and a deflection in m".to_owned()),

@@ -86,7 +86,7 @@ pub(super) struct Segment {
 }
 
 /// A curve whose columns are known.
-#[derive(Debug, Clone)]
+#[derive(Debug, Default)]
 pub(super) struct Curve {
     pub(super) part: Part,
     pub(super) segments: Vec<Segment>,

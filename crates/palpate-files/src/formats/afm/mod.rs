@@ -21,6 +21,7 @@
 //! |---|---|
 //! | `curve.rs` | columns as formulas of channels, segment by segment |
 //! | `assemble.rs` | which columns the segments of a curve make together |
+//! | `rows.rs` | curves in lines of text |
 //! | `jpk_text/` | JPK's text export |
 //! | `jpk_force/` | JPK's binary files: a curve, a map of curves |
 //! | `tab/` | the text format of afmformats |
@@ -29,48 +30,10 @@ mod assemble;
 mod curve;
 pub(crate) mod jpk_force;
 pub(crate) mod jpk_text;
+mod rows;
 pub(crate) mod tab;
 
-use crate::{
-    error::{CellPlace, FileError},
-    input::Input,
-    table::{ColumnInfo, Metadata},
-};
-
-/// A number that is infinite once it is scaled; `column` counts from 1.
-fn not_finite(input: &Input, columns: &[ColumnInfo], line: usize, column: usize) -> FileError {
-    FileError::NotFinite {
-        place: CellPlace {
-            path: input.name().to_owned(),
-            line,
-            column,
-            name: columns.get(column.wrapping_sub(1)).and_then(|column| column.name.clone()),
-        },
-        found: "an infinite value".to_owned(),
-    }
-}
-
-/// Whether a row has as many cells as there are columns.
-fn one_cell_a_column(input: &Input, line: usize, expected: usize, found: usize) -> Result<(), FileError> {
-    let path = input.name().to_owned();
-    if found < expected {
-        return Err(FileError::TooFewCells {
-            path,
-            line,
-            expected,
-            found,
-        });
-    }
-    if found > expected {
-        return Err(FileError::TooManyCells {
-            path,
-            line,
-            expected,
-            found,
-        });
-    }
-    Ok(())
-}
+use crate::table::Metadata;
 
 /// A named value, with the unit that values of this name have in every format of force curves.
 fn metadata(name: &str, value: &str) -> Metadata {

@@ -64,9 +64,7 @@ pub(crate) fn look_into(input: &Input, kind: Kind, _options: &ReadOptions) -> Re
         written: written(kind, by.as_deref(), test, &passed),
         rows: if by.is_some() { Some(test.count()) } else { source.rows },
         columns: described.clone(),
-        metadata: Vec::new(),
-        labels: Vec::new(),
-        clocks: Vec::new(),
+        ..Part::default()
     };
     let parts = if columns.is_empty() { Vec::new() } else { tests.iter().map(part).collect() };
     if parts.is_empty() {

@@ -36,13 +36,9 @@ pub(super) struct Log {
 impl Log {
     pub(super) fn of(input: &Input, survey: Survey) -> (Part, Self) {
         let mut part = Part {
-            name: None,
             written: written(&survey),
-            rows: None,
-            columns: Vec::new(),
             metadata: metadata(&survey),
-            labels: Vec::new(),
-            clocks: Vec::new(),
+            ..Part::default()
         };
         let mut sources = Vec::new();
         for (index, series) in survey.series.iter().enumerate().filter(|(_, series)| !series.fields.is_empty()) {

@@ -161,11 +161,9 @@ fn part((sheet, name): (&str, &str), table: &Table, several: bool, beside: usize
     Part {
         name: Some(if several { format!("{name}, {}", table.range()) } else { name.to_owned() }),
         written: format!("sheet {sheet}, {}, {rows}{beside}", table.range()),
-        rows: None,
         columns: table.columns.clone(),
         metadata: table.metadata.clone(),
-        labels: Vec::new(),
-        clocks: Vec::new(),
+        ..Part::default()
     }
 }
 

@@ -18,13 +18,10 @@ struct TextFile {
 pub(crate) fn look_into(input: &Input, options: &ReadOptions) -> Result<Found, FileError> {
     let layout = detect(input, &options.layout)?;
     let part = Part {
-        name: None,
         written: layout.to_string(),
-        rows: None,
         columns: layout.columns.clone(),
         metadata: layout.metadata.clone(),
-        labels: Vec::new(),
-        clocks: Vec::new(),
+        ..Part::default()
     };
     Ok(Found {
         parts: vec![part],

@@ -31,7 +31,7 @@ use crate::{
 use archive::{Archive, HEADER, MOST_CHANNEL, MOST_PROPERTIES, Place};
 use properties::List;
 use segment::{StoredChannel, StoredSegment};
-use stored::{Kind, Stored};
+use stored::Stored;
 
 /// The list that the segments refer to.
 const SHARED: &str = "shared-data/header.properties";
@@ -158,15 +158,11 @@ fn of_header(archive: &mut Archive<'_>, place: &Place) -> Result<Vec<Metadata>, 
 fn first_row(archive: &mut Archive<'_>, segment: &StoredSegment) -> Result<Option<Vec<f64>>, FileError> {
     let mut row = Vec::new();
     for channel in &segment.channels {
-        let first = match channel.stored {
-            Stored::Constant(value) => Some(value),
-            Stored::Raster { start, .. } => Some(start),
-            Stored::Numbers(kind) => {
-                let bytes = archive.beginning(&channel.member, kind.width() as u64)?;
-                kind.number(&bytes, 0)
-            }
+        let width = channel.stored.width();
+        let bytes = if width > 0 { archive.beginning(&channel.member, width as u64)? } else { Vec::new() };
+        let Some(first) = channel.stored.number(&bytes, 0) else {
+            return Ok(None);
         };
-        let Some(first) = first else { return Ok(None) };
         row.push(first);
     }
     Ok(Some(row))
@@ -188,30 +184,6 @@ impl ReadPart for JpkForce {
         progress(total, total);
         read.finish();
         Ok(read)
-    }
-}
-
-/// The numbers of a channel, at hand.
-enum Taken {
-    Numbers { kind: Kind, bytes: Vec<u8> },
-    Constant(f64),
-    Raster { start: f64, step: f64 },
-}
-
-impl Taken {
-    fn bytes(&self) -> u64 {
-        match self {
-            Self::Numbers { bytes, .. } => bytes.len() as u64,
-            _ => 0,
-        }
-    }
-
-    fn at(&self, row: usize) -> f64 {
-        match self {
-            Self::Numbers { kind, bytes } => kind.number(bytes, row).unwrap_or(f64::NAN),
-            Self::Constant(value) => *value,
-            Self::Raster { start, step } => start + step * row as f64,
-        }
     }
 }
 
@@ -237,21 +209,21 @@ impl JpkForce {
         let mut taken = Vec::new();
         let mut bytes = 0;
         for index in wanted {
-            let channel = self.take(archive, &channels[index], segment.rows)?;
-            bytes += channel.bytes();
+            let taken_in = self.take(archive, &channels[index], segment.rows)?;
+            bytes += taken_in.len() as u64;
             if bytes > MOST_IN_MEMORY {
                 return Err(self.input.too_large("the channels of a segment", MOST_IN_MEMORY));
             }
             if bytes > self.input.warranted() {
                 return Err(self.input.swells());
             }
-            taken.push((index, channel));
+            taken.push((index, taken_in));
         }
         let mut row = vec![0.0; columns.len()];
         let mut numbers = vec![0.0; channels.len()];
         for index in 0..segment.rows {
-            for (channel, taken) in &taken {
-                numbers[*channel] = taken.at(index);
+            for (channel, bytes) in &taken {
+                numbers[*channel] = channels[*channel].stored.number(bytes, index).unwrap_or(f64::NAN);
             }
             chosen.fill(index, &numbers, &mut row).map_err(|place| {
                 let place = format!("segment {}, row {}, column {}", segment.number, index + 1, columns[place]);
@@ -263,26 +235,23 @@ impl JpkForce {
         Ok(())
     }
 
-    /// The numbers of a channel; of those with bytes there must be as many as rows.
-    fn take(&self, archive: &mut Archive<'_>, channel: &StoredChannel, rows: usize) -> Result<Taken, FileError> {
-        let kind = match channel.stored {
-            Stored::Constant(value) => return Ok(Taken::Constant(value)),
-            Stored::Raster { start, step } => return Ok(Taken::Raster { start, step }),
-            Stored::Numbers(kind) => kind,
-        };
-        let most = (rows as u64).saturating_mul(kind.width() as u64);
+    /// The bytes of a channel; of numbers there must be as many as rows.
+    fn take(&self, archive: &mut Archive<'_>, channel: &StoredChannel, rows: usize) -> Result<Vec<u8>, FileError> {
+        let width = channel.stored.width();
+        if width == 0 {
+            return Ok(Vec::new());
+        }
+        let most = (rows as u64).saturating_mul(width as u64);
         if most > MOST_CHANNEL {
             return Err(self.input.too_large("a channel of a segment", MOST_CHANNEL));
         }
         let bytes = archive.beginning(&channel.member, most + 1)?;
-        if bytes.len() as u64 == most {
-            return Ok(Taken::Numbers { kind, bytes });
-        }
-        let found = match bytes.len() as u64 > most {
-            true => "more".to_owned(),
-            false => format!("{} bytes", bytes.len()),
+        let found = match bytes.len() as u64 {
+            length if length == most => return Ok(bytes),
+            length if length > most => "more".to_owned(),
+            length => format!("{length} bytes"),
         };
-        let expected = format!("{most} bytes for {rows} numbers of {} bytes", kind.width());
+        let expected = format!("{most} bytes for {rows} numbers of {width} bytes");
         Err(self.input.damaged(channel.member.as_str(), expected, found))
     }
 }

@@ -3,70 +3,45 @@
 //! A channel of deflection is stored as whole numbers; its encoder makes them volts, the conversion `distance`
 //! (the sensitivity) makes metres of volts, and `force` (the spring constant) newtons of metres.
 
-use super::properties::Properties;
-use crate::formats::afm::curve::Line;
+use super::segment::Header;
+use crate::{
+    error::FileError,
+    formats::afm::{assemble::Channel, curve::Line},
+};
 
 /// Most conversions one upon the other; more run in a circle.
 const DEEPEST: usize = 16;
 
-/// A quantity that a channel can be read as.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Slot {
-    pub(super) line: Line,
-    pub(super) unit: Option<String>,
-}
-
-/// A property that is not as it should be: its name, what was expected, what was found.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct BadProperty {
-    pub(super) key: String,
-    pub(super) expected: &'static str,
-    pub(super) found: String,
-}
-
-/// The scalings of one channel.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Scalings<'a> {
-    properties: &'a Properties<'a>,
-    name: &'a str,
-}
-
-impl<'a> Scalings<'a> {
-    pub(super) fn of(properties: &'a Properties<'a>, name: &'a str) -> Self {
-        Self { properties, name }
-    }
-
-    /// The channel as its encoder makes it, from stored numbers in `channel`.
-    pub(super) fn encoded(self, channel: usize) -> Result<Slot, BadProperty> {
-        let mut slot = Slot {
-            line: Line::of(channel),
-            unit: None,
-        };
-        for encoder in [format!("channel.{}.data.encoder", self.name), format!("channel.{}.encoder", self.name)] {
+impl Header<'_> {
+    /// The channel called `name` as its encoder makes it, from stored numbers in `channel`.
+    fn encoded(&self, name: &str, channel: usize) -> Result<Channel, FileError> {
+        let (mut line, mut unit) = (Line::of(channel), None);
+        for encoder in [format!("channel.{name}.data.encoder"), format!("channel.{name}.encoder")] {
             if let Some((multiplier, offset)) = self.scaling(&encoder)? {
-                slot.line = slot.line.then(multiplier, offset);
-                slot.unit = self.unit(&format!("{encoder}.scaling"));
+                line = line.then(multiplier, offset);
+                unit = self.unit(&format!("{encoder}.scaling"));
                 break;
             }
         }
-        // Numbers without encoder are in the unit of the channel.
-        slot.unit = slot.unit.or_else(|| self.unit(&format!("channel.{}", self.name)));
-        Ok(slot)
+        Ok(Channel {
+            name: name.to_owned(),
+            // Numbers without encoder are in the unit of the channel.
+            unit: unit.or_else(|| self.unit(&format!("channel.{name}"))),
+            line,
+        })
     }
 
     /// The channel in a slot such as `force`; `None` where the file does not define it.
-    pub(super) fn slot(self, name: &str, channel: usize) -> Result<Option<Slot>, BadProperty> {
-        let base = self.properties.value(&format!("channel.{}.conversion-set.conversions.base", self.name));
+    pub(super) fn slot(&self, name: &str, channel: usize, slot: &str) -> Result<Option<Channel>, FileError> {
+        let conversions = format!("channel.{name}.conversion-set.conversion");
+        let base = self.properties.value(&format!("{conversions}s.base"));
         let mut chain = Vec::new();
-        let mut at = name.to_owned();
-        while Some(at.as_str()) != base {
-            let key = self.conversion(&at);
+        let mut at = slot;
+        while Some(at) != base {
+            let key = format!("{conversions}.{at}");
             if chain.len() >= DEEPEST {
-                return Err(BadProperty {
-                    key,
-                    expected: "conversions that end at the base",
-                    found: format!("more than {DEEPEST} one upon the other"),
-                });
+                let found = format!("more than {DEEPEST} one upon the other");
+                return Err(self.bad(&key, "conversions that end at the base", found));
             }
             if self.properties.value(&format!("{key}.defined")) == Some("false") {
                 return Ok(None);
@@ -76,71 +51,46 @@ impl<'a> Scalings<'a> {
             };
             chain.push(scaling);
             match self.properties.value(&format!("{key}.base-calibration-slot")) {
-                Some(below) => at = below.to_owned(),
+                Some(below) => at = below,
                 None => break,
             }
         }
-        let mut slot = self.encoded(channel)?;
+        let mut found = self.encoded(name, channel)?;
         for (multiplier, offset) in chain.iter().rev() {
-            slot.line = slot.line.then(*multiplier, *offset);
+            found.line = found.line.then(*multiplier, *offset);
         }
         if !chain.is_empty() {
-            slot.unit = self.unit(&format!("{}.scaling", self.conversion(name)));
+            found.unit = self.unit(&format!("{conversions}.{slot}.scaling"));
         }
-        Ok(Some(slot))
+        Ok(Some(found))
     }
 
-    /// The slot that the file shows by default.
-    pub(super) fn usual(self, channel: usize) -> Result<Slot, BadProperty> {
-        let usual = self.properties.value(&format!("channel.{}.conversion-set.conversions.default", self.name));
-        let slot = usual.map_or(Ok(None), |name| self.slot(name, channel))?;
-        slot.map_or_else(|| self.encoded(channel), Ok)
-    }
-
-    fn conversion(self, slot: &str) -> String {
-        format!("channel.{}.conversion-set.conversion.{slot}", self.name)
+    /// The channel in the slot that the file shows by default.
+    pub(super) fn usual(&self, name: &str, channel: usize) -> Result<Channel, FileError> {
+        let usual = self.properties.value(&format!("channel.{name}.conversion-set.conversions.default"));
+        let slot = usual.map_or(Ok(None), |slot| self.slot(name, channel, slot))?;
+        slot.map_or_else(|| self.encoded(name, channel), Ok)
     }
 
     /// Multiplier and offset of the scaling under a key; `None` where there is none.
-    fn scaling(self, key: &str) -> Result<Option<(f64, f64)>, BadProperty> {
-        let text = |end: &str| self.properties.value(&format!("{key}.scaling.{end}"));
+    fn scaling(&self, key: &str) -> Result<Option<(f64, f64)>, FileError> {
         for (end, only) in [("type", "linear"), ("style", "offsetmultiplier")] {
-            if let Some(found) = text(end).filter(|found| *found != only) {
-                return Err(BadProperty {
-                    key: format!("{key}.scaling.{end}"),
-                    expected: only,
-                    found: found.to_owned(),
-                });
+            let key = format!("{key}.scaling.{end}");
+            if let Some(found) = self.properties.value(&key).filter(|found| *found != only) {
+                return Err(self.bad(&key, only, found.to_owned()));
             }
         }
-        let number = |end: &str| match text(end).map(|text| (text, text.parse::<f64>())) {
-            None => Ok(None),
-            Some((_, Ok(value))) if value.is_finite() => Ok(Some(value)),
-            Some((text, _)) => Err(BadProperty {
-                key: format!("{key}.scaling.{end}"),
-                expected: "a finite number",
-                found: text.to_owned(),
-            }),
-        };
-        let (multiplier, offset) = (number("multiplier")?, number("offset")?);
-        match (multiplier, offset) {
-            (Some(0.0), _) => Err(BadProperty {
-                key: format!("{key}.scaling.multiplier"),
-                expected: "a number other than 0",
-                found: "0".to_owned(),
-            }),
+        let multiplier = format!("{key}.scaling.multiplier");
+        match (self.number(&multiplier)?, self.number(&format!("{key}.scaling.offset"))?) {
+            (Some(0.0), _) => Err(self.bad(&multiplier, "a number other than 0", "0".to_owned())),
             (Some(multiplier), offset) => Ok(Some((multiplier, offset.unwrap_or(0.0)))),
             (None, None) => Ok(None),
-            (None, Some(_)) => Err(BadProperty {
-                key: format!("{key}.scaling.multiplier"),
-                expected: "a number",
-                found: "nothing".to_owned(),
-            }),
+            (None, Some(_)) => Err(self.bad(&multiplier, "a number", "nothing".to_owned())),
         }
     }
 
     /// Old files write the unit right away, newer ones one level deeper.
-    fn unit(self, key: &str) -> Option<String> {
+    fn unit(&self, key: &str) -> Option<String> {
         let unit = self.properties.first(&[format!("{key}.unit.unit"), format!("{key}.unit")]);
         unit.map(str::to_owned)
     }

@@ -3,13 +3,12 @@
 use super::{
     archive::{Archive, MOST_CHANNEL, MOST_PROPERTIES, Place},
     properties::{self, List, Properties},
-    scaling::{BadProperty, Scalings, Slot},
     stored::{Kind, Stored},
 };
 use crate::{
     error::FileError,
     formats::afm::{
-        assemble::{Channel, Draft, Load},
+        assemble::{BENDING, Channel, Draft, Load, set_series_clock},
         curve::Formula,
         metadata,
     },
@@ -22,9 +21,6 @@ const MOST_CHANNELS: usize = 256;
 
 /// Most rows of a segment: those that a channel of the narrowest numbers may have.
 const MOST_ROWS: usize = (MOST_CHANNEL / 2) as usize;
-
-/// The channel that the cantilever's bending is written to.
-const BENDING: &str = "vDeflection";
 
 /// A segment and where its channels are stored.
 #[derive(Debug)]
@@ -45,11 +41,11 @@ pub(super) struct StoredChannel {
 }
 
 /// A header that is being understood.
-struct Header<'a> {
+pub(super) struct Header<'a> {
     input: &'a Input,
     /// Its member of the archive.
     member: String,
-    properties: &'a Properties<'a>,
+    pub(super) properties: &'a Properties<'a>,
 }
 
 /// Reads the header of segment `number` of the curve at `place`.
@@ -69,7 +65,7 @@ pub(super) fn read(
         member,
         properties: &properties,
     };
-    let names: Vec<&str> = properties
+    let mut names: Vec<&str> = properties
         .value("channels.list")
         .unwrap_or_default()
         .split_whitespace()
@@ -80,18 +76,18 @@ pub(super) fn read(
         return Err(header.bad("channels.list", &format!("at most {MOST_CHANNELS} channels"), found));
     }
     let rows = header.rows(&names)?;
-    let mut channels = Vec::new();
-    for name in names.iter().filter(|_| rows > 0) {
-        channels.push(header.channel(archive, &folder, name)?);
+    if rows == 0 {
+        names.clear();
     }
+    let channels = names.iter().map(|name| header.channel(archive, &folder, name)).collect::<Result<_, _>>()?;
     let text = |key: &str| properties.value(&format!("force-segment-header.{key}"));
     let style = text("settings.style").or_else(|| text("settings.segment-settings.style"));
     let draft = Draft {
         number,
         style: style.or_else(|| text("name.name")).unwrap_or("segment").to_owned(),
         rows,
-        channels: if rows > 0 { header.shown(&names)? } else { Vec::new() },
-        load: if rows > 0 { header.load(&names)? } else { Load::default() },
+        channels: names.iter().enumerate().map(|named| header.shown(named)).collect::<Result<_, _>>()?,
+        load: header.load(&names)?,
         clock: None,
         first: None,
     };
@@ -104,15 +100,11 @@ pub(super) fn read(
 }
 
 impl Header<'_> {
-    fn bad(&self, key: &str, expected: &str, found: String) -> FileError {
+    pub(super) fn bad(&self, key: &str, expected: &str, found: String) -> FileError {
         self.input.damaged(format!("{}, {key}", self.member), expected, found)
     }
 
-    fn bad_property(&self, bad: BadProperty) -> FileError {
-        self.bad(&bad.key, bad.expected, bad.found)
-    }
-
-    fn number(&self, key: &str) -> Result<Option<f64>, FileError> {
+    pub(super) fn number(&self, key: &str) -> Result<Option<f64>, FileError> {
         match self.properties.value(key).map(|text| (text, text.parse::<f64>())) {
             None => Ok(None),
             Some((_, Ok(value))) if value.is_finite() => Ok(Some(value)),
@@ -167,11 +159,8 @@ impl Header<'_> {
         };
         let kind = text("type").unwrap_or("nothing");
         let stored = match kind {
-            "constant-data" | "constant" => Stored::Constant(number("value")?),
-            "raster-data" | "raster" => Stored::Raster {
-                start: number("start")?,
-                step: number("step")?,
-            },
+            "constant-data" | "constant" => Stored::Rule(number("value")?, 0.0),
+            "raster-data" | "raster" => Stored::Rule(number("start")?, number("step")?),
             _ => {
                 let encoder = text("encoder.type");
                 let known = Kind::of(kind, encoder).ok_or_else(|| {
@@ -189,30 +178,16 @@ impl Header<'_> {
         Ok(StoredChannel { member, stored })
     }
 
-    /// The channels in the units that the file shows them in; heights in m if they are calibrated at all.
-    fn shown(&self, names: &[&str]) -> Result<Vec<Channel>, FileError> {
-        let mut shown = Vec::new();
-        for (index, name) in names.iter().enumerate() {
-            let slot = self.shown_as(name, index).map_err(|bad| self.bad_property(bad))?;
-            shown.push(Channel {
-                name: (*name).to_owned(),
-                unit: slot.unit,
-                line: slot.line,
-            });
-        }
-        Ok(shown)
-    }
-
-    fn shown_as(&self, name: &str, index: usize) -> Result<Slot, BadProperty> {
-        let scalings = Scalings::of(self.properties, name);
-        let usual = scalings.usual(index)?;
-        let in_metres = |slot: &Slot| slot.unit.as_deref() == Some("m");
+    /// A channel in the unit that the file shows it in; heights in m if they are calibrated at all.
+    fn shown(&self, (index, name): (usize, &&str)) -> Result<Channel, FileError> {
+        let usual = self.usual(name, index)?;
+        let in_metres = |channel: &Channel| channel.unit.as_deref() == Some("m");
         if in_metres(&usual) || !name.to_lowercase().contains("height") {
             return Ok(usual);
         }
         for better in ["calibrated", "nominal", "absolute"] {
-            if let Some(slot) = scalings.slot(better, index)?.filter(in_metres) {
-                return Ok(slot);
+            if let Some(channel) = self.slot(name, index, better)?.filter(in_metres) {
+                return Ok(channel);
             }
         }
         Ok(usual)
@@ -223,12 +198,11 @@ impl Header<'_> {
         let Some(index) = names.iter().position(|name| *name == BENDING) else {
             return Ok(Load::default());
         };
-        let scalings = Scalings::of(self.properties, BENDING);
         let slot = |name: &str, unit: &str| {
-            let slot = scalings.slot(name, index).map_err(|bad| self.bad_property(bad))?;
-            Ok::<_, FileError>(slot.filter(|slot| slot.unit.as_deref() == Some(unit)).map(|slot| slot.line))
+            let channel = self.slot(BENDING, index, name)?;
+            Ok::<_, FileError>(channel.filter(|channel| channel.unit.as_deref() == Some(unit)).map(|found| found.line))
         };
-        let raw = scalings.usual(index).map_err(|bad| self.bad_property(bad))?;
+        let raw = self.usual(BENDING, index)?;
         Ok(Load {
             force: slot("force", "N")?,
             deflection: slot("distance", "m")?,
@@ -261,15 +235,7 @@ impl Header<'_> {
 
 /// Puts the segments one behind the other by their durations, and says how.
 pub(super) fn set_clocks(segments: &mut [StoredSegment]) -> &'static str {
-    let in_series = |segment: &StoredSegment| {
-        let channel = segment.draft.channels.iter().find(|channel| channel.name == "seriesTime")?;
-        (channel.unit.as_deref() == Some("s")).then_some(channel.line)
-    };
-    let with_rows = |segment: &&StoredSegment| segment.draft.rows > 0;
-    if segments.iter().filter(with_rows).all(|segment| in_series(segment).is_some()) {
-        for segment in segments {
-            segment.draft.clock = in_series(segment).map(Formula::Line);
-        }
+    if set_series_clock(segments.iter_mut().map(|segment| &mut segment.draft)) {
         return "seriesTime of the file";
     }
     let mut start = 0.0;

@@ -5,10 +5,26 @@
 pub(super) enum Stored {
     /// Numbers of this kind, highest byte first.
     Numbers(Kind),
-    /// The same number in every row.
-    Constant(f64),
-    /// start + step × row.
-    Raster { start: f64, step: f64 },
+    /// The first number and how far the next one is from it: first + step × row.
+    Rule(f64, f64),
+}
+
+impl Stored {
+    /// The number in a row, as far as the bytes of the channel reach.
+    pub(super) fn number(self, bytes: &[u8], row: usize) -> Option<f64> {
+        match self {
+            Self::Numbers(kind) => kind.number(bytes, row),
+            Self::Rule(first, step) => Some(first + step * row as f64),
+        }
+    }
+
+    /// Bytes of a number.
+    pub(super) fn width(self) -> usize {
+        match self {
+            Self::Numbers(kind) => kind.width(),
+            Self::Rule(..) => 0,
+        }
+    }
 }
 
 /// A kind of stored number.

@@ -12,17 +12,15 @@ mod scan;
 mod segment;
 
 use crate::{
-    cell::{DecimalMark, number},
-    error::{CellPlace, FileError, shorten},
+    error::FileError,
     formats::afm::{
         assemble::{About, assemble},
-        curve::Segment,
-        metadata, not_finite, one_cell_a_column,
+        metadata, rows,
     },
-    input::{Encoding, Input, LineReader},
-    table::{ColumnInfo, Columns, Found, Metadata, Part, ReadOptions, ReadPart},
+    input::Input,
+    table::{Found, Metadata, ReadOptions},
 };
-use scan::{Block, cells};
+use scan::Block;
 
 /// Whether a file begins like a text export: comment lines that name a segment and its columns.
 pub(crate) fn recognise(input: &Input) -> bool {
@@ -38,15 +36,6 @@ pub(crate) fn recognise(input: &Input) -> bool {
     columns && segment
 }
 
-/// A text export whose segments are known.
-#[derive(Debug)]
-struct JpkText {
-    input: Input,
-    columns: Vec<ColumnInfo>,
-    segments: Vec<Segment>,
-    blocks: Vec<Block>,
-}
-
 /// Looks into a text export, from end to end: its segments follow one another without a table of contents.
 pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, FileError> {
     let blocks = scan::blocks(input)?;
@@ -56,20 +45,8 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
         written: format!("JPK text export, {} segments", blocks.len()),
         metadata: of_headers(&blocks, segment::clock_of(&drafts)),
     };
-    let (curve, skipped) = assemble(drafts, about);
-    let segments = curve.as_ref().map_or_else(Vec::new, |curve| curve.segments.clone());
-    let parts: Vec<Part> = curve.into_iter().map(|curve| curve.part).collect();
-    let columns = parts.first().map_or_else(Vec::new, |part| part.columns.clone());
-    Ok(Found {
-        parts,
-        skipped,
-        reader: Box::new(JpkText {
-            input: input.clone(),
-            columns,
-            segments,
-            blocks,
-        }),
-    })
+    let assembled = assemble(drafts, about);
+    Ok(rows::found(input, blocks.into_iter().map(|block| block.layout).collect(), assembled))
 }
 
 /// The entries of the first header, and those of the others that say something else.
@@ -84,82 +61,4 @@ fn of_headers(blocks: &[Block], clock: &'static str) -> Vec<Metadata> {
     }
     all.push(metadata("time", clock));
     all
-}
-
-impl ReadPart for JpkText {
-    fn read(&self, _part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
-        let mut read = Columns::of(columns.len());
-        let mut lines = LineReader::open(&self.input, Encoding::Utf8)?;
-        let mut row = vec![0.0; columns.len()];
-        for segment in &self.segments {
-            let block = &self.blocks[segment.number];
-            let chosen = segment.choose(columns);
-            let mut plan = Plan {
-                input: &self.input,
-                block,
-                channels: chosen.channels(),
-                stored: vec![0.0; block.columns.len()],
-            };
-            let mut done = 0;
-            while done < segment.rows {
-                let number = lines.line() + 1;
-                let Some(line) = lines.next_line()? else { break };
-                if number < block.first_line || line.trim_ascii().is_empty() {
-                    continue;
-                }
-                plan.read(line, number)?;
-                chosen
-                    .fill(done, &plan.stored, &mut row)
-                    .map_err(|place| not_finite(&self.input, &self.columns, number, columns[place]))?;
-                read.push(&row, number);
-                done += 1;
-            }
-            let (bytes, total) = lines.progress();
-            progress(bytes, total);
-        }
-        read.finish();
-        Ok(read)
-    }
-}
-
-/// How the rows of a block are read.
-struct Plan<'a> {
-    input: &'a Input,
-    block: &'a Block,
-    channels: Vec<usize>,
-    stored: Vec<f64>,
-}
-
-impl Plan<'_> {
-    /// Takes the wanted channels out of a row, which has one cell a channel.
-    fn read(&mut self, line: &[u8], number: usize) -> Result<(), FileError> {
-        let mut wanted = self.channels.iter().copied().peekable();
-        let mut found = 0;
-        for (index, cell) in cells(line).enumerate() {
-            found += 1;
-            if wanted.next_if_eq(&index).is_some() {
-                let value = number::parse(cell, DecimalMark::Point);
-                self.stored[index] = value.ok_or_else(|| self.no_number(cell, number, index))?;
-            }
-        }
-        one_cell_a_column(self.input, number, self.block.columns.len(), found)
-    }
-
-    fn no_number(&self, cell: &[u8], line: usize, index: usize) -> FileError {
-        let place = CellPlace {
-            path: self.input.name().to_owned(),
-            line,
-            column: index + 1,
-            name: self.block.columns.get(index).cloned(),
-        };
-        let found = shorten(&String::from_utf8_lossy(cell));
-        match number::is_not_finite(cell) {
-            true => FileError::NotFinite { place, found },
-            false => FileError::TextInNumbers {
-                place,
-                found,
-                decimal: DecimalMark::Point,
-            },
-        }
-    }
 }

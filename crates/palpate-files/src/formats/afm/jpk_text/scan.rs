@@ -2,6 +2,7 @@
 
 use crate::{
     error::FileError,
+    formats::afm::rows::Rows,
     input::{Encoding, Input, LineReader},
 };
 
@@ -15,14 +16,11 @@ const MOST_COLUMNS: usize = 256;
 const MOST_HEADER: usize = 64 << 20;
 
 /// A header and the rows below it.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Default)]
 pub(super) struct Block {
     /// Every `key: value`, in order.
     pub(super) header: Vec<(String, String)>,
-    /// Names of the columns.
-    pub(super) columns: Vec<String>,
-    /// Line of the first row, from 1.
-    pub(super) first_line: usize,
+    pub(super) layout: Rows,
     pub(super) rows: usize,
     /// The first row as it stands there, and the last.
     pub(super) first: Vec<u8>,
@@ -35,11 +33,6 @@ impl Block {
         let found = self.header.iter().find(|(own, value)| own == key && !value.is_empty());
         found.map(|(_, value)| value.as_str())
     }
-}
-
-/// The cells of a row, which blanks separate.
-pub(super) fn cells(line: &[u8]) -> impl Iterator<Item = &[u8]> {
-    line.split(u8::is_ascii_whitespace).filter(|cell| !cell.is_empty())
 }
 
 /// The key and the value of a header line.
@@ -95,13 +88,17 @@ fn begins_a_block(key: &str) -> bool {
 fn add_row(input: &Input, block: &mut Block, line: &[u8], number: usize) -> Result<(), FileError> {
     if block.rows == 0 {
         let columns = block.value("columns").unwrap_or_default().split_whitespace();
-        block.columns = columns.take(MOST_COLUMNS + 1).map(str::to_owned).collect();
-        if block.columns.is_empty() || block.columns.len() > MOST_COLUMNS {
+        let columns: Vec<String> = columns.take(MOST_COLUMNS + 1).map(str::to_owned).collect();
+        if columns.is_empty() || columns.len() > MOST_COLUMNS {
             let expected = format!("a line `# columns:` above with 1 to {MOST_COLUMNS} names");
-            let found = format!("{} names", block.columns.len());
+            let found = format!("{} names", columns.len());
             return Err(input.damaged(format!("line {number}"), expected, found));
         }
-        block.first_line = number;
+        block.layout = Rows {
+            first_line: number,
+            columns,
+            delimiter: None,
+        };
         block.first = line.to_vec();
     }
     block.rows += 1;

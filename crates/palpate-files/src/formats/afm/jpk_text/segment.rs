@@ -1,18 +1,15 @@
 //! What the header of a block says about its columns.
 
-use super::scan::{Block, cells};
+use super::scan::Block;
 use crate::{
     cell::{DecimalMark, number},
     error::FileError,
     formats::afm::{
-        assemble::{Channel, Draft, Load},
+        assemble::{BENDING, Channel, Draft, Load, set_series_clock},
         curve::{Formula, Line},
     },
     input::Input,
 };
-
-/// The channel that the cantilever's bending is written to.
-const BENDING: &str = "vDeflection";
 
 /// The segments of a file.
 pub(super) fn drafts(input: &Input, blocks: &[Block]) -> Result<Vec<Draft>, FileError> {
@@ -28,10 +25,10 @@ fn draft(input: &Input, block: &Block, first: &Block, number: usize) -> Result<D
     let units: Option<Vec<&str>> = block.value("units").map(|units| units.split_whitespace().collect());
     if let Some(units) = &units
         && block.rows > 0
-        && units.len() != block.columns.len()
+        && units.len() != block.layout.columns.len()
     {
-        let place = format!("segment {number}, the header above line {}", block.first_line);
-        let expected = format!("a unit for each of {} columns", block.columns.len());
+        let place = format!("segment {number}, the header above line {}", block.layout.first_line);
+        let expected = format!("a unit for each of {} columns", block.layout.columns.len());
         return Err(input.damaged(place, expected, units.len().to_string()));
     }
     if let Some(count) = block.value("recorded-num-points").and_then(|count| count.parse::<usize>().ok())
@@ -50,10 +47,10 @@ fn draft(input: &Input, block: &Block, first: &Block, number: usize) -> Result<D
         number,
         style: block.value("segment").unwrap_or("segment").to_owned(),
         rows: block.rows,
-        channels: block.columns.iter().enumerate().map(channel).collect(),
+        channels: block.layout.columns.iter().enumerate().map(channel).collect(),
         load: load(input, (block, first), number, &unit)?,
         clock: None,
-        first: numbers(&block.first),
+        first: numbers(block, &block.first),
     })
 }
 
@@ -65,7 +62,7 @@ fn load(
     number: usize,
     unit: &dyn Fn(usize) -> Option<String>,
 ) -> Result<Load, FileError> {
-    let Some(index) = block.columns.iter().position(|name| name == BENDING) else {
+    let Some(index) = block.layout.columns.iter().position(|name| name == BENDING) else {
         return Ok(Load::default());
     };
     let constant =
@@ -101,25 +98,15 @@ fn load(
 /// Time: of the whole series where the file has it, else of each segment, put one behind the other, else of the
 /// durations that were asked for.
 fn set_clocks(blocks: &[Block], drafts: &mut [Draft]) {
-    let in_seconds = |draft: &Draft, name: &str| {
-        let channel = draft.channels.iter().find(|channel| channel.name == name)?;
-        (channel.unit.as_deref() == Some("s")).then_some(channel.line)
-    };
-    let all = |drafts: &[Draft], name: &str| {
-        drafts.iter().filter(|draft| draft.rows > 0).all(|draft| in_seconds(draft, name).is_some())
-    };
-    if all(drafts, "seriesTime") {
-        for draft in drafts {
-            draft.clock = in_seconds(draft, "seriesTime").map(Formula::Line);
-        }
+    if set_series_clock(drafts.iter_mut()) {
         return;
     }
-    let by_segment = all(drafts, "time");
+    let by_segment = drafts.iter().all(|draft| draft.rows == 0 || draft.line("time", "s").is_some());
     let mut start = 0.0;
     for (block, draft) in blocks.iter().zip(drafts).filter(|(block, _)| block.rows > 0) {
         let rows = block.rows as f64;
-        if by_segment && let Some(line) = in_seconds(draft, "time") {
-            let at = |row: &[u8]| numbers(row).and_then(|row| row.get(line.channel).copied());
+        if by_segment && let Some(line) = draft.line("time", "s") {
+            let at = |row: &[u8]| numbers(block, row).and_then(|row| row.get(line.channel).copied());
             let (Some(first), Some(last)) = (at(&block.first), at(&block.last)) else {
                 return;
             };
@@ -173,6 +160,6 @@ pub(super) fn clock_of(drafts: &[Draft]) -> &'static str {
 }
 
 /// The numbers of a row, if it holds nothing else.
-fn numbers(row: &[u8]) -> Option<Vec<f64>> {
-    cells(row).map(|cell| number::parse(cell, DecimalMark::Point)).collect()
+fn numbers(block: &Block, row: &[u8]) -> Option<Vec<f64>> {
+    block.layout.cells(row).map(|cell| number::parse(cell, DecimalMark::Point)).collect()
 }

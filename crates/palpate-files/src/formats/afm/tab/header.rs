@@ -4,6 +4,7 @@ use serde_json::{Map, Value};
 
 use crate::{
     error::{FileError, shorten},
+    formats::afm::rows::Rows,
     input::{Encoding, Input, LineReader},
 };
 
@@ -18,11 +19,10 @@ const MOST_HEADER: usize = 16 << 20;
 const MOST_COLUMNS: usize = 256;
 
 /// The lines above the rows.
-#[derive(Debug, Clone, Default)]
 pub(super) struct Header {
     pub(super) metadata: Map<String, Value>,
-    pub(super) columns: Vec<String>,
-    pub(super) delimiter: u8,
+    /// What the last of them says about the rows.
+    pub(super) rows: Rows,
 }
 
 /// The comment lines: metadata, and the names of the columns in the last of them.
@@ -73,9 +73,10 @@ pub(super) fn read(input: &Input) -> Result<Header, FileError> {
         let expected = format!("a line of 1 to {MOST_COLUMNS} names above the rows");
         return Err(input.damaged("header", expected, shorten(&names)));
     }
-    Ok(Header {
-        metadata,
+    let rows = Rows {
+        first_line: 0,
         columns,
-        delimiter,
-    })
+        delimiter: Some(delimiter),
+    };
+    Ok(Header { metadata, rows })
 }

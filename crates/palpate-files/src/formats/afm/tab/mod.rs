@@ -6,10 +6,10 @@
 //! | file | what |
 //! |---|---|
 //! | `header.rs` | the comment lines |
-//! | `rows.rs` | the rows, and where the number of the segment changes |
+//! | `scan.rs` | how many rows there are, and where the number of the segment changes |
 
 mod header;
-mod rows;
+mod scan;
 
 use serde_json::Value;
 
@@ -17,14 +17,14 @@ use crate::{
     error::FileError,
     formats::afm::{
         assemble::{About, Channel, Draft, Load, assemble},
-        curve::{Formula, Line, Segment},
-        metadata, not_finite,
+        curve::{Formula, Line},
+        metadata, rows,
     },
     input::Input,
-    table::{ColumnInfo, Columns, Found, Label, Part, ReadOptions, ReadPart},
+    table::{Found, Label, ReadOptions},
 };
 use header::{BEGIN, Header};
-use rows::{MOST_SEGMENTS, Rows, Scan, row, scan};
+use scan::{MOST_SEGMENTS, Scan, scan};
 
 /// Whether a file begins like one of afmformats: its name in the first line, or marked metadata.
 pub(crate) fn recognise(input: &Input) -> bool {
@@ -33,14 +33,6 @@ pub(crate) fn recognise(input: &Input) -> bool {
     let mut head = text.lines().take_while(|line| line.starts_with('#') || line.trim().is_empty());
     let named = |line: &str| line.starts_with("# afmformats ") || line.trim_end() == BEGIN;
     head.any(named)
-}
-
-#[derive(Debug)]
-struct Tab {
-    input: Input,
-    header: Header,
-    columns: Vec<ColumnInfo>,
-    segments: Vec<Segment>,
 }
 
 /// Looks into a file, from end to end, for its segments.
@@ -52,23 +44,11 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
         written: "text of afmformats".to_owned(),
         metadata: header.metadata.iter().map(|(name, value)| metadata(name, &plain(value))).collect(),
     };
-    let (curve, skipped) = assemble(vec![draft(&header, &scan)], about);
-    let segments = curve.as_ref().map_or_else(Vec::new, |curve| curve.segments.clone());
-    let mut parts: Vec<Part> = curve.into_iter().map(|curve| curve.part).collect();
-    for part in &mut parts {
-        part.labels = labels(&header, &scan);
+    let (mut curve, skipped) = assemble(vec![draft(&header, &scan)], about);
+    if let Some(curve) = &mut curve {
+        curve.part.labels = labels(&header, &scan);
     }
-    let columns = parts.first().map_or_else(Vec::new, |part| part.columns.clone());
-    Ok(Found {
-        parts,
-        skipped,
-        reader: Box::new(Tab {
-            input: input.clone(),
-            header,
-            columns,
-            segments,
-        }),
-    })
+    Ok(rows::found(input, vec![header.rows], (curve, skipped)))
 }
 
 /// A value of the metadata as text.
@@ -93,14 +73,14 @@ fn draft(header: &Header, scan: &Scan) -> Draft {
         unit: unit(name).map(str::to_owned),
         line: Line::of(index),
     };
-    let line = |name: &str| header.columns.iter().position(|own| own == name).map(Line::of);
+    let line = |name: &str| header.rows.columns.iter().position(|own| own == name).map(Line::of);
     let spring = header.metadata.get("spring constant").and_then(Value::as_f64).filter(|value| value.is_normal());
     let force = line("force");
     Draft {
         number: 0,
         style: "curve".to_owned(),
         rows: scan.rows,
-        channels: header.columns.iter().enumerate().map(channel).collect(),
+        channels: header.rows.columns.iter().enumerate().map(channel).collect(),
         load: Load {
             raw: force,
             raw_unit: force.and(Some("N".to_owned())),
@@ -131,34 +111,4 @@ fn labels(header: &Header, scan: &Scan) -> Vec<Label> {
         end: scan.starts.get(index + 1).map_or(scan.rows, |(_, start)| *start),
     };
     scan.starts.iter().enumerate().map(label).collect()
-}
-
-impl ReadPart for Tab {
-    fn read(&self, _part: usize, columns: &[usize], progress: &mut dyn FnMut(u64, u64)) -> Result<Columns, FileError> {
-        let mut read = Columns::of(columns.len());
-        let mut rows = Rows::open(&self.input)?;
-        let mut values = vec![0.0; columns.len()];
-        let mut stored = vec![0.0; self.header.columns.len()];
-        let mut told = 0;
-        for segment in &self.segments {
-            let chosen = segment.choose(columns);
-            let channels = chosen.channels();
-            let mut index = 0;
-            while let Some((line, number)) = rows.next()? {
-                row(&self.input, &self.header, &line, number, &channels, &mut stored)?;
-                chosen
-                    .fill(index, &stored, &mut values)
-                    .map_err(|place| not_finite(&self.input, &self.columns, number, columns[place]))?;
-                read.push(&values, number);
-                index += 1;
-                let (done, total) = rows.lines.progress();
-                if done != told {
-                    progress(done, total);
-                    told = done;
-                }
-            }
-        }
-        read.finish();
-        Ok(read)
-    }
 }

@@ -1,0 +1,49 @@
+//! Going through the rows for the segments they belong to.
+
+use super::header::Header;
+use crate::{
+    error::FileError,
+    formats::afm::rows::is_row,
+    input::{Encoding, Input, LineReader},
+};
+
+/// Most segments that are told apart; more are no segments.
+pub(super) const MOST_SEGMENTS: usize = 4096;
+
+/// Rows, and where the number of the segment changes.
+#[derive(Default)]
+pub(super) struct Scan {
+    pub(super) rows: usize,
+    pub(super) first: Option<Vec<f64>>,
+    /// Number of a segment and its first row.
+    pub(super) starts: Vec<(f64, usize)>,
+}
+
+pub(super) fn scan(input: &Input, Header { rows, .. }: &Header) -> Result<Scan, FileError> {
+    let segment = rows.columns.iter().position(|name| name == "segment");
+    let mut channels: Vec<usize> = (0..rows.columns.len()).collect();
+    let mut stored = vec![0.0; rows.columns.len()];
+    let mut scan = Scan::default();
+    let mut lines = LineReader::open(input, Encoding::Utf8)?;
+    loop {
+        let number = lines.line() + 1;
+        let Some(line) = lines.next_line()? else {
+            return Ok(scan);
+        };
+        if !is_row(line) {
+            continue;
+        }
+        rows.read(input, (line, number), &channels, &mut stored)?;
+        if scan.rows == 0 {
+            scan.first = Some(stored.clone());
+            channels = segment.into_iter().collect();
+        }
+        if let Some(segment) = segment {
+            let changes = scan.starts.last().is_none_or(|(last, _)| *last != stored[segment]);
+            if changes && scan.starts.len() <= MOST_SEGMENTS {
+                scan.starts.push((stored[segment], scan.rows));
+            }
+        }
+        scan.rows += 1;
+    }
+}
