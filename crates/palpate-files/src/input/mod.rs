@@ -8,10 +8,12 @@
 //! | `source.rs` | bytes under a name for messages ([`Input`]) |
 //! | `packing.rs` | telling packed files by their content, and unpacking them |
 //! | `counting.rs` | how far a reader has got |
+//! | `binary.rs` | numbers as bytes |
 //! | `contained.rs` | readers of other crates that panic on damaged files |
 //! | `encoding.rs` | bytes as letters ([`Encoding`]) |
 //! | `feed.rs`, `lines.rs` | a file line by line, in UTF-8 |
 
+mod binary;
 mod contained;
 mod counting;
 pub(crate) mod encoding;
@@ -20,6 +22,7 @@ pub(crate) mod lines;
 mod packing;
 mod source;
 
+pub(crate) use binary::Number;
 pub(crate) use contained::{caught, contained};
 pub use encoding::{Encoding, UnknownEncoding};
 pub(crate) use lines::{LONGEST_LINE, LineReader};

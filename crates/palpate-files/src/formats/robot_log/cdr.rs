@@ -4,8 +4,9 @@
 
 use super::{
     fields::{Fault, Fields, MOST_ELEMENTS, distinct, names_elements},
-    schema::{Count, Field, Kind, Number, Schema},
+    schema::{Count, Field, Kind, Schema},
 };
+use crate::input::Number;
 
 /// Length of the head that says how the rest is written.
 const HEAD: usize = 4;
@@ -92,9 +93,7 @@ impl<'a> Bytes<'a> {
     }
 
     fn whole(&mut self) -> Result<u32, Fault> {
-        let taken = self.take(1, 4)?;
-        let four = [taken[0], taken[1], taken[2], taken[3]];
-        Ok(if self.little { u32::from_le_bytes(four) } else { u32::from_be_bytes(four) })
+        Ok(self.number(Number::U32)? as u32)
     }
 
     fn text(&mut self) -> Result<&'a [u8], Fault> {
@@ -105,26 +104,7 @@ impl<'a> Bytes<'a> {
 
     fn number(&mut self, number: Number) -> Result<f64, Fault> {
         let taken = self.take(1, number.size())?;
-        let mut eight = [0; 8];
-        // Least byte first, whatever the message has.
-        for (place, byte) in taken.iter().enumerate() {
-            let to = if self.little { place } else { taken.len() - 1 - place };
-            eight[to] = *byte;
-        }
-        let bits = u64::from_le_bytes(eight);
-        Ok(match number {
-            Number::Bool => f64::from(u8::from(bits != 0)),
-            Number::I8 => f64::from(bits as u8 as i8),
-            Number::U8 => f64::from(bits as u8),
-            Number::I16 => f64::from(bits as u16 as i16),
-            Number::U16 => f64::from(bits as u16),
-            Number::I32 => f64::from(bits as u32 as i32),
-            Number::U32 => f64::from(bits as u32),
-            Number::I64 => bits as i64 as f64,
-            Number::U64 => bits as f64,
-            Number::F32 => f64::from(f32::from_bits(bits as u32)),
-            Number::F64 => f64::from_bits(bits),
-        })
+        Ok(number.read(taken, self.little))
     }
 }
 

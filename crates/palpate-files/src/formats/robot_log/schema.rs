@@ -5,6 +5,8 @@
 
 use std::collections::HashMap;
 
+use crate::input::Number;
+
 /// Most types that a message is made of.
 const MOST_TYPES: usize = 512;
 
@@ -47,49 +49,21 @@ pub(super) enum Count {
     Sequence,
 }
 
-/// How a number is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Number {
-    Bool,
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    I64,
-    U64,
-    F32,
-    F64,
-}
-
-impl Number {
-    fn of(name: &str) -> Option<Self> {
-        Some(match name {
-            "bool" => Self::Bool,
-            "int8" => Self::I8,
-            "uint8" | "byte" | "char" => Self::U8,
-            "int16" => Self::I16,
-            "uint16" => Self::U16,
-            "int32" => Self::I32,
-            "uint32" => Self::U32,
-            "int64" => Self::I64,
-            "uint64" => Self::U64,
-            "float32" => Self::F32,
-            "float64" => Self::F64,
-            _ => return None,
-        })
-    }
-
-    /// Bytes that one takes, which is also what it is aligned to.
-    pub(super) fn size(self) -> usize {
-        match self {
-            Self::Bool | Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::U64 | Self::F64 => 8,
-        }
-    }
+fn number(name: &str) -> Option<Number> {
+    Some(match name {
+        "bool" => Number::Bool,
+        "int8" => Number::I8,
+        "uint8" | "byte" | "char" => Number::U8,
+        "int16" => Number::I16,
+        "uint16" => Number::U16,
+        "int32" => Number::I32,
+        "uint32" => Number::U32,
+        "int64" => Number::I64,
+        "uint64" => Number::U64,
+        "float32" => Number::F32,
+        "float64" => Number::F64,
+        _ => return None,
+    })
 }
 
 impl Schema {
@@ -179,7 +153,7 @@ fn field(line: &str, package: &str, places: &HashMap<&str, usize>) -> Result<Opt
 }
 
 fn resolved(kind: &str, package: &str, places: &HashMap<&str, usize>) -> Result<Kind, String> {
-    if let Some(number) = Number::of(kind) {
+    if let Some(number) = number(kind) {
         return Ok(Kind::Number(number));
     }
     if kind == "string" || kind.starts_with("string<=") {

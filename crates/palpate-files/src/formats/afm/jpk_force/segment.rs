@@ -3,7 +3,7 @@
 use super::{
     archive::{Archive, MOST_CHANNEL, MOST_PROPERTIES, Place},
     properties::{self, List, Properties},
-    stored::{Kind, Stored},
+    stored::{Stored, kind},
 };
 use crate::{
     error::FileError,
@@ -157,14 +157,14 @@ impl Header<'_> {
             };
             found.ok_or_else(|| self.bad(&first, "a number", "nothing".to_owned()))
         };
-        let kind = text("type").unwrap_or("nothing");
-        let stored = match kind {
+        let data = text("type").unwrap_or("nothing");
+        let stored = match data {
             "constant-data" | "constant" => Stored::Rule(number("value")?, 0.0),
             "raster-data" | "raster" => Stored::Rule(number("start")?, number("step")?),
             _ => {
                 let encoder = text("encoder.type");
-                let known = Kind::of(kind, encoder).ok_or_else(|| {
-                    let found = format!("{kind}, encoder {}", encoder.unwrap_or("none"));
+                let known = kind(data, encoder).ok_or_else(|| {
+                    let found = format!("{data}, encoder {}", encoder.unwrap_or("none"));
                     self.bad(&format!("channel.{name}.type"), "short, integer, long, float or double data", found)
                 })?;
                 Stored::Numbers(known)
