@@ -8,40 +8,18 @@ use std::{
     },
 };
 
-/// Bytes read so far, seen from outside.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Count(Arc<AtomicU64>);
-
-impl Count {
-    pub(super) fn get(&self) -> u64 {
-        self.0.load(Ordering::Relaxed)
-    }
-}
-
 /// A reader whose progress can be seen from outside.
 #[derive(Debug)]
 pub(super) struct Counting<R> {
-    inner: R,
-    count: Count,
-}
-
-impl<R> Counting<R> {
-    pub(super) fn of(inner: R) -> Self {
-        Self {
-            inner,
-            count: Count::default(),
-        }
-    }
-
-    pub(super) fn count(&self) -> Count {
-        self.count.clone()
-    }
+    pub(super) inner: R,
+    /// Bytes read so far.
+    pub(super) count: Arc<AtomicU64>,
 }
 
 impl<R: Read> Read for Counting<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let got = self.inner.read(into)?;
-        self.count.0.fetch_add(got as u64, Ordering::Relaxed);
+        self.count.fetch_add(got as u64, Ordering::Relaxed);
         Ok(got)
     }
 }

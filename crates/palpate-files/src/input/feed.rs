@@ -57,14 +57,14 @@ impl Feed {
         match &mut self.decoding {
             None => {
                 buffer.resize(held + PIECE, 0);
-                let got = read(&mut self.bytes, &mut buffer[held..]);
+                let got = self.bytes.read(&mut buffer[held..]);
                 buffer.truncate(held + *got.as_ref().unwrap_or(&0));
                 got?;
             }
             Some(decoding) => {
                 // One piece may decode to nothing: the first byte of a pair, say.
                 while buffer.len() == held && !decoding.finished {
-                    let got = read(&mut self.bytes, &mut decoding.raw)?;
+                    let got = self.bytes.read(&mut decoding.raw)?;
                     decoding.append(got, buffer);
                 }
             }
@@ -83,14 +83,5 @@ impl Decoding {
         buffer.resize(held + room, 0);
         let (_, _, written, _) = self.decoder.decode_to_utf8(&self.raw[..got], &mut buffer[held..], self.finished);
         buffer.truncate(held + written);
-    }
-}
-
-fn read(bytes: &mut InputReader, into: &mut [u8]) -> io::Result<usize> {
-    loop {
-        match bytes.read(into) {
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            other => return other,
-        }
     }
 }

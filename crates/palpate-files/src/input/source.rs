@@ -5,11 +5,14 @@ use std::{
     fs::File,
     io::{self, Cursor, Read, Seek},
     path::{Path, PathBuf},
-    sync::Arc,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
 };
 
 use super::{
-    counting::{Count, Counting},
+    counting::Counting,
     packing::{self, MOST_UNPACKED, Packing},
 };
 use crate::error::FileError;
@@ -132,14 +135,24 @@ impl Input {
 
     /// Its bytes from the first on, unpacked.
     pub(crate) fn reader(&self) -> Result<InputReader, FileError> {
-        let counting = Counting::of(self.stored()?);
-        let count = counting.count();
-        let bytes = packing::unpacked(counting, &self.packing).map_err(|error| self.failed(error))?;
+        let (inner, count) = (self.stored()?, Arc::default());
+        let counting = Counting {
+            inner,
+            count: Arc::clone(&count),
+        };
         Ok(InputReader {
-            bytes,
+            bytes: packing::unpacked(counting, &self.packing).map_err(|error| self.failed(error))?,
             count,
             size: self.size,
         })
+    }
+
+    /// It, or where it is packed all of its bytes unpacked in memory: not to be unpacked for every look into it.
+    pub(crate) fn unpacked(&self) -> Result<Self, FileError> {
+        match self.packing {
+            Packing::None => Ok(self.clone()),
+            _ => Self::from_bytes(&self.name, self.bytes()?),
+        }
     }
 
     /// Its bytes in any order, unpacked. A packed file is unpacked into memory.
@@ -168,6 +181,14 @@ impl Input {
     /// [`ALWAYS_UNPACKED`].
     pub(crate) fn warranted(&self) -> u64 {
         self.size.saturating_mul(MOST_TIMES).max(ALWAYS_UNPACKED)
+    }
+
+    /// An error where `bytes` that `what` unpacks to are more than `most`, or than is [`warranted`](Self::warranted).
+    pub(crate) fn bounded(&self, bytes: u64, what: &'static str, most: u64) -> Result<(), FileError> {
+        if bytes > most {
+            return Err(self.too_large(what, most));
+        }
+        if bytes > self.warranted() { Err(self.swells()) } else { Ok(()) }
     }
 
     /// What is packed here unpacks to more than is [`warranted`](Self::warranted).
@@ -255,21 +276,27 @@ impl Input {
 /// The bytes of an input in order, and how far they have been read.
 pub(crate) struct InputReader {
     bytes: Box<dyn Read + Send>,
-    count: Count,
+    count: Arc<AtomicU64>,
     size: u64,
 }
 
 impl InputReader {
     /// Bytes of the stored file taken in so far, and its size.
     pub(crate) fn progress(&self) -> (u64, u64) {
-        let done = self.count.get();
+        let done = self.count.load(Ordering::Relaxed);
         (done, self.size.max(done))
     }
 }
 
 impl Read for InputReader {
+    /// Goes on where a signal interrupts it.
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        self.bytes.read(into)
+        loop {
+            match self.bytes.read(into) {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                read => return read,
+            }
+        }
     }
 }
 

@@ -174,13 +174,7 @@ impl<'a> Messages<'a> {
                 sum = sum.saturating_add(length.max(0) as u64);
             }
         }
-        if sum > MOST_IN_MEMORY {
-            return Err(self.input.too_large("a batch of rows", MOST_IN_MEMORY));
-        }
-        if sum > self.input.warranted() {
-            return Err(self.input.swells());
-        }
-        Ok(())
+        self.input.bounded(sum, "a batch of rows", MOST_IN_MEMORY)
     }
 }
 

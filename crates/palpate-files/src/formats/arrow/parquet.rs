@@ -24,7 +24,7 @@ use super::{
 };
 use crate::{
     error::FileError,
-    input::{Input, Packing, Seekable},
+    input::{Input, Seekable},
 };
 
 /// Last bytes of a file whose footer is encrypted.
@@ -46,15 +46,9 @@ struct Chunks {
 
 impl Chunks {
     fn of(input: &Input) -> Result<Self, FileError> {
-        // What is packed is unpacked once, not for every chunk.
-        let input = match input.packing() {
-            Packing::None => input.clone(),
-            _ => Input::from_bytes(input.name(), input.bytes()?)?,
-        };
-        Ok(Self {
-            size: input.size(),
-            input,
-        })
+        let input = input.unpacked()?;
+        let size = input.size();
+        Ok(Self { input, size })
     }
 }
 

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     error::FileError,
-    input::{Input, Packing},
+    input::Input,
     table::{ColumnKind, Columns, Found, Part, ReadOptions, ReadPart, SkippedPart},
 };
 
@@ -50,11 +50,7 @@ struct Workbook {
 
 /// Looks for tests in every sheet of a workbook.
 pub(crate) fn look_into(input: &Input, make: Make, options: &ReadOptions) -> Result<Found, FileError> {
-    // What is packed once more is unpacked once, not for every sheet.
-    let input = match input.packing() {
-        Packing::None => input.clone(),
-        _ => Input::from_bytes(input.name(), input.bytes()?)?,
-    };
+    let input = input.unpacked()?;
     let book: Box<dyn Book> = match make {
         Make::Xlsx => Box::new(Xlsx::open(&input)?),
         Make::Xls => Box::new(Xls::open(&input)?),

@@ -211,12 +211,7 @@ impl JpkForce {
         for index in wanted {
             let taken_in = self.take(archive, &channels[index], segment.rows)?;
             bytes += taken_in.len() as u64;
-            if bytes > MOST_IN_MEMORY {
-                return Err(self.input.too_large("the channels of a segment", MOST_IN_MEMORY));
-            }
-            if bytes > self.input.warranted() {
-                return Err(self.input.swells());
-            }
+            self.input.bounded(bytes, "the channels of a segment", MOST_IN_MEMORY)?;
             taken.push((index, taken_in));
         }
         let mut row = vec![0.0; columns.len()];

@@ -101,11 +101,8 @@ impl OpenCell {
 
 impl Checked<'_> {
     fn take(&mut self, step: &Step<'_>, done: u64) -> Result<(), FileError> {
-        if !self.tally.is_sheet && done > MOST_KEPT {
-            return Err(self.package.input.too_large("a part of the workbook", MOST_KEPT));
-        }
-        if !self.tally.is_sheet && done > self.package.input.warranted() {
-            return Err(self.package.input.swells());
+        if !self.tally.is_sheet {
+            self.package.input.bounded(done, "a part of the workbook", MOST_KEPT)?;
         }
         match step {
             Step::Begin(element) if self.rows.is_some() => self.begin_in_rows(element),
