@@ -27,7 +27,7 @@ const PIECE: usize = 1 << 20;
 const LEAD: usize = 1 + 8;
 
 /// Told every entry, in the order of the file.
-pub(super) type Visit<'v> = dyn FnMut(&Entry<'_>) -> Result<(), FileError> + 'v;
+pub(super) type Visit<'v> = dyn FnMut(Entry<'_>) -> Result<(), FileError> + 'v;
 
 /// Goes through the data section of the log; what stands behind it only repeats and indexes.
 pub(super) fn walk(input: &Input, progress: &mut dyn FnMut(u64, u64), visit: &mut Visit<'_>) -> Result<(), FileError> {
@@ -47,7 +47,7 @@ pub(super) fn walk(input: &Input, progress: &mut dyn FnMut(u64, u64), visit: &mu
     while let Some(event) = reader.next_event() {
         match event {
             Ok(LinearReadEvent::ReadRequest(wanted)) => {
-                let got = log.read(reader.insert(wanted.min(PIECE)))?;
+                let got = log.bytes.read(reader.insert(wanted.min(PIECE))).map_err(|error| input.failed(error))?;
                 reader.notify_read(got);
                 let (done, total) = log.bytes.progress();
                 progress(done, total);
@@ -74,15 +74,6 @@ struct Log<'a> {
 }
 
 impl Log<'_> {
-    fn read(&mut self, into: &mut [u8]) -> Result<usize, FileError> {
-        loop {
-            match self.bytes.read(into) {
-                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                read => return read.map_err(|error| self.input.failed(error)),
-            }
-        }
-    }
-
     /// One record of the file.
     fn record(&mut self, opcode: u8, data: &[u8], visit: &mut Visit<'_>) -> Result<(), FileError> {
         if opcode != op::CHUNK {
@@ -116,7 +107,7 @@ impl Log<'_> {
         match record::entry(opcode, data).map_err(|expected| self.other(expected))? {
             Some(entry) => {
                 self.messages += u64::from(opcode == op::MESSAGE);
-                visit(&entry)
+                visit(entry)
             }
             None => Ok(()),
         }
@@ -125,12 +116,7 @@ impl Log<'_> {
     /// The content of a chunk, which must have the length and the checksum that its header says.
     fn unpacked(&self, chunk: &Chunk<'_>) -> Result<Vec<u8>, FileError> {
         let (length, packed) = (chunk.unpacked_size, chunk.packed);
-        if length > MOST_RECORD as u64 {
-            return Err(self.input.too_large("a chunk of the log", MOST_RECORD as u64));
-        }
-        if length > self.input.warranted() {
-            return Err(self.input.swells());
-        }
+        self.input.bounded(length, "a chunk of the log", MOST_RECORD as u64)?;
         let mut content = Vec::new();
         let most = length + 1;
         let result = match chunk.compression {

@@ -24,7 +24,7 @@ pub(super) fn read(message: &[u8]) -> Result<Fields, Fault> {
         fields.stamped(seconds, nanoseconds);
     }
     for (name, value) in object.iter().filter(|(name, _)| *name != "header" && *name != "stamp") {
-        field(object, name, value, "", &mut fields)?;
+        element(name, value, Some(object), &mut fields)?;
     }
     let names = fields.names.as_deref().unwrap_or_default();
     fields.signature = names.join("\n").into_bytes();
@@ -37,39 +37,23 @@ fn time(value: &Value) -> Option<(i64, i64)> {
     Some((whole(["sec", "secs", "seconds"])?, whole(["nanosec", "nsec", "nsecs"])?))
 }
 
-fn field(
-    object: &Map<String, Value>,
-    name: &str,
-    value: &Value,
-    above: &str,
-    fields: &mut Fields,
-) -> Result<(), Fault> {
-    let path = if above.is_empty() { name.to_owned() } else { format!("{above}.{name}") };
-    match value {
-        Value::Array(values) if values.len() <= MOST_ELEMENTS => {
-            let labels = labels(object, values.len());
-            for (index, value) in values.iter().enumerate() {
-                let label = labels.as_ref().map_or_else(|| index.to_string(), |labels| labels[index].clone());
-                element(&format!("{path}[{label}]"), value, fields)?;
-            }
-            Ok(())
-        }
-        Value::Array(_) => Ok(()),
-        other => element(&path, other, fields),
-    }
-}
-
-fn element(path: &str, value: &Value, fields: &mut Fields) -> Result<(), Fault> {
+/// Adds the numbers in a value; where it is a field of an object, the names beside it may name its elements.
+fn element(path: &str, value: &Value, beside: Option<&Map<String, Value>>, fields: &mut Fields) -> Result<(), Fault> {
     match value {
         Value::Number(number) => fields.push(path, number.as_f64().unwrap_or(f64::NAN)),
         Value::Bool(truth) => fields.push(path, f64::from(u8::from(*truth))),
         Value::Null => fields.push(path, f64::NAN),
         Value::Object(_) if time(value).is_some() => Ok(()),
-        Value::Object(inner) => inner.iter().try_for_each(|(name, value)| field(inner, name, value, path, fields)),
-        Value::Array(values) if values.len() <= MOST_ELEMENTS => values
+        Value::Object(inner) => inner
             .iter()
-            .enumerate()
-            .try_for_each(|(index, value)| element(&format!("{path}[{index}]"), value, fields)),
+            .try_for_each(|(name, value)| element(&format!("{path}.{name}"), value, Some(inner), fields)),
+        Value::Array(values) if values.len() <= MOST_ELEMENTS => {
+            let labels = beside.and_then(|object| labels(object, values.len()));
+            values.iter().enumerate().try_for_each(|(index, value)| {
+                let label = labels.as_ref().map_or_else(|| index.to_string(), |labels| labels[index].clone());
+                element(&format!("{path}[{label}]"), value, None, fields)
+            })
+        }
         Value::Array(_) | Value::String(_) => Ok(()),
     }
 }

@@ -106,7 +106,7 @@ impl ReadPart for Log {
             else {
                 return Ok(());
             };
-            let Some(channel) = self.survey.channels.get(channel) else {
+            let Some(channel) = self.survey.channels.get(&channel) else {
                 return Ok(());
             };
             if channel.known.values().all(|belongs| wanted[belongs.series].is_empty()) {
@@ -117,7 +117,7 @@ impl ReadPart for Log {
             let fields = channel.decoder.read(data, false).map_err(|_| changed())?;
             let belongs = channel.known.get(&fields.signature).ok_or_else(changed)?;
             if !wanted[belongs.series].is_empty() {
-                self.row(&wanted[belongs.series], belongs, &fields, *log_time, &mut row);
+                self.row(&wanted[belongs.series], belongs, &fields, log_time, &mut row);
                 read[belongs.series].push_values(&row);
             }
             Ok(())

@@ -4,18 +4,15 @@
 
 use mcap::records::op;
 
+use super::channel::Definition;
+
 /// What stands in a log, as far as it is of use here.
 #[derive(Debug)]
 pub(super) enum Entry<'a> {
     /// How the file was made.
     Header { profile: &'a str },
     /// How the messages of a channel are laid out.
-    Schema {
-        id: u16,
-        name: &'a str,
-        encoding: &'a str,
-        text: &'a [u8],
-    },
+    Schema(u16, Definition),
     /// A topic.
     Channel {
         id: u16,
@@ -52,12 +49,15 @@ pub(super) fn entry(opcode: u8, content: &[u8]) -> Result<Option<Entry<'_>>, Fau
         op::HEADER => Entry::Header {
             profile: bytes.text("a header with the name of a profile")?,
         },
-        op::SCHEMA => Entry::Schema {
-            id: bytes.u16("a schema with a number")?,
-            name: bytes.text("a schema with a name")?,
-            encoding: bytes.text("a schema with an encoding")?,
-            text: bytes.block("a schema with a definition")?,
-        },
+        op::SCHEMA => {
+            let id = bytes.u16("a schema with a number")?;
+            let definition = Definition {
+                name: bytes.text("a schema with a name")?.to_owned(),
+                encoding: bytes.text("a schema with an encoding")?.to_owned(),
+                text: bytes.block("a schema with a definition")?.to_vec(),
+            };
+            Entry::Schema(id, definition)
+        }
         op::CHANNEL => Entry::Channel {
             id: bytes.u16("a channel with a number")?,
             schema: bytes.u16("a channel with the number of a schema")?,

@@ -3,12 +3,12 @@
 //! The messages of one topic may differ in their fields: two drivers may write the joints of an arm and those of a
 //! gripper to one topic. Messages with the same fields form a series; each series is a clock of its own.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use super::{
     channel::{Decoder, Definition},
     container,
-    fields::Fields,
+    fields::{Fault, Fields},
     record::Entry,
 };
 use crate::{error::FileError, input::Input, table::SkippedPart};
@@ -86,21 +86,11 @@ struct Surveyor<'a> {
 }
 
 impl Surveyor<'_> {
-    fn entry(&mut self, entry: &Entry<'_>) -> Result<(), FileError> {
+    fn entry(&mut self, entry: Entry<'_>) -> Result<(), FileError> {
         match entry {
-            Entry::Header { profile } => (*profile).clone_into(&mut self.survey.profile),
-            Entry::Schema {
-                id,
-                name,
-                encoding,
-                text,
-            } => {
-                let definition = Definition {
-                    name: (*name).to_owned(),
-                    encoding: (*encoding).to_owned(),
-                    text: text.to_vec(),
-                };
-                let known = self.definitions.entry(*id).or_insert_with(|| definition.clone());
+            Entry::Header { profile } => profile.clone_into(&mut self.survey.profile),
+            Entry::Schema(id, definition) => {
+                let known = self.definitions.entry(id).or_insert_with(|| definition.clone());
                 if *known != definition {
                     return Err(self.input.damaged(format!("schema {id}"), "one definition", "two that differ"));
                 }
@@ -110,12 +100,12 @@ impl Surveyor<'_> {
                 schema,
                 topic,
                 encoding,
-            } => self.channel(*id, *schema, topic, encoding)?,
+            } => self.channel(id, schema, topic, encoding)?,
             Entry::Message {
                 channel,
                 log_time,
                 data,
-            } => self.message(*channel, *log_time, data)?,
+            } => self.message(channel, log_time, data)?,
         }
         Ok(())
     }
@@ -126,11 +116,8 @@ impl Surveyor<'_> {
             if before == topic {
                 return Ok(());
             }
-            return Err(self.input.damaged(
-                format!("channel {id}"),
-                format!("topic {before}"),
-                format!("topic {topic}"),
-            ));
+            let (expected, found) = (format!("topic {before}"), format!("topic {topic}"));
+            return Err(self.input.damaged(format!("channel {id}"), expected, found));
         }
         let definition = self.definitions.get(&schema);
         if schema != 0 && definition.is_none() {
@@ -170,22 +157,12 @@ impl Surveyor<'_> {
             let place = format!("message {}", survey.messages);
             return Err(self.input.damaged(place, format!("a channel {id} before it"), "none"));
         };
-        let read = channel.decoder.read(data, false).and_then(|fields| match channel.known.get(&fields.signature) {
-            Some(belongs) => Ok((fields, Some(belongs.clone()))),
-            None => channel.decoder.read(data, true).map(|fields| (fields, None)),
-        });
-        let reason = match read {
-            Ok((fields, Some(belongs))) => {
+        let reason = match channel.belongs(&mut survey.series, data) {
+            Ok(Some((fields, belongs))) => {
                 survey.series[belongs.series].add(&fields, &belongs.places);
                 return Ok(());
             }
-            Ok((fields, None)) if channel.known.len() < MOST_SERIES => {
-                let belongs = place(&mut survey.series, channel, &fields);
-                survey.series[belongs.series].add(&fields, &belongs.places);
-                channel.known.insert(fields.signature, belongs);
-                return Ok(());
-            }
-            Ok(_) => format!("its messages have more than {MOST_SERIES} different sets of fields"),
+            Ok(None) => format!("its messages have more than {MOST_SERIES} different sets of fields"),
             Err(fault) => {
                 let at = fault.at.map_or_else(String::new, |at| format!(", byte {at}"));
                 let (expected, found) = (fault.expected, fault.found);
@@ -209,53 +186,56 @@ impl Surveyor<'_> {
             }
         }
         survey.channels.retain(|_, channel| !refused.contains(&&channel.topic));
-        let mut bare: Vec<&Channel> = survey.channels.values().collect();
-        bare.retain(|channel| {
-            !survey.series.iter().any(|series| series.topic == channel.topic && !series.fields.is_empty())
-        });
-        let mut bare: Vec<SkippedPart> = bare
-            .into_iter()
-            .map(|channel| SkippedPart {
-                name: channel.topic.clone(),
-                reason: "no message of it holds a number".to_owned(),
-            })
-            .collect();
-        bare.sort_by(|one, other| one.name.cmp(&other.name));
-        bare.dedup();
-        survey.skipped.extend(bare);
+        let holds = |topic: &str| survey.series.iter().any(|own| own.topic == topic && !own.fields.is_empty());
+        let topics = survey.channels.values().map(|channel| &channel.topic).filter(|topic| !holds(topic));
+        let bare: BTreeSet<String> = topics.cloned().collect();
+        survey.skipped.extend(bare.into_iter().map(|name| SkippedPart {
+            name,
+            reason: "no message of it holds a number".to_owned(),
+        }));
         survey
     }
 }
 
-/// The series for a message whose fields were not seen in this order before: one with the same, or a new one.
-fn place(all: &mut Vec<Series>, channel: &Channel, fields: &Fields) -> Belongs {
-    let names = fields.names.as_deref().unwrap_or_default();
-    let places_in = |series: &Series| -> Option<Vec<usize>> {
-        if series.topic != channel.topic || series.kind != channel.kind || series.fields.len() != names.len() {
-            return None;
+impl Channel {
+    /// The numbers of a message and the series that it belongs to; `None` where it would be one series too many.
+    fn belongs(&mut self, all: &mut Vec<Series>, data: &[u8]) -> Result<Option<(Fields, &Belongs)>, Fault> {
+        let mut fields = self.decoder.read(data, false)?;
+        if !self.known.contains_key(&fields.signature) {
+            fields = self.decoder.read(data, true)?;
+            if self.known.len() == MOST_SERIES {
+                return Ok(None);
+            }
+            let belongs = self.place(all, fields.names.as_deref().unwrap_or_default());
+            self.known.insert(fields.signature.clone(), belongs);
         }
-        names.iter().map(|name| series.fields.iter().position(|field| field.name == *name)).collect()
-    };
-    if let Some((series, places)) = all.iter().enumerate().find_map(|(index, series)| Some((index, places_in(series)?)))
-    {
-        return Belongs { series, places };
+        Ok(self.known.get(&fields.signature).map(|belongs| (fields, belongs)))
     }
-    all.push(Series {
-        topic: channel.topic.clone(),
-        kind: channel.kind.clone(),
-        fields: names
-            .iter()
-            .map(|name| FieldSeen {
+
+    /// The series for a message whose fields were not seen in this order before: one with the same, or a new one.
+    fn place(&self, all: &mut Vec<Series>, names: &[String]) -> Belongs {
+        let places_in = |series: &Series| -> Option<Vec<usize>> {
+            if series.topic != self.topic || series.kind != self.kind || series.fields.len() != names.len() {
+                return None;
+            }
+            names.iter().map(|name| series.fields.iter().position(|field| field.name == *name)).collect()
+        };
+        let known = all.iter().enumerate().find_map(|(series, own)| Some((series, places_in(own)?)));
+        let (series, places) = known.unwrap_or_else(|| (all.len(), (0..names.len()).collect()));
+        if series == all.len() {
+            let unseen = |name: &String| FieldSeen {
                 name: name.clone(),
                 sample: None,
-            })
-            .collect(),
-        messages: 0,
-        stamped: true,
-    });
-    Belongs {
-        series: all.len() - 1,
-        places: (0..names.len()).collect(),
+            };
+            all.push(Series {
+                topic: self.topic.clone(),
+                kind: self.kind.clone(),
+                fields: names.iter().map(unseen).collect(),
+                messages: 0,
+                stamped: true,
+            });
+        }
+        Belongs { series, places }
     }
 }
 
