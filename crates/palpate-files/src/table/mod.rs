@@ -8,6 +8,7 @@
 //! | `part.rs` | one test in a file: columns, named values, labels |
 //! | `column_ref.rs` | a column as people name it |
 //! | `columns.rs` | columns of numbers as they were read, in bounded memory |
+//! | `footer.rs` | lines behind the data |
 //! | `layout.rs` | how a text is written, and what a caller may fix in advance |
 //! | `reader.rs` | what every format can do |
 //! | `block.rs`, `decimal.rs` | the rows of numbers among other lines, and their decimal mark |
@@ -19,6 +20,7 @@ mod column_ref;
 mod columns;
 pub(crate) mod decimal;
 pub(crate) mod epoch;
+mod footer;
 pub(crate) mod header;
 mod layout;
 pub(crate) mod metadata;
@@ -31,6 +33,7 @@ pub use column_ref::ColumnRef;
 pub use columns::{Columns, Footer, IgnoredLines, MOST_ROWS};
 pub(crate) use decimal::Doubt;
 pub(crate) use epoch::EPOCH;
+pub(crate) use footer::Suspect;
 pub(crate) use header::Header;
 pub use layout::{Layout, LayoutOptions};
 pub use part::{Clock, ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart};

@@ -10,11 +10,9 @@ use super::{
 use crate::{
     cell::{DecimalMark, number},
     error::{FileError, shorten},
-    table::{Columns, Doubt, Footer},
+    table::{Columns, Doubt, Suspect},
 };
 
-/// Most rows behind the data that pass for remarks. More are a part of the record that cannot be read.
-const LONGEST_FOOTER: usize = 50;
 /// How many rows go by between two reports of progress.
 const ROWS_A_REPORT: usize = 4096;
 
@@ -61,7 +59,11 @@ pub(super) fn read(
     })?;
     reading.end_row()?;
     progress(ends.0, ends.1);
-    reading.finish()
+    let Reading { read, suspect, .. } = reading;
+    read.ended(suspect, || FileError::NoParts {
+        path: path.to_owned(),
+        parts: vec![(name.to_owned(), "no rows".to_owned())],
+    })
 }
 
 /// What has been read, and the row that is being read.
@@ -79,7 +81,7 @@ struct Reading<'a> {
     /// The last row of data.
     last: Option<u32>,
     /// Rows that may turn out to be remarks below the table.
-    suspect: Option<(Footer, FileError)>,
+    suspect: Option<Suspect>,
 }
 
 impl Reading<'_> {
@@ -109,41 +111,22 @@ impl Reading<'_> {
         match fault {
             None => self.push(number),
             Some(error) if is_data => Err(error),
-            Some(error) => self.suspect(number, sample, error),
+            Some(error) => {
+                let before = self.suspect.take();
+                self.suspect = Some(Suspect::with(before, number as usize + 1, || (sample, error))?);
+                Ok(())
+            }
         }
     }
 
     fn push(&mut self, number: u32) -> Result<(), FileError> {
-        if let Some((footer, error)) = self.suspect.take() {
-            return Err(FileError::Interrupted {
-                path: self.path.to_owned(),
-                line: footer.first_line,
-                found: footer.sample,
-                resumes: number as usize + 1,
-                source: Box::new(error),
-            });
+        if let Some(suspect) = self.suspect.take() {
+            return Err(suspect.interrupted(self.path, number as usize + 1));
         }
         let gap = self.last.map_or(0, |last| number - last - 1);
         self.read.ignored.blank += gap as usize;
         self.last = Some(number);
         self.read.push(&self.out, number as usize + 1);
-        Ok(())
-    }
-
-    fn suspect(&mut self, number: u32, sample: String, error: FileError) -> Result<(), FileError> {
-        let (mut footer, error) = self.suspect.take().unwrap_or_else(|| {
-            let footer = Footer {
-                first_line: number as usize + 1,
-                lines: 0,
-                sample,
-            };
-            (footer, error)
-        });
-        footer.lines += 1;
-        if footer.lines > LONGEST_FOOTER {
-            return Err(error);
-        }
-        self.suspect = Some((footer, error));
         Ok(())
     }
 
@@ -184,20 +167,5 @@ impl Reading<'_> {
             Some(Value::Truth(truth)) => Err(wrong("a number", if *truth { "TRUE" } else { "FALSE" }, MEND)),
             None => Err(wrong("a number", "an empty cell", MEND)),
         }
-    }
-
-    fn finish(mut self) -> Result<Columns, FileError> {
-        if self.read.rows() == 0 {
-            return match self.suspect {
-                Some((_, error)) => Err(error),
-                None => Err(FileError::NoParts {
-                    path: self.path.to_owned(),
-                    parts: vec![(self.name.to_owned(), "no rows".to_owned())],
-                }),
-            };
-        }
-        self.read.ignored.footer = self.suspect.take().map(|(footer, _)| footer);
-        self.read.finish();
-        Ok(self.read)
     }
 }

@@ -3,28 +3,18 @@
 use std::path::Path;
 
 use super::{
-    row::{Fault, RowPlan},
+    row::RowPlan,
     rows_ahead::{RowsAhead, Stop},
 };
 use crate::{
     cell::{DecimalMark, Delimiter},
     error::{DecimalDoubt, FileError},
     input::{Input, LineReader},
-    table::{Columns, Footer, Layout, decimal},
+    table::{Columns, Layout, Suspect, decimal},
 };
-
-/// Most lines behind the data that pass for a footer. More are a part of the record that cannot be read.
-const LONGEST_FOOTER: usize = 50;
 
 /// How many blocks may hold something else than rows of plain numbers before blocks are no longer tried.
 const TRIES: usize = 3;
-
-/// A faulty line that may turn out to start a footer.
-#[derive(Debug)]
-struct Suspect {
-    footer: Footer,
-    error: FileError,
-}
 
 /// Reads the chosen columns (numbers from 1, in any order) of a file laid out as `layout` says.
 ///
@@ -87,18 +77,26 @@ pub fn read_columns(
         match plan.read(line, &mut row) {
             Ok(()) => {
                 if let Some(suspect) = suspect {
-                    return Err(interrupted(path, suspect, number));
+                    return Err(suspect.interrupted(path, number));
                 }
                 read.push(&row, number);
             }
             Err(_) if is_blank(line, layout.delimiter) => read.ignored.blank += 1,
-            Err(fault) => suspect = Some(suspected(&plan, suspect, fault, line, number)?),
+            Err(fault) if plan.is_data(line) => return Err(plan.error(fault, line, number)),
+            Err(fault) => {
+                let fault = || (plan.text(line), plan.error(fault, line, number));
+                suspect = Some(Suspect::with(suspect, number, fault)?);
+            }
         }
     }
     let (done, total) = reader.progress();
     progress(done, total);
     read.bytes = total;
-    let mut read = finish(path, read, suspect, reader.line())?;
+    let mut read = read.ended(suspect, || FileError::NoDataRows {
+        path: path.to_owned(),
+        lines: reader.line(),
+        header_line: None,
+    })?;
     if layout.undecided && layout.decimal == DecimalMark::Point && read.averaged == 1 {
         refuse_thousands(path, &read)?;
     }
@@ -140,59 +138,4 @@ fn arranged(values: Vec<Vec<f64>>, read: &[usize], chosen: &[usize]) -> Vec<Vec<
         arranged.push(values);
     }
     arranged
-}
-
-/// Takes a faulty line into the footer, or says that it cannot be part of one.
-fn suspected(
-    plan: &RowPlan<'_>,
-    before: Option<Suspect>,
-    fault: Fault,
-    line: &[u8],
-    number: usize,
-) -> Result<Suspect, FileError> {
-    if plan.is_data(line) {
-        return Err(plan.error(fault, line, number));
-    }
-    let Some(mut suspect) = before else {
-        return Ok(Suspect {
-            footer: Footer {
-                first_line: number,
-                lines: 1,
-                sample: plan.text(line),
-            },
-            error: plan.error(fault, line, number),
-        });
-    };
-    suspect.footer.lines += 1;
-    if suspect.footer.lines > LONGEST_FOOTER {
-        return Err(suspect.error);
-    }
-    Ok(suspect)
-}
-
-fn interrupted(path: &Path, suspect: Suspect, resumes: usize) -> FileError {
-    FileError::Interrupted {
-        path: path.to_owned(),
-        line: suspect.footer.first_line,
-        found: suspect.footer.sample,
-        resumes,
-        source: Box::new(suspect.error),
-    }
-}
-
-fn finish(path: &Path, mut read: Columns, suspect: Option<Suspect>, lines: usize) -> Result<Columns, FileError> {
-    match suspect {
-        Some(suspect) if read.rows() == 0 => return Err(suspect.error),
-        Some(suspect) => read.ignored.footer = Some(suspect.footer),
-        None if read.rows() == 0 => {
-            return Err(FileError::NoDataRows {
-                path: path.to_owned(),
-                lines,
-                header_line: None,
-            });
-        }
-        None => {}
-    }
-    read.finish();
-    Ok(read)
 }
