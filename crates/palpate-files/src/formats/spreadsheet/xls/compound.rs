@@ -91,34 +91,14 @@ impl<'a> Compound<'a> {
 
     /// The bytes of a chain of sectors, at most `size` of them.
     fn chain(&self, start: u32, size: u64) -> Option<Vec<u8>> {
-        let mut bytes = Vec::new();
-        let mut sector = start;
-        let mut steps = 0;
-        while sector < LAST_SECTOR && (bytes.len() as u64) < size {
-            bytes.extend_from_slice(self.sector(sector)?);
-            sector = *self.next.get(sector as usize)?;
-            steps += 1;
-            if steps > self.sectors() {
-                return None;
-            }
-        }
-        bytes.truncate(usize::try_from(size).unwrap_or(usize::MAX));
-        Some(bytes)
+        chain(&self.next, start, size, self.sectors(), |number| self.sector(number))
     }
 
     fn small_chain(&self, start: u32, size: u64) -> Option<Vec<u8>> {
-        let mut bytes = Vec::new();
-        let mut sector = start;
-        while sector < LAST_SECTOR && (bytes.len() as u64) < size {
-            let from = (sector as usize).checked_mul(SMALL)?;
-            bytes.extend_from_slice(self.small.get(from..from + SMALL)?);
-            sector = *self.next_small.get(sector as usize)?;
-            if bytes.len() > self.small.len() {
-                return None;
-            }
-        }
-        bytes.truncate(usize::try_from(size).unwrap_or(usize::MAX));
-        Some(bytes)
+        chain(&self.next_small, start, size, self.small.len() / SMALL, |number| {
+            let from = (number as usize).checked_mul(SMALL)?;
+            self.small.get(from..from + SMALL)
+        })
     }
 
     pub(super) fn has(&self, name: &str) -> bool {
@@ -134,6 +114,26 @@ impl<'a> Compound<'a> {
             self.chain(entry.start, entry.size)
         }
     }
+}
+
+/// The bytes of a chain, which has no more than `most` sectors unless it runs in a ring.
+fn chain<'s>(
+    next: &[u32],
+    start: u32,
+    size: u64,
+    most: usize,
+    sector: impl Fn(u32) -> Option<&'s [u8]>,
+) -> Option<Vec<u8>> {
+    let (mut bytes, mut number) = (Vec::new(), start);
+    for _ in 0..=most {
+        if number >= LAST_SECTOR || bytes.len() as u64 >= size {
+            bytes.truncate(usize::try_from(size).unwrap_or(usize::MAX));
+            return Some(bytes);
+        }
+        bytes.extend_from_slice(sector(number)?);
+        number = *next.get(number as usize)?;
+    }
+    None
 }
 
 fn numbers(bytes: &[u8]) -> Vec<u32> {

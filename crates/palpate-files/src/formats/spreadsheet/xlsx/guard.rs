@@ -4,9 +4,12 @@
 //! that are too large for its numbers, takes the first shared text where a number is none, and drops what stands in a
 //! value beside plain text. All of this is damage here, and told with its place.
 
-use quick_xml::events::{BytesStart, attributes::Attribute};
+use quick_xml::{
+    escape::resolve_xml_entity,
+    events::{BytesStart, Event, attributes::Attribute},
+};
 
-use super::package::{MOST_KEPT, MOST_OF_SHEET, Package, Step};
+use super::package::{MOST_KEPT, MOST_OF_SHEET, Package};
 use crate::{
     error::FileError,
     formats::spreadsheet::{
@@ -25,7 +28,7 @@ const STYLE: u64 = 512;
 const FAULTS: [&str; 7] = ["#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!"];
 
 /// What an archive was found to hold.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Found {
     /// The part that the archive is about.
     pub(super) document: String,
@@ -45,13 +48,12 @@ pub(super) fn check(package: &Package) -> Result<Found, FileError> {
             tally: Tally::default(),
             rows: None,
         };
-        package.read(path, MOST_OF_SHEET, &mut |step, done| part.take(&step, done).map(|()| true))?;
+        package.read(path, MOST_OF_SHEET, &mut |event, done| part.take(event, done))?;
     }
     Ok(found)
 }
 
 /// A part that is gone over.
-#[derive(Debug)]
 struct Checked<'a> {
     package: &'a Package,
     path: &'a str,
@@ -62,7 +64,7 @@ struct Checked<'a> {
 }
 
 /// What a part has many of.
-#[derive(Debug, Default)]
+#[derive(Default)]
 struct Tally {
     is_sheet: bool,
     texts: u64,
@@ -73,7 +75,7 @@ struct Tally {
 }
 
 /// Where in the rows of a sheet.
-#[derive(Debug, Default)]
+#[derive(Default)]
 struct Rows {
     row: u32,
     column: u32,
@@ -82,7 +84,7 @@ struct Rows {
 }
 
 /// A cell that has begun.
-#[derive(Debug, Default)]
+#[derive(Default)]
 struct OpenCell {
     kind: String,
     /// Inside of its value.
@@ -100,22 +102,32 @@ impl OpenCell {
 }
 
 impl Checked<'_> {
-    fn take(&mut self, step: &Step<'_>, done: u64) -> Result<(), FileError> {
+    fn take(&mut self, event: &Event<'_>, done: u64) -> Result<(), FileError> {
         if !self.tally.is_sheet {
             self.package.input.bounded(done, "a part of the workbook", MOST_KEPT)?;
         }
-        match step {
-            Step::Begin(element) if self.rows.is_some() => self.begin_in_rows(element),
-            Step::Begin(element) => self.begin(element),
-            Step::End("sheetData") => {
-                self.rows = None;
+        match event {
+            Event::Start(element) if self.rows.is_some() => self.begin_in_rows(element),
+            Event::Start(element) => self.begin(element),
+            Event::End(element) => self.end_in_rows(element.local_name().as_ref()),
+            Event::Text(text) => {
+                let cell = self.rows.as_mut().and_then(|rows| rows.cell.as_mut());
+                if let Some(cell) = cell.filter(|cell| cell.in_value) {
+                    cell.text.push_str(&text.xml10_content());
+                }
                 Ok(())
             }
-            Step::End(name) => self.end_in_rows(name),
-            Step::Text(text) => self.text_in_rows(text),
-            Step::Entity => self.in_value(OpenCell::is_text, "an entity"),
-            Step::Aside => self.in_value(|cell| cell.kind == "inlineStr", "something else"),
-            Step::Eof => self.finish(done),
+            // A letter by its name or number.
+            Event::GeneralRef(entity) => {
+                let letter = entity.resolve_char_ref().ok().flatten();
+                if letter.is_none() && resolve_xml_entity(entity.as_ref()).is_none() {
+                    return Err(self.package.damaged(self.path, "XML", &format!("&{};", entity.as_ref())));
+                }
+                self.in_value(OpenCell::is_text, "an entity")
+            }
+            Event::Eof => self.finish(done),
+            // A remark, an instruction, a section of raw text.
+            _ => self.in_value(|cell| cell.kind == "inlineStr", "something else"),
         }
     }
 
@@ -245,6 +257,7 @@ impl Checked<'_> {
         let texts = self.found.texts;
         let Some(rows) = &mut self.rows else { return Ok(()) };
         match (name, &mut rows.cell) {
+            ("sheetData", _) => self.rows = None,
             ("row", _) => {
                 rows.row += 1;
                 rows.column = 0;
@@ -261,14 +274,6 @@ impl Checked<'_> {
                 }
             }
             _ => {}
-        }
-        Ok(())
-    }
-
-    fn text_in_rows(&mut self, text: &str) -> Result<(), FileError> {
-        let cell = self.rows.as_mut().and_then(|rows| rows.cell.as_mut());
-        if let Some(cell) = cell.filter(|cell| cell.in_value) {
-            cell.text.push_str(text);
         }
         Ok(())
     }

@@ -10,7 +10,6 @@ mod package;
 
 use std::{
     collections::BTreeSet,
-    fmt,
     io::BufReader,
     ops::ControlFlow,
     sync::{Mutex, PoisonError},
@@ -112,11 +111,5 @@ impl Book for Xlsx {
             }
             Ok(())
         })
-    }
-}
-
-impl fmt::Debug for Xlsx {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Xlsx").field("sheets", &self.sheets).finish_non_exhaustive()
     }
 }
