@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::sample::Sample;
 use crate::{
-    cell::{Delimiter, cells, date},
+    cell::{Cell, Delimiter, cells, date},
     error::{FileError, shorten},
     input::Input,
     table::{Block, ColumnInfo, ColumnKind, Header, Layout, LayoutOptions, Metadata, block, decimal, header, metadata},
@@ -49,30 +49,25 @@ pub fn detect(input: &Input, options: &LayoutOptions) -> Result<Layout, FileErro
 fn find_block(path: &Path, lines: &[&str], skip: usize, options: &LayoutOptions) -> Result<Block, FileError> {
     let fixed = options.delimiter.as_slice();
     let delimiters = if fixed.is_empty() { &Delimiter::ALL } else { fixed };
-    let Some(block) = block::find(lines, skip, delimiters) else {
-        return Err(without_numbers(path, lines, skip, options.delimiter));
+    let one_column = |block: &Block| FileError::OneColumn {
+        path: path.to_owned(),
+        line: block.first + 1,
+        found: shorten(lines[block.first]),
+        delimiter: options.delimiter,
     };
-    if block.kinds.len() < 2 {
-        return Err(FileError::OneColumn {
-            path: path.to_owned(),
-            line: block.first + 1,
-            found: shorten(lines[block.first]),
-            delimiter: options.delimiter,
-        });
+    match block::find(lines, skip, delimiters) {
+        Some(block) if block.kinds.len() < 2 => Err(one_column(&block)),
+        Some(block) => Ok(block),
+        // The delimiter does not cut the rows, or there are no rows.
+        None => {
+            let elsewise = options.delimiter.and_then(|_| block::find(lines, skip, &Delimiter::ALL));
+            Err(elsewise.map_or_else(|| without_numbers(path, lines, skip), |block| one_column(&block)))
+        }
     }
-    Ok(block)
 }
 
-/// Why no line holds a number: the delimiter does not cut the rows, or there are no rows.
-fn without_numbers(path: &Path, lines: &[&str], skip: usize, fixed: Option<Delimiter>) -> FileError {
-    if let Some(elsewise) = fixed.and_then(|_| block::find(lines, skip, &Delimiter::ALL)) {
-        return FileError::OneColumn {
-            path: path.to_owned(),
-            line: elsewise.first + 1,
-            found: shorten(lines[elsewise.first]),
-            delimiter: fixed,
-        };
-    }
+/// No line holds a number; perhaps one holds names.
+fn without_numbers(path: &Path, lines: &[&str], skip: usize) -> FileError {
     let separated = |line: &&str| {
         [Delimiter::Tab, Delimiter::Semicolon, Delimiter::Comma].iter().any(|&delimiter| {
             let row = cells(line, delimiter);
@@ -96,15 +91,11 @@ fn columns(lines: &[&str], block: &Block, header: &Header) -> Vec<ColumnInfo> {
             number: index + 1,
             name: name.clone(),
             unit: unit.clone(),
-            kind: if kind == ColumnKind::Text && holds_dates(lines, block, index) {
-                ColumnKind::DateTime
-            } else {
-                kind
+            kind: match kind {
+                ColumnKind::Text if held(lines, block, index).all(|(cell, _)| is_date(cell)) => ColumnKind::DateTime,
+                other => other,
             },
-            sample: match kind {
-                ColumnKind::Text => first_text(lines, block, index),
-                _ => first_filled(lines, block, index),
-            },
+            sample: sample(lines, block, index, kind),
         })
         .collect();
     // What a delimiter at the end of every row leaves behind is no column.
@@ -114,36 +105,28 @@ fn columns(lines: &[&str], block: &Block, header: &Header) -> Vec<ColumnInfo> {
     columns
 }
 
-/// Whether every cell of a column of text is a date with a time of day.
-fn holds_dates(lines: &[&str], block: &Block, column: usize) -> bool {
-    let is_date = |(line, _): (usize, _)| {
-        let line: &str = lines[line];
-        cells(line, block.delimiter).get(column).is_some_and(|cell| date::parse(cell.as_bytes()).is_some())
-    };
-    block.rows().all(is_date)
+/// Whether a cell is a date with a time of day.
+fn is_date(cell: &str) -> bool {
+    date::parse(cell.as_bytes()).is_some()
 }
 
-/// The first cell that keeps a column from being one of numbers.
-fn first_text(lines: &[&str], block: &Block, column: usize) -> String {
-    let texts = block.rows().filter(|(_, row)| row.get(column).is_some_and(|cell| !cell.is_numeric()));
-    let cell = |line: usize| -> Option<&str> {
+/// The cells of a column in the rows of the block, and what they are.
+fn held<'a>(lines: &'a [&str], block: &'a Block, column: usize) -> impl Iterator<Item = (&'a str, Cell)> {
+    block.rows().map(move |(line, row)| {
         let line: &str = lines[line];
-        cells(line, block.delimiter).get(column).copied()
-    };
-    let first = texts.filter_map(|(line, _)| cell(line)).find(|cell| !cell.is_empty());
-    first.map_or_else(|| first_filled(lines, block, column), shorten)
+        (cells(line, block.delimiter).get(column).copied().unwrap_or_default(), row[column])
+    })
 }
 
-fn first_filled(lines: &[&str], block: &Block, column: usize) -> String {
-    let cell = |(line, _)| -> Option<&str> {
-        let line: &str = lines[line];
-        cells(line, block.delimiter).get(column).copied()
+/// The first cell that holds anything; of texts, that keeps the column from being one of numbers.
+fn sample(lines: &[&str], block: &Block, column: usize, kind: ColumnKind) -> String {
+    let mut filled = held(lines, block, column).filter(|(cell, _)| !cell.is_empty()).peekable();
+    let first = filled.peek().copied();
+    let text = match kind {
+        ColumnKind::Text => filled.find(|(_, cell)| !cell.is_numeric()),
+        _ => None,
     };
-    block
-        .rows()
-        .filter_map(|(line, row)| cell((line, row)))
-        .find(|cell| !cell.is_empty())
-        .map_or_else(String::new, shorten)
+    text.or(first).map_or_else(String::new, |(cell, _)| shorten(cell))
 }
 
 fn named_values(lines: &[&str], skip: usize, block: &Block, header: &Header) -> Vec<Metadata> {
