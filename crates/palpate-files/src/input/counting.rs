@@ -9,7 +9,6 @@ use std::{
 };
 
 /// A reader whose progress can be seen from outside.
-#[derive(Debug)]
 pub(super) struct Counting<R> {
     pub(super) inner: R,
     /// Bytes read so far.

@@ -1,9 +1,6 @@
 //! Taking a file in, piece by piece, as bytes that split like ASCII.
 
-use std::{
-    fmt,
-    io::{self, Read},
-};
+use std::io::{self, Read};
 
 use super::{
     encoding::Encoding,
@@ -24,12 +21,6 @@ struct Decoding {
     decoder: encoding_rs::Decoder,
     raw: Vec<u8>,
     finished: bool,
-}
-
-impl fmt::Debug for Feed {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Feed").field("bytes", &self.bytes).finish_non_exhaustive()
-    }
 }
 
 impl Feed {

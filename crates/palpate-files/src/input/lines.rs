@@ -23,7 +23,6 @@ pub(crate) fn of_text(text: &str) -> Vec<&str> {
 }
 
 /// Hands out a file line by line from a buffer of bounded size.
-#[derive(Debug)]
 pub(crate) struct LineReader<'a> {
     input: &'a Input,
     feed: Feed,

@@ -299,9 +299,3 @@ impl Read for InputReader {
         }
     }
 }
-
-impl fmt::Debug for InputReader {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("InputReader").field("progress", &self.progress()).finish_non_exhaustive()
-    }
-}

@@ -9,7 +9,6 @@ use crate::error::FileError;
 const LONGEST_FOOTER: usize = 50;
 
 /// Faulty lines that may turn out to be a footer.
-#[derive(Debug)]
 pub(crate) struct Suspect {
     footer: Footer,
     /// What is wrong with the first of them, taken as data.

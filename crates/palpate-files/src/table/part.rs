@@ -122,6 +122,11 @@ pub struct SkippedPart {
 }
 
 impl SkippedPart {
+    pub(crate) fn new(name: impl Into<String>, reason: impl Into<String>) -> Self {
+        let (name, reason) = (name.into(), reason.into());
+        Self { name, reason }
+    }
+
     /// As for a [`Part`].
     pub(crate) fn make_plain(&mut self) {
         make_plain(&mut self.name);

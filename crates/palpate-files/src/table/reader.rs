@@ -27,7 +27,7 @@ pub(crate) struct Found {
 }
 
 /// What a format can do once it has looked into a file.
-pub(crate) trait ReadPart: fmt::Debug + Send + Sync {
+pub(crate) trait ReadPart: Send + Sync {
     /// Reads the columns with these numbers (from 1, in any order, perhaps one twice) of the part with this index.
     ///
     /// Both the index and the numbers are those of [`Contents::parts`]. Columns of one clock have the same length.
@@ -36,5 +36,11 @@ pub(crate) trait ReadPart: fmt::Debug + Send + Sync {
     /// How delimited text is written; `None` in other formats.
     fn layout(&self) -> Option<&Layout> {
         None
+    }
+}
+
+impl fmt::Debug for dyn ReadPart {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("ReadPart")
     }
 }

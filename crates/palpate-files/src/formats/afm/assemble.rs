@@ -177,10 +177,7 @@ fn sort_out(drafts: Vec<Draft>, titles: &[String]) -> (Vec<(String, Draft)>, Vec
         };
         match reason {
             None => kept.push((title.clone(), draft)),
-            Some(reason) => skipped.push(SkippedPart {
-                name: format!("segment {} ({title})", draft.number),
-                reason,
-            }),
+            Some(reason) => skipped.push(SkippedPart::new(format!("segment {} ({title})", draft.number), reason)),
         }
     }
     (kept, skipped)

@@ -86,14 +86,13 @@ pub(super) struct Segment {
 }
 
 /// A curve whose columns are known.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Curve {
     pub(super) part: Part,
     pub(super) segments: Vec<Segment>,
 }
 
 /// The chosen columns of one segment.
-#[derive(Debug)]
 pub(super) struct Chosen<'a> {
     formulas: Vec<&'a Formula>,
 }

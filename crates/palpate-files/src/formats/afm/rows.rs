@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// How the rows of a segment are written.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Rows {
     /// Line of the first row, from 1; 0: the first one that is no comment.
     pub(super) first_line: usize,
@@ -92,7 +92,6 @@ pub(super) fn is_row(line: &[u8]) -> bool {
 }
 
 /// A curve in lines of text.
-#[derive(Debug)]
 struct Lines {
     input: Input,
     curve: Curve,

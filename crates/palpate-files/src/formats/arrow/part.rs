@@ -17,7 +17,6 @@ use crate::{
     table::{ColumnInfo, ColumnKind, Columns, Found, Part, ReadOptions, ReadPart, SkippedPart},
 };
 
-#[derive(Debug)]
 struct Table {
     source: Source,
     /// Index in the file of every column that can be read, and how.
@@ -38,10 +37,7 @@ pub(crate) fn look_into(input: &Input, kind: Kind, _options: &ReadOptions) -> Re
             let name = source.schema.field(column).name().clone();
             let (tests, without) = tests::told_apart(&source, column)?;
             if without > 0 {
-                skipped.push(SkippedPart {
-                    name: format!("{without} rows"),
-                    reason: format!("nothing in column {name}"),
-                });
+                skipped.push(SkippedPart::new(format!("{without} rows"), format!("nothing in column {name}")));
             }
             (tests, Some(name))
         }
@@ -69,10 +65,7 @@ pub(crate) fn look_into(input: &Input, kind: Kind, _options: &ReadOptions) -> Re
     let parts = if columns.is_empty() { Vec::new() } else { tests.iter().map(part).collect() };
     if parts.is_empty() {
         let reason = if columns.is_empty() { "no column of numbers" } else { "no rows" };
-        skipped.push(SkippedPart {
-            name: "the table".to_owned(),
-            reason: reason.to_owned(),
-        });
+        skipped.push(SkippedPart::new("the table", reason));
     }
     let reader = Box::new(Table { source, columns, tests });
     Ok(Found { parts, skipped, reader })

@@ -15,7 +15,6 @@ use crate::{
 };
 
 /// A file whose schema is known.
-#[derive(Debug)]
 pub(super) struct Source {
     pub(super) input: Input,
     pub(super) kind: Kind,

@@ -25,7 +25,6 @@ enum Source {
 }
 
 /// A log that was looked through.
-#[derive(Debug)]
 pub(super) struct Log {
     input: Input,
     survey: Survey,

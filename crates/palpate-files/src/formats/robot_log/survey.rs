@@ -139,10 +139,7 @@ impl Surveyor<'_> {
     }
 
     fn refuse(&mut self, id: u16, topic: String, reason: String) {
-        self.survey.skipped.push(SkippedPart {
-            name: topic.clone(),
-            reason,
-        });
+        self.survey.skipped.push(SkippedPart::new(&topic, reason));
         self.refused.insert(id, topic);
     }
 
@@ -189,10 +186,8 @@ impl Surveyor<'_> {
         let holds = |topic: &str| survey.series.iter().any(|own| own.topic == topic && !own.fields.is_empty());
         let topics = survey.channels.values().map(|channel| &channel.topic).filter(|topic| !holds(topic));
         let bare: BTreeSet<String> = topics.cloned().collect();
-        survey.skipped.extend(bare.into_iter().map(|name| SkippedPart {
-            name,
-            reason: "no message of it holds a number".to_owned(),
-        }));
+        let skipped = |topic| SkippedPart::new(topic, "no message of it holds a number");
+        survey.skipped.extend(bare.into_iter().map(skipped));
         survey
     }
 }

@@ -1,6 +1,6 @@
 //! What a workbook of any make can do.
 
-use std::{fmt, ops::ControlFlow};
+use std::ops::ControlFlow;
 
 use super::cell::Cell;
 use crate::error::FileError;
@@ -20,7 +20,7 @@ pub(super) struct Sheet {
 pub(super) type Visitor<'a> = dyn FnMut(Cell, u64, u64) -> Result<ControlFlow<()>, FileError> + 'a;
 
 /// A workbook whose sheets are known and whose cells are read as they are asked for.
-pub(super) trait Book: fmt::Debug + Send + Sync {
+pub(super) trait Book: Send + Sync {
     /// Its sheets in their order.
     fn sheets(&self) -> &[Sheet];
 

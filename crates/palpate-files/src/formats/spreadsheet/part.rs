@@ -35,13 +35,11 @@ pub(crate) fn recognise(input: &Input) -> Option<Make> {
 }
 
 /// A table and the sheet it is in.
-#[derive(Debug)]
 struct Place {
     sheet: usize,
     table: Table,
 }
 
-#[derive(Debug)]
 struct Workbook {
     input: Input,
     book: Box<dyn Book>,
@@ -58,11 +56,7 @@ pub(crate) fn look_into(input: &Input, make: Make, options: &ReadOptions) -> Res
     let skip = u32::try_from(options.layout.skip_lines.unwrap_or(0)).unwrap_or(u32::MAX);
     let (mut looked, mut skipped) = (Vec::new(), Vec::new());
     for (index, sheet) in book.sheets().iter().enumerate() {
-        let mut pass = |reason: &str| {
-            let name = sheet.name.clone();
-            let reason = reason.to_owned();
-            skipped.push((index, SkippedPart { name, reason }));
-        };
+        let mut pass = |reason| skipped.push((index, SkippedPart::new(&sheet.name, reason)));
         if let Some(other) = sheet.other {
             pass(other);
             continue;
@@ -124,11 +118,7 @@ fn chosen(
     let (mut places, mut parts) = (Vec::new(), Vec::new());
     for (place, part) in looked {
         match no_test(name(&place), &place.table).filter(|_| timed) {
-            Some(reason) => {
-                let name = part.title().to_owned();
-                let reason = reason.to_owned();
-                skipped.push((place.sheet, SkippedPart { name, reason }));
-            }
+            Some(reason) => skipped.push((place.sheet, SkippedPart::new(part.title(), reason))),
             None => {
                 places.push(place);
                 parts.push(part);

@@ -14,7 +14,6 @@ const MOST_ROWS: usize = 4000;
 const MOST_CELLS: usize = 400_000;
 
 /// The first rows of a sheet, those without a cell left out.
-#[derive(Debug, Default)]
 pub(super) struct Sample {
     pub(super) rows: Vec<Row>,
     /// All of the sheet is in the sample.
@@ -22,7 +21,7 @@ pub(super) struct Sample {
 }
 
 /// A row of a sheet.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(super) struct Row {
     /// Its number, from 0.
     pub(super) number: u32,

@@ -11,7 +11,6 @@ use crate::{
 };
 
 /// A table in a sheet.
-#[derive(Debug)]
 pub(super) struct Table {
     /// Columns of the sheet, from 0, in their order.
     pub(super) places: Vec<u32>,
@@ -61,7 +60,6 @@ impl Table {
 }
 
 /// What was found in a sheet.
-#[derive(Debug, Default)]
 pub(super) struct FoundTables {
     pub(super) tables: Vec<Table>,
     /// How many cells stand beside the tables.

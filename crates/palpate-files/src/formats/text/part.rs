@@ -8,7 +8,6 @@ use crate::{
 };
 
 /// A file of delimited text whose layout is known.
-#[derive(Debug)]
 struct TextFile {
     input: Input,
     layout: Layout,

@@ -9,7 +9,6 @@ use crate::{
 };
 
 /// How to read the rows of one file.
-#[derive(Debug)]
 pub(crate) struct RowPlan<'a> {
     path: &'a Path,
     layout: &'a Layout,

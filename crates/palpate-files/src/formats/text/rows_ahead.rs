@@ -29,7 +29,6 @@ pub(crate) enum Stop {
 }
 
 /// Reads rows a block of lines at a time.
-#[derive(Debug)]
 pub(crate) struct RowsAhead {
     /// The block that is being read.
     lines: Vec<u8>,

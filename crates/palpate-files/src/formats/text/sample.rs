@@ -11,7 +11,6 @@ use crate::{
 const MOST_LINES: usize = 4000;
 
 /// The beginning of a file, decoded.
-#[derive(Debug)]
 pub(crate) struct Sample {
     pub(crate) encoding: Encoding,
     text: String,

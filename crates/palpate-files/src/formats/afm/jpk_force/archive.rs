@@ -2,7 +2,6 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
-    fmt,
     io::Read,
 };
 
@@ -35,14 +34,7 @@ pub(super) struct Archive<'a> {
     members: BTreeMap<String, usize>,
 }
 
-impl fmt::Debug for Archive<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Archive").field("members", &self.members.len()).finish_non_exhaustive()
-    }
-}
-
 /// A curve of an archive.
-#[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Place {
     /// What its members begin with: nothing, or `index/7/`.
     pub(super) folder: String,

@@ -48,7 +48,6 @@ pub(crate) fn recognise(input: &Input) -> bool {
 }
 
 /// An archive of force curves.
-#[derive(Debug)]
 struct JpkForce {
     input: Input,
     shared: List,
@@ -71,20 +70,16 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
         let name = place.folder.trim_end_matches('/').to_owned();
         match curve(input, &mut archive, &shared, &place, sampled) {
             Ok((found, without)) => {
-                let inside = |part: SkippedPart| SkippedPart {
-                    name: if several { format!("{name}, {}", part.name) } else { part.name },
-                    reason: part.reason,
-                };
-                skipped.extend(without.into_iter().map(inside));
+                for part in without {
+                    let name = if several { format!("{name}, {}", part.name) } else { part.name };
+                    skipped.push(SkippedPart::new(name, part.reason));
+                }
                 if let Some((curve, _)) = found {
                     parts.push(curve.part);
                     places.push(place);
                 }
             }
-            Err(error) if several => skipped.push(SkippedPart {
-                name,
-                reason: without_path(input, &error),
-            }),
+            Err(error) if several => skipped.push(SkippedPart::new(name, without_path(input, &error))),
             Err(error) => return Err(error),
         }
     }

@@ -74,7 +74,6 @@ fn unescaped(text: &str) -> String {
 
 /// The properties of a segment. An entry `channel.height.lcd-info.*=3` stands for all entries of the shared list
 /// that begin with `lcd-info.3.`, under names that begin with `channel.height.`.
-#[derive(Debug)]
 pub(super) struct Properties<'a> {
     own: List,
     shared: &'a List,

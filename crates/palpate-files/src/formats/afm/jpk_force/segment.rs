@@ -23,7 +23,6 @@ const MOST_CHANNELS: usize = 256;
 const MOST_ROWS: usize = (MOST_CHANNEL / 2) as usize;
 
 /// A segment and where its channels are stored.
-#[derive(Debug)]
 pub(super) struct StoredSegment {
     pub(super) draft: Draft,
     pub(super) channels: Vec<StoredChannel>,
@@ -33,7 +32,6 @@ pub(super) struct StoredSegment {
 }
 
 /// Where a channel is stored.
-#[derive(Debug, Clone, PartialEq)]
 pub(super) struct StoredChannel {
     /// Its member of the archive; for rules, what messages call it.
     pub(super) member: String,

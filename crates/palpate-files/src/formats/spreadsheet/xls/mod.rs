@@ -12,7 +12,7 @@ mod container;
 mod records;
 mod sift;
 
-use std::{collections::BTreeSet, fmt, io::Cursor, ops::ControlFlow};
+use std::{collections::BTreeSet, io::Cursor, ops::ControlFlow};
 
 use calamine::{Data, Range, Reader, XlsOptions};
 
@@ -130,11 +130,5 @@ impl Book for Xls {
             }
         }
         Ok(())
-    }
-}
-
-impl fmt::Debug for Xls {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Xls").field("sheets", &self.sheets).finish_non_exhaustive()
     }
 }

@@ -25,7 +25,7 @@ const LABEL: u16 = 0x0204;
 const TRUTH_OR_FAULT: u16 = 0x0205;
 
 /// A stream of the records that are read.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Sifted {
     pub(super) stream: Vec<u8>,
     pub(super) sheets: Vec<Sheet>,
@@ -136,7 +136,7 @@ impl Sifted {
 }
 
 /// The places of the cells of a sheet.
-#[derive(Debug, Default)]
+#[derive(Default)]
 struct Cells {
     places: Vec<(u16, u16)>,
     /// The cell of a formula whose text comes in the next record.
