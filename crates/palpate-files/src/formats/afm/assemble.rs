@@ -64,14 +64,6 @@ pub(super) struct Draft {
     pub(super) first: Option<Vec<f64>>,
 }
 
-/// What is known of a curve beside its segments.
-#[derive(Debug, Clone, Default)]
-pub(super) struct About {
-    pub(super) name: Option<String>,
-    pub(super) written: String,
-    pub(super) metadata: Vec<Metadata>,
-}
-
 /// A column, with its formula in every segment.
 struct Column {
     name: String,
@@ -105,19 +97,19 @@ pub(super) fn set_series_clock<'a>(drafts: impl Iterator<Item = &'a mut Draft>) 
 
 /// Puts the segments of a curve together; what had to be left out is said, with why.
 ///
-/// Nothing comes back where no segment has rows.
-pub(super) fn assemble(drafts: Vec<Draft>, mut about: About) -> (Option<Curve>, Vec<SkippedPart>) {
+/// `part` says what is known of the curve beside its segments. Nothing comes back where no segment has rows.
+pub(super) fn assemble(drafts: Vec<Draft>, mut part: Part) -> (Option<Curve>, Vec<SkippedPart>) {
     let labels = titles(&drafts);
     let (kept, skipped) = sort_out(drafts, &labels);
     let Some((_, first)) = kept.first() else {
         return (None, skipped);
     };
     let segments: Vec<&Draft> = kept.iter().map(|(_, draft)| draft).collect();
-    let mut columns = derived(&segments, &mut about.metadata);
+    let mut columns = derived(&segments, &mut part.metadata);
     let left_out = add_channels(&segments, &mut columns);
     if !left_out.is_empty() {
         let value = format!("{} (not in every segment)", left_out.join(", "));
-        about.metadata.push(metadata("channels left out", &value));
+        part.metadata.push(metadata("channels left out", &value));
     }
     let sample = |column: &Column| match (&first.first, column.formulas.first()) {
         (Some(stored), Some(formula)) => shorten(&format!("{:?}", formula.at(0, stored))),
@@ -130,15 +122,9 @@ pub(super) fn assemble(drafts: Vec<Draft>, mut about: About) -> (Option<Curve>, 
         kind: ColumnKind::Number,
         sample: sample(column),
     };
-    let part = Part {
-        name: about.name,
-        written: about.written,
-        rows: Some(segments.iter().map(|draft| draft.rows as u64).sum()),
-        columns: columns.iter().enumerate().map(info).collect(),
-        metadata: about.metadata,
-        labels: in_rows(&kept),
-        ..Part::default()
-    };
+    part.rows = Some(segments.iter().map(|draft| draft.rows as u64).sum());
+    part.columns = columns.iter().enumerate().map(info).collect();
+    part.labels = in_rows(&kept);
     let segment = |(place, draft): (usize, &&Draft)| Segment {
         number: draft.number,
         rows: draft.rows,

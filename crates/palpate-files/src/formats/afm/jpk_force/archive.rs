@@ -3,17 +3,19 @@
 use std::{
     collections::{BTreeMap, BTreeSet},
     io::Read,
+    str::FromStr,
 };
 
 use zip::{ZipArchive, result::ZipError};
 
+use super::properties::{self, List};
 use crate::{
     error::FileError,
     input::{Input, Seekable},
 };
 
 /// Most bytes of a list of properties, unpacked.
-pub(super) const MOST_PROPERTIES: u64 = 4 << 20;
+const MOST_PROPERTIES: u64 = 4 << 20;
 
 /// Most bytes of one channel of one segment, unpacked.
 pub(super) const MOST_CHANNEL: u64 = 64 << 20;
@@ -75,13 +77,13 @@ impl<'a> Archive<'a> {
         Ok(bytes)
     }
 
-    /// A whole member of at most `most` bytes.
-    pub(super) fn whole(&mut self, name: &str, what: &'static str, most: u64) -> Result<Vec<u8>, FileError> {
-        let bytes = self.beginning(name, most + 1)?;
-        if bytes.len() as u64 > most {
-            return Err(self.input.too_large(what, most));
+    /// A member that is a list of properties.
+    pub(super) fn list(&mut self, name: &str) -> Result<List, FileError> {
+        let bytes = self.beginning(name, MOST_PROPERTIES + 1)?;
+        if bytes.len() as u64 > MOST_PROPERTIES {
+            return Err(self.input.too_large("a list of properties", MOST_PROPERTIES));
         }
-        Ok(bytes)
+        Ok(properties::read(&bytes))
     }
 
     /// The curves, in the order of their numbers.
@@ -116,21 +118,16 @@ impl<'a> Archive<'a> {
 /// The numbers of curve and segment that the header of a segment has in its name.
 fn numbered(name: &str) -> Option<(Option<u64>, usize)> {
     let inner = name.strip_suffix("/segment-header.properties")?;
-    let (index, inner) = match inner.strip_prefix("index/") {
-        Some(rest) => {
-            let (index, inner) = rest.split_once('/')?;
-            (Some(plain(index)?), inner)
-        }
-        None => (None, inner),
-    };
-    let segment = plain(inner.strip_prefix("segments/")?)?;
-    Some((index, usize::try_from(segment).ok()?))
+    match inner.split('/').collect::<Vec<_>>()[..] {
+        ["segments", segment] => Some((None, plain(segment)?)),
+        ["index", index, "segments", segment] => Some((Some(plain(index)?), plain(segment)?)),
+        _ => None,
+    }
 }
 
 /// A number that is written in one way only.
-fn plain(text: &str) -> Option<u64> {
-    let number: u64 = text.parse().ok()?;
-    (number.to_string() == text).then_some(number)
+fn plain<N: FromStr + ToString>(text: &str) -> Option<N> {
+    text.parse().ok().filter(|number: &N| number.to_string() == text)
 }
 
 #[cfg(test)]

@@ -21,14 +21,14 @@ mod stored;
 use crate::{
     error::FileError,
     formats::afm::{
-        assemble::{About, assemble},
+        assemble::assemble,
         curve::{Curve, Segment},
         metadata,
     },
     input::{Input, MOST_IN_MEMORY, is_zip},
     table::{Columns, Found, Metadata, Part, ReadOptions, ReadPart, SkippedPart},
 };
-use archive::{Archive, HEADER, MOST_CHANNEL, MOST_PROPERTIES, Place};
+use archive::{Archive, HEADER, MOST_CHANNEL, Place};
 use properties::List;
 use segment::{StoredChannel, StoredSegment};
 use stored::Stored;
@@ -59,7 +59,7 @@ struct JpkForce {
 pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, FileError> {
     let mut archive = Archive::open(input)?;
     let shared = match archive.has(SHARED) {
-        true => properties::read(&archive.whole(SHARED, "a list of properties", MOST_PROPERTIES)?),
+        true => archive.list(SHARED)?,
         false => List::new(),
     };
     let curves = archive.curves()?;
@@ -115,20 +115,19 @@ fn curve(
     place: &Place,
     sampled: bool,
 ) -> Result<Understood, FileError> {
-    let mut segments = Vec::new();
-    for number in 0..place.segments {
-        segments.push(segment::read(input, archive, shared, place, number)?);
-    }
+    let read = |number| segment::read(input, archive, shared, place, number);
+    let mut segments = (0..place.segments).map(read).collect::<Result<Vec<_>, _>>()?;
     let clock = segment::set_clocks(&mut segments);
     if sampled {
         for segment in &mut segments {
             segment.draft.first = first_row(archive, segment)?;
         }
     }
-    let mut about = About {
+    let mut about = Part {
         name: (!place.folder.is_empty()).then(|| place.folder.trim_end_matches('/').to_owned()),
         written: format!("JPK force curve, {} segments", place.segments),
         metadata: of_header(archive, place)?,
+        ..Part::default()
     };
     about.metadata.extend(segments.iter().flat_map(|segment| segment.metadata.clone()));
     about.metadata.push(metadata("time", clock));
@@ -144,7 +143,7 @@ fn of_header(archive: &mut Archive<'_>, place: &Place) -> Result<Vec<Metadata>, 
     if !archive.has(&member) {
         return Ok(Vec::new());
     }
-    let list = properties::read(&archive.whole(&member, "a list of properties", MOST_PROPERTIES)?);
+    let list = archive.list(&member)?;
     let entry = |(key, value): (&String, &String)| metadata(key, value);
     Ok(list.iter().filter(|(_, value)| !value.is_empty()).map(entry).collect())
 }

@@ -1,8 +1,8 @@
 //! What the header of a segment says.
 
 use super::{
-    archive::{Archive, MOST_CHANNEL, MOST_PROPERTIES, Place},
-    properties::{self, List, Properties},
+    archive::{Archive, MOST_CHANNEL, Place},
+    properties::{List, Properties},
     stored::{Stored, kind},
 };
 use crate::{
@@ -56,8 +56,7 @@ pub(super) fn read(
 ) -> Result<StoredSegment, FileError> {
     let folder = format!("{}segments/{number}/", place.folder);
     let member = format!("{folder}segment-header.properties");
-    let own = properties::read(&archive.whole(&member, "a list of properties", MOST_PROPERTIES)?);
-    let properties = Properties::of(own, shared);
+    let properties = Properties::of(archive.list(&member)?, shared);
     let header = Header {
         input,
         member,

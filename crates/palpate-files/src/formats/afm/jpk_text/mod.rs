@@ -13,12 +13,9 @@ mod segment;
 
 use crate::{
     error::FileError,
-    formats::afm::{
-        assemble::{About, assemble},
-        metadata, rows,
-    },
+    formats::afm::{assemble::assemble, metadata, rows},
     input::Input,
-    table::{Found, Metadata, ReadOptions},
+    table::{Found, Metadata, Part, ReadOptions},
 };
 use scan::Block;
 
@@ -39,13 +36,13 @@ pub(crate) fn recognise(input: &Input) -> bool {
 /// Looks into a text export, from end to end: its segments follow one another without a table of contents.
 pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, FileError> {
     let blocks = scan::blocks(input)?;
-    let drafts = segment::drafts(input, &blocks)?;
-    let about = About {
-        name: None,
+    let (drafts, clock) = segment::drafts(input, &blocks)?;
+    let part = Part {
         written: format!("JPK text export, {} segments", blocks.len()),
-        metadata: of_headers(&blocks, segment::clock_of(&drafts)),
+        metadata: of_headers(&blocks, clock),
+        ..Part::default()
     };
-    let assembled = assemble(drafts, about);
+    let assembled = assemble(drafts, part);
     Ok(rows::found(input, blocks.into_iter().map(|block| block.layout).collect(), assembled))
 }
 

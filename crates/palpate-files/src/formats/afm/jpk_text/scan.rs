@@ -64,7 +64,9 @@ pub(super) fn blocks(input: &Input) -> Result<Vec<Block>, FileError> {
             return Err(input.too_large("the headers of all segments", MOST_HEADER as u64));
         }
         let entry = entry(line);
-        let again = entry.as_ref().is_some_and(|(key, _)| begins_a_block(key) && open.value(key).is_some());
+        // Keys that every header has once.
+        let once = |key: &str| matches!(key, "segmentIndex" | "segment" | "columns");
+        let again = entry.as_ref().is_some_and(|(key, _)| once(key) && open.value(key).is_some());
         if open.rows > 0 || again {
             blocks.push(std::mem::take(&mut open));
             if blocks.len() > MOST_BLOCKS {
@@ -78,11 +80,6 @@ pub(super) fn blocks(input: &Input) -> Result<Vec<Block>, FileError> {
         blocks.push(open);
     }
     Ok(blocks)
-}
-
-/// Keys that every header has once.
-fn begins_a_block(key: &str) -> bool {
-    matches!(key, "segmentIndex" | "segment" | "columns")
 }
 
 fn add_row(input: &Input, block: &mut Block, line: &[u8], number: usize) -> Result<(), FileError> {

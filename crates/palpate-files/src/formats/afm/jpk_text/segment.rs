@@ -11,14 +11,12 @@ use crate::{
     input::Input,
 };
 
-/// The segments of a file.
-pub(super) fn drafts(input: &Input, blocks: &[Block]) -> Result<Vec<Draft>, FileError> {
-    let mut drafts = Vec::new();
-    for (number, block) in blocks.iter().enumerate() {
-        drafts.push(draft(input, block, &blocks[0], number)?);
-    }
-    set_clocks(blocks, &mut drafts);
-    Ok(drafts)
+/// The segments of a file, and where their time comes from, for people.
+pub(super) fn drafts(input: &Input, blocks: &[Block]) -> Result<(Vec<Draft>, &'static str), FileError> {
+    let draft = |(number, block)| draft(input, block, &blocks[0], number);
+    let mut drafts = blocks.iter().enumerate().map(draft).collect::<Result<Vec<_>, _>>()?;
+    let clock = set_clocks(blocks, &mut drafts);
+    Ok((drafts, clock))
 }
 
 fn draft(input: &Input, block: &Block, first: &Block, number: usize) -> Result<Draft, FileError> {
@@ -96,10 +94,11 @@ fn load(
 }
 
 /// Time: of the whole series where the file has it, else of each segment, put one behind the other, else of the
-/// durations that were asked for.
-fn set_clocks(blocks: &[Block], drafts: &mut [Draft]) {
+/// durations that were asked for. Which of these is said.
+fn set_clocks(blocks: &[Block], drafts: &mut [Draft]) -> &'static str {
+    const NONE: &str = "none: the file has neither a column of it nor the durations of all segments";
     if set_series_clock(drafts.iter_mut()) {
-        return;
+        return "seriesTime of the file";
     }
     let by_segment = drafts.iter().all(|draft| draft.rows == 0 || draft.line("time", "s").is_some());
     let mut start = 0.0;
@@ -108,7 +107,7 @@ fn set_clocks(blocks: &[Block], drafts: &mut [Draft]) {
         if by_segment && let Some(line) = draft.line("time", "s") {
             let at = |row: &[u8]| numbers(block, row).and_then(|row| row.get(line.channel).copied());
             let (Some(first), Some(last)) = (at(&block.first), at(&block.last)) else {
-                return;
+                return NONE;
             };
             draft.clock = Some(Formula::Line(line.then(1.0, start)));
             // Behind its last row a segment goes on for one more step.
@@ -116,10 +115,14 @@ fn set_clocks(blocks: &[Block], drafts: &mut [Draft]) {
             start += last + step;
         } else {
             // Without it for one segment, there is no time for those behind it either.
-            let Some(step) = step(block) else { return };
+            let Some(step) = step(block) else { return NONE };
             draft.clock = Some(Formula::Even { start, step });
             start += step * rows;
         }
+    }
+    match by_segment {
+        true => "time of the file, the segments one behind the other",
+        false => "made of the durations and numbers of points that were asked for, the segments one behind the other",
     }
 }
 
@@ -137,26 +140,6 @@ fn step(block: &Block) -> Option<f64> {
         _ => return None,
     };
     Some(number(key)? / block.rows as f64)
-}
-
-/// Where the time of a file comes from, for people.
-pub(super) fn clock_of(drafts: &[Draft]) -> &'static str {
-    let clocks: Vec<&Draft> = drafts.iter().filter(|draft| draft.rows > 0).collect();
-    let read = |name: &str| {
-        clocks.iter().all(|draft| match draft.clock {
-            Some(Formula::Line(line)) => draft.channels.get(line.channel).is_some_and(|channel| channel.name == name),
-            _ => false,
-        })
-    };
-    if clocks.iter().any(|draft| draft.clock.is_none()) {
-        "none: the file has neither a column of it nor the durations of all segments"
-    } else if read("seriesTime") {
-        "seriesTime of the file"
-    } else if read("time") {
-        "time of the file, the segments one behind the other"
-    } else {
-        "made of the durations and numbers of points that were asked for, the segments one behind the other"
-    }
 }
 
 /// The numbers of a row, if it holds nothing else.

@@ -16,12 +16,12 @@ use serde_json::Value;
 use crate::{
     error::FileError,
     formats::afm::{
-        assemble::{About, Channel, Draft, Load, assemble},
+        assemble::{Channel, Draft, Load, assemble},
         curve::{Formula, Line},
         metadata, rows,
     },
     input::Input,
-    table::{Found, Label, ReadOptions},
+    table::{Found, Label, Part, ReadOptions},
 };
 use header::{BEGIN, Header};
 use scan::{MOST_SEGMENTS, Scan, scan};
@@ -39,12 +39,12 @@ pub(crate) fn recognise(input: &Input) -> bool {
 pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, FileError> {
     let header = header::read(input)?;
     let scan = scan(input, &header)?;
-    let about = About {
-        name: None,
+    let part = Part {
         written: "text of afmformats".to_owned(),
         metadata: header.metadata.iter().map(|(name, value)| metadata(name, &plain(value))).collect(),
+        ..Part::default()
     };
-    let (mut curve, skipped) = assemble(vec![draft(&header, &scan)], about);
+    let (mut curve, skipped) = assemble(vec![draft(&header, &scan)], part);
     if let Some(curve) = &mut curve {
         curve.part.labels = labels(&header, &scan);
     }
