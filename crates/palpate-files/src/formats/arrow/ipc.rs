@@ -3,14 +3,14 @@
 
 use std::{
     collections::HashMap,
-    io::{BufRead, BufReader, Read},
+    io::{BufRead, BufReader, Read, SeekFrom},
     ops::{ControlFlow, Range},
     sync::Arc,
 };
 
-use arrow_array::{ArrayRef, RecordBatch};
+use arrow_array::ArrayRef;
 use arrow_buffer::Buffer;
-use arrow_ipc::{Block, Message, MessageHeader, convert::fb_to_schema, reader, root_as_footer, root_as_message};
+use arrow_ipc::{Block, MessageHeader, convert::fb_to_schema, reader, root_as_footer, root_as_message};
 use arrow_schema::SchemaRef;
 
 use super::{
@@ -178,30 +178,27 @@ impl<'a> Messages<'a> {
     }
 }
 
+/// Up to `count` bytes, the first of them so far from the end of the file.
+fn near_end(input: &Input, from_end: u64, count: u64) -> Result<Vec<u8>, FileError> {
+    let mut bytes = input.seekable()?;
+    let mut part = Vec::new();
+    let read = bytes.seek(SeekFrom::End(-(from_end as i64))).and_then(|_| bytes.take(count).read_to_end(&mut part));
+    read.map(|_| part).map_err(|error| input.failed(error))
+}
+
 /// The footer of a file: before its length and the magic word at the end.
 fn footer(input: &Input) -> Result<Vec<u8>, FileError> {
-    let mut bytes = input.seekable()?;
-    let mut read = |from_end: i64, count: u64| {
-        let mut part = Vec::new();
-        bytes
-            .seek(std::io::SeekFrom::End(-from_end))
-            .and_then(|_| bytes.by_ref().take(count).read_to_end(&mut part))?;
-        Ok(part)
-    };
-    let length = read(10, 4).map_err(|error: std::io::Error| input.failed(error))?;
+    let length = near_end(input, 10, 4)?;
     let length = length.first_chunk::<4>().map_or(0, |four| u64::from(u32::from_le_bytes(*four)));
     let within = (1..=MOST_OF_MESSAGE).contains(&length);
-    let footer = within.then(|| read(length as i64 + 10, length).ok()).flatten();
+    let footer = within.then(|| near_end(input, length + 10, length).ok()).flatten();
     footer.ok_or_else(|| damaged(input, "the footer", "a length beyond the file"))
 }
 
 /// A file that is whole ends with its magic word.
 fn ends_well(input: &Input) -> Result<(), FileError> {
-    let mut last = Vec::new();
-    let mut bytes = input.seekable()?;
-    let read = bytes.seek(std::io::SeekFrom::End(-6)).and_then(|_| bytes.read_to_end(&mut last));
-    match read {
-        Ok(_) if last == MAGIC => Ok(()),
+    match near_end(input, 6, 6) {
+        Ok(last) if last == MAGIC => Ok(()),
         _ => Err(damaged(input, "the end", "another end: the file may be cut off")),
     }
 }
@@ -233,10 +230,13 @@ pub(super) fn visit(
                     .map_err(|error| messages.wrong(&error.to_string()))?;
             }
             MessageHeader::RecordBatch => {
-                let count = message.header_as_record_batch().map_or(0, |batch| batch.length());
-                let count = u64::try_from(count).map_err(|_| messages.wrong("a negative number of rows"))?;
+                let batch = message.header_as_record_batch().ok_or_else(|| messages.wrong("no rows"))?;
+                let count = u64::try_from(batch.length()).map_err(|_| messages.wrong("a negative number of rows"))?;
                 if row < rows.end && row.saturating_add(count) > rows.start {
-                    let batch = decode(&messages, &message, &body, (&schema, columns), &dictionaries)?;
+                    messages.check(&batch, &body)?;
+                    let (schema, version) = (schema.clone(), message.version());
+                    let batch = reader::read_record_batch(&body, batch, schema, &dictionaries, Some(columns), &version)
+                        .map_err(|error| messages.wrong(&error.to_string()))?;
                     let (done, total) = messages.bytes.get_ref().progress();
                     if each(row, &batch, (done, total))? == ControlFlow::Break(()) {
                         return Ok(());
@@ -251,17 +251,4 @@ pub(super) fn visit(
         }
     }
     Ok(())
-}
-
-fn decode(
-    messages: &Messages<'_>,
-    message: &Message<'_>,
-    body: &Buffer,
-    (schema, columns): (&SchemaRef, &[usize]),
-    dictionaries: &HashMap<i64, ArrayRef>,
-) -> Result<RecordBatch, FileError> {
-    let batch = message.header_as_record_batch().ok_or_else(|| messages.wrong("no rows"))?;
-    messages.check(&batch, body)?;
-    reader::read_record_batch(body, batch, schema.clone(), dictionaries, Some(columns), &message.version())
-        .map_err(|error| messages.wrong(&error.to_string()))
 }

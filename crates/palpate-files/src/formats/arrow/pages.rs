@@ -20,14 +20,9 @@ pub(super) struct Page {
 /// The head of the page that begins `bytes`; `None` where it is none, or goes on behind them.
 pub(super) fn page(bytes: &[u8]) -> Option<Page> {
     let mut head = Bytes { bytes, at: 0 };
-    let mut sizes = [0_u64; 4];
-    head.structure(DEEPEST, &mut |number, value| {
-        if let Some(size) = usize::try_from(number).ok().and_then(|number| sizes.get_mut(number)) {
-            *size = value;
-        }
-    })?;
     // Sizes are kept as 2n, or 2n − 1 of a negative one.
-    let [_, _, unpacked, packed] = sizes.map(|size| if size & 1 == 0 { size >> 1 } else { u64::MAX });
+    let [_, _, unpacked, packed] =
+        head.structure(DEEPEST)?.map(|size| if size & 1 == 0 { size >> 1 } else { u64::MAX });
     Some(Page {
         head: head.at as u64,
         packed,
@@ -66,14 +61,14 @@ impl Bytes<'_> {
         None
     }
 
-    /// A structure up to its end; `told` hears of its whole numbers, as they are kept.
-    fn structure(&mut self, deepest: usize, told: &mut dyn FnMut(i64, u64)) -> Option<()> {
+    /// The whole numbers of the first fields of a structure, as they are kept, at its end.
+    fn structure(&mut self, deepest: usize) -> Option<[u64; 4]> {
         let deepest = deepest.checked_sub(1)?;
-        let mut field = 0_i64;
+        let (mut field, mut numbers) = (0_i64, [0; 4]);
         loop {
             let lead = self.byte()?;
             if lead == 0 {
-                return Some(());
+                return Some(numbers);
             }
             field = match lead >> 4 {
                 0 => self.number().map(|kept| (kept >> 1) as i64 ^ -((kept & 1) as i64))?,
@@ -82,7 +77,12 @@ impl Bytes<'_> {
             match lead & 0x0F {
                 // Truths are in the lead.
                 1 | 2 => {}
-                4..=6 => told(field, self.number()?),
+                4..=6 => {
+                    let number = self.number()?;
+                    if let Some(kept) = usize::try_from(field).ok().and_then(|field| numbers.get_mut(field)) {
+                        *kept = number;
+                    }
+                }
                 kind => self.value(kind, deepest)?,
             }
         }
@@ -103,7 +103,7 @@ impl Bytes<'_> {
                 let deepest = deepest.checked_sub(1)?;
                 (0..count).try_for_each(|_| self.value(lead & 0x0F, deepest))
             }
-            12 => self.structure(deepest, &mut |_, _| {}),
+            12 => self.structure(deepest).map(drop),
             _ => None,
         }
     }

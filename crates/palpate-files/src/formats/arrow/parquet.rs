@@ -5,7 +5,6 @@ use std::{
     ops::{ControlFlow, Range},
 };
 
-use arrow_array::RecordBatchReader;
 use arrow_schema::SchemaRef;
 use bytes::Bytes;
 use parquet::{
@@ -82,11 +81,8 @@ impl ChunkReader for Chunks {
 }
 
 fn metadata(input: &Input, chunks: &Chunks) -> Result<ArrowReaderMetadata, FileError> {
-    let last = chunks.size.checked_sub(ENCRYPTED.len() as u64);
-    if last
-        .and_then(|start| chunks.get_bytes(start, ENCRYPTED.len()).ok())
-        .is_some_and(|end| end == ENCRYPTED)
-    {
+    let length = ENCRYPTED.len();
+    if chunks.get_bytes(chunks.size.wrapping_sub(length as u64), length).is_ok_and(|end| end == ENCRYPTED) {
         return Err(input.encrypted());
     }
     let metadata = ArrowReaderMetadata::load(chunks, ArrowReaderOptions::new());
@@ -142,29 +138,26 @@ pub(super) fn visit(
 ) -> Result<(), FileError> {
     let chunks = Chunks::of(input)?;
     let metadata = metadata(input, &chunks)?;
-    let counts: Vec<u64> =
-        metadata.metadata().row_groups().iter().map(|group| group.num_rows().max(0) as u64).collect();
     check(input, &chunks, &metadata, columns)?;
     let mask = ProjectionMask::roots(metadata.parquet_schema(), columns.iter().copied());
-    let total = counts.iter().fold(0_u64, |sum, count| sum.saturating_add(*count));
     // The groups from the first to the last that hold a row that is wanted.
     let mut start = 0_u64;
     let (mut groups, mut first) = (Vec::new(), None);
-    for (group, &count) in counts.iter().enumerate() {
-        let end = start.saturating_add(count);
+    for (group, about) in metadata.metadata().row_groups().iter().enumerate() {
+        let end = start.saturating_add(about.num_rows().max(0) as u64);
         if start < rows.end && end > rows.start {
             first.get_or_insert(start);
             groups.push(group);
         }
         start = end;
     }
+    let total = start;
     let builder = ParquetRecordBatchReaderBuilder::new_with_metadata(chunks, metadata)
         .with_projection(mask)
         .with_row_groups(groups)
         .with_batch_size(BATCH);
     let reader = builder.build().map_err(|error| damaged(input, "rows", &error.to_string()))?;
     let mut row = first.unwrap_or(0);
-    debug_assert!(reader.schema().fields().len() <= columns.len());
     for batch in reader {
         let batch = batch.map_err(|error| damaged(input, &format!("rows from {}", row + 1), &error.to_string()))?;
         let count = batch.num_rows() as u64;

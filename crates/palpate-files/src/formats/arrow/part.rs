@@ -177,13 +177,7 @@ impl ReadPart for Table {
             Ok(if end >= span.end { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
         })?;
         if read.rows() == 0 {
-            return Err(FileError::NoParts {
-                path: self.source.input.name().to_owned(),
-                parts: vec![(
-                    self.tests[part].name.clone().unwrap_or_else(|| "the table".to_owned()),
-                    "no rows".to_owned(),
-                )],
-            });
+            return Err(self.source.input.no_rows(self.tests[part].name.as_deref().unwrap_or("the table")));
         }
         progress(size, size);
         read.finish();
