@@ -50,11 +50,8 @@ impl<'a> Bytes<'a> {
             Some(0x0006) => (false, 4),
             Some(0x0007) => (true, 4),
             other => {
-                return Err(Fault {
-                    at: Some(0),
-                    expected: "a head of plain CDR".to_owned(),
-                    found: other.map_or_else(|| format!("{} bytes", message.len()), |head| format!("{head:#06x}")),
-                });
+                let found = other.map_or_else(|| format!("{} bytes", message.len()), |head| format!("{head:#06x}"));
+                return Err(Fault::new(Some(0), "a head of plain CDR", found));
             }
         };
         Ok(Self {
@@ -66,11 +63,7 @@ impl<'a> Bytes<'a> {
     }
 
     fn fault(&self, expected: String, found: String) -> Fault {
-        Fault {
-            at: Some(HEAD + self.at),
-            expected,
-            found,
-        }
+        Fault::new(Some(HEAD + self.at), expected, found)
     }
 
     /// The next `count` elements of `size` bytes each, aligned.

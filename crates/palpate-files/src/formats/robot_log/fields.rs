@@ -31,11 +31,7 @@ impl Fields {
     /// Adds a number.
     pub(super) fn push(&mut self, path: &str, value: f64) -> Result<(), Fault> {
         if self.values.len() == MOST_NUMBERS {
-            return Err(Fault {
-                at: None,
-                expected: format!("at most {MOST_NUMBERS} numbers in a message"),
-                found: "more".to_owned(),
-            });
+            return Err(Fault::new(None, format!("at most {MOST_NUMBERS} numbers in a message"), "more"));
         }
         self.values.push(value);
         if let Some(names) = &mut self.names {
@@ -60,6 +56,16 @@ pub(super) struct Fault {
     pub(super) at: Option<usize>,
     pub(super) expected: String,
     pub(super) found: String,
+}
+
+impl Fault {
+    pub(super) fn new(at: Option<usize>, expected: impl Into<String>, found: impl Into<String>) -> Self {
+        Self {
+            at,
+            expected: expected.into(),
+            found: found.into(),
+        }
+    }
 }
 
 /// Whether the texts of a field name the elements of the arrays beside it: the joints of a robot.

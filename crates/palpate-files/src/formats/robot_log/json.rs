@@ -6,18 +6,11 @@ use super::fields::{Fault, Fields, MOST_ELEMENTS, distinct, names_elements};
 
 /// Reads the numbers of a message. `null` is how JSON writes a number that is none.
 pub(super) fn read(message: &[u8]) -> Result<Fields, Fault> {
-    let value: Value = serde_json::from_slice(message).map_err(|error| Fault {
-        at: None,
-        expected: "a message in JSON".to_owned(),
-        found: error.to_string(),
-    })?;
+    let value: Value =
+        serde_json::from_slice(message).map_err(|error| Fault::new(None, "a message in JSON", error.to_string()))?;
     let mut fields = Fields::none(true);
     let Value::Object(object) = &value else {
-        return Err(Fault {
-            at: None,
-            expected: "a JSON object".to_owned(),
-            found: "another value".to_owned(),
-        });
+        return Err(Fault::new(None, "a JSON object", "another value"));
     };
     let stamp = object.get("header").and_then(|header| header.get("stamp")).or_else(|| object.get("stamp"));
     if let Some((seconds, nanoseconds)) = stamp.and_then(time) {

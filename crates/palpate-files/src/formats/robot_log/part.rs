@@ -2,9 +2,8 @@
 
 use super::{
     container,
-    fields::Fields,
     record::Entry,
-    survey::{Belongs, Series, Survey},
+    survey::{Series, Survey},
     units,
 };
 use crate::{
@@ -70,21 +69,6 @@ impl Log {
         };
         (part, log)
     }
-
-    /// The row of a message: what its series is asked for.
-    fn row(&self, wanted: &[Source], belongs: &Belongs, fields: &Fields, log_time: u64, row: &mut Vec<f64>) {
-        let start = i128::from(self.survey.start.unwrap_or(0));
-        let since_start = |time: i128| (time - start) as f64 / 1e9;
-        row.clear();
-        row.extend(wanted.iter().map(|source| match source {
-            Source::Stamps => since_start(fields.stamp.unwrap_or(start)),
-            Source::LogTimes => since_start(i128::from(log_time)),
-            Source::Field(place) => {
-                let own = belongs.places.iter().position(|other| other == place);
-                own.map_or(f64::NAN, |own| fields.values[own])
-            }
-        }));
-    }
 }
 
 impl ReadPart for Log {
@@ -96,6 +80,8 @@ impl ReadPart for Log {
         let wanted: Vec<Vec<Source>> = (0..self.survey.series.len()).map(of_series).collect();
         let mut read: Vec<Columns> = wanted.iter().map(|wanted| Columns::of(wanted.len())).collect();
         let mut row = Vec::new();
+        let start = i128::from(self.survey.start.unwrap_or(0));
+        let since_start = |time: i128| (time - start) as f64 / 1e9;
         container::walk(&self.input, progress, &mut |entry| {
             let Entry::Message {
                 channel,
@@ -115,10 +101,20 @@ impl ReadPart for Log {
             let changed = || self.input.damaged("the log", expected, "others");
             let fields = channel.decoder.read(data, false).map_err(|_| changed())?;
             let belongs = channel.known.get(&fields.signature).ok_or_else(changed)?;
-            if !wanted[belongs.series].is_empty() {
-                self.row(&wanted[belongs.series], belongs, &fields, log_time, &mut row);
-                read[belongs.series].push_values(&row);
+            let wanted = &wanted[belongs.series];
+            if wanted.is_empty() {
+                return Ok(());
             }
+            row.clear();
+            row.extend(wanted.iter().map(|source| match source {
+                Source::Stamps => since_start(fields.stamp.unwrap_or(start)),
+                Source::LogTimes => since_start(i128::from(log_time)),
+                Source::Field(place) => {
+                    let own = belongs.places.iter().position(|other| other == place);
+                    own.map_or(f64::NAN, |own| fields.values[own])
+                }
+            }));
+            read[belongs.series].push_values(&row);
             Ok(())
         })?;
         let order: Vec<usize> = chosen.iter().map(|(series, _)| *series).collect();
