@@ -117,7 +117,7 @@ fn days_of(year: i64, month: i64) -> i64 {
 }
 
 /// Days from 1 January 1970 to a date of the Gregorian calendar.
-fn days_since_1970(year: i64, month: i64, day: i64) -> i64 {
+pub(crate) fn days_since_1970(year: i64, month: i64, day: i64) -> i64 {
     let leap_years_to = |year: i64| year / 4 - year / 100 + year / 400;
     // Leap days before the year, and this year's months before the month.
     let years = (year - 1970) * 365 + leap_years_to(year - 1) - leap_years_to(1969);

@@ -1,5 +1,7 @@
 //! Dates and times of day as numbers.
 
+use crate::cell::date::days_since_1970;
+
 /// Days from 1 January 1970 to a date with or without a time such as `2026-11-22T08:30:00.5`.
 ///
 /// Without an offset and with `Z` it is taken for universal time; another offset is not understood.
@@ -15,15 +17,7 @@ pub(super) fn of_iso(text: &str) -> Option<f64> {
     let sound = (1900..=9999).contains(&year) && (1..=12).contains(&month) && (1..=31).contains(&day);
     let clock = (0.0..=24.0).contains(&hours) && (0.0..60.0).contains(&minutes) && (0.0..61.0).contains(&seconds);
     let of_day = ((hours * 60.0 + minutes) * 60.0 + seconds) / 86_400.0;
-    (sound && clock).then(|| days_to(year, month, day) as f64 + of_day)
-}
-
-/// Days from 1 January 1970 to a date of the Gregorian calendar: years that begin in March have their odd day last.
-fn days_to(year: i64, month: i64, day: i64) -> i64 {
-    let year = year - i64::from(month <= 2);
-    let (century, of_century) = (year.div_euclid(400), year.rem_euclid(400));
-    let of_year = (153 * ((month + 9) % 12) + 2) / 5 + day - 1;
-    century * 146_097 + of_century * 365 + of_century / 4 - of_century / 100 + of_year - 719_468
+    (sound && clock).then(|| days_since_1970(year, month, day) as f64 + of_day)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::{ops::ControlFlow, path::Path};
 
 use super::{
     book::Book,
-    cell::{Cell, Value, letters},
+    cell::{Value, letters},
     table::Table,
 };
 use crate::{
@@ -52,7 +52,8 @@ pub(super) fn read(
                     progress(done.min(total), total);
                 }
             }
-            reading.take(place, cell);
+            reading.number = Some(cell.row);
+            reading.row[place] = Some(cell.value);
         }
         ends = (total, total);
         Ok(ControlFlow::Continue(()))
@@ -85,11 +86,6 @@ struct Reading<'a> {
 }
 
 impl Reading<'_> {
-    fn take(&mut self, place: usize, cell: Cell) {
-        self.number = Some(cell.row);
-        self.row[place] = Some(cell.value);
-    }
-
     fn end_row(&mut self) -> Result<(), FileError> {
         let Some(number) = self.number.take() else {
             return Ok(());

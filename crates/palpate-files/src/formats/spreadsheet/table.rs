@@ -147,10 +147,9 @@ fn table(sample: &Sample, places: &[u32], options: &LayoutOptions) -> Option<Tab
     if data.iter().filter(leads).count() < 2 {
         return None;
     }
-    let first_value = |place: u32| data.iter().find_map(|row| row.value(place));
-    let labelled = places.iter().zip(&header.labels).zip(&block.kinds).enumerate();
-    let columns = labelled.map(|(index, ((&place, label), &kind))| column(index + 1, kind, label, first_value(place)));
-    let columns = columns.collect();
+    let firsts: Vec<_> = places.iter().map(|&place| data.iter().find_map(|row| row.value(place))).collect();
+    let labelled = firsts.iter().zip(&header.labels).zip(&block.kinds).enumerate();
+    let columns = labelled.map(|(index, ((first, label), &kind))| column(index + 1, kind, label, *first)).collect();
     let above = rows.iter().take(block.first).enumerate();
     let above = above.filter(|(index, _)| header.names_line != Some(*index) && header.units_line != Some(*index));
     Some(Table {
@@ -159,18 +158,17 @@ fn table(sample: &Sample, places: &[u32], options: &LayoutOptions) -> Option<Tab
         last_row,
         end: None,
         leading,
-        moments: places
-            .iter()
-            .map(|&place| matches!(first_value(place), Some(Value::Moment(_) | Value::Duration(_))))
-            .collect(),
-        dated: places
-            .iter()
-            .map(|&place| matches!(first_value(place), Some(Value::Moment(days)) if *days >= 1.0))
-            .collect(),
+        moments: firsts.iter().map(|first| is_moment(*first)).collect(),
+        dated: firsts.iter().map(|first| matches!(first, Some(Value::Moment(days)) if *days >= 1.0)).collect(),
         decimal: decimal(&data, places, &block.kinds, options.decimal),
         metadata: above.flat_map(|(_, row)| named_values(row)).collect(),
         places: places.to_vec(),
     })
+}
+
+/// Whether the values of a column are dates, times of day or durations, going by the first.
+fn is_moment(first: Option<&Value>) -> bool {
+    matches!(first, Some(Value::Moment(_) | Value::Duration(_)))
 }
 
 /// A column by its number, its name and unit in the header, and its first value.
@@ -181,11 +179,10 @@ fn column(
     first: Option<&Value>,
 ) -> ColumnInfo {
     let (name, unit) = label;
-    let is_time = matches!(first, Some(Value::Moment(_) | Value::Duration(_)));
     ColumnInfo {
         number,
         name: name.clone(),
-        unit: if is_time { Some("s".to_owned()) } else { unit.clone() },
+        unit: if is_moment(first) { Some("s".to_owned()) } else { unit.clone() },
         kind,
         sample: first.map_or_else(String::new, |value| shorten(&value.text())),
     }

@@ -63,10 +63,9 @@ pub(super) fn u32_at(bytes: &[u8], place: usize) -> Option<u32> {
 
 /// Letters of one byte each (the lower half of UTF-16), or of two.
 pub(super) fn letters(bytes: &[u8], wide: bool) -> String {
-    if wide {
-        let units = bytes.chunks_exact(2).filter_map(|two| u16_at(two, 0));
-        char::decode_utf16(units).map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
-    } else {
-        bytes.iter().map(|byte| char::from(*byte)).collect()
-    }
+    let text = match wide {
+        true => encoding_rs::UTF_16LE.decode_without_bom_handling(&bytes[..bytes.len() / 2 * 2]).0,
+        false => encoding_rs::mem::decode_latin1(bytes),
+    };
+    text.into_owned()
 }

@@ -136,11 +136,10 @@ impl Checked<'_> {
         match name.as_ref() {
             "si" => self.tally.texts += 1,
             "sst" => {
-                for said in self.attributes(element)? {
-                    if said.key.local_name().as_ref() == "uniqueCount" {
-                        self.tally.texts_said =
-                            self.tally.texts_said.max(said.value.trim().parse().unwrap_or(u64::MAX));
-                    }
+                let said = self.attributes(element)?;
+                for said in said.iter().filter(|said| said.key.local_name().as_ref() == "uniqueCount") {
+                    let said = said.value.trim().parse().unwrap_or(u64::MAX);
+                    self.tally.texts_said = self.tally.texts_said.max(said);
                 }
             }
             "xf" | "font" | "fill" | "border" => self.tally.styles += 1,
@@ -150,11 +149,11 @@ impl Checked<'_> {
             }
             "Relationship" => self.relation(element)?,
             "sheet" => self.tally.sheets += 1,
+            "numFmt" => {
+                let lengths = self.attributes(element)?.into_iter().map(|attribute| attribute.value.len() as u64);
+                self.tally.longest_name = lengths.fold(self.tally.longest_name, u64::max);
+            }
             _ => {}
-        }
-        if name.as_ref() == "numFmt" {
-            let lengths = self.attributes(element)?.into_iter().map(|attribute| attribute.value.len() as u64);
-            self.tally.longest_name = lengths.fold(self.tally.longest_name, u64::max);
         }
         Ok(())
     }
