@@ -20,7 +20,7 @@ use crate::{
         text,
     },
     input::{Input, Packing},
-    table::{Columns, Found, Layout, Part, ReadOptions, ReadPart, SkippedPart},
+    table::{Columns, Found, Layout, Part, ReadOptions, SkippedPart},
 };
 
 /// How a file is written.
@@ -115,9 +115,7 @@ impl fmt::Display for Format {
 pub struct Contents {
     input: Input,
     format: Format,
-    parts: Vec<Part>,
-    skipped: Vec<SkippedPart>,
-    reader: Box<dyn ReadPart>,
+    found: Found,
 }
 
 impl Contents {
@@ -160,13 +158,7 @@ impl Contents {
                 parts,
             });
         }
-        Ok(Self {
-            input,
-            format,
-            parts: found.parts,
-            skipped: found.skipped,
-            reader: found.reader,
-        })
+        Ok(Self { input, format, found })
     }
 
     /// The file, or what messages call it.
@@ -196,19 +188,19 @@ impl Contents {
     /// The tests in the file, in its order; at least one.
     #[must_use]
     pub fn parts(&self) -> &[Part] {
-        &self.parts
+        &self.found.parts
     }
 
     /// How delimited text is written; `None` in other formats.
     #[must_use]
     pub fn layout(&self) -> Option<&Layout> {
-        self.reader.layout()
+        self.found.reader.layout()
     }
 
     /// What was passed over, in the order of the file.
     #[must_use]
     pub fn skipped(&self) -> &[SkippedPart] {
-        &self.skipped
+        &self.found.skipped
     }
 
     /// Reads columns (numbers from 1, in any order) of the part with index `part`, as they are written.
@@ -224,7 +216,7 @@ impl Contents {
         columns: &[usize],
         progress: &mut dyn FnMut(u64, u64),
     ) -> Result<Columns, FileError> {
-        let count = self.parts.get(part).map_or(0, |part| part.columns.len());
+        let count = self.found.parts.get(part).map_or(0, |part| part.columns.len());
         let beyond = columns.iter().find(|column| !(1..=count).contains(*column));
         if let Some(&column) = beyond {
             return Err(FileError::NoSuchColumn {
@@ -233,7 +225,7 @@ impl Contents {
                 columns: count,
             });
         }
-        let mut read = self.reader.read(part, columns, progress)?;
+        let mut read = self.found.reader.read(part, columns, progress)?;
         read.bytes = self.bytes();
         Ok(read)
     }

@@ -105,10 +105,10 @@ pub(super) fn unpacked<R: Read + Seek + Send + 'static>(
 ) -> io::Result<Box<dyn Read + Send>> {
     Ok(match packing {
         Packing::None => Box::new(stored),
-        Packing::Gzip => Box::new(Limited::of(MultiGzDecoder::new(stored))),
+        Packing::Gzip => Box::new(Limited(MultiGzDecoder::new(stored), MOST_UNPACKED)),
         Packing::Zip { member } => {
             let archive = ZipArchive::new(stored).map_err(io::Error::other)?;
-            Box::new(Limited::of(Member::of(archive, member)?))
+            Box::new(Limited(Member::of(archive, member)?, MOST_UNPACKED))
         }
     })
 }
@@ -162,26 +162,14 @@ impl Read for Member {
     }
 }
 
-/// A reader that gives no more than [`MOST_UNPACKED`] bytes.
-struct Limited<R> {
-    inner: R,
-    left: u64,
-}
-
-impl<R> Limited<R> {
-    fn of(inner: R) -> Self {
-        Self {
-            inner,
-            left: MOST_UNPACKED,
-        }
-    }
-}
+/// A reader, and how many bytes it may still give.
+struct Limited<R>(R, u64);
 
 impl<R: Read> Read for Limited<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        let got = self.inner.read(into)?;
-        let left = self.left.checked_sub(got as u64);
-        self.left = left.ok_or(io::ErrorKind::FileTooLarge)?;
+        let got = self.0.read(into)?;
+        let left = self.1.checked_sub(got as u64);
+        self.1 = left.ok_or(io::ErrorKind::FileTooLarge)?;
         Ok(got)
     }
 }

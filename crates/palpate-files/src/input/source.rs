@@ -30,27 +30,19 @@ pub const ALWAYS_UNPACKED: u64 = 16 << 20;
 const BEGINNING: u64 = 64 * 1024;
 
 /// Bytes to read a record from, under a name for messages.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Input {
     name: PathBuf,
-    place: Place,
+    /// `None`: they lie on a disk.
+    memory: Option<Arc<[u8]>>,
     packing: Packing,
     beginning: Vec<u8>,
     size: u64,
 }
 
-#[derive(Clone)]
-enum Place {
-    Disk,
-    Memory(Arc<[u8]>),
-}
-
-impl fmt::Debug for Place {
+impl fmt::Debug for Input {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Disk => f.write_str("Disk"),
-            Self::Memory(bytes) => write!(f, "Memory({} bytes)", bytes.len()),
-        }
+        write!(f, "Input({}, {} bytes)", self.name.display(), self.size)
     }
 }
 
@@ -73,7 +65,7 @@ impl Input {
         if !about.is_file() {
             return Err(FileError::NoFile { path: path.to_owned() });
         }
-        Self::of(path.to_owned(), Place::Disk, about.len())
+        Self::of(path.to_owned(), None, about.len())
     }
 
     /// Bytes in memory. `name` is what messages call them.
@@ -83,13 +75,13 @@ impl Input {
     pub fn from_bytes(name: impl Into<PathBuf>, bytes: impl Into<Arc<[u8]>>) -> Result<Self, FileError> {
         let bytes = bytes.into();
         let size = bytes.len() as u64;
-        Self::of(name.into(), Place::Memory(bytes), size)
+        Self::of(name.into(), Some(bytes), size)
     }
 
-    fn of(name: PathBuf, place: Place, size: u64) -> Result<Self, FileError> {
+    fn of(name: PathBuf, memory: Option<Arc<[u8]>>, size: u64) -> Result<Self, FileError> {
         let mut input = Self {
             name,
-            place,
+            memory,
             packing: Packing::None,
             beginning: Vec::new(),
             size,
@@ -201,9 +193,9 @@ impl Input {
 
     /// The bytes as they lie there, packed or not.
     fn stored(&self) -> Result<Box<dyn Seekable>, FileError> {
-        Ok(match &self.place {
-            Place::Disk => Box::new(File::open(&self.name).map_err(|error| self.failed(error))?),
-            Place::Memory(bytes) => Box::new(Cursor::new(Arc::clone(bytes))),
+        Ok(match &self.memory {
+            None => Box::new(File::open(&self.name).map_err(|error| self.failed(error))?),
+            Some(bytes) => Box::new(Cursor::new(Arc::clone(bytes))),
         })
     }
 
@@ -260,6 +252,14 @@ impl Input {
     pub(crate) fn encrypted(&self) -> FileError {
         FileError::Encrypted {
             path: self.name.clone(),
+        }
+    }
+
+    /// A part of it holds no rows.
+    pub(crate) fn no_rows(&self, part: &str) -> FileError {
+        FileError::NoParts {
+            path: self.name.clone(),
+            parts: vec![(part.to_owned(), "no rows".to_owned())],
         }
     }
 

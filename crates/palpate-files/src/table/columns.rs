@@ -8,13 +8,6 @@
 /// Most rows that are kept of a file (16,777,216). Of more, successive ones are averaged.
 pub const MOST_ROWS: usize = 1 << 24;
 
-/// Rows that wait for the mean they become part of.
-#[derive(Debug, Clone, Default, PartialEq)]
-struct Waiting {
-    sums: Vec<f64>,
-    rows: usize,
-}
-
 /// Columns of numbers read from a file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Columns {
@@ -30,7 +23,9 @@ pub struct Columns {
     runs: Vec<Run>,
     /// Most rows that are kept.
     most: usize,
-    waiting: Waiting,
+    /// The sums over rows that wait for the mean they become part of, and how many rows these are.
+    sums: Vec<f64>,
+    waiting: usize,
 }
 
 /// Lines passed over behind the first row of data.
@@ -179,28 +174,27 @@ impl Columns {
 
     /// Adds a row to columns that are averaged already.
     fn average(&mut self, row: &[f64]) {
-        let waiting = &mut self.waiting;
-        waiting.sums.resize(row.len(), 0.0);
-        for (sum, value) in waiting.sums.iter_mut().zip(row) {
+        self.sums.resize(row.len(), 0.0);
+        for (sum, value) in self.sums.iter_mut().zip(row) {
             *sum += value;
         }
-        waiting.rows += 1;
-        if waiting.rows == self.averaged {
+        self.waiting += 1;
+        if self.waiting == self.averaged {
             self.take_waiting();
         }
     }
 
     /// Rows left over at the end of the file become a mean of fewer.
     fn take_waiting(&mut self) {
-        let count = self.waiting.rows as f64;
-        if self.waiting.rows == 0 {
+        let count = self.waiting as f64;
+        if self.waiting == 0 {
             return;
         }
-        for (values, sum) in self.values.iter_mut().zip(&mut self.waiting.sums) {
+        for (values, sum) in self.values.iter_mut().zip(&mut self.sums) {
             values.push(*sum / count);
             *sum = 0.0;
         }
-        self.waiting.rows = 0;
+        self.waiting = 0;
     }
 
     /// Makes every two rows their mean.

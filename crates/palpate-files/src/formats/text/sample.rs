@@ -21,7 +21,10 @@ pub(crate) struct Sample {
 impl Sample {
     /// Reads the beginning of a file and decodes it, as `fixed` or as what it looks like.
     pub(crate) fn take(input: &Input, fixed: Option<Encoding>) -> Result<Self, FileError> {
-        let bytes = beginning(input)?;
+        let mut bytes = Vec::new();
+        // One byte more tells whether there is more.
+        let read = input.reader()?.take(LONGEST_LINE as u64 + 1).read_to_end(&mut bytes);
+        read.map_err(|error| input.failed(error))?;
         let cut = bytes.len() > LONGEST_LINE;
         let foreign = |looks_like| FileError::Foreign {
             path: input.name().to_owned(),
@@ -61,12 +64,4 @@ impl Sample {
         lines.truncate(MOST_LINES);
         lines
     }
-}
-
-/// Up to one byte more than the sample wants, which tells whether there is more.
-fn beginning(input: &Input) -> Result<Vec<u8>, FileError> {
-    let mut bytes = Vec::new();
-    let reader = input.reader()?;
-    reader.take(LONGEST_LINE as u64 + 1).read_to_end(&mut bytes).map_err(|error| input.failed(error))?;
-    Ok(bytes)
 }
