@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 use crate::errors::{PalpateError, failed, refused_plainly, unwritten, warn_of};
 use crate::html::framed;
 use crate::kept::Kept;
+use crate::shown::shown;
 use crate::table::{Column, Table, columns};
 use crate::work::{Made, at_length, job, made_again, plain, printed, unpickled};
 
@@ -27,64 +28,37 @@ use crate::work::{Made, at_length, job, made_again, plain, printed, unpickled};
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Finding {
     found: palpate_report::page::Finding,
-    /// Number of the hold, from 1; None for the record as a whole.
-    #[pyo3(get)]
     hold: Option<usize>,
 }
 
 impl Finding {
     fn of(found: &palpate_report::page::Finding, hold: Option<usize>) -> Self {
-        Self {
-            found: found.clone(),
-            hold,
-        }
+        let found = found.clone();
+        Self { found, hold }
     }
 }
 
-#[pymethods]
-impl Finding {
-    /// Stable code, such as "saturated".
-    #[getter]
-    fn code(&self) -> &str {
-        &self.found.code
+shown! {
+    Finding: self
+    values {
+        /// Stable code, such as "saturated".
+        code: &str = &self.found.code,
+        /// "info", "caution" or "warning".
+        severity: String = word(self.found.severity),
+        /// What was seen.
+        seen: &str = &self.found.seen,
+        /// What it may mean.
+        meaning: &str = &self.found.meaning,
+        /// What helps.
+        remedy: &str = &self.found.remedy,
+        /// Number of the hold, from 1; None for the record as a whole.
+        hold: Option<usize> = self.hold,
     }
-
-    /// "info", "caution" or "warning".
-    #[getter]
-    fn severity(&self) -> String {
-        word(self.found.severity)
-    }
-
-    /// What was seen.
-    #[getter]
-    fn seen(&self) -> &str {
-        &self.found.seen
-    }
-
-    /// What it may mean.
-    #[getter]
-    fn meaning(&self) -> &str {
-        &self.found.meaning
-    }
-
-    /// What helps.
-    #[getter]
-    fn remedy(&self) -> &str {
-        &self.found.remedy
-    }
-
-    #[classmethod]
-    fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
-        unpickled(json)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
-        made_again::<Self>(py, self)
-    }
-
-    fn __repr__(&self) -> String {
-        let place = self.hold.map_or(String::new(), |hold| format!(", hold {hold}"));
-        format!("<palpate.Finding {} ({}{place}): {}>", self.code(), self.severity(), self.seen())
+    methods {
+        fn __repr__(&self) -> String {
+            let place = self.hold.map_or(String::new(), |hold| format!(", hold {hold}"));
+            format!("<palpate.Finding {} ({}{place}): {}>", self.code(), self.severity(), self.seen())
+        }
     }
 }
 
@@ -260,7 +234,7 @@ impl Analysis {
     fn report(&self, py: Python<'_>, folder: PathBuf, png: bool) -> PyResult<PathBuf> {
         let done = self.done(py)?;
         let report = folder.join("report.html");
-        let written = at_length(py, move |_| write_bundle(&folder, &done.bundle(Pictures { png })?))?;
+        let written = at_length(py, move |_| write_bundle(&folder, &done.result.bundle(Pictures { png })?))?;
         written.map_err(unwritten)?;
         Ok(report)
     }
@@ -306,7 +280,7 @@ impl Analysis {
     }
 
     fn __str__(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(self.done(py)?.text())
+        Ok(self.done(py)?.result.text())
     }
 
     fn __repr__(&self) -> String {
@@ -316,7 +290,7 @@ impl Analysis {
 
     /// Tables and figures of the report, for notebooks.
     fn _repr_html_(&self, py: Python<'_>) -> PyResult<Option<String>> {
-        let bundle = self.done(py)?.bundle(Pictures { png: false }).map_err(failed)?;
+        let bundle = self.done(py)?.result.bundle(Pictures { png: false }).map_err(failed)?;
         let report = bundle.files.into_iter().find(|(name, _)| name == "report.html");
         Ok(report.and_then(|(_, page)| String::from_utf8(page).ok()).map(|page| framed(&page)))
     }

@@ -2,36 +2,62 @@
 
 use palpate::fit::{LawOptions, Samples};
 use palpate::forecast::{CompareOptions, compare_laws};
-use palpate::laws::{Law, Response};
+use palpate::laws::Response;
 use palpate_jobs::input::Measurement;
 use palpate_jobs::{Compare, Results};
 use palpate_report::document::{ComparisonDocument, HoldComparisonDocument, VerdictDocument};
 use palpate_report::result::Quantity;
 use pyo3::prelude::*;
-use pyo3::types::PyType;
 use serde::{Deserialize, Serialize};
 
 use crate::arrays::doubles;
 use crate::errors::{FitError, OptionError, refused_plainly};
+use crate::files::all_laws;
 use crate::fit::deviations_of;
+use crate::shown::shown;
 use crate::table::{Table, columns};
-use crate::work::{Made, at_length, job, made_again, plain, printed, unpickled};
+use crate::work::{at_length, job, plain, printed};
 
 /// Laws compared on one hold: each was fitted to its first part and held against the rest.
 #[pyclass(name = "Comparison", module = "palpate", frozen, eq)]
-#[derive(PartialEq)]
+#[derive(PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
 pub(crate) struct Comparison {
     document: HoldComparisonDocument,
 }
 
-/// Compares laws; none named: all that suit the response.
+/// Fit laws to the first part of a hold, hold each against the rest, and say which to use.
+///
+/// Parameters
+/// ----------
+/// time_s, signal, weights : array_like, shape (N,)
+///     As for `fit_hold`.
+/// laws
+///     Names of laws; if left out, all that suit.
+/// quantity
+///     What the signal is: "force" or "strain" in a relaxation, "displacement" in a creep.
+/// cuts
+///     Where to cut, as shares of the duration; (1/4, 1/3, 1/2) if left out.
+///
+/// Returns
+/// -------
+/// Comparison
+///     The law to use, how sure that is, what each other one costs, and a table of all.
+///
+/// Raises
+/// ------
+/// FitError
+///     A hold that no law can be fitted to.
+/// OptionError
+///     A law or a quantity that is not known.
 #[pyfunction]
+#[pyo3(signature = (time_s, signal, *, laws=None, weights=None, quantity="force", cuts=None))]
 pub(crate) fn compare(
     py: Python<'_>,
     time_s: &Bound<'_, PyAny>,
     signal: &Bound<'_, PyAny>,
-    weights: Option<&Bound<'_, PyAny>>,
     laws: Option<Vec<String>>,
+    weights: Option<&Bound<'_, PyAny>>,
     quantity: &str,
     cuts: Option<Vec<f64>>,
 ) -> PyResult<Comparison> {
@@ -48,10 +74,9 @@ pub(crate) fn compare(
             return Err(refused_plainly::<OptionError>(message));
         }
     };
-    let parsed = |name: &String| name.parse::<Law>().map_err(refused_plainly::<OptionError>);
     let usual = CompareOptions::default();
     let options = CompareOptions {
-        laws: laws.unwrap_or_default().iter().map(parsed).collect::<PyResult<_>>()?,
+        laws: all_laws(&laws.unwrap_or_default())?,
         fit: LawOptions {
             response,
             ..LawOptions::default()
@@ -75,50 +100,33 @@ impl Comparison {
     }
 }
 
-#[pymethods]
-impl Comparison {
-    /// The law to use: that with the fewest numbers among those that do best; None if none could be fitted.
-    #[getter]
-    fn law(&self) -> Option<&str> {
-        self.verdict(|verdict| &verdict.law)
+shown! {
+    Comparison: self
+    values {
+        /// The law to use: that with the fewest numbers among those that do best; None if none could be fitted.
+        law: Option<&str> = self.verdict(|verdict| &verdict.law),
+        /// How sure that is: "clear", "likely" or "open".
+        certainty: Option<&str> = self.verdict(|verdict| &verdict.certainty),
+        /// All that in one sentence.
+        sentence: Option<&str> = self.verdict(|verdict| &verdict.sentence),
     }
+    methods {
+        /// The laws, best first, a row each.
+        #[getter]
+        fn laws(&self) -> PyResult<Table> {
+            Table::of(columns!(self.document.laws, law =>
+                law, parameters, rmse, delta_aicc, delta_bic, forward_score, termination, error
+            ))
+        }
 
-    /// How sure that is: "clear", "likely" or "open".
-    #[getter]
-    fn certainty(&self) -> Option<&str> {
-        self.verdict(|verdict| &verdict.certainty)
-    }
+        /// Everything as plain objects.
+        fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+            plain(py, &self.document)
+        }
 
-    /// All that in one sentence.
-    #[getter]
-    fn sentence(&self) -> Option<&str> {
-        self.verdict(|verdict| &verdict.sentence)
-    }
-
-    /// The laws, best first, a row each.
-    #[getter]
-    fn laws(&self) -> PyResult<Table> {
-        Table::of(columns!(self.document.laws, law =>
-            law, parameters, rmse, delta_aicc, delta_bic, forward_score, termination, error
-        ))
-    }
-
-    /// Everything as plain objects.
-    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        plain(py, &self.document)
-    }
-
-    #[classmethod]
-    fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
-        unpickled(json).map(|document| Self { document })
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
-        made_again::<Self>(py, &self.document)
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<palpate.Comparison: {}>", self.sentence().unwrap_or("no law could be fitted"))
+        fn __repr__(&self) -> String {
+            format!("<palpate.Comparison: {}>", self.sentence().unwrap_or("no law could be fitted"))
+        }
     }
 }
 
@@ -137,53 +145,47 @@ impl RecordComparison {
         let done = job(py, move |watch| question.run_on(measured, watch))?;
         Ok(Self {
             document: done.result.document(),
-            text: done.text(),
+            text: done.result.text(),
         })
     }
 }
 
-#[pymethods]
-impl RecordComparison {
-    /// The laws on every hold, best first, a row each: ``hold``, ``law``, ``parameters``, ``rmse``, ``delta_aicc``, ``delta_bic``,
-    /// ``forward_score``, ``termination``, ``error``.
-    #[getter]
-    fn laws(&self) -> PyResult<Table> {
-        let holds = self.document.records.iter().flat_map(|record| &record.holds);
-        let rows: Vec<_> = holds
-            .flat_map(|hold| hold.comparison.iter().flat_map(|found| &found.laws).map(|law| (hold.index, law)))
-            .collect();
-        Table::of(columns!(rows, row =>
-            hold = row.0, law = row.1.law.as_str(), parameters = row.1.parameters, rmse = row.1.rmse,
-            delta_aicc = row.1.delta_aicc, delta_bic = row.1.delta_bic, forward_score = row.1.forward_score,
-            termination = row.1.termination.as_deref(), error = row.1.error.as_deref()
-        ))
-    }
+shown! {
+    RecordComparison: self
+    values {}
+    methods {
+        /// The laws on every hold, best first, a row each: ``hold``, ``law``, ``parameters``, ``rmse``, ``delta_aicc``, ``delta_bic``,
+        /// ``forward_score``, ``termination``, ``error``.
+        #[getter]
+        fn laws(&self) -> PyResult<Table> {
+            let holds = self.document.records.iter().flat_map(|record| &record.holds);
+            let rows: Vec<_> = holds
+                .flat_map(|hold| hold.comparison.iter().flat_map(|found| &found.laws).map(|law| (hold.index, law)))
+                .collect();
+            Table::of(columns!(rows, row =>
+                hold = row.0, law = row.1.law.as_str(), parameters = row.1.parameters, rmse = row.1.rmse,
+                delta_aicc = row.1.delta_aicc, delta_bic = row.1.delta_bic, forward_score = row.1.forward_score,
+                termination = row.1.termination.as_deref(), error = row.1.error.as_deref()
+            ))
+        }
 
-    /// The document that ``palpate compare --format json`` prints, as plain objects.
-    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        plain(py, &self.document)
-    }
+        /// The document that ``palpate compare --format json`` prints, as plain objects.
+        fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+            plain(py, &self.document)
+        }
 
-    /// The same as text, as the command prints it.
-    fn to_json(&self) -> PyResult<String> {
-        printed(&self.document)
-    }
+        /// The same as text, as the command prints it.
+        fn to_json(&self) -> PyResult<String> {
+            printed(&self.document)
+        }
 
-    #[classmethod]
-    fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
-        unpickled(json)
-    }
+        fn __str__(&self) -> &str {
+            &self.text
+        }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
-        made_again::<Self>(py, self)
-    }
-
-    fn __str__(&self) -> &str {
-        &self.text
-    }
-
-    fn __repr__(&self) -> String {
-        let holds = self.document.records.iter().map(|record| record.holds.len()).sum::<usize>();
-        format!("<palpate.RecordComparison of {holds} holds>")
+        fn __repr__(&self) -> String {
+            let holds = self.document.records.iter().map(|record| record.holds.len()).sum::<usize>();
+            format!("<palpate.RecordComparison of {holds} holds>")
+        }
     }
 }

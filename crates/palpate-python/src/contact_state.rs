@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use numpy::PyArray1;
+use numpy::{Element, PyArray1};
 use palpate::contact::RateDependence;
 use palpate::simulate::{Contact, ContactModel, ContactState as State, StepError};
 use palpate_files::description::{DescriptionError, parse_scene, read_scene, self_contained};
@@ -11,12 +11,12 @@ use pyo3::types::{PyBytes, PyDict, PyList, PyTuple, PyType};
 
 use crate::arrays::doubles;
 use crate::errors::{ModelError, OptionError, refused_plainly, undescribed};
+use crate::files::said;
 use crate::work::{Made, briefly};
 
 /// A body and its law as a description has them: path of a file or mapping; and a text that makes them again anywhere.
 fn described(model: &Bound<'_, PyAny>) -> PyResult<(ContactModel, String)> {
-    let said_so = model.py().import("palpate")?.call_method1("_described", (model,))?;
-    let (path, text): (Option<PathBuf>, Option<String>) = said_so.extract()?;
+    let (path, text) = said("_described", model)?;
     let (model, text, path) = match path {
         Some(path) => (latency(read_scene(&path))?, std::fs::read_to_string(&path)?, path),
         None => {
@@ -62,6 +62,7 @@ fn latency(scene: Result<(Option<String>, Contact), DescriptionError>) -> PyResu
 /// >>> round(forces[-1], 3)
 /// 3.886
 #[pyclass(name = "ContactState", module = "palpate")]
+#[derive(Clone)]
 pub(crate) struct ContactState {
     model: ContactModel,
     state: State,
@@ -148,15 +149,11 @@ impl ContactState {
     }
 
     fn __copy__(&self) -> Self {
-        Self {
-            model: self.model.clone(),
-            state: self.state,
-            text: self.text.clone(),
-        }
+        self.clone()
     }
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyDict>) -> Self {
-        self.__copy__()
+        self.clone()
     }
 
     #[classmethod]
@@ -231,13 +228,11 @@ impl ContactStates {
         (dt, to): (Vec<f64>, Vec<f64>),
         step: fn(&mut State, &ContactModel, f64, f64) -> Result<f64, StepError>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let (models, states) = (&self.models, &self.states);
-        let moved = briefly(py, move || {
-            let mut states = states.clone();
+        let moved = briefly(py, || {
+            let mut states = self.states.clone();
             let mut results = Vec::with_capacity(states.len());
             for (index, state) in states.iter_mut().enumerate() {
-                let model = models.get(index).unwrap_or(&models[0]);
-                results.push(step(state, model, dt[index], to[index]).map_err(|error| (index, error))?);
+                results.push(step(state, self.model(index), dt[index], to[index]).map_err(|error| (index, error))?);
             }
             Ok((states, results))
         })?;
@@ -250,6 +245,14 @@ impl ContactStates {
 
     fn model(&self, index: usize) -> &ContactModel {
         self.models.get(index).unwrap_or(&self.models[0])
+    }
+
+    fn of_each<'py, T: Element>(
+        &self,
+        py: Python<'py>,
+        of: impl Fn(&State, &ContactModel) -> T,
+    ) -> Bound<'py, PyArray1<T>> {
+        PyArray1::from_iter(py, self.states.iter().enumerate().map(|(index, state)| of(state, self.model(index))))
     }
 }
 
@@ -333,22 +336,19 @@ impl ContactStates {
     /// Forces now, N.
     #[getter]
     fn force_n<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        let forces = self.states.iter().enumerate().map(|(index, state)| state.force(self.model(index)));
-        PyArray1::from_iter(py, forces)
+        self.of_each(py, State::force)
     }
 
     /// Displacements of the surfaces at one contact each, m.
     #[getter]
     fn surface_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        let surfaces = self.states.iter().enumerate().map(|(index, state)| state.surface(self.model(index)));
-        PyArray1::from_iter(py, surfaces)
+        self.of_each(py, State::surface)
     }
 
     /// Whether the jaws touch their bodies.
     #[getter]
     fn is_touching<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
-        let touching = self.states.iter().enumerate().map(|(index, state)| state.is_touching(self.model(index)));
-        PyArray1::from_iter(py, touching)
+        self.of_each(py, State::is_touching)
     }
 
     fn __len__(&self) -> usize {

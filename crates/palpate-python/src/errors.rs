@@ -107,11 +107,18 @@ pub(crate) fn undescribed(error: DescriptionError) -> PyErr {
 }
 
 /// One of the choices of an option, by its name with hyphens.
-pub(crate) fn choice<T: DeserializeOwned>(option: &str, names: &[&str], found: &str) -> PyResult<T> {
+pub(crate) fn choice<T: Clone + DeserializeOwned>(option: &str, names: &[&str], found: &str) -> PyResult<T> {
     let known = |word: String| serde_json::from_value(serde_json::Value::String(word)).ok();
-    let chosen = names.contains(&found).then(|| known(found.replace('-', "_")).or_else(|| known(found.to_owned())));
-    chosen.flatten().ok_or_else(|| {
-        let names: Vec<String> = names.iter().map(|name| format!("{name:?}")).collect();
+    let chosen = |name: &&str| known(name.replace('-', "_")).or_else(|| known((*name).to_owned()));
+    let choices: Vec<(&str, T)> = names.iter().filter_map(|name| Some((*name, chosen(name)?))).collect();
+    one_of(option, &choices, found)
+}
+
+/// Likewise, of choices beside their names.
+pub(crate) fn one_of<T: Clone>(option: &str, choices: &[(&str, T)], found: &str) -> PyResult<T> {
+    let chosen = choices.iter().find(|(name, _)| *name == found).map(|(_, choice)| choice.clone());
+    chosen.ok_or_else(|| {
+        let names: Vec<String> = choices.iter().map(|(name, _)| format!("{name:?}")).collect();
         refused_plainly::<OptionError>(format!("{option} is one of {}, found {found:?}", names.join(", ")))
     })
 }

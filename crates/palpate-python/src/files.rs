@@ -6,29 +6,36 @@ use palpate::laws::Law;
 use palpate_files::description::read_material;
 use palpate_jobs::input::{Described, NamedRecords, OpenedFile};
 use palpate_jobs::output::write_bundle;
-use palpate_jobs::{Batch, Convert, HoldSeen, Inspect, Reproduce, Seen, Sweep, WatchLog};
+use palpate_jobs::{Batch, Convert, HoldSeen, Inspect, Reproduce, Results, Seen, Sweep, WatchLog};
 use palpate_report::document::{WatchDocument, WatchSummaryDocument};
 use palpate_report::study::Pictures;
 use pyo3::prelude::*;
 
 use crate::errors::{OptionError, failed, refused_plainly};
-use crate::work::{at_length_told, job, plain};
+use crate::work::{job, plain};
 
-/// What is said about the records in a file.
-type Said = (Option<PathBuf>, Option<String>);
+/// An argument of Python of several kinds.
+pub(crate) type Given<'py, 'a> = Option<&'a Bound<'py, PyAny>>;
 
-/// Its description; `part` is the one that is meant.
-pub(crate) fn described(path: Option<&Path>, text: Option<String>, part: Option<&str>) -> PyResult<Described> {
-    match (path, text) {
-        (None, Some(text)) => Described::parse(text, part),
-        (path, _) => Described::read(path, part),
-    }
-    .map_err(failed)
+/// A path, or a text, as a function of the package tells of what was given.
+pub(crate) fn said(tell: &str, given: &Bound<'_, PyAny>) -> PyResult<(Option<PathBuf>, Option<String>)> {
+    given.py().import("palpate")?.call_method1(tell, (given,))?.extract()
 }
 
-/// Likewise, of arguments of Python.
-fn all_said(((path, text), part): (Said, Option<String>)) -> PyResult<Described> {
-    described(path.as_deref(), text, part.as_deref())
+/// The description of records in a file, with the part that is meant, and the path that it has.
+pub(crate) fn described(test: Given<'_, '_>, part: Given<'_, '_>) -> PyResult<(Described, Option<PathBuf>)> {
+    let part = part.map(|part| part.str()?.extract::<String>()).transpose()?;
+    let (path, text) = test.map(|test| said("_described", test)).transpose()?.unwrap_or_default();
+    Ok((read_or_parsed(path.as_deref(), text, part.as_deref())?, path))
+}
+
+/// The description in a file or in a text.
+pub(crate) fn read_or_parsed(path: Option<&Path>, text: Option<String>, part: Option<&str>) -> PyResult<Described> {
+    match text {
+        Some(text) => Described::parse(text, part),
+        None => Described::read(path, part),
+    }
+    .map_err(failed)
 }
 
 /// A law by its name.
@@ -36,102 +43,240 @@ pub(crate) fn law(name: &str) -> PyResult<Law> {
     name.parse().map_err(refused_plainly::<OptionError>)
 }
 
-/// What is in a file of records, as text.
+/// Laws by their names.
+pub(crate) fn all_laws(names: &[String]) -> PyResult<Vec<Law>> {
+    names.iter().map(|name| law(name)).collect()
+}
+
+/// What is in a file of records: columns, sampling, phases; the text of ``palpate inspect``.
+///
+/// Parameters
+/// ----------
+/// path, test, part
+///     As for `read`.
+///
+/// Returns
+/// -------
+/// str
+///
+/// Raises
+/// ------
+/// RecordError, OptionError, OSError
+///     As for `read`.
 #[pyfunction]
-pub(crate) fn inspect(py: Python<'_>, path: PathBuf, said: Said, part: Option<String>) -> PyResult<String> {
-    let described = all_said((said, part))?;
+#[pyo3(signature = (path, *, test=None, part=None))]
+pub(crate) fn inspect(py: Python<'_>, path: PathBuf, test: Given<'_, '_>, part: Given<'_, '_>) -> PyResult<String> {
+    let (described, _) = described(test, part)?;
     job(py, move |watch| {
         let found = Inspect::default().run(&OpenedFile::open(&path, &described)?, watch)?.result;
         found.refused.map_or(Ok(found.text), Err)
     })
 }
 
-/// Writes the one record of a file as a table in SI.
+/// Write the record in a file of any format as a plain table in SI, with where it comes from: ``palpate convert``.
+///
+/// Parameters
+/// ----------
+/// path, test, part
+///     As for `read`.
+/// out
+///     A file ending in .csv, .parquet or .json; it appears whole or not at all.
+///
+/// Returns
+/// -------
+/// Path
+///     The file.
+///
+/// Raises
+/// ------
+/// RecordError, OptionError, OSError
+///     As for `read`; also a name that says no format.
 #[pyfunction]
-pub(crate) fn convert(py: Python<'_>, path: PathBuf, out: PathBuf, said: Said, part: Option<String>) -> PyResult<()> {
-    let described = all_said((said, part))?;
-    job(py, move |watch| Convert {}.run(&OpenedFile::open(&path, &described)?, watch)?.result.write(&out))
+#[pyo3(signature = (path, out, *, test=None, part=None))]
+pub(crate) fn convert(
+    py: Python<'_>,
+    path: PathBuf,
+    out: PathBuf,
+    test: Given<'_, '_>,
+    part: Given<'_, '_>,
+) -> PyResult<PathBuf> {
+    let (described, _) = described(test, part)?;
+    job(py, move |watch| {
+        Convert {}.run(&OpenedFile::open(&path, &described)?, watch)?.result.write(&out)?;
+        Ok(out)
+    })
 }
 
-/// Analyses records into one table; the rows that it has, and why some tests gave none.
+/// Analyse many records into one table, a row per hold and law: ``palpate batch``.
+///
+/// What is done is kept beside the table: a batch that was ended goes on where it stood.
+///
+/// Parameters
+/// ----------
+/// paths
+///     Files, folders with files, or patterns.
+/// out
+///     A table ending in .parquet or .csv.
+/// test
+///     Test description of all of them.
+/// laws
+///     Laws to fit besides the latency law.
+/// fit_until_s
+///     Fit only this long from the start of each hold, s.
+/// restart
+///     Whether all records are analysed again, whatever was done before.
+///
+/// Returns
+/// -------
+/// rows : int
+///     How many rows the table has.
+/// failures : list of str
+///     Why tests gave no rows, a sentence each.
+///
+/// Raises
+/// ------
+/// OptionError, OSError
+///     A description or a law that is wrong, a table that cannot be written.
 #[pyfunction]
+#[pyo3(signature = (paths, out, *, test=None, laws=None, fit_until_s=None, restart=false))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
-#[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
 pub(crate) fn batch(
     py: Python<'_>,
     paths: Vec<PathBuf>,
     out: PathBuf,
-    said: Said,
+    test: Given<'_, '_>,
     laws: Option<Vec<String>>,
     fit_until_s: Option<f64>,
     restart: bool,
-    progress: Option<Py<PyAny>>,
 ) -> PyResult<(usize, Vec<String>)> {
-    let described = all_said((said, None))?;
-    let laws = laws.map(|laws| laws.iter().map(|name| law(name)).collect::<PyResult<_>>()).transpose()?;
-    let job = Batch {
-        laws,
+    let (described, _) = described(test, None)?;
+    let question = Batch {
+        laws: laws.as_deref().map(all_laws).transpose()?,
         fit_until_s,
         restart,
         ..Batch::default()
     };
-    let done = at_length_told(py, progress.as_ref(), move |mut heard| {
-        job.run(NamedRecords::find(&paths, described)?, &out, &mut heard)
-    })?;
-    let done = done.map_err(failed)?.result;
+    let done = job(py, move |watch| question.run(NamedRecords::find(&paths, described)?, &out, watch))?.result;
     Ok((done.rows, done.failures.into_iter().map(|refused| refused.message).collect()))
 }
 
-/// Simulates the runs of a sweep into one table; how many runs it has, and how many were refused.
+/// Simulate the runs of a protocol with a table ``[sweep]`` into one table: ``palpate sweep``.
+///
+/// Finished parts are kept beside the table: a sweep that was ended goes on where it stood.
+///
+/// Parameters
+/// ----------
+/// protocol
+///     Path of the protocol (TOML).
+/// out
+///     A table ending in .parquet.
+/// figure
+///     A figure ending in .svg or .png.
+/// show
+///     Which result the figure shows, by the name of its column; the peak force if left out.
+/// restart
+///     Whether all runs are computed again, whatever was computed before.
+///
+/// Returns
+/// -------
+/// runs, refused : int
+///     How many runs the table has, and how many of them were refused.
+///
+/// Raises
+/// ------
+/// OptionError, OSError
+///     A protocol without a sweep, a table that cannot be written.
 #[pyfunction]
-#[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
+#[pyo3(signature = (protocol, out, *, figure=None, show=None, restart=false))]
 pub(crate) fn sweep(
     py: Python<'_>,
-    path: PathBuf,
+    protocol: PathBuf,
     out: PathBuf,
     figure: Option<PathBuf>,
     show: Option<String>,
     restart: bool,
-    progress: Option<Py<PyAny>>,
 ) -> PyResult<(u64, u64)> {
     let usual = Sweep::default();
-    let job = Sweep {
+    let question = Sweep {
         show: show.unwrap_or(usual.show),
         restart,
         threads: None,
     };
-    let done = at_length_told(py, progress.as_ref(), move |mut heard| {
-        job.run(&path, Some(&out), figure.as_deref(), &mut heard)
-    })?;
-    let done = done.map_err(failed)?.result;
+    let done = job(py, move |watch| question.run(&protocol, Some(&out), figure.as_deref(), watch))?.result;
     Ok((done.runs, done.refused))
 }
 
-/// Reproduces the paper's study into a folder; whether every check passes.
+/// Reproduce the paper's study into a folder: ``palpate reproduce``.
+///
+/// Parameters
+/// ----------
+/// folder
+///     Made if it is not there.
+/// png
+///     Whether figures are written as PNG beside SVG.
+///
+/// Returns
+/// -------
+/// bool
+///     Whether every check passes.
+///
+/// Raises
+/// ------
+/// OSError
+///     The folder cannot be written to.
 #[pyfunction]
+#[pyo3(signature = (folder, *, png=false))]
 pub(crate) fn reproduce(py: Python<'_>, folder: PathBuf, png: bool) -> PyResult<bool> {
     job(py, move |watch| {
         let done = Reproduce {}.run(watch)?;
-        write_bundle(&folder, &done.bundle(Pictures { png })?)?;
+        write_bundle(&folder, &done.result.bundle(Pictures { png })?)?;
         Ok(done.result.all_passed())
     })
 }
 
-/// What an observer reports of a recorded log, an object each.
+/// Watch a recorded log as if it came in live: the lines of ``palpate watch --format jsonl``.
+///
+/// Parameters
+/// ----------
+/// path, test, part
+///     As for `read`.
+/// material
+///     Path of a material file; the excess strain is then known from first touch on.
+/// exponent
+///     Exponent of the law where no material says it; 5 if left out.
+/// slip_force_n
+///     Normal force at which what is held slips, N.
+/// warn_before_s
+///     How long before slip to warn, s; 1 if left out.
+/// every_s
+///     Time of the log between two ticks that are reported, s; 0.5 if left out.
+///
+/// Returns
+/// -------
+/// list of dict
+///     Ticks and events in order, the holds last; ``palpate schema watch`` prints the schema of each.
+///
+/// Raises
+/// ------
+/// RecordError, OptionError, OSError
+///     As for `read` and `Observer`.
 #[pyfunction]
+#[pyo3(signature = (
+    path, *, test=None, part=None, material=None, exponent=None, slip_force_n=None, warn_before_s=None, every_s=None,
+))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn watch<'py>(
     py: Python<'py>,
     path: PathBuf,
-    said: Said,
-    part: Option<String>,
+    test: Given<'py, '_>,
+    part: Given<'py, '_>,
     material: Option<PathBuf>,
     exponent: Option<f64>,
     slip_force_n: Option<f64>,
     warn_before_s: Option<f64>,
     every_s: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let described = all_said((said, part))?;
+    let (described, _) = described(test, part)?;
     let usual = WatchLog::default();
     let log = WatchLog {
         exponent: exponent.unwrap_or(usual.exponent),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
 use arrow_array::types::Float64Type;
-use arrow_array::{Array, ArrayRef, Float64Array, Int64Array, StringArray};
+use arrow_array::{Array, ArrayRef};
 use arrow_buffer::ScalarBuffer;
 use arrow_cast::cast;
 use arrow_schema::{DataType, Field};
@@ -21,7 +21,7 @@ use rayon::prelude::*;
 
 use crate::errors::{OptionError, PalpateError, refused, refused_plainly, unfitted};
 use crate::fit::{Asked, Keywords, deviations, fitted};
-use crate::table::Table;
+use crate::table::{Column, Table};
 use crate::work::{Heard, at_length_told};
 
 /// One curve, or why it is none.
@@ -210,13 +210,11 @@ fn suffix(unit: NumberUnit) -> &'static str {
 /// A row a curve; numbers that a fit does not have are missing.
 fn table(asked: &Asked, fits: &[Fitted]) -> PyResult<Table> {
     let good = || fits.iter().map(|fit| fit.as_ref().ok());
-    let floats = |pick: &dyn Fn(&Fit) -> Option<f64>| -> ArrayRef {
-        Arc::new(good().map(|fit| fit.and_then(pick)).collect::<Float64Array>())
-    };
+    let floats = |pick: &dyn Fn(&Fit) -> Option<f64>| Column::column(good().map(|fit| pick(fit?)));
     let law = asked.law.to_string();
-    let mut columns: Vec<(String, ArrayRef)> = vec![
-        ("curve".to_owned(), Arc::new((0..fits.len() as i64).collect::<Int64Array>())),
-        ("law".to_owned(), Arc::new(fits.iter().map(|_| Some(&law)).collect::<StringArray>())),
+    let mut columns = vec![
+        ("curve".to_owned(), Column::column(0..fits.len())),
+        ("law".to_owned(), Column::column(fits.iter().map(|_| law.as_str()))),
     ];
     for number in &numbers_of(asked)? {
         let (name, suffix) = (&number.name.to_string(), suffix(number.unit));
@@ -228,11 +226,9 @@ fn table(asked: &Asked, fits: &[Fitted]) -> PyResult<Table> {
     }
     columns.push(("rmse".to_owned(), floats(&|fit| Some(fit.rmse))));
     columns.push(("residual_correlation".to_owned(), floats(&|fit| Some(fit.residual_correlation))));
-    let samples = good().map(|fit| fit.map(|fit| fit.samples as i64)).collect::<Int64Array>();
-    columns.push(("samples".to_owned(), Arc::new(samples)));
-    let ended = good().map(|fit| fit.map(|fit| word(fit.termination))).collect::<StringArray>();
-    columns.push(("termination".to_owned(), Arc::new(ended)));
-    let errors = fits.iter().map(|fit| fit.as_ref().err().cloned());
-    columns.push(("error".to_owned(), Arc::new(errors.collect::<StringArray>())));
+    columns.push(("samples".to_owned(), Column::column(good().map(|fit| Some(fit?.samples)))));
+    let ended = good().map(|fit| Some(word(fit?.termination)));
+    columns.push(("termination".to_owned(), Column::column(ended)));
+    columns.push(("error".to_owned(), Column::column(fits.iter().map(|fit| fit.as_ref().err().cloned()))));
     Table::of(columns.iter().map(|(name, values)| (name.as_str(), Arc::clone(values))).collect())
 }

@@ -6,16 +6,20 @@ use palpate::calibrate::Prediction as Predicted;
 use palpate::number::significant;
 use palpate_report::document::{BackOffDocument, HoldingDocument, LastsDocument, PressedDocument, ScheduleDocument};
 use pyo3::prelude::*;
-use pyo3::types::PyType;
 use serde::{Deserialize, Serialize};
 
 use crate::prediction::Prediction;
+use crate::shown::shown;
 use crate::table::{Table, columns};
-use crate::work::{Made, made_again, unpickled};
 
 /// A time, s; infinite for always.
 pub(crate) fn seconds(lasts: LastsDocument) -> f64 {
     lasts.seconds.unwrap_or(f64::INFINITY)
+}
+
+/// Ends of the interval of such a time.
+pub(crate) fn slip_interval(found: &HoldingDocument) -> Option<(f64, f64)> {
+    found.interval.map(|[low, high]| (seconds(low), seconds(high)))
 }
 
 /// A class of Python that shows a part of the document: with the course, the fields that are passed on, and methods of its own.
@@ -41,26 +45,10 @@ macro_rules! part {
             }
         }
 
-        #[pymethods]
-        impl $class {
-            $(
-                $(#[$doc])*
-                #[getter]
-                fn $field(&self) -> $of {
-                    self.found.$field.clone()
-                }
-            )*
-
-            #[classmethod]
-            fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
-                unpickled(json)
-            }
-
-            fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
-                made_again::<Self>(py, self)
-            }
-
-            $($methods)*
+        shown! {
+            $class: self
+            values { $($(#[$doc])* $field: $of = self.found.$field.clone(),)* }
+            methods { $($methods)* }
         }
     };
 }
@@ -98,14 +86,14 @@ part! {
 
     /// From the start of the hold until it slips, s; infinite for always (longer than ten years), 0 if it slips at once.
     #[getter]
-    pub(crate) fn time_to_slip_s(&self) -> f64 {
+    fn time_to_slip_s(&self) -> f64 {
         seconds(self.found.lasts)
     }
 
     /// Ends of the interval of that time by what the calibration leaves open, s; None where it says nothing.
     #[getter]
-    pub(crate) fn time_to_slip_interval_s(&self) -> Option<(f64, f64)> {
-        self.found.interval.map(|[low, high]| (seconds(low), seconds(high)))
+    fn time_to_slip_interval_s(&self) -> Option<(f64, f64)> {
+        slip_interval(&self.found)
     }
 
     /// Force and displacement over time, with intervals; None for the plain squeeze beside a retreat.

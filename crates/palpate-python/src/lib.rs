@@ -13,6 +13,7 @@
 //! | `contact_state.rs` | `ContactState`, `ContactStates` |
 //! | `laws.rs` | laws as functions of arrays |
 //! | `table.rs`, `html.rs` | results as Arrow, and as notebooks show them |
+//! | `shown.rs` | classes that show what a result says |
 //! | `arrays.rs` | numbers in |
 //! | `work.rs` | long work without the GIL, ended by Ctrl-C |
 //! | `errors.rs` | exceptions and warnings |
@@ -39,6 +40,7 @@ mod observation;
 mod observer;
 mod prediction;
 mod record;
+mod shown;
 mod simulate;
 mod simulate_many;
 mod table;
@@ -50,43 +52,26 @@ use pyo3::prelude::*;
 #[pymodule(gil_used = false)]
 mod _palpate {
     #[pymodule_export]
-    use crate::analysis::{Analysis, Finding};
-    #[pymodule_export]
-    use crate::calibration::Calibration;
-    #[pymodule_export]
-    use crate::command::command;
-    #[pymodule_export]
-    use crate::compare::{Comparison, RecordComparison, compare};
-    #[pymodule_export]
-    use crate::contact_state::{ContactState, ContactStates};
-    #[pymodule_export]
-    use crate::errors::{FitError, ModelError, OptionError, PalpateError, PalpateWarning, RecordError};
-    #[pymodule_export]
-    use crate::files::{batch, convert, inspect, reproduce, sweep, watch};
-    #[pymodule_export]
-    use crate::fit::{PyEstimate, PyFit, fit_hold};
-    #[pymodule_export]
-    use crate::fit_many::fit_many;
-    #[pymodule_export]
-    use crate::grip::Grip;
-    #[pymodule_export]
-    use crate::grip_parts::{BackOff, ForceHeld, Holding, Schedule};
-    #[pymodule_export]
-    use crate::laws::{latency, law_names};
-    #[pymodule_export]
-    use crate::material::Material;
-    #[pymodule_export]
-    use crate::observation::Observation;
-    #[pymodule_export]
-    use crate::observer::Observer;
-    #[pymodule_export]
-    use crate::prediction::Prediction;
-    #[pymodule_export]
-    use crate::record::{Record, read};
-    #[pymodule_export]
-    use crate::simulate::{Trajectory, simulate};
-    #[pymodule_export]
-    use crate::simulate_many::simulate_many;
-    #[pymodule_export]
-    use crate::table::Table;
+    use crate::{
+        analysis::{Analysis, Finding},
+        calibration::Calibration,
+        command::command,
+        compare::{Comparison, RecordComparison, compare},
+        contact_state::{ContactState, ContactStates},
+        errors::{FitError, ModelError, OptionError, PalpateError, PalpateWarning, RecordError},
+        files::{batch, convert, inspect, reproduce, sweep, watch},
+        fit::{PyEstimate, PyFit, fit_hold},
+        fit_many::fit_many,
+        grip::Grip,
+        grip_parts::{BackOff, ForceHeld, Holding, Schedule},
+        laws::{latency, law_names},
+        material::Material,
+        observation::Observation,
+        observer::Observer,
+        prediction::Prediction,
+        record::{Record, read, read_all},
+        simulate::{Trajectory, simulate},
+        simulate_many::simulate_many,
+        table::Table,
+    };
 }

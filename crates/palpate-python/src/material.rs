@@ -4,16 +4,18 @@ use std::path::{Path, PathBuf};
 
 use numpy::PyArray2;
 use palpate::calibrate::{EquilibriumLaw, Material as Body, MaterialNumber, MaterialUnit};
-use palpate::number::{significant, with_error};
 use palpate_files::description::{MaterialFile, parse_material, parse_protocol_of, read_protocol_of};
 use palpate_jobs::output::write_file;
 use palpate_jobs::{MaterialSource, PlanGrip, Predict};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyType};
+use pyo3::types::{IntoPyDict, PyDict, PyType};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serializer};
 
 use crate::arrays::doubles;
 use crate::errors::{ModelError, OptionError, choice, failed, refused, refused_plainly, undescribed, unwritten, warn};
-use crate::fit::PyEstimate;
+use crate::files::said;
+use crate::fit::{PyEstimate, square, told};
 use crate::grip::Grip;
 use crate::prediction::Prediction;
 use crate::table::{Table, columns};
@@ -67,6 +69,19 @@ impl Material {
 
     fn numbers_found(&self) -> &[MaterialNumber] {
         &self.source.file.material.numbers
+    }
+}
+
+/// A material inside of a pickle, as its file.
+pub(crate) mod as_toml {
+    use super::{Deserialize, Deserializer, Error, Material, Serializer};
+
+    pub(crate) fn serialize<S: Serializer>(material: &Material, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(&material.to_toml())
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Material, D::Error> {
+        Material::parsed(&String::deserialize(from)?).map_err(D::Error::custom)
     }
 }
 
@@ -156,32 +171,24 @@ impl Material {
     /// latency law, "overshoot_1", "time_1", ... of a linear one.
     #[getter]
     fn estimates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let dict = PyDict::new(py);
-        for number in self.numbers_found() {
-            let estimate = PyEstimate {
-                estimate: number.estimate,
-                unit: unit_word(number.unit).into(),
-            };
-            dict.set_item(&number.name, estimate)?;
-        }
-        Ok(dict)
+        let estimate = |number: &MaterialNumber| PyEstimate {
+            estimate: number.estimate,
+            unit: unit_word(number.unit).into(),
+        };
+        self.numbers_found().iter().map(|number| (&number.name, estimate(number))).into_py_dict(py)
     }
 
     /// Values of all numbers by name, in SI.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let dict = PyDict::new(py);
-        for number in self.numbers_found() {
-            dict.set_item(&number.name, number.estimate.value)?;
-        }
-        Ok(dict)
+        self.numbers_found().iter().map(|number| (&number.name, number.estimate.value)).into_py_dict(py)
     }
 
     /// Covariance of the natural logarithms of the numbers, in their order; None where the record leaves one open.
     #[getter]
     fn log_covariance<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         let uncertainty = self.source.file.material.uncertainty.as_ref();
-        uncertainty.map(|found| Ok(PyArray2::from_vec2(py, &found.covariance)?)).transpose()
+        uncertainty.map(|found| square(py, &found.covariance)).transpose()
     }
 
     /// Coverage of the intervals of the numbers; None where they have none.
@@ -201,17 +208,14 @@ impl Material {
     #[getter]
     fn shown<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let shown = &self.source.file.material.shown;
-        let dict = PyDict::new(py);
-        for (name, value) in [
+        let named = [
             ("longest_hold_s", shown.longest_hold),
             ("deepest_m", shown.deepest),
             ("fastest_m_per_s", shown.fastest),
             ("slowest_m_per_s", shown.slowest),
             ("largest_force_n", shown.largest_force),
-        ] {
-            dict.set_item(name, value)?;
-        }
-        Ok(dict)
+        ];
+        named.into_py_dict(py)
     }
 
     /// Where the numbers come from: ``record``, ``sha256`` of its file, ``test`` description, version of ``palpate``, ``samples`` fitted.
@@ -265,8 +269,7 @@ impl Material {
         at_s: Option<&Bound<'_, PyAny>>,
         confidence: f64,
     ) -> PyResult<Prediction> {
-        let said = py.import("palpate")?.call_method1("_driven", (protocol,))?;
-        let (path, text): (Option<PathBuf>, Option<String>) = said.extract()?;
+        let (path, text) = said("_driven", protocol)?;
         let place = path.clone().unwrap_or_else(|| PathBuf::from("protocol"));
         let protocol = match path {
             Some(path) => read_protocol_of(&path, &self.source.file),
@@ -459,11 +462,7 @@ impl Material {
 
     fn __repr__(&self) -> String {
         let number = |number: &MaterialNumber| {
-            let (estimate, unit) = (&number.estimate, unit_word(number.unit));
-            let value = match estimate.standard_error {
-                Some(error) => with_error(estimate.value, error),
-                None => significant(estimate.value, 4),
-            };
+            let (value, unit) = (told(&number.estimate, 4), unit_word(number.unit));
             let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
             format!("{}={value}{unit}", number.name)
         };

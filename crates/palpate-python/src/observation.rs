@@ -7,16 +7,17 @@ use palpate::observe::{Observation as Seen, Slip, SlipForecast};
 
 use palpate_report::result::{slips_word, word};
 use pyo3::prelude::*;
-use pyo3::types::PyType;
+use serde::{Deserialize, Serialize};
 
+use crate::shown::shown;
 use crate::table::{Table, columns};
-use crate::work::{Made, made_again, unpickled};
 
 /// What an observer says after a tick; None where something is not known.
 ///
 /// Made by `Observer.feed`.
 #[pyclass(name = "Observation", module = "palpate", frozen, eq)]
-#[derive(PartialEq)]
+#[derive(PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
 pub(crate) struct Observation {
     seen: Seen,
 }
@@ -47,28 +48,18 @@ impl From<Seen> for Observation {
 /// Attributes of an observation, which are the columns of observations.
 macro_rules! attributes {
     ($seen:ident => $($(#[$doc:meta])* $name:ident: $of:ty = $value:expr,)*) => {
-        #[pymethods]
-        impl Observation {
-            $(
-                $(#[$doc])*
-                #[getter]
-                fn $name(&self) -> $of {
+        shown! {
+            Observation: self
+            values {
+                $($(#[$doc])* $name: $of = {
                     let $seen = &self.seen;
                     $value
+                },)*
+            }
+            methods {
+                fn __repr__(&self) -> String {
+                    self.shown()
                 }
-            )*
-
-            #[classmethod]
-            fn _from_json(_class: &Bound<'_, PyType>, json: &str) -> PyResult<Self> {
-                unpickled(json).map(|seen| Self { seen })
-            }
-
-            fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String,)>> {
-                made_again::<Self>(py, &self.seen)
-            }
-
-            fn __repr__(&self) -> String {
-                self.shown()
             }
         }
 

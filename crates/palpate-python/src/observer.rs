@@ -3,14 +3,13 @@
 use palpate::observe::{ObserveError, Observer as Watcher, ObserverOptions};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
-use serde::{Deserialize, Serialize};
 
 use crate::arrays::doubles;
 use crate::errors::{ModelError, OptionError, PalpateError, RecordError, refused, refused_plainly};
 use crate::material::Material;
 use crate::observation::{Observation, columns};
 use crate::table::Table;
-use crate::work::{Made, at_length};
+use crate::work::{Made, at_length, unpickled};
 
 /// Watches a contact tick by tick, as a controller would: when a hold begins, where its force tends, how long until it slips.
 ///
@@ -62,52 +61,11 @@ use crate::work::{Made, at_length};
 /// >>> now.phase, now.held, now.warning, round(now.equilibrium_force_n, 3)
 /// ('holding', 'displacement', 'slipping', 1.2)
 #[pyclass(name = "Observer", module = "palpate")]
+#[derive(Clone)]
 pub(crate) struct Observer {
     watcher: Watcher,
     /// The material as it was given, so that the observer can be sent elsewhere.
     material: Option<Material>,
-}
-
-/// Options that are no material, to make an observer again.
-#[derive(Serialize, Deserialize)]
-struct Told {
-    exponent: f64,
-    exponent_deviation: f64,
-    slip_force: Option<f64>,
-    warn_before: f64,
-    confidence: f64,
-    noise: Option<(f64, f64)>,
-    stiffness_deviation: f64,
-    touch_deviation: f64,
-}
-
-impl Told {
-    fn of(options: &ObserverOptions) -> Self {
-        Self {
-            exponent: options.exponent,
-            exponent_deviation: options.exponent_deviation,
-            slip_force: options.slip_force,
-            warn_before: options.warn_before,
-            confidence: options.confidence,
-            noise: options.noise,
-            stiffness_deviation: options.stiffness_deviation,
-            touch_deviation: options.touch_deviation,
-        }
-    }
-
-    fn options(self, material: Option<&Material>) -> ObserverOptions {
-        ObserverOptions {
-            material: material.map(Material::body),
-            exponent: self.exponent,
-            exponent_deviation: self.exponent_deviation,
-            slip_force: self.slip_force,
-            warn_before: self.warn_before,
-            confidence: self.confidence,
-            noise: self.noise,
-            stiffness_deviation: self.stiffness_deviation,
-            touch_deviation: self.touch_deviation,
-        }
-    }
 }
 
 /// Why there is no observer, or no observation; `at` is what stands before the message.
@@ -180,7 +138,8 @@ impl Observer {
                 Some("leave both out: the noise is found out from the readings"),
             ));
         }
-        let told = Told {
+        let options = ObserverOptions {
+            material: material.as_ref().map(Material::body),
             exponent: exponent.unwrap_or(5.0),
             exponent_deviation: exponent_deviation.unwrap_or(0.0),
             slip_force: slip_force_n,
@@ -190,7 +149,7 @@ impl Observer {
             stiffness_deviation,
             touch_deviation: touch_deviation_m,
         };
-        let watcher = Watcher::new(told.options(material.as_ref())).map_err(|error| refused_at("", &error))?;
+        let watcher = Watcher::new(options).map_err(|error| refused_at("", &error))?;
         Ok(Self { watcher, material })
     }
 
@@ -294,28 +253,27 @@ impl Observer {
     }
 
     fn __copy__(&self) -> Self {
-        Self {
-            watcher: self.watcher.clone(),
-            material: self.material.clone(),
-        }
+        self.clone()
     }
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyDict>) -> Self {
-        self.__copy__()
+        self.clone()
     }
 
     #[classmethod]
     fn _from_parts(_class: &Bound<'_, PyType>, options: &str, material: Option<&str>, state: &[u8]) -> PyResult<Self> {
-        let told: Told = serde_json::from_str(options).map_err(refused_plainly::<PalpateError>)?;
         let material = material.map(Material::parsed).transpose()?;
-        let watcher = Watcher::from_bytes(told.options(material.as_ref()), state);
-        let watcher = watcher.map_err(|error| refused_at("", &error))?;
+        let options = ObserverOptions {
+            material: material.as_ref().map(Material::body),
+            ..unpickled(options)?
+        };
+        let watcher = Watcher::from_bytes(options, state).map_err(|error| refused_at("", &error))?;
         Ok(Self { watcher, material })
     }
 
     #[expect(clippy::type_complexity, reason = "what pickle asks for")]
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (String, Option<String>, Bound<'py, PyBytes>)>> {
-        let options = serde_json::to_string(&Told::of(self.watcher.options()));
+        let options = serde_json::to_string(self.watcher.options());
         let options = options.map_err(refused_plainly::<PalpateError>)?;
         let (material, state) = (self.material.as_ref().map(Material::to_toml), self.watcher.to_bytes());
         let make = py.get_type::<Self>().getattr("_from_parts")?;

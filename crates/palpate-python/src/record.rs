@@ -1,11 +1,11 @@
 //! A measured record.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
+use arrow_array::Array;
 use arrow_array::cast::AsArray;
-use arrow_array::types::{Float32Type, Float64Type, Int32Type, Int64Type};
-use arrow_array::{Array, ArrayRef, Float64Array};
+use arrow_array::types::Float64Type;
+use arrow_cast::cast;
 use arrow_schema::DataType;
 use numpy::PyArray1;
 use palpate::analysis::corrected;
@@ -23,9 +23,9 @@ use crate::arrays::doubles;
 use crate::calibration::Calibration;
 use crate::compare::RecordComparison;
 use crate::errors::{OptionError, RecordError, choice, refused, refused_plainly};
-use crate::files::{self, described};
+use crate::files::{self, Given, all_laws, described, read_or_parsed};
 use crate::kept::Kept;
-use crate::table::{Table, columns};
+use crate::table::{Column, Table, columns};
 use crate::work::{Made, at_length, briefly, job, made_again, unpickled};
 
 /// A record of time, force and, if there is one, displacement, in SI, checked; loading is positive.
@@ -62,18 +62,61 @@ impl PartialEq for Record {
     }
 }
 
-/// Reads the records in a file, `only` one of them or all; `test_path` or `test_text` describes them.
+/// Read the record in a file of any format that is known, found out by its content.
+///
+/// Parameters
+/// ----------
+/// path
+///     Delimited text, workbook, Parquet, Arrow, AFM force curve or robot's log; packed by gzip or zip or not.
+/// test
+///     Test description that says what the file cannot know: path of a TOML file, or a mapping with its tables.
+/// part
+///     The one test of a file that holds several: its name (a sheet, a curve, a ``test_id``), or its number from 1.
+///
+/// Returns
+/// -------
+/// Record
+///     Time, force and displacement in SI, loading positive.
+///
+/// Raises
+/// ------
+/// RecordError
+///     The file holds no record, or it is not clear which column holds what: the message ends in the lines of a
+///     description that would clear it up.
+/// OptionError
+///     The description is wrong.
+/// OSError
+///     The operating system does not hand the file out.
 #[pyfunction]
-#[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
-pub(crate) fn read(
-    py: Python<'_>,
-    path: PathBuf,
-    test_path: Option<PathBuf>,
-    test_text: Option<String>,
-    part: Option<String>,
-    only: bool,
-) -> PyResult<Vec<Record>> {
-    let described = described(test_path.as_deref(), test_text, part.as_deref())?;
+#[pyo3(signature = (path, *, test=None, part=None))]
+pub(crate) fn read(py: Python<'_>, path: PathBuf, test: Given<'_, '_>, part: Given<'_, '_>) -> PyResult<Record> {
+    Ok(read_parts(py, path, described(test, part)?.0, true)?.remove(0))
+}
+
+/// Read all tests in a file: the sheets of a workbook, the curves of a map, the ``test_id`` of a table.
+///
+/// Parameters
+/// ----------
+/// path, test
+///     As for `read`.
+///
+/// Returns
+/// -------
+/// list of Record
+///     In the order of the file, each with the name of its test in ``title``.
+///
+/// Raises
+/// ------
+/// RecordError, OptionError, OSError
+///     As for `read`, for the first test that makes no record.
+#[pyfunction]
+#[pyo3(signature = (path, *, test=None))]
+pub(crate) fn read_all(py: Python<'_>, path: PathBuf, test: Given<'_, '_>) -> PyResult<Vec<Record>> {
+    read_parts(py, path, described(test, None)?.0, false)
+}
+
+/// The records in a file, `only` one of them or all.
+fn read_parts(py: Python<'_>, path: PathBuf, described: Described, only: bool) -> PyResult<Vec<Record>> {
     let said = described.clone();
     let read = job(py, move |watch| {
         let opened = OpenedFile::open(&path, &said)?;
@@ -106,12 +149,10 @@ fn column(table: &PyTable, name: &str) -> PyResult<Vec<f64>> {
             return Err(refused_plainly::<RecordError>(message));
         }
         match column.data_type() {
-            DataType::Float64 => values.extend_from_slice(column.as_primitive::<Float64Type>().values()),
-            DataType::Float32 => {
-                values.extend(column.as_primitive::<Float32Type>().values().iter().map(|v| f64::from(*v)));
+            DataType::Float64 | DataType::Float32 | DataType::Int64 | DataType::Int32 => {
+                let doubles = cast(column, &DataType::Float64).map_err(refused_plainly::<RecordError>)?;
+                values.extend_from_slice(doubles.as_primitive::<Float64Type>().values());
             }
-            DataType::Int64 => values.extend(column.as_primitive::<Int64Type>().values().iter().map(|v| *v as f64)),
-            DataType::Int32 => values.extend(column.as_primitive::<Int32Type>().values().iter().map(|v| f64::from(*v))),
             other => {
                 let message = format!("{name}: expected a column of doubles, found one of {other}");
                 return Err(refused_plainly::<RecordError>(message));
@@ -147,15 +188,14 @@ impl Record {
     }
 
     /// What jobs take of it, described as it is or by `test`.
-    fn measured(&self, test: Option<&Bound<'_, PyAny>>) -> PyResult<Measurement> {
+    fn measured(&self, test: Given<'_, '_>) -> PyResult<Measurement> {
         let mut input = self.input.clone();
         let options = match test {
             None => self.described.options(),
-            Some(test) => {
-                let said = test.py().import("palpate")?.call_method1("_described", (test,))?;
-                let (path, text): (Option<PathBuf>, Option<String>) = said.extract()?;
-                input.test = path.as_ref().map(|path| path.display().to_string());
-                described(path.as_deref(), text, None)?.options()
+            test => {
+                let (said, path) = described(test, None)?;
+                input.test = path.map(|path| path.display().to_string());
+                said.options()
             }
         };
         Ok(Measurement {
@@ -239,7 +279,7 @@ impl Record {
         Ok(Self {
             record: parts.measured.record()?,
             input: parts.input,
-            described: described(None, parts.test, parts.part.as_deref())?,
+            described: read_or_parsed(None, parts.test, parts.part.as_deref())?,
         })
     }
 
@@ -463,7 +503,7 @@ impl Record {
                 let names = rivals.extract::<Vec<String>>().map_err(|_| {
                     refused_plainly::<OptionError>(format!("rivals: expected a list of laws, found {rivals:?}"))
                 })?;
-                names.iter().map(|name| files::law(name)).collect::<PyResult<_>>()?
+                all_laws(&names)?
             }
             None => usual.rivals,
         };
@@ -515,9 +555,8 @@ impl Record {
         creep: bool,
         fit_until_s: Option<f64>,
     ) -> PyResult<RecordComparison> {
-        let laws = laws.map(|laws| laws.iter().map(|name| files::law(name)).collect::<PyResult<_>>()).transpose()?;
         let question = Compare {
-            laws,
+            laws: laws.as_deref().map(all_laws).transpose()?,
             cuts,
             creep,
             fit_until_s,
@@ -528,7 +567,7 @@ impl Record {
 
     /// Columns `time_s`, `displacement_m` and `force_n` as a table.
     fn to_arrow(&self) -> PyResult<Table> {
-        let column = |values: &[f64]| -> ArrayRef { Arc::new(Float64Array::from(values.to_vec())) };
+        let column = |values: &[f64]| Column::column(values.iter().copied());
         let mut columns = vec![("time_s", column(self.record.time()))];
         columns.extend(self.record.displacement().map(|values| ("displacement_m", column(values))));
         columns.push(("force_n", column(self.record.force())));
@@ -536,11 +575,7 @@ impl Record {
     }
 
     #[pyo3(signature = (requested_schema=None))]
-    fn __arrow_c_stream__<'py>(
-        &self,
-        py: Python<'py>,
-        requested_schema: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn __arrow_c_stream__(&self, py: Python<'_>, requested_schema: Option<Py<PyAny>>) -> PyResult<Py<PyAny>> {
         self.to_arrow()?.__arrow_c_stream__(py, requested_schema)
     }
 

@@ -166,13 +166,13 @@ impl Table {
 
     /// The Arrow PyCapsule interface: `polars.DataFrame(table)`, `pyarrow.table(table)`.
     #[pyo3(signature = (requested_schema=None))]
-    pub(crate) fn __arrow_c_stream__<'py>(
+    pub(crate) fn __arrow_c_stream__(
         &self,
-        py: Python<'py>,
-        requested_schema: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let table = PyTable::try_new(vec![self.batch.clone()], self.batch.schema())?;
-        table.into_pyobject(py)?.call_method1("__arrow_c_stream__", (requested_schema,))
+        py: Python<'_>,
+        requested_schema: Option<Py<PyAny>>,
+    ) -> PyResult<Py<PyAny>> {
+        let table = PyTable::try_new(vec![self.batch.clone()], self.batch.schema())?.into_pyobject(py)?;
+        Ok(table.call_method1("__arrow_c_stream__", (requested_schema,))?.unbind())
     }
 
     #[classmethod]

@@ -21,7 +21,6 @@ from typing import Any, Union
 import numpy as np
 
 from palpate import laws
-from palpate._files import batch, convert, inspect, reproduce, sweep, watch
 from palpate._palpate import (
     Analysis,
     BackOff,
@@ -50,11 +49,18 @@ from palpate._palpate import (
     Schedule,
     Table,
     Trajectory,
+    batch,
+    compare,
+    convert,
+    inspect,
+    read,
+    read_all,
+    reproduce,
+    sweep,
+    watch,
 )
-from palpate._palpate import compare as _compare
 from palpate._palpate import fit_hold as _fit_hold
 from palpate._palpate import fit_many as _fit_many
-from palpate._palpate import read as _read
 from palpate._palpate import simulate as _simulate
 from palpate._palpate import simulate_many as _simulate_many
 
@@ -166,57 +172,6 @@ def _toml(table: Mapping[str, Any]) -> str:
     return "".join(f"{text(str(key))} = {value(table[key], str(key))}\n" for key in table)
 
 
-def read(path: str | os.PathLike[str], *, test: Description = None, part: str | int | None = None) -> Record:
-    """Read the record in a file of any format that is known, found out by its content.
-
-    Parameters
-    ----------
-    path
-        Delimited text, workbook, Parquet, Arrow, AFM force curve or robot's log; packed by gzip or zip or not.
-    test
-        Test description that says what the file cannot know: path of a TOML file, or a mapping with its tables.
-    part
-        The one test of a file that holds several: its name (a sheet, a curve, a ``test_id``), or its number from 1.
-
-    Returns
-    -------
-    Record
-        Time, force and displacement in SI, loading positive.
-
-    Raises
-    ------
-    RecordError
-        The file holds no record, or it is not clear which column holds what: the message ends in the lines of a
-        description that would clear it up.
-    OptionError
-        The description is wrong.
-    OSError
-        The operating system does not hand the file out.
-    """
-    described, text = _described(test)
-    return _read(path, described, text, None if part is None else str(part), True)[0]
-
-
-def read_all(path: str | os.PathLike[str], *, test: Description = None) -> list[Record]:
-    """Read all tests in a file: the sheets of a workbook, the curves of a map, the ``test_id`` of a table.
-
-    Parameters
-    ----------
-    path, test
-        As for `read`.
-
-    Returns
-    -------
-    list of Record
-        In the order of the file, each with the name of its test in ``title``.
-
-    Raises
-    ------
-    RecordError, OptionError, OSError
-        As for `read`, for the first test that makes no record.
-    """
-    described, text = _described(test)
-    return _read(path, described, text, None, False)
 
 
 @contextmanager
@@ -416,42 +371,6 @@ def fit_many(
     with _bar(progress, curves, "fit") as tell:
         return _fit_many(time_s, signal, weights, keywords, tell)
 
-
-def compare(
-    time_s: Any,
-    signal: Any,
-    *,
-    laws: Sequence[str] | None = None,
-    weights: Any = None,
-    quantity: str = "force",
-    cuts: Sequence[float] | None = None,
-) -> Comparison:
-    """Fit laws to the first part of a hold, hold each against the rest, and say which to use.
-
-    Parameters
-    ----------
-    time_s, signal, weights : array_like, shape (N,)
-        As for `fit_hold`.
-    laws
-        Names of laws; if left out, all that suit.
-    quantity
-        What the signal is: "force" or "strain" in a relaxation, "displacement" in a creep.
-    cuts
-        Where to cut, as shares of the duration; (1/4, 1/3, 1/2) if left out.
-
-    Returns
-    -------
-    Comparison
-        The law to use, how sure that is, what each other one costs, and a table of all.
-
-    Raises
-    ------
-    FitError
-        A hold that no law can be fitted to.
-    OptionError
-        A law or a quantity that is not known.
-    """
-    return _compare(time_s, signal, weights, None if laws is None else list(laws), quantity, None if cuts is None else list(cuts))
 
 
 def simulate(

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any, Final, Literal, Self, TypeAlias, final, overload
 
 import numpy as np
@@ -45,6 +46,7 @@ __all__ = [
     "latency",
     "law_names",
     "read",
+    "read_all",
     "reproduce",
     "simulate",
     "simulate_many",
@@ -54,7 +56,6 @@ __all__ = [
 
 _Doubles: TypeAlias = NDArray[np.float64]
 _Path: TypeAlias = str | os.PathLike[str]
-_Said: TypeAlias = tuple[_Path | None, str | None]
 _Described: TypeAlias = _Path | Mapping[str, Any] | Material
 # Numbers are arrays, texts and truths are lists; which of them only the name of the column tells.
 _Cells: TypeAlias = Any
@@ -479,9 +480,8 @@ class ContactStates(_Value):
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, _memo: dict[int, Any], /) -> Self: ...
 
-def read(
-    path: _Path, test_path: _Path | None, test_text: str | None, part: str | None, only: bool
-) -> list[Record]: ...
+def read(path: _Path, *, test: _Described | None = None, part: str | int | None = None) -> Record: ...
+def read_all(path: _Path, *, test: _Described | None = None) -> list[Record]: ...
 def fit_hold(
     time_s: ArrayLike, signal: ArrayLike, weights: ArrayLike | None, keywords: Mapping[str, Any]
 ) -> Fit: ...
@@ -500,10 +500,11 @@ def command(arguments: Sequence[str]) -> int: ...
 def compare(
     time_s: ArrayLike,
     signal: ArrayLike,
-    weights: ArrayLike | None,
-    laws: Sequence[str] | None,
-    quantity: str,
-    cuts: Sequence[float] | None,
+    *,
+    laws: Sequence[str] | None = None,
+    weights: ArrayLike | None = None,
+    quantity: str = "force",
+    cuts: Sequence[float] | None = None,
 ) -> Comparison: ...
 def simulate(path: _Path | None, text: str | None) -> Trajectory: ...
 def simulate_many(
@@ -513,33 +514,31 @@ def simulate_many(
     times_s: ArrayLike | None,
     progress: Callable[[int], None] | None,
 ) -> Table: ...
-def inspect(path: _Path, said: _Said, part: str | None) -> str: ...
-def convert(path: _Path, out: _Path, said: _Said, part: str | None) -> None: ...
+def inspect(path: _Path, *, test: _Described | None = None, part: str | int | None = None) -> str: ...
+def convert(
+    path: _Path, out: _Path, *, test: _Described | None = None, part: str | int | None = None
+) -> Path: ...
 def batch(
     paths: Sequence[_Path],
     out: _Path,
-    said: _Said,
-    laws: Sequence[str] | None,
-    fit_until_s: float | None,
-    restart: bool,
-    progress: Callable[[int], None] | None,
+    *,
+    test: _Described | None = None,
+    laws: Sequence[str] | None = None,
+    fit_until_s: float | None = None,
+    restart: bool = False,
 ) -> tuple[int, list[str]]: ...
 def sweep(
-    path: _Path,
-    out: _Path,
-    figure: _Path | None,
-    show: str | None,
-    restart: bool,
-    progress: Callable[[int], None] | None,
+    protocol: _Path, out: _Path, *, figure: _Path | None = None, show: str | None = None, restart: bool = False
 ) -> tuple[int, int]: ...
-def reproduce(folder: _Path, png: bool) -> bool: ...
+def reproduce(folder: _Path, *, png: bool = False) -> bool: ...
 def watch(
     path: _Path,
-    said: _Said,
-    part: str | None,
-    material: _Path | None,
-    exponent: float | None,
-    slip_force_n: float | None,
-    warn_before_s: float | None,
-    every_s: float | None,
+    *,
+    test: _Described | None = None,
+    part: str | int | None = None,
+    material: _Path | None = None,
+    exponent: float | None = None,
+    slip_force_n: float | None = None,
+    warn_before_s: float | None = None,
+    every_s: float | None = None,
 ) -> list[dict[str, Any]]: ...

@@ -1,12 +1,15 @@
 //! What an observer is told before the first tick.
 
+use serde::{Deserialize, Serialize};
+
 use super::ObserveError;
 use crate::calibrate::Material;
 
 /// What an observer is told before the first tick.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ObserverOptions {
-    /// The calibrated body, if there is one: its excess strain is then known from the first tick.
+    /// The calibrated body, if there is one: its excess strain is then known from the first tick. It has a file of its own.
+    #[serde(skip)]
     pub material: Option<Material>,
     /// Exponent n of the law where no material says it: a pure number from 1 to 30.
     pub exponent: f64,

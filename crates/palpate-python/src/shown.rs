@@ -1,0 +1,62 @@
+//! Classes that show what a result says.
+
+/// The methods of such a class: a getter for each array and for each value, a pickle of what its objects hold, and methods of its own. The
+/// arrays are the columns of a table too.
+macro_rules! shown {
+    (
+        $class:ident: $me:ident
+        values { $($(#[$doc:meta])* $name:ident: $of:ty = $value:expr,)* }
+        methods { $($methods:tt)* }
+    ) => {
+        #[pymethods]
+        impl $class {
+            $(
+                $(#[$doc])*
+                #[getter]
+                fn $name(&$me) -> $of {
+                    $value
+                }
+            )*
+
+            #[classmethod]
+            fn _from_json(_class: &Bound<'_, pyo3::types::PyType>, json: &str) -> PyResult<Self> {
+                $crate::work::unpickled(json)
+            }
+
+            fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<$crate::work::Made<'py, (String,)>> {
+                $crate::work::made_again::<Self>(py, self)
+            }
+
+            $($methods)*
+        }
+    };
+    (
+        $class:ident: $me:ident
+        arrays { $($(#[$about:meta])* $array:ident: $numbers:expr,)* }
+        values { $($values:tt)* }
+        methods { $($methods:tt)* }
+    ) => {
+        impl $class {
+            fn columns(&$me) -> Vec<(&'static str, arrow_array::ArrayRef)> {
+                vec![$((stringify!($array), $crate::table::Column::column($numbers.into_iter()))),*]
+            }
+        }
+
+        $crate::shown::shown! {
+            $class: $me
+            values { $($values)* }
+            methods {
+                $(
+                    $(#[$about])*
+                    #[getter]
+                    fn $array<'py>(&$me, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
+                        numpy::PyArray1::from_vec(py, $numbers)
+                    }
+                )*
+
+                $($methods)*
+            }
+        }
+    };
+}
+pub(crate) use shown;
