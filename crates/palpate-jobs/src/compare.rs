@@ -11,6 +11,7 @@ use palpate_report::study::{Bundle, Pictures, comparison_bundle, comparison_mark
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::error::without;
 use crate::input::{Described, Measurement, NamedRecords, called};
 use crate::{ErrorKind, JobError, Outcome, Results, Verdict};
 
@@ -105,7 +106,10 @@ impl Compare {
                 let measured = part.measurement.inspect(|measured| told(&measured.notes));
                 match measured.and_then(|measured| self.one(measured, &found.options, watch)) {
                     Err(error) if error.kind == ErrorKind::Cancelled || (alone && part.only) => return Err(error),
-                    made => found.take(called(part.path, part.name), made.map_err(|error| without(part.path, error))),
+                    made => found.take(
+                        called(part.path, part.name),
+                        made.map_err(|error| (without(part.path, &error.to_string()), error.hint)),
+                    ),
                 }
                 Ok(())
             },
@@ -202,11 +206,4 @@ impl Results for Compared {
     fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
         Ok(comparison_bundle(&self.records, &self.left_out, self.settings(), pictures)?)
     }
-}
-
-/// Why a file was left out, without its own name, and what would help.
-fn without(path: &std::path::Path, error: JobError) -> (String, Option<String>) {
-    let (message, own) = (error.to_string(), path.display().to_string());
-    let reason = message.strip_prefix(&own).map_or(message.as_str(), |rest| rest.trim_start_matches([':', ',', ' ']));
-    (reason.to_owned(), error.hint)
 }

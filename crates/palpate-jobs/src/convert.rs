@@ -13,7 +13,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::input::{OpenedFile, averaged};
-use crate::output::{Unplaced, check_ending, folder_of, place_file};
+use crate::output::{check_ending, folder_of, place_file};
 use crate::{JobError, Outcome};
 
 /// Under which the file says where its numbers come from.
@@ -90,7 +90,6 @@ impl Converted {
             }
             Ok(())
         })
-        .map_err(|error: Unplaced| error.at(out))
     }
 }
 

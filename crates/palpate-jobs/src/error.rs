@@ -113,6 +113,12 @@ pub fn spelled(text: &str, spell: &dyn Fn(&str, Option<&str>) -> String) -> Stri
     out + rest
 }
 
+/// A message without the path of its file in front, where that stands elsewhere.
+pub(crate) fn without(path: &Path, message: &str) -> String {
+    let rest = message.strip_prefix(&path.display().to_string());
+    rest.map_or(message, |rest| rest.trim_start_matches([':', ',', ' '])).to_owned()
+}
+
 impl From<Cancelled> for JobError {
     fn from(cancelled: Cancelled) -> Self {
         Self::new(ErrorKind::Cancelled, cancelled, None)

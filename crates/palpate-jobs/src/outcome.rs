@@ -50,6 +50,14 @@ pub trait Results {
     /// The document.
     fn document(&self) -> Self::Document;
 
+    /// The document as text, indented, with a line end.
+    ///
+    /// # Errors
+    /// [`JobError`] where it has no form in JSON.
+    fn json(&self) -> Result<String, JobError> {
+        Ok(serde_json::to_string_pretty(&self.document())? + "\n")
+    }
+
     /// Tables and sentences for people.
     fn text(&self) -> String;
 
@@ -68,29 +76,5 @@ impl<R> Outcome<R> {
             verdict: Verdict::Positive,
             notes: Vec::new(),
         }
-    }
-}
-
-impl<R: Results> Outcome<R> {
-    /// The document as text, indented, with a line end.
-    ///
-    /// # Errors
-    /// [`JobError`] where it has no form in JSON.
-    pub fn json(&self) -> Result<String, JobError> {
-        Ok(serde_json::to_string_pretty(&self.result.document())? + "\n")
-    }
-
-    /// Tables and sentences for people.
-    #[must_use]
-    pub fn text(&self) -> String {
-        self.result.text()
-    }
-
-    /// Report, document, tables and figures by their names.
-    ///
-    /// # Errors
-    /// [`JobError`] where a figure or document cannot be made.
-    pub fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
-        self.result.bundle(pictures)
     }
 }

@@ -77,7 +77,7 @@ pub fn write_file_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Re
         write(&mut out)?;
         out.flush()
     };
-    place_file(path, folder_of(path), buffered).map_err(|error: io::Error| unwritten(path, &error))
+    place_file(path, folder_of(path), |file| Ok(buffered(file)?))
 }
 
 /// The folder that a file lies in.
@@ -86,17 +86,23 @@ pub(crate) fn folder_of(path: &Path) -> &Path {
 }
 
 /// Likewise, for writers with errors of their own, and with the temporary file in a folder on the same disk.
-pub(crate) fn place_file<E: From<io::Error>>(
+pub(crate) fn place_file(
     path: &Path,
     folder: &Path,
-    write: impl FnOnce(&fs::File) -> Result<(), E>,
-) -> Result<(), E> {
-    fs::create_dir_all(folder)?;
-    let file = tempfile::Builder::new().prefix(TEMPORARY).tempfile_in(folder)?;
-    write(file.as_file())?;
-    file.as_file().sync_all()?;
-    file.persist(path).map_err(|error| error.error)?;
-    Ok(open_to_all(path)?)
+    write: impl FnOnce(&fs::File) -> Result<(), Unplaced>,
+) -> Result<(), JobError> {
+    let place = || -> Result<(), Unplaced> {
+        fs::create_dir_all(folder)?;
+        let file = tempfile::Builder::new().prefix(TEMPORARY).tempfile_in(folder)?;
+        write(file.as_file())?;
+        file.as_file().sync_all()?;
+        file.persist(path).map_err(|error| error.error)?;
+        Ok(open_to_all(path)?)
+    };
+    place().map_err(|error| match error {
+        Unplaced::Store(error) => error,
+        Unplaced::Table(error) => unwritten_table(path, &error),
+    })
 }
 
 /// Why a table is not in its place.
@@ -114,15 +120,6 @@ impl From<TableError> for Unplaced {
 impl From<io::Error> for Unplaced {
     fn from(error: io::Error) -> Self {
         Self::Table(error.into())
-    }
-}
-
-impl Unplaced {
-    pub(crate) fn at(self, path: &Path) -> JobError {
-        match self {
-            Self::Store(error) => error,
-            Self::Table(error) => unwritten_table(path, &error),
-        }
     }
 }
 

@@ -280,7 +280,8 @@ impl Scene {
     }
 
     fn caption(&self, what: &str) -> String {
-        caption(self.title.as_deref(), what, &self.contact)
+        let title = self.title.as_ref().map_or(String::new(), |title| format!("{title}. "));
+        format!("{title}{what}; {}.", law(&self.contact))
     }
 }
 
@@ -302,8 +303,9 @@ fn stepped(path: &Path) -> Result<(Scene, Vec<String>), JobError> {
 /// Share of the largest force up to which a measured pull is noise of the zero.
 const PULL: f64 = 0.02;
 
-fn caption(title: Option<&str>, what: &str, contact: &Contact) -> String {
-    let law = match contact {
+/// The law in the caption of a figure.
+fn law(contact: &Contact) -> String {
+    match contact {
         Contact::Latency { model, rate } => match rate {
             RateDependence::Constant => latency(model),
             RateDependence::Strain { factor } => {
@@ -321,8 +323,7 @@ fn caption(title: Option<&str>, what: &str, contact: &Contact) -> String {
                 terms => format!("linear memory of {memory}, {} terms", terms.len()),
             }
         }
-    };
-    format!("{}{what}; {law}.", title.map_or(String::new(), |title| format!("{title}. ")))
+    }
 }
 
 fn latency(model: &ContactModel) -> String {

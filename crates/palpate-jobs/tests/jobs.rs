@@ -76,9 +76,9 @@ fn text_and_document_are_made_of_one_result() {
     };
     let outcome = job.run(ball(), None, &mut Unwatched).unwrap();
     assert_eq!(outcome.verdict, Verdict::Positive);
-    let json: serde_json::Value = serde_json::from_str(&outcome.json().unwrap()).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&outcome.result.json().unwrap()).unwrap();
     assert_eq!(json["holds"].as_array().unwrap().len(), outcome.result.analysis.holds.len());
-    assert!(outcome.text().contains("Hold"), "{}", outcome.text());
+    assert!(outcome.result.text().contains("Hold"), "{}", outcome.result.text());
     assert_eq!(outcome.result.document().input.sha256, outcome.result.input.sha256);
 }
 

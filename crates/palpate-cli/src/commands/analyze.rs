@@ -5,7 +5,7 @@ use std::path::Path;
 use palpate::record::Record;
 use palpate_jobs::input::{Described, Measurement, NamedRecords, OpenedFile};
 use palpate_jobs::output::write_bundle;
-use palpate_jobs::{Analyze, ErrorKind, JobError, Verdict};
+use palpate_jobs::{Analyze, ErrorKind, JobError, Results, Verdict};
 use palpate_report::study::Pictures;
 
 use crate::arguments::{AnalyzeArguments, Format};
@@ -54,12 +54,12 @@ fn one(
     let mut bars = Bars::default();
     let outcome = job.run(measured, air, &mut bars)?;
     if let Some(folder) = folder {
-        write_bundle(folder, &outcome.bundle(Pictures { png: arguments.png })?)?;
+        write_bundle(folder, &outcome.result.bundle(Pictures { png: arguments.png })?)?;
     }
     drop(bars);
     print(&match arguments.format {
-        Format::Json => outcome.json()?,
-        Format::Text => format!("{}\n\n{}", outcome.result.input.title, outcome.text()),
+        Format::Json => outcome.result.json()?,
+        Format::Text => format!("{}\n\n{}", outcome.result.input.title, outcome.result.text()),
     })?;
     folder.into_iter().for_each(note_report);
     Ok(())

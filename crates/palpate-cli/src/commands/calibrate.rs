@@ -2,7 +2,7 @@
 
 use palpate_jobs::input::{Described, OpenedFile};
 use palpate_jobs::output::{check_figure, keep_apart, picture, write_file};
-use palpate_jobs::{JobError, Verdict};
+use palpate_jobs::{JobError, Results, Verdict};
 
 use crate::arguments::{CalibrateArguments, Format};
 use crate::progress::Bars;
@@ -33,8 +33,8 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Verdict, JobError> {
         write_file(path, &bytes)?;
     }
     print(&match arguments.format {
-        Format::Text => outcome.text(),
-        Format::Json => outcome.json()?,
+        Format::Text => outcome.result.text(),
+        Format::Json => outcome.result.json()?,
     })?;
     Ok(outcome.verdict)
 }

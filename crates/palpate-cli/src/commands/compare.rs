@@ -2,7 +2,7 @@
 
 use palpate_jobs::input::{Described, NamedRecords};
 use palpate_jobs::output::write_bundle;
-use palpate_jobs::{JobError, Verdict};
+use palpate_jobs::{JobError, Results, Verdict};
 use palpate_report::study::Pictures;
 
 use crate::arguments::{CompareArguments, TableFormat};
@@ -15,12 +15,12 @@ pub(crate) fn run(arguments: &CompareArguments) -> Result<Verdict, JobError> {
     let alone = arguments.records == records.paths;
     let outcome = arguments.job().run(&records, alone, &mut Bars::default(), notes)?;
     if let Some(folder) = &arguments.out {
-        write_bundle(folder, &outcome.bundle(Pictures::default())?)?;
+        write_bundle(folder, &outcome.result.bundle(Pictures::default())?)?;
     }
     print(&match arguments.format {
-        TableFormat::Text => outcome.text(),
+        TableFormat::Text => outcome.result.text(),
         TableFormat::Markdown => outcome.result.markdown(),
-        TableFormat::Json => outcome.json()?,
+        TableFormat::Json => outcome.result.json()?,
     })?;
     arguments.out.iter().for_each(|folder| note_report(folder));
     Ok(outcome.verdict)

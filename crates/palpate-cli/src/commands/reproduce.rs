@@ -1,7 +1,7 @@
 //! `palpate reproduce`: the paper's study.
 
 use palpate_jobs::output::write_bundle;
-use palpate_jobs::{JobError, Reproduce, Verdict};
+use palpate_jobs::{JobError, Reproduce, Results, Verdict};
 use palpate_report::study::Pictures;
 
 use crate::arguments::{Format, ReproduceArguments};
@@ -10,12 +10,12 @@ use crate::terminal::print;
 
 pub(crate) fn run(arguments: &ReproduceArguments) -> Result<Verdict, JobError> {
     let outcome = Reproduce {}.run(&mut Bars::default())?;
-    let bundle = outcome.bundle(Pictures { png: arguments.png })?;
+    let bundle = outcome.result.bundle(Pictures { png: arguments.png })?;
     write_bundle(&arguments.out, &bundle)?;
     let (files, report) = (bundle.files.len(), arguments.out.join("report.html"));
     print(&match arguments.format {
-        Format::Json => outcome.json()?,
-        Format::Text => format!("{}\n{files} files written; open {}\n", outcome.text(), report.display()),
+        Format::Json => outcome.result.json()?,
+        Format::Text => format!("{}\n{files} files written; open {}\n", outcome.result.text(), report.display()),
     })?;
     Ok(outcome.verdict)
 }

@@ -1,6 +1,7 @@
 //! An analysed record as rows of the table: one a hold and law, and one for a hold to which no law was fitted.
 
-use palpate_files::parquet_table::{Field, Kind, Rows, Values};
+use palpate_files::parquet_table::Kind::{self, Count, Number, Text};
+use palpate_files::parquet_table::{Field, Rows, Values};
 use palpate_report::document::{AnalysisDocument, FitDocument, HoldDocument, LawDocument};
 use serde_json::Value;
 
@@ -21,77 +22,42 @@ enum LawRow<'a> {
     None,
 }
 
-/// A column: its name, which ends in its unit, what it holds, and where that stands.
-struct Column {
-    name: &'static str,
-    kind: Kind,
-    value: fn(&Line<'_>) -> Value,
-}
-
-const fn count(name: &'static str, value: fn(&Line<'_>) -> Value) -> Column {
-    let kind = Kind::Count;
-    Column { name, kind, value }
-}
-
-const fn number(name: &'static str, value: fn(&Line<'_>) -> Value) -> Column {
-    let kind = Kind::Number;
-    Column { name, kind, value }
-}
-
-const fn text(name: &'static str, value: fn(&Line<'_>) -> Value) -> Column {
-    let kind = Kind::Text;
-    Column { name, kind, value }
-}
+/// A column: what it holds, its name, which ends in its unit, and where that stands.
+type Column = (Kind, &'static str, fn(&Line<'_>) -> Value);
 
 /// Columns that say which hold of which record it is, and how the force went.
 const HOLD: [Column; 19] = [
-    text("record", |line| line.document.input.path.clone().into()),
-    text("part", |line| line.document.input.part.clone().into()),
-    text("record_sha256", |line| line.document.input.sha256.clone().into()),
-    count("rows", |line| line.document.input.rows.into()),
-    count("rows_averaged", |line| line.document.input.rows_averaged.into()),
-    count("hold", |line| line.hold.index.into()),
-    number("start_s", |line| line.hold.start_s.into()),
-    number("end_s", |line| line.hold.end_s.into()),
-    number("fit_start_s", |line| line.hold.fit_start_s.into()),
-    number("displacement_m", |line| line.hold.displacement_m.into()),
-    text("after", |line| line.hold.after.clone().into()),
-    text("mode", |line| line.hold.mode.clone().into()),
-    text("relaxation", |line| line.hold.relaxation.clone().into()),
-    number("relaxation_p_value", |line| line.hold.p_value.into()),
-    number("force_start_n", |line| line.hold.force_start_n.into()),
-    number("force_end_n", |line| line.hold.force_end_n.into()),
-    number("force_change_n", |line| line.hold.force_change_n.into()),
-    text("signal", |line| line.hold.signal.clone().into()),
-    text("findings", |line| codes(line).into()),
+    (Text, "record", |line| line.document.input.path.clone().into()),
+    (Text, "part", |line| line.document.input.part.clone().into()),
+    (Text, "record_sha256", |line| line.document.input.sha256.clone().into()),
+    (Count, "rows", |line| line.document.input.rows.into()),
+    (Count, "rows_averaged", |line| line.document.input.rows_averaged.into()),
+    (Count, "hold", |line| line.hold.index.into()),
+    (Number, "start_s", |line| line.hold.start_s.into()),
+    (Number, "end_s", |line| line.hold.end_s.into()),
+    (Number, "fit_start_s", |line| line.hold.fit_start_s.into()),
+    (Number, "displacement_m", |line| line.hold.displacement_m.into()),
+    (Text, "after", |line| line.hold.after.clone().into()),
+    (Text, "mode", |line| line.hold.mode.clone().into()),
+    (Text, "relaxation", |line| line.hold.relaxation.clone().into()),
+    (Number, "relaxation_p_value", |line| line.hold.p_value.into()),
+    (Number, "force_start_n", |line| line.hold.force_start_n.into()),
+    (Number, "force_end_n", |line| line.hold.force_end_n.into()),
+    (Number, "force_change_n", |line| line.hold.force_change_n.into()),
+    (Text, "signal", |line| line.hold.signal.clone().into()),
+    (Text, "findings", |line| codes(line).into()),
 ];
 
 /// Columns of the law, whichever it is.
 const LAW: [Column; 7] = [
-    text("law", |line| line.name().into()),
-    count("preferred", |line| i64::from(line.preferred()).into()),
-    number("rmse", |line| match &line.law {
-        LawRow::Latency { fit, .. } => fit.rmse.into(),
-        LawRow::Other { .. } | LawRow::None => Value::Null,
-    }),
-    number("relative_rmse", |line| match &line.law {
-        LawRow::Latency { fit, .. } => relative(fit).into(),
-        LawRow::Other { law, .. } => law.rmse.into(),
-        LawRow::None => Value::Null,
-    }),
-    number("delta_bic", |line| match &line.law {
-        LawRow::Latency { fit, .. } => fit.delta_bic.into(),
-        LawRow::Other { law, .. } => law.delta_bic.into(),
-        LawRow::None => Value::Null,
-    }),
-    text("termination", |line| match &line.law {
-        LawRow::Latency { fit, .. } => fit.termination.clone().into(),
-        LawRow::Other { law, .. } => law.termination.clone().or_else(|| law.error.clone()).into(),
-        LawRow::None => Value::Null,
-    }),
-    text("numbers", |line| match &line.law {
-        LawRow::Latency { .. } | LawRow::None => Value::Null,
-        LawRow::Other { law, .. } => serde_json::to_string(&law.numbers).ok().into(),
+    (Text, "law", |line| line.name().into()),
+    (Count, "preferred", |line| i64::from(line.preferred()).into()),
+    (Number, "rmse", |line| line.of_law(|fit| fit.rmse.into(), |_| Value::Null)),
+    (Number, "relative_rmse", |line| line.of_law(|fit| relative(fit).into(), |law| law.rmse.into())),
+    (Number, "delta_bic", |line| line.of_law(|fit| fit.delta_bic.into(), |law| law.delta_bic.into())),
+    (Text, "termination", |line| line.of_law(|fit| fit.termination.clone().into(), ending)),
+    (Text, "numbers", |line| {
+        line.of_law(|_| Value::Null, |law| serde_json::to_string(&law.numbers).ok().into())
     }),
 ];
 
@@ -109,20 +75,25 @@ const LATENCY: [LatencyNumber; 7] = [
     ("rate_coefficient_per_s", |fit| fit.rate_coefficient_per_s.into()),
 ];
 
-/// Columns that say what the rows depend on besides the record.
-const ORIGIN: [Column; 1] = [text("software", |line| {
-    let software = &line.document.software;
-    format!("{} {}", software.name, software.version).into()
-})];
+/// Columns behind those: of the latency law without an uncertainty, and what the rows depend on besides the record.
+const LAST: [Column; 3] = [
+    (Number, "samples", |line| line.of_law(|fit| fit.samples.into(), |_| Value::Null)),
+    (Number, "residual_correlation", |line| {
+        line.of_law(|fit| fit.residual_correlation.into(), |_| Value::Null)
+    }),
+    (Text, "software", |line| {
+        let software = &line.document.software;
+        format!("{} {}", software.name, software.version).into()
+    }),
+];
 
 /// The columns of the table, in order.
 pub(super) fn fields() -> Vec<Field> {
-    let plain = |columns: &'static [Column]| columns.iter().map(|column| Field::new(column.name, column.kind));
+    let plain = |columns: &'static [Column]| columns.iter().map(|(kind, name, _)| Field::new(*name, *kind));
     let uncertain = LATENCY.iter().flat_map(|(name, _)| {
         ["", "_standard_error", "_low", "_high"].map(|end| Field::new(format!("{name}{end}"), Kind::Number))
     });
-    let last = [Field::new("samples", Kind::Number), Field::new("residual_correlation", Kind::Number)];
-    plain(&HOLD).chain(plain(&LAW)).chain(uncertain).chain(last).chain(plain(&ORIGIN)).collect()
+    plain(&HOLD).chain(plain(&LAW)).chain(uncertain).chain(plain(&LAST)).collect()
 }
 
 /// The rows of a record, in the order of its holds; of each the latency law first, n given before free.
@@ -150,7 +121,7 @@ fn of_hold<'a>(document: &'a AnalysisDocument, hold: &'a HoldDocument) -> impl I
 }
 
 fn row(line: &Line<'_>) -> Vec<Value> {
-    let plain = |columns: &'static [Column]| columns.iter().map(|column| (column.value)(line));
+    let plain = |columns: &'static [Column]| columns.iter().map(|(.., value)| value(line));
     let uncertain = LATENCY.iter().flat_map(|(name, value)| match &line.law {
         LawRow::Latency { fit, .. } => {
             let interval = fit.confidence_interval.get(*name);
@@ -160,14 +131,19 @@ fn row(line: &Line<'_>) -> Vec<Value> {
         }
         LawRow::Other { .. } | LawRow::None => [const { Value::Null }; 4],
     });
-    let last: [Value; 2] = match &line.law {
-        LawRow::Latency { fit, .. } => [fit.samples.into(), fit.residual_correlation.into()],
-        LawRow::Other { .. } | LawRow::None => [const { Value::Null }; 2],
-    };
-    plain(&HOLD).chain(plain(&LAW)).chain(uncertain).chain(last).chain(plain(&ORIGIN)).collect()
+    plain(&HOLD).chain(plain(&LAW)).chain(uncertain).chain(plain(&LAST)).collect()
 }
 
 impl Line<'_> {
+    /// What stands in the latency law, or in another one.
+    fn of_law(&self, latency: fn(&FitDocument) -> Value, other: fn(&LawDocument) -> Value) -> Value {
+        match &self.law {
+            LawRow::Latency { fit, .. } => latency(fit),
+            LawRow::Other { law, .. } => other(law),
+            LawRow::None => Value::Null,
+        }
+    }
+
     /// The name of the law as `--laws` takes it.
     fn name(&self) -> Option<String> {
         match &self.law {
@@ -198,6 +174,11 @@ fn codes(line: &Line<'_>) -> String {
         }
     }
     codes.join(" ")
+}
+
+/// Why the fit of a law ended, or why there is none.
+fn ending(law: &LawDocument) -> Value {
+    law.termination.clone().or_else(|| law.error.clone()).into()
 }
 
 /// The residual as a share of the change of the signal.

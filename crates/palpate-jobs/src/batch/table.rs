@@ -42,7 +42,7 @@ pub(super) fn write<'a>(
     let mut batched = Batched::default();
     let entry = |place| Ok::<Entry, JobError>(serde_json::from_slice(&store.read(place)?)?);
     // In the folder of the store, where the next batch clears away what a kill leaves behind.
-    let placed = place_file::<Unplaced>(out, &beside(out, ".journal"), |file| {
+    place_file(out, &beside(out, ".journal"), |file| {
         let mut sink = Sink::new(format, BufWriter::new(file), settings)?;
         for place in places {
             let entry = entry(place).map_err(Unplaced::Store)?;
@@ -52,8 +52,8 @@ pub(super) fn write<'a>(
             sink.write(&entry.rows)?;
         }
         sink.finish(settings)
-    });
-    placed.map_err(|error| error.at(out)).map(|()| batched)
+    })?;
+    Ok(batched)
 }
 
 impl From<csv::Error> for Unplaced {

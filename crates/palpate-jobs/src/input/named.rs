@@ -94,29 +94,15 @@ impl NamedRecords {
                     folder_in(out, &stem, &mut taken)
                 }
             });
-            let opened = match OpenedFile::open(path, &self.described) {
-                Ok(opened) => opened,
-                Err(error) => {
-                    let (name, measurement) = (None, Err(error));
-                    let only = alone;
-                    take(
-                        Part {
-                            path,
-                            name,
-                            folder,
-                            measurement,
-                            only,
-                        },
-                        watch,
-                    )?;
-                    continue;
-                }
-            };
-            told(&opened.notes());
-            let several = opened.parts().len() > 1;
-            let mut taken = Vec::new();
-            for part in opened.parts() {
-                let (name, measurement) = (opened.name(*part), opened.measurement(*part, watch));
+            let opened = OpenedFile::open(path, &self.described);
+            opened.iter().for_each(|opened| told(&opened.notes()));
+            let parts = opened.as_ref().map_or(&[0][..], OpenedFile::parts);
+            let (several, mut taken) = (parts.len() > 1, Vec::new());
+            for part in parts {
+                let (name, measurement) = match &opened {
+                    Ok(opened) => (opened.name(*part), opened.measurement(*part, watch)),
+                    Err(error) => (None, Err(error.clone())),
+                };
                 let folder = folder.as_ref().map(|folder| match name {
                     Some(name) if several => folder_in(folder, &file_name(name), &mut taken),
                     _ => folder.clone(),

@@ -121,18 +121,12 @@ impl Inspected {
 /// Machines that a description can name, with what each is, for people.
 #[must_use]
 pub fn machines_text() -> String {
-    machines_table().to_plain_text()
-}
-
-/// Machines that a description can name, with what each is.
-fn machines_table() -> Table {
     let table = Table::new("machines", "Machines")
         .column(TableColumn::new("Name", "name", ""))
         .column(TableColumn::new("What", "about", ""))
         .note("in a test description: [machine] preset = \"NAME\"; what the description says itself goes before");
-    machines().iter().fold(table, |table, machine| {
-        table.row(vec![Cell::text(machine.name), Cell::text(machine.about().trim_end_matches('.'))])
-    })
+    let rows = machines().iter().map(|machine| [machine.name, machine.about().trim_end_matches('.')]);
+    rows.map(|row| row.map(Cell::text).to_vec()).fold(table, Table::row).to_plain_text()
 }
 
 /// Format, packing and number of tests.

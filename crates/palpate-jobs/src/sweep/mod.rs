@@ -159,14 +159,13 @@ impl Sweep {
             store.add(&key, &packed(&fields, rows).map_err(|error| unwritten_table(&folder, &error))?)
         })?;
         // In the folder of the parts, where the next sweep clears away what a kill leaves behind.
-        place_file::<Unplaced>(out, &folder, |file| {
+        place_file(out, &folder, |file| {
             let mut writer = TableWriter::new(file, &fields)?;
             for place in &places {
                 unpacked(&store.read(place).map_err(Unplaced::Store)?, |rows| writer.write(rows))?;
             }
             Ok(writer.finish(&[(MARK, &digest)])?)
-        })
-        .map_err(|error| error.at(out))?;
+        })?;
         store.remove()?;
         Ok(done)
     }

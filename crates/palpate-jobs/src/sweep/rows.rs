@@ -8,6 +8,8 @@ use palpate::watch::{Cancelled, Progress, Watch};
 use palpate_files::description::{Protocol, Sweep};
 use palpate_files::parquet_table::{Field, Kind, Rows, Values};
 
+use crate::error::without;
+
 /// A column with a result.
 #[derive(Debug, Clone)]
 pub(super) struct ResultColumn {
@@ -19,23 +21,29 @@ pub(super) struct ResultColumn {
     pub(super) unit: &'static str,
 }
 
-/// Names, labels and units of what a whole run comes to, in the order of [`whole_run`].
-const WHOLE_RUN: [(&str, &str, &str); 12] = [
-    ("peak_force_n", "Peak force", "N"),
-    ("peak_time_s", "Time of the peak", "s"),
-    ("end_time_s", "End", "s"),
-    ("force_end_n", "Force at the end", "N"),
-    ("displacement_end_m", "Displacement at the end", "m"),
-    ("strain_end", "Strain at the end", ""),
-    ("excess_strain_end", "Excess strain at the end", ""),
-    ("work_j", "Work of the jaw", "J"),
-    ("given_back_j", "Work given back", "J"),
-    ("stored_j", "Energy stored", "J"),
-    ("lost_j", "Energy lost", "J"),
-    ("contact_lost_s", "Contact lost", "s"),
+/// What a whole run comes to: name, label and unit, and where it stands.
+type OfRun = (&'static str, &'static str, &'static str, fn(&Summary) -> Option<f64>);
+
+const WHOLE_RUN: [OfRun; 12] = [
+    ("peak_force_n", "Peak force", "N", |run| Some(run.peak_force)),
+    ("peak_time_s", "Time of the peak", "s", |run| Some(run.peak_time)),
+    ("end_time_s", "End", "s", |run| Some(run.end_time)),
+    ("force_end_n", "Force at the end", "N", |run| Some(run.force)),
+    ("displacement_end_m", "Displacement at the end", "m", |run| Some(run.displacement)),
+    ("strain_end", "Strain at the end", "", |run| Some(run.strain)),
+    ("excess_strain_end", "Excess strain at the end", "", |run| Some(run.excess_strain)),
+    ("work_j", "Work of the jaw", "J", |run| Some(run.work)),
+    ("given_back_j", "Work given back", "J", |run| Some(run.given_back)),
+    ("stored_j", "Energy stored", "J", |run| run.stored),
+    ("lost_j", "Energy lost", "J", |run| run.lost),
+    ("contact_lost_s", "Contact lost", "s", contact_lost),
 ];
 
-/// Likewise of a step, in the order of [`of_steps`].
+fn contact_lost(run: &Summary) -> Option<f64> {
+    run.events.iter().find(|event| event.kind == ContactEventKind::Lost).map(|event| event.time)
+}
+
+/// Names, labels and units of what a step comes to, in the order of [`of_steps`].
 const STEP: [(&str, &str, &str); 3] = [
     ("ramp_force_n", "force after the ramp", "N"),
     ("end_force_n", "force at the end", "N"),
@@ -48,7 +56,7 @@ const REFUSED: &str = "refused";
 /// The result columns of a sweep.
 pub(super) fn results(sweep: &Sweep) -> Vec<ResultColumn> {
     let of = |name: String, label: String, unit| ResultColumn { name, label, unit };
-    let whole = WHOLE_RUN.iter().map(|(name, label, unit)| of((*name).to_owned(), (*label).to_owned(), *unit));
+    let whole = WHOLE_RUN.iter().map(|(name, label, unit, _)| of((*name).to_owned(), (*label).to_owned(), *unit));
     let steps = (1..=sweep.steps()).flat_map(|step| {
         STEP.iter()
             .map(move |(name, label, unit)| of(format!("step_{step}_{name}"), format!("Step {step}: {label}"), *unit))
@@ -138,7 +146,8 @@ fn outcome(protocol: &Protocol, steps: usize, times: &[f64]) -> Result<RowAndFor
     };
     let run = run.summarize().map_err(|error| error.to_string())?;
     let ends = end_forces(protocol, &run.ends);
-    Ok((whole_run(&run.summary).into_iter().chain(of_steps(protocol, &ends, steps)).collect(), run.forces))
+    let whole = WHOLE_RUN.iter().map(|(.., of)| of(&run.summary));
+    Ok((whole.chain(of_steps(protocol, &ends, steps)).collect(), run.forces))
 }
 
 /// Force at the end of every step. Those of a motion are the ends of its straight pieces, of which a step that goes nowhere has none.
@@ -157,24 +166,6 @@ fn end_forces(protocol: &Protocol, ends: &[StepEnd]) -> Vec<f64> {
         force
     };
     protocol.steps.iter().map(end).collect()
-}
-
-fn whole_run(run: &Summary) -> [Option<f64>; WHOLE_RUN.len()] {
-    let lost = run.events.iter().find(|event| event.kind == ContactEventKind::Lost);
-    [
-        Some(run.peak_force),
-        Some(run.peak_time),
-        Some(run.end_time),
-        Some(run.force),
-        Some(run.displacement),
-        Some(run.strain),
-        Some(run.excess_strain),
-        Some(run.work),
-        Some(run.given_back),
-        run.stored,
-        run.lost,
-        lost.map(|event| event.time),
-    ]
 }
 
 /// Three numbers for every `[[step]]` table: force after its ramp, force at its end, and which share its hold relaxed.
@@ -204,13 +195,4 @@ fn of_steps(protocol: &Protocol, ends: &[f64], steps: usize) -> Vec<Option<f64>>
         row.extend([ramp, end, relaxed]);
     }
     row
-}
-
-/// A message without the path of the protocol in front, which the whole table shares.
-fn without(path: &Path, message: &str) -> String {
-    let path = path.display().to_string();
-    message
-        .strip_prefix(&path)
-        .map_or(message, |rest| rest.trim_start_matches([':', ',', ' ']))
-        .to_owned()
 }

@@ -2,8 +2,7 @@
 
 use std::io::{self, Write};
 
-use palpate::observe::Observation;
-use palpate_jobs::{Event, HoldSeen, Seen};
+use palpate_jobs::{HoldSeen, Seen};
 use palpate_report::document::{WatchDocument, WatchSummaryDocument};
 
 use super::Shown;
@@ -11,12 +10,8 @@ use super::Shown;
 pub(super) struct Jsonl;
 
 impl Shown for Jsonl {
-    fn tick(&mut self, out: &mut dyn Write, seen: &Observation, asked: bool) -> io::Result<()> {
-        Seen::Tick(*seen, asked).document().map_or(Ok(()), |document| line(out, &document))
-    }
-
-    fn event(&mut self, out: &mut dyn Write, event: &Event) -> io::Result<()> {
-        line(out, &event.document())
+    fn see(&mut self, out: &mut dyn Write, seen: &Seen) -> io::Result<()> {
+        seen.document().map_or(Ok(()), |document| line(out, &document))
     }
 
     fn end(&mut self, out: &mut dyn Write, holds: &[HoldSeen]) -> io::Result<()> {

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use palpate::observe::{Held, Observation, Slip};
-use palpate_jobs::{Event, HoldSeen};
+use palpate_jobs::{Event, HoldSeen, Seen};
 use palpate_report::number::significant;
 use palpate_report::result::word;
 use palpate_report::table::{Cell, Table, TableColumn};
@@ -12,20 +12,16 @@ use super::Shown;
 use super::words::{slip, state, uncertain};
 
 pub(super) struct Lines {
-    slip_force: Option<f64>,
-}
-
-impl Lines {
-    pub(super) fn new(slip_force: Option<f64>) -> Self {
-        Self { slip_force }
-    }
+    pub(super) slip_force: Option<f64>,
 }
 
 impl Shown for Lines {
-    fn tick(&mut self, out: &mut dyn Write, seen: &Observation, asked: bool) -> io::Result<()> {
-        if !asked {
-            return Ok(());
-        }
+    fn see(&mut self, out: &mut dyn Write, seen: &Seen) -> io::Result<()> {
+        let seen = match seen {
+            Seen::Tick(seen, true) => seen,
+            Seen::Event(event) => return happened(out, event),
+            Seen::Next(_) | Seen::Tick(_, false) => return Ok(()),
+        };
         write!(out, "{:>9.3} s  {:<34}  {:>8} N", seen.time, state(seen), significant(seen.force, 4))?;
         if let Some(equilibrium) = seen.equilibrium_force {
             write!(out, "  tends to {}", uncertain(equilibrium, "N"))?;
@@ -42,20 +38,20 @@ impl Shown for Lines {
         writeln!(out)
     }
 
-    fn event(&mut self, out: &mut dyn Write, event: &Event) -> io::Result<()> {
-        match event {
-            Event::Began(seen) => writeln!(out, "{:>9.3} s  hold: {}", seen.time, state(seen)),
-            Event::Changed(seen) => writeln!(out, "{:>9.3} s  it is the {}", seen.time, state(seen)),
-            Event::Ended(time, hold) => {
-                let lasted = significant(hold.until - hold.since, 4);
-                writeln!(out, "{time:>9.3} s  end of the hold after {lasted} s")
-            }
-            Event::Warned(seen) => writeln!(out, "{:>9.3} s  WARNING: {}", seen.time, warning(seen)),
-        }
-    }
-
     fn end(&mut self, out: &mut dyn Write, holds: &[HoldSeen]) -> io::Result<()> {
         write!(out, "\n{}", summary(holds, self.slip_force))
+    }
+}
+
+fn happened(out: &mut dyn Write, event: &Event) -> io::Result<()> {
+    match event {
+        Event::Began(seen) => writeln!(out, "{:>9.3} s  hold: {}", seen.time, state(seen)),
+        Event::Changed(seen) => writeln!(out, "{:>9.3} s  it is the {}", seen.time, state(seen)),
+        Event::Ended(time, hold) => {
+            let lasted = significant(hold.until - hold.since, 4);
+            writeln!(out, "{time:>9.3} s  end of the hold after {lasted} s")
+        }
+        Event::Warned(seen) => writeln!(out, "{:>9.3} s  WARNING: {}", seen.time, warning(seen)),
     }
 }
 

@@ -15,12 +15,11 @@ mod words;
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
-use palpate::observe::Observation;
 use palpate::record::Correction;
 use palpate::watch::Unwatched;
 use palpate_files::description::read_material;
 use palpate_jobs::input::{Described, OpenedFile};
-use palpate_jobs::{Event, HoldSeen, JobError, Seen, Verdict};
+use palpate_jobs::{HoldSeen, JobError, Seen, Verdict};
 
 use crate::arguments::{ReplaySpeed, WatchArguments, WatchFormat};
 use crate::progress::Bars;
@@ -28,10 +27,8 @@ use crate::terminal::{note, notes, print_with};
 
 /// Where observations go.
 trait Shown {
-    /// A tick, and whether it is one of those that were asked for.
-    fn tick(&mut self, out: &mut dyn Write, seen: &Observation, asked: bool) -> io::Result<()>;
-    /// Something that happened.
-    fn event(&mut self, out: &mut dyn Write, event: &Event) -> io::Result<()>;
+    /// A tick, with whether it is one of those that were asked for, or something that happened.
+    fn see(&mut self, out: &mut dyn Write, seen: &Seen) -> io::Result<()>;
     /// The holds of the log.
     fn end(&mut self, out: &mut dyn Write, holds: &[HoldSeen]) -> io::Result<()>;
 }
@@ -63,7 +60,9 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
         WatchFormat::Text if on_terminal => {
             Box::new(view::View::new(&arguments.log, record.time(), speed, arguments.slip_force))
         }
-        WatchFormat::Text => Box::new(lines::Lines::new(arguments.slip_force)),
+        WatchFormat::Text => Box::new(lines::Lines {
+            slip_force: arguments.slip_force,
+        }),
     };
     let mut outcome = None;
     print_with(|out| {
@@ -73,8 +72,7 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
                 Seen::Next(time) => {
                     speed.map_or(Ok(()), |speed| out.flush().map(|()| wait(started, (time - record.time()[0]) / speed)))
                 }
-                Seen::Event(event) => shown.event(out, event),
-                Seen::Tick(seen, asked) => shown.tick(out, seen, *asked),
+                seen => shown.see(out, seen),
             };
             written.is_ok()
         });

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use anstyle::{AnsiColor, Style};
 use palpate::observe::{Observation, Slip};
-use palpate_jobs::{Event, HoldSeen};
+use palpate_jobs::{Event, HoldSeen, Seen};
 use palpate_report::number::significant;
 use palpate_report::sparkline::sparkline;
 
@@ -62,6 +62,19 @@ impl View {
         self.last = Some(*seen);
     }
 
+    fn note(&mut self, event: &Event) {
+        let what = match event {
+            Event::Began(seen) => format!("{:.2} s  hold: {}", seen.time, state(seen)),
+            Event::Changed(seen) => format!("{:.2} s  it is the {}", seen.time, state(seen)),
+            Event::Ended(time, _) => format!("{time:.2} s  end of the hold"),
+            Event::Warned(seen) => format!("{:.2} s  {}", seen.time, warning(seen)),
+        };
+        if self.happened.len() == LAST {
+            self.happened.remove(0);
+        }
+        self.happened.push(what);
+    }
+
     fn draw(&mut self, out: &mut dyn Write, seen: &Observation) -> io::Result<()> {
         let (first, last) = self.duration;
         let speed = self.speed.map_or("as fast as it goes".to_owned(), |speed| format!("×{}", significant(speed, 3)));
@@ -111,27 +124,21 @@ impl View {
 }
 
 impl Shown for View {
-    fn tick(&mut self, out: &mut dyn Write, seen: &Observation, _asked: bool) -> io::Result<()> {
+    fn see(&mut self, out: &mut dyn Write, seen: &Seen) -> io::Result<()> {
+        let seen = match seen {
+            Seen::Tick(seen, _) => seen,
+            Seen::Event(event) => {
+                self.note(event);
+                return Ok(());
+            }
+            Seen::Next(_) => return Ok(()),
+        };
         self.remember(seen);
         if Instant::now() < self.next {
             return Ok(());
         }
         self.next = Instant::now() + FRAME;
         self.draw(out, seen)
-    }
-
-    fn event(&mut self, _out: &mut dyn Write, event: &Event) -> io::Result<()> {
-        let what = match event {
-            Event::Began(seen) => format!("{:.2} s  hold: {}", seen.time, state(seen)),
-            Event::Changed(seen) => format!("{:.2} s  it is the {}", seen.time, state(seen)),
-            Event::Ended(time, _) => format!("{time:.2} s  end of the hold"),
-            Event::Warned(seen) => format!("{:.2} s  {}", seen.time, warning(seen)),
-        };
-        if self.happened.len() == LAST {
-            self.happened.remove(0);
-        }
-        self.happened.push(what);
-        Ok(())
     }
 
     fn end(&mut self, out: &mut dyn Write, holds: &[HoldSeen]) -> io::Result<()> {
