@@ -4,14 +4,15 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use palpate::calibrate::RateLaw;
-use palpate::fit::{Loss, SampleChoice};
-use palpate::forecast::RampChoice;
-use palpate::grip::{Control, Objective};
 use palpate::laws::Law;
-use palpate::segment::{ContactChoice, HoldStart};
-use palpate::units::{Dimension, parse, split_number};
-use palpate_files::description::{parse_hold_start, parse_touch};
+use palpate_files::description::{schema_material, schema_protocol, schema_test};
 use palpate_jobs as jobs;
+use palpate_jobs::typed::{Choice, coverage, exponent, force, law, length, one_of, seconds, time};
+use palpate_report::document::{
+    AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument, WatchDocument,
+};
+use schemars::{JsonSchema, schema_for};
+use serde_json::Value;
 
 /// Soft contact that remembers: squeeze-and-hold tests turned into laws, and laws into forces.
 #[derive(Debug, Parser)]
@@ -89,8 +90,8 @@ pub(crate) struct SimulateArguments {
     #[arg(long, value_name = "RECORD")]
     pub(crate) drive: Option<PathBuf>,
     /// Which column of the record drives the contact
-    #[arg(long, value_enum, default_value_t = DriveName::Displacement, requires = "drive")]
-    pub(crate) drive_by: DriveName,
+    #[arg(long, value_parser = one_of(DRIVES), default_value = "displacement", requires = "drive")]
+    pub(crate) drive_by: jobs::DriveBy,
     /// Test description (TOML) of the record that drives
     #[arg(long, value_name = "TEST.toml", requires = "drive")]
     pub(crate) test: Option<PathBuf>,
@@ -132,10 +133,7 @@ pub(crate) struct SimulateArguments {
 impl SimulateArguments {
     pub(crate) fn job(&self) -> jobs::Simulate {
         jobs::Simulate {
-            drive_by: match self.drive_by {
-                DriveName::Displacement => jobs::DriveBy::Displacement,
-                DriveName::Force => jobs::DriveBy::Force,
-            },
+            drive_by: self.drive_by,
             force_noise_n: self.force_noise,
             displacement_noise_m: self.displacement_noise,
             seed: self.seed,
@@ -168,34 +166,8 @@ pub(crate) struct SweepArguments {
     /// File for a figure (.svg or .png): a curve, a heat map, several heat maps, or points
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
-    /// Which result the figure shows, by the name of its column
-    #[arg(long, value_name = "COLUMN", default_value_t = jobs::Sweep::default().show, requires = "figure")]
-    pub(crate) show: String,
-    /// How many runs at once; all processors if not given. The table is the same for any number
-    #[arg(long, value_name = "N")]
-    pub(crate) threads: Option<std::num::NonZeroUsize>,
-    /// Compute all runs again, whatever was computed before
-    #[arg(long)]
-    pub(crate) restart: bool,
-}
-
-impl SweepArguments {
-    pub(crate) fn job(&self) -> jobs::Sweep {
-        jobs::Sweep {
-            show: self.show.clone(),
-            threads: self.threads,
-            restart: self.restart,
-        }
-    }
-}
-
-/// What drives a simulated contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum DriveName {
-    /// The measured displacement of the jaw
-    Displacement,
-    /// The measured force
-    Force,
+    #[command(flatten)]
+    pub(crate) job: jobs::Sweep,
 }
 
 /// Show what is in a record: columns, units, sampling, phases. Changes nothing.
@@ -281,45 +253,14 @@ pub(crate) struct AnalyzeArguments {
     /// Write figures as PNG too
     #[arg(long, requires = "out")]
     pub(crate) png: bool,
-    /// Fit only this long from the start of each hold and foretell the rest
-    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
-    pub(crate) fit_until: Option<f64>,
-    /// Exponents to try, besides a free one
-    #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = exponent)]
-    pub(crate) exponents: Option<Vec<f64>>,
-    /// From where in a hold to fit: peak, settled, or "peak + 0.5 s"
-    #[arg(long, value_name = "WHERE", value_parser = hold_start)]
-    pub(crate) hold_start: Option<HoldStart>,
-    /// First touch: auto, "as recorded", or a displacement
-    #[arg(long, value_name = "WHERE", value_parser = touch)]
-    pub(crate) touch: Option<ContactChoice>,
-    /// How far the displacement may stray in a hold
-    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
-    pub(crate) tolerance: Option<f64>,
-    /// Shortest hold
-    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
-    pub(crate) minimum_hold: Option<f64>,
+    #[command(flatten)]
+    pub(crate) job: jobs::Analyze,
     /// Record of the same motion without a body; its force is subtracted
     #[arg(long, value_name = "RECORD")]
     pub(crate) air_run: Option<PathBuf>,
     /// Leave out the comparison of laws, which takes most of the time
     #[arg(long)]
     pub(crate) no_compare: bool,
-}
-
-impl AnalyzeArguments {
-    pub(crate) fn job(&self) -> jobs::Analyze {
-        jobs::Analyze {
-            fit_until_s: self.fit_until,
-            exponents: self.exponents.clone(),
-            hold_start: self.hold_start,
-            touch: self.touch,
-            tolerance_m: self.tolerance,
-            minimum_hold_s: self.minimum_hold,
-            compare: !self.no_compare,
-            ..jobs::Analyze::default()
-        }
-    }
 }
 
 /// Analyse thousands of records into one table, a row per hold and law.
@@ -344,33 +285,8 @@ pub(crate) struct BatchArguments {
     /// Test description (TOML): columns, units, geometry, options; for all records
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
-    /// Laws to fit besides the latency law
-    #[arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = law)]
-    pub(crate) laws: Option<Vec<Law>>,
-    /// Fit only this long from the start of each hold
-    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
-    pub(crate) fit_until: Option<f64>,
-    /// From where in a hold to fit: peak, settled, or "peak + 0.5 s"
-    #[arg(long, value_name = "WHERE", value_parser = hold_start)]
-    pub(crate) hold_start: Option<HoldStart>,
-    /// How many records at once; all processors if not given. The table is the same for any number
-    #[arg(long, value_name = "N")]
-    pub(crate) threads: Option<std::num::NonZeroUsize>,
-    /// Analyse all records again, whatever was done before
-    #[arg(long)]
-    pub(crate) restart: bool,
-}
-
-impl BatchArguments {
-    pub(crate) fn job(&self) -> jobs::Batch {
-        jobs::Batch {
-            laws: self.laws.clone(),
-            fit_until_s: self.fit_until,
-            hold_start: self.hold_start,
-            threads: self.threads,
-            restart: self.restart,
-        }
-    }
+    #[command(flatten)]
+    pub(crate) job: jobs::Batch,
 }
 
 /// Compare laws: which one foretells a hold, how sure that is, and what another would cost.
@@ -396,54 +312,14 @@ pub(crate) struct CompareArguments {
     /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
-    /// Laws to compare; all that suit if not given
-    #[arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = law)]
-    pub(crate) laws: Option<Vec<Law>>,
-    /// Parts of a hold that are fitted to foretell the rest, as shares of its duration
-    #[arg(long, value_name = "SHARE,…", value_delimiter = ',', value_parser = share, allow_hyphen_values = true)]
-    pub(crate) cuts: Option<Vec<f64>>,
-    /// Compare laws of creep: displacement in holds of constant force
-    #[arg(long)]
-    pub(crate) creep: bool,
-    /// How residuals count; huber and tukey bear outliers
-    #[arg(long, value_enum, default_value_t = LossName::Squares)]
-    pub(crate) loss: LossName,
-    /// Which samples are fitted: all, or log:400 for about 400 spaced evenly in ln t
-    #[arg(long, value_name = "all|log:N", default_value = "all", value_parser = samples)]
-    pub(crate) samples: SampleChoice,
-    /// What linear laws take the loading before a hold for
-    #[arg(long, value_enum, default_value_t = RampName::Step)]
-    pub(crate) ramps: RampName,
-    /// Compare only over this long from the start of each hold
-    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
-    pub(crate) fit_until: Option<f64>,
+    #[command(flatten)]
+    pub(crate) job: jobs::Compare,
     /// What to print on standard output
     #[arg(long, value_enum, default_value_t = TableFormat::Text)]
     pub(crate) format: TableFormat,
     /// Folder for report.html, comparison.json, tables and figures
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-}
-
-impl CompareArguments {
-    pub(crate) fn job(&self) -> jobs::Compare {
-        jobs::Compare {
-            laws: self.laws.clone(),
-            cuts: self.cuts.clone(),
-            creep: self.creep,
-            loss: match self.loss {
-                LossName::Squares => Loss::Squares,
-                LossName::Huber => Loss::Huber,
-                LossName::Tukey => Loss::Tukey,
-            },
-            samples: self.samples,
-            ramps: match self.ramps {
-                RampName::Step => RampChoice::Step,
-                RampName::Measured => RampChoice::Measured,
-            },
-            fit_until_s: self.fit_until,
-        }
-    }
 }
 
 /// Calibrate a body on a whole record, ramps and holds alike: one set of numbers that predicts.
@@ -481,14 +357,14 @@ pub(crate) struct CalibrateArguments {
     #[arg(long, conflicts_with = "rivals")]
     pub(crate) no_rivals: bool,
     /// Law of the force once relaxation is over
-    #[arg(long, value_enum, default_value_t = EquilibriumLawName::EvenStrain)]
-    pub(crate) equilibrium: EquilibriumLawName,
+    #[arg(long, value_parser = one_of(EQUILIBRIA), default_value = "even-strain")]
+    pub(crate) equilibrium: jobs::Equilibrium,
     /// Poisson's ratio for Hertz's law; 0.5 if not given
     #[arg(long, value_name = "NUMBER")]
     pub(crate) poisson_ratio: Option<f64>,
     /// What the rate coefficient v of the latency law depends on, by one more number; the other choices are rivals then
-    #[arg(long, value_enum, default_value_t = RateLawName::Constant)]
-    pub(crate) rate: RateLawName,
+    #[arg(long, value_parser = one_of(RATES), default_value = "constant")]
+    pub(crate) rate: RateLaw,
     /// Fit only up to this time of the record and foretell the rest
     #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
     pub(crate) fit_until: Option<f64>,
@@ -514,44 +390,14 @@ impl CalibrateArguments {
         jobs::Calibrate {
             law: self.law,
             rivals: if self.no_rivals { Vec::new() } else { self.rivals.clone() },
-            equilibrium: match self.equilibrium {
-                EquilibriumLawName::EvenStrain => jobs::Equilibrium::EvenStrain,
-                EquilibriumLawName::Hertz => jobs::Equilibrium::Hertz,
-                EquilibriumLawName::Table => jobs::Equilibrium::Table,
-            },
+            equilibrium: self.equilibrium,
             poisson_ratio: self.poisson_ratio,
-            rate: match self.rate {
-                RateLawName::Constant => RateLaw::Constant,
-                RateLawName::ByStrain => RateLaw::ByStrain,
-                RateLawName::ByDirection => RateLaw::ByDirection,
-            },
+            rate: self.rate,
             fit_until_s: self.fit_until,
             profile: self.profile,
             confidence: self.confidence,
         }
     }
-}
-
-/// Law of the force once relaxation is over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum EquilibriumLawName {
-    /// Modulus × displacement/depth × contact area
-    EvenStrain,
-    /// Hertz's, for balls and pads
-    Hertz,
-    /// A monotone table with a row where the jaw was held
-    Table,
-}
-
-/// What the rate coefficient v depends on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum RateLawName {
-    /// Nothing: one number
-    Constant,
-    /// The equilibrium strain: v f^(ε_e/0.1)
-    ByStrain,
-    /// Whether strain falls (after loading, v) or rises (after unloading, f v)
-    ByDirection,
 }
 
 /// Predict what a calibrated body does under a protocol, with intervals.
@@ -571,27 +417,14 @@ pub(crate) struct PredictArguments {
     /// Protocol (TOML) with steps; a body in it is left aside
     #[arg(long, value_name = "PROTOCOL.toml")]
     pub(crate) protocol: PathBuf,
-    /// A time at which the force is wanted; may be given several times
-    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
-    pub(crate) at: Vec<f64>,
-    /// Coverage of the intervals, between 0 and 1
-    #[arg(long, value_name = "SHARE", default_value_t = jobs::Predict::default().confidence, value_parser = coverage, allow_hyphen_values = true)]
-    pub(crate) confidence: f64,
+    #[command(flatten)]
+    pub(crate) job: jobs::Predict,
     /// File for the series (CSV); standard output if neither this nor --at is given
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
     /// File for a figure (.svg or .png)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
-}
-
-impl PredictArguments {
-    pub(crate) fn job(&self) -> jobs::Predict {
-        jobs::Predict {
-            at_s: self.at.clone(),
-            confidence: self.confidence,
-        }
-    }
 }
 
 /// Plan a grip of a calibrated body between two jaws: how long it holds, and how to squeeze.
@@ -616,39 +449,7 @@ pub(crate) struct GripArguments {
     #[arg(value_name = "MATERIAL.toml")]
     pub(crate) material: PathBuf,
     #[command(flatten)]
-    pub(crate) load: LoadArguments,
-    #[command(flatten)]
-    pub(crate) gripper: GripperArguments,
-    /// What the gripper holds once it has closed
-    #[arg(long, value_enum, default_value_t = ControlName::Position, help_heading = "Question")]
-    pub(crate) control: ControlName,
-    /// Squeeze that is asked about
-    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true, help_heading = "Question")]
-    pub(crate) squeeze: Option<f64>,
-    /// Force that is asked about, with --control force
-    #[arg(long, value_name = "FORCE", value_parser = force, allow_hyphen_values = true, help_heading = "Question")]
-    pub(crate) force: Option<f64>,
-    /// How long it is to hold, or "always"; 60 s if neither this nor a squeeze is given
-    #[arg(long, value_name = "TIME", value_parser = hold_time, allow_hyphen_values = true, help_heading = "Question")]
-    pub(crate) hold: Option<f64>,
-    /// What the squeeze should have least of
-    #[arg(long, value_enum, default_value_t = ObjectiveName::Squeeze, conflicts_with = "squeeze", help_heading = "Question")]
-    pub(crate) objective: ObjectiveName,
-    /// The lower edge of the band of the force has to hold, not the best guess
-    #[arg(long, help_heading = "Question")]
-    pub(crate) assured: bool,
-    /// Band in which squeezes again and again keep the force, such as "2.1..3 N"
-    #[arg(long, value_name = "FORCES", value_parser = band, allow_hyphen_values = true, help_heading = "Question")]
-    pub(crate) band: Option<(f64, f64)>,
-    /// What that schedule should have least of
-    #[arg(long, value_enum, default_value_t = RegripName::Moves, requires = "band", help_heading = "Question")]
-    pub(crate) regrip: RegripName,
-    /// The shortest pause between two squeezes of least work
-    #[arg(long, value_name = "TIME", value_parser = time, default_value = seconds(jobs::PlanGrip::default().shortest_pause_s), allow_hyphen_values = true, requires = "band", help_heading = "Question")]
-    pub(crate) shortest_pause: f64,
-    /// Coverage of the intervals, between 0 and 1
-    #[arg(long, value_name = "SHARE", default_value_t = jobs::PlanGrip::default().confidence, value_parser = coverage, allow_hyphen_values = true)]
-    pub(crate) confidence: f64,
+    pub(crate) job: jobs::PlanGrip,
     /// Folder for a report with figure, tables, series and JSON
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -658,128 +459,6 @@ pub(crate) struct GripArguments {
     /// What to print on standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,
-}
-
-impl GripArguments {
-    pub(crate) fn job(&self) -> jobs::PlanGrip {
-        let (load, can) = (&self.load, &self.gripper);
-        jobs::PlanGrip {
-            mass_kg: load.mass,
-            friction: load.friction,
-            safety: load.safety,
-            acceleration_up_m_per_s2: load.acceleration_up.unwrap_or(0.0),
-            acceleration_across_m_per_s2: load.acceleration_across.unwrap_or(0.0),
-            acceleration_closing_m_per_s2: load.acceleration_closing.unwrap_or(0.0),
-            torque_n_m: load.torque.unwrap_or(0.0),
-            off_centre_m: load.off_centre.unwrap_or(0.0),
-            gravity_m_per_s2: load.gravity,
-            speed_m_per_s: can.speed,
-            stroke_m: can.stroke,
-            most_force_n: can.most_force,
-            close_within_s: can.close_within,
-            control: match self.control {
-                ControlName::Position => Control::Position,
-                ControlName::Force => Control::Force,
-            },
-            squeeze_m: self.squeeze,
-            force_n: self.force,
-            hold_s: self.hold.filter(|hold| hold.is_finite()),
-            hold_always: self.hold.is_some_and(f64::is_infinite),
-            objective: match self.objective {
-                ObjectiveName::Squeeze => Objective::Squeeze,
-                ObjectiveName::PeakForce => Objective::PeakForce,
-                ObjectiveName::Work => Objective::Work,
-            },
-            assured: self.assured,
-            band_n: self.band,
-            regrip: match self.regrip {
-                RegripName::Moves => jobs::RegripFor::Moves,
-                RegripName::Work => jobs::RegripFor::Work,
-            },
-            shortest_pause_s: self.shortest_pause,
-            confidence: self.confidence,
-        }
-    }
-}
-
-/// The load.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Load")]
-pub(crate) struct LoadArguments {
-    /// Mass of the body
-    #[arg(long, value_name = "MASS", value_parser = mass, allow_hyphen_values = true)]
-    pub(crate) mass: f64,
-    /// Coefficient of friction between jaw and body
-    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
-    pub(crate) friction: f64,
-    /// Safety factor on friction, 1 or more
-    #[arg(long, value_name = "NUMBER", default_value_t = jobs::PlanGrip::default().safety, allow_hyphen_values = true)]
-    pub(crate) safety: f64,
-    /// Acceleration of the hand upwards
-    #[arg(long, value_name = "ACCELERATION", value_parser = acceleration, allow_hyphen_values = true)]
-    pub(crate) acceleration_up: Option<f64>,
-    /// Acceleration across gravity, in the plane of the jaws
-    #[arg(long, value_name = "ACCELERATION", value_parser = acceleration, allow_hyphen_values = true)]
-    pub(crate) acceleration_across: Option<f64>,
-    /// Acceleration along the closing axis, which unloads one jaw
-    #[arg(long, value_name = "ACCELERATION", value_parser = acceleration, allow_hyphen_values = true)]
-    pub(crate) acceleration_closing: Option<f64>,
-    /// Torque about the closing axis
-    #[arg(long, value_name = "TORQUE", value_parser = torque, allow_hyphen_values = true)]
-    pub(crate) torque: Option<f64>,
-    /// Distance of the centre of mass from the closing axis
-    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
-    pub(crate) off_centre: Option<f64>,
-    /// Gravity; 9.80665 m/s^2 if not given
-    #[arg(long, value_name = "ACCELERATION", value_parser = acceleration, allow_hyphen_values = true)]
-    pub(crate) gravity: Option<f64>,
-}
-
-/// The gripper.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Gripper")]
-pub(crate) struct GripperArguments {
-    /// The fastest that the jaws go; the fastest ramp of the test if not given
-    #[arg(long, value_name = "SPEED", value_parser = speed, allow_hyphen_values = true)]
-    pub(crate) speed: Option<f64>,
-    /// How far the jaws may squeeze
-    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
-    pub(crate) stroke: Option<f64>,
-    /// The largest force that gripper and body bear
-    #[arg(long, value_name = "FORCE", value_parser = force, allow_hyphen_values = true)]
-    pub(crate) most_force: Option<f64>,
-    /// How long closing may take; any time if not given
-    #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
-    pub(crate) close_within: Option<f64>,
-}
-
-/// What the gripper holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ControlName {
-    /// The place of its jaws: the force relaxes
-    Position,
-    /// Its force: the body creeps
-    Force,
-}
-
-/// What a squeeze should have least of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ObjectiveName {
-    /// Way of the jaws
-    Squeeze,
-    /// The largest force: do not bruise
-    PeakForce,
-    /// Work of the jaws
-    Work,
-}
-
-/// What a schedule should have least of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum RegripName {
-    /// Squeezes
-    Moves,
-    /// Work of the jaws
-    Work,
 }
 
 /// Watch a recorded log as if it came in live: holds, where they tend, time to slip.
@@ -862,26 +541,6 @@ pub(crate) enum WatchFormat {
     Jsonl,
 }
 
-/// What linear laws take the loading before a hold for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum RampName {
-    /// A step at the start of the fit
-    Step,
-    /// The displacement that was measured
-    Measured,
-}
-
-/// How residuals count.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum LossName {
-    /// Least squares
-    Squares,
-    /// Squares, but large ones by their size
-    Huber,
-    /// Squares, but large ones not at all
-    Tukey,
-}
-
 /// Output of `compare` on standard output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum TableFormat {
@@ -906,55 +565,8 @@ pub(crate) enum Format {
 #[derive(Debug, Args)]
 pub(crate) struct SchemaArguments {
     /// Which one
-    #[arg(value_enum)]
-    pub(crate) name: SchemaName,
-}
-
-/// What has a schema.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum SchemaName {
-    /// Protocol of `palpate simulate`
-    Protocol,
-    /// Test description of `palpate analyze`
-    Test,
-    /// Material file of `palpate calibrate`
-    Material,
-    /// Result of `palpate analyze --format json`
-    Analysis,
-    /// Result of `palpate calibrate --format json`
-    Calibration,
-    /// Result of `palpate compare --format json`
-    Comparison,
-    /// Result of `palpate grip --format json`
-    Grip,
-    /// A line of `palpate watch --format jsonl`
-    Watch,
-    /// summary.json of `palpate reproduce`
-    Reproduction,
-    /// Options of `palpate inspect` as a job
-    JobInspect,
-    /// Options of `palpate analyze` as a job
-    JobAnalyze,
-    /// Options of `palpate compare` as a job
-    JobCompare,
-    /// Options of `palpate calibrate` as a job
-    JobCalibrate,
-    /// Options of `palpate predict` as a job
-    JobPredict,
-    /// Options of `palpate grip` as a job
-    JobGrip,
-    /// Options of `palpate watch` as a job
-    JobWatch,
-    /// Options of `palpate simulate` as a job
-    JobSimulate,
-    /// Options of `palpate sweep` as a job
-    JobSweep,
-    /// Options of `palpate batch` as a job
-    JobBatch,
-    /// Options of `palpate convert` as a job
-    JobConvert,
-    /// Options of `palpate reproduce` as a job
-    JobReproduce,
+    #[arg(value_parser = one_of(SCHEMAS))]
+    pub(crate) name: fn() -> Value,
 }
 
 /// Print completions for a shell.
@@ -968,88 +580,62 @@ pub(crate) struct CompletionsArguments {
     pub(crate) shell: clap_complete::Shell,
 }
 
-/// A time as it is typed.
-fn seconds(time: f64) -> String {
-    format!("{time} s")
+/// What has a schema.
+const SCHEMAS: &[Choice<fn() -> Value>] = &[
+    ("protocol", "Protocol of `palpate simulate`", schema_protocol),
+    ("test", "Test description of `palpate analyze`", schema_test),
+    ("material", "Material file of `palpate calibrate`", schema_material),
+    ("analysis", "Result of `palpate analyze --format json`", schema::<AnalysisDocument>),
+    ("calibration", "Result of `palpate calibrate --format json`", schema::<CalibrationDocument>),
+    ("comparison", "Result of `palpate compare --format json`", schema::<ComparisonDocument>),
+    ("grip", "Result of `palpate grip --format json`", schema::<GripDocument>),
+    ("watch", "A line of `palpate watch --format jsonl`", schema::<WatchDocument>),
+    ("reproduction", "summary.json of `palpate reproduce`", schema::<ReproductionDocument>),
+    ("job-inspect", "Options of `palpate inspect` as a job", schema::<jobs::Inspect>),
+    ("job-analyze", "Options of `palpate analyze` as a job", schema::<jobs::Analyze>),
+    ("job-compare", "Options of `palpate compare` as a job", schema::<jobs::Compare>),
+    ("job-calibrate", "Options of `palpate calibrate` as a job", schema::<jobs::Calibrate>),
+    ("job-predict", "Options of `palpate predict` as a job", schema::<jobs::Predict>),
+    ("job-grip", "Options of `palpate grip` as a job", schema::<jobs::PlanGrip>),
+    ("job-watch", "Options of `palpate watch` as a job", schema::<jobs::WatchLog>),
+    ("job-simulate", "Options of `palpate simulate` as a job", schema::<jobs::Simulate>),
+    ("job-sweep", "Options of `palpate sweep` as a job", schema::<jobs::Sweep>),
+    ("job-batch", "Options of `palpate batch` as a job", schema::<jobs::Batch>),
+    ("job-convert", "Options of `palpate convert` as a job", schema::<jobs::Convert>),
+    ("job-reproduce", "Options of `palpate reproduce` as a job", schema::<jobs::Reproduce>),
+];
+
+fn schema<T: JsonSchema>() -> Value {
+    schema_for!(T).to_value()
 }
+
+/// What drives a simulated contact.
+const DRIVES: &[Choice<jobs::DriveBy>] = &[
+    ("displacement", "The measured displacement of the jaw", jobs::DriveBy::Displacement),
+    ("force", "The measured force", jobs::DriveBy::Force),
+];
+
+/// Law of the force once relaxation is over.
+const EQUILIBRIA: &[Choice<jobs::Equilibrium>] = &[
+    ("even-strain", "Modulus × displacement/depth × contact area", jobs::Equilibrium::EvenStrain),
+    ("hertz", "Hertz's, for balls and pads", jobs::Equilibrium::Hertz),
+    ("table", "A monotone table with a row where the jaw was held", jobs::Equilibrium::Table),
+];
+
+/// What the rate coefficient v depends on.
+const RATES: &[Choice<RateLaw>] = &[
+    ("constant", "Nothing: one number", RateLaw::Constant),
+    ("by-strain", "The equilibrium strain: v f^(ε_e/0.1)", RateLaw::ByStrain),
+    (
+        "by-direction",
+        "Whether strain falls (after loading, v) or rises (after unloading, f v)",
+        RateLaw::ByDirection,
+    ),
+];
 
 /// Laws as they are typed.
 fn named(laws: &[Law]) -> String {
     laws.iter().map(Law::to_string).collect::<Vec<_>>().join(",")
-}
-
-fn time(text: &str) -> Result<f64, String> {
-    positive(text, Dimension::Time)
-}
-
-fn force(text: &str) -> Result<f64, String> {
-    positive(text, Dimension::Force)
-}
-
-fn length(text: &str) -> Result<f64, String> {
-    positive(text, Dimension::Length)
-}
-
-fn mass(text: &str) -> Result<f64, String> {
-    positive(text, Dimension::Mass)
-}
-
-fn speed(text: &str) -> Result<f64, String> {
-    positive(text, Dimension::Speed)
-}
-
-fn acceleration(text: &str) -> Result<f64, String> {
-    parse(text, Dimension::Acceleration).map_err(|error| error.to_string())
-}
-
-fn torque(text: &str) -> Result<f64, String> {
-    parse(text, Dimension::Torque).map_err(|error| error.to_string())
-}
-
-fn hold_time(text: &str) -> Result<f64, String> {
-    if text.trim() == "always" { Ok(f64::INFINITY) } else { time(text) }
-}
-
-/// `2.1..3 N`, or with a unit at both ends.
-fn band(text: &str) -> Result<(f64, f64), String> {
-    let (low, high) = text.split_once("..").ok_or("expected two forces, such as \"2.1..3 N\"")?;
-    let unit = split_number(high.trim()).1;
-    let low = if split_number(low.trim()).1.is_empty() { format!("{low} {unit}") } else { low.to_owned() };
-    Ok((force(&low)?, force(high)?))
-}
-
-fn positive(text: &str, dimension: Dimension) -> Result<f64, String> {
-    match parse(text, dimension) {
-        Ok(value) if value > 0.0 => Ok(value),
-        Ok(_) => Err(format!("expected a {} above 0", dimension.name())),
-        Err(error) => Err(error.to_string()),
-    }
-}
-
-fn exponent(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(n) if n.is_finite() && n > 0.0 => Ok(n),
-        _ => Err("expected exponents above 0, such as 1,3,5".to_owned()),
-    }
-}
-
-fn hold_start(text: &str) -> Result<HoldStart, String> {
-    parse_hold_start(text).map_err(|error| error.to_string())
-}
-
-fn touch(text: &str) -> Result<ContactChoice, String> {
-    parse_touch(text).map_err(|error| error.to_string())
-}
-
-fn law(text: &str) -> Result<Law, String> {
-    text.trim().parse::<Law>().map_err(|error| error.to_string())
-}
-
-fn share(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(share) if share > 0.0 && share < 1.0 => Ok(share),
-        _ => Err("expected shares of the hold between 0 and 1, such as 0.25,0.5".to_owned()),
-    }
 }
 
 fn deviation(text: &str) -> Result<f64, String> {
@@ -1069,26 +655,6 @@ fn replay_speed(text: &str) -> Result<ReplaySpeed, String> {
     }
 }
 
-fn coverage(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(share) if share > 0.0 && share < 1.0 => Ok(share),
-        _ => Err("expected a coverage between 0 and 1, such as 0.95".to_owned()),
-    }
-}
-
-fn samples(text: &str) -> Result<SampleChoice, String> {
-    /// Fewer can carry no law.
-    const FEWEST: usize = 10;
-    match text.trim().split_once(':') {
-        None if text.trim() == "all" => Ok(SampleChoice::All),
-        Some(("log", count)) => match count.parse() {
-            Ok(count) if count >= FEWEST => Ok(SampleChoice::LogSpaced(count)),
-            _ => Err(format!("expected at least {FEWEST} samples, such as log:400")),
-        },
-        _ => Err("expected all or log:N, such as log:400".to_owned()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -1100,23 +666,21 @@ mod tests {
     /// The defaults of the command line are those of the jobs.
     #[test]
     fn what_is_not_typed_is_as_the_jobs_have_it() {
-        assert!(matches!(parsed(&["analyze", "r"]), Command::Analyze(a) if a.job() == jobs::Analyze::default()));
-        assert!(matches!(parsed(&["compare", "r"]), Command::Compare(a) if a.job() == jobs::Compare::default()));
+        assert!(matches!(parsed(&["analyze", "r"]), Command::Analyze(a) if a.job == jobs::Analyze::default()));
+        assert!(matches!(parsed(&["compare", "r"]), Command::Compare(a) if a.job == jobs::Compare::default()));
         assert!(matches!(parsed(&["calibrate", "r"]), Command::Calibrate(a) if a.job() == jobs::Calibrate::default()));
         let predict = ["predict", "m", "--protocol", "p"];
-        assert!(matches!(parsed(&predict), Command::Predict(a) if a.job() == jobs::Predict::default()));
+        assert!(matches!(parsed(&predict), Command::Predict(a) if a.job == jobs::Predict::default()));
         assert!(matches!(parsed(&["watch", "r"]), Command::Watch(a) if a.job() == jobs::WatchLog::default()));
         assert!(matches!(parsed(&["simulate", "p"]), Command::Simulate(a) if a.job() == jobs::Simulate::default()));
-        assert!(matches!(parsed(&["sweep", "p"]), Command::Sweep(a) if a.job() == jobs::Sweep::default()));
-        assert!(
-            matches!(parsed(&["batch", "r", "--out", "t"]), Command::Batch(a) if a.job() == jobs::Batch::default())
-        );
+        assert!(matches!(parsed(&["sweep", "p"]), Command::Sweep(a) if a.job == jobs::Sweep::default()));
+        assert!(matches!(parsed(&["batch", "r", "--out", "t"]), Command::Batch(a) if a.job == jobs::Batch::default()));
         let grip = jobs::PlanGrip {
             mass_kg: 1.0,
             friction: 0.5,
             ..jobs::PlanGrip::default()
         };
         let arguments = ["grip", "m", "--mass", "1 kg", "--friction", "0.5"];
-        assert!(matches!(parsed(&arguments), Command::Grip(a) if a.job() == grip));
+        assert!(matches!(parsed(&arguments), Command::Grip(a) if a.job == grip));
     }
 }

@@ -13,9 +13,12 @@
 //! | `store.rs` | what can be resumed |
 //! | `threads.rs` | many pieces of work over threads |
 //! | `analyze.rs` … | one job each |
+//! | `typed.rs` | options as they are typed on a command line, with the feature `clap` |
 
 pub mod input;
 pub mod output;
+#[cfg(feature = "clap")]
+pub mod typed;
 
 mod analyze;
 mod batch;

@@ -16,11 +16,14 @@ use crate::{ErrorKind, JobError, Outcome};
 
 /// Predict what a calibrated body does under a protocol, with intervals.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct Predict {
     /// Times at which the force is wanted; the whole course if there are none.
+    #[cfg_attr(feature = "clap", arg(long = "at", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true, help = "A time at which the force is wanted; may be given several times"))]
     pub at_s: Vec<f64>,
     /// Coverage of the intervals, between 0 and 1.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = Predict::default().confidence, value_parser = crate::typed::coverage, allow_hyphen_values = true))]
     pub confidence: f64,
 }
 

@@ -18,7 +18,11 @@ pub(crate) fn run(arguments: &AnalyzeArguments) -> Result<Verdict, JobError> {
     let records = NamedRecords::find(&arguments.records, described)?;
     let air = arguments.air_run.as_ref().map(|air| OpenedFile::open(air, &records.described)).transpose()?;
     let air = air.map(|air| air.read(air.only()?, &mut Bars::default())).transpose()?.map(|air| air.record);
-    let (job, mut tests, mut failed) = (arguments.job(), 0, 0);
+    let (mut tests, mut failed) = (0, 0);
+    let job = Analyze {
+        compare: !arguments.no_compare,
+        ..arguments.job.clone()
+    };
     records.each(arguments.out.as_deref(), &mut Bars::default(), notes, |part, _| {
         tests += 1;
         let made = part

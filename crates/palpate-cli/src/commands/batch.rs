@@ -10,7 +10,7 @@ use crate::terminal::notes;
 pub(crate) fn run(arguments: &BatchArguments) -> Result<Verdict, JobError> {
     let described = Described::read(arguments.test.as_deref(), None)?;
     let records = NamedRecords::find(&arguments.records, described)?;
-    let outcome = arguments.job().run(records, &arguments.out, &mut Bars::default())?;
+    let outcome = arguments.job.run(records, &arguments.out, &mut Bars::default())?;
     notes(&outcome.notes);
     Ok(outcome.verdict)
 }

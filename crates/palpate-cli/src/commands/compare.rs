@@ -13,7 +13,7 @@ pub(crate) fn run(arguments: &CompareArguments) -> Result<Verdict, JobError> {
     let described = Described::read(arguments.test.as_deref(), arguments.part.as_deref())?;
     let records = NamedRecords::find(&arguments.records, described)?;
     let alone = arguments.records == records.paths;
-    let outcome = arguments.job().run(&records, alone, &mut Bars::default(), notes)?;
+    let outcome = arguments.job.run(&records, alone, &mut Bars::default(), notes)?;
     if let Some(folder) = &arguments.out {
         write_bundle(folder, &outcome.result.bundle(Pictures::default())?)?;
     }

@@ -15,7 +15,7 @@ pub(crate) fn run(arguments: &GripArguments) -> Result<Verdict, JobError> {
     keep_apart([material], figure)?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
     let material = MaterialSource::read(material)?;
-    let outcome = arguments.job().run(&material, &mut Bars::default())?;
+    let outcome = arguments.job.run(&material, &mut Bars::default())?;
     let drawn = figure.as_ref().map(|path| picture(path, &outcome.figure())).transpose()?;
     if let Some(folder) = out {
         write_bundle(folder, &outcome.result.bundle(Pictures::default())?)?;

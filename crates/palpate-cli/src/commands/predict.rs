@@ -18,7 +18,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<Verdict, JobError> {
     } = arguments;
     keep_apart([material, protocol], out.iter().chain(figure))?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
-    let (job, file) = (arguments.job(), read_material(material)?);
+    let (job, file) = (&arguments.job, read_material(material)?);
     let of = (&read_protocol_of(protocol, &file)?, &*protocol.display().to_string());
     let outcome = job.run((&file, &material.display().to_string()), of, figure.is_some(), &mut Bars::default())?;
     let predicted = &outcome.result;

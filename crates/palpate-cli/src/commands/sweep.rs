@@ -10,7 +10,7 @@ pub(crate) fn run(arguments: &SweepArguments) -> Result<Verdict, JobError> {
     let SweepArguments {
         protocol, out, figure, ..
     } = arguments;
-    let outcome = arguments.job().run(protocol, out.as_deref(), figure.as_deref(), &mut Bars::default())?;
+    let outcome = arguments.job.run(protocol, out.as_deref(), figure.as_deref(), &mut Bars::default())?;
     notes(&outcome.notes);
     Ok(outcome.verdict)
 }

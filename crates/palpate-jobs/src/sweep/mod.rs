@@ -35,13 +35,17 @@ use rows::refusals;
 ///
 /// It reads the protocol, and writes the table, the figure and, until the table is whole, its finished parts beside it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct Sweep {
     /// Which result the figure shows, by the name of its column.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COLUMN", default_value_t = Sweep::default().show, requires = "figure"))]
     pub show: String,
     /// How many runs at once; all processors if not given. The table is the same for any number.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub threads: Option<NonZeroUsize>,
     /// Compute all runs again, whatever was computed before.
+    #[cfg_attr(feature = "clap", arg(long))]
     pub restart: bool,
 }
 

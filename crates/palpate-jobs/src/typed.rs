@@ -1,0 +1,219 @@
+//! Options as they are typed on a command line: what parses them, and what one of several may be.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use palpate::fit::{Loss, SampleChoice};
+use palpate::forecast::RampChoice;
+use palpate::grip::{Control, Objective};
+use palpate::laws::Law;
+use palpate::segment::{ContactChoice, HoldStart};
+use palpate::units::{Dimension, parse, split_number};
+use palpate_files::description::{parse_hold_start, parse_touch};
+
+/// A value of an option: its name, what it is, and what it says.
+pub type Choice<T> = (&'static str, &'static str, T);
+
+/// What the gripper holds.
+pub(crate) const CONTROLS: &[Choice<Control>] = &[
+    ("position", "The place of its jaws: the force relaxes", Control::Position),
+    ("force", "Its force: the body creeps", Control::Force),
+];
+
+/// What a squeeze should have least of.
+pub(crate) const OBJECTIVES: &[Choice<Objective>] = &[
+    ("squeeze", "Way of the jaws", Objective::Squeeze),
+    ("peak-force", "The largest force: do not bruise", Objective::PeakForce),
+    ("work", "Work of the jaws", Objective::Work),
+];
+
+/// What linear laws take the loading before a hold for.
+pub(crate) const RAMPS: &[Choice<RampChoice>] = &[
+    ("step", "A step at the start of the fit", RampChoice::Step),
+    ("measured", "The displacement that was measured", RampChoice::Measured),
+];
+
+/// How residuals count.
+pub(crate) const LOSSES: &[Choice<Loss>] = &[
+    ("squares", "Least squares", Loss::Squares),
+    ("huber", "Squares, but large ones by their size", Loss::Huber),
+    ("tukey", "Squares, but large ones not at all", Loss::Tukey),
+];
+
+/// One of such values.
+pub fn one_of<T: Clone + Send + Sync>(choices: &'static [Choice<T>]) -> impl TypedValueParser<Value = T> {
+    let names = choices.iter().map(|(name, about, _)| PossibleValue::new(*name).help(*about));
+    PossibleValuesParser::new(names).try_map(|typed| {
+        let chosen = choices.iter().find(|(name, ..)| *name == typed).map(|(.., value)| value.clone());
+        chosen.ok_or("no such choice")
+    })
+}
+
+/// A time as it is typed.
+#[must_use]
+pub fn seconds(time: f64) -> String {
+    format!("{time} s")
+}
+
+/// A time above 0.
+///
+/// # Errors
+/// What was expected.
+pub fn time(text: &str) -> Result<f64, String> {
+    positive(text, Dimension::Time)
+}
+
+/// A force above 0.
+///
+/// # Errors
+/// What was expected.
+pub fn force(text: &str) -> Result<f64, String> {
+    positive(text, Dimension::Force)
+}
+
+/// A length above 0.
+///
+/// # Errors
+/// What was expected.
+pub fn length(text: &str) -> Result<f64, String> {
+    positive(text, Dimension::Length)
+}
+
+/// A mass above 0.
+///
+/// # Errors
+/// What was expected.
+pub fn mass(text: &str) -> Result<f64, String> {
+    positive(text, Dimension::Mass)
+}
+
+/// A speed above 0.
+///
+/// # Errors
+/// What was expected.
+pub fn speed(text: &str) -> Result<f64, String> {
+    positive(text, Dimension::Speed)
+}
+
+/// An acceleration.
+///
+/// # Errors
+/// What was expected.
+pub fn acceleration(text: &str) -> Result<f64, String> {
+    parse(text, Dimension::Acceleration).map_err(|error| error.to_string())
+}
+
+/// A torque.
+///
+/// # Errors
+/// What was expected.
+pub fn torque(text: &str) -> Result<f64, String> {
+    parse(text, Dimension::Torque).map_err(|error| error.to_string())
+}
+
+/// A distance from an axis above 0, or "on the axis".
+///
+/// # Errors
+/// What was expected.
+pub fn off_centre(text: &str) -> Result<f64, String> {
+    if text == "on the axis" { Ok(0.0) } else { length(text) }
+}
+
+/// How long something is to hold, or "always".
+///
+/// # Errors
+/// What was expected.
+pub fn hold_time(text: &str) -> Result<f64, String> {
+    if text.trim() == "always" { Ok(f64::INFINITY) } else { time(text) }
+}
+
+/// `2.1..3 N`, or with a unit at both ends.
+///
+/// # Errors
+/// What was expected.
+pub fn band(text: &str) -> Result<(f64, f64), String> {
+    let (low, high) = text.split_once("..").ok_or("expected two forces, such as \"2.1..3 N\"")?;
+    let unit = split_number(high.trim()).1;
+    let low = if split_number(low.trim()).1.is_empty() { format!("{low} {unit}") } else { low.to_owned() };
+    Ok((force(&low)?, force(high)?))
+}
+
+fn positive(text: &str, dimension: Dimension) -> Result<f64, String> {
+    match parse(text, dimension) {
+        Ok(value) if value > 0.0 => Ok(value),
+        Ok(_) => Err(format!("expected a {} above 0", dimension.name())),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// An exponent of a law.
+///
+/// # Errors
+/// What was expected.
+pub fn exponent(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(n) if n.is_finite() && n > 0.0 => Ok(n),
+        _ => Err("expected exponents above 0, such as 1,3,5".to_owned()),
+    }
+}
+
+/// From where in a hold to fit.
+///
+/// # Errors
+/// What was expected.
+pub fn hold_start(text: &str) -> Result<HoldStart, String> {
+    parse_hold_start(text).map_err(|error| error.to_string())
+}
+
+/// What is taken for first touch.
+///
+/// # Errors
+/// What was expected.
+pub fn touch(text: &str) -> Result<ContactChoice, String> {
+    parse_touch(text).map_err(|error| error.to_string())
+}
+
+/// A law by its name.
+///
+/// # Errors
+/// What was expected.
+pub fn law(text: &str) -> Result<Law, String> {
+    text.trim().parse::<Law>().map_err(|error| error.to_string())
+}
+
+/// A share of a hold.
+///
+/// # Errors
+/// What was expected.
+pub fn share(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(share) if share > 0.0 && share < 1.0 => Ok(share),
+        _ => Err("expected shares of the hold between 0 and 1, such as 0.25,0.5".to_owned()),
+    }
+}
+
+/// A coverage of intervals.
+///
+/// # Errors
+/// What was expected.
+pub fn coverage(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(share) if share > 0.0 && share < 1.0 => Ok(share),
+        _ => Err("expected a coverage between 0 and 1, such as 0.95".to_owned()),
+    }
+}
+
+/// Which samples are fitted.
+///
+/// # Errors
+/// What was expected.
+pub fn samples(text: &str) -> Result<SampleChoice, String> {
+    /// Fewer can carry no law.
+    const FEWEST: usize = 10;
+    match text.trim().split_once(':') {
+        None if text.trim() == "all" => Ok(SampleChoice::All),
+        Some(("log", count)) => match count.parse() {
+            Ok(count) if count >= FEWEST => Ok(SampleChoice::LogSpaced(count)),
+            _ => Err(format!("expected at least {FEWEST} samples, such as log:400")),
+        },
+        _ => Err("expected all or log:N, such as log:400".to_owned()),
+    }
+}
