@@ -1,12 +1,6 @@
-//! What the user should know.
-//!
-//! | file | what |
-//! |---|---|
-//! | `seen.rs` | what was seen |
-//! | `advice.rs` | what it may mean, what helps |
+//! What the user should know; `told.rs` has the words, a row for each finding.
 
-mod advice;
-mod seen;
+mod told;
 
 use serde::{Deserialize, Serialize};
 
@@ -309,107 +303,31 @@ impl Finding {
     /// The stable code.
     #[must_use]
     pub fn code(&self) -> &'static str {
-        match self {
-            Self::EquilibriumExtrapolated { .. } => "equilibrium_extrapolated",
-            Self::ExponentUndetermined { .. } => "exponent_undetermined",
-            Self::ExponentsAlike { .. } => "exponents_alike",
-            Self::RateAtBound { .. } => "rate_at_bound",
-            Self::ParametersAtBound { .. } => "parameters_at_bound",
-            Self::ExponentConfounded { .. } => "exponent_confounded",
-            Self::TermsIndistinguishable { .. } => "terms_indistinguishable",
-            Self::LawsIndistinguishable { .. } => "laws_indistinguishable",
-            Self::DriftInsteadOfRelaxation { .. } => "drift_instead_of_relaxation",
-            Self::FeedbackControlled { .. } => "feedback_controlled",
-            Self::NothingHeld { .. } => "nothing_held",
-            Self::Ruptured { .. } => "ruptured",
-            Self::ResidualsCorrelated { .. } => "residuals_correlated",
-            Self::NoRelaxation { .. } => "no_relaxation",
-            Self::TooFewSamples { .. } => "too_few_samples",
-            Self::SampledTooSlowly { .. } => "sampled_too_slowly",
-            Self::ContactOpen { .. } => "contact_open",
-            Self::NoContactArea => "no_contact_area",
-            Self::Thinned { .. } => "thinned",
-            Self::DropoutsRepaired { .. } => "dropouts_repaired",
-            Self::RowsStray { .. } => "rows_stray",
-            Self::RowsAveraged { .. } => "rows_averaged",
-            Self::StressAsForce => "stress_as_force",
-            Self::StampsMerged { .. } => "stamps_merged",
-            Self::StampsSorted { .. } => "stamps_sorted",
-            Self::Gaps { .. } => "gaps",
-            Self::Saturated { .. } => "saturated",
-            Self::Quantised { .. } => "quantised",
-            Self::PhasesFromForce => "phases_from_force",
-            Self::AirTravel { .. } => "air_travel",
-            Self::ModulusEstimated { .. } => "modulus_estimated",
-            Self::ModulusMismatch { .. } => "modulus_mismatch",
-            Self::TouchUncertain { .. } => "touch_uncertain",
-            Self::TouchSpread { .. } => "touch_spread",
-            Self::TouchNotFound { .. } => "touch_not_found",
-            Self::ClocksSkewed { .. } => "clocks_skewed",
-            Self::ClocksOpen { .. } => "clocks_open",
-            Self::JawHunts { .. } => "jaw_hunts",
-            Self::TouchApart { .. } => "touch_apart",
-            Self::SignSuspicious { .. } => "sign_suspicious",
-            Self::RateCoefficientTrend { .. } => "rate_coefficient_trend",
-            Self::OverlayPoor { .. } => "overlay_poor",
-            Self::NoOverlay { .. } => "no_overlay",
-        }
+        self.told().0
     }
 
     /// How much it matters.
     #[must_use]
     pub fn severity(&self) -> Severity {
-        match self {
-            // Where most rows went the column of the time is likely not that of the samples.
-            Self::StampsMerged { rows, merged } if 2 * merged > *rows => Severity::Warning,
-            Self::RateCoefficientTrend {
-                verdict: TrendVerdict::Undecided,
-                ..
-            }
-            | Self::ExponentsAlike { .. }
-            | Self::ParametersAtBound { .. }
-            | Self::TermsIndistinguishable { .. }
-            | Self::LawsIndistinguishable { .. }
-            | Self::Thinned { .. }
-            | Self::PhasesFromForce
-            | Self::AirTravel { .. }
-            | Self::NoRelaxation { .. }
-            | Self::ModulusEstimated { .. } => Severity::Info,
-            Self::EquilibriumExtrapolated { .. }
-            | Self::ExponentUndetermined { .. }
-            | Self::ExponentConfounded { .. }
-            | Self::DriftInsteadOfRelaxation { .. }
-            | Self::FeedbackControlled { .. }
-            | Self::NothingHeld { .. }
-            | Self::ResidualsCorrelated { .. }
-            | Self::SampledTooSlowly { .. }
-            | Self::ContactOpen { .. }
-            | Self::DropoutsRepaired { .. }
-            | Self::RowsStray { .. }
-            | Self::RowsAveraged { .. }
-            | Self::StressAsForce
-            | Self::StampsMerged { .. }
-            | Self::StampsSorted { .. }
-            | Self::Gaps { .. }
-            | Self::Quantised { .. }
-            | Self::ModulusMismatch { .. }
-            | Self::TouchUncertain { .. }
-            | Self::TouchSpread { .. }
-            | Self::TouchNotFound { .. }
-            | Self::ClocksSkewed { .. }
-            | Self::ClocksOpen { .. }
-            | Self::JawHunts { .. }
-            | Self::TouchApart { .. }
-            | Self::SignSuspicious { .. }
-            | Self::RateCoefficientTrend { .. }
-            | Self::OverlayPoor { .. } => Severity::Caution,
-            Self::RateAtBound { .. }
-            | Self::TooFewSamples { .. }
-            | Self::NoContactArea
-            | Self::Saturated { .. }
-            | Self::Ruptured { .. }
-            | Self::NoOverlay { .. } => Severity::Warning,
-        }
+        self.told().1
+    }
+
+    /// What was seen.
+    #[must_use]
+    pub fn seen(&self) -> String {
+        self.told().2
+    }
+
+    /// What it may mean.
+    #[must_use]
+    pub fn meaning(&self) -> &'static str {
+        self.told().3
+    }
+
+    /// What helps.
+    #[must_use]
+    pub fn remedy(&self) -> &'static str {
+        self.told().4
     }
 }
 
