@@ -19,9 +19,14 @@ pub(crate) fn quantile(values: &mut [f64], share: f64) -> f64 {
     *values.select_nth_unstable_by(index, f64::total_cmp).1
 }
 
+/// The least and the greatest value.
+pub(crate) fn bounds(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)))
+}
+
 /// From the least to the greatest value.
 pub(crate) fn range(values: &[f64]) -> f64 {
-    let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
+    let (low, high) = bounds(values);
     high - low
 }
 
@@ -85,7 +90,7 @@ fn median_of_classes(magnitudes: &mut [f64], width: f64) -> f64 {
 /// speed changes by equal steps too, but in unbroken rows, so that its second differences vanish.
 pub(crate) fn quantum(values: &[f64]) -> f64 {
     const FEWEST: usize = 20;
-    let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
+    let (low, high) = bounds(values);
     let rounding = 1e-9 * low.abs().max(high.abs());
     let moves = |change: &f64| *change > rounding;
     let changes: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(moves).collect();

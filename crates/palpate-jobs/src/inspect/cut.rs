@@ -76,7 +76,7 @@ impl Cut {
             Ok(found) => {
                 out.push_str(&self.phases(found));
                 out.push_str(&self.contact(found, test));
-                if let Some(seen) = found.ripple.map(Finding::from) {
+                if let Some(seen) = found.ripple.map(Finding::JawHunts) {
                     let _ = writeln!(out, "{}; {}", seen.seen(), seen.remedy());
                 }
                 for sign in suspicious_signs(&self.record) {
@@ -152,7 +152,7 @@ impl Cut {
             ]);
         }
         for rupture in &segmentation.ruptures {
-            table = table.note(Finding::from(rupture).seen());
+            table = table.note(Finding::Ruptured(*rupture).seen());
         }
         let mut out = table.to_plain_text();
         let done = &record.corrections()[self.before..];

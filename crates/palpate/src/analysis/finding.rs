@@ -87,14 +87,7 @@ pub enum Finding {
         change: f64,
     },
     /// The body broke while it was loaded.
-    Ruptured {
-        /// When the force had fallen by half, s.
-        time: f64,
-        /// Largest force before, N.
-        before: f64,
-        /// Force where the jaw came to stand, N.
-        after: f64,
-    },
+    Ruptured(Rupture),
     /// Residuals of neighbouring samples go together.
     ResidualsCorrelated {
         /// Their correlation.
@@ -256,12 +249,7 @@ pub enum Finding {
         skew: Option<(f64, f64)>,
     },
     /// The jaw swings about the places that it holds.
-    JawHunts {
-        /// From peak to peak, m.
-        height: f64,
-        /// Its period, s.
-        period: f64,
-    },
+    JawHunts(Ripple),
     /// The loading curve puts first touch far from where all other rules do.
     TouchApart {
         /// How far behind (above 0) or before the middle of the others, m.
@@ -328,23 +316,5 @@ impl Finding {
     #[must_use]
     pub fn remedy(&self) -> &'static str {
         self.told().4
-    }
-}
-
-impl From<Ripple> for Finding {
-    fn from(ripple: Ripple) -> Self {
-        Self::JawHunts {
-            height: ripple.height,
-            period: ripple.period,
-        }
-    }
-}
-
-impl From<&Rupture> for Finding {
-    fn from(rupture: &Rupture) -> Self {
-        let Rupture {
-            time, before, after, ..
-        } = *rupture;
-        Self::Ruptured { time, before, after }
     }
 }

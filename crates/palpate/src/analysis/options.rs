@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::contact::{Layers, LayersError, Shape, Sides};
-use crate::fit::FitOptions;
+use crate::fit::{ExponentChoice, FitOptions};
 use crate::forecast::CompareOptions;
 use crate::record::CorrectionOptions;
 use crate::segment::{ContactChoice, GivenHold, SegmentOptions};
@@ -76,6 +76,19 @@ pub struct AnalysisOptions {
     pub rate_window: RateWindow,
     /// Samples of a hold that are fitted at most; more are thinned evenly, and that is said.
     pub most_samples: usize,
+}
+
+impl AnalysisOptions {
+    /// The exponents to fit: the listed ones, then the free one.
+    pub(super) fn choices(&self) -> impl Iterator<Item = ExponentChoice> {
+        let listed = self.exponents.iter().map(|n| ExponentChoice::Fixed(*n));
+        listed.chain(self.free_exponent.then_some(ExponentChoice::Free))
+    }
+
+    /// How many samples of a hold are fitted, of which these are the times since its start, s.
+    pub(super) fn fitted(&self, times: &[f64]) -> usize {
+        self.fit_until.map_or(times.len(), |until| times.partition_point(|t| *t <= until))
+    }
 }
 
 impl Default for AnalysisOptions {

@@ -1,5 +1,6 @@
 //! Why no phases were found.
 
+use super::segmentation::Rupture;
 use crate::number::significant;
 
 /// Why no phases were found.
@@ -44,18 +45,11 @@ pub enum SegmentError {
     /// The jaw stands still only after the body broke.
     #[error(
         "no hold found: at {} the body broke under {}, and {} are left where the jaw then stands",
-        told(*time, "s"),
-        told(*before, "N"),
-        told(*after, "N")
+        told(.0.time, "s"),
+        told(.0.before, "N"),
+        told(.0.after, "N")
     )]
-    Ruptured {
-        /// When the force had fallen by half, s.
-        time: f64,
-        /// Largest force before, N.
-        before: f64,
-        /// Force where the jaw came to stand, N.
-        after: f64,
-    },
+    Ruptured(Rupture),
     /// A given hold that the record does not contain.
     #[error(
         "given hold {number} lasts from {from} s to {to} s, the record from {} s to {} s",
@@ -112,7 +106,7 @@ impl SegmentError {
             Self::NoMotion { .. } => {
                 "check the displacement column and its unit; a record without motion has no relaxation to fit"
             }
-            Self::Ruptured { .. } => {
+            Self::Ruptured(_) => {
                 "what stands after a rupture does not relax; if nothing broke, give the hold by hand ([[phases.hold]] in the test description)"
             }
             Self::NoHold {

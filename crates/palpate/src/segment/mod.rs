@@ -23,7 +23,7 @@ mod standstill;
 mod touch;
 
 pub use error::SegmentError;
-pub(crate) use mode::{change, mode as held_in};
+pub(crate) use mode::{PARTS, SEEN, change, error_of_mean, mode as held_in};
 pub use options::{HoldStart, SegmentOptions, SegmentSettings};
 pub use phases::{GivenHold, find_phases, phases_with};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};

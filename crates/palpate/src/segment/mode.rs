@@ -5,9 +5,9 @@ use crate::record::Record;
 use crate::statistics::{mean, noise, range};
 
 /// Parts into which a hold is cut to see where it goes.
-const PARTS: usize = 10;
+pub(crate) const PARTS: usize = 10;
 /// How many standard errors a change must have to be seen.
-const SEEN: f64 = 6.0;
+pub(crate) const SEEN: f64 = 6.0;
 /// Way of the jaw over that to the hold, from which on it counts.
 const LEAST_SHARE: f64 = 2e-3;
 /// How many times farther than the force the jaw goes, both as shares of what they do as they come to the hold.
@@ -92,6 +92,6 @@ fn moved(values: &[f64]) -> f64 {
 }
 
 /// Standard error of the mean of a tenth.
-fn error_of_mean(values: &[f64]) -> f64 {
+pub(crate) fn error_of_mean(values: &[f64]) -> f64 {
     noise(values) / (values.len() as f64 / PARTS as f64).sqrt()
 }

@@ -113,13 +113,14 @@ impl Finding {
                 "the machine held neither: part of what the force does is due to the motion, which the laws leave out",
                 "let the fit begin when the jaw has settled (hold_start), end it earlier (until), or hold the jaw better",
             ),
-            Self::Ruptured { time, before, after } => (
+            Self::Ruptured(rupture) => (
                 "ruptured",
                 Warning,
                 format!(
-                    "at {time:.3} s the body broke: the force had reached {} N, and is {} N where the jaw then stands",
-                    significant(*before, 4),
-                    significant(*after, 3)
+                    "at {:.3} s the body broke: the force had reached {} N, and is {} N where the jaw then stands",
+                    rupture.time,
+                    significant(rupture.before, 4),
+                    significant(rupture.after, 3)
                 ),
                 "what stands after a rupture is no hold: nothing was fitted to it, and what comes later is another body",
                 "squeeze less; if nothing broke, give the hold by hand ([[phases.hold]] in the test description)",
@@ -359,13 +360,13 @@ impl Finding {
                 "nothing was moved: forces in ramps may stand at the wrong displacement",
                 "sample ramps faster, or give the skew in [clock] of the test description as a time",
             ),
-            Self::JawHunts { height, period } => (
+            Self::JawHunts(ripple) => (
                 "jaw_hunts",
                 Caution,
                 format!(
                     "the jaw swings by {} mm from peak to peak every {} s about the places it holds",
-                    significant(1e3 * height, 2),
-                    significant(*period, 2)
+                    significant(1e3 * ripple.height, 2),
+                    significant(ripple.period, 2)
                 ),
                 "a controller hunts, or cycles are meant: holds are those of the mean place, and forces in them follow the swing",
                 "tune the controller; for cycles that are meant set tolerance in [phases] below their height",

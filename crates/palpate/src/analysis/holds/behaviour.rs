@@ -2,35 +2,18 @@
 
 use crate::analysis::finding::Finding;
 use crate::record::Record;
-use crate::segment::{After, HoldMode, Segment, change};
-use crate::statistics::{mean, noise};
-
-/// Parts into which a hold is cut to see where it goes.
-const PARTS: usize = 10;
-
-/// How many standard errors a change must have to be seen.
-const SEEN: f64 = 6.0;
+use crate::segment::{After, HoldMode, PARTS, SEEN, Segment, change, error_of_mean};
+use crate::statistics::{mean, range};
 
 /// What shows that a hold is not one of constant displacement with a force that relaxes.
 pub(super) fn not_a_hold(record: &Record, segment: &Segment) -> Option<Finding> {
     let moved = change(record, segment.start, segment.end);
-    match (segment.mode, moved) {
-        (Some(HoldMode::ForceHeld), moved) => {
-            return Some(Finding::FeedbackControlled {
-                travel: moved.map_or(0.0, |moved| moved.travel),
-                change: moved.map_or(0.0, |moved| moved.force),
-            });
-        }
-        (Some(HoldMode::Neither), Some(moved)) => {
-            return Some(Finding::NothingHeld {
-                travel: moved.travel,
-                change: moved.force,
-            });
-        }
-        _ => {}
+    let (travel, change) = moved.map_or((0.0, 0.0), |moved| (moved.travel, moved.force));
+    match segment.mode {
+        Some(HoldMode::ForceHeld) => Some(Finding::FeedbackControlled { travel, change }),
+        Some(HoldMode::Neither) if moved.is_some() => Some(Finding::NothingHeld { travel, change }),
+        _ => drift(record, segment),
     }
-    let force = &record.force()[segment.fit_start..segment.end];
-    if force.len() < 3 * PARTS { None } else { drift(record, segment, force) }
 }
 
 /// Means of ten equal parts.
@@ -39,21 +22,12 @@ fn means(values: &[f64]) -> Vec<f64> {
     bounds.windows(2).map(|pair| mean(&values[pair[0]..pair[1]])).collect()
 }
 
-/// Standard error of such a mean.
-fn error_of_mean(values: &[f64]) -> f64 {
-    noise(values) / (values.len() as f64 / PARTS as f64).sqrt()
-}
-
-fn range(values: &[f64]) -> f64 {
-    let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
-    high - low
-}
-
 /// The force rises in a hold after loading: at once, or again after it has fallen.
-fn drift(record: &Record, segment: &Segment, force: &[f64]) -> Option<Finding> {
+fn drift(record: &Record, segment: &Segment) -> Option<Finding> {
     /// Of what it fell, and of the force's range in the record.
     const LEAST_SHARES: [f64; 2] = [0.03, 2e-3];
-    if segment.after != Some(After::Loading) {
+    let force = &record.force()[segment.fit_start..segment.end];
+    if segment.after != Some(After::Loading) || force.len() < 3 * PARTS {
         return None;
     }
     let parts = means(force);

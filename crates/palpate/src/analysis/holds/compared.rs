@@ -6,8 +6,8 @@ use crate::forecast::Comparison;
 use crate::laws::Law;
 use crate::watch::Cancelled;
 
-/// A comparison; none where nothing could be fitted.
-pub(super) fn compared(made: Result<Comparison, FitError>) -> Result<Option<Comparison>, Cancelled> {
+/// A comparison or fit; none where nothing could be fitted.
+pub(in crate::analysis) fn fitted<T>(made: Result<T, FitError>) -> Result<Option<T>, Cancelled> {
     match made {
         Err(FitError::Cancelled(cancelled)) => Err(cancelled),
         made => Ok(made.ok()),
@@ -16,16 +16,15 @@ pub(super) fn compared(made: Result<Comparison, FitError>) -> Result<Option<Comp
 
 /// What a comparison gives cause to say.
 pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
-    let ended = |termination: &[Termination]| -> Vec<Law> {
+    let laws = |which: &dyn Fn(&Fit) -> bool| -> Vec<Law> {
         let fits = comparison.rows.iter().filter_map(|row| row.fit.as_ref().ok());
-        fits.filter(|fit| termination.contains(&fit.termination)).map(|fit| fit.law).collect()
+        fits.filter(|fit| which(fit)).map(|fit| fit.law).collect()
     };
-    let at_bound = ended(&[Termination::RateAtBound, Termination::ExponentAtBound]);
-    let fits = comparison.rows.iter().filter_map(|row| row.fit.as_ref().ok());
-    let none = |fit: &&Fit| {
+    let at_bound =
+        laws(&|fit| matches!(fit.termination, Termination::RateAtBound | Termination::ExponentAtBound));
+    let merged = laws(&|fit| {
         matches!(fit.termination, Termination::Singular | Termination::TermsMerged) || !fit.ghosts.is_empty()
-    };
-    let merged: Vec<Law> = fits.filter(none).map(|fit| fit.law).collect();
+    });
     // A law that contains the chosen one must do as well.
     let alike = comparison.verdict.as_ref().map_or_else(Vec::new, |verdict| {
         let rivals = verdict.alike.iter().filter(|law| !law.contains(verdict.law));

@@ -1,6 +1,6 @@
 //! Holds of constant force: the displacement creeps.
 
-use super::compared::{compared, comparison_findings};
+use super::compared::{comparison_findings, fitted};
 use crate::analysis::finding::Finding;
 use crate::fit::Samples;
 use crate::forecast::{CompareOptions, Comparison, compare_laws_watched};
@@ -170,9 +170,9 @@ pub fn creep_holds(
         let from = hold.fit_start;
         let times: Vec<f64> = time[from..hold.end].iter().map(|t| t - time[from]).collect();
         let displacement = exchanged.force()[from..hold.end].to_vec();
-        let fitted = until.map_or(times.len(), |until| times.partition_point(|t| *t <= until));
-        let samples = Samples::new(&times[..fitted], &displacement[..fitted]);
-        let comparison = compared(compare_laws_watched(&samples, &compare, &[], watch))?;
+        let last = until.map_or(times.len(), |until| times.partition_point(|t| *t <= until));
+        let samples = Samples::new(&times[..last], &displacement[..last]);
+        let comparison = fitted(compare_laws_watched(&samples, &compare, &[], watch))?;
         Ok(CreepHold {
             number: index + 1,
             start: time[hold.start],

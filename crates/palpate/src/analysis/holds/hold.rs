@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::behaviour::not_a_hold;
-use super::compared::{compared, comparison_findings};
+use super::compared::{comparison_findings, fitted};
 use super::holdout::HoldoutError;
 use super::rate_bias::{RateBias, rate_bias};
 use crate::analysis::finding::Finding;
@@ -83,6 +83,11 @@ pub struct HoldAnalysis {
 }
 
 impl HoldAnalysis {
+    /// Times and values that were fitted.
+    pub(in crate::analysis) fn samples(&self) -> Samples<'_> {
+        Samples::new(&self.times[..self.fitted], &self.values[..self.fitted])
+    }
+
     /// The preferred time-domain fit.
     #[must_use]
     pub fn preferred(&self) -> Option<&LatencyFit> {
@@ -160,8 +165,7 @@ pub(in crate::analysis) fn analyze_hold(
     if has_signal && hold.relaxation.kind != RelaxationType::None {
         fit_all(&mut hold, options, watch)?;
         hold.comparison = compare(&hold, loading(record, ramp, &segment), options, watch)?;
-        let fitted = (&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
-        hold.rate_bias = hold.preferred().and_then(|fit| rate_bias(fitted, fit, &options.rate_window, &options.fit));
+        hold.rate_bias = hold.preferred().and_then(|fit| rate_bias(hold.samples(), fit, options));
         judge(&mut hold);
         hold.findings.extend(hold.comparison.iter().flat_map(comparison_findings));
     }
@@ -227,23 +231,14 @@ fn take_signal(
             }
         }
     }
-    hold.fitted = match options.fit_until {
-        Some(until) => hold.times.partition_point(|t| *t <= until),
-        None => hold.times.len(),
-    };
+    hold.fitted = options.fitted(&hold.times);
     true
-}
-
-/// The exponents to fit: the listed ones, then the free one.
-fn choices(options: &AnalysisOptions) -> Vec<ExponentChoice> {
-    let listed = options.exponents.iter().map(|n| ExponentChoice::Fixed(*n));
-    listed.chain(options.free_exponent.then_some(ExponentChoice::Free)).collect()
 }
 
 fn fit_all(hold: &mut HoldAnalysis, options: &AnalysisOptions, watch: &mut dyn Watch) -> Result<(), Cancelled> {
     let (times, values) = (&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
     hold.rates = strain_rates(times, values, &options.rate_window);
-    for choice in choices(options) {
+    for choice in options.choices() {
         watch.report(Progress::open("fitting the latency law", hold.fits.len()))?;
         match fit_hold(times, values, choice, &options.fit) {
             Ok(fit) => {
@@ -279,17 +274,12 @@ fn compare(
     if compare.ramps == RampChoice::Measured {
         compare.fit.loading = loading;
     }
-    let samples = Samples::new(&hold.times[..hold.fitted], &hold.values[..hold.fitted]);
-    let known = |fit: &LatencyFit| options.fit.of_latency(fit.choice());
-    let known: Vec<KnownFit<'_>> = hold
-        .fits
-        .iter()
-        .map(|fit| KnownFit {
-            options: known(fit),
-            fit,
-        })
-        .collect();
-    compared(compare_laws_watched(&samples, &compare, &known, watch))
+    let known = |fit| KnownFit {
+        options: options.fit.of_latency(LatencyFit::choice(fit)),
+        fit,
+    };
+    let known: Vec<KnownFit<'_>> = hold.fits.iter().map(known).collect();
+    fitted(compare_laws_watched(&hold.samples(), &compare, &known, watch))
 }
 
 /// The displacement from sample `ramp` to where the fit of a hold starts.

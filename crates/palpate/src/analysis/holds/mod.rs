@@ -16,6 +16,7 @@ mod hold;
 mod holdout;
 mod rate_bias;
 
+pub(super) use compared::fitted;
 pub use creep::{CreepError, CreepHold, creep_holds};
 pub(super) use hold::analyze_hold;
 pub use hold::{HoldAnalysis, Signal};

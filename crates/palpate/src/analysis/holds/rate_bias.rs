@@ -2,10 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::fit::{ExponentChoice, FitOptions, LatencyFit, fit_rates};
+use crate::analysis::options::AnalysisOptions;
+use crate::fit::{ExponentChoice, LatencyFit, Samples, fit_rates};
 use crate::random::Noise;
 use crate::statistics::{noise_in_time, quantile};
-use crate::strain::{RateWindow, strain_rates};
+use crate::strain::strain_rates;
 
 /// What the rate domain makes of simulated holds whose truth is the fit in time, with the noise of the measured one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -30,14 +31,14 @@ const MOST_SAMPLES: usize = 4000;
 
 /// Simulates the hold of these times and values with the numbers of `fit`, and fits them in the rate domain; `None` if fewer than half give a fit.
 pub(super) fn rate_bias(
-    (times, values): (&[f64], &[f64]),
+    samples: Samples<'_>,
     fit: &LatencyFit,
-    window: &RateWindow,
-    options: &FitOptions,
+    options: &AnalysisOptions,
 ) -> Option<RateBias> {
     if !fit.termination.is_good() {
         return None;
     }
+    let (times, values) = (samples.times(), samples.values());
     let every = times.len().div_ceil(MOST_SAMPLES);
     let noise = noise_in_time(times, values) / (every as f64).sqrt();
     let times: Vec<f64> = times.iter().step_by(every).copied().collect();
@@ -46,8 +47,8 @@ pub(super) fn rate_bias(
     for seed in 0..REPETITIONS {
         let mut random = Noise::new(seed);
         let signal: Vec<f64> = times.iter().map(|t| fit.predict(*t) + noise * random.normal()).collect();
-        let rates = strain_rates(&times, &signal, window);
-        if let Ok(by_rate) = fit_rates(&rates.strain, &rates.rate, ExponentChoice::Fixed(exponent), options) {
+        let rates = strain_rates(&times, &signal, &options.rate_window);
+        if let Ok(by_rate) = fit_rates(&rates.strain, &rates.rate, ExponentChoice::Fixed(exponent), &options.fit) {
             ratios.push(by_rate.rate_coefficient().value / fit.rate_coefficient().value);
             shifts.push((by_rate.equilibrium().value - fit.equilibrium().value) / fit.amplitude().value);
         }

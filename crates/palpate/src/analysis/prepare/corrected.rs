@@ -32,10 +32,28 @@ impl Corrected {
 
     /// [`Finding::ClocksSkewed`] if the clocks differ and nothing was done about it, [`Finding::ClocksOpen`] if that was asked for and could
     /// not be told.
+    ///
+    /// They differ if it is by more than their error and a sample interval: one clock that stamps both columns at the same rows can seem to be
+    /// off by a part of an interval, since what was held between two samples is not known. It could not be told if its error is longer than
+    /// samples are apart, or too few edges show in both columns.
     #[must_use]
     pub fn skew_finding(&self) -> Option<Finding> {
-        let open = || open_skew(&self.record, self.skew.as_ref()).filter(|_| self.skew_asked);
-        skew_finding(&self.record, self.skew.as_ref()).or_else(open)
+        let skew = self.skew.map(|skew| (skew, skew.interval.max(self.record.sample_interval())));
+        let removed = |done: &Correction| matches!(done, Correction::SkewRemoved { .. });
+        match skew {
+            Some((skew, interval))
+                if skew.is_resolved(interval) && !self.record.corrections().iter().any(removed) =>
+            {
+                Some(Finding::ClocksSkewed {
+                    skew: skew.skew,
+                    standard_error: skew.standard_error,
+                })
+            }
+            Some((skew, interval)) if skew.is_seen() || 3.0 * skew.standard_error < 2.0 * interval => None,
+            _ => self.skew_asked.then(|| Finding::ClocksOpen {
+                skew: self.skew.map(|skew| (skew.skew, skew.standard_error)),
+            }),
+        }
     }
 }
 
@@ -83,31 +101,6 @@ pub fn corrected(record: &Record, options: &AnalysisOptions) -> Result<Corrected
         segmentation,
         skew,
         skew_asked: asked.skew == SkewChoice::Auto,
-    })
-}
-
-/// A finding if the clocks differ by more than their error and a sample interval, and nothing was done about it.
-///
-/// One clock that stamps both columns at the same rows can seem to be off by a part of an interval: what was held between
-/// two samples is not known.
-fn skew_finding(record: &Record, skew: Option<&ClockSkew>) -> Option<Finding> {
-    let skew = skew.filter(|skew| skew.is_resolved(skew.interval.max(record.sample_interval())))?;
-    let removed = |done: &Correction| matches!(done, Correction::SkewRemoved { .. });
-    if record.corrections().iter().any(removed) {
-        return None;
-    }
-    Some(Finding::ClocksSkewed {
-        skew: skew.skew,
-        standard_error: skew.standard_error,
-    })
-}
-
-/// A finding if the skew was to be found and could not be: its error is longer than samples are apart, or too few edges show in both columns.
-fn open_skew(record: &Record, skew: Option<&ClockSkew>) -> Option<Finding> {
-    let resolved =
-        skew.is_some_and(|skew| 3.0 * skew.standard_error < 2.0 * skew.interval.max(record.sample_interval()));
-    (!resolved && skew.is_none_or(|skew| !skew.is_seen())).then(|| Finding::ClocksOpen {
-        skew: skew.map(|skew| (skew.skew, skew.standard_error)),
     })
 }
 

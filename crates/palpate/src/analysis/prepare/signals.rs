@@ -34,8 +34,8 @@ pub(in crate::analysis) fn signal_findings(
     if !segmentation.settings.from_displacement {
         findings.push(Finding::PhasesFromForce);
     }
-    findings.extend(segmentation.ripple.map(Finding::from));
-    findings.extend(segmentation.ruptures.iter().map(Finding::from));
+    findings.extend(segmentation.ripple.map(Finding::JawHunts));
+    findings.extend(segmentation.ruptures.iter().copied().map(Finding::Ruptured));
     findings.extend(suspicious_signs(&corrected.record));
     if contact.air_travel > 0.0 {
         findings.push(Finding::AirTravel {

@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::finding::Finding;
-use crate::analysis::holds::{HoldAnalysis, Signal};
+use crate::analysis::holds::{HoldAnalysis, Signal, fitted};
 use crate::analysis::options::AnalysisOptions;
 use crate::fit::{
-    ExponentChoice, FitError, HoldWeights, JointComparison, JointFit, JointOptions, Samples, TrendVerdict,
+    ExponentChoice, HoldWeights, JointComparison, JointFit, JointOptions, Samples, TrendVerdict,
     compare_joint, fit_joint_watched,
 };
 use crate::laws::Law;
@@ -72,20 +72,15 @@ fn together(
     options: &AnalysisOptions,
     watch: &mut dyn Watch,
 ) -> Result<Option<JointAnalysis>, Cancelled> {
-    let of = |hold: &&'_ HoldAnalysis| hold.fitted;
-    let samples: Vec<Samples<'_>> =
-        holds.iter().map(|hold| Samples::new(&hold.times[..of(hold)], &hold.values[..of(hold)])).collect();
+    let samples: Vec<Samples<'_>> = holds.iter().map(|hold| hold.samples()).collect();
     let options = JointOptions {
         weights: HoldWeights::SeparateVariance,
         fit: options.fit,
         ..JointOptions::default()
     };
     // Each of these holds was fitted by itself before, so that only the search itself can fail.
-    let fit = match fit_joint_watched(&samples, Law::Latency { exponent: choice }, &options, watch) {
-        Err(FitError::Cancelled(cancelled)) => return Err(cancelled),
-        Err(_) => return Ok(None),
-        Ok(fit) => fit,
-    };
+    let fit = fitted(fit_joint_watched(&samples, Law::Latency { exponent: choice }, &options, watch))?;
+    let Some(fit) = fit else { return Ok(None) };
     Ok(compare_joint(&samples, &fit, None).ok().map(|comparison| JointAnalysis {
         which,
         choice,

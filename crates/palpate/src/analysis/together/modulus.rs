@@ -115,26 +115,20 @@ fn relaxed_hold(
     if unit_force <= 0.0 || !(after_loading || lowest > 5.0 * noise(&force)) {
         return None;
     }
-    let until = options.fit_until.map_or(times.len(), |until| times.partition_point(|t| *t <= until));
-    let fits =
-        choices(options).filter_map(|choice| fit_hold(&times[..until], &force[..until], choice, &options.fit).ok());
+    let until = options.fitted(&times);
+    let fit = |choice| fit_hold(&times[..until], &force[..until], choice, &options.fit).ok();
     Some(RelaxedHold {
         unit_force,
         last: *force.last()?,
         after_loading,
-        fits: fits.collect(),
+        fits: options.choices().filter_map(fit).collect(),
     })
-}
-
-fn choices(options: &AnalysisOptions) -> impl Iterator<Item = ExponentChoice> + '_ {
-    let listed = options.exponents.iter().map(|n| ExponentChoice::Fixed(*n));
-    listed.chain(options.free_exponent.then_some(ExponentChoice::Free))
 }
 
 /// The lowest listed exponent whose criteria, summed over the holds, are within 2 of the lowest sum; a free one where that
 /// beats all listed ones by more than 2.
 fn common_choice(holds: &[RelaxedHold], options: &AnalysisOptions) -> Option<ExponentChoice> {
-    let asked: Vec<ExponentChoice> = choices(options).collect();
+    let asked: Vec<ExponentChoice> = options.choices().collect();
     let mut sums = vec![0.0; asked.len()];
     let mut counted = 0;
     for hold in holds.iter().filter(|hold| hold.fits.len() == asked.len()) {

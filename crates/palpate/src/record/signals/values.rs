@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::rounding::rounding_step;
 use crate::record::correction::Column;
-use crate::statistics::noise;
+use crate::statistics::{bounds, noise};
 
 /// What a measured column is like; its unit is that of the column.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -67,7 +67,7 @@ impl Values {
             kept = values.iter().copied().filter(|value| value.is_finite()).collect();
             (kept.as_slice(), None)
         };
-        let (low, high) = range(values);
+        let (low, high) = bounds(values);
         let rows = stray_rows(values);
         let repeats = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
         Self {
@@ -85,15 +85,11 @@ impl Values {
     }
 }
 
-fn range(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)))
-}
-
 /// Rows that stray alone: over 5 % of the range away from both neighbours, which differ from each other by less than a
 /// tenth of that; and beyond what noise does, where there are rows enough to know it.
 pub(in crate::record) fn stray_rows(values: &[f64]) -> Vec<usize> {
     const ENOUGH: usize = 50;
-    let (low, high) = range(values);
+    let (low, high) = bounds(values);
     let noise = if values.len() < ENOUGH { 0.0 } else { noise(values) };
     let least = (0.05 * (high - low)).max(8.0 * noise);
     let mut rows: Vec<usize> = Vec::new();
@@ -152,7 +148,7 @@ const FAR: f64 = 10.0;
 
 /// Runs at the end of the range that is farther from where the column begins.
 fn saturation(column: Column, values: &[f64], other: Option<&[f64]>) -> Option<Saturation> {
-    let (low, high) = range(values);
+    let (low, high) = bounds(values);
     if values.len() < 2 * RUN || high <= low {
         return None;
     }
@@ -203,7 +199,7 @@ fn goes_on(values: &[f64], other: Option<&[f64]>, (start, length): (usize, usize
     if length < window || start < window || start + window >= other.len() {
         return false;
     }
-    let (low, high) = range(other);
+    let (low, high) = bounds(other);
     let before = other[start] - other[start - window];
     let after = other[start + window] - other[start];
     before.abs() > (0.01 * (high - low)).max(5.0 * noise(other)) && after / before > 0.5
@@ -211,7 +207,7 @@ fn goes_on(values: &[f64], other: Option<&[f64]>, (start, length): (usize, usize
 
 /// Whether so long a run cannot come from a column that repeats itself as seldom as this one does elsewhere.
 fn noise_vanishes(values: &[f64], level: f64, longest: usize) -> bool {
-    let (low, high) = range(values);
+    let (low, high) = bounds(values);
     let rest: Vec<f64> = values.iter().copied().filter(|value| *value != level).collect();
     if rest.len() < values.len() / 4 || noise(&rest) < 1e-4 * (high - low) {
         return false;

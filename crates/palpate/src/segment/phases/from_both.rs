@@ -7,7 +7,7 @@ use crate::record::Record;
 use crate::segment::error::SegmentError;
 use crate::segment::mode::{mode, mode_at_large};
 use crate::segment::options::{SegmentOptions, SegmentSettings};
-use crate::segment::segmentation::{After, HoldMode, Phase, Rupture, Segment, Segmentation};
+use crate::segment::segmentation::{After, HoldMode, Phase, Segment, Segmentation};
 use crate::segment::standstill::{Held, Level, Levels, levels};
 use crate::statistics::{median, range};
 
@@ -55,13 +55,9 @@ pub(super) fn phases(
     }
     let ruptures = ruptures(record, &mut segments);
     match ruptures.first() {
-        Some(Rupture {
-            time, before, after, ..
-        }) if !segments.iter().any(|segment| segment.phase == Phase::Hold) => Err(SegmentError::Ruptured {
-            time: *time,
-            before: *before,
-            after: *after,
-        }),
+        Some(rupture) if !segments.iter().any(|segment| segment.phase == Phase::Hold) => {
+            Err(SegmentError::Ruptured(*rupture))
+        }
         _ => Ok(Segmentation {
             segments,
             ruptures,
