@@ -9,7 +9,7 @@ use super::together::{Across, ModulusSource, Overlay, across, changing_rate, imp
 use crate::contact::{Specimen, SpecimenError};
 use crate::number::significant;
 use crate::record::{Record, SignalReport};
-use crate::segment::{ContactPoint, Phase, Segment, Segmentation};
+use crate::segment::{ContactPoint, Phase, Segmentation, ramps_before};
 use crate::watch::{Unwatched, Watch};
 
 /// The study of one record.
@@ -83,12 +83,13 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
         contact,
     } = prepared;
     let (specimen, modulus_source) = specimen(&record, &segmentation, options, &mut findings)?;
-    let holds: Vec<HoldAnalysis> = segmentation
-        .holds()
-        .enumerate()
-        .map(|(index, segment)| {
-            let ramp = ramp_before(&segmentation, segment);
-            analyze_hold(&record, (segment, ramp), index + 1, specimen.as_ref(), options, watch)
+    let segments = &segmentation.segments;
+    let held = (0..segments.len()).filter(|index| segments[*index].phase == Phase::Hold);
+    let holds: Vec<HoldAnalysis> = held
+        .zip(1..)
+        .map(|(index, number)| {
+            let ramp = ramps_before(segments, index).last().map(|ramp| ramp.start);
+            analyze_hold(&record, (&segments[index], ramp), number, specimen.as_ref(), options, watch)
         })
         .collect::<Result<_, _>>()?;
     findings.extend(specimen.as_ref().and_then(|specimen| uncertain_touch(&contact, specimen, &holds)));
@@ -115,14 +116,6 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
         overlay,
         findings,
     })
-}
-
-/// First sample of the loading or unloading that a hold follows.
-fn ramp_before(segmentation: &Segmentation, hold: &Segment) -> Option<usize> {
-    let before = segmentation.segments.iter().take_while(|segment| segment.start < hold.start);
-    let moving = |segment: &&Segment| matches!(segment.phase, Phase::Loading | Phase::Unloading);
-    let ramps: Vec<&Segment> = before.collect::<Vec<_>>().into_iter().rev().take_while(moving).collect();
-    ramps.last().map(|segment| segment.start)
 }
 
 /// The specimen with its given modulus, or with the one that the relaxed forces imply.

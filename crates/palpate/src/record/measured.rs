@@ -115,6 +115,12 @@ impl Record {
         median(&mut steps)
     }
 
+    /// Force and displacement exchanged; `None` without displacement.
+    pub(crate) fn exchanged(&self) -> Option<Result<Self, RecordError>> {
+        let moved = self.displacement.clone()?;
+        Some(Self::new(self.time.clone(), Some(self.force.clone()), moved))
+    }
+
     /// The record with another force and the correction that made it.
     pub(super) fn with_force(&self, force: Vec<f64>, done: Correction) -> Result<Self, RecordError> {
         let record = Self::new(self.time.clone(), self.displacement.clone(), force)?;

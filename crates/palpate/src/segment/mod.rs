@@ -27,5 +27,6 @@ pub(crate) use mode::{PARTS, SEEN, change, error_of_mean, mode as held_in};
 pub use options::{HoldStart, SegmentOptions, SegmentSettings};
 pub use phases::{GivenHold, find_phases, phases_with};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
+pub(crate) use segmentation::ramps_before;
 pub use segmentation::{After, HoldMode, Phase, Ripple, Rupture, Segment, Segmentation};
 pub use touch::{ContactChoice, ContactPoint, TouchEstimate, TouchMethod, find_contact, find_contact_of, free_samples};

@@ -59,6 +59,11 @@ pub struct Segment {
 }
 
 impl Segment {
+    /// Whether it is loading or unloading.
+    pub(crate) fn is_ramp(&self) -> bool {
+        matches!(self.phase, Phase::Loading | Phase::Unloading)
+    }
+
     /// Number of samples.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -70,6 +75,11 @@ impl Segment {
     pub fn is_empty(&self) -> bool {
         self.end == self.start
     }
+}
+
+/// The ramps right before segment `index`, the last of them first.
+pub(crate) fn ramps_before(segments: &[Segment], index: usize) -> impl Iterator<Item = &Segment> + Clone {
+    segments[..index].iter().rev().take_while(|segment| segment.is_ramp())
 }
 
 /// A body that broke while it was loaded.

@@ -20,8 +20,7 @@ pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
         let fits = comparison.rows.iter().filter_map(|row| row.fit.as_ref().ok());
         fits.filter(|fit| which(fit)).map(|fit| fit.law).collect()
     };
-    let at_bound =
-        laws(&|fit| matches!(fit.termination, Termination::RateAtBound | Termination::ExponentAtBound));
+    let at_bound = laws(&|fit| matches!(fit.termination, Termination::RateAtBound | Termination::ExponentAtBound));
     let merged = laws(&|fit| {
         matches!(fit.termination, Termination::Singular | Termination::TermsMerged) || !fit.ghosts.is_empty()
     });

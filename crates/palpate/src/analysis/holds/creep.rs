@@ -7,9 +7,9 @@ use crate::forecast::{CompareOptions, Comparison, compare_laws_watched};
 use crate::laws::Response;
 use crate::record::{Record, RecordError};
 use crate::segment::{
-    After, GivenHold, HoldMode, Segment, SegmentError, SegmentOptions, find_phases, held_in, phases_with,
+    After, GivenHold, HoldMode, Segment, SegmentError, SegmentOptions, Segmentation, find_phases, held_in, phases_with,
 };
-use crate::statistics::median;
+use crate::statistics::{median, range};
 use crate::watch::{Cancelled, Watch};
 
 /// One hold of constant force, with the laws of creep compared on it.
@@ -101,25 +101,26 @@ fn force_held(
 ) -> Result<Vec<Segment>, CreepError> {
     if !given.is_empty() {
         let found = phases_with(record, segment, given).map_err(CreepError::Given)?;
-        let creeps = |hold: &&Segment| hold.mode != Some(HoldMode::DisplacementHeld);
-        let creeping: Vec<Segment> = found.holds().filter(creeps).copied().collect();
-        return if creeping.is_empty() { Err(CreepError::DisplacementHeld) } else { Ok(creeping) };
+        return creeping(&found, |hold| hold.mode != Some(HoldMode::DisplacementHeld));
     }
     let held = |segment: &&Segment| segment.mode == Some(HoldMode::ForceHeld);
-    let seen: Vec<Segment> =
-        find_phases(record, segment).map_or_else(|_| Vec::new(), |found| found.holds().filter(held).copied().collect());
+    let seen = find_phases(record, segment);
+    let seen: Vec<Segment> = seen.iter().flat_map(|found| found.holds().filter(held)).copied().collect();
     if !seen.is_empty() {
         return Ok(seen);
     }
     // The tolerance of a test is a length; a controller that rings about its set force still holds it.
-    let (low, high) = record.force().iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
     let segment = SegmentOptions {
-        tolerance: Some(RINGING * (high - low)),
+        tolerance: Some(RINGING * range(record.force())),
         ..*segment
     };
     let found = find_phases(exchanged, &segment).map_err(of_force)?;
-    let moves = |hold: &&Segment| held_in(record, hold.start, hold.end) != HoldMode::DisplacementHeld;
-    let creeping: Vec<Segment> = found.holds().filter(moves).copied().collect();
+    creeping(&found, |hold| held_in(record, hold.start, hold.end) != HoldMode::DisplacementHeld)
+}
+
+/// The holds in which the displacement `creeps`.
+fn creeping(found: &Segmentation, creeps: impl Fn(&Segment) -> bool) -> Result<Vec<Segment>, CreepError> {
+    let creeping: Vec<Segment> = found.holds().filter(|hold| creeps(hold)).copied().collect();
     if creeping.is_empty() { Err(CreepError::DisplacementHeld) } else { Ok(creeping) }
 }
 
@@ -159,9 +160,7 @@ pub fn creep_holds(
     watch: &mut dyn Watch,
 ) -> Result<Vec<CreepHold>, CreepError> {
     let (record, _) = record.repaired();
-    let moved = record.displacement().ok_or(CreepError::NoDisplacement)?.to_vec();
-    let exchanged =
-        Record::new(record.time().to_vec(), Some(record.force().to_vec()), moved).map_err(CreepError::Still)?;
+    let exchanged = record.exchanged().ok_or(CreepError::NoDisplacement)?.map_err(CreepError::Still)?;
     let held = force_held(&record, &exchanged, segment, given)?;
     let mut compare = compare.clone();
     compare.fit.response = Response::Creep;

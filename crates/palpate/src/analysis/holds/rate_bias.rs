@@ -30,11 +30,7 @@ const REPETITIONS: u64 = 15;
 const MOST_SAMPLES: usize = 4000;
 
 /// Simulates the hold of these times and values with the numbers of `fit`, and fits them in the rate domain; `None` if fewer than half give a fit.
-pub(super) fn rate_bias(
-    samples: Samples<'_>,
-    fit: &LatencyFit,
-    options: &AnalysisOptions,
-) -> Option<RateBias> {
+pub(super) fn rate_bias(samples: Samples<'_>, fit: &LatencyFit, options: &AnalysisOptions) -> Option<RateBias> {
     if !fit.termination.is_good() {
         return None;
     }

@@ -41,9 +41,7 @@ impl Corrected {
         let skew = self.skew.map(|skew| (skew, skew.interval.max(self.record.sample_interval())));
         let removed = |done: &Correction| matches!(done, Correction::SkewRemoved { .. });
         match skew {
-            Some((skew, interval))
-                if skew.is_resolved(interval) && !self.record.corrections().iter().any(removed) =>
-            {
+            Some((skew, interval)) if skew.is_resolved(interval) && !self.record.corrections().iter().any(removed) => {
                 Some(Finding::ClocksSkewed {
                     skew: skew.skew,
                     standard_error: skew.standard_error,

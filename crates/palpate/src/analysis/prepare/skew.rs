@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::kink::{Kink, kink};
 use crate::record::Record;
-use crate::segment::{Phase, Segment, Segmentation};
+use crate::segment::{Segment, Segmentation};
 use crate::statistics::median;
 
 /// By how much the stamps of the force lag behind those of the displacement.
@@ -54,12 +54,9 @@ const SAMPLES: (usize, usize) = (5, 50);
 #[must_use]
 pub fn clock_skew(record: &Record, segmentation: &Segmentation) -> Option<ClockSkew> {
     let displacement = record.displacement()?;
-    let pairs: Vec<(&Segment, &Segment)> = segmentation
-        .segments
-        .windows(2)
-        .map(|pair| (&pair[0], &pair[1]))
-        .filter(|pair| is_edge(*pair))
-        .collect();
+    let pairs = segmentation.segments.windows(2).map(|pair| (&pair[0], &pair[1]));
+    let pairs: Vec<(&Segment, &Segment)> =
+        pairs.filter(|(before, after)| before.is_ramp() != after.is_ramp()).collect();
     let edges = |share: usize, lag: f64| -> Vec<Edge> {
         pairs.iter().filter_map(|pair| edge(record, displacement, *pair, (share, lag))).collect()
     };
@@ -90,11 +87,6 @@ const SURE: usize = 2;
 const FARTHEST: u32 = 12;
 /// Edges of a record beyond which a skew is not sought farther than next to them.
 const MOST_EDGES: usize = 40;
-
-fn is_edge((before, after): (&Segment, &Segment)) -> bool {
-    let moves = |segment: &Segment| matches!(segment.phase, Phase::Loading | Phase::Unloading);
-    moves(before) != moves(after)
-}
 
 /// Half of the shorter of two segments, s.
 fn stretch(record: &Record, (before, after): (&Segment, &Segment)) -> f64 {

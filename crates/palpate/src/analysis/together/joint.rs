@@ -6,8 +6,8 @@ use crate::analysis::finding::Finding;
 use crate::analysis::holds::{HoldAnalysis, Signal, fitted};
 use crate::analysis::options::AnalysisOptions;
 use crate::fit::{
-    ExponentChoice, HoldWeights, JointComparison, JointFit, JointOptions, Samples, TrendVerdict,
-    compare_joint, fit_joint_watched,
+    ExponentChoice, HoldWeights, JointComparison, JointFit, JointOptions, Samples, TrendVerdict, compare_joint,
+    fit_joint_watched,
 };
 use crate::laws::Law;
 use crate::segment::After;

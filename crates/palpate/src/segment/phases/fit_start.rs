@@ -2,22 +2,16 @@
 
 use crate::record::Record;
 use crate::segment::options::{HoldStart, SegmentOptions};
-use crate::segment::segmentation::{After, HoldMode, Phase, Segment};
+use crate::segment::segmentation::{After, HoldMode, Phase, Segment, ramps_before};
 use crate::statistics::noise;
 
 /// Sets from where laws are fitted to each hold.
 pub(super) fn place_fits(record: &Record, options: &SegmentOptions, segments: &mut [Segment]) {
     // A hold of constant force is fitted from where the displacement peaks.
-    let exchanged = record.displacement().and_then(|displacement| {
-        let columns = (record.time().to_vec(), record.force().to_vec(), displacement.to_vec());
-        Record::new(columns.0, Some(columns.1), columns.2).ok()
-    });
+    let exchanged = record.exchanged().and_then(Result::ok);
     for index in 0..segments.len() {
-        let answers = match (&exchanged, segments[index].mode) {
-            (Some(exchanged), Some(HoldMode::ForceHeld)) => exchanged,
-            _ => record,
-        };
-        segments[index].fit_start = options.hold_start.sample(answers, segments, index);
+        let answers = exchanged.as_ref().filter(|_| segments[index].mode == Some(HoldMode::ForceHeld));
+        segments[index].fit_start = options.hold_start.sample(answers.unwrap_or(record), segments, index);
     }
 }
 
@@ -70,8 +64,7 @@ fn peak(record: &Record, segments: &[Segment], index: usize) -> usize {
 fn settling(record: &Record, segments: &[Segment], index: usize) -> usize {
     const FEWEST: usize = 12;
     let start = segments[index].start;
-    let moves = |segment: &&Segment| matches!(segment.phase, Phase::Loading | Phase::Unloading);
-    let ramp = segments[..index].iter().rev().take_while(moves).last().map_or(start, |segment| segment.start);
+    let ramp = ramps_before(segments, index).last().map_or(start, |segment| segment.start);
     let near = record.displacement().map_or(start, |displacement| {
         let level = displacement[start];
         let band = 0.02 * (level - displacement[ramp.saturating_sub(1)]).abs();

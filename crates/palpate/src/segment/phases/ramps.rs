@@ -1,6 +1,6 @@
 //! What lies between the holds.
 
-use crate::segment::segmentation::{After, HoldMode, Phase, Segment};
+use crate::segment::segmentation::{After, HoldMode, Phase, Segment, ramps_before};
 use crate::segment::standstill::Level;
 
 /// Turns holds and the gaps between them into segments that cover the record.
@@ -38,7 +38,7 @@ fn ramps(values: &[f64], from: usize, until: usize, hysteresis: f64, segments: &
     // The last sample of the hold before belongs to the ramp as its starting point.
     let (mut start, mut extreme) = (from, from.saturating_sub(1));
     let mut rising: Option<bool> = None;
-    let push = |start: usize, end: usize, rising: bool, segments: &mut Vec<Segment>| {
+    let mut push = |start: usize, end: usize, rising: bool| {
         segments.push(Segment {
             phase: if rising { Phase::Loading } else { Phase::Unloading },
             start,
@@ -55,7 +55,7 @@ fn ramps(values: &[f64], from: usize, until: usize, hysteresis: f64, segments: &
             Some(up) if (change > 0.0) == up => extreme = i,
             Some(up) if change.abs() > hysteresis => {
                 if extreme >= start {
-                    push(start, extreme + 1, up, segments);
+                    push(start, extreme + 1, up);
                     start = extreme + 1;
                 }
                 (rising, extreme) = (Some(!up), i);
@@ -64,17 +64,15 @@ fn ramps(values: &[f64], from: usize, until: usize, hysteresis: f64, segments: &
         }
     }
     let first = values[from.saturating_sub(1)];
-    push(start, until, rising.unwrap_or(values[until - 1] >= first), segments);
+    push(start, until, rising.unwrap_or(values[until - 1] >= first));
 }
 
 /// The direction from which a hold was reached: that of the last ramp of any size since the hold before it.
 fn approach(values: &[f64], segments: &[Segment]) -> Option<After> {
-    let ramps = segments
-        .iter()
-        .rev()
-        .take_while(|segment| matches!(segment.phase, Phase::Loading | Phase::Unloading));
+    let ramps = ramps_before(segments, segments.len());
     let travel = |segment: &Segment| (values[segment.end - 1] - values[segment.start.saturating_sub(1)]).abs();
     let most = ramps.clone().map(travel).fold(0.0, f64::max);
-    let last = ramps.into_iter().find(|segment| travel(segment) >= 0.25 * most)?;
+    let mut ramps = ramps;
+    let last = ramps.find(|segment| travel(segment) >= 0.25 * most)?;
     Some(if last.phase == Phase::Loading { After::Loading } else { After::Unloading })
 }

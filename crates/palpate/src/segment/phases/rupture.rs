@@ -1,7 +1,7 @@
 //! Standstills after the body broke: nothing relaxes in them.
 
 use crate::record::Record;
-use crate::segment::segmentation::{After, Phase, Rupture, Segment};
+use crate::segment::segmentation::{After, Phase, Rupture, Segment, ramps_before};
 use crate::statistics::{median, range};
 
 /// Share of the way of the jaw over which a body that relaxes cannot have lost half its force.
@@ -24,18 +24,13 @@ pub(super) fn ruptures(record: &Record, segments: &mut [Segment]) -> Vec<Rupture
         if segments[index].after != Some(After::Loading) {
             continue;
         }
-        let ramps = segments[..index].iter().rev().take_while(|segment| is_ramp(segment));
-        let begin = ramps.last().map_or(segments[index].start, |ramp| ramp.start);
+        let begin = ramps_before(segments, index).last().map_or(segments[index].start, |ramp| ramp.start);
         if let Some(rupture) = rupture(record, begin, &segments[index]) {
             (segments[index].phase, segments[index].after, segments[index].mode) = (Phase::Rest, None, None);
             found.push(rupture);
         }
     }
     found
-}
-
-fn is_ramp(segment: &Segment) -> bool {
-    matches!(segment.phase, Phase::Loading | Phase::Unloading)
 }
 
 /// Whether the body broke in the ramp from sample `begin` to a standstill.
@@ -109,7 +104,10 @@ mod tests {
     fn what_stands_after_a_rupture_is_no_hold() {
         let breaks = |_: f64, d: f64| if d < 8.0 { d } else { 1.0 };
         let error = found(&record(|t| t.min(10.0), breaks)).unwrap_err();
-        let SegmentError::Ruptured(Rupture { time, before, after, .. }) = error else {
+        let SegmentError::Ruptured(Rupture {
+            time, before, after, ..
+        }) = error
+        else {
             panic!("{error:?}");
         };
         assert!((time - 8.0).abs() < 0.02 && (before - 8.0).abs() < 0.02 && (after - 1.0).abs() < 1e-9, "{error:?}");
