@@ -25,7 +25,7 @@ fn one(labelled: &suite::Labelled) {
         let samples = [hold.start, hold.end].map(|t| time.partition_point(|time| *time < t));
         println!("true  {samples:?} after {:?}, limits {:.2?}", hold.after, hold.limits);
     }
-    match palpate::segment::find_phases(&labelled.record.repaired().0, &palpate::segment::SegmentOptions::default()) {
+    match palpate::segment::find_phases(&labelled.record.repaired(), &palpate::segment::SegmentOptions::default()) {
         Ok(found) => {
             for hold in found.holds() {
                 println!("found [{}, {}] after {:?}", hold.start, hold.end, hold.after);

@@ -160,9 +160,11 @@ impl RecordError {
     #[must_use]
     pub fn row(&self) -> Option<usize> {
         match self {
-            Self::NotFinite { row, .. } | Self::NoMeasurement { row, .. } => Some(*row),
-            Self::TimeNotRising { row, .. } => Some(*row),
-            Self::ClockGoesBack { row, .. } | Self::OutsideTable { row, .. } => Some(*row),
+            Self::NotFinite { row, .. }
+            | Self::NoMeasurement { row, .. }
+            | Self::TimeNotRising { row, .. }
+            | Self::ClockGoesBack { row, .. }
+            | Self::OutsideTable { row, .. } => Some(*row),
             _ => None,
         }
     }
@@ -208,10 +210,8 @@ impl RecordError {
 }
 
 pub(super) fn lengths(time: &[f64], displacement: Option<&[f64]>, force: &[f64]) -> Result<(), RecordError> {
-    let others = [("displacement", displacement.map_or(time.len(), <[f64]>::len)), ("force", force.len())];
-    for (column, other) in others {
-        same_length(time.len(), column, other)?;
-    }
+    same_length(time.len(), "displacement", displacement.map_or(time.len(), <[f64]>::len))?;
+    same_length(time.len(), "force", force.len())?;
     long_enough(time.len())
 }
 
@@ -227,20 +227,13 @@ pub(super) fn long_enough(rows: usize) -> Result<(), RecordError> {
 }
 
 pub(super) fn finite(column: &'static str, values: &[f64]) -> Result<(), RecordError> {
-    match values.iter().position(|value| !value.is_finite()) {
-        Some(row) => Err(RecordError::NotFinite {
-            column,
-            row,
-            found: values[row],
-        }),
-        None => match values.iter().position(|value| value.abs() >= NONE) {
-            Some(row) => Err(RecordError::NoMeasurement {
-                column,
-                row,
-                found: values[row],
-            }),
-            None => Ok(()),
-        },
+    let found = |wrong: fn(&f64) -> bool| values.iter().position(wrong).map(|row| (row, values[row]));
+    if let Some((row, found)) = found(|value| !value.is_finite()) {
+        return Err(RecordError::NotFinite { column, row, found });
+    }
+    match found(|value| value.abs() >= NONE) {
+        Some((row, found)) => Err(RecordError::NoMeasurement { column, row, found }),
+        None => Ok(()),
     }
 }
 

@@ -57,17 +57,12 @@ impl Record {
     /// What the columns are like now; [`RawColumns::report`](crate::record::RawColumns::report) says what they were like before.
     #[must_use]
     pub fn signals(&self) -> SignalReport {
-        SignalReport::of(&self.time, self.displacement(), &self.force)
+        SignalReport::of(&self.time, self.displacement(), &self.force, None)
     }
 
     /// The record with corrections that were made to its columns before they became one: by the program that read them.
     #[must_use]
-    pub fn corrected_before(self, earlier: impl IntoIterator<Item = Correction>) -> Self {
-        self.preceded_by(earlier)
-    }
-
-    /// The record with corrections that were made before those it knows of.
-    pub(super) fn preceded_by(mut self, earlier: impl IntoIterator<Item = Correction>) -> Self {
+    pub fn corrected_before(mut self, earlier: impl IntoIterator<Item = Correction>) -> Self {
         self.corrections.splice(0..0, earlier);
         self
     }
@@ -121,15 +116,20 @@ impl Record {
         Some(Self::new(self.time.clone(), Some(self.force.clone()), moved))
     }
 
-    /// The record with another force and the correction that made it.
-    pub(super) fn with_force(&self, force: Vec<f64>, done: Correction) -> Result<Self, RecordError> {
-        let record = Self::new(self.time.clone(), self.displacement.clone(), force)?;
-        Ok(record.preceded_by(self.corrections.iter().cloned()).followed_by(done))
+    /// The record with other columns and the correction that made them.
+    pub(super) fn with(
+        &self,
+        time: Vec<f64>,
+        displacement: Option<Vec<f64>>,
+        force: Vec<f64>,
+        done: Correction,
+    ) -> Result<Self, RecordError> {
+        let record = Self::new(time, displacement, force)?;
+        Ok(record.corrected_before(self.corrections.iter().cloned()).followed_by(done))
     }
 
-    /// The record with another displacement and the correction that made it.
-    pub(super) fn with_displacement(&self, displacement: Vec<f64>, done: Correction) -> Result<Self, RecordError> {
-        let record = Self::new(self.time.clone(), Some(displacement), self.force.clone())?;
-        Ok(record.preceded_by(self.corrections.iter().cloned()).followed_by(done))
+    /// The record with another force and the correction that made it.
+    pub(super) fn with_force(&self, force: Vec<f64>, done: Correction) -> Result<Self, RecordError> {
+        self.with(self.time.clone(), self.displacement.clone(), force, done)
     }
 }

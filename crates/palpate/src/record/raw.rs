@@ -38,12 +38,8 @@ impl RawColumns {
     /// What the columns are like.
     #[must_use]
     pub fn report(&self) -> SignalReport {
-        match (&self.displacement, &self.force_time) {
-            (Some(displacement), Some(force_time)) => {
-                SignalReport::of_two_clocks(&self.time, displacement, force_time, &self.force)
-            }
-            (displacement, _) => SignalReport::of(&self.time, displacement.as_deref(), &self.force),
-        }
+        let force_time = self.force_time.as_deref().filter(|_| self.displacement.is_some());
+        SignalReport::of(&self.time, self.displacement.as_deref(), &self.force, force_time)
     }
 
     /// The record they make, with time stamps mended where that is safe.
@@ -65,7 +61,7 @@ impl RawColumns {
                     &force.time,
                     &force.columns[0],
                 )?;
-                Ok(joined.preceded_by(displacement.done.into_iter().chain(force.done)))
+                Ok(joined.corrected_before(displacement.done.into_iter().chain(force.done)))
             }
             (displacement, _) => {
                 let columns = displacement.map(|values| ("displacement", values));
@@ -74,7 +70,7 @@ impl RawColumns {
                 let mut columns = mended.columns;
                 let force = columns.pop().unwrap_or_default();
                 let record = Record::new(mended.time, columns.pop(), force)?;
-                Ok(record.preceded_by(mended.done))
+                Ok(record.corrected_before(mended.done))
             }
         }
     }

@@ -457,7 +457,7 @@ proptest! {
     #[test]
     fn no_columns_make_the_search_for_phases_panic((times, displacement, force) in columns(), with_displacement in any::<bool>()) {
         if let Ok(record) = Record::new(times, with_displacement.then_some(displacement), force) {
-            let (record, _) = record.repaired();
+            let record = record.repaired();
             if let Ok(found) = find_phases(&record, &SegmentOptions::default()) {
                 prop_assert!(covers(&found, record.len()), "{:?}", found.segments);
                 let ball = Some(Shape::Ball { radius: 0.035 });

@@ -82,7 +82,7 @@ impl Bench {
     }
 
     fn touch(&self, record: &Record) -> ContactPoint {
-        let (record, _) = record.repaired();
+        let record = record.repaired();
         let phases = find_phases(&record, &SegmentOptions::default()).unwrap();
         let body = (self.model.specimen.shape(), self.model.specimen.sides());
         find_contact_of(&record, &phases, Some(body), ContactChoice::Auto)

@@ -70,7 +70,7 @@ fn compliance(source: &Source<'_>, machine: &MachineTable) -> Result<Option<Comp
         }
         (None, Some(rows)) => {
             let rows = source.rows(table_key, rows, (Dimension::Force, Dimension::Length))?;
-            let table = ComplianceTable::new(&rows).map(|table| Some(Compliance::Table(table)));
+            let table = ComplianceTable::new(rows).map(|table| Some(Compliance::Table(table)));
             table.map_err(|error| source.value(table_key, "rows of force and deflection", &error))
         }
     }

@@ -59,7 +59,7 @@ fn silicone_has_two_clocks() {
 
 /// The phases of a record after repair, as an analysis sees them.
 fn phases(file: &RecordFile, options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
-    find_phases(&file.record.repaired().0, options)
+    find_phases(&file.record.repaired(), options)
 }
 
 /// Start and end of every hold, s; what came before; what is held.

@@ -159,7 +159,7 @@ pub fn creep_holds(
     until: Option<f64>,
     watch: &mut dyn Watch,
 ) -> Result<Vec<CreepHold>, CreepError> {
-    let (record, _) = record.repaired();
+    let record = record.repaired();
     let exchanged = record.exchanged().ok_or(CreepError::NoDisplacement)?.map_err(CreepError::Still)?;
     let held = force_held(&record, &exchanged, segment, given)?;
     let mut compare = compare.clone();

@@ -64,7 +64,7 @@ impl Corrected {
 /// # Errors
 /// [`AnalysisError`] for a correction that cannot be made, and where a baseline is to be found but the phases are not.
 pub fn corrected(record: &Record, options: &AnalysisOptions) -> Result<Corrected, AnalysisError> {
-    let (record, _) = record.repaired();
+    let record = record.repaired();
     let asked = &options.corrections;
     let phases = |record: &Record| phases_with(record, &options.segment, &options.given_holds);
     let segmentation = phases(&record);

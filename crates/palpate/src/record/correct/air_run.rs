@@ -4,6 +4,7 @@ use super::interpolation::interpolated;
 use crate::record::checks::RecordError;
 use crate::record::correction::{Correction, Tare};
 use crate::record::measured::Record;
+use crate::statistics::range;
 
 /// How far the jaw of an air run may stand from that of the record, as a share of the way.
 const SAME_PLACE: f64 = 0.02;
@@ -58,10 +59,7 @@ impl Record {
             let beyond = duration(self) - duration(air);
             return if beyond > 0.01 * duration(self) { Err(short(self.time[self.len() - 1])) } else { Ok(()) };
         };
-        let way = |values: &[f64]| {
-            values.iter().fold(f64::MIN, |a, b| a.max(*b)) - values.iter().fold(f64::MAX, |a, b| a.min(*b))
-        };
-        let allowed = SAME_PLACE * way(displacement);
+        let allowed = SAME_PLACE * range(displacement);
         if let Some(other) = air.displacement() {
             let other = interpolated(&air.time, other, times);
             // Counted from the first sample: the zero of a run is set by hand.

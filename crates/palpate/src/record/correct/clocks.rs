@@ -1,10 +1,11 @@
 //! Force and displacement with time stamps of their own.
 
-use super::dropouts::without_dropouts;
+use super::dropouts::replace;
 use super::interpolation::interpolated;
 use crate::record::checks::{self, RecordError};
 use crate::record::correction::{Column, Correction};
 use crate::record::measured::Record;
+use crate::record::signals::stray_rows;
 
 impl Record {
     /// A record whose displacement has time stamps of its own, brought onto the times of the force.
@@ -27,7 +28,8 @@ impl Record {
             checks::finite(column, values)?;
             checks::rising(time)?;
         }
-        let (repaired, dropouts) = without_dropouts(displacement);
+        let mut repaired = displacement.to_vec();
+        let count = replace(&mut repaired, stray_rows);
         let (from, until) = (displacement_time[0], displacement_time[displacement_time.len() - 1]);
         let inside = |time: &f64| (from..=until).contains(time);
         let (first, last) = (force_time.partition_point(|t| *t < from), force_time.partition_point(|t| *t <= until));
@@ -42,12 +44,10 @@ impl Record {
         let time: Vec<f64> = force_time[first..last].iter().copied().filter(inside).collect();
         let displacement = interpolated(displacement_time, &repaired, &time);
         let record = Self::new(time, Some(displacement), force[first..last].to_vec())?;
-        let replaced = (dropouts > 0).then_some(Correction::DropoutsReplaced {
-            column: Column::Displacement,
-            count: dropouts,
-        });
+        let column = Column::Displacement;
+        let replaced = (count > 0).then_some(Correction::DropoutsReplaced { column, count });
         let left_out = force_time.len() - (last - first);
-        Ok(record.preceded_by(replaced).followed_by(Correction::ClocksJoined { left_out }))
+        Ok(record.corrected_before(replaced).followed_by(Correction::ClocksJoined { left_out }))
     }
 
     /// The record with a force that was stamped `skew` seconds too late moved to where it belongs.
@@ -73,11 +73,11 @@ impl Record {
         let time = self.time[first..last].to_vec();
         let shifted: Vec<f64> = time.iter().map(|t| t + skew).collect();
         let force = interpolated(&self.time, &self.force, &shifted);
-        let record = Self::new(time, self.displacement().map(|d| d[first..last].to_vec()), force)?;
-        Ok(record.preceded_by(self.corrections.iter().cloned()).followed_by(Correction::SkewRemoved {
+        let done = Correction::SkewRemoved {
             skew,
             standard_error,
             left_out: self.len() - (last - first),
-        }))
+        };
+        self.with(time, self.displacement().map(|d| d[first..last].to_vec()), force, done)
     }
 }

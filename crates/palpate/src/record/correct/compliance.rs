@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::record::checks::{self, RecordError};
+use crate::record::checks::RecordError;
 use crate::record::correction::Correction;
 use crate::record::measured::Record;
 
@@ -19,11 +19,8 @@ pub enum Compliance {
 /// Force (N) and deflection of the machine (m), straight between its rows. Beyond its ends nothing is known, but for a
 /// hundredth of its span, where the outer lines go on: the noise of a force of zero lies outside a table that begins there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Vec<(f64, f64)>", into = "Vec<(f64, f64)>")]
-pub struct ComplianceTable {
-    forces: Vec<f64>,
-    deflections: Vec<f64>,
-}
+#[serde(try_from = "Vec<(f64, f64)>")]
+pub struct ComplianceTable(Vec<(f64, f64)>);
 
 /// How far the outer lines of a table go on, as a share of its span.
 const BEYOND: f64 = 0.01;
@@ -94,17 +91,13 @@ impl ComplianceTable {
     /// # Errors
     /// [`ComplianceError`] for fewer than two rows, numbers that are not finite, forces that do not rise, and deflections
     /// that fall.
-    pub fn new(rows: &[(f64, f64)]) -> Result<Self, ComplianceError> {
+    pub fn new(rows: Vec<(f64, f64)>) -> Result<Self, ComplianceError> {
         if rows.len() < 2 {
             return Err(ComplianceError::TooShort(rows.len()));
         }
-        for (row, (force, deflection)) in (1..).zip(rows) {
+        for (row, &(force, deflection)) in (1..).zip(&rows) {
             if !(force.is_finite() && deflection.is_finite()) {
-                return Err(ComplianceError::NotFinite {
-                    row,
-                    force: *force,
-                    deflection: *deflection,
-                });
+                return Err(ComplianceError::NotFinite { row, force, deflection });
             }
         }
         for (row, pair) in (2..).zip(rows.windows(2)) {
@@ -119,16 +112,13 @@ impl ComplianceTable {
                 });
             }
         }
-        Ok(Self {
-            forces: rows.iter().map(|row| row.0).collect(),
-            deflections: rows.iter().map(|row| row.1).collect(),
-        })
+        Ok(Self(rows))
     }
 
     /// Smallest and largest force, N.
     #[must_use]
     pub fn range(&self) -> (f64, f64) {
-        (self.forces[0], self.forces[self.forces.len() - 1])
+        (self.0[0].0, self.0[self.0.len() - 1].0)
     }
 
     /// Deflection (m) under `force` (N); `None` more than a hundredth of its span outside the table.
@@ -139,9 +129,8 @@ impl ComplianceTable {
         if !(low - beyond..=high + beyond).contains(&force) {
             return None;
         }
-        let after = self.forces.partition_point(|other| *other < force).clamp(1, self.forces.len() - 1);
-        let (f0, f1) = (self.forces[after - 1], self.forces[after]);
-        let (d0, d1) = (self.deflections[after - 1], self.deflections[after]);
+        let after = self.0.partition_point(|row| row.0 < force).clamp(1, self.0.len() - 1);
+        let [(f0, d0), (f1, d1)] = [self.0[after - 1], self.0[after]];
         Some(d0 + (d1 - d0) * (force - f0) / (f1 - f0))
     }
 }
@@ -150,13 +139,7 @@ impl TryFrom<Vec<(f64, f64)>> for ComplianceTable {
     type Error = ComplianceError;
 
     fn try_from(rows: Vec<(f64, f64)>) -> Result<Self, ComplianceError> {
-        Self::new(&rows)
-    }
-}
-
-impl From<ComplianceTable> for Vec<(f64, f64)> {
-    fn from(table: ComplianceTable) -> Self {
-        table.forces.into_iter().zip(table.deflections).collect()
+        Self::new(rows)
     }
 }
 
@@ -184,13 +167,12 @@ impl Record {
         let mut net = Vec::with_capacity(self.len());
         let mut most = 0.0f64;
         for (row, (travel, force)) in displacement.iter().zip(&self.force).enumerate() {
-            let Some(deflection) = compliance.deflection(*force) else {
-                return Err(self.outside(compliance, row));
-            };
+            let deflection = compliance.deflection(*force).ok_or_else(|| self.outside(compliance, row))?;
             most = if deflection.abs() > most.abs() { deflection } else { most };
             net.push(travel - deflection);
         }
-        self.with_displacement(net, Correction::ComplianceRemoved { largest: most })
+        let done = Correction::ComplianceRemoved { largest: most };
+        self.with(self.time.clone(), Some(net), self.force.clone(), done)
     }
 
     fn outside(&self, compliance: &Compliance, row: usize) -> RecordError {
@@ -205,25 +187,6 @@ impl Record {
             high,
         }
     }
-
-    /// The record with the deflection of the sensor (m, a value for every row) taken off the displacement.
-    ///
-    /// For an AFM: indentation = height of the piezo less deflection of the cantilever. Where the deflection was not
-    /// recorded but the spring constant k is known it is F/k: [`without_compliance`](Self::without_compliance) with 1/k.
-    /// A record without displacement stays as it is.
-    ///
-    /// # Errors
-    /// [`RecordError::Lengths`] and [`RecordError::NotFinite`] for deflections that do not go with the record.
-    pub fn without_deflection(&self, deflection: &[f64]) -> Result<Self, RecordError> {
-        checks::same_length(self.len(), "deflection", deflection.len())?;
-        checks::finite("deflection", deflection)?;
-        let Some(height) = self.displacement() else {
-            return Ok(self.clone());
-        };
-        let net = height.iter().zip(deflection).map(|(height, deflection)| height - deflection).collect();
-        let largest = deflection.iter().fold(0.0f64, |most, d| if d.abs() > most.abs() { *d } else { most });
-        self.with_displacement(net, Correction::DeflectionRemoved { largest })
-    }
 }
 
 #[cfg(test)]
@@ -236,14 +199,14 @@ mod tests {
 
     #[test]
     fn a_table_is_straight_between_its_rows_and_nothing_outside() {
-        let table = ComplianceTable::new(&[(0.0, 0.0), (4.0, 2e-4), (10.0, 3e-4)]).unwrap();
+        let table = ComplianceTable::new(vec![(0.0, 0.0), (4.0, 2e-4), (10.0, 3e-4)]).unwrap();
         assert_eq!(table.deflection(2.0), Some(1e-4));
         assert!((table.deflection(7.0).unwrap() - 2.5e-4).abs() < 1e-18);
         assert_eq!((table.deflection(10.0), table.deflection(10.2), table.deflection(-0.2)), (Some(3e-4), None, None));
         let net = record().without_compliance(&Compliance::Table(table)).unwrap();
         assert!((net.displacement().unwrap()[2] - (2e-3 - 2e-4 - 1e-4 / 3.0)).abs() < 1e-15);
         assert!(matches!(net.corrections(), [Correction::ComplianceRemoved { .. }]));
-        let short = Compliance::Table(ComplianceTable::new(&[(0.0, 0.0), (7.0, 1e-4)]).unwrap());
+        let short = Compliance::Table(ComplianceTable::new(vec![(0.0, 0.0), (7.0, 1e-4)]).unwrap());
         let error = record().without_compliance(&short).unwrap_err();
         assert_eq!(error.to_string(), "the force must lie in the table of compliance, 0 to 7 N, found 8 N in row 1");
     }
@@ -251,34 +214,18 @@ mod tests {
     /// A table that begins at 0 N refused every record whose zero has noise.
     #[test]
     fn noise_about_zero_lies_on_the_first_line_of_a_table() {
-        let table = ComplianceTable::new(&[(0.0, 0.0), (4.0, 2e-4), (10.0, 3e-4)]).unwrap();
+        let table = ComplianceTable::new(vec![(0.0, 0.0), (4.0, 2e-4), (10.0, 3e-4)]).unwrap();
         assert!((table.deflection(-0.05).unwrap() + 2.5e-6).abs() < 1e-18);
         assert!((table.deflection(10.09).unwrap() - 3.015e-4).abs() < 1e-18);
     }
 
     #[test]
     fn wrong_tables_are_refused() {
-        let refused = |rows: &[(f64, f64)]| ComplianceTable::new(rows).unwrap_err();
+        let refused = |rows: &[(f64, f64)]| ComplianceTable::new(rows.to_vec()).unwrap_err();
         assert_eq!(refused(&[(0.0, 0.0)]), ComplianceError::TooShort(1));
         assert!(matches!(refused(&[(0.0, 0.0), (0.0, 1.0)]), ComplianceError::NotMonotone { row: 2, .. }));
         assert!(matches!(refused(&[(0.0, 1.0), (1.0, 0.0)]), ComplianceError::NotMonotone { row: 2, .. }));
         assert!(matches!(refused(&[(0.0, 0.0), (f64::NAN, 0.0)]), ComplianceError::NotFinite { row: 2, .. }));
         assert!(Compliance::constant(-1e-6).is_err() && Compliance::constant(f64::NAN).is_err());
-    }
-
-    #[test]
-    fn indentation_is_height_less_deflection() {
-        let net = record().without_deflection(&[0.0, 5e-4, 4e-4]).unwrap();
-        assert_eq!(net.displacement(), Some([0.0, 1.5e-3, 1.6e-3].as_slice()));
-        let by_force = record().without_compliance(&Compliance::Constant(5e-4 / 8.0)).unwrap();
-        assert!((by_force.displacement().unwrap()[1] - 1.5e-3).abs() < 1e-18);
-        assert!(matches!(
-            record().without_deflection(&[0.0]),
-            Err(RecordError::Lengths {
-                column: "deflection",
-                ..
-            })
-        ));
-        assert!(record().without_deflection(&[0.0, f64::NAN, 0.0]).is_err());
     }
 }

@@ -53,13 +53,12 @@ impl Record {
             displacement.extend(self.displacement().map(column).unwrap_or_default());
             force.extend(column(&self.force));
         }
-        let record = Self::new(times, self.displacement().map(|_| displacement), force)?;
         let done = Correction::Resampled {
             rate,
             interval: before,
             averaged,
         };
-        Ok(record.preceded_by(self.corrections.iter().cloned()).followed_by(done))
+        self.with(times, self.displacement().map(|_| displacement), force, done)
     }
 
     /// The rows between the gaps that are longer than `interval`.

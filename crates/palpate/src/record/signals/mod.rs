@@ -37,37 +37,26 @@ pub struct SignalReport {
 }
 
 impl SignalReport {
-    /// Examines columns with one clock: time in s, displacement in m, force in N.
+    /// Examines columns: time in s, displacement in m, force in N, which may have a time of its own.
     ///
     /// Costs O(n log n) for n rows.
     ///
     /// ```
     /// use palpate::record::SignalReport;
     /// let time: Vec<f64> = [0, 1, 2, 3, 3, 9, 10, 11].map(f64::from).to_vec();
-    /// let report = SignalReport::of(&time, None, &[0.0, 0.0, 2.0, 4.0, 4.0, 3.0, 2.5, 2.0]);
+    /// let report = SignalReport::of(&time, None, &[0.0, 0.0, 2.0, 4.0, 4.0, 3.0, 2.5, 2.0], None);
     /// assert_eq!((report.stamps.repeated, report.stamps.gaps.count), (1, 1));
     /// assert_eq!(report.stamps.gaps.longest, 6.0);
     /// ```
     #[must_use]
-    pub fn of(time: &[f64], displacement: Option<&[f64]>, force: &[f64]) -> Self {
-        // Columns of different lengths, or in another order than that of time, cannot judge each other.
-        let together = displacement.filter(|values| values.len() == force.len());
+    pub fn of(time: &[f64], displacement: Option<&[f64]>, force: &[f64], force_time: Option<&[f64]>) -> Self {
+        // Columns of different lengths or clocks, or in another order than that of time, cannot judge each other.
+        let together = displacement.filter(|values| values.len() == force.len() && force_time.is_none());
         Self {
             stamps: Stamps::of(time),
-            force_stamps: None,
+            force_stamps: force_time.map(Stamps::of),
             displacement: displacement.map(|values| Values::of(Column::Displacement, values, together.map(|_| force))),
             force: Values::of(Column::Force, force, together),
-        }
-    }
-
-    /// Examines a displacement and a force that have clocks of their own.
-    #[must_use]
-    pub fn of_two_clocks(displacement_time: &[f64], displacement: &[f64], force_time: &[f64], force: &[f64]) -> Self {
-        Self {
-            stamps: Stamps::of(displacement_time),
-            force_stamps: Some(Stamps::of(force_time)),
-            displacement: Some(Values::of(Column::Displacement, displacement, None)),
-            force: Values::of(Column::Force, force, None),
         }
     }
 }

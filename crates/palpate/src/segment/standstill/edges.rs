@@ -1,5 +1,7 @@
 //! Where exactly a hold begins and ends: where the line through the ramp meets the line through the hold.
 
+use std::ops::Range;
+
 use super::line::Line;
 use super::pieces::Piece;
 use super::standstills::Standstill;
@@ -30,10 +32,10 @@ pub(super) fn sharpened(time: &[f64], values: &[f64], pieces: &[Piece], near: f6
                 near,
             };
             if found[index].start > 0 {
-                found[index].start = column.start_of(before, cut[index].start, found[index]);
+                found[index].start = column.edge(cut[index].start, found[index], before, true);
             }
             if found[index].end < count {
-                found[index].end = column.end_of(after, cut[index].end, found[index]);
+                found[index].end = column.edge(cut[index].end, found[index], after, false);
             }
         }
     }
@@ -53,79 +55,62 @@ impl Column<'_> {
         &self.pieces[self.pieces.partition_point(|piece| piece.end <= sample).min(self.pieces.len() - 1)]
     }
 
-    /// How far an edge may lie from where the polygon was cut beside a piece of ramp.
-    fn reach(&self, sample: usize) -> usize {
-        let ramp = self.piece_of(sample);
-        ramp.end - ramp.start + 2 * FEWEST
+    /// The start of the piece that ends at `cut`, or of an earlier one until it is at `near` or before; not before `least`.
+    fn back(&self, cut: usize, least: usize, near: usize) -> usize {
+        let mut from = self.piece_of(cut - 1).start.max(least);
+        while from > least.max(near) {
+            from = self.piece_of(from - 1).start.max(least);
+        }
+        from
     }
 
-    fn line(&self, range: std::ops::Range<usize>) -> Line {
+    /// The end of the piece that begins at `cut`, or of a later one until it is at `near` or behind; not behind `most`.
+    fn forth(&self, cut: usize, most: usize, near: usize) -> usize {
+        let mut until = self.piece_of(cut).end.min(most);
+        while until < most.min(near) {
+            until = self.piece_of(until).end.min(most);
+        }
+        until
+    }
+
+    fn line(&self, range: Range<usize>) -> Line {
         Line::through(self.time, self.values, range)
     }
 
-    /// First sample of a hold that was cut off its ramp at `cut`; the ramp begins at `before` or later.
-    fn start_of(&self, before: usize, cut: usize, hold: Standstill) -> usize {
+    /// First sample of a hold, or the sample after its last, where it was cut off its ramp at `cut`; the ramp goes no farther than to `limit`.
+    fn edge(&self, cut: usize, hold: Standstill, limit: usize, is_start: bool) -> usize {
+        let edge = if is_start { hold.start } else { hold.end };
         // The pieces at the cut may be scraps.
-        let mut until = self.piece_of(cut).end;
-        while until < hold.end && until < hold.start + 2 * FEWEST {
-            until = self.piece_of(until).end;
-        }
-        let until = until.clamp(hold.start + 1, hold.end);
-        let level = self.line(hold.start..until);
-        let mut from = self.piece_of(cut - 1).start.max(before);
-        while from > before && hold.start < from + FEWEST {
-            from = self.piece_of(from - 1).start.max(before);
-        }
-        if hold.start >= from + FEWEST
-            && let Some(meeting) = meeting(&self.line(from..hold.start), &level)
+        let (from, until) = if is_start {
+            let until = self.forth(cut, hold.end, edge + 2 * FEWEST).max(edge + 1);
+            (self.back(cut, limit, edge.saturating_sub(FEWEST)), until)
+        } else {
+            let from = self.back(cut, hold.start, edge.saturating_sub(2 * FEWEST)).min(edge - 1);
+            (from, self.forth(cut, limit, edge + FEWEST))
+        };
+        let (before, after) = (from..edge, edge..until);
+        let (ramp, level) = if is_start { (before, after) } else { (after, before) };
+        let level = self.line(level);
+        if ramp.len() >= FEWEST
+            && let Some(meeting) = meeting(&self.line(ramp), &level)
         {
-            let slack = SLACK * (self.time[hold.start] - self.time[hold.start - 1]);
-            let at = self.time.partition_point(|t| *t < meeting - slack);
-            if at > from && at < until && at.abs_diff(cut) <= self.reach(cut - 1) {
+            let slack = SLACK * (self.time[edge] - self.time[edge - 1]);
+            let is_before = |t: &f64| if is_start { *t < meeting - slack } else { *t <= meeting + slack };
+            let at = self.time.partition_point(is_before);
+            // How far an edge may lie from where the polygon was cut beside a piece of ramp.
+            let piece = self.piece_of(if is_start { cut - 1 } else { cut });
+            if at > from && at < until && at.abs_diff(cut) <= piece.end - piece.start + 2 * FEWEST {
                 return at;
             }
         }
-        let keeps = |i: usize| (self.values[i] - level.at(self.time[i])).abs() <= self.near;
-        let mut start = hold.start;
-        while start < hold.end - 1 && !keeps(start) {
-            start += 1;
+        let keeps = |i: &usize| (self.values[*i] - level.at(self.time[*i])).abs() <= self.near;
+        if is_start {
+            let start = (edge..hold.end - 1).find(keeps).unwrap_or(hold.end - 1);
+            (limit..start).rev().take_while(keeps).last().unwrap_or(start)
+        } else {
+            let end = (hold.start + 1..edge).rev().find(keeps).unwrap_or(hold.start) + 1;
+            (end..limit).take_while(keeps).last().map_or(end, |last| last + 1)
         }
-        while start > before && keeps(start - 1) {
-            start -= 1;
-        }
-        start
-    }
-
-    /// Sample after the last of a hold that was cut off its ramp at `cut`; the ramp ends at `after` or before.
-    fn end_of(&self, after: usize, cut: usize, hold: Standstill) -> usize {
-        let mut from = self.piece_of(cut - 1).start;
-        while from > hold.start && from + 2 * FEWEST > hold.end {
-            from = self.piece_of(from - 1).start;
-        }
-        let from = from.clamp(hold.start, hold.end - 1);
-        let level = self.line(from..hold.end);
-        let mut until = self.piece_of(cut).end.min(after);
-        while until < after && until < hold.end + FEWEST {
-            until = self.piece_of(until).end.min(after);
-        }
-        if until >= hold.end + FEWEST
-            && let Some(meeting) = meeting(&self.line(hold.end..until), &level)
-        {
-            let slack = SLACK * (self.time[hold.end] - self.time[hold.end - 1]);
-            let at = self.time.partition_point(|t| *t <= meeting + slack);
-            if at > from && at < until && at.abs_diff(cut) <= self.reach(cut) {
-                return at;
-            }
-        }
-        let keeps = |i: usize| (self.values[i] - level.at(self.time[i])).abs() <= self.near;
-        let mut end = hold.end;
-        while end > hold.start + 1 && !keeps(end - 1) {
-            end -= 1;
-        }
-        while end < after && keeps(end) {
-            end += 1;
-        }
-        end
     }
 }
 

@@ -1,6 +1,6 @@
 //! What speaks for a standstill: how far the column would have gone, and how sharp its corners are.
 
-use super::moves::{Move, goes_on_after, goes_on_before, ramp_after, ramp_before};
+use super::moves::{Move, goes_on, ramp};
 use super::smooth::gain_of_corners;
 use super::stillness::Stillness;
 
@@ -24,7 +24,11 @@ pub(super) fn evidence(
     if drift > stillness.drift + tilt {
         return None;
     }
-    let sides = [goes_on_before(moves, first, duration), goes_on_after(moves, last, duration)];
+    let edges = [(moves[first].times[0], moves[first].ends[0]), (moves[last].times[1], moves[last].ends[1])];
+    let sides = [
+        goes_on(moves[..first].iter().rev(), edges[0], 0, duration),
+        goes_on(moves[last + 1..].iter(), edges[1], 1, duration),
+    ];
     let known: Vec<f64> = sides.iter().flatten().copied().collect();
     let (slower, faster) = known.iter().fold((f64::MAX, 0.0f64), |(low, high), far| (low.min(*far), high.max(*far)));
     if known.is_empty() || drift > stillness.share * slower + tilt {
@@ -33,9 +37,8 @@ pub(super) fn evidence(
     if stillness.duration.is_none() && (faster < stillness.goes_on[0] || slower < stillness.goes_on[1]) {
         return None;
     }
-    let (before, after) = match surroundings(time, values, moves, (first, last), stillness) {
-        Surroundings::Jumps => return Some(f64::INFINITY),
-        Surroundings::Samples { before, after } => (before, after),
+    let Some((before, after)) = surroundings(time, values, moves, (first, last), stillness) else {
+        return Some(f64::INFINITY);
     };
     let polygon = |i: usize| {
         let next = moves.partition_point(|part| part.end <= i);
@@ -58,29 +61,25 @@ const SCRAP: f64 = 5.0;
 /// Fewest samples of a ramp that could be the side of a smooth turning point.
 const RAMP: usize = 3;
 
-/// What lies beside a standstill.
-enum Surroundings {
-    /// Jumps, or an end of the record: nothing is as sharp.
-    Jumps,
-    /// Samples from `before` until its start, and from its end until `after`; none where it jumps.
-    Samples { before: usize, after: usize },
-}
-
-/// The ramps beside moves first..=last, as far as the column would have gone in the time of the standstill.
+/// The ramps beside moves first..=last, as far as the column would have gone in the time of the standstill: samples from where until its
+/// start, and from its end until where; none where it jumps. `None` between jumps or ends of the record: nothing is as sharp.
 fn surroundings(
     time: &[f64],
     values: &[f64],
     moves: &[Move],
     (first, last): (usize, usize),
     stillness: &Stillness,
-) -> Surroundings {
+) -> Option<(usize, usize)> {
     let (start, end) = (moves[first].start, moves[last].end);
     let (from, until) = (moves[first].times[0], moves[last].times[1]);
     let widest = [
         time.partition_point(|t| *t < from - (until - from)),
         time.partition_point(|t| *t <= until + (until - from)),
     ];
-    let ramps = [widest[0].max(ramp_before(moves, first)), widest[1].min(ramp_after(moves, last))];
+    let ramps = [
+        ramp(moves[..first].iter().rev()).map_or(start, |part| part.start).max(widest[0]),
+        ramp(moves[last + 1..].iter()).map_or(end, |part| part.end).min(widest[1]),
+    ];
     // A ramp of hardly a sample is a corner, if it goes far; else it is a scrap of noise.
     let least = stillness.goes_on[1].max(SCRAP * stillness.noise);
     let goes_far = |range: std::ops::Range<usize>, level: f64| values[range].iter().any(|v| (v - level).abs() > least);
@@ -91,7 +90,7 @@ fn surroundings(
         !ends[1] && short[1] && goes_far(end..(end + RAMP).min(values.len()), moves[last].ends[1]),
     ];
     if (jumps[0] || ends[0]) && (jumps[1] || ends[1]) {
-        return Surroundings::Jumps;
+        return None;
     }
     // Beside a jump the other corner tells.
     let side = |side: usize, edge: usize| match (jumps[side], short[side]) {
@@ -99,8 +98,5 @@ fn surroundings(
         (false, true) => widest[side],
         (false, false) => ramps[side],
     };
-    Surroundings::Samples {
-        before: side(0, start),
-        after: side(1, end),
-    }
+    Some((side(0, start), side(1, end)))
 }

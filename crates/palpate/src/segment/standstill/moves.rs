@@ -65,66 +65,40 @@ pub(super) fn moves(time: &[f64], pieces: &[Piece], band: f64) -> Vec<Move> {
 /// Share of its greatest speed under which a ramp has ended.
 const ENDED: f64 = 0.25;
 
-/// First sample of the ramp that ends at a move.
-pub(super) fn ramp_before(moves: &[Move], first: usize) -> usize {
-    let (mut begin, mut fastest) = (moves[first].start, 0.0f64);
-    let direction = first.checked_sub(1).map_or(0.0, |last| moves[last].travel().signum());
-    for part in moves[..first].iter().rev() {
+/// The last of the moves of a ramp, which begins with the first of these.
+pub(super) fn ramp<'a>(parts: impl Iterator<Item = &'a Move> + Clone) -> Option<&'a Move> {
+    let direction = parts.clone().next()?.travel().signum();
+    let mut fastest = 0.0f64;
+    let goes = |part: &&Move| {
         let speed = part.speed() * direction;
-        if speed <= ENDED * fastest {
-            break;
-        }
-        (begin, fastest) = (part.start, fastest.max(speed));
-    }
-    begin
+        let goes = speed > ENDED * fastest;
+        fastest = fastest.max(speed);
+        goes
+    };
+    parts.take_while(goes).last()
 }
 
-/// Sample after the ramp that begins after a move.
-pub(super) fn ramp_after(moves: &[Move], last: usize) -> usize {
-    let (mut end, mut fastest) = (moves[last].end, 0.0f64);
-    let direction = moves.get(last + 1).map_or(0.0, |next| next.travel().signum());
-    for part in &moves[last + 1..] {
-        let speed = part.speed() * direction;
-        if speed <= ENDED * fastest {
-            break;
-        }
-        (end, fastest) = (part.end, fastest.max(speed));
-    }
-    end
-}
-
-/// How far the column would go in `duration` at the speed it has just before a move; `None` at the start of the record.
+/// How far the column would go in `duration` at the speed it has just beside a move that has this edge (time and value); `None` at the ends of
+/// the record. Of the `parts` beside it, the next first, end `far` (0 before the move, 1 after it) is the far one.
 ///
 /// The farthest point within half the duration counts: a stretch that reaches the next level may end on the same one.
-pub(super) fn goes_on_before(moves: &[Move], first: usize, duration: f64) -> Option<f64> {
-    let (edge, level) = (moves[first].times[0], moves[first].ends[0]);
-    let until = edge - 0.5 * duration;
-    let mut farthest: Option<(f64, f64)> = None;
-    for part in moves[..first].iter().rev() {
-        let begin = part.times[0].max(until);
-        let far = (part.at(begin) - level).abs().max((part.ends[1] - level).abs());
-        let so_far = farthest.map_or(0.0, |(far, _)| far);
-        farthest = Some((so_far.max(far), edge - begin));
-        if part.times[0] <= until {
+pub(super) fn goes_on<'a>(
+    parts: impl Iterator<Item = &'a Move>,
+    (edge, level): (f64, f64),
+    far: usize,
+    duration: f64,
+) -> Option<f64> {
+    let sign = [-1.0, 1.0][far];
+    let until = edge + sign * 0.5 * duration;
+    let (mut way, mut span) = (0.0f64, 0.0);
+    for part in parts {
+        let beyond = sign * (part.times[far] - until) >= 0.0;
+        let end = if beyond { until } else { part.times[far] };
+        way = way.max((part.at(end) - level).abs()).max((part.ends[1 - far] - level).abs());
+        span = sign * (end - edge);
+        if beyond {
             break;
         }
     }
-    farthest.filter(|(_, span)| *span > 0.0).map(|(far, span)| far / span * duration)
-}
-
-/// The same just after a move; `None` at the end of the record.
-pub(super) fn goes_on_after(moves: &[Move], last: usize, duration: f64) -> Option<f64> {
-    let (edge, level) = (moves[last].times[1], moves[last].ends[1]);
-    let until = edge + 0.5 * duration;
-    let mut farthest: Option<(f64, f64)> = None;
-    for part in &moves[last + 1..] {
-        let end = part.times[1].min(until);
-        let far = (part.at(end) - level).abs().max((part.ends[0] - level).abs());
-        let so_far = farthest.map_or(0.0, |(far, _)| far);
-        farthest = Some((so_far.max(far), end - edge));
-        if part.times[1] >= until {
-            break;
-        }
-    }
-    farthest.filter(|(_, span)| *span > 0.0).map(|(far, span)| far / span * duration)
+    (span > 0.0).then(|| way / span * duration)
 }

@@ -143,36 +143,26 @@ fn grown(moves: &[Move], taken: &[bool], seed: usize, stillness: &Stillness) -> 
     let (mut first, mut last) = (seed, seed);
     let most = (2.0 * stillness.band).max(1.5 * moves[seed].travel().abs() + stillness.band);
     let (mut low, mut high) = moves[seed].bounds();
-    let keeps = |next: &Move, edge: f64, low: &mut f64, high: &mut f64| {
+    let mut keeps = |next: &Move, edge: f64| {
         let (a, b) = next.bounds();
         let near = (a - edge).abs().max((b - edge).abs()) <= stillness.band;
-        let within = b.max(*high) - a.min(*low) <= most;
+        let within = b.max(high) - a.min(low) <= most;
         if near && within {
-            (*low, *high) = (a.min(*low), b.max(*high));
+            (low, high) = (a.min(low), b.max(high));
         }
         near && within
     };
     loop {
-        let (was_first, was_last) = (first, last);
+        let was = (first, last);
         let later = beyond(moves, last, |from| from.checked_add(1).filter(|next| *next < moves.len()));
-        for next in later.into_iter().take_while(|next| !taken[*next]) {
-            if keeps(&moves[next], moves[last].ends[1], &mut low, &mut high) {
-                last = next;
-                break;
-            }
-        }
-        let earlier = beyond(moves, first, |from| from.checked_sub(1));
-        for next in earlier.into_iter().take_while(|next| !taken[*next]) {
-            if keeps(&moves[next], moves[first].ends[0], &mut low, &mut high) {
-                first = next;
-                break;
-            }
-        }
-        if (first, last) == (was_first, was_last) {
-            break;
+        let mut later = later.into_iter().take_while(|next| !taken[*next]);
+        last = later.find(|next| keeps(&moves[*next], moves[last].ends[1])).unwrap_or(last);
+        let mut earlier = beyond(moves, first, |from| from.checked_sub(1)).into_iter().take_while(|next| !taken[*next]);
+        first = earlier.find(|next| keeps(&moves[*next], moves[first].ends[0])).unwrap_or(first);
+        if (first, last) == was {
+            return was;
         }
     }
-    (first, last)
 }
 
 /// Samples that may stray together and yet not end a standstill.

@@ -70,7 +70,7 @@ pub fn quantile(errors: &[f64], share: f64) -> Option<f64> {
 
 /// Searches a record and scores what is found; without its displacement where only the force counts.
 pub fn scored(labelled: &Labelled, force_only: bool) -> Scored {
-    let (record, _) = labelled.record.repaired();
+    let record = labelled.record.repaired();
     let found = if force_only {
         // A force that is rounded to one value makes no record, and has no holds.
         let force = Record::new(record.time().to_vec(), None, record.force().to_vec());
