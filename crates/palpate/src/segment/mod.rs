@@ -29,4 +29,4 @@ pub use phases::{GivenHold, find_phases, phases_with};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
 pub(crate) use segmentation::ramps_before;
 pub use segmentation::{After, HoldMode, Phase, Ripple, Rupture, Segment, Segmentation};
-pub use touch::{ContactChoice, ContactPoint, TouchEstimate, TouchMethod, find_contact, find_contact_of, free_samples};
+pub use touch::{ContactChoice, ContactPoint, TouchEstimate, TouchMethod, find_contact_of, free_samples};

@@ -7,7 +7,8 @@ use palpate::fit::{ExponentChoice, FitOptions, LatencyFit, Termination, fit_hold
 use palpate::latency::{LatencyLaw, decay, decay_with_gradient, decay_with_gradient_many};
 use palpate::record::Record;
 use palpate::segment::{
-    ContactChoice, Phase, RelaxationType, SegmentOptions, Segmentation, classify_relaxation, find_contact, find_phases,
+    ContactChoice, Phase, RelaxationType, SegmentOptions, Segmentation, classify_relaxation, find_contact_of,
+    find_phases,
 };
 use palpate::simulate::{
     ContactModel, Motion, ProtocolStep, Sampling, Separation, Trajectory, protocol, simulate, simulate_force,
@@ -461,7 +462,7 @@ proptest! {
             if let Ok(found) = find_phases(&record, &SegmentOptions::default()) {
                 prop_assert!(covers(&found, record.len()), "{:?}", found.segments);
                 let ball = Some(Shape::Ball { radius: 0.035 });
-                let _ = find_contact(&record, &found, ball.as_ref(), ContactChoice::Auto);
+                let _ = find_contact_of(&record, &found, ball.as_ref().map(|ball| (ball, Sides::Two)), ContactChoice::Auto);
                 for hold in found.holds().filter(|hold| hold.phase == Phase::Hold) {
                     let _ = classify_relaxation(&record.force()[hold.start..hold.end]);
                 }

@@ -5,7 +5,7 @@ use palpate::analysis::{AnalysisOptions, ClockSkew, Finding, analyze, clock_skew
 use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::record::{Baseline, Compliance, Correction, CorrectionOptions, Record, SkewChoice};
-use palpate::segment::{ContactChoice, SegmentOptions, TouchMethod, find_contact, find_phases};
+use palpate::segment::{ContactChoice, SegmentOptions, TouchMethod, find_contact_of, find_phases};
 use palpate::simulate::{ContactModel, Motion, ProtocolStep, Separation, protocol, simulate_force};
 use palpate::test_problems::{Noise, PAPER_RATE, paper_ball};
 
@@ -302,12 +302,12 @@ fn every_rule_finds_the_ball_behind_the_air() {
     for seed in 0..3 {
         let record = ball(3e-3, 0.1, 0.0, 5e-3, seed);
         let phases = find_phases(&record, &SegmentOptions::default()).unwrap();
-        let auto = find_contact(&record, &phases, Some(&shape), ContactChoice::Auto);
+        let auto = find_contact_of(&record, &phases, Some((&shape, Sides::Two)), ContactChoice::Auto);
         assert!(auto.estimates.len() >= 4 && auto.spread.unwrap() < 0.25e-3, "{auto:?}");
         for estimate in &auto.estimates {
             println!("{}: {:.3} mm", estimate.method.name(), 1e3 * (estimate.displacement - 3e-3));
             assert!((estimate.displacement - 3e-3).abs() < 0.5e-3, "{estimate:?}");
-            let by = find_contact(&record, &phases, Some(&shape), ContactChoice::By(estimate.method));
+            let by = find_contact_of(&record, &phases, Some((&shape, Sides::Two)), ContactChoice::By(estimate.method));
             assert_eq!((by.method, by.tare.displacement), (Some(estimate.method), estimate.displacement));
             assert_eq!(by.displacement_error, by.spread);
             assert!((by.tare.force - 0.1).abs() < 5e-3, "{by:?}");

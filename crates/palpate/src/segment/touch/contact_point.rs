@@ -9,7 +9,7 @@ use super::loading_curve::{LoadingCurve, Touch};
 use crate::contact::{Shape, Sides};
 use crate::record::{Record, Tare};
 use crate::segment::segmentation::{Phase, Segment, Segmentation};
-use crate::statistics::{mean, median, noise};
+use crate::statistics::{bounds, mean, median, noise, range};
 
 /// How to find first touch.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -71,16 +71,6 @@ impl ContactPoint {
         let mut others: Vec<f64> = others.map(|estimate| estimate.displacement).collect();
         (others.len() >= 3).then(|| self.tare.displacement - median(&mut others))
     }
-
-    /// The same with what the rules say.
-    fn with_estimates(self, estimates: Vec<TouchEstimate>) -> Self {
-        let spread = spread(&estimates);
-        Self {
-            estimates,
-            spread,
-            ..self
-        }
-    }
 }
 
 /// 1.4826 times the median distance from the median; `None` for fewer than three.
@@ -103,17 +93,6 @@ const SURE: f64 = 3.0;
 /// Samples that make a baseline.
 const BASELINE: usize = 5;
 
-/// Finds first touch in a segmented record of a body squeezed from two sides; see [`find_contact_of`].
-#[must_use]
-pub fn find_contact(
-    record: &Record,
-    segmentation: &Segmentation,
-    shape: Option<&Shape>,
-    choice: ContactChoice,
-) -> ContactPoint {
-    find_contact_of(record, segmentation, shape.map(|shape| (shape, Sides::Two)), choice)
-}
-
 /// Finds first touch in a segmented record.
 ///
 /// The first ramp in which the force rises decides. The curve that a body under the latency law must draw in it, with n, v
@@ -132,11 +111,8 @@ pub fn find_contact_of(
     match (choice, record.displacement()) {
         (ContactChoice::AsRecorded, _) | (_, None) => as_recorded,
         (ContactChoice::Displacement(displacement), _) => ContactPoint::at(record, displacement),
-        (ContactChoice::Auto, Some(displacement)) => {
-            automatic(record, displacement, segmentation, body, None).unwrap_or(as_recorded)
-        }
-        (ContactChoice::By(method), Some(displacement)) => {
-            automatic(record, displacement, segmentation, body, Some(method)).unwrap_or(as_recorded)
+        (ContactChoice::Auto | ContactChoice::By(_), Some(displacement)) => {
+            automatic(record, displacement, segmentation, body, choice).unwrap_or(as_recorded)
         }
     }
 }
@@ -167,12 +143,10 @@ pub fn free_samples(record: &Record, segmentation: &Segmentation) -> Vec<Range<u
 /// The first loading ramp in which the force rises, and the hold right behind it.
 fn first_rise<'a>(record: &Record, segmentation: &'a Segmentation) -> Option<(&'a Segment, Option<&'a Segment>)> {
     let force = record.force();
-    let (low, high) = force.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
     let segments = &segmentation.segments;
     let rises = |segment: &Segment| {
         let part = &force[segment.start.saturating_sub(1)..segment.end];
-        let top = part.iter().fold(f64::MIN, |most, f| most.max(*f));
-        top - part[0] > (8.0 * noise(part)).max(0.005 * (high - low))
+        bounds(part).1 - part[0] > (8.0 * noise(part)).max(0.005 * range(force))
     };
     let index = segments.iter().position(|s| s.phase == Phase::Loading && rises(s))?;
     let hold = segments.get(index + 1).filter(|next| next.phase == Phase::Hold);
@@ -184,7 +158,7 @@ fn automatic(
     displacement: &[f64],
     segmentation: &Segmentation,
     body: Option<(&Shape, Sides)>,
-    asked: Option<TouchMethod>,
+    choice: ContactChoice,
 ) -> Option<ContactPoint> {
     let (ramp, hold) = first_rise(record, segmentation)?;
     let force = record.force();
@@ -203,70 +177,45 @@ fn automatic(
         .and_then(|curve| curve.touch(from, travel))
         .filter(|touch| (from..displacement[ramp.end - 1]).contains(&touch.displacement));
     let estimates = estimates(record, displacement, foot, ramp, curve.as_ref());
-    let by_rule = estimates.iter().find(|estimate| Some(estimate.method) == asked).copied();
-    if let Some(estimate) = by_rule {
-        let point = behind_air(record, displacement, (foot, ramp), from, estimate.displacement, None);
-        let found = ContactPoint {
-            method: Some(estimate.method),
-            ..point
-        };
-        let found = found.with_estimates(estimates);
-        return Some(ContactPoint {
-            displacement_error: found.spread,
-            ..found
-        });
-    }
-    let touch = curve
+    let spread = spread(&estimates);
+    let by_rule = estimates.iter().find(|estimate| choice == ContactChoice::By(estimate.method)).copied();
+    let by_curve = curve
         .filter(|touch| touch.displacement - from > (SURE * touch.error).max(AIR * travel))
         .filter(|touch| is_flat(force, displacement, foot, touch, ramp));
-    let Some(touch) = touch else {
-        let point = ContactPoint {
-            sample: Some(foot),
-            tare: Tare {
-                force: if has_rest { median(&mut force[..=foot].to_vec()) } else { 0.0 },
-                displacement: from,
-            },
-            ..ContactPoint::at(record, from)
-        };
-        return Some(point.with_estimates(estimates));
+    // Behind air the zero of the force is its median over half the way, or else the base of the curve.
+    let behind_air = |touch: f64, base: Option<f64>| {
+        let clear = first_beyond(displacement, foot, ramp, 0.5 * (from + touch)).max(foot);
+        let before = median(&mut force[..clear.max(1)].to_vec());
+        let zero = if clear >= BASELINE { before } else { base.unwrap_or(before) };
+        (touch, first_beyond(displacement, foot, ramp, touch), zero)
     };
-    let point = ContactPoint {
-        displacement_error: Some(touch.error),
-        method: Some(TouchMethod::LoadingCurve),
-        ..behind_air(record, displacement, (foot, ramp), from, touch.displacement, Some(touch.base))
+    let (method, displacement_error, (touch, sample, zero)) = match (by_rule, by_curve) {
+        (Some(rule), _) => (Some(rule.method), spread, behind_air(rule.displacement, None)),
+        (None, Some(touch)) => {
+            (Some(TouchMethod::LoadingCurve), Some(touch.error), behind_air(touch.displacement, Some(touch.base)))
+        }
+        (None, None) => (None, None, (from, foot, if has_rest { median(&mut force[..=foot].to_vec()) } else { 0.0 })),
     };
-    let point = point.with_estimates(estimates);
-    // A curve that stands alone is that of another body; its own error knows nothing of that.
-    let apart = point
-        .apart()
-        .filter(|apart| apart.abs() > ALONE * (displacement[ramp.end - 1] - touch.displacement));
-    Some(ContactPoint {
-        displacement_error: Some(apart.map_or(touch.error, |apart| touch.error.hypot(apart))),
-        ..point
-    })
-}
-
-/// First touch at `touch` after travel from `from`; the zero of the force is its median over half the way, or `base`.
-fn behind_air(
-    record: &Record,
-    displacement: &[f64],
-    (foot, ramp): (usize, &Segment),
-    from: f64,
-    touch: f64,
-    base: Option<f64>,
-) -> ContactPoint {
-    let force = record.force();
-    let clear = first_beyond(displacement, foot, ramp, 0.5 * (from + touch)).max(foot);
-    let before = median(&mut force[..clear.max(1)].to_vec());
-    ContactPoint {
-        sample: Some(first_beyond(displacement, foot, ramp, touch)),
+    let mut point = ContactPoint {
+        sample: Some(sample),
         tare: Tare {
-            force: if clear >= BASELINE { before } else { base.unwrap_or(before) },
+            force: zero,
             displacement: touch,
         },
+        displacement_error,
         air_travel: (touch - from).max(0.0),
-        ..ContactPoint::at(record, touch)
+        method,
+        spread,
+        estimates,
+    };
+    // A curve that stands alone is that of another body; its own error knows nothing of that.
+    if by_rule.is_none()
+        && let (Some(curve), Some(apart)) = (by_curve, point.apart())
+        && apart.abs() > ALONE * (displacement[ramp.end - 1] - touch)
+    {
+        point.displacement_error = Some(curve.error.hypot(apart));
     }
+    Some(point)
 }
 
 /// What every rule says that finds something.

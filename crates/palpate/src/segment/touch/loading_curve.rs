@@ -51,29 +51,19 @@ pub(super) struct LoadingCurve {
 /// What the hold says, in N and s, with the excess curve of its exponent.
 #[derive(Clone)]
 struct HoldLaw {
-    exponent: f64,
+    fit: LatencyFit,
     coefficient: f64,
     relaxed: f64,
-    amplitude: f64,
-    /// Sum of squared residuals in the hold, N².
-    square: f64,
-    samples: usize,
-    /// Covariance of the relaxed force, the amplitude and ln λ.
-    covariance: Option<[[f64; 3]; 3]>,
     curve: Rc<ExcessCurve>,
 }
 
 impl HoldLaw {
-    fn new(fit: &LatencyFit) -> Self {
+    fn new(fit: LatencyFit) -> Self {
         Self {
-            exponent: fit.exponent().value,
             coefficient: fit.rate_coefficient().value,
             relaxed: fit.equilibrium().value,
-            amplitude: fit.amplitude().value,
-            square: fit.residual_square,
-            samples: fit.samples,
-            covariance: fit.covariance.as_ref().map(|c| [0, 1, 2].map(|i: usize| [c[i][0], c[i][1], c[i][2]])),
             curve: Rc::new(ExcessCurve::new(fit.exponent().value)),
+            fit,
         }
     }
 }
@@ -127,9 +117,9 @@ impl LoadingCurve {
     pub(super) fn touch(&self, from: f64, travel: f64) -> Option<Touch> {
         let pairs = self.laws.iter().map(|law| (self.fitted(law, self.starts(law, from, travel)), law));
         let fits: Vec<(Curve, &HoldLaw)> = pairs.filter_map(|(curve, law)| Some((curve?, law))).collect();
-        let total = |fit: &(Curve, &HoldLaw)| fit.0.square + fit.1.square;
+        let total = |fit: &(Curve, &HoldLaw)| fit.0.square + fit.1.fit.residual_square;
         let best = fits.iter().min_by(|a, b| total(a).total_cmp(&total(b)))?;
-        let samples = self.force.len() + best.1.samples;
+        let samples = self.force.len() + best.1.fit.samples;
         let variance = (total(best) / samples as f64).max(f64::MIN_POSITIVE);
         let weights: Vec<f64> = fits.iter().map(|fit| (0.5 * (total(best) - total(fit)) / variance).exp()).collect();
         let sum: f64 = weights.iter().sum();
@@ -151,7 +141,10 @@ impl LoadingCurve {
     /// Standard error of d₀ that the errors of F_e and v bring in: √(gᵀ C g) with the slopes g of d₀ along the numbers of the
     /// hold and their covariance C.
     fn error_by_hold(&self, best: &Curve, law: &HoldLaw) -> f64 {
-        let Some(covariance) = law.covariance else { return 0.0 };
+        // Of the relaxed force, the amplitude and ln λ.
+        let Some(covariance) = &law.fit.covariance else {
+            return 0.0;
+        };
         let moved = |relaxed: f64, log_coefficient: f64| {
             let law = HoldLaw {
                 relaxed: law.relaxed + relaxed,
@@ -169,7 +162,7 @@ impl LoadingCurve {
         let by_relaxed = moved(relaxed_error, 0.0) / relaxed_error;
         let by_log = moved(0.0, log_error) / log_error;
         // v = λ Δ¹⁻ⁿ
-        let slopes = [by_relaxed, by_log * (1.0 - law.exponent) / law.amplitude, by_log];
+        let slopes = [by_relaxed, by_log * (1.0 - law.curve.exponent) / law.fit.amplitude().value, by_log];
         let rows = (0..3).map(|i: usize| slopes[i] * (0..3).map(|j: usize| covariance[i][j] * slopes[j]).sum::<f64>());
         rows.sum::<f64>().max(0.0).sqrt()
     }
@@ -181,7 +174,7 @@ impl LoadingCurve {
         let mut starts: Vec<([f64; 3], f64)> = (0..TOUCHES)
             .flat_map(|i| {
                 let touch = from + travel * f64::from(i) / f64::from(TOUCHES);
-                [0.9, 1.1, 2.0, 5.0].map(|share| [touch, (share * law.amplitude).ln(), base])
+                [0.9, 1.1, 2.0, 5.0].map(|share| [touch, (share * law.fit.amplitude().value).ln(), base])
             })
             .map(|start| (start, self.square(law, &start)))
             .collect();
@@ -197,7 +190,7 @@ impl LoadingCurve {
         }
         let area = |s: f64| self.radius.map_or(1.0, |radius| s * (2.0 * radius - s));
         let balance = balance.exp();
-        let transient = self.speed * balance.powf(1.0 - law.exponent) / law.coefficient;
+        let transient = self.speed * balance.powf(1.0 - law.curve.exponent) / law.coefficient;
         let excess = balance * law.curve.at(s / transient);
         base + area(s) / area(whole) * ((law.relaxed - base) * s / whole + excess)
     }
@@ -306,7 +299,7 @@ fn laws(record: &Record, hold: &Segment) -> Option<Vec<HoldLaw>> {
     let sides = near.map_or(Vec::new(), |(n, error)| vec![n - error, n + error]);
     let exponents = sides.into_iter().chain([1.0, 2.0, 3.0, 5.0, 7.0]).filter(|n| (0.2..=30.0).contains(n));
     let fixed = exponents.filter_map(|n| fit(ExponentChoice::Fixed(n)));
-    let laws: Vec<HoldLaw> = free.iter().map(HoldLaw::new).chain(fixed.map(|fit| HoldLaw::new(&fit))).collect();
+    let laws: Vec<HoldLaw> = free.into_iter().chain(fixed).map(HoldLaw::new).collect();
     (!laws.is_empty()).then_some(laws)
 }
 

@@ -10,5 +10,5 @@ mod contact_point;
 mod estimators;
 mod loading_curve;
 
-pub use contact_point::{ContactChoice, ContactPoint, find_contact, find_contact_of, free_samples};
+pub use contact_point::{ContactChoice, ContactPoint, find_contact_of, free_samples};
 pub use estimators::{TouchEstimate, TouchMethod};
