@@ -1,26 +1,21 @@
 //! What went wrong, as the user of the command reads it.
 
 use anstyle::{AnsiColor, Style};
-use palpate_jobs::{JobError, spelled};
+use palpate_jobs::JobError;
+use palpate_report::spelling::with_flags;
 
 /// Writes `error:` and `hint:` lines to standard error, in colour where it is a terminal.
 pub(crate) fn tell(error: &JobError) {
     line("error", AnsiColor::Red, &message(error));
     if let Some(hint) = &error.hint {
-        line("hint", AnsiColor::Cyan, &spelled(hint, &flag));
+        line("hint", AnsiColor::Cyan, &with_flags(hint));
     }
 }
 
 /// The message with the file in front.
 pub(crate) fn message(error: &JobError) -> String {
     let place = error.place.as_ref().map_or(String::new(), |place| format!("{place}: "));
-    format!("{place}{}", spelled(&error.message, &flag))
-}
-
-/// An option of a job as it is typed: `--poisson-ratio`, `--equilibrium hertz`.
-fn flag(name: &str, value: Option<&str>) -> String {
-    let value = value.map_or(String::new(), |value| format!(" {value}"));
-    format!("--{}{value}", name.replace('_', "-"))
+    format!("{place}{}", with_flags(&error.message))
 }
 
 fn line(label: &str, color: AnsiColor, text: &str) {

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use palpate_jobs::{ErrorKind, JobError};
+use palpate_report::spelling::with_flags;
 
 /// Writes `text` to standard output; a reader that has seen enough (`| head`) is no error.
 pub(crate) fn print(text: &str) -> Result<(), JobError> {
@@ -29,7 +30,7 @@ pub(crate) fn note(text: &str) {
 
 /// Likewise, of several things.
 pub(crate) fn notes(texts: &[String]) {
-    texts.iter().for_each(|text| note(text));
+    texts.iter().for_each(|text| note(&with_flags(text)));
 }
 
 /// Tells of a report.

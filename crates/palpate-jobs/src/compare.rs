@@ -7,6 +7,7 @@ use palpate::laws::{Law, Response};
 use palpate::watch::{Progress, Watch};
 use palpate_report::document::{ComparisonDocument, ComparisonSettingsDocument};
 use palpate_report::result::{ComparedRecord, LeftOut};
+use palpate_report::spelling::with_flags;
 use palpate_report::study::{Bundle, Pictures, comparison_bundle, comparison_markdown, comparison_text};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -116,7 +117,9 @@ impl Compare {
                     Err(error) if error.kind == ErrorKind::Cancelled || (alone && part.only) => return Err(error),
                     made => found.take(
                         called(part.path, part.name),
-                        made.map_err(|error| (without(part.path, &error.to_string()), error.hint)),
+                        made.map_err(|error| {
+                            (without(part.path, &error.to_string()), error.hint.map(|hint| with_flags(&hint)))
+                        }),
                     ),
                 }
                 Ok(())

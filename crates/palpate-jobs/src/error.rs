@@ -9,6 +9,7 @@ use palpate::watch::Cancelled;
 use palpate_files::description::DescriptionError;
 use palpate_files::record::ReadError;
 use palpate_report::figure::FigureError;
+use palpate_report::spelling::spelled;
 use palpate_report::study::StudyError;
 
 /// What a job failed for.
@@ -97,22 +98,6 @@ impl fmt::Display for JobError {
 
 impl std::error::Error for JobError {}
 
-/// A text with its options, which stand between `⟨` and `⟩`, as `spell` writes a name and perhaps its value.
-#[must_use]
-pub fn spelled(text: &str, spell: &dyn Fn(&str, Option<&str>) -> String) -> String {
-    let mut out = String::new();
-    let mut rest = text;
-    while let Some((before, (option, after))) =
-        rest.split_once('⟨').and_then(|(before, behind)| Some((before, behind.split_once('⟩')?)))
-    {
-        let (name, value) = option.split_once('=').map_or((option, None), |(name, value)| (name, Some(value)));
-        out.push_str(before);
-        out.push_str(&spell(name, value));
-        rest = after;
-    }
-    out + rest
-}
-
 /// A message without the path of its file in front, where that stands elsewhere.
 pub(crate) fn without(path: &Path, message: &str) -> String {
     let rest = message.strip_prefix(&path.display().to_string());
@@ -170,15 +155,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn options_are_spelled_as_a_front_end_writes_them() {
+    fn an_error_names_options_plainly() {
         let error = JobError::option("⟨poisson_ratio⟩ is for Hertz's law", "add ⟨equilibrium=hertz⟩");
         assert_eq!(error.to_string(), "poisson_ratio is for Hertz's law");
-        let flag = |name: &str, value: Option<&str>| {
-            let value = value.map_or(String::new(), |value| format!(" {value}"));
-            format!("--{}{value}", name.replace('_', "-"))
-        };
-        assert_eq!(spelled(&error.message, &flag), "--poisson-ratio is for Hertz's law");
-        assert_eq!(spelled(&error.hint.unwrap(), &flag), "add --equilibrium hertz");
-        assert_eq!(spelled("a ⟨ that is none", &flag), "a ⟨ that is none");
     }
 }

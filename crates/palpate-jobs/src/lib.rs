@@ -44,7 +44,7 @@ pub use batch::{Batch, Batched, Refused};
 pub use calibrate::{Calibrate, Calibrated, Equilibrium};
 pub use compare::{Compare, Compared};
 pub use convert::{Convert, Converted};
-pub use error::{ErrorKind, JobError, spelled};
+pub use error::{ErrorKind, JobError};
 pub use grip::{MaterialSource, PlanGrip, RegripFor};
 pub use inspect::{Inspect, Inspected, machines_text};
 pub use outcome::{Outcome, Results, Verdict};

@@ -11,12 +11,13 @@ use palpate_jobs::output::write_bundle;
 use palpate_jobs::{Analyze, Analyzed, Outcome, Results};
 use palpate_report::document::{AnalysisDocument, FitDocument};
 use palpate_report::result::{Input, word};
+use palpate_report::spelling::{spelled, with_flags};
 use palpate_report::study::Pictures;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use serde::{Deserialize, Serialize};
 
-use crate::errors::{PalpateError, failed, refused_plainly, unwritten, warn_of};
+use crate::errors::{PalpateError, failed, keyword, refused_plainly, unwritten, warn_of};
 use crate::html::framed;
 use crate::kept::Kept;
 use crate::shown::shown;
@@ -38,6 +39,15 @@ impl Finding {
     }
 }
 
+impl Finding {
+    /// What helps; a document names options as the command does.
+    fn remedy_in_python(&self) -> String {
+        ["⟨compare/creep⟩", "⟨compare/loss=huber⟩"].iter().fold(self.found.remedy.clone(), |text, option| {
+            text.replace(&with_flags(option), &spelled(option, &keyword))
+        })
+    }
+}
+
 shown! {
     Finding: self
     values {
@@ -50,7 +60,7 @@ shown! {
         /// What it may mean.
         meaning: &str = &self.found.meaning,
         /// What helps.
-        remedy: &str = &self.found.remedy,
+        remedy: String = self.remedy_in_python(),
         /// Number of the hold, from 1; None for the record as a whole.
         hold: Option<usize> = self.hold,
     }

@@ -5,7 +5,8 @@ use std::io;
 
 use palpate::analysis::Finding;
 use palpate_files::description::DescriptionError;
-use palpate_jobs::{ErrorKind, JobError, spelled};
+use palpate_jobs::{ErrorKind, JobError};
+use palpate_report::spelling::spelled;
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::{PyTypeInfo, create_exception};
@@ -34,10 +35,8 @@ pub(crate) fn refused<E: PyTypeInfo>(message: impl Display, hint: Option<impl Di
 }
 
 fn told(message: impl Display, hint: Option<impl Display>) -> String {
-    match hint {
-        Some(hint) => format!("{message}\nhint: {hint}"),
-        None => message.to_string(),
-    }
+    let text = hint.map_or(message.to_string(), |hint| format!("{message}\nhint: {hint}"));
+    spelled(&text, &keyword)
 }
 
 /// An exception without a hint.
@@ -70,7 +69,7 @@ pub(crate) fn failed(error: JobError) -> PyErr {
     } = error;
     let place = place.filter(|_| matches!(kind, ErrorKind::File(_)));
     let message = place.map_or(message.clone(), |place| format!("{place}: {message}"));
-    let text = spelled(&told(message, hint), &keyword);
+    let text = told(message, hint);
     match kind {
         ErrorKind::Option => PyErr::new::<OptionError, _>(text),
         ErrorKind::File(kind) => io::Error::new(kind, text).into(),
@@ -84,20 +83,29 @@ pub(crate) fn failed(error: JobError) -> PyErr {
 /// What a file cannot be written for.
 pub(crate) fn unwritten(error: JobError) -> PyErr {
     let message = error.to_string();
-    PyErr::new::<PalpateError, _>(spelled(&told(message, error.hint), &keyword))
+    PyErr::new::<PalpateError, _>(told(message, error.hint))
 }
 
-/// An option of a job as a keyword, with its unit.
-fn keyword(name: &str, value: Option<&str>) -> String {
+/// An option of a job as a keyword, with its unit; thresholds of phases stand in the description of a test, and only a hold that is fitted by
+/// itself has a loss.
+pub(crate) fn keyword(name: &str, value: Option<&str>) -> String {
+    let (job, name) = name.split_once('/').map_or((None, name), |(job, name)| (Some(job), name));
     let unit = match name {
-        "squeeze" | "stroke" | "tolerance" => "_m",
+        "minimum_hold" | "tolerance" => return format!("phases.{name}"),
+        "squeeze" | "stroke" => "_m",
         "force" | "most_force" | "band" => "_n",
         "hold" | "close_within" | "shortest_pause" | "fit_until" | "at" => "_s",
         _ => "",
     };
-    match value {
+    let written = match value {
         Some(value) => format!("{name}{unit}=\"{value}\""),
+        None if job.is_some() => format!("{name}{unit}=True"),
         None => format!("{name}{unit}"),
+    };
+    match job {
+        Some(_) if name == "loss" => format!("palpate.fit({written})"),
+        Some(job) => format!("{job}({written})"),
+        None => written,
     }
 }
 

@@ -6,6 +6,7 @@
 //! |---|---|
 //! | [`number`] | how a value reads for a person and how it is stored for a machine |
 //! | [`sparkline`], `wrap`, `script`, `escape`, `word` | lines of a terminal; characters of SVG and HTML; words for variants |
+//! | [`spelling`] | options that messages name |
 //! | [`table`] | named columns once, written as CSV, plain text, Markdown or HTML |
 //! | [`figure`] | panels of lines, points, bands and heat maps as SVG and PNG |
 //! | [`page`] | both in one HTML file that opens without a network |
@@ -22,6 +23,7 @@ pub mod page;
 pub mod result;
 mod script;
 pub mod sparkline;
+pub mod spelling;
 pub mod study;
 pub mod table;
 mod word;

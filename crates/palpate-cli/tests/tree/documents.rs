@@ -192,8 +192,19 @@ fn descriptions_in_guides_and_examples_are_valid() {
 #[test]
 fn the_guide_explains_every_finding() {
     let source = code_of(&read("crates/palpate/src/analysis/finding.rs"));
-    let listed = source.split("pub fn code").nth(1).and_then(|rest| rest.split("pub fn").next()).unwrap_or_default();
-    let mut codes: Vec<&str> = listed.split('"').skip(1).step_by(2).collect();
+    let listed = source
+        .split("pub enum Finding {")
+        .nth(1)
+        .and_then(|rest| rest.split("\n}").next())
+        .unwrap_or_default();
+    let variants = listed
+        .lines()
+        .filter_map(|line| line.strip_prefix("    "))
+        .filter(|line| !line.starts_with([' ', '}']));
+    let words = variants.map(|line| line.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default());
+    let mut codes: Vec<String> = words.map(in_snake_case).collect();
+    let told = read("crates/palpate/src/analysis/finding/told.rs");
+    assert!(codes.iter().all(|code| told.contains(&format!("\"{code}\""))), "{codes:?}");
     let guide = read("docs/guides/reading-the-report.md");
     let rows = guide.split("## Findings").nth(1).and_then(|rest| rest.split("\n## ").next()).unwrap_or_default();
     let mut explained: Vec<&str> = rows.lines().filter(|line| line.starts_with("| `")).flat_map(code_spans).collect();
@@ -202,11 +213,32 @@ fn the_guide_explains_every_finding() {
     assert_eq!(explained, codes);
 }
 
+/// `TooFewSamples` as `too_few_samples`.
+fn in_snake_case(name: &str) -> String {
+    let letter = |c: char| if c.is_uppercase() { format!("_{}", c.to_lowercase()) } else { c.to_string() };
+    name.chars().map(letter).collect::<String>().trim_start_matches('_').to_owned()
+}
+
 /// A source without its comments and unit tests.
 fn code_of(source: &str) -> String {
     let code = source.split("#[cfg(test)]").next().unwrap_or_default();
     let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
     lines.collect::<Vec<_>>().join("\n")
+}
+
+/// What helps is said without the flags of the command: each front end writes options its own way.
+#[test]
+fn the_library_knows_no_flags() {
+    for path in files("crates/palpate/src", "rs") {
+        let source = code_of(&read(&path));
+        let texts = source.split('"').skip(1).step_by(2);
+        let is_flag = |word: &str| {
+            word.trim_matches(['(', '`'])
+                .strip_prefix("--")
+                .is_some_and(|name| name.starts_with(char::is_alphabetic))
+        };
+        assert!(!texts.into_iter().any(|text| text.split_whitespace().any(is_flag)), "{path} names a flag");
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use palpate::analysis;
 
 use crate::page::Finding;
+use crate::spelling::with_flags;
 
 impl From<&analysis::Finding> for Finding {
     fn from(finding: &analysis::Finding) -> Self {
@@ -11,7 +12,7 @@ impl From<&analysis::Finding> for Finding {
             severity: finding.severity(),
             seen: finding.seen(),
             meaning: finding.meaning().to_owned(),
-            remedy: finding.remedy().to_owned(),
+            remedy: with_flags(finding.remedy()),
         }
     }
 }

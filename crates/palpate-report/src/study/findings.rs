@@ -4,6 +4,7 @@ use palpate::analysis::{Analysis, Finding as RecordFinding, HoldAnalysis, Severi
 
 use crate::page::Finding;
 use crate::result::{ComparedRecord, word};
+use crate::spelling::with_flags;
 use crate::wrap::{WIDTH, indented};
 
 /// Different words for one code that are written out; more are counted.
@@ -36,7 +37,7 @@ impl Gathered {
             code: self.code.to_owned(),
             seen: lines.join("\n"),
             meaning: sentence(self.meaning),
-            remedy: sentence(self.remedy),
+            remedy: sentence(&with_flags(self.remedy)),
         }
     }
 }

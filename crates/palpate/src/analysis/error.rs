@@ -57,7 +57,7 @@ pub enum AnalysisError {
 }
 
 impl AnalysisError {
-    /// What would help.
+    /// What would help; options stand between `⟨` and `⟩`, to be written as users of a program write them.
     #[must_use]
     pub fn hint(&self) -> String {
         match self {

@@ -312,7 +312,7 @@ impl Finding {
         self.told().3
     }
 
-    /// What helps.
+    /// What helps; options stand between `⟨` and `⟩`, to be written as users of a program write them.
     #[must_use]
     pub fn remedy(&self) -> &'static str {
         self.told().4

@@ -205,13 +205,13 @@ fn nothing_to_fit(holds: &[HoldAnalysis]) -> Result<(), AnalysisError> {
             "start the fit earlier: hold_start = \"settled\", or a shorter time after the peak",
         )
     } else if let Some((_, held)) = with("feedback_controlled") {
-        let hint = "fit the displacement as creep: palpate compare --creep";
+        let hint = "fit the displacement as creep: ⟨compare/creep⟩";
         (format!("the machine held the force; {}", held.seen()), hint)
     } else if let Some((hold, few)) = with("too_few_samples") {
         let needed = if let Finding::TooFewSamples { needed, .. } = few { *needed } else { 0 };
         let seen = few.seen();
         if hold.fitted < hold.times.len() && hold.times.len() >= needed {
-            (format!("{seen} (up to the time set with until)"), "raise until (--fit-until)")
+            (format!("{seen} (up to the time set with until)"), "raise until (⟨fit_until⟩)")
         } else {
             (seen, "hold longer or sample faster; `palpate inspect` shows the phases that were found")
         }
@@ -219,7 +219,7 @@ fn nothing_to_fit(holds: &[HoldAnalysis]) -> Result<(), AnalysisError> {
         (area.seen(), "check first touch (touch), the radius, and the unit and sign of the displacement")
     } else if let Some(force) = constant_force(holds) {
         let reason = format!("the force is {} N throughout: nothing relaxes", significant(force, 4));
-        let hint = "check that the force column is the right one and that the load cell was connected; a body that creeps is for `palpate compare --creep`";
+        let hint = "check that the force column is the right one and that the load cell was connected; a body that creeps is for `⟨compare/creep⟩`";
         (reason, hint)
     } else if let Some((_, still)) = with("no_relaxation") {
         let reason = format!("the force does not change in any hold ({} in the first)", still.seen());

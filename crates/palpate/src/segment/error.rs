@@ -93,7 +93,7 @@ pub enum SegmentError {
 }
 
 impl SegmentError {
-    /// What would help.
+    /// What would help; options stand between `⟨` and `⟩`, to be written as users of a program write them.
     #[must_use]
     pub fn hint(&self) -> &'static str {
         match self {
@@ -115,13 +115,13 @@ impl SegmentError {
                 longest,
                 minimum_hold,
             } if samples < minimum_samples && longest >= minimum_hold => {
-                "the hold has too few samples: record faster, or set a shortest hold (--minimum-hold), for which 3 samples do"
+                "the hold has too few samples: record faster, or set a shortest hold (⟨minimum_hold⟩), for which 3 samples do"
             }
             Self::NoHold { longest: 0.0, .. } => {
-                "a cyclic test has no hold; a tolerance (--tolerance) beyond the range of the test hides every ramp: lower it"
+                "a cyclic test has no hold; a tolerance (⟨tolerance⟩) beyond the range of the test hides every ramp: lower it"
             }
             Self::NoHold { .. } => {
-                "a cyclic test has no hold; for a short one lower the shortest hold (--minimum-hold), for a drifting one raise the tolerance (--tolerance)"
+                "a cyclic test has no hold; for a short one lower the shortest hold (⟨minimum_hold⟩), for a drifting one raise the tolerance (⟨tolerance⟩)"
             }
         }
     }

@@ -100,7 +100,7 @@ impl Finding {
                     significant(*change, 3)
                 ),
                 "the machine held the force, not the displacement: the body creeps, and a law of relaxation does not apply",
-                "fit the displacement as creep (palpate compare --creep), or hold the displacement",
+                "fit the displacement as creep (⟨compare/creep⟩), or hold the displacement",
             ),
             Self::NothingHeld { travel, change } => (
                 "nothing_held",
@@ -198,7 +198,7 @@ impl Finding {
                         _ => format!("{count} rows of the force stray alone, the first at {time} s with {force} N"),
                     },
                     "a spike of the load cell or the logger pulls fits its way, a real peak does not belong to a hold",
-                    "remove the rows if they are no forces; `palpate compare --loss huber` makes them count less",
+                    "remove the rows if they are no forces; `⟨compare/loss=huber⟩` makes them count less",
                 )
             }
             Self::RowsAveraged { rows, averaged } => (

@@ -61,7 +61,7 @@ pub enum CreepError {
 }
 
 impl CreepError {
-    /// What would help.
+    /// What would help; options stand between `⟨` and `⟩`, to be written as users of a program write them.
     #[must_use]
     pub fn hint(&self) -> &'static str {
         match self {
@@ -69,7 +69,7 @@ impl CreepError {
             Self::Cancelled(_) => "",
             Self::Given(error) => error.hint(),
             Self::DisplacementHeld | Self::Segment(_) => {
-                "a hold of constant force is needed; without --creep holds of constant displacement are sought"
+                "a hold of constant force is needed; without ⟨creep⟩ holds of constant displacement are sought"
             }
         }
     }
