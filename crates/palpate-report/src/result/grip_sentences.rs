@@ -1,7 +1,9 @@
 //! What a planned grip says, in sentences.
 
 use palpate::contact::Sides;
-use palpate::grip::{BackOff, Control, ForceHold, Grasp, Holding, Objective, PlanKind, Regrip, Schedule, TimeToSlip};
+use palpate::grip::{
+    BackOff, Control, ForceHold, Grasp, GripError, Holding, Objective, PlanKind, Regrip, Schedule, TimeToSlip,
+};
 use palpate::number::significant;
 
 use super::gripped::GrippedBody;
@@ -39,22 +41,17 @@ impl GrippedBody<'_> {
     /// The verdict in a sentence.
     #[must_use]
     pub fn verdict(&self) -> String {
+        self.told().unwrap_or_else(|error| format!("No: {error}."))
+    }
+
+    fn told(&self) -> Result<String, &GripError> {
         let answer = &self.answer;
-        let holds = match answer.holds() {
-            Ok(holds) => holds,
-            Err(error) => return format!("No: {error}."),
+        let holds = answer.holds() == Ok(true);
+        let told = match answer.question.control {
+            Control::Position => of_squeeze(self, &answer.squeeze.as_ref()?.found, holds),
+            Control::Force => of_pressed(&answer.force_hold.as_ref()?.found, holds),
         };
-        let word = if holds { "Yes" } else { "No" };
-        match answer.question.control {
-            Control::Position => match &answer.squeeze {
-                Ok(squeeze) => format!("{word}: {}", of_squeeze(self, &squeeze.found, holds)),
-                Err(error) => format!("No: {error}."),
-            },
-            Control::Force => match &answer.force_hold {
-                Ok(pressed) => format!("{word}: {}", of_pressed(&pressed.found, holds)),
-                Err(error) => format!("No: {error}."),
-            },
-        }
+        Ok(format!("{}: {told}", if holds { "Yes" } else { "No" }))
     }
 
     /// What the tables mean, in sentences: the advice of both ways of control beside each other, retreat, schedule, limits of the test.

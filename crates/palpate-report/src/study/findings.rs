@@ -44,13 +44,17 @@ impl Gathered {
 
 /// All findings of a record and of its holds.
 pub(super) fn gathered(analysis: &Analysis, most: usize) -> Vec<Gathered> {
-    let mut seen: Vec<Seen<'_>> = analysis.findings.iter().map(|finding| Seen::new(analysis, finding, None)).collect();
+    let mut seen: Vec<Seen<'_>> = analysis.findings.iter().map(|finding| Seen::of(finding, None)).collect();
     for hold in &analysis.holds {
         let without_area = hold.findings.iter().any(|finding| matches!(finding, RecordFinding::NoContactArea));
         for finding in &hold.findings {
             // That an open contact does not relax goes without saying.
             if !(without_area && matches!(finding, RecordFinding::NoRelaxation { .. })) {
-                seen.push(Seen::new(analysis, finding, Some(hold)));
+                let mut one = Seen::of(finding, Some(hold.number));
+                if matches!(finding, RecordFinding::NoContactArea) && open(analysis, hold) {
+                    one.severity = Severity::Info;
+                }
+                seen.push(one);
             }
         }
     }
@@ -80,14 +84,6 @@ struct Seen<'a> {
 }
 
 impl<'a> Seen<'a> {
-    fn new(analysis: &Analysis, finding: &'a RecordFinding, hold: Option<&HoldAnalysis>) -> Self {
-        let released = matches!(finding, RecordFinding::NoContactArea) && hold.is_some_and(|hold| open(analysis, hold));
-        Self {
-            severity: if released { Severity::Info } else { finding.severity() },
-            ..Self::of(finding, hold.map(|hold| hold.number))
-        }
-    }
-
     fn of(finding: &'a RecordFinding, hold: Option<usize>) -> Self {
         Self {
             severity: finding.severity(),

@@ -4,7 +4,7 @@
 //!
 //! | room | study |
 //! |---|---|
-//! | `bundle.rs`, `findings.rs` | the files of a study, in memory until all exist; what was found, gathered over the holds |
+//! | `bundle.rs`, `grid.rs`, `findings.rs` | the files of a study, in memory until all exist; panels in rows; what was found, gathered over the holds |
 //! | `simulate/` | simulated contacts, waves, sweeps |
 //! | `calibration/` | a whole record calibrated, and what the material predicts |
 //! | `grip/` | a planned grip |
@@ -16,6 +16,7 @@ mod bundle;
 mod calibration;
 mod comparison;
 mod findings;
+mod grid;
 mod grip;
 mod record;
 mod reproduction;

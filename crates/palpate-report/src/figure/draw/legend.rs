@@ -1,7 +1,8 @@
 //! Legends: what they list and where they cover nothing.
 
+use super::axes::font;
 use super::series;
-use super::svg::{Anchor, Font, Svg, polyline};
+use super::svg::{Anchor, Svg, polyline};
 use crate::figure::content::{Mark, Panel, Style};
 use crate::figure::layout::{CAPTION, LEGEND_ROW, Occupancy, Position, Rect, width};
 
@@ -148,12 +149,6 @@ fn draw_entry(svg: &mut Svg, entry: &Entry, x: f64, middle: f64) {
     } else if let Some(style) = entry.points {
         series::draw_markers(svg, &[(x + SAMPLE / 2.0, middle)], style, 2.0);
     }
-    let font = Font {
-        size: CAPTION,
-        colour: "#222",
-        bold: false,
-        halo: false,
-    };
     let baseline = middle + 0.36 * CAPTION;
-    svg.text(x + SAMPLE + SPACE, baseline, Anchor::Start, font, &entry.label);
+    svg.text(x + SAMPLE + SPACE, baseline, Anchor::Start, font(CAPTION), &entry.label);
 }

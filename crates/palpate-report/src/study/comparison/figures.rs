@@ -4,9 +4,10 @@ use palpate::fit::SpectrumFit;
 use palpate::forecast::{Comparison, Row, name_in_words};
 use palpate::laws::Law;
 
-use crate::figure::{Arrangement, Axis, Figure, Layer, MOST_PANELS, Panel, Role};
+use crate::figure::{Axis, Figure, Layer, MOST_PANELS, Panel, Role};
 use crate::number::significant;
 use crate::result::{ComparedHold, ComparedRecord};
+use crate::study::grid::{columns, grid};
 
 /// Laws that a panel shows; there are no more markers that can be told apart.
 const MOST_LAWS: usize = 8;
@@ -25,21 +26,12 @@ pub(in crate::study) fn all(record: &ComparedRecord, suffix: &str) -> Vec<Figure
         .collect()
 }
 
-/// A figure of one panel a hold.
-fn by_hold(name: String, caption: &str, panels: Vec<(Panel, f64)>, all: usize) -> Option<Figure> {
-    let height = panels.first()?.1;
-    let columns = match panels.len() {
-        1 => 1,
-        2 | 4 => 2,
-        _ => 3,
-    };
-    let rows = panels.len().div_ceil(columns);
-    let shown = panels.len();
+/// A figure of one panel a hold, `all` of them or the first.
+fn by_hold(name: String, caption: &str, panels: Vec<Panel>, row_mm: f64, all: usize) -> Option<Figure> {
+    let (shown, columns) = (panels.len(), columns(panels.len()));
     let more = if shown < all { format!(" Shown: the first {shown} of {all} holds.") } else { String::new() };
-    let figure = Figure::new(name, format!("{caption}{more}"))
-        .arrangement(Arrangement::Grid(columns))
-        .height_mm(if columns == 1 { 1.4 * height } else { height * rows as f64 });
-    Some(panels.into_iter().fold(figure, |figure, (panel, _)| figure.panel(panel)))
+    let row_mm = if columns == 1 { 1.4 * row_mm } else { row_mm };
+    grid(&name, format!("{caption}{more}"), panels, columns, row_mm)
 }
 
 /// Forward error of each law after each cut.
@@ -54,7 +46,7 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
             let row = comparison.rows.iter().find(|row| row.law == *law);
             panel = panel.layers(row.into_iter().flat_map(|row| forward_layers(row, comparison, series)));
         }
-        (panel, 78.0)
+        panel
     });
     let left = if all > laws.len() { format!(" The {} best of {all} laws.", laws.len()) } else { String::new() };
     by_hold(
@@ -63,6 +55,7 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
             "What each law, fitted to the first part of a hold, foretells of the rest: root mean square error in % of the change of the signal.{left}"
         ),
         panels.collect(),
+        78.0,
         holds.len(),
     )
 }
@@ -110,7 +103,7 @@ fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
             let (times, means) = averaged(hold, row, factor);
             panel = panel.layer(Layer::line(times, means, Role::Series(series as u8)).label(row.law.to_string()));
         }
-        panels.push((panel, 62.0));
+        panels.push(panel);
     }
     by_hold(
         format!("law_residuals{suffix}"),
@@ -118,6 +111,7 @@ fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
             "What the best laws leave over when fitted to the whole hold (measured less fitted, averaged over {STRETCHES} stretches of ln t). Noise scatters about zero; a wave is shape that the law misses."
         ),
         panels,
+        62.0,
         holds.len(),
     )
 }
@@ -149,11 +143,12 @@ fn averaged(hold: &ComparedHold, row: &Row, factor: f64) -> (Vec<f64>, Vec<f64>)
 fn spectra(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let spectrum = |comparison: &'_ Comparison| comparison.rows.iter().find_map(|row| row.spectrum.clone());
     let holds: Vec<_> = record.verdicts().filter_map(|(hold, found)| Some((hold, spectrum(found)?))).collect();
-    let panels: Vec<_> = holds.iter().take(MOST_PANELS).map(|(hold, fit)| (spectrum_panel(hold, fit), 62.0)).collect();
+    let panels = holds.iter().take(MOST_PANELS).map(|(hold, fit)| spectrum_panel(hold, fit)).collect();
     by_hold(
         format!("spectra{suffix}"),
         "The dense spectrum of each hold: amplitude over relaxation time; the line marks the length of the hold. Where the slowest time carries weight the spectrum is open-ended, and its equilibrium is a convention of the grid.",
         panels,
+        62.0,
         holds.len(),
     )
 }

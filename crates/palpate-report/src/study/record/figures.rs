@@ -5,6 +5,7 @@ use palpate::fit::{ExponentChoice, LatencyFit, Termination};
 use palpate::segment::{After, Phase};
 
 use crate::figure::{Arrangement, Axis, Figure, Layer, MOST_PANELS, Panel, Role};
+use crate::study::grid::{columns, grid};
 
 /// Points that a fitted curve is drawn with.
 const CURVE: usize = 200;
@@ -163,26 +164,13 @@ fn rate_curve(fit: &LatencyFit, hold: &HoldAnalysis) -> (Vec<f64>, Vec<f64>) {
 pub(super) fn holds(analysis: &Analysis, name: &str) -> Option<Figure> {
     let all: Vec<&HoldAnalysis> = analysis.holds.iter().filter(|hold| !hold.fits.is_empty()).collect();
     let fitted = &all[..all.len().min(MOST_PANELS)];
-    let columns = match fitted.len() {
-        0 => return None,
-        1 => 1,
-        2 | 4 => 2,
-        _ => 3,
-    };
-    let mut figure = Figure::new(
-        name,
-        format!(
-            "Relaxation over the logarithm of the time since the start of the fit, with the law at the common exponent and with a free exponent.{}",
-            first_of(fitted.len(), all.len())
-        ),
-    )
-    .arrangement(Arrangement::Grid(columns));
-    for hold in fitted {
-        figure = figure.panel(hold_panel(analysis, hold));
-    }
-    let rows = fitted.len().div_ceil(columns);
-    let height = if columns == 1 { 95.0 } else { 62.0 * rows as f64 };
-    Some(figure.height_mm(height))
+    let columns = columns(fitted.len());
+    let caption = format!(
+        "Relaxation over the logarithm of the time since the start of the fit, with the law at the common exponent and with a free exponent.{}",
+        first_of(fitted.len(), all.len())
+    );
+    let panels = fitted.iter().map(|hold| hold_panel(analysis, hold)).collect();
+    grid(name, caption, panels, columns, if columns == 1 { 95.0 } else { 62.0 })
 }
 
 /// What a caption says where only the first holds have a panel.
@@ -238,37 +226,24 @@ pub(super) fn residuals(analysis: &Analysis, name: &str) -> Option<Figure> {
     // A fit without noise leaves only the rounding of its own arithmetic, which says nothing.
     let worth: Vec<_> = all.iter().filter(|(_, fit)| fit.rmse > 1e-9 * fit.amplitude().value.abs()).collect();
     let fitted = &worth[..worth.len().min(MOST_PANELS)];
-    if fitted.is_empty() {
-        return None;
-    }
     let exact = match all.len() - worth.len() {
         0 => String::new(),
         count => format!(" Left out: {count} holds that are fitted to within rounding."),
     };
-    let columns = fitted.len().min(3);
-    let mut figure = Figure::new(
-        name,
-        format!(
-            "What the preferred fit of each hold leaves over (measured less fitted). Noise scatters about zero; a wave is shape that the law misses.{}{exact}",
-            first_of(fitted.len(), worth.len())
-        ),
-    )
-    .arrangement(Arrangement::Grid(columns))
-    .height_mm(50.0 * fitted.len().div_ceil(columns) as f64);
-    for (hold, fit) in fitted {
+    let caption = format!(
+        "What the preferred fit of each hold leaves over (measured less fitted). Noise scatters about zero; a wave is shape that the law misses.{}{exact}",
+        first_of(fitted.len(), worth.len())
+    );
+    let panel = |(hold, fit): &(&HoldAnalysis, &LatencyFit)| {
         let visible = hold.times.partition_point(|t| *t <= 0.0);
-        let left: Vec<f64> = hold.times[visible..]
-            .iter()
-            .zip(&hold.values[visible..])
-            .map(|(t, y)| (y - fit.predict(*t)) * hold.force_per_signal)
-            .collect();
-        let panel = Panel::new(Axis::log("Time", "s"), Axis::linear("Residual", "N"))
+        let (times, values) = (&hold.times[visible..], &hold.values[visible..]);
+        let left = times.iter().zip(values).map(|(t, y)| (y - fit.predict(*t)) * hold.force_per_signal);
+        Panel::new(Axis::log("Time", "s"), Axis::linear("Residual", "N"))
             .title(format!("Hold {}, n = {:.2}", hold.number, fit.exponent().value))
             .zero_line()
-            .layer(Layer::points(hold.times[visible..].to_vec(), left, Role::Measured));
-        figure = figure.panel(panel);
-    }
-    Some(figure)
+            .layer(Layer::points(times.to_vec(), left.collect(), Role::Measured))
+    };
+    grid(name, caption, fitted.iter().copied().map(panel).collect(), fitted.len().min(3), 50.0)
 }
 
 /// Rate coefficient against equilibrium strain with error bars: the trend of Tables I and II.

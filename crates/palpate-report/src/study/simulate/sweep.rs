@@ -2,6 +2,7 @@
 
 use crate::figure::{Arrangement, Axis, Figure, Layer, MOST_PANELS, Map, Panel, Role, Scale};
 use crate::number::significant;
+use crate::study::grid::grid;
 
 /// A swept number.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,9 +81,7 @@ pub fn sweep_grid_figure(name: &str, caption: &str, axes: &[SweptAxis], result: 
                 let title = format!("{} = {}{unit}", z.label, short(z.values[k]));
                 heat_map((x, y), result, at, range).title(title)
             });
-            let rows = z.values.len().div_ceil(columns) as f64;
-            let figure = figure.arrangement(Arrangement::Grid(columns)).height_mm(62.0 * rows);
-            Some(panels.fold(figure, Figure::panel))
+            grid(name, caption.to_owned(), panels.collect(), columns, 62.0)
         }
         _ => None,
     }
