@@ -238,7 +238,8 @@ impl Material {
                 }
             }
         }
-        let kinds: [(f64, f64, fn(f64, f64) -> Extrapolation); 4] = [
+        type Asked = (f64, f64, fn(f64, f64) -> Extrapolation);
+        let kinds: [Asked; 4] = [
             (longest, shown.longest_hold, |asked, shown| Extrapolation::LongerHold { asked, shown }),
             (most(&course.displacement), shown.deepest, |asked, shown| Extrapolation::DeeperSqueeze {
                 asked,
