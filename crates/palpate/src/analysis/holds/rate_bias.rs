@@ -34,7 +34,7 @@ pub(super) fn rate_bias(samples: Samples<'_>, fit: &LatencyFit, options: &Analys
     if !fit.termination.is_good() {
         return None;
     }
-    let (times, values) = (samples.times(), samples.values());
+    let (times, values) = (samples.times, samples.values);
     let every = times.len().div_ceil(MOST_SAMPLES);
     let noise = noise_in_time(times, values) / (every as f64).sqrt();
     let times: Vec<f64> = times.iter().step_by(every).copied().collect();
