@@ -139,7 +139,6 @@ pub(crate) fn convert(
 ///     A description or a law that is wrong, a table that cannot be written.
 #[pyfunction]
 #[pyo3(signature = (paths, out, *, test=None, laws=None, fit_until_s=None, restart=false))]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn batch(
     py: Python<'_>,
     paths: Vec<PathBuf>,
@@ -151,7 +150,7 @@ pub(crate) fn batch(
 ) -> PyResult<(usize, Vec<String>)> {
     let (described, _) = described(test, None)?;
     let question = Batch {
-        laws: laws.as_deref().map(all_laws).transpose()?,
+        laws: laws.map(|laws| all_laws(&laws)).transpose()?,
         fit_until_s,
         restart,
         ..Batch::default()

@@ -90,7 +90,7 @@ impl PartialEq for Record {
 #[pyfunction]
 #[pyo3(signature = (path, *, test=None, part=None))]
 pub(crate) fn read(py: Python<'_>, path: PathBuf, test: Given<'_, '_>, part: Given<'_, '_>) -> PyResult<Record> {
-    Ok(read_parts(py, path, described(test, part)?.0, true)?.remove(0))
+    Ok(read_parts(py, path, &described(test, part)?.0, true)?.remove(0))
 }
 
 /// Read all tests in a file: the sheets of a workbook, the curves of a map, the ``test_id`` of a table.
@@ -112,11 +112,11 @@ pub(crate) fn read(py: Python<'_>, path: PathBuf, test: Given<'_, '_>, part: Giv
 #[pyfunction]
 #[pyo3(signature = (path, *, test=None))]
 pub(crate) fn read_all(py: Python<'_>, path: PathBuf, test: Given<'_, '_>) -> PyResult<Vec<Record>> {
-    read_parts(py, path, described(test, None)?.0, false)
+    read_parts(py, path, &described(test, None)?.0, false)
 }
 
 /// The records in a file, `only` one of them or all.
-fn read_parts(py: Python<'_>, path: PathBuf, described: Described, only: bool) -> PyResult<Vec<Record>> {
+fn read_parts(py: Python<'_>, path: PathBuf, described: &Described, only: bool) -> PyResult<Vec<Record>> {
     let said = described.clone();
     let read = job(py, move |watch| {
         let opened = OpenedFile::open(&path, &said)?;
@@ -556,7 +556,7 @@ impl Record {
         fit_until_s: Option<f64>,
     ) -> PyResult<RecordComparison> {
         let question = Compare {
-            laws: laws.as_deref().map(all_laws).transpose()?,
+            laws: laws.map(|laws| all_laws(&laws)).transpose()?,
             cuts,
             creep,
             fit_until_s,

@@ -3,7 +3,6 @@
 use palpate::contact::Shape;
 
 use super::{
-    choose_units::unknown_unit,
     column_use::{ColumnUse, Role},
     error::ColumnError,
     named::NamedColumn,
@@ -243,7 +242,7 @@ impl<'a> Chooser<'a> {
     /// No column holds a quantity; perhaps one is named after it, but its unit is one of another.
     fn missing(&self, quantity: Quantity) -> ColumnError {
         if let Some((column, unit)) = recognise::misfits(&self.part.columns, quantity).next() {
-            return unknown_unit(column, quantity, format!("columns.{quantity}.unit"), unit);
+            return ColumnError::unknown_unit(column, quantity, format!("columns.{quantity}.unit"), unit);
         }
         if let Some(column) = recognise::text_named(&self.part.columns, quantity) {
             return Self::as_text(column, quantity);

@@ -11,17 +11,8 @@ use crate::{
     cell::unit,
     description::contradicts,
     naming::{Quantity, unit_factor},
-    table::{ColumnInfo, ColumnKind, epoch},
+    table::{ColumnKind, epoch},
 };
-
-pub(super) fn unknown_unit(column: &ColumnInfo, quantity: Quantity, key: String, unit: &str) -> ColumnError {
-    ColumnError::UnknownUnit {
-        column: column.into(),
-        quantity,
-        key,
-        unit: unit.to_owned(),
-    }
-}
 
 impl Chooser<'_> {
     /// A column whose unit is none that a header could give: a travel said for each unit of it, or a time since 1970.
@@ -111,7 +102,7 @@ impl Chooser<'_> {
                     }
                 })?,
                 None => unit_factor(unit, quantity.dimension())
-                    .ok_or_else(|| unknown_unit(found.column, quantity, found.key(), unit))?,
+                    .ok_or_else(|| ColumnError::unknown_unit(found.column, quantity, found.key(), unit))?,
             };
             used.push(found.used(unit.to_owned(), factor));
         }
@@ -126,7 +117,7 @@ impl Chooser<'_> {
         if let ([_], Some(found)) = (&without[..], found.iter().find(bare))
             && let Some(unit) = found.column.name.as_deref().and_then(in_brackets)
         {
-            return Err(unknown_unit(found.column, found.role.measured(), found.key(), unit));
+            return Err(ColumnError::unknown_unit(found.column, found.role.measured(), found.key(), unit));
         }
         Err(ColumnError::NoUnit { columns: without })
     }

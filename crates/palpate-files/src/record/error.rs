@@ -143,6 +143,15 @@ pub enum ColumnError {
 }
 
 impl ColumnError {
+    pub(super) fn unknown_unit(column: &ColumnInfo, quantity: Quantity, key: String, unit: &str) -> Self {
+        Self::UnknownUnit {
+            column: column.into(),
+            quantity,
+            key,
+            unit: unit.to_owned(),
+        }
+    }
+
     /// What would help; where that is a description, lines to paste into it.
     #[must_use]
     pub fn hint(&self) -> String {

@@ -151,6 +151,47 @@ fn power(a: f64, n: f64) -> f64 {
     }
 }
 
+/// The linear latency law, equation (1): ε̇ = −v₁ (ε − ε_e) with ε_e = −N₀ c₀/α_c.
+///
+/// N₀ c₀ is the force that is left when relaxation is over, α_c the stiffness that turns strain to force.
+/// The paper counts tension as positive in this equation, hence its minus sign; the same sign is kept here
+/// for the one constructor that takes the paper's parameters, everything else counts compression as positive.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LinearLatency {
+    /// v₁ in 1/s.
+    pub rate_coefficient: f64,
+    /// ε_e, tension positive as in equation (1).
+    pub equilibrium_strain: f64,
+}
+
+impl LinearLatency {
+    /// From Fung's parameters: `relaxed_force` = N₀ c₀ in N and `stiffness` = α_c in N (force per unit strain).
+    ///
+    /// # Errors
+    /// [`LawError::RateCoefficient`] unless v₁ is a finite number above zero.
+    ///
+    /// ```
+    /// use palpate::latency::LinearLatency;
+    /// let law = LinearLatency::from_fung(0.8, 6.0, 30.0)?;
+    /// assert_eq!(law.equilibrium_strain, -0.2);
+    /// assert!((law.rate(-0.3) - 0.08).abs() < 1e-15);
+    /// # Ok::<(), palpate::latency::LawError>(())
+    /// ```
+    pub fn from_fung(rate_coefficient: f64, relaxed_force: f64, stiffness: f64) -> Result<Self, LawError> {
+        LatencyLaw::new(1.0, rate_coefficient)?;
+        Ok(Self {
+            rate_coefficient,
+            equilibrium_strain: -relaxed_force / stiffness,
+        })
+    }
+
+    /// Strain rate in 1/s at strain ε (tension positive).
+    #[must_use]
+    pub fn rate(&self, strain: f64) -> f64 {
+        -self.rate_coefficient * (strain - self.equilibrium_strain)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

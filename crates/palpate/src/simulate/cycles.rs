@@ -94,11 +94,7 @@ pub fn work_by_step_watched<'a, 'b>(
 }
 
 /// Without generics, so that it is compiled here, once, and not wherever it is called.
-fn steps_of(
-    drive: Drive<'_>,
-    contact: ContactRef<'_>,
-    watch: &mut dyn Watch,
-) -> Result<Vec<StepWork>, SimulateError> {
+fn steps_of(drive: Drive<'_>, contact: ContactRef<'_>, watch: &mut dyn Watch) -> Result<Vec<StepWork>, SimulateError> {
     let mut stages = Stages::new("integrating work".to_owned(), watch);
     let mut knots = by_law!(contact, contact => Course::new(drive, contact, &mut stages)?.times().to_vec());
     knots.dedup();

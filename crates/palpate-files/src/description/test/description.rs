@@ -1,6 +1,6 @@
 //! A checked description of a test.
 
-use palpate::analysis::AnalysisOptions;
+use palpate::{analysis::AnalysisOptions, simulate::Separation};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -22,7 +22,7 @@ pub struct About {
 /// A checked description of a test, everything in SI.
 ///
 /// [`TestDescription::default`] is the test of which nothing is said.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct TestDescription {
     /// What it is about.
     pub about: About,
@@ -32,4 +32,18 @@ pub struct TestDescription {
     pub columns: ColumnChoices,
     /// What an analysis of the test is asked.
     pub analysis: AnalysisOptions,
+}
+
+impl Default for TestDescription {
+    fn default() -> Self {
+        Self {
+            about: About::default(),
+            reading: ReadOptions::default(),
+            columns: ColumnChoices::default(),
+            analysis: AnalysisOptions {
+                separation: Separation::Bonded,
+                ..AnalysisOptions::default()
+            },
+        }
+    }
 }

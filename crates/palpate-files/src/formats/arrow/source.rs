@@ -4,11 +4,7 @@ use std::ops::Range;
 
 use arrow_schema::SchemaRef;
 
-use super::{
-    batches::Visitor,
-    kind::Kind,
-    ipc, parquet,
-};
+use super::{batches::Visitor, ipc, kind::Kind, parquet};
 use crate::{
     error::FileError,
     input::{Input, contained},

@@ -58,7 +58,8 @@ impl Figure {
         #[cfg(not(feature = "png"))]
         Err(FigureError::Raster {
             figure: self.name.clone(),
-            reason: "this build draws SVG; build palpate with its feature `png`, or name the figure FILE.svg".to_owned(),
+            reason: "this build draws SVG; build palpate with its feature `png`, or name the figure FILE.svg"
+                .to_owned(),
         })
     }
 

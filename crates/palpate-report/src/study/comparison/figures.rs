@@ -27,11 +27,11 @@ pub(in crate::study) fn all(record: &ComparedRecord, suffix: &str) -> Vec<Figure
 }
 
 /// A figure of one panel a hold, `all` of them or the first.
-fn by_hold(name: String, caption: &str, panels: Vec<Panel>, row_mm: f64, all: usize) -> Option<Figure> {
+fn by_hold(name: &str, caption: &str, panels: Vec<Panel>, row_mm: f64, all: usize) -> Option<Figure> {
     let (shown, columns) = (panels.len(), columns(panels.len()));
     let more = if shown < all { format!(" Shown: the first {shown} of {all} holds.") } else { String::new() };
     let row_mm = if columns == 1 { 1.4 * row_mm } else { row_mm };
-    grid(&name, format!("{caption}{more}"), panels, columns, row_mm)
+    grid(name, format!("{caption}{more}"), panels, columns, row_mm)
 }
 
 /// Forward error of each law after each cut.
@@ -50,7 +50,7 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     });
     let left = if all > laws.len() { format!(" The {} best of {all} laws.", laws.len()) } else { String::new() };
     by_hold(
-        format!("forward_errors{suffix}"),
+        &format!("forward_errors{suffix}"),
         &format!(
             "What each law, fitted to the first part of a hold, foretells of the rest: root mean square error in % of the change of the signal.{left}"
         ),
@@ -106,7 +106,7 @@ fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
         panels.push(panel);
     }
     by_hold(
-        format!("law_residuals{suffix}"),
+        &format!("law_residuals{suffix}"),
         &format!(
             "What the best laws leave over when fitted to the whole hold (measured less fitted, averaged over {STRETCHES} stretches of ln t). Noise scatters about zero; a wave is shape that the law misses."
         ),
@@ -145,7 +145,7 @@ fn spectra(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let holds: Vec<_> = record.verdicts().filter_map(|(hold, found)| Some((hold, spectrum(found)?))).collect();
     let panels = holds.iter().take(MOST_PANELS).map(|(hold, fit)| spectrum_panel(hold, fit)).collect();
     by_hold(
-        format!("spectra{suffix}"),
+        &format!("spectra{suffix}"),
         "The dense spectrum of each hold: amplitude over relaxation time; the line marks the length of the hold. Where the slowest time carries weight the spectrum is open-ended, and its equilibrium is a convention of the grid.",
         panels,
         62.0,
