@@ -2,6 +2,7 @@
 
 /// How a number is written in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(not(feature = "robot-log"), expect(dead_code, reason = "some are of logs alone"))]
 pub(crate) enum Number {
     Bool,
     I8,

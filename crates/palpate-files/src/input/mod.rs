@@ -23,10 +23,14 @@ mod packing;
 mod source;
 
 pub(crate) use binary::Number;
-pub(crate) use contained::{caught, contained};
+#[cfg(feature = "arrow")]
+pub(crate) use contained::caught;
+pub(crate) use contained::contained;
 pub use encoding::{Encoding, UnknownEncoding};
 pub(crate) use lines::{LONGEST_LINE, LineReader};
 pub(crate) use packing::is_zip;
 pub use packing::{MOST_UNPACKED, Packing};
+#[cfg(feature = "arrow")]
+pub(crate) use source::InputReader;
+pub(crate) use source::Seekable;
 pub use source::{ALWAYS_UNPACKED, Input, MOST_IN_MEMORY, MOST_TIMES};
-pub(crate) use source::{InputReader, Seekable};

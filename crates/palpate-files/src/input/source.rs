@@ -256,6 +256,7 @@ impl Input {
     }
 
     /// A part of it holds no rows.
+    #[cfg(feature = "arrow")]
     pub(crate) fn no_rows(&self, part: &str) -> FileError {
         FileError::NoParts {
             path: self.name.clone(),

@@ -6,6 +6,7 @@
 //! | file | what |
 //! |---|---|
 //! | `rows.rs` | rows in memory ([`Field`], [`Values`], [`Rows`]) |
+//! | `arrays.rs` | their columns as arrays of Arrow |
 //! | `write.rs` | rows to a file ([`TableWriter`]) |
 //! | `read.rs` | a file to rows ([`TableReader`]) |
 //! | `absent.rs` | both where the feature `arrow` is missing |
@@ -28,6 +29,8 @@
 
 #[cfg(not(feature = "arrow"))]
 mod absent;
+#[cfg(feature = "arrow")]
+mod arrays;
 mod error;
 #[cfg(feature = "arrow")]
 mod read;

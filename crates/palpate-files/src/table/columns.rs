@@ -139,6 +139,7 @@ impl Columns {
     }
 
     /// The columns of several clocks as one: for each column in the order chosen, the clock that it is the next of.
+    #[cfg(feature = "robot-log")]
     pub(crate) fn of_clocks(mut clocks: Vec<Self>, order: &[usize]) -> Self {
         clocks.iter_mut().for_each(Self::finish);
         let rows = clocks.iter().map(|clock| clock.rows).max().unwrap_or(0);

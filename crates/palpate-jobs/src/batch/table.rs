@@ -64,7 +64,7 @@ impl From<csv::Error> for Unplaced {
 
 /// A table that takes rows.
 enum Sink<W: Write + Send> {
-    Csv(csv::Writer<W>),
+    Csv(Box<csv::Writer<W>>),
     Parquet(TableWriter<W>, Vec<Field>),
 }
 
@@ -77,7 +77,7 @@ impl<W: Write + Send> Sink<W> {
                 writeln!(out, "# {MARK}: {settings}")?;
                 let mut writer = csv::Writer::from_writer(out);
                 writer.write_record(fields.iter().map(|field| field.name.as_str()))?;
-                Ok(Self::Csv(writer))
+                Ok(Self::Csv(Box::new(writer)))
             }
             Format::Parquet => Ok(Self::Parquet(TableWriter::new(out, &fields)?, fields)),
         }
