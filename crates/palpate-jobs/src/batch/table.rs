@@ -65,7 +65,7 @@ impl From<csv::Error> for Unplaced {
 /// A table that takes rows.
 enum Sink<W: Write + Send> {
     Csv(Box<csv::Writer<W>>),
-    Parquet(TableWriter<W>, Vec<Field>),
+    Parquet(Box<TableWriter<W>>, Vec<Field>),
 }
 
 impl<W: Write + Send> Sink<W> {
@@ -79,7 +79,7 @@ impl<W: Write + Send> Sink<W> {
                 writer.write_record(fields.iter().map(|field| field.name.as_str()))?;
                 Ok(Self::Csv(Box::new(writer)))
             }
-            Format::Parquet => Ok(Self::Parquet(TableWriter::new(out, &fields)?, fields)),
+            Format::Parquet => Ok(Self::Parquet(Box::new(TableWriter::new(out, &fields)?), fields)),
         }
     }
 
