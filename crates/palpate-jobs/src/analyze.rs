@@ -20,10 +20,15 @@ use crate::{ErrorKind, JobError, Outcome, Results};
 #[serde(default, deny_unknown_fields)]
 pub struct Analyze {
     /// Fit only this long from the start of each hold and predict the rest.
-    #[cfg_attr(feature = "clap", arg(long = "fit-until", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true, help = "Fit only this long from the start of each hold and foretell the rest"))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "fit-until", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true,
+        help = "Fit only this long from the start of each hold and foretell the rest",
+    ))]
     pub fit_until_s: Option<f64>,
     /// Exponents to try, besides a free one.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "N,…", value_delimiter = ',', value_parser = crate::typed::exponent))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "N,…", value_delimiter = ',', value_parser = crate::typed::exponent,
+    ))]
     pub exponents: Option<Vec<f64>>,
     /// Whether a free exponent is tried.
     #[cfg_attr(feature = "clap", arg(skip))]
@@ -33,17 +38,27 @@ pub struct Analyze {
     pub confidence: Option<f64>,
     /// From where in a hold to fit: "peak", "settled", or so many seconds after the peak.
     #[schemars(with = "serde_json::Value")]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "WHERE", value_parser = crate::typed::hold_start, help = "From where in a hold to fit: peak, settled, or \"peak + 0.5 s\""))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "WHERE", value_parser = crate::typed::hold_start,
+        help = "From where in a hold to fit: peak, settled, or \"peak + 0.5 s\"",
+    ))]
     pub hold_start: Option<HoldStart>,
     /// First touch: "auto", "as_recorded", a displacement in m, or a rule.
     #[schemars(with = "serde_json::Value")]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "WHERE", value_parser = crate::typed::touch, help = "First touch: auto, \"as recorded\", or a displacement"))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "WHERE", value_parser = crate::typed::touch,
+        help = "First touch: auto, \"as recorded\", or a displacement",
+    ))]
     pub touch: Option<ContactChoice>,
     /// How far the displacement may stray in a hold.
-    #[cfg_attr(feature = "clap", arg(long = "tolerance", value_name = "LENGTH", value_parser = crate::typed::length, allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "tolerance", value_name = "LENGTH", value_parser = crate::typed::length, allow_hyphen_values = true,
+    ))]
     pub tolerance_m: Option<f64>,
     /// Shortest hold.
-    #[cfg_attr(feature = "clap", arg(long = "minimum-hold", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "minimum-hold", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true,
+    ))]
     pub minimum_hold_s: Option<f64>,
     /// Whether laws are compared, which takes most of the time.
     #[cfg_attr(feature = "clap", arg(skip = true))]

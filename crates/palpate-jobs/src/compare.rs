@@ -23,28 +23,44 @@ use crate::{ErrorKind, JobError, Outcome, Results, Verdict};
 pub struct Compare {
     /// Laws to compare; all that suit if not given.
     #[schemars(with = "Option<Vec<String>>")]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = crate::typed::law))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "LAW,…", value_delimiter = ',', value_parser = crate::typed::law,
+    ))]
     pub laws: Option<Vec<Law>>,
     /// Parts of a hold that are fitted to predict the rest, as shares of its duration.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE,…", value_delimiter = ',', value_parser = crate::typed::share, allow_hyphen_values = true, help = "Parts of a hold that are fitted to foretell the rest, as shares of its duration"))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "SHARE,…", value_delimiter = ',', value_parser = crate::typed::share,
+        allow_hyphen_values = true,
+        help = "Parts of a hold that are fitted to foretell the rest, as shares of its duration",
+    ))]
     pub cuts: Option<Vec<f64>>,
     /// Compare laws of creep: displacement in holds of constant force.
     #[cfg_attr(feature = "clap", arg(long))]
     pub creep: bool,
     /// How residuals count.
     #[schemars(with = "String", extend("enum" = ["squares", "huber", "tukey"]))]
-    #[cfg_attr(feature = "clap", arg(long, value_parser = crate::typed::one_of(crate::typed::LOSSES), default_value = "squares", help = "How residuals count; huber and tukey bear outliers"))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_parser = crate::typed::one_of(crate::typed::LOSSES), default_value = "squares",
+        help = "How residuals count; huber and tukey bear outliers",
+    ))]
     pub loss: Loss,
     /// Which samples are fitted: "all", or about so many spaced evenly in ln t.
     #[schemars(with = "serde_json::Value")]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "all|log:N", default_value = "all", value_parser = crate::typed::samples, help = "Which samples are fitted: all, or log:400 for about 400 spaced evenly in ln t"))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "all|log:N", default_value = "all", value_parser = crate::typed::samples,
+        help = "Which samples are fitted: all, or log:400 for about 400 spaced evenly in ln t",
+    ))]
     pub samples: SampleChoice,
     /// What linear laws take the loading before a hold for.
     #[schemars(with = "String", extend("enum" = ["step", "measured"]))]
-    #[cfg_attr(feature = "clap", arg(long, value_parser = crate::typed::one_of(crate::typed::RAMPS), default_value = "step"))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_parser = crate::typed::one_of(crate::typed::RAMPS), default_value = "step",
+    ))]
     pub ramps: RampChoice,
     /// Compare only over this long from the start of each hold.
-    #[cfg_attr(feature = "clap", arg(long = "fit-until", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "fit-until", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true,
+    ))]
     pub fit_until_s: Option<f64>,
 }
 

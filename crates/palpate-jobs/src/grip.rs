@@ -23,7 +23,10 @@ use crate::{ErrorKind, JobError, Outcome, Results, Verdict};
 #[serde(default, deny_unknown_fields)]
 pub struct PlanGrip {
     /// Mass of the body.
-    #[cfg_attr(feature = "clap", arg(long = "mass", value_name = "MASS", value_parser = crate::typed::mass, allow_hyphen_values = true, help_heading = "Load"))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "mass", value_name = "MASS", value_parser = crate::typed::mass, allow_hyphen_values = true,
+        help_heading = "Load",
+    ))]
     pub mass_kg: f64,
     /// Coefficient of friction between jaw and body.
     #[cfg_attr(
@@ -32,57 +35,102 @@ pub struct PlanGrip {
     )]
     pub friction: f64,
     /// Safety factor on friction, 1 or more.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "NUMBER", default_value_t = PlanGrip::default().safety, allow_hyphen_values = true, help_heading = "Load"))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "NUMBER", default_value_t = PlanGrip::default().safety, allow_hyphen_values = true,
+        help_heading = "Load",
+    ))]
     pub safety: f64,
     /// Acceleration of the hand upwards.
-    #[cfg_attr(feature = "clap", arg(long = "acceleration-up", value_name = "ACCELERATION", value_parser = crate::typed::acceleration, allow_hyphen_values = true, help_heading = "Load", default_value = "0 m/s^2", hide_default_value = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "acceleration-up", value_name = "ACCELERATION", value_parser = crate::typed::acceleration,
+        allow_hyphen_values = true, help_heading = "Load", default_value = "0 m/s^2", hide_default_value = true,
+    ))]
     pub acceleration_up_m_per_s2: f64,
     /// Acceleration across gravity, in the plane of the jaws.
-    #[cfg_attr(feature = "clap", arg(long = "acceleration-across", value_name = "ACCELERATION", value_parser = crate::typed::acceleration, allow_hyphen_values = true, help_heading = "Load", default_value = "0 m/s^2", hide_default_value = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "acceleration-across", value_name = "ACCELERATION", value_parser = crate::typed::acceleration,
+        allow_hyphen_values = true, help_heading = "Load", default_value = "0 m/s^2", hide_default_value = true,
+    ))]
     pub acceleration_across_m_per_s2: f64,
     /// Acceleration along the closing axis, which unloads one jaw.
-    #[cfg_attr(feature = "clap", arg(long = "acceleration-closing", value_name = "ACCELERATION", value_parser = crate::typed::acceleration, allow_hyphen_values = true, help_heading = "Load", default_value = "0 m/s^2", hide_default_value = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "acceleration-closing", value_name = "ACCELERATION", value_parser = crate::typed::acceleration,
+        allow_hyphen_values = true, help_heading = "Load", default_value = "0 m/s^2", hide_default_value = true,
+    ))]
     pub acceleration_closing_m_per_s2: f64,
     /// Torque about the closing axis.
-    #[cfg_attr(feature = "clap", arg(long = "torque", value_name = "TORQUE", value_parser = crate::typed::torque, allow_hyphen_values = true, help_heading = "Load", default_value = "0 N m", hide_default_value = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "torque", value_name = "TORQUE", value_parser = crate::typed::torque, allow_hyphen_values = true,
+        help_heading = "Load", default_value = "0 N m", hide_default_value = true,
+    ))]
     pub torque_n_m: f64,
     /// Distance of the centre of mass from the closing axis.
-    #[cfg_attr(feature = "clap", arg(long = "off-centre", value_name = "LENGTH", value_parser = crate::typed::off_centre, allow_hyphen_values = true, help_heading = "Load", default_value = "on the axis", hide_default_value = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "off-centre", value_name = "LENGTH", value_parser = crate::typed::off_centre, allow_hyphen_values = true,
+        help_heading = "Load", default_value = "on the axis", hide_default_value = true,
+    ))]
     pub off_centre_m: f64,
     /// Gravity; standard gravity if not given.
-    #[cfg_attr(feature = "clap", arg(long = "gravity", value_name = "ACCELERATION", value_parser = crate::typed::acceleration, allow_hyphen_values = true, help_heading = "Load", help = "Gravity; 9.80665 m/s^2 if not given"))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "gravity", value_name = "ACCELERATION", value_parser = crate::typed::acceleration,
+        allow_hyphen_values = true, help_heading = "Load", help = "Gravity; 9.80665 m/s^2 if not given",
+    ))]
     pub gravity_m_per_s2: Option<f64>,
     /// The fastest that the jaws go; the fastest ramp of the test if not given.
-    #[cfg_attr(feature = "clap", arg(long = "speed", value_name = "SPEED", value_parser = crate::typed::speed, allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "speed", value_name = "SPEED", value_parser = crate::typed::speed, allow_hyphen_values = true,
+    ))]
     pub speed_m_per_s: Option<f64>,
     /// How far the jaws may squeeze.
-    #[cfg_attr(feature = "clap", arg(long = "stroke", value_name = "LENGTH", value_parser = crate::typed::length, allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "stroke", value_name = "LENGTH", value_parser = crate::typed::length, allow_hyphen_values = true,
+    ))]
     pub stroke_m: Option<f64>,
     /// The largest force that gripper and body bear.
-    #[cfg_attr(feature = "clap", arg(long = "most-force", value_name = "FORCE", value_parser = crate::typed::force, allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "most-force", value_name = "FORCE", value_parser = crate::typed::force, allow_hyphen_values = true,
+    ))]
     pub most_force_n: Option<f64>,
     /// How long closing may take; any time if not given.
-    #[cfg_attr(feature = "clap", arg(long = "close-within", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "close-within", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true,
+    ))]
     pub close_within_s: Option<f64>,
     /// What the gripper holds once it has closed.
     #[schemars(with = "String", extend("enum" = ["position", "force"]))]
-    #[cfg_attr(feature = "clap", arg(long, value_parser = crate::typed::one_of(crate::typed::CONTROLS), default_value = "position", help_heading = "Question"))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_parser = crate::typed::one_of(crate::typed::CONTROLS), default_value = "position",
+        help_heading = "Question",
+    ))]
     pub control: Control,
     /// Squeeze that is asked about.
-    #[cfg_attr(feature = "clap", arg(long = "squeeze", value_name = "LENGTH", value_parser = crate::typed::length, allow_hyphen_values = true, help_heading = "Question"))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "squeeze", value_name = "LENGTH", value_parser = crate::typed::length, allow_hyphen_values = true,
+        help_heading = "Question",
+    ))]
     pub squeeze_m: Option<f64>,
     /// Force that is asked about, where the force is held.
-    #[cfg_attr(feature = "clap", arg(long = "force", value_name = "FORCE", value_parser = crate::typed::force, allow_hyphen_values = true, help_heading = "Question", help = "Force that is asked about, with --control force"))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "force", value_name = "FORCE", value_parser = crate::typed::force, allow_hyphen_values = true,
+        help_heading = "Question", help = "Force that is asked about, with --control force",
+    ))]
     pub force_n: Option<f64>,
     /// How long it is to hold; 60 s if neither this nor a squeeze is given.
-    #[cfg_attr(feature = "clap", arg(long = "hold", value_name = "TIME", value_parser = crate::typed::hold_time, allow_hyphen_values = true, help_heading = "Question", help = "How long it is to hold, or \"always\"; 60 s if neither this nor a squeeze is given"))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "hold", value_name = "TIME", value_parser = crate::typed::hold_time, allow_hyphen_values = true,
+        help_heading = "Question",
+        help = "How long it is to hold, or \"always\"; 60 s if neither this nor a squeeze is given",
+    ))]
     pub hold_s: Option<f64>,
     /// It is to hold for ever.
     #[cfg_attr(feature = "clap", arg(skip))]
     pub hold_always: bool,
     /// What the squeeze should have least of.
     #[schemars(with = "String", extend("enum" = ["squeeze", "peak_force", "work"]))]
-    #[cfg_attr(feature = "clap", arg(long, value_parser = crate::typed::one_of(crate::typed::OBJECTIVES), default_value = "squeeze", conflicts_with = "squeeze_m", help_heading = "Question"))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_parser = crate::typed::one_of(crate::typed::OBJECTIVES), default_value = "squeeze",
+        conflicts_with = "squeeze_m", help_heading = "Question",
+    ))]
     pub objective: Objective,
     /// The lower edge of the band of the force has to hold, not the best estimate.
     #[cfg_attr(
@@ -95,7 +143,10 @@ pub struct PlanGrip {
     )]
     pub assured: bool,
     /// Lower and upper edge of the band in which squeezes again and again keep the force.
-    #[cfg_attr(feature = "clap", arg(long = "band", value_name = "FORCES", value_parser = crate::typed::band, allow_hyphen_values = true, help_heading = "Question", help = "Band in which squeezes again and again keep the force, such as \"2.1..3 N\""))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "band", value_name = "FORCES", value_parser = crate::typed::band, allow_hyphen_values = true,
+        help_heading = "Question", help = "Band in which squeezes again and again keep the force, such as \"2.1..3 N\"",
+    ))]
     pub band_n: Option<(f64, f64)>,
     /// What that schedule should have least of.
     #[cfg_attr(
@@ -104,10 +155,17 @@ pub struct PlanGrip {
     )]
     pub regrip: RegripFor,
     /// The shortest pause between two squeezes of least work.
-    #[cfg_attr(feature = "clap", arg(long = "shortest-pause", value_name = "TIME", value_parser = crate::typed::time, default_value = crate::typed::seconds(PlanGrip::default().shortest_pause_s), allow_hyphen_values = true, requires = "band_n", help_heading = "Question"))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "shortest-pause", value_name = "TIME", value_parser = crate::typed::time,
+        default_value = crate::typed::seconds(PlanGrip::default().shortest_pause_s), allow_hyphen_values = true,
+        requires = "band_n", help_heading = "Question",
+    ))]
     pub shortest_pause_s: f64,
     /// Coverage of the intervals, between 0 and 1.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = PlanGrip::default().confidence, value_parser = crate::typed::coverage, allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "SHARE", default_value_t = PlanGrip::default().confidence,
+        value_parser = crate::typed::coverage, allow_hyphen_values = true,
+    ))]
     pub confidence: f64,
 }
 

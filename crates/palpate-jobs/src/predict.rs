@@ -20,10 +20,16 @@ use crate::{ErrorKind, JobError, Outcome};
 #[serde(default, deny_unknown_fields)]
 pub struct Predict {
     /// Times at which the force is wanted; the whole course if there are none.
-    #[cfg_attr(feature = "clap", arg(long = "at", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true, help = "A time at which the force is wanted; may be given several times"))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "at", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true,
+        help = "A time at which the force is wanted; may be given several times",
+    ))]
     pub at_s: Vec<f64>,
     /// Coverage of the intervals, between 0 and 1.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = Predict::default().confidence, value_parser = crate::typed::coverage, allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "SHARE", default_value_t = Predict::default().confidence,
+        value_parser = crate::typed::coverage, allow_hyphen_values = true,
+    ))]
     pub confidence: f64,
 }
 

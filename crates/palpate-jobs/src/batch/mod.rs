@@ -41,14 +41,21 @@ use table::Format;
 pub struct Batch {
     /// Laws to fit besides the latency law.
     #[schemars(with = "Option<Vec<String>>")]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = crate::typed::law))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "LAW,…", value_delimiter = ',', value_parser = crate::typed::law,
+    ))]
     pub laws: Option<Vec<Law>>,
     /// Fit only this long from the start of each hold.
-    #[cfg_attr(feature = "clap", arg(long = "fit-until", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(
+        long = "fit-until", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true,
+    ))]
     pub fit_until_s: Option<f64>,
     /// From where in a hold to fit: "peak", "settled", or so many seconds after the peak.
     #[schemars(with = "serde_json::Value")]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "WHERE", value_parser = crate::typed::hold_start, help = "From where in a hold to fit: peak, settled, or \"peak + 0.5 s\""))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "WHERE", value_parser = crate::typed::hold_start,
+        help = "From where in a hold to fit: peak, settled, or \"peak + 0.5 s\"",
+    ))]
     pub hold_start: Option<HoldStart>,
     /// How many records at once; all processors if not given. The table is the same for any number.
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
