@@ -2,8 +2,9 @@
 # The proofs of which ./test runs a part, whole: optimised, with as many random problems as the committed results rest on.
 #
 #   validation/long_proofs.sh            all of them, hours on two cores
-#   validation/long_proofs.sh NAME...    only these: optimum properties segmentation calibration coverage
+#   validation/long_proofs.sh NAME...    only these: features optimum properties segmentation calibration coverage
 #
+# features      the command without Arrow, robot logs and PNG: what it refuses, and the paper's tests
 # optimum       every law against brute force, 10,000 problems each: results/global_optimum.md
 # properties    properties of contacts and laws, 20,000 random cases each
 # segmentation  holds sought in 1000 simulated records: results/segmentation.md
@@ -12,10 +13,14 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 names=("$@")
-((${#names[@]})) || names=(optimum properties segmentation calibration coverage)
+((${#names[@]})) || names=(features optimum properties segmentation calibration coverage)
 for name in "${names[@]}"; do
     echo "=== $name"
     case "$name" in
+    features)
+        cargo test -p palpate-jobs -p palpate-report --no-default-features --lib
+        cargo run -p palpate-cli --no-default-features -- reproduce --out "$(mktemp -d)"
+        ;;
     optimum)
         PALPATE_PROBLEMS="${PALPATE_PROBLEMS:-10000}" cargo test --release -p palpate --test fits -- \
             --nocapture global_optimum recovery::no_search_finds_a_better_fit

@@ -127,10 +127,6 @@ impl From<io::Error> for Unplaced {
 pub(crate) fn unwritten_table(path: &Path, error: &TableError) -> JobError {
     match error {
         TableError::Io(error) => unwritten(path, error),
-        #[cfg(not(feature = "arrow"))]
-        TableError::NotInThisBuild => {
-            JobError::option(error, "build palpate with its feature `arrow`, or choose ⟨out⟩ as CSV").of(path.display())
-        }
         error => {
             let hint = "compute all runs again with ⟨restart⟩".to_owned();
             JobError::new(ErrorKind::File(io::ErrorKind::InvalidData), error, hint).of(path.display())
@@ -223,12 +219,26 @@ pub(crate) fn hexadecimal(bytes: impl AsRef<[u8]>) -> String {
     bytes.as_ref().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Refuses a name without one of these endings; `expected` and `hint` say what is meant.
+/// Endings of files that only a build with some feature writes, and that feature.
+const NOT_IN_THIS_BUILD: &[(&str, &str)] = &[
+    #[cfg(not(feature = "arrow"))]
+    ("parquet", "arrow"),
+    #[cfg(not(feature = "png"))]
+    ("png", "png"),
+];
+
+/// Refuses a name without one of these endings, before any work is done; `expected` and `hint` say what is meant.
 pub(crate) fn check_ending(path: &Path, endings: &[&str], expected: &str, hint: &str) -> Result<(), JobError> {
-    match path.extension().and_then(|ending| ending.to_str()) {
-        Some(ending) if endings.contains(&ending) => Ok(()),
-        _ => Err(JobError::option(format!("expected {expected}"), hint).of(path.display())),
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    if !endings.contains(&ending) {
+        return Err(JobError::option(format!("expected {expected}"), hint).of(path.display()));
     }
+    if let Some((_, feature)) = NOT_IN_THIS_BUILD.iter().find(|(absent, _)| *absent == ending) {
+        let message = format!("expected a file that this build writes, found one for the feature `{feature}`");
+        let hint = format!("build palpate with its feature `{feature}`, which is on by default");
+        return Err(JobError::option(message, &hint).of(path.display()));
+    }
+    Ok(())
 }
 
 /// Refuses names of figures that say no format.
@@ -293,4 +303,25 @@ pub(crate) fn folder_in(out: &Path, name: &str, taken: &mut Vec<PathBuf>) -> Pat
     let folder = names.find(|folder| !taken.contains(folder)).unwrap_or_else(|| out.join(name));
     taken.push(folder.clone());
     folder
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With all features both names pass; `validation/long_proofs.sh features` runs this without them.
+    #[test]
+    fn what_a_build_cannot_write_is_refused_before_any_work() {
+        for (name, feature, is_there) in
+            [("a.parquet", "arrow", cfg!(feature = "arrow")), ("a.png", "png", cfg!(feature = "png"))]
+        {
+            let checked = check_ending(Path::new(name), &["parquet", "png"], "a table or a figure", "");
+            let refused = checked.err().map(|error| error.to_string());
+            let expected =
+                format!("{name}: expected a file that this build writes, found one for the feature `{feature}`");
+            assert_eq!(refused, (!is_there).then_some(expected));
+        }
+        let other = check_ending(Path::new("a.txt"), &["csv"], "a table ending in .csv", "").unwrap_err();
+        assert_eq!(other.to_string(), "a.txt: expected a table ending in .csv");
+    }
 }

@@ -228,7 +228,7 @@ impl Input {
     /// A build with more features would read it.
     #[cfg(not(all(feature = "arrow", feature = "robot-log")))]
     pub(crate) fn not_in_this_build(&self, expected: &'static str, hint: &'static str) -> FileError {
-        self.unfit("the whole file", expected, "one without", hint)
+        self.unfit("its format", expected, "one without", hint)
     }
 
     /// It is whole, and of a kind that is not read.

@@ -39,7 +39,9 @@ use rows::refusals;
 #[serde(default, deny_unknown_fields)]
 pub struct Sweep {
     /// Which result the figure shows, by the name of its column.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "COLUMN", default_value_t = Sweep::default().show, requires = "figure"))]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_name = "COLUMN", default_value_t = Sweep::default().show, requires = "figure",
+    ))]
     pub show: String,
     /// How many runs at once; all processors if not given. The table is the same for any number.
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
@@ -194,12 +196,11 @@ fn unpacked(bytes: &[u8], mut take: impl FnMut(Rows) -> Result<(), TableError>) 
 
 /// Where the table goes: beside nothing else, under the name of the protocol, if nothing is said.
 fn table_of(protocol: &Path, out: Option<&Path>) -> Result<PathBuf, JobError> {
-    let Some(out) = out else {
-        return Ok(beside(Path::new(protocol.file_stem().unwrap_or_default()), ".parquet"));
-    };
-    check_ending(out, &["parquet"], "a table ending in .parquet", "name the table FILE.parquet")?;
-    check_no_folder(out)?;
-    Ok(out.to_owned())
+    let usual = || beside(Path::new(protocol.file_stem().unwrap_or_default()), ".parquet");
+    let out = out.map_or_else(usual, Path::to_owned);
+    check_ending(&out, &["parquet"], "a table ending in .parquet", "name the table FILE.parquet")?;
+    check_no_folder(&out)?;
+    Ok(out)
 }
 
 /// What the rows of a sweep depend on: the text of the protocol, and who computes them.

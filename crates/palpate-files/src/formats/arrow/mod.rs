@@ -46,5 +46,8 @@ pub(crate) fn look_into(
     _kind: Kind,
     _options: &crate::table::ReadOptions,
 ) -> Result<crate::table::Found, crate::FileError> {
-    Err(input.not_in_this_build("a build that reads Parquet and Arrow", "build palpate with its feature `arrow`"))
+    Err(input.not_in_this_build(
+        "a build that reads Parquet and Arrow",
+        "build palpate with its feature `arrow`, which is on by default",
+    ))
 }

@@ -68,5 +68,8 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
 /// Says which build would read it.
 #[cfg(not(feature = "robot-log"))]
 pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, FileError> {
-    Err(input.not_in_this_build("a build that reads logs of robots", "build palpate with its feature `robot-log`"))
+    Err(input.not_in_this_build(
+        "a build that reads logs of robots",
+        "build palpate with its feature `robot-log`, which is on by default",
+    ))
 }
