@@ -4,9 +4,9 @@
     python validation/count_lines.py
     python validation/count_lines.py --rev 83285a6 --rev HEAD
 
-A line counts if something stands on it after comments, doc comments and items under `#[cfg(test)]` are taken away. Counted are
-the Rust files below `crates/*/src` and the Python files below `crates/palpate-python/python`, without docstrings; tests,
-benches, examples and data are not. Needs git and nothing else.
+A line counts if something stands on it after comments, doc comments and items under `#[cfg(test)]`, files of their own
+included, are taken away. Counted are the Rust files below `crates/*/src` and the Python files below
+`crates/palpate-python/python`, without docstrings; tests, benches, examples and data are not. Needs git and nothing else.
 """
 
 import argparse
@@ -88,7 +88,8 @@ def sources(rev: str | None) -> dict[str, str]:
     listing = ["git", "ls-files", "-co", "--exclude-standard"] if rev is None else ["git", "ls-tree", "-r", "--name-only", rev]
     names = subprocess.run(listing, cwd=ROOT, check=True, capture_output=True, text=True).stdout.split("\n")
     wanted = re.compile(r"crates/[^/]+/src/.*\.rs|crates/palpate-python/python/.*\.pyi?")
-    names = sorted({name for name in names if wanted.fullmatch(name)})
+    # A file `tests.rs` stands under `#[cfg(test)] mod tests;`.
+    names = sorted({name for name in names if wanted.fullmatch(name) and not name.endswith("/tests.rs")})
     if rev is None:
         return {name: (ROOT / name).read_text("utf-8") for name in names if (ROOT / name).exists()}
     asked = "".join(f"{rev}:{name}\n" for name in names).encode()

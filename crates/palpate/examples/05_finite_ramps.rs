@@ -5,7 +5,7 @@
 #[path = "../tests/common/titin.rs"]
 mod titin;
 
-use palpate::fit::{EquilibriumChoice, ExponentChoice, FitOptions, LawOptions, RampHold, fit_law, fit_ramps};
+use palpate::fit::{LawOptions, fit_law};
 use palpate::laws::Loading;
 use titin::{Record, records};
 
@@ -24,9 +24,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for way in &ways {
             print_law(law, way, &records)?;
         }
-    }
-    for (name, loadings) in &ways[1..] {
-        print_latency(name, loadings, &records)?;
     }
     Ok(())
 }
@@ -53,35 +50,6 @@ fn print_law(law: &str, (name, loadings): &Way, records: &[Record]) -> Result<()
             print!(" {:.3}", other.distance(&predicted));
         }
         println!("  {:?}", fit.termination);
-    }
-    Ok(())
-}
-
-/// The latency law of all four holds together.
-fn print_latency(
-    name: &str,
-    loadings: &[Option<Loading>],
-    records: &[Record],
-) -> Result<(), Box<dyn std::error::Error>> {
-    let known = records.iter().zip(loadings.iter().flatten());
-    let holds: Vec<RampHold<'_>> = known
-        .map(|(record, loading)| RampHold {
-            loading,
-            samples: record.samples(),
-        })
-        .collect();
-    let fit = fit_ramps(&holds, ExponentChoice::Free, EquilibriumChoice::Each, &FitOptions::default())?;
-    let error = |estimate: palpate::fit::Estimate| estimate.standard_error.unwrap_or(f64::NAN);
-    println!("latency, loading {name}: {:?}", fit.termination);
-    println!("  n {:.2} ± {:.2}", fit.exponent.value, error(fit.exponent));
-    println!("  amplitude of a step {:.2} ± {:.2}", fit.step_amplitude.value, error(fit.step_amplitude));
-    println!("  relative rate after a step {:.1} ± {:.1} 1/s", fit.step_rate.value, error(fit.step_rate));
-    for ((record, hold), numbers) in records.iter().zip(&holds).zip(&fit.holds) {
-        let predicted: Vec<f64> =
-            record.hold[0].iter().map(|elapsed| fit.excess_after(hold.loading, *elapsed)).collect();
-        let (equilibrium, amplitude) = (numbers.equilibrium.value, numbers.amplitude.value);
-        let off = record.distance(&predicted);
-        println!("{:>7} s  equilibrium {equilibrium:.2}  amplitude {amplitude:.2}  off {off:.3}", record.ramp);
     }
     Ok(())
 }

@@ -32,7 +32,7 @@ const TOLERANCE: f64 = 1e-13;
 /// Whether a power that is not smooth at rest, x = 0, is met or near on the way from z: any but whole exponents, and even ones where the way
 /// goes through.
 #[inline(always)]
-pub(crate) fn is_kinked(exponent: f64, z: f64) -> bool {
+fn is_kinked(exponent: f64, z: f64) -> bool {
     let is_odd = exponent % 2.0 == 1.0;
     let is_even = exponent % 2.0 == 0.0;
     !(is_odd || (is_even && z >= 0.0))
@@ -40,14 +40,14 @@ pub(crate) fn is_kinked(exponent: f64, z: f64) -> bool {
 
 /// |z| below which the power moves nothing that matters: what a step through rest may pass over.
 #[inline(always)]
-pub(crate) fn rest_of(exponent: f64, reach: f64) -> f64 {
+fn rest_of(exponent: f64, reach: f64) -> f64 {
     (TOLERANCE * reach).powf(1.0 / (exponent + 1.0))
 }
 
 /// The longest step from z with ż = `speed` there, in units of x*/g, where rest is met: steps shrink towards it and grow away from it, so
 /// that each sees a smooth power. After a long way to rest a step is still one to a clock that has come as far as `time`.
 #[inline(always)]
-pub(crate) fn longest_step(z: f64, speed: f64, rest: f64, time: f64) -> f64 {
+fn longest_step(z: f64, speed: f64, rest: f64, time: f64) -> f64 {
     let longest = match z {
         _ if z > 0.5 => f64::INFINITY,
         _ if z >= 0.0 => z.max(rest),

@@ -46,7 +46,7 @@ pub use specimen::{Specimen, SpecimenError};
 
 #[cfg(feature = "std")]
 pub(crate) use {
-    element::{Element, Ramps, is_kinked, longest_step, rest_of},
+    element::{Element, Ramps},
     forced::{Body, Carried, ForceLine, Forced, Stopped, UnderForce, last_good},
     free_surface::FreeSurface,
 };

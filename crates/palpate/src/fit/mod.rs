@@ -45,8 +45,8 @@ pub use estimate::{Estimate, Interval};
 pub use foretell::{Forecast, foretell};
 pub(crate) use global::grid::{combinations, distinct};
 pub use joint::{
-    EquilibriumChoice, HoldWeights, JointComparison, JointFit, JointOptions, RampFit, RampHold, RampHoldNumbers,
-    SharedTrend, TrendPoint, TrendVerdict, compare_joint, fit_joint, fit_joint_watched, fit_ramps,
+    HoldWeights, JointComparison, JointFit, JointOptions, SharedTrend, TrendPoint, TrendVerdict, compare_joint,
+    fit_joint, fit_joint_watched,
 };
 pub use latency::{LatencyFit, fit_hold};
 pub use law::{Bootstrap, bootstrap, fit_law, fit_law_watched, profile_interval};

@@ -1,6 +1,6 @@
 //! The law, lane by lane: functions without branches for kernels over many contacts or layers.
 
-use crate::vector::elementary::{exp, ln, ln_1p};
+use crate::vector::elementary::{exp, ln};
 
 /// Excess strains below this count as none in a power of whole n: their fifth power is not a normal double, which
 /// processors multiply a hundred times more slowly, and moves nothing.
@@ -103,38 +103,4 @@ pub(crate) fn signed_power(power: Power, x: f64, n: f64, rest: f64) -> f64 {
             if x < 0.0 { -value } else { value }
         }
     }
-}
-
-/// Excess strain a time `elapsed` after it was `x`, equations (4) and (5).
-#[inline(always)]
-pub(crate) fn relaxed(power: Power, x: f64, n: f64, v: f64, elapsed: f64) -> f64 {
-    let size = x.abs();
-    let size = if size < NEGLIGIBLE { 0.0 } else { size };
-    let vt = v * elapsed;
-    match power {
-        Power::One => x * exp(-vt),
-        Power::Two => x / (1.0 + size * vt),
-        Power::Three => x / (1.0 + 2.0 * (size * size) * vt).sqrt(),
-        Power::Five => x / (1.0 + 4.0 * ((size * size) * (size * size)) * vt).sqrt().sqrt(),
-        Power::Any => {
-            let p = n - 1.0;
-            let s = exp(p * ln(if size > 0.0 { size } else { 1.0 })) * vt;
-            let z = p * s;
-            let z = if z < 1e308 { z } else { 1e308 };
-            // Past the finite end of n < 1 the logarithm is not used.
-            let log = ln_1p(if z > -1.0 { z } else { 0.0 });
-            let log = if z == 0.0 { s } else { log / p };
-            let phi = if z > -1.0 { exp(-log) } else { 0.0 };
-            if size > 0.0 { x * phi } else { x }
-        }
-    }
-}
-
-/// sgn(g) (|g|/v)^(1/n), the excess strain that a drive g ≠ 0 keeps up.
-#[inline(always)]
-pub(crate) fn steady_excess(g: f64, n: f64, v: f64) -> f64 {
-    let ratio = g.abs() / v;
-    let ratio = if ratio > f64::MIN_POSITIVE { ratio } else { f64::MIN_POSITIVE };
-    let size = exp(ln(ratio) / n);
-    if g < 0.0 { -size } else { size }
 }

@@ -151,45 +151,6 @@ impl Loading {
         low + (high - low) * (time - from) / (to - from)
     }
 
-    /// The same with `most` pieces at most, all of it within 10⁻⁵, or within the least multiple of that by a power of two for
-    /// which so few are enough.
-    ///
-    /// A law that moves towards equilibrium the faster the further it is away answers two loadings that are nowhere
-    /// further apart than d with excesses that are nowhere further apart than 2 d.
-    pub(crate) fn thinned(&self, most: usize) -> Self {
-        let mut tolerance = 1e-5;
-        loop {
-            let knots = self.knots(tolerance);
-            if knots.len() <= most + 1 || knots.len() <= 2 {
-                let pick = |column: &[f64]| knots.iter().map(|i| column[*i]).collect();
-                return Self {
-                    times: pick(&self.times),
-                    values: pick(&self.values),
-                };
-            }
-            tolerance *= 2.0;
-        }
-    }
-
-    /// Places whose chords pass within `tolerance` of all samples between them.
-    fn knots(&self, tolerance: f64) -> Vec<usize> {
-        let (mut knots, mut from) = (vec![0], 0);
-        // Slopes from the last knot that pass all samples since.
-        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
-        for i in 1..self.times.len() {
-            let slope = |from: usize, value: f64| (value - self.values[from]) / (self.times[i] - self.times[from]);
-            if !(low..=high).contains(&slope(from, self.values[i])) {
-                from = i - 1;
-                knots.push(from);
-                (low, high) = (f64::NEG_INFINITY, f64::INFINITY);
-            }
-            low = low.max(slope(from, self.values[i] - tolerance));
-            high = high.min(slope(from, self.values[i] + tolerance));
-        }
-        knots.push(self.times.len() - 1);
-        knots
-    }
-
     /// The same in another unit of time: `unit` s.
     pub(crate) fn in_units_of(&self, unit: f64) -> Self {
         Self {
@@ -214,27 +175,5 @@ impl TryFrom<Columns> for Loading {
 
     fn try_from(columns: Columns) -> Result<Self, LoadingError> {
         Self::new(&columns.times, &columns.values)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_long_record_keeps_its_way_when_it_is_thinned() {
-        let times: Vec<f64> = (0..=5000).map(f64::from).collect();
-        let ripple = |t: f64| 2e-4 * (0.9 * t).sin();
-        let values: Vec<f64> = times.iter().map(|t| (t / 5000.0).powi(2) + ripple(*t)).collect();
-        let loading = Loading::new(&times, &values).unwrap();
-        // Chords between two ripples are off by both, 4·10⁻⁴, and the parabola: 64·10⁻⁵ is enough for a hundred.
-        for (most, tolerance) in [(5000, 1.1e-5), (100, 6.5e-4), (1, 0.26)] {
-            let thin = loading.thinned(most);
-            assert!(thin.pieces().count() <= most);
-            let off = loading.times.iter().zip(&loading.values).map(|(t, value)| (thin.at(*t) - value).abs());
-            assert!(off.fold(0.0, f64::max) < tolerance, "{most}");
-        }
-        let ramp = Loading::new(&times, &times).unwrap().thinned(200);
-        assert_eq!((ramp.times.as_slice(), ramp.values.as_slice()), (&[-5000.0, 0.0][..], &[0.0, 1.0][..]));
     }
 }

@@ -303,7 +303,7 @@ fn total_of<S: Simd>(numbers: f64x8<S>) -> f64 {
 ///
 /// The number of terms is a constant of the loop: with weights in registers and nothing to decide it runs four times as fast.
 #[inline(always)]
-pub(super) fn sums<S: Simd, const N: usize>(
+fn sums<S: Simd, const N: usize>(
     simd: S,
     terms: &[(usize, f64)],
     (stages, room): (&[f64], usize),
@@ -326,7 +326,7 @@ pub(super) fn sums<S: Simd, const N: usize>(
 
 /// [`sums`] for the rows of the tableau, which have one to twelve terms.
 #[inline(always)]
-pub(super) fn sums_of_any<S: Simd>(
+fn sums_of_any<S: Simd>(
     simd: S,
     terms: &[(usize, f64)],
     stages: (&[f64], usize),
@@ -349,7 +349,7 @@ pub(super) fn sums_of_any<S: Simd>(
 }
 
 /// Terms of an error estimate.
-pub(super) const ESTIMATE: usize = 8;
+const ESTIMATE: usize = 8;
 const _: () = assert!(E5.len() == ESTIMATE && E3.len() == ESTIMATE);
 
 /// Σ weight · stage for eight numbers from `at` on.

@@ -6,11 +6,9 @@
 //! nine digits and a reader of the strain wave should not meet the integrator in it.
 
 mod column;
-mod lanes;
 mod tableau;
 
 pub(crate) use column::{Column, Slopes, WIDTH};
-pub(crate) use lanes::Lanes;
 
 use tableau::{A, C, D, E3, E5};
 

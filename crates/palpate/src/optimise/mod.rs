@@ -29,8 +29,8 @@ pub(crate) use cholesky::{Cholesky, Few, Square};
 pub(crate) use minimum::{Level, Minimum, minimise};
 pub(crate) use orthogonal::Orthogonal;
 pub(crate) use separable::{
-    Ending, Near, Refined, Shapes, Solution, Spare, Target, curvature, descend, distance, polished, refine, square_at,
-    standing, stepped, stepped_within,
+    Ending, Near, Refined, Shapes, Solution, Spare, Target, curvature, descend, distance, polished, refine, standing,
+    stepped, stepped_within,
 };
 pub use termination::Termination;
 pub use work::Work;

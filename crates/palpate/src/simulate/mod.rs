@@ -49,6 +49,8 @@ pub use model::{ContactModel, Separation};
 pub use step::{ContactState, StepError};
 
 #[cfg(feature = "std")]
+pub(crate) use summary::run_summary;
+#[cfg(feature = "std")]
 pub use {
     crate::contact::SimulationWork,
     contact::{Contact, ContactRef},
@@ -62,5 +64,3 @@ pub use {
     walk::{ContactEvent, ContactEventKind, StepEnd, step_ends},
     wave::{StrainWave, strain_wave, strain_wave_within},
 };
-#[cfg(feature = "std")]
-pub(crate) use {summary::run_summary, walk::check_displacements};

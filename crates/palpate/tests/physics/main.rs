@@ -1,6 +1,5 @@
 //! The law, the contact and its simulation.
 
-mod batch;
 #[path = "../common/mod.rs"]
 mod common;
 mod contact_events;

@@ -12,13 +12,11 @@
 //! | `report.rs` | numbers with their errors |
 //! | `fit_joint.rs` | the whole way |
 //! | `trend.rs`, `comparison.rs` | whether a number goes with the strain; one law against one each |
-//! | `ramps.rs` | the latency law of several holds that were reached in different times |
 
 mod arrow;
 mod comparison;
 mod fit_joint;
 mod hold;
-mod ramps;
 mod report;
 mod result;
 mod starts;
@@ -26,6 +24,5 @@ mod trend;
 
 pub use comparison::{JointComparison, TrendVerdict, compare_joint};
 pub use fit_joint::{fit_joint, fit_joint_watched};
-pub use ramps::{EquilibriumChoice, RampFit, RampHold, RampHoldNumbers, fit_ramps};
 pub use result::{HoldWeights, JointFit, JointOptions};
 pub use trend::{SharedTrend, TrendPoint};

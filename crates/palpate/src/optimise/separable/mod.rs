@@ -25,7 +25,7 @@ mod target;
 pub(crate) use finish::standing;
 pub(crate) use newton::{Near, curvature, descend, polished};
 pub(crate) use point::{Shapes, Spare};
-pub(crate) use refine::{Refined, refine, square_at};
+pub(crate) use refine::{Refined, refine};
 pub(crate) use solution::Solution;
 pub(crate) use step::{distance, stepped, stepped_within};
 pub(crate) use target::{Ending, Target};

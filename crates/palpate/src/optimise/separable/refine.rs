@@ -23,13 +23,6 @@ impl Refined {
     }
 }
 
-/// The residual square at θ, without derivatives.
-pub(crate) fn square_at(shapes: &impl Shapes, target: Target<'_>, theta: &[f64]) -> f64 {
-    let mut here = Point::new(shapes, 0, target.values.len());
-    here.evaluate(shapes, theta, target);
-    here.square
-}
-
 /// Refines θ from `start` to the nearest local optimum inside the bounds.
 pub(crate) fn refine(
     shapes: &impl Shapes,

@@ -14,7 +14,7 @@ pub(in crate::simulate) fn check_force(time: f64, force: f64, model: &impl Layer
 }
 
 /// Checks that the body can take every displacement of a motion.
-pub(crate) fn check_displacements(
+pub(super) fn check_displacements(
     motion: &Motion,
     specimen: &Specimen,
     separation: Separation,

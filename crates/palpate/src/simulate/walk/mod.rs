@@ -20,7 +20,6 @@ mod stretch;
 mod walker;
 mod whole;
 
-pub(crate) use checks::check_displacements;
 pub(super) use course::Course;
 pub use event::{ContactEvent, ContactEventKind};
 pub use program::{StepEnd, step_ends};

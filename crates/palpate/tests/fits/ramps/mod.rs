@@ -1,6 +1,5 @@
 //! Ramps of finite duration, and what taking them for steps does to a fit.
 
 mod finite;
-mod ramp_fit;
 mod rate_bias;
 mod titin;

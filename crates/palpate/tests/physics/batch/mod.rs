@@ -1,3 +1,0 @@
-//! Many contacts at once against one at a time.
-
-mod accuracy;
