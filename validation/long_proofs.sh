@@ -2,18 +2,19 @@
 # The proofs of which ./test runs a part, whole: optimised, with as many random problems as the committed results rest on.
 #
 #   validation/long_proofs.sh            all of them, hours on two cores
-#   validation/long_proofs.sh NAME...    only these: features optimum properties segmentation calibration coverage
+#   validation/long_proofs.sh NAME...    only these: features optimum properties statistics segmentation calibration coverage
 #
 # features      the command without Arrow, robot logs and PNG: what it refuses, and the paper's tests
 # optimum       every law against brute force, 10,000 problems each: results/global_optimum.md
 # properties    properties of contacts and laws, 20,000 random cases each
+# statistics    first touch, modulus, chosen terms and intervals of the observer with every repetition
 # segmentation  holds sought in 1000 simulated records: results/segmentation.md
 # calibration   1000 records of each of the paper's tests: results/calibration.md
 # coverage      how often intervals contain the truth, 1000 holds a law: results/coverage.md (needs matplotlib)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 names=("$@")
-((${#names[@]})) || names=(features optimum properties segmentation calibration coverage)
+((${#names[@]})) || names=(features optimum properties statistics segmentation calibration coverage)
 for name in "${names[@]}"; do
     echo "=== $name"
     case "$name" in
@@ -27,6 +28,10 @@ for name in "${names[@]}"; do
         ;;
     properties)
         PROPTEST_CASES="${PROPTEST_CASES:-20000}" cargo test --release -p palpate --test physics -- properties
+        ;;
+    statistics)
+        PALPATE_WHOLE=1 cargo test --release -p palpate --test records -- touch_and_modulus observe
+        PALPATE_WHOLE=1 cargo test --release -p palpate --test fits -- prony_terms
         ;;
     segmentation) validation/segmentation.sh ;;
     calibration) validation/calibration.sh ;;

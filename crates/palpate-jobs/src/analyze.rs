@@ -1,6 +1,7 @@
 //! A record to phases, laws, tables and a report.
 
 use palpate::analysis::{Analysis, analyze_watched};
+use palpate::fit::IntervalMethod;
 use palpate::record::Record;
 use palpate::segment::{ContactChoice, HoldStart};
 use palpate::watch::{Progress, Watch};
@@ -36,6 +37,13 @@ pub struct Analyze {
     /// Coverage of the intervals, between 0 and 1.
     #[cfg_attr(feature = "clap", arg(skip))]
     pub confidence: Option<f64>,
+    /// What the intervals of fits rest on: "curvature", "profile", or "bootstrap" with its options.
+    #[schemars(with = "serde_json::Value")]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_parser = crate::typed::one_of(crate::typed::INTERVALS),
+        help = "What intervals rest on; curvature if not given",
+    ))]
+    pub intervals: Option<IntervalMethod>,
     /// From where in a hold to fit: "peak", "settled", or so many seconds after the peak.
     #[schemars(with = "serde_json::Value")]
     #[cfg_attr(feature = "clap", arg(
@@ -72,6 +80,7 @@ impl Default for Analyze {
             exponents: None,
             free_exponent: None,
             confidence: None,
+            intervals: None,
             hold_start: None,
             touch: None,
             tolerance_m: None,
@@ -106,6 +115,10 @@ impl Analyze {
         options.exponents.dedup();
         if let Some(confidence) = self.confidence {
             options.fit.confidence = checked_confidence(confidence)?;
+        }
+        if let Some(intervals) = self.intervals {
+            options.fit.intervals = intervals;
+            options.compare.iter_mut().for_each(|compare| compare.fit.intervals = intervals);
         }
         options.free_exponent = self.free_exponent.unwrap_or(options.free_exponent);
         options.segment.hold_start = self.hold_start.unwrap_or(options.segment.hold_start);

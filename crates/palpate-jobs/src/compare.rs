@@ -1,7 +1,7 @@
 //! Records to the law that is to be used, and how sure that is.
 
 use palpate::analysis::{AnalysisOptions, CreepError, analyze_watched, corrected, creep_holds};
-use palpate::fit::{Loss, SampleChoice};
+use palpate::fit::{IntervalMethod, Loss, SampleChoice};
 use palpate::forecast::{CompareOptions, RampChoice};
 use palpate::laws::{Law, Response};
 use palpate::watch::{Progress, Watch};
@@ -51,6 +51,13 @@ pub struct Compare {
         help = "Which samples are fitted: all, or log:400 for about 400 spaced evenly in ln t",
     ))]
     pub samples: SampleChoice,
+    /// What the intervals of fits rest on: "curvature", "profile", or "bootstrap" with its options.
+    #[schemars(with = "serde_json::Value")]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_parser = crate::typed::one_of(crate::typed::INTERVALS),
+        help = "What intervals rest on; curvature if not given",
+    ))]
+    pub intervals: Option<IntervalMethod>,
     /// What linear laws take the loading before a hold for.
     #[schemars(with = "String", extend("enum" = ["step", "measured"]))]
     #[cfg_attr(feature = "clap", arg(
@@ -87,6 +94,8 @@ impl Compare {
         analysis.fit_until = self.fit_until_s.or(analysis.fit_until);
         let mut compared = CompareOptions::default();
         compared.fit.response = if self.creep { Response::Creep } else { Response::Relaxation };
+        analysis.fit.intervals = self.intervals.unwrap_or(analysis.fit.intervals);
+        compared.fit.intervals = analysis.fit.intervals;
         compared.fit.confidence = analysis.fit.confidence;
         compared.fit.samples = self.samples;
         compared.fit.loss = self.loss;

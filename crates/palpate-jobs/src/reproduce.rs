@@ -1,11 +1,12 @@
 //! The paper's study: both tests simulated, re-identified, and checked against what the paper reports.
 
-use palpate::analysis::{AnalysisError, AnalysisOptions, Geometry, HoldAnalysis, LayersChoice, analyze};
+use palpate::analysis::{AnalysisError, AnalysisOptions, Geometry, HoldAnalysis, LayersChoice, analyze_watched};
 use palpate::number::significant;
 use palpate::record::{Record, RecordError};
 use palpate::segment::{After, ContactChoice, RelaxationType};
 use palpate::simulate::{
-    ContactEventKind, ContactModel, Motion, Sampling, Separation, SimulateError, Trajectory, simulate, strain_wave,
+    ContactEventKind, ContactModel, Motion, Sampling, Separation, SimulateError, Trajectory, WAVE_TOLERANCE,
+    simulate_watched, strain_wave_within,
 };
 use palpate::test_problems::{paper_ball, paper_test_a, paper_test_b};
 use palpate::watch::{Progress, Watch};
@@ -65,14 +66,17 @@ impl Results for Reproduction {
 }
 
 fn reproduced(motion: &Motion, model: &ContactModel, watch: &mut dyn Watch) -> Result<ReproducedTest, JobError> {
-    let simulated = |error: SimulateError| JobError::new(ErrorKind::Model, error, None);
+    let simulated = |error: SimulateError| match error {
+        SimulateError::Cancelled(cancelled) => cancelled.into(),
+        error => JobError::new(ErrorKind::Model, error, None),
+    };
     watch.report(Progress::open("simulating and re-identifying the paper's tests", 0))?;
     let sampling = Sampling::Rate(SAMPLE_RATE);
     let free = ContactModel {
         separation: Separation::Unilateral,
         ..model.clone()
     };
-    let bonded = simulate(motion, model, &sampling).map_err(simulated)?;
+    let bonded = simulate_watched(motion, model, &sampling, watch).map_err(simulated)?;
     let record = Record::new(bonded.time.clone(), Some(bonded.displacement.clone()), bonded.force.clone());
     let record = record.map_err(|error: RecordError| JobError::new(ErrorKind::Record, error, None))?;
     let options = AnalysisOptions {
@@ -88,10 +92,12 @@ fn reproduced(motion: &Motion, model: &ContactModel, watch: &mut dyn Watch) -> R
         ..AnalysisOptions::default()
     };
     Ok(ReproducedTest {
-        analysis: analyze(&record, &options)
-            .map_err(|error: AnalysisError| JobError::new(ErrorKind::Record, error, None))?,
-        unilateral: simulate(motion, &free, &sampling).map_err(simulated)?,
-        wave: strain_wave(motion, model, &Sampling::Rate(10.0)).map_err(simulated)?,
+        analysis: analyze_watched(&record, &options, watch).map_err(|error| match error {
+            AnalysisError::Cancelled(cancelled) => cancelled.into(),
+            error => JobError::new(ErrorKind::Record, error, None),
+        })?,
+        unilateral: simulate_watched(motion, &free, &sampling, watch).map_err(simulated)?,
+        wave: strain_wave_within(motion, model, &Sampling::Rate(10.0), WAVE_TOLERANCE, watch).map_err(simulated)?,
         bonded,
     })
 }

@@ -7,7 +7,8 @@ use palpate::contact::RateDependence;
 use palpate::record::Record;
 use palpate::simulate::{
     Contact, ContactEventKind, ContactModel, Drive, Energy, ForceHistory, Memory, Motion, Sampling, SimulateError,
-    StepWork, StrainWave, Trajectory, cycles, energy, simulate_watched, strain_wave, work_by_step,
+    StepWork, StrainWave, Trajectory, WAVE_TOLERANCE, cycles, energy_watched, simulate_watched, strain_wave_within,
+    work_by_step_watched,
 };
 use palpate::test_problems::Noise;
 use palpate::watch::Watch;
@@ -158,10 +159,10 @@ impl Simulated {
     /// Force against displacement, likewise.
     ///
     /// # Errors
-    /// [`JobError`] where the work of a step cannot be computed.
-    pub fn hysteresis(&self, path: &Path) -> Result<Figure, JobError> {
+    /// [`JobError`] where the work of a step cannot be computed, or the watch ends it.
+    pub fn hysteresis(&self, path: &Path, watch: &mut dyn Watch) -> Result<Figure, JobError> {
         let what = "Force against displacement of the jaw; the area of a loop is what the cycle lost";
-        let cycles = cycles(&self.scene.steps()?);
+        let cycles = cycles(&self.scene.steps(watch)?);
         Ok(hysteresis_figure(&self.trajectory, &cycles, &stem(path), &self.scene.caption(what)))
     }
 
@@ -169,39 +170,40 @@ impl Simulated {
     ///
     /// # Errors
     /// As for [`hysteresis`](Self::hysteresis).
-    pub fn energy_by_step(&self) -> Result<String, JobError> {
-        Ok(step_work_table(&self.scene.steps()?).to_csv())
+    pub fn energy_by_step(&self, watch: &mut dyn Watch) -> Result<String, JobError> {
+        Ok(step_work_table(&self.scene.steps(watch)?).to_csv())
     }
 
     /// What every cycle cost, as CSV.
     ///
     /// # Errors
     /// As for [`hysteresis`](Self::hysteresis).
-    pub fn energy_by_cycle(&self) -> Result<String, JobError> {
-        Ok(cycle_table(&cycles(&self.scene.steps()?)).to_csv())
+    pub fn energy_by_cycle(&self, watch: &mut dyn Watch) -> Result<String, JobError> {
+        Ok(cycle_table(&cycles(&self.scene.steps(watch)?)).to_csv())
     }
 
     /// Work over time, as CSV.
     ///
     /// # Errors
-    /// [`JobError`] where it cannot be computed.
-    pub fn energy(&self) -> Result<String, JobError> {
+    /// [`JobError`] where it cannot be computed, or the watch ends it.
+    pub fn energy(&self, watch: &mut dyn Watch) -> Result<String, JobError> {
         let scene = &self.scene;
-        let energy = energy(scene.drive(), &scene.contact, &scene.sampling);
+        let energy = energy_watched(scene.drive(), &scene.contact, &scene.sampling, watch);
         Ok(energy_table(&energy.map_err(|error| scene.refused(error))?).to_csv())
     }
 
     /// Strain of every layer over time.
     ///
     /// # Errors
-    /// [`JobError`] where the law has no layers.
-    pub fn wave(&self) -> Result<StrainWave, JobError> {
+    /// [`JobError`] where the law has no layers, or the watch ends it.
+    pub fn wave(&self, watch: &mut dyn Watch) -> Result<StrainWave, JobError> {
         let scene = &self.scene;
         let layered = scene.contact.latency().ok_or_else(|| {
             let hint = "name the latency law in [law], or leave ⟨layers_out⟩ and ⟨strain_map⟩ out";
             JobError::option("a linear law has no layers whose strain could be shown", hint).of(&scene.place)
         })?;
-        strain_wave(scene.drive(), layered, &scene.sampling).map_err(|error| scene.refused(error))
+        strain_wave_within(scene.drive(), layered, &scene.sampling, WAVE_TOLERANCE, watch)
+            .map_err(|error| scene.refused(error))
     }
 
     /// The strain of every layer as CSV.
@@ -268,8 +270,8 @@ impl Scene {
         }
     }
 
-    fn steps(&self) -> Result<Vec<StepWork>, JobError> {
-        work_by_step(self.drive(), &self.contact).map_err(|error| self.refused(error))
+    fn steps(&self, watch: &mut dyn Watch) -> Result<Vec<StepWork>, JobError> {
+        work_by_step_watched(self.drive(), &self.contact, watch).map_err(|error| self.refused(error))
     }
 
     fn refused(&self, error: SimulateError) -> JobError {

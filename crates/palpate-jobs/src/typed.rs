@@ -1,7 +1,7 @@
 //! Options as they are typed on a command line: what parses them, and what one of several may be.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use palpate::fit::{Loss, SampleChoice};
+use palpate::fit::{BootstrapOptions, IntervalMethod, Loss, SampleChoice};
 use palpate::forecast::RampChoice;
 use palpate::grip::{Control, Objective};
 use palpate::laws::Law;
@@ -29,6 +29,21 @@ pub(crate) const OBJECTIVES: &[Choice<Objective>] = &[
 pub(crate) const RAMPS: &[Choice<RampChoice>] = &[
     ("step", "A step at the start of the fit", RampChoice::Step),
     ("measured", "The displacement that was measured", RampChoice::Measured),
+];
+
+/// What intervals rest on.
+pub(crate) const INTERVALS: &[Choice<IntervalMethod>] = &[
+    ("curvature", "The curvature of the residual square at the optimum", IntervalMethod::Curvature),
+    (
+        "profile",
+        "The profile of the residual square: asymmetric, open where the data leave it open",
+        IntervalMethod::Profile,
+    ),
+    (
+        "bootstrap",
+        "Fits to resampled residuals, which takes long",
+        IntervalMethod::Bootstrap(BootstrapOptions::USUAL),
+    ),
 ];
 
 /// How residuals count.

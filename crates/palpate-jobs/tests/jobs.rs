@@ -138,6 +138,19 @@ fn a_calibration_hears_that_it_is_cancelled() {
     assert!(heard < SOON, "{heard:?}");
 }
 
+#[test]
+fn all_that_is_made_of_a_simulation_hears_its_watch() {
+    let outcome = Simulate::default().run(&example("protocols/paper-a.toml"), None, &mut Unwatched).unwrap();
+    let (simulated, path) = (outcome.result, Path::new("loop.svg"));
+    let cancelled = |error: JobError| assert_eq!(error.kind, ErrorKind::Cancelled, "{error}");
+    cancelled(simulated.energy(&mut until(0)).unwrap_err());
+    cancelled(simulated.energy_by_step(&mut until(0)).unwrap_err());
+    cancelled(simulated.energy_by_cycle(&mut until(0)).unwrap_err());
+    cancelled(simulated.hysteresis(path, &mut until(0)).unwrap_err());
+    cancelled(simulated.wave(&mut until(0)).unwrap_err());
+    cancelled(Reproduce::default().run(&mut until(0)).unwrap_err());
+}
+
 /// A watch that cancels once so much is done.
 fn until(done: u64) -> impl FnMut(Progress<'_>) -> Result<(), Cancelled> {
     move |progress| if progress.done < done { Ok(()) } else { Err(Cancelled) }

@@ -12,6 +12,7 @@ use palpate_report::study::Pictures;
 use pyo3::prelude::*;
 
 use crate::errors::{OptionError, failed, refused_plainly};
+use crate::fit;
 use crate::work::{job, plain};
 
 /// An argument of Python of several kinds.
@@ -121,6 +122,8 @@ pub(crate) fn convert(
 ///     Test description of all of them.
 /// laws
 ///     Laws to fit besides the latency law.
+/// intervals
+///     What the intervals of fits rest on: "curvature" (if left out), "profile" or "bootstrap".
 /// fit_until_s
 ///     Fit only this long from the start of each hold, s.
 /// restart
@@ -138,19 +141,21 @@ pub(crate) fn convert(
 /// OptionError, OSError
 ///     A description or a law that is wrong, a table that cannot be written.
 #[pyfunction]
-#[pyo3(signature = (paths, out, *, test=None, laws=None, fit_until_s=None, restart=false))]
+#[pyo3(signature = (paths, out, *, test=None, laws=None, intervals=None, fit_until_s=None, restart=false))]
 pub(crate) fn batch(
     py: Python<'_>,
     paths: Vec<PathBuf>,
     out: PathBuf,
     test: Given<'_, '_>,
     laws: Option<Vec<String>>,
+    intervals: Option<&str>,
     fit_until_s: Option<f64>,
     restart: bool,
 ) -> PyResult<(usize, Vec<String>)> {
     let (described, _) = described(test, None)?;
     let question = Batch {
         laws: laws.map(|laws| all_laws(&laws)).transpose()?,
+        intervals: intervals.map(fit::intervals).transpose()?,
         fit_until_s,
         restart,
         ..Batch::default()

@@ -286,6 +286,16 @@ fn report(fit: &Fit) -> String {
 /// Samples whose bands are computed in some milliseconds.
 const AT_ONCE: usize = 10_000;
 
+/// What intervals rest on, as a keyword says it.
+pub(crate) fn intervals(name: &str) -> PyResult<IntervalMethod> {
+    let ways = [
+        IntervalMethod::Curvature,
+        IntervalMethod::Profile,
+        IntervalMethod::Bootstrap(BootstrapOptions::USUAL),
+    ];
+    one_of("intervals", &ways.map(|way| (way.name(), way)), name)
+}
+
 /// Options of a fit as keywords say them.
 #[derive(Clone)]
 pub(crate) struct Asked {
@@ -316,16 +326,11 @@ impl Keywords {
             return Err(refused_plainly::<OptionError>(message));
         }
         let noises = [("residuals", NoiseChoice::FromResiduals), ("white", NoiseChoice::White)];
-        let intervals = [
-            ("curvature", IntervalMethod::Curvature),
-            ("profile", IntervalMethod::Profile),
-            ("bootstrap", IntervalMethod::Bootstrap(BootstrapOptions::default())),
-        ];
         let options = LawOptions {
             response: choice("response", &["relaxation", "creep"], &self.response)?,
             loss: choice("loss", &["squares", "huber", "tukey"], &self.loss)?,
             noise: one_of("noise", &noises, &self.noise)?,
-            intervals: one_of("intervals", &intervals, &self.intervals)?,
+            intervals: intervals(&self.intervals)?,
             fixed: self.fixed.unwrap_or_default(),
             bounds: self.bounds.unwrap_or_default(),
             samples: self.log_spaced.map_or(SampleChoice::All, SampleChoice::LogSpaced),

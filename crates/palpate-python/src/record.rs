@@ -24,6 +24,7 @@ use crate::calibration::Calibration;
 use crate::compare::RecordComparison;
 use crate::errors::{OptionError, RecordError, choice, refused, refused_plainly};
 use crate::files::{self, Given, all_laws, described, read_or_parsed};
+use crate::fit;
 use crate::kept::Kept;
 use crate::table::{Column, Table, columns};
 use crate::work::{Made, at_length, briefly, job, made_again, unpickled};
@@ -367,6 +368,8 @@ impl Record {
     ///     Whether n is found as well.
     /// confidence : float, optional
     ///     Coverage of the intervals, between 0 and 1.
+    /// intervals : str, optional
+    ///     What the intervals of fits rest on: "curvature" (if left out), "profile", or "bootstrap", which takes long.
     /// fit_until_s : float, optional
     ///     Longest stretch of a hold to fit, s.
     /// compare : bool
@@ -387,7 +390,7 @@ impl Record {
     /// -----
     /// PalpateWarning
     ///     Findings that forbid the use of a number.
-    #[pyo3(signature = (*, test=None, exponents=None, free_exponent=None, confidence=None, fit_until_s=None, compare=true))]
+    #[pyo3(signature = (*, test=None, exponents=None, free_exponent=None, confidence=None, intervals=None, fit_until_s=None, compare=true))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn analyze(
         &self,
@@ -396,6 +399,7 @@ impl Record {
         exponents: Option<Vec<f64>>,
         free_exponent: Option<bool>,
         confidence: Option<f64>,
+        intervals: Option<&str>,
         fit_until_s: Option<f64>,
         compare: bool,
     ) -> PyResult<Analysis> {
@@ -403,6 +407,7 @@ impl Record {
             exponents,
             free_exponent,
             confidence,
+            intervals: intervals.map(fit::intervals).transpose()?,
             fit_until_s,
             compare,
             ..Analyze::default()
@@ -532,6 +537,8 @@ impl Record {
     ///     Parts of a hold that are fitted to predict the rest, as shares of its duration.
     /// creep : bool
     ///     Whether laws of creep are compared: displacement in holds of constant force.
+    /// intervals : str, optional
+    ///     What the intervals of fits rest on: "curvature" (if left out), "profile", or "bootstrap", which takes long.
     /// fit_until_s : float, optional
     ///     Compare only over this long from the start of each hold, s.
     ///
@@ -545,7 +552,7 @@ impl Record {
     ///     No hold to compare on.
     /// OptionError
     ///     A law that is none, or has no such form.
-    #[pyo3(signature = (*, test=None, laws=None, cuts=None, creep=false, fit_until_s=None))]
+    #[pyo3(signature = (*, test=None, laws=None, cuts=None, creep=false, intervals=None, fit_until_s=None))]
     fn compare(
         &self,
         py: Python<'_>,
@@ -553,12 +560,14 @@ impl Record {
         laws: Option<Vec<String>>,
         cuts: Option<Vec<f64>>,
         creep: bool,
+        intervals: Option<&str>,
         fit_until_s: Option<f64>,
     ) -> PyResult<RecordComparison> {
         let question = Compare {
             laws: laws.map(|laws| all_laws(&laws)).transpose()?,
             cuts,
             creep,
+            intervals: intervals.map(fit::intervals).transpose()?,
             fit_until_s,
             ..Compare::default()
         };

@@ -41,6 +41,15 @@ def test_analyze() -> None:
     assert record().analyze().to_json() == command("analyze", RECORD, "--test", TEST, "--format", "json")
 
 
+@pytest.mark.parametrize("intervals", ["profile", "bootstrap"])
+def test_intervals(intervals: str) -> None:
+    flags = ["--test", TEST, "--intervals", intervals, "--format", "json"]
+    assert record().analyze(intervals=intervals, compare=False).to_json() == command("analyze", RECORD, "--no-compare", *flags)
+    laws = ["latency", "maxwell"]
+    its = command("compare", RECORD, "--laws", ",".join(laws), *flags)
+    assert record().compare(laws=laws, intervals=intervals).to_json() == its
+
+
 def test_compare() -> None:
     laws = ["latency", "maxwell"]
     its = command("compare", RECORD, "--test", TEST, "--laws", ",".join(laws), "--format", "json")

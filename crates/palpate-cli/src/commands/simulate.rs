@@ -44,16 +44,16 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Verdict, JobError> {
         made.push((path, picture(path, &simulated.figure(path))?));
     }
     if let Some(path) = hysteresis {
-        made.push((path, picture(path, &simulated.hysteresis(path)?)?));
+        made.push((path, picture(path, &simulated.hysteresis(path, bars)?)?));
     }
     if let Some(path) = energy_by_step {
-        made.push((path, simulated.energy_by_step()?.into_bytes()));
+        made.push((path, simulated.energy_by_step(bars)?.into_bytes()));
     }
     if let Some(path) = energy_by_cycle {
-        made.push((path, simulated.energy_by_cycle()?.into_bytes()));
+        made.push((path, simulated.energy_by_cycle(bars)?.into_bytes()));
     }
     if wave.is_some() || strain_map.is_some() {
-        let strains = simulated.wave()?;
+        let strains = simulated.wave(bars)?;
         if let Some(path) = strain_map {
             made.push((path, picture(path, &simulated.wave_figure(&strains, path))?));
         }
@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Verdict, JobError> {
         }
     }
     if let Some(path) = energy {
-        made.push((path, simulated.energy()?.into_bytes()));
+        made.push((path, simulated.energy(bars)?.into_bytes()));
     }
     for (path, bytes) in &made {
         write_file(path, bytes)?;

@@ -7,6 +7,46 @@ use crate::common::{data, done, file, palpate, ramp_and_hold, root};
 use serde_json::Value;
 use tempfile::tempdir;
 
+/// Intervals by another way are other intervals of the same numbers, and the document says which.
+#[test]
+fn intervals_rest_on_what_is_asked_for() {
+    let folder = tempdir().unwrap();
+    let example = |name: &str| root().join("examples/records").join(name).display().to_string();
+    let (record, test) = (example("ball.csv"), example("ball.toml"));
+    let analyzed = |more: &[&str]| {
+        let plain = ["analyze", &record, "--test", &test, "--no-compare", "--format", "json"];
+        json(folder.path(), &[&plain, more].concat())
+    };
+    let (plain, profile) = (analyzed(&[]), analyzed(&["--intervals", "profile"]));
+    assert_eq!(
+        (&plain["settings"]["intervals"], &profile["settings"]["intervals"]),
+        (&Value::Null, &"profile".into())
+    );
+    let free = |document: &Value| document["holds"][0]["fits"].as_array().unwrap()[5].clone();
+    let (plain, profile) = (free(&plain), free(&profile));
+    assert_eq!((&plain["exponent_fixed"], &plain["domain"]), (&false.into(), &"time".into()), "{plain}");
+    assert_eq!(plain["exponent"], profile["exponent"]);
+    let ends = |fit: &Value| [0, 1].map(|i| fit["confidence_interval"]["exponent"][i].as_f64().unwrap());
+    let (plain, profile) = (ends(&plain), ends(&profile));
+    assert!(
+        plain != profile && (plain[0] - profile[0]).abs() < 0.5 * (plain[1] - plain[0]),
+        "{plain:?} {profile:?}"
+    );
+    let compared = [
+        "compare",
+        &record,
+        "--test",
+        &test,
+        "--laws",
+        "maxwell",
+        "--intervals",
+        "bootstrap",
+        "--format",
+        "json",
+    ];
+    assert_eq!(json(folder.path(), &compared)["settings"]["intervals"], "bootstrap");
+}
+
 fn json(folder: &Path, arguments: &[&str]) -> Value {
     serde_json::from_str(&done(folder, arguments)).unwrap()
 }

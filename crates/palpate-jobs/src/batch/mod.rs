@@ -14,6 +14,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use palpate::analysis::{AnalysisOptions, examine};
+use palpate::fit::IntervalMethod;
 use palpate::forecast::CompareOptions;
 use palpate::laws::Law;
 use palpate::number::counted;
@@ -50,6 +51,13 @@ pub struct Batch {
         long = "fit-until", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true,
     ))]
     pub fit_until_s: Option<f64>,
+    /// What the intervals of fits rest on: "curvature", "profile", or "bootstrap" with its options.
+    #[schemars(with = "serde_json::Value")]
+    #[cfg_attr(feature = "clap", arg(
+        long, value_parser = crate::typed::one_of(crate::typed::INTERVALS),
+        help = "What intervals rest on; curvature if not given",
+    ))]
+    pub intervals: Option<IntervalMethod>,
     /// From where in a hold to fit: "peak", "settled", or so many seconds after the peak.
     #[schemars(with = "serde_json::Value")]
     #[cfg_attr(feature = "clap", arg(
@@ -136,13 +144,16 @@ impl Batch {
     fn options(&self, described: &Described) -> AnalysisOptions {
         let mut options = described.options();
         options.fit_until = self.fit_until_s.or(options.fit_until);
+        options.fit.intervals = self.intervals.unwrap_or(options.fit.intervals);
         options.segment.hold_start = self.hold_start.unwrap_or(options.segment.hold_start);
         options.compare = self.laws.as_ref().map(|laws| {
             let laws = laws.clone();
-            CompareOptions {
+            let mut compare = CompareOptions {
                 laws,
                 ..CompareOptions::default()
-            }
+            };
+            compare.fit.intervals = options.fit.intervals;
+            compare
         });
         options
     }

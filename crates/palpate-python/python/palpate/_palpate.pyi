@@ -119,6 +119,7 @@ class Record(_Value):
         exponents: Sequence[float] | None = None,
         free_exponent: bool | None = None,
         confidence: float | None = None,
+        intervals: str | None = None,
         fit_until_s: float | None = None,
         compare: bool = True,
     ) -> Analysis: ...
@@ -129,6 +130,7 @@ class Record(_Value):
         laws: Sequence[str] | None = None,
         cuts: Sequence[float] | None = None,
         creep: bool = False,
+        intervals: str | None = None,
         fit_until_s: float | None = None,
     ) -> RecordComparison: ...
     def calibrate(
@@ -527,6 +529,7 @@ def batch(
     *,
     test: _Described | None = None,
     laws: Sequence[str] | None = None,
+    intervals: str | None = None,
     fit_until_s: float | None = None,
     restart: bool = False,
 ) -> tuple[int, list[str]]: ...

@@ -6,6 +6,7 @@ use palpate::fit::{Estimate, Forecast, Parameter, SampleChoice, SpectrumFit, Spe
 use palpate::forecast::{CompareOptions, Comparison, Row, Verdict};
 use palpate::segment::HoldStart;
 
+use super::settings::unusual;
 use super::software::Software;
 use crate::page::Finding;
 use crate::result::{ComparedHold, ComparedRecord, Input, LeftOut, Quantity, hold_start_word, word};
@@ -198,6 +199,9 @@ documents! {
         },
         /// Coverage of the intervals.
         confidence: f64 = options.fit.confidence,
+        /// What the intervals of fits rest on, if not the curvature: `profile` or `bootstrap`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        intervals: Option<String> = unusual(options.fit.intervals),
         /// Fitted only this long from the start of the fit, s.
         fit_until_s: Option<f64> = fit_until,
         /// `peak`, `settled` or `peak + … s`.

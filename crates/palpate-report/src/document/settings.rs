@@ -2,6 +2,7 @@
 
 use palpate::analysis::Analysis;
 use palpate::contact::{Sides, Specimen};
+use palpate::fit::IntervalMethod;
 use palpate::segment::ContactChoice;
 use palpate::simulate::Separation;
 
@@ -70,6 +71,9 @@ documents! {
         exponent_range: [f64; 2] = options.fit.exponent_range.into(),
         /// Coverage of the intervals.
         confidence: f64 = options.fit.confidence,
+        /// What the intervals of fits rest on, if not the curvature: `profile` or `bootstrap`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        intervals: Option<String> = unusual(options.fit.intervals),
         /// Fitted only this long from the start of the fit, s.
         fit_until_s: Option<f64> = options.fit_until,
         /// Samples on each side of a strain rate, at least.
@@ -77,4 +81,9 @@ documents! {
         /// Half width of its window as a share of the time since the hold began.
         rate_window_share: f64 = options.rate_window.share,
     }
+}
+
+/// What intervals rest on, if not what is usual.
+pub(super) fn unusual(intervals: IntervalMethod) -> Option<String> {
+    Some(intervals).filter(|way| !way.is_curvature()).map(|way| way.name().to_owned())
 }

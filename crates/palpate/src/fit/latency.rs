@@ -2,9 +2,10 @@
 
 use std::ops::Deref;
 
-use super::{Estimate, Fit, FitError, FitOptions, ParameterKind, Samples, fit_law};
+use super::{Estimate, Fit, FitError, FitOptions, ParameterKind, Samples, fit_law_watched};
 use crate::latency::decay;
 use crate::laws::{ExponentChoice, Law};
+use crate::watch::{Unwatched, Watch};
 
 /// Fits the latency law to a hold: equations (4) and (5), no starting values.
 ///
@@ -40,9 +41,23 @@ pub fn fit_hold(
     choice: ExponentChoice,
     options: &FitOptions,
 ) -> Result<LatencyFit, FitError> {
+    fit_hold_watched(times, values, choice, options, &mut Unwatched)
+}
+
+/// [`fit_hold`] with a watch, which intervals by profiles and by resampling are long enough for.
+///
+/// # Errors
+/// As [`fit_hold`], and [`FitError::Cancelled`].
+pub fn fit_hold_watched(
+    times: &[f64],
+    values: &[f64],
+    choice: ExponentChoice,
+    options: &FitOptions,
+    watch: &mut dyn Watch,
+) -> Result<LatencyFit, FitError> {
     options.check(choice)?;
-    let law_options = options.of_latency(choice);
-    let fit = fit_law(&Samples::new(times, values), Law::Latency { exponent: choice }, &law_options)?;
+    let (law, law_options) = (Law::Latency { exponent: choice }, options.of_latency(choice));
+    let fit = fit_law_watched(&Samples::new(times, values), law, &law_options, watch)?;
     LatencyFit::new(fit).ok_or(FitError::NoDecay)
 }
 

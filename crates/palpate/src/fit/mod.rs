@@ -48,7 +48,7 @@ pub use joint::{
     HoldWeights, JointComparison, JointFit, JointOptions, SharedTrend, TrendPoint, TrendVerdict, compare_joint,
     fit_joint, fit_joint_watched,
 };
-pub use latency::{LatencyFit, fit_hold};
+pub use latency::{LatencyFit, fit_hold, fit_hold_watched};
 pub use law::{Bootstrap, bootstrap, fit_law, fit_law_watched, profile_interval};
 pub(crate) use noise::{Assessed, Scale};
 pub use noise::{NoiseModel, Uncertainty};

@@ -65,13 +65,18 @@ pub struct BootstrapOptions {
     pub block: Option<usize>,
 }
 
+impl BootstrapOptions {
+    /// What is usual.
+    pub const USUAL: Self = Self {
+        repetitions: 999,
+        seed: 1,
+        block: None,
+    };
+}
+
 impl Default for BootstrapOptions {
     fn default() -> Self {
-        Self {
-            repetitions: 999,
-            seed: 1,
-            block: None,
-        }
+        Self::USUAL
     }
 }
 
@@ -86,6 +91,24 @@ pub enum IntervalMethod {
     Profile,
     /// Resampled residuals: percentiles of fits to them, and their deviation as the standard error.
     Bootstrap(BootstrapOptions),
+}
+
+impl IntervalMethod {
+    /// Whether it is the usual one.
+    #[must_use]
+    pub fn is_curvature(&self) -> bool {
+        *self == Self::Curvature
+    }
+
+    /// `curvature`, `profile` or `bootstrap`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Curvature => "curvature",
+            Self::Profile => "profile",
+            Self::Bootstrap(_) => "bootstrap",
+        }
+    }
 }
 
 /// What may be asked of [`fit_law`](crate::fit::fit_law).
@@ -203,6 +226,9 @@ pub struct FitOptions {
     pub exponent_range: (f64, f64),
     /// Coverage of confidence intervals, between 0 and 1.
     pub confidence: f64,
+    /// What intervals rest on.
+    #[serde(skip_serializing_if = "IntervalMethod::is_curvature")]
+    pub intervals: IntervalMethod,
     /// Steps of the refinement after which it ends short.
     pub most_iterations: usize,
 }
@@ -212,6 +238,7 @@ impl Default for FitOptions {
         Self {
             exponent_range: (0.2, 30.0),
             confidence: 0.95,
+            intervals: IntervalMethod::default(),
             most_iterations: 200,
         }
     }
@@ -225,6 +252,7 @@ impl FitOptions {
         LawOptions {
             bounds: free.then(|| ("exponent".to_owned(), self.exponent_range)).into_iter().collect(),
             confidence: self.confidence,
+            intervals: self.intervals,
             most_iterations: self.most_iterations,
             ..LawOptions::default()
         }

@@ -62,5 +62,5 @@ pub use {
     summary::{RunSummary, Summary, summary},
     trajectory::{Sampling, Trajectory, simulate, simulate_force, simulate_watched},
     walk::{ContactEvent, ContactEventKind, StepEnd, step_ends},
-    wave::{StrainWave, strain_wave, strain_wave_within},
+    wave::{StrainWave, WAVE_TOLERANCE, strain_wave, strain_wave_within},
 };

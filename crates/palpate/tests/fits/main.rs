@@ -10,3 +10,5 @@ mod laws;
 mod outliers;
 mod ramps;
 mod recovery;
+#[path = "../common/repeats.rs"]
+mod repeats;

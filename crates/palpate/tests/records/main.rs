@@ -5,5 +5,7 @@ mod corrections;
 mod grip;
 mod observe;
 mod phases;
+#[path = "../common/repeats.rs"]
+mod repeats;
 mod segmentation_suite;
 mod touch_and_modulus;

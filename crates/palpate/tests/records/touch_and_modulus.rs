@@ -9,6 +9,8 @@ use palpate::segment::{ContactChoice, ContactPoint, HoldStart, SegmentOptions, f
 use palpate::simulate::{ContactModel, Motion, ProtocolStep, Separation, protocol, simulate_force};
 use palpate::test_problems::{Noise, PAPER_RATE, paper_ball};
 
+use crate::repeats::repeats;
+
 /// A test bench: what meets the body, how, and how well it is seen.
 #[derive(Clone)]
 struct Bench {
@@ -148,7 +150,7 @@ fn noise_moves_first_touch_by_no_more_than_its_standard_error_says() {
     for levels in LEVELS {
         let balls = [(0.005, 0.02), (0.005, 0.05), (0.02, 0.05)].map(|(air, noise)| Bench::paper(air, noise));
         for bench in balls.into_iter().chain([strip(0.003, 0.05)]) {
-            let (found, standard) = errors(&bench, &levels, 8);
+            let (found, standard) = errors(&bench, &levels, repeats(4, 8));
             println!(
                 "{levels:?} after {} m, {} N: worst {:.3} mm, rms {:.3} mm = {:.2} standard errors",
                 bench.air,
@@ -173,7 +175,7 @@ fn a_record_without_air_is_not_tared() {
         encoder: 1e-5,
         ..Bench::paper(0.0, 0.0)
     };
-    for seed in 1..=25 {
+    for seed in 1..=repeats(6, 25) {
         for noise in [0.0, 0.02, 0.05] {
             let levels = LEVELS[seed as usize % 3];
             for bench in [Bench::paper(0.0, noise), strip(0.0, noise), Bench { noise, ..slow.clone() }] {
@@ -262,7 +264,7 @@ fn modulus(analysis: &Analysis) -> (f64, f64) {
 fn the_modulus_does_not_depend_on_the_exponent() {
     let mut pulls = Vec::new();
     for (n, v) in [(1.0, 0.5), (2.0, 4.0), (3.0, 50.0), (5.0, 2e4), (4.0, 1e3)] {
-        for (noise, seeds) in [(0.0, 1), (0.02, 6)] {
+        for (noise, seeds) in [(0.0, 1), (0.02, repeats(2, 6))] {
             for seed in 1..=seeds {
                 let mut bench = Bench::paper(0.0, noise);
                 bench.model.law = LatencyLaw::new(n, v).unwrap();

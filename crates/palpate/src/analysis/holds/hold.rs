@@ -10,7 +10,8 @@ use crate::analysis::finding::Finding;
 use crate::analysis::options::AnalysisOptions;
 use crate::contact::Specimen;
 use crate::fit::{
-    ExponentChoice, FitError, LatencyFit, OrderSelection, Samples, Termination, fit_hold, fit_rates, select_order,
+    ExponentChoice, FitError, LatencyFit, OrderSelection, Samples, Termination, fit_hold_watched, fit_rates,
+    select_order,
 };
 use crate::forecast::{Comparison, KnownFit, RampChoice, compare_laws_watched};
 use crate::laws::Loading;
@@ -240,7 +241,7 @@ fn fit_all(hold: &mut HoldAnalysis, options: &AnalysisOptions, watch: &mut dyn W
     hold.rates = strain_rates(times, values, &options.rate_window);
     for choice in options.choices() {
         watch.report(Progress::open("fitting the latency law", hold.fits.len()))?;
-        match fit_hold(times, values, choice, &options.fit) {
+        match fit_hold_watched(times, values, choice, &options.fit, watch) {
             Ok(fit) => {
                 hold.predictions.push(foretell(&fit, &hold.times, &hold.values, hold.fitted));
                 hold.fits.push(fit);
@@ -251,6 +252,7 @@ fn fit_all(hold: &mut HoldAnalysis, options: &AnalysisOptions, watch: &mut dyn W
                     hold.findings.push(Finding::TooFewSamples { found, needed });
                 }
             }
+            Err(FitError::Cancelled(cancelled)) => return Err(cancelled),
             // A constant signal has been reported as no relaxation; nothing else can happen to a checked record.
             Err(_) => {}
         }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::fit::{Fit, FitOptions, LawOptions, Parameter};
+use crate::fit::{Fit, FitOptions, IntervalMethod, LawOptions, Parameter};
 use crate::laws::{ExponentChoice, Law, Response};
 use crate::optimise::{Termination, Work};
 
@@ -86,6 +86,7 @@ pub(crate) fn law_options(law: Law, options: &JointOptions) -> LawOptions {
     };
     LawOptions {
         response: options.response,
+        intervals: IntervalMethod::Curvature,
         ..options.fit.of_latency(choice)
     }
 }

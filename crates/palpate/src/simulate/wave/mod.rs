@@ -24,7 +24,7 @@ use crate::vector::level;
 use crate::watch::{Stages, Unwatched, Watch};
 
 /// Tolerance of the node displacements, relative to the largest contact displacement of the motion.
-const TOLERANCE: f64 = 1e-13;
+pub const WAVE_TOLERANCE: f64 = 1e-13;
 
 /// Strain of every layer over time.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +53,7 @@ pub fn strain_wave<'a>(
     model: &ContactModel,
     sampling: &Sampling,
 ) -> Result<StrainWave, SimulateError> {
-    strain_wave_within(drive, model, sampling, TOLERANCE, &mut Unwatched)
+    strain_wave_within(drive, model, sampling, WAVE_TOLERANCE, &mut Unwatched)
 }
 
 /// As [`strain_wave`], with the error that a step may make in a node as a part of the largest contact displacement: a looser one costs fewer
@@ -105,7 +105,7 @@ fn followed(
         found: model.layers.count(),
     })?;
     let time = sample_times(&course, sampling)?;
-    let mut cascade = Cascade::new(model, layers, &course, tolerance.clamp(TOLERANCE, 0.01));
+    let mut cascade = Cascade::new(model, layers, &course, tolerance.clamp(WAVE_TOLERANCE, 0.01));
     let mut wave = StrainWave {
         strain: vec![Vec::with_capacity(time.len()); layers],
         displacement: vec![Vec::with_capacity(time.len()); layers],
