@@ -12,7 +12,7 @@ use palpate_report::study::Pictures;
 use pyo3::prelude::*;
 
 use crate::errors::{OptionError, failed, refused_plainly};
-use crate::fit;
+use crate::fits::fit;
 use crate::work::{job, plain};
 
 /// An argument of Python of several kinds.

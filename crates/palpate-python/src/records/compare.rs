@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::arrays::doubles;
 use crate::errors::{FitError, OptionError, refused_plainly};
 use crate::files::all_laws;
-use crate::fit::deviations_of;
+use crate::fits::fit::deviations_of;
 use crate::shown::shown;
 use crate::table::{Table, columns};
 use crate::work::{at_length, job, plain, printed};

@@ -18,14 +18,14 @@ use pyo3::types::PyType;
 use pyo3_arrow::PyTable;
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::Analysis;
 use crate::arrays::doubles;
-use crate::calibration::Calibration;
-use crate::compare::RecordComparison;
 use crate::errors::{OptionError, RecordError, choice, refused, refused_plainly};
 use crate::files::{self, Given, all_laws, described, read_or_parsed};
-use crate::fit;
-use crate::kept::Kept;
+use crate::fits::fit;
+use crate::materials::calibration::Calibration;
+use crate::records::analysis::Analysis;
+use crate::records::compare::RecordComparison;
+use crate::records::kept::Kept;
 use crate::table::{Column, Table, columns};
 use crate::work::{Made, at_length, briefly, job, made_again, unpickled};
 

@@ -20,7 +20,7 @@ use pyo3_arrow::input::AnyArray;
 use rayon::prelude::*;
 
 use crate::errors::{OptionError, PalpateError, refused, refused_plainly, unfitted};
-use crate::fit::{Asked, Keywords, deviations, fitted};
+use crate::fits::fit::{Asked, Keywords, deviations, fitted};
 use crate::table::{Column, Table};
 use crate::work::{Heard, at_length_told};
 

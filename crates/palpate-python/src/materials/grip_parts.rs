@@ -8,7 +8,7 @@ use palpate_report::document::{BackOffDocument, HoldingDocument, LastsDocument, 
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::prediction::Prediction;
+use crate::materials::prediction::Prediction;
 use crate::shown::shown;
 use crate::table::{Table, columns};
 

@@ -5,10 +5,10 @@ use palpate_report::study::{prediction_figure, write_prediction};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::contacts::simulate::Trajectory;
 use crate::errors::{PalpateError, refused_plainly, warn};
 use crate::html::framed;
 use crate::shown::shown;
-use crate::simulate::Trajectory;
 use crate::table::Table;
 
 /// What a calibrated body does over time, with two intervals of the force: of its mean (what the calibration leaves open), and of one

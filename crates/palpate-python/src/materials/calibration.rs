@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::errors::{PalpateError, refused_plainly};
 use crate::html::framed;
-use crate::material::{Material, as_toml};
+use crate::materials::material::{Material, as_toml};
 use crate::shown::shown;
 use crate::table::{Column, Table, columns};
 use crate::work::{job, plain, printed};

@@ -15,9 +15,9 @@ use serde::{Deserialize, Deserializer, Serializer};
 use crate::arrays::doubles;
 use crate::errors::{ModelError, OptionError, choice, failed, refused, refused_plainly, undescribed, unwritten, warn};
 use crate::files::said;
-use crate::fit::{PyEstimate, square, told};
-use crate::grip::Grip;
-use crate::prediction::Prediction;
+use crate::fits::fit::{PyEstimate, square, told};
+use crate::materials::grip::Grip;
+use crate::materials::prediction::Prediction;
 use crate::table::{Table, columns};
 use crate::work::{Made, job};
 

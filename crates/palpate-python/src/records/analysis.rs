@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::errors::{PalpateError, failed, keyword, refused_plainly, unwritten, warn_of};
 use crate::html::framed;
-use crate::kept::Kept;
+use crate::records::kept::Kept;
 use crate::shown::shown;
 use crate::table::{Column, Table, columns};
 use crate::work::{Made, at_length, job, made_again, plain, printed, unpickled};

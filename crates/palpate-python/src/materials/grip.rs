@@ -13,8 +13,8 @@ use pyo3::types::{IntoPyDict, PyDict};
 use serde::{Deserialize, Serialize};
 
 use crate::errors::{unwritten, warn};
-use crate::grip_parts::{BackOff, ForceHeld, Holding, Schedule, seconds, slip_interval};
 use crate::html::framed;
+use crate::materials::grip_parts::{BackOff, ForceHeld, Holding, Schedule, seconds, slip_interval};
 use crate::shown::shown;
 use crate::table::{Table, columns};
 use crate::work::{job, plain, printed};

@@ -6,8 +6,8 @@ use pyo3::types::{PyBytes, PyDict, PyType};
 
 use crate::arrays::doubles;
 use crate::errors::{ModelError, OptionError, PalpateError, RecordError, refused, refused_plainly};
-use crate::material::Material;
-use crate::observation::{Observation, columns};
+use crate::materials::material::Material;
+use crate::observers::observation::{Observation, columns};
 use crate::table::Table;
 use crate::work::{Made, at_length, unpickled};
 

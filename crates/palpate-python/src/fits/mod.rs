@@ -1,0 +1,5 @@
+//! Laws and their fits to holds.
+
+pub(crate) mod fit;
+pub(crate) mod fit_many;
+pub(crate) mod laws;

@@ -1,0 +1,6 @@
+//! Measured records, what they are analysed to, and the laws compared on their holds.
+
+pub(crate) mod analysis;
+pub(crate) mod compare;
+pub(crate) mod kept;
+pub(crate) mod record;
