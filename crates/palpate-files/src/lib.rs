@@ -27,4 +27,4 @@ pub mod parquet_table;
 pub mod record;
 pub mod table;
 
-pub use crate::error::{CellPlace, DecimalDoubt, FileError, Foreign};
+pub use crate::error::{CellPlace, DecimalDoubt, FileError, FileProblem, Foreign};

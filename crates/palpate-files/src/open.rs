@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::{
-    error::FileError,
+    error::{FileError, FileProblem},
     formats::{
         afm::{jpk_force, jpk_text, tab},
         arrow::{self, Kind},
@@ -19,8 +19,8 @@ use crate::{
         spreadsheet::{self, Make},
         text,
     },
-    input::{Input, Packing},
-    table::{Columns, Found, Layout, Part, ReadOptions, SkippedPart},
+    input::Input,
+    table::{Columns, Found, Layout, Part, ReadOptions, ReadPart, SkippedPart},
 };
 
 /// How a file is written.
@@ -47,52 +47,21 @@ pub enum Format {
     RobotLog,
 }
 
-impl Format {
-    /// The format of a file; what is no other is text, which says itself if it is not.
-    fn of(input: &Input) -> Self {
-        if robot_log::recognise(input.beginning()) {
-            return Self::RobotLog;
-        }
-        if jpk_force::recognise(input) {
-            return Self::JpkForce;
-        }
-        match spreadsheet::recognise(input) {
-            Some(Make::Xlsx) => return Self::Xlsx,
-            Some(Make::Xls) => return Self::Xls,
-            None => {}
-        }
-        match arrow::recognise(input) {
-            Some(Kind::Parquet) => return Self::Parquet,
-            Some(Kind::File | Kind::Stream) => return Self::ArrowIpc,
-            None => {}
-        }
-        if jpk_text::recognise(input) {
-            Self::JpkText
-        } else if tab::recognise(input) {
-            Self::AfmTab
-        } else {
-            Self::Text
-        }
-    }
+/// A format, how a file of it is told, and what looks into one.
+type Known = (Format, fn(&Input) -> bool, LookInto);
+type LookInto = fn(&Input, &ReadOptions) -> Result<Found, FileError>;
 
-    /// Looks into a file of this format.
-    fn look_into(self, input: &Input, options: &ReadOptions) -> Result<Found, FileError> {
-        match self {
-            Self::JpkForce => jpk_force::look_into(input, options),
-            Self::JpkText => jpk_text::look_into(input, options),
-            Self::AfmTab => tab::look_into(input, options),
-            Self::Text => text::look_into(input, options),
-            Self::Xlsx => spreadsheet::look_into(input, Make::Xlsx, options),
-            Self::Xls => spreadsheet::look_into(input, Make::Xls, options),
-            Self::Parquet => arrow::look_into(input, Kind::Parquet, options),
-            Self::ArrowIpc => {
-                let kind = arrow::recognise(input).unwrap_or(Kind::Stream);
-                arrow::look_into(input, kind, options)
-            }
-            Self::RobotLog => robot_log::look_into(input, options),
-        }
-    }
-}
+/// The formats in the order in which they are tried. What is none of them is text, which says itself if it is not.
+const KNOWN: [Known; 8] = [
+    (Format::RobotLog, robot_log::recognise, robot_log::look_into),
+    (Format::JpkForce, jpk_force::recognise, jpk_force::look_into),
+    (Format::Xlsx, |input| spreadsheet::recognise(input) == Some(Make::Xlsx), spreadsheet::look_into),
+    (Format::Xls, |input| spreadsheet::recognise(input) == Some(Make::Xls), spreadsheet::look_into),
+    (Format::Parquet, |input| arrow::recognise(input) == Some(Kind::Parquet), arrow::look_into),
+    (Format::ArrowIpc, |input| arrow::recognise(input).is_some(), arrow::look_into),
+    (Format::JpkText, jpk_text::recognise, jpk_text::look_into),
+    (Format::AfmTab, tab::recognise, tab::look_into),
+];
 
 impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -113,9 +82,15 @@ impl fmt::Display for Format {
 /// A file that was looked into.
 #[derive(Debug)]
 pub struct Contents {
-    input: Input,
-    format: Format,
-    found: Found,
+    /// The file, or the bytes in its place.
+    pub input: Input,
+    /// How the file is written.
+    pub format: Format,
+    /// The tests in the file, in its order; at least one.
+    pub parts: Vec<Part>,
+    /// What was passed over, in the order of the file.
+    pub skipped: Vec<SkippedPart>,
+    reader: Box<dyn ReadPart>,
 }
 
 impl Contents {
@@ -129,8 +104,8 @@ impl Contents {
     /// # let path = folder.path().join("press.csv");
     /// std::fs::write(&path, "Time (s);Force (N)\n0,00;0,01\n0,10;0,52\n")?;
     /// let contents = Contents::open(&path, &ReadOptions::default())?;
-    /// assert_eq!(contents.format(), Format::Text);
-    /// assert_eq!(contents.parts()[0].columns[1].unit.as_deref(), Some("N"));
+    /// assert_eq!(contents.format, Format::Text);
+    /// assert_eq!(contents.parts[0].columns[1].unit.as_deref(), Some("N"));
     /// let read = contents.read(0, &[2], &mut |_done, _total| {})?;
     /// assert_eq!(read.values, [vec![0.01, 0.52]]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -147,60 +122,32 @@ impl Contents {
     /// # Errors
     /// As for [`open`](Self::open).
     pub fn of(input: Input, options: &ReadOptions) -> Result<Self, FileError> {
-        let format = Format::of(&input);
-        let mut found = format.look_into(&input, options)?;
-        found.parts.iter_mut().for_each(Part::make_plain);
-        found.skipped.iter_mut().for_each(SkippedPart::make_plain);
-        if found.parts.is_empty() {
-            let parts = found.skipped.into_iter().map(|part| (part.name, part.reason)).collect();
-            return Err(FileError::NoParts {
-                path: input.name().to_owned(),
-                parts,
-            });
+        let known = KNOWN.into_iter().find(|(_, is_so, _)| is_so(&input));
+        let (format, look_into) = known.map_or((Format::Text, text::look_into as LookInto), |known| (known.0, known.2));
+        let Found {
+            mut parts,
+            mut skipped,
+            reader,
+        } = look_into(&input, options)?;
+        parts.iter_mut().for_each(Part::make_plain);
+        skipped.iter_mut().for_each(SkippedPart::make_plain);
+        if parts.is_empty() {
+            let parts = skipped.into_iter().map(|part| (part.name, part.reason)).collect();
+            return Err(input.wrong(FileProblem::NoParts(parts)));
         }
-        Ok(Self { input, format, found })
-    }
-
-    /// The file, or what messages call it.
-    #[must_use]
-    pub fn path(&self) -> &Path {
-        self.input.name()
-    }
-
-    /// Size of the file in bytes, packed as it is.
-    #[must_use]
-    pub fn bytes(&self) -> u64 {
-        self.input.size()
-    }
-
-    /// How the file is written.
-    #[must_use]
-    pub fn format(&self) -> Format {
-        self.format
-    }
-
-    /// How the file is packed.
-    #[must_use]
-    pub fn packing(&self) -> &Packing {
-        self.input.packing()
-    }
-
-    /// The tests in the file, in its order; at least one.
-    #[must_use]
-    pub fn parts(&self) -> &[Part] {
-        &self.found.parts
+        Ok(Self {
+            input,
+            format,
+            parts,
+            skipped,
+            reader,
+        })
     }
 
     /// How delimited text is written; `None` in other formats.
     #[must_use]
     pub fn layout(&self) -> Option<&Layout> {
-        self.found.reader.layout()
-    }
-
-    /// What was passed over, in the order of the file.
-    #[must_use]
-    pub fn skipped(&self) -> &[SkippedPart] {
-        &self.found.skipped
+        self.reader.layout()
     }
 
     /// Reads columns (numbers from 1, in any order) of the part with index `part`, as they are written.
@@ -216,17 +163,13 @@ impl Contents {
         columns: &[usize],
         progress: &mut dyn FnMut(u64, u64),
     ) -> Result<Columns, FileError> {
-        let count = self.found.parts.get(part).map_or(0, |part| part.columns.len());
+        let count = self.parts.get(part).map_or(0, |part| part.columns.len());
         let beyond = columns.iter().find(|column| !(1..=count).contains(*column));
         if let Some(&column) = beyond {
-            return Err(FileError::NoSuchColumn {
-                path: self.path().to_owned(),
-                column,
-                columns: count,
-            });
+            return Err(self.input.wrong(FileProblem::NoSuchColumn { column, columns: count }));
         }
-        let mut read = self.found.reader.read(part, columns, progress)?;
-        read.bytes = self.bytes();
+        let mut read = self.reader.read(part, columns, progress)?;
+        read.bytes = self.input.size;
         Ok(read)
     }
 }

@@ -3,7 +3,7 @@
 use std::io;
 
 use super::{
-    file_error::{DecimalDoubt, FileError},
+    file_error::{DecimalDoubt, FileError, FileProblem},
     foreign::Foreign,
 };
 use crate::cell::{Cell, DecimalMark, number};
@@ -12,46 +12,47 @@ impl FileError {
     /// What would help, if that is known.
     #[must_use]
     pub fn hint(&self) -> Option<String> {
-        let help = match self {
-            Self::NotFound { .. } => "check the spelling of the path",
-            Self::Directory { .. } => "name one file inside it",
-            Self::NoFile { .. } => "write what comes through the pipe to a file first",
-            Self::Unreadable { source, .. } if source.kind() == io::ErrorKind::PermissionDenied => {
+        let help = match &self.problem {
+            FileProblem::NotFound(_) => "check the spelling of the path",
+            FileProblem::Directory => "name one file inside it",
+            FileProblem::NoFile => "write what comes through the pipe to a file first",
+            FileProblem::Unreadable(source) if source.kind() == io::ErrorKind::PermissionDenied => {
                 "check who owns the file and that you may read it"
             }
-            Self::Unreadable { .. } => return None,
-            Self::Empty { .. } => "export the record again",
-            Self::Foreign { looks_like, .. } => foreign(*looks_like),
-            Self::Archive { members, .. } if members.is_empty() => "pack the record again",
-            Self::Archive { .. } => "unpack it and name the files one by one, or their folder",
-            Self::Damaged { .. } => "copy or export the file again; it may be cut off",
-            Self::BadCell { hint, .. } | Self::Unfit { hint, .. } => hint,
-            Self::Encrypted { .. } => "open it where it was made and save it without a password",
-            Self::TooLarge { .. } => "split the file, or export less of it",
-            Self::Swells { .. } => {
+            FileProblem::Unreadable(_) => return None,
+            FileProblem::Empty => "export the record again",
+            FileProblem::Foreign(looks_like) => foreign(*looks_like),
+            FileProblem::Archive(members) if members.is_empty() => "pack the record again",
+            FileProblem::Archive(_) => "unpack it and name the files one by one, or their folder",
+            FileProblem::Unlike { hint, .. } => hint,
+            FileProblem::Encrypted => "open it where it was made and save it without a password",
+            FileProblem::TooLarge { .. } => "split the file, or export less of it",
+            FileProblem::Swells(_) => {
                 "copy or export it again; if you trust it, unpack it, or write it anew without compression"
             }
-            Self::NoParts { .. } => "a test needs a table of numbers with time and force side by side",
-            Self::LineTooLong { .. } => "check that the file has line ends and the right encoding",
-            Self::OneColumn { delimiter, .. } => match delimiter {
+            FileProblem::NoParts(_) => "a test needs a table of numbers with time and force side by side",
+            FileProblem::LineTooLong { .. } => "check that the file has line ends and the right encoding",
+            FileProblem::OneColumn { delimiter, .. } => match delimiter {
                 Some(by) => return Some(format!("the delimiter was fixed to {by}: leave it to be found out")),
                 None => "a record needs a time and a force side by side, separated by tab, semicolon, comma or blanks",
             },
-            Self::NoDataRows { header_line, .. } => match header_line {
+            FileProblem::NoDataRows { header_line, .. } => match header_line {
                 Some(line) => {
                     return Some(format!("line {line} looks like names of columns, but no numbers follow"));
                 }
                 None => "check that this is the record itself, or skip the lines before it",
             },
-            Self::AmbiguousDecimal { doubt, .. } => doubtful(*doubt),
-            Self::NoSuchColumn { .. } => "columns count from 1 at the left",
-            Self::TextInNumbers { found, decimal, .. } => hint_of_text(found, *decimal),
-            Self::NotFinite { .. } | Self::EmptyCell { .. } => "remove the row, or choose another column",
-            Self::TooFewCells { .. } => "the row is cut off or lacks a cell: complete it or remove it",
-            Self::TooManyCells { .. } => {
+            FileProblem::AmbiguousDecimal { doubt, .. } => doubtful(*doubt),
+            FileProblem::NoSuchColumn { .. } => "columns count from 1 at the left",
+            FileProblem::TextInNumbers { found, decimal, .. } => hint_of_text(found, *decimal),
+            FileProblem::NotFinite { .. } | FileProblem::EmptyCell(_) => "remove the row, or choose another column",
+            FileProblem::CellCount { expected, found, .. } if found < expected => {
+                "the row is cut off or lacks a cell: complete it or remove it"
+            }
+            FileProblem::CellCount { .. } => {
                 "look for a delimiter inside a cell, such as a decimal comma, that wants quotes"
             }
-            Self::Interrupted { .. } => "where the file holds several records, split it into one file each",
+            FileProblem::Interrupted { .. } => "where the file holds several records, split it into one file each",
         };
         Some(help.to_owned())
     }

@@ -2,7 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `file_error.rs` | one variant a cause, with the place, what was expected and what was found ([`FileError`]) |
+//! | `file_error.rs` | a file and what is wrong with it ([`FileError`]), one variant a cause ([`FileProblem`]) |
 //! | `hint.rs` | what would help |
 //! | `foreign.rs` | files that hold no record in any format known here ([`Foreign`]) |
 //! | `shown.rs` | words out of a file, fit to be shown to people |
@@ -13,8 +13,8 @@ mod hint;
 mod shown;
 
 pub(crate) use file_error::shorten;
-pub use file_error::{CellPlace, DecimalDoubt, FileError};
+pub use file_error::{CellPlace, DecimalDoubt, FileError, FileProblem};
 pub use foreign::Foreign;
 pub(crate) use foreign::{mostly_control, recognise_foreign};
 pub(crate) use hint::hint_of_text;
-pub(crate) use shown::{is_plain, plain, shown};
+pub(crate) use shown::{few, is_plain, plain, shown};

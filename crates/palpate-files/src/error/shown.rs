@@ -33,28 +33,26 @@ pub(crate) fn shown(text: &str) -> String {
     plain(&short)
 }
 
+/// At most so many of some texts, with a mark between them, and … where there are more.
+pub(crate) fn few(texts: impl ExactSizeIterator<Item = String>, most: usize, between: &str) -> String {
+    let more = texts.len() > most;
+    let shown: Vec<String> = texts.take(most).chain(more.then(|| "…".to_owned())).collect();
+    shown.join(between)
+}
+
 /// The first few of the files in an archive.
 pub(crate) fn files(members: &[String]) -> String {
-    const MOST: usize = 3;
-    let named: Vec<String> = members.iter().take(MOST).map(|member| shown(member)).collect();
-    match (members.len(), named.join(", ")) {
-        (0, _) => "none".to_owned(),
-        (count, named) if count > MOST => format!("{count}: {named}, …"),
-        (count, named) => format!("{count}: {named}"),
+    match members.len() {
+        0 => "none".to_owned(),
+        count => format!("{count}: {}", few(members.iter().map(|member| shown(member)), 3, ", ")),
     }
 }
 
 /// The first few of the parts of a file, with why they are no tests.
 pub(crate) fn skipped(parts: &[(String, String)]) -> String {
-    const MOST: usize = 3;
-    let named: Vec<String> = parts
-        .iter()
-        .take(MOST)
-        .map(|(name, reason)| format!("{}: {}", shown(name), shown(reason)))
-        .collect();
-    let more = if parts.len() > MOST { "; …" } else { "" };
-    let colon = if named.is_empty() { "" } else { ": " };
-    format!("{colon}{}{more}", named.join("; "))
+    let named = parts.iter().map(|(name, reason)| format!("{}: {}", shown(name), shown(reason)));
+    let colon = if parts.is_empty() { "" } else { ": " };
+    format!("{colon}{}", few(named, 3, "; "))
 }
 
 /// A number of bytes in words.

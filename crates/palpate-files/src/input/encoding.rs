@@ -1,6 +1,6 @@
 //! Telling character encodings apart by content.
 
-use std::{fmt, str::FromStr};
+use std::fmt;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -30,20 +30,7 @@ pub enum Encoding {
 
 impl Encoding {
     /// Every encoding that can be read.
-    pub const ALL: [Self; 6] = [Self::Utf8, Self::Utf16Le, Self::Utf16Be, Self::Gbk, Self::ShiftJis, Self::Windows1252];
-
-    /// Its usual name, in lower case.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Utf8 => "utf-8",
-            Self::Utf16Le => "utf-16le",
-            Self::Utf16Be => "utf-16be",
-            Self::Gbk => "gbk",
-            Self::ShiftJis => "shift_jis",
-            Self::Windows1252 => "windows-1252",
-        }
-    }
+    const ALL: [Self; 6] = [Self::Utf8, Self::Utf16Le, Self::Utf16Be, Self::Gbk, Self::ShiftJis, Self::Windows1252];
 
     /// Whether line ends, delimiters, quotes and digits are the same bytes as in ASCII and occur in no other
     /// role, so that rows can be split without decoding. Second bytes of GBK and Shift JIS start at 0x40 ('@'); the digits
@@ -73,32 +60,9 @@ impl Encoding {
 }
 
 impl fmt::Display for Encoding {
+    /// Its usual name, in lower case.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-/// The text names no encoding that can be read.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown encoding `{found}`; expected one of utf-8, utf-16le, utf-16be, gbk, shift_jis, windows-1252")]
-pub struct UnknownEncoding {
-    /// What was given.
-    pub found: String,
-}
-
-impl FromStr for Encoding {
-    type Err = UnknownEncoding;
-
-    /// Reads a name or one of its usual synonyms (`latin1`, `gb2312`, `utf8` ...), in any case.
-    fn from_str(label: &str) -> Result<Self, Self::Err> {
-        let codec = encoding_rs::Encoding::for_label(label.as_bytes());
-        let codec = codec.map(|codec| if codec == encoding_rs::GB18030 { encoding_rs::GBK } else { codec });
-        Self::ALL
-            .into_iter()
-            .find(|encoding| codec == Some(encoding.codec()))
-            .ok_or_else(|| UnknownEncoding {
-                found: label.to_owned(),
-            })
+        self.serialize(f)
     }
 }
 
@@ -231,18 +195,6 @@ mod tests {
         for western in [&b"Vitesse d\x92essai (mm/min)"[..], b"l\x92\xE9paisseur", b"10 \x96 20 mm", b"d\x92\xE9t\xE9 "]
         {
             assert_eq!(recognise(western), Some(Encoding::Windows1252));
-        }
-    }
-
-    #[test]
-    fn labels() {
-        assert_eq!("Latin1".parse(), Ok(Encoding::Windows1252));
-        assert_eq!("GB2312".parse(), Ok(Encoding::Gbk));
-        assert_eq!("gb18030".parse(), Ok(Encoding::Gbk));
-        assert_eq!("UTF8".parse(), Ok(Encoding::Utf8));
-        assert!("klingon".parse::<Encoding>().is_err());
-        for own in Encoding::ALL {
-            assert_eq!(own.name().parse(), Ok(own));
         }
     }
 }

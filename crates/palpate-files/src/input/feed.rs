@@ -27,7 +27,7 @@ impl Feed {
     /// Opens a file behind its byte order mark, if it has one.
     pub(crate) fn open(input: &Input, encoding: Encoding) -> Result<Self, FileError> {
         let mut bytes = input.reader()?;
-        let mark = encoding.mark_length(input.beginning());
+        let mark = encoding.mark_length(&input.beginning);
         bytes.read_exact(&mut vec![0; mark]).map_err(|error| input.failed(error))?;
         let decoding = (!encoding.splits_like_ascii()).then(|| Decoding {
             decoder: encoding.codec().new_decoder_without_bom_handling(),

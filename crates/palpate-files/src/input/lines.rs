@@ -1,7 +1,7 @@
 //! Lines: of a text in memory, and of a file too large for it.
 
 use super::{encoding::Encoding, feed::Feed, source::Input};
-use crate::error::FileError;
+use crate::error::{FileError, FileProblem};
 
 /// Longest line that is read, in bytes. A row of ten thousand columns still fits.
 pub(crate) const LONGEST_LINE: usize = 256 * 1024;
@@ -73,11 +73,8 @@ impl<'a> LineReader<'a> {
             }
             searched = ahead.len();
             if searched > LONGEST_LINE {
-                return Err(FileError::LineTooLong {
-                    path: self.input.name().to_owned(),
-                    line: self.line + 1,
-                    limit: LONGEST_LINE,
-                });
+                let (line, limit) = (self.line + 1, LONGEST_LINE);
+                return Err(self.input.wrong(FileProblem::LineTooLong { line, limit }));
             }
             if !self.refill()? {
                 let from = std::mem::replace(&mut self.start, self.buffer.len());

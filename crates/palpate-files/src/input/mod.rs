@@ -26,7 +26,7 @@ pub(crate) use binary::Number;
 #[cfg(feature = "arrow")]
 pub(crate) use contained::caught;
 pub(crate) use contained::contained;
-pub use encoding::{Encoding, UnknownEncoding};
+pub use encoding::Encoding;
 pub(crate) use lines::{LONGEST_LINE, LineReader};
 pub(crate) use packing::is_zip;
 pub use packing::{MOST_UNPACKED, Packing};

@@ -9,7 +9,7 @@ use std::{
 use flate2::read::MultiGzDecoder;
 use zip::{ZipArchive, result::ZipError};
 
-use crate::error::FileError;
+use crate::error::{FileError, FileProblem};
 
 /// Most bytes that a packed file may unpack to where its rows are streamed (64 GiB).
 pub const MOST_UNPACKED: u64 = 64 << 30;
@@ -79,14 +79,11 @@ fn archive(path: &Path, stored: impl Read + Seek) -> Result<Packing, FileError> 
             let index = archive.index_for_name(&member);
             let encrypted = index.and_then(|index| Some(archive.by_index_raw(index).ok()?.encrypted()));
             match encrypted {
-                Some(true) => Err(FileError::Encrypted { path: path.to_owned() }),
+                Some(true) => Err(FileError::of(path, FileProblem::Encrypted)),
                 _ => Ok(Packing::Zip { member }),
             }
         }
-        _ => Err(FileError::Archive {
-            path: path.to_owned(),
-            members: files,
-        }),
+        _ => Err(FileError::of(path, FileProblem::Archive(files))),
     }
 }
 
@@ -95,7 +92,7 @@ fn damaged(path: &Path, error: &ZipError) -> FileError {
         ZipError::InvalidArchive(_) => "one that is cut off or overwritten".to_owned(),
         other => other.to_string(),
     };
-    FileError::damaged(path, "zip archive", "a whole archive", found)
+    FileError::of(path, FileProblem::damaged("zip archive", "a whole archive", found))
 }
 
 /// The unpacked bytes behind `stored`; more than [`MOST_UNPACKED`] of them are an error of the reader.

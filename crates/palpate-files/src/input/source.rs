@@ -15,7 +15,7 @@ use super::{
     counting::Counting,
     packing::{self, MOST_UNPACKED, Packing},
 };
-use crate::error::FileError;
+use crate::error::{FileError, FileProblem};
 
 /// Most bytes of a file that is held in memory as a whole: a workbook, a force curve, a packed table (2 GiB).
 pub const MOST_IN_MEMORY: u64 = 2 << 30;
@@ -32,12 +32,16 @@ const BEGINNING: u64 = 64 * 1024;
 /// Bytes to read a record from, under a name for messages.
 #[derive(Clone)]
 pub struct Input {
-    name: PathBuf,
+    /// What messages call it: its path, on a disk.
+    pub name: PathBuf,
+    /// How it is packed.
+    pub packing: Packing,
+    /// Its first bytes, unpacked: all of it, or 64 KiB.
+    pub beginning: Vec<u8>,
+    /// Its size in bytes, packed as it is.
+    pub size: u64,
     /// `None`: they lie on a disk.
     memory: Option<Arc<[u8]>>,
-    packing: Packing,
-    beginning: Vec<u8>,
-    size: u64,
 }
 
 impl fmt::Debug for Input {
@@ -60,10 +64,10 @@ impl Input {
         let failed = |error| FileError::from_io(path, error);
         let about = std::fs::metadata(path).map_err(failed)?;
         if about.is_dir() {
-            return Err(FileError::Directory { path: path.to_owned() });
+            return Err(FileError::of(path, FileProblem::Directory));
         }
         if !about.is_file() {
-            return Err(FileError::NoFile { path: path.to_owned() });
+            return Err(FileError::of(path, FileProblem::NoFile));
         }
         Self::of(path.to_owned(), None, about.len())
     }
@@ -99,30 +103,6 @@ impl Input {
         let reader = self.reader()?;
         reader.take(BEGINNING).read_to_end(&mut bytes).map_err(|error| self.failed(error))?;
         Ok(bytes)
-    }
-
-    /// What messages call it: its path, on a disk.
-    #[must_use]
-    pub fn name(&self) -> &Path {
-        &self.name
-    }
-
-    /// How it is packed.
-    #[must_use]
-    pub fn packing(&self) -> &Packing {
-        &self.packing
-    }
-
-    /// Its size in bytes, packed as it is.
-    #[must_use]
-    pub fn size(&self) -> u64 {
-        self.size
-    }
-
-    /// Its first bytes, unpacked: all of it, or 64 KiB.
-    #[must_use]
-    pub fn beginning(&self) -> &[u8] {
-        &self.beginning
     }
 
     /// Its bytes from the first on, unpacked.
@@ -185,10 +165,7 @@ impl Input {
 
     /// What is packed here unpacks to more than is [`warranted`](Self::warranted).
     pub(crate) fn swells(&self) -> FileError {
-        FileError::Swells {
-            path: self.name.clone(),
-            most_times: MOST_TIMES,
-        }
+        self.wrong(FileProblem::Swells(MOST_TIMES))
     }
 
     /// The bytes as they lie there, packed or not.
@@ -215,6 +192,11 @@ impl Input {
         self.damaged(self.packing.to_string(), "bytes that can be unpacked", found)
     }
 
+    /// Something is wrong with it.
+    pub(crate) fn wrong(&self, problem: FileProblem) -> FileError {
+        FileError::of(&self.name, problem)
+    }
+
     /// A part of it is not as its format has it.
     pub(crate) fn damaged(
         &self,
@@ -222,55 +204,18 @@ impl Input {
         expected: impl Into<String>,
         found: impl Into<String>,
     ) -> FileError {
-        FileError::damaged(&self.name, place, expected, found)
+        self.wrong(FileProblem::damaged(place, expected, found))
     }
 
     /// A build with more features would read it.
     #[cfg(not(all(feature = "arrow", feature = "robot-log")))]
     pub(crate) fn not_in_this_build(&self, expected: &'static str, hint: &'static str) -> FileError {
-        self.unfit("its format", expected, "one without", hint)
-    }
-
-    /// It is whole, and of a kind that is not read.
-    pub(crate) fn unfit(
-        &self,
-        place: impl Into<String>,
-        expected: &'static str,
-        found: impl Into<String>,
-        hint: &'static str,
-    ) -> FileError {
-        FileError::Unfit {
-            path: self.name.clone(),
-            place: place.into(),
-            expected,
-            found: found.into(),
-            hint,
-        }
-    }
-
-    /// It can be read with a password only.
-    pub(crate) fn encrypted(&self) -> FileError {
-        FileError::Encrypted {
-            path: self.name.clone(),
-        }
-    }
-
-    /// A part of it holds no rows.
-    #[cfg(feature = "arrow")]
-    pub(crate) fn no_rows(&self, part: &str) -> FileError {
-        FileError::NoParts {
-            path: self.name.clone(),
-            parts: vec![(part.to_owned(), "no rows".to_owned())],
-        }
+        self.wrong(FileProblem::unfit("its format", expected, "one without", hint))
     }
 
     /// A limit that the file goes beyond.
     pub(crate) fn too_large(&self, what: &'static str, most_bytes: u64) -> FileError {
-        FileError::TooLarge {
-            path: self.name.clone(),
-            what,
-            most_bytes,
-        }
+        self.wrong(FileProblem::TooLarge { what, most_bytes })
     }
 }
 

@@ -72,16 +72,10 @@ pub(crate) fn rank_of_name(name: &str, vocabulary: &Vocabulary) -> Option<u8> {
 
 /// Whether a name says that its values are multiples: `Force x1000`, `Weg*10`, `Load ×10^3`.
 fn is_scaled(name: &str) -> bool {
-    let mut rest = name.char_indices().peekable();
-    let mut before = ' ';
-    while let Some((_, letter)) = rest.next() {
-        let times = matches!(letter, '×' | '*') || (matches!(letter, 'x' | 'X') && !before.is_alphanumeric());
-        if times && rest.peek().is_some_and(|(_, next)| *next == '1') {
-            return true;
-        }
-        before = letter;
-    }
-    false
+    name.match_indices(['×', '*', 'x', 'X']).any(|(at, sign)| {
+        let ends_word = sign.eq_ignore_ascii_case("x") && name[..at].ends_with(char::is_alphanumeric);
+        !ends_word && name[at + sign.len()..].starts_with('1')
+    })
 }
 
 /// Whether a word means another quantity and nothing else: a "compression force" is no compression.

@@ -15,18 +15,12 @@ pub enum TableError {
     #[cfg(not(feature = "arrow"))]
     #[error("expected a build that knows Parquet, found one without the feature `arrow`")]
     NotInThisBuild,
-    /// The file is no Parquet, or a damaged one.
-    #[error("expected a whole Parquet file ({message})")]
-    Parquet {
-        /// What the reader says.
-        message: String,
-    },
-    /// A column that palpate does not write.
-    #[error("expected columns of whole numbers, numbers or texts, found {column} of another kind")]
-    Foreign {
-        /// Its name.
-        column: String,
-    },
+    /// The file is no Parquet, or a damaged one; what the reader says.
+    #[error("expected a whole Parquet file ({0})")]
+    Parquet(String),
+    /// A column of this name that palpate does not write.
+    #[error("expected columns of whole numbers, numbers or texts, found {0} of another kind")]
+    Foreign(String),
     /// Rows that do not belong to the table.
     #[error("expected rows of the columns of the table, found others")]
     OtherColumns,
@@ -39,13 +33,9 @@ impl From<ParquetError> for TableError {
             // An error of the disk comes wrapped, and its kind says what would help.
             ParquetError::External(source) => match source.downcast::<io::Error>() {
                 Ok(error) => Self::Io(*error),
-                Err(source) => Self::Parquet {
-                    message: source.to_string(),
-                },
+                Err(source) => Self::Parquet(source.to_string()),
             },
-            error => Self::Parquet {
-                message: error.to_string(),
-            },
+            error => Self::Parquet(error.to_string()),
         }
     }
 }

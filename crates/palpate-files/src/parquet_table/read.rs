@@ -40,10 +40,7 @@ impl TableReader {
                 (DataType::Int64, false) => Kind::Count,
                 (DataType::Float64, true) => Kind::Number,
                 (DataType::Utf8, true) => Kind::Text,
-                _ => {
-                    let column = field.name().clone();
-                    return Err(TableError::Foreign { column });
-                }
+                _ => return Err(TableError::Foreign(field.name().clone())),
             };
             Ok(Field::new(field.name(), kind))
         });
@@ -93,9 +90,7 @@ impl TableReader {
     /// As for [`read`](Self::read).
     pub fn values(&self, group: usize, column: usize) -> Result<Values, TableError> {
         if group >= self.groups() || column >= self.fields.len() {
-            return Err(TableError::Parquet {
-                message: format!("no row group {group} with a column {column}"),
-            });
+            return Err(TableError::Parquet(format!("no row group {group} with a column {column}")));
         }
         caught(|| self.decoded(group, column)).unwrap_or_else(|| Err(out_of_bounds()))
     }
@@ -113,7 +108,5 @@ impl TableReader {
 
 /// The reader of the format takes some places in a file at their word and then panics.
 fn out_of_bounds() -> TableError {
-    TableError::Parquet {
-        message: "places in the file that are out of bounds".to_owned(),
-    }
+    TableError::Parquet("places in the file that are out of bounds".to_owned())
 }

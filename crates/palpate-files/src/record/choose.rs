@@ -4,7 +4,7 @@ use palpate::contact::Shape;
 
 use super::{
     column_use::{ColumnUse, Role},
-    error::ColumnError,
+    error::{ColumnError, UnitProblem},
     named::NamedColumn,
 };
 use crate::{
@@ -145,10 +145,8 @@ impl<'a> Chooser<'a> {
                 [] => None,
                 [only] => Some(only),
                 ref several => {
-                    return Err(ColumnError::Ambiguous {
-                        quantity,
-                        candidates: several.iter().map(|column| NamedColumn::from(*column)).collect(),
-                    });
+                    let candidates = several.iter().map(|column| NamedColumn::from(*column)).collect();
+                    return Err(ColumnError::Ambiguous(quantity, candidates));
                 }
             },
         };
@@ -213,10 +211,7 @@ impl<'a> Chooser<'a> {
         }
         if column.number == values.column.number {
             let quantity = values.role.measured();
-            return Err(ColumnError::Twice {
-                column: column.into(),
-                quantities: (quantity, quantity),
-            });
+            return Err(ColumnError::Twice(column.into(), quantity, quantity));
         }
         Ok(column)
     }
@@ -242,15 +237,13 @@ impl<'a> Chooser<'a> {
     /// No column holds a quantity; perhaps one is named after it, but its unit is one of another.
     fn missing(&self, quantity: Quantity) -> ColumnError {
         if let Some((column, unit)) = recognise::misfits(&self.part.columns, quantity).next() {
-            return ColumnError::unknown_unit(column, quantity, format!("columns.{quantity}.unit"), unit);
+            let problem = UnitProblem::Unknown(quantity, unit.to_owned());
+            return ColumnError::unit(column, format!("columns.{quantity}.unit"), problem);
         }
         if let Some(column) = recognise::text_named(&self.part.columns, quantity) {
             return Self::as_text(column, quantity);
         }
-        ColumnError::Missing {
-            quantity,
-            columns: self.part.columns.clone(),
-        }
+        ColumnError::Missing(quantity, self.part.columns.clone())
     }
 
     /// A column that is named after a quantity, but holds texts.
@@ -294,10 +287,8 @@ impl<'a> Chooser<'a> {
         for (index, (first, number)) in values.iter().enumerate() {
             let same = values[index + 1..].iter().find(|(_, other)| other == number);
             if let Some((second, _)) = same {
-                return Err(ColumnError::Twice {
-                    column: NamedColumn::from(&self.part.columns[number - 1]),
-                    quantities: (*first, *second),
-                });
+                let column = NamedColumn::from(&self.part.columns[number - 1]);
+                return Err(ColumnError::Twice(column, *first, *second));
             }
         }
         Ok(())

@@ -5,7 +5,7 @@ use palpate::units::Dimension;
 use super::{
     choose::{Chooser, Found},
     column_use::ColumnUse,
-    error::{ColumnError, MachineUnit},
+    error::{ColumnError, UnitProblem},
 };
 use crate::{
     cell::unit,
@@ -13,6 +13,12 @@ use crate::{
     naming::{Quantity, unit_factor},
     table::{ColumnKind, epoch},
 };
+
+impl Found<'_> {
+    fn wrong_unit(&self, problem: UnitProblem) -> ColumnError {
+        ColumnError::unit(self.column, self.key(), problem)
+    }
+}
 
 impl Chooser<'_> {
     /// A column whose unit is none that a header could give: a travel said for each unit of it, or a time since 1970.
@@ -47,15 +53,8 @@ impl Chooser<'_> {
             && let (Some(machine), Some(said), Some(written)) = (&choice.unit_by, &choice.unit, &found.column.unit)
             && contradicts(found.role.measured(), choice, found.column)
         {
-            return Err(ColumnError::OtherUnit {
-                column: found.column.into(),
-                key: found.key(),
-                units: Box::new(MachineUnit {
-                    machine: machine.clone(),
-                    said: said.clone(),
-                    written: written.clone(),
-                }),
-            });
+            let (machine, said, written) = (machine.clone(), said.clone(), written.clone());
+            return Err(found.wrong_unit(UnitProblem::OfMachine { machine, said, written }));
         }
         Ok(())
     }
@@ -68,11 +67,7 @@ impl Chooser<'_> {
             && let (Some(one), Some(other)) = (unit_factor(&in_name, dimension), unit_factor(beside, dimension))
             && (one / other - 1.0).abs() > 1e-9
         {
-            return Err(ColumnError::TwoUnits {
-                column: found.column.into(),
-                key: found.key(),
-                units: Box::new((in_name, beside.clone())),
-            });
+            return Err(found.wrong_unit(UnitProblem::Two(in_name, beside.clone())));
         }
         Ok(())
     }
@@ -93,17 +88,17 @@ impl Chooser<'_> {
                 without.push((found.key(), quantity.usual_unit(), found.column.into()));
                 continue;
             };
-            let factor = match found.choice.and_then(|choice| choice.scale) {
-                Some(scale) => unit_factor(unit, Dimension::Voltage).map(|volts| volts * scale).ok_or_else(|| {
-                    ColumnError::ScaleOfNoVolts {
-                        column: found.column.into(),
-                        key: found.key(),
-                        unit: unit.to_owned(),
-                    }
-                })?,
-                None => unit_factor(unit, quantity.dimension())
-                    .ok_or_else(|| ColumnError::unknown_unit(found.column, quantity, found.key(), unit))?,
+            let (factor, problem) = match found.choice.and_then(|choice| choice.scale) {
+                Some(scale) => {
+                    let volts = unit_factor(unit, Dimension::Voltage);
+                    (volts.map(|volts| volts * scale), UnitProblem::NoVolts(unit.to_owned()))
+                }
+                None => {
+                    let factor = unit_factor(unit, quantity.dimension());
+                    (factor, UnitProblem::Unknown(quantity, unit.to_owned()))
+                }
             };
+            let factor = factor.ok_or_else(|| found.wrong_unit(problem))?;
             used.push(found.used(unit.to_owned(), factor));
         }
         if without.is_empty() {
@@ -117,9 +112,9 @@ impl Chooser<'_> {
         if let ([_], Some(found)) = (&without[..], found.iter().find(bare))
             && let Some(unit) = found.column.name.as_deref().and_then(in_brackets)
         {
-            return Err(ColumnError::unknown_unit(found.column, found.role.measured(), found.key(), unit));
+            return Err(found.wrong_unit(UnitProblem::Unknown(found.role.measured(), unit.to_owned())));
         }
-        Err(ColumnError::NoUnit { columns: without })
+        Err(ColumnError::NoUnit(without))
     }
 }
 

@@ -33,12 +33,13 @@ pub fn describe(
     file: Option<&RecordFile>,
     found: Option<(&RecordFile, &Segmentation)>,
 ) -> String {
-    let about = &contents.parts()[part];
+    // Its words hold no line breaks, which would end a comment.
+    let about = &contents.parts[part];
     let mut out = String::new();
-    let name = contents.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let name = contents.input.name.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let _ = writeln!(out, "# A first test description of {name}, from what the file says of itself.");
     let _ = writeln!(out, "# Check the lines marked \"guessed\" and answer those with \"{ASK}\".\n");
-    let title = contents.path().file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let title = contents.input.name.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let title = about.name.as_ref().map_or_else(|| title.clone(), |part| format!("{title}, {part}"));
     let _ = writeln!(out, "[about]\ntitle = {}\n", quoted(&title));
     write_machines(&mut out, about);
@@ -60,12 +61,11 @@ fn write_machines(out: &mut String, part: &Part) {
     if machines.is_empty() {
         return;
     }
-    let _ = writeln!(
-        out,
-        "# The columns are named as a machine names them that is known. If it was that one, its line can stand"
+    out.push_str(
+        "# The columns are named as a machine names them that is known. If it was that one, its line can stand\n\
+         # in place of the tables [columns.…] below:\n\
+         # [machine]\n",
     );
-    let _ = writeln!(out, "# in place of the tables [columns.…] below:");
-    let _ = writeln!(out, "# [machine]");
     for machine in machines {
         let _ = writeln!(out, "# preset = {}    # {}", quoted(machine.name), machine.about());
     }
@@ -73,7 +73,7 @@ fn write_machines(out: &mut String, part: &Part) {
 }
 
 fn write_file(out: &mut String, contents: &Contents, part: &Part) {
-    let several = contents.parts().len() > 1;
+    let several = contents.parts.len() > 1;
     let layout = contents.layout();
     if !several && layout.is_none() {
         return;
@@ -114,7 +114,7 @@ fn write_columns(out: &mut String, part: &Part, columns: &[ColumnUse]) {
         let info = &part.columns[column.number - 1];
         let _ = writeln!(out, "[columns.{table}]");
         let why = if info.name.is_some() { "guessed by its name" } else { "as described" };
-        let _ = writeln!(out, "column = {}    # {why}; starts with {}", reference(part, info), one_line(&info.sample));
+        let _ = writeln!(out, "column = {}    # {why}; starts with {}", reference(part, info), info.sample.trim());
         write_unit(out, column, info);
         if column.offset != 0.0 {
             let _ = writeln!(out, "offset = \"{} {}\"", column.offset, quantity.dimension().units()[0].0);
@@ -156,8 +156,8 @@ fn write_questions(out: &mut String, part: &Part) {
     for column in &part.columns {
         let name = column.name.as_deref().unwrap_or("(no name)");
         let unit = column.unit.as_deref().map_or(String::new(), |unit| format!(" in {unit}"));
-        let sample = one_line(&column.sample);
-        let _ = writeln!(out, "#   {}: {}{unit}, starts with {sample}", column.number, one_line(name));
+        let sample = column.sample.trim();
+        let _ = writeln!(out, "#   {}: {}{unit}, starts with {sample}", column.number, name.trim());
     }
     out.push('\n');
     for quantity in [Quantity::Time, Quantity::Displacement, Quantity::Force] {
@@ -195,17 +195,11 @@ fn asked_unit(quantity: Quantity, possible: &[&ColumnInfo]) -> String {
     }
 }
 
-/// Line breaks in a cell would end a comment.
-fn one_line(text: &str) -> String {
-    let line: String = text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
-    line.trim().to_owned()
-}
-
 fn write_body(out: &mut String, part: &Part) {
     let _ = writeln!(out, "# The body is needed for strains and for v in 1/s; without it forces are fitted.");
     for entry in part.metadata.iter().filter(|entry| entry.unit.is_some()) {
         let unit = entry.unit.as_deref().unwrap_or_default();
-        let _ = writeln!(out, "#   the file says: {} = {} {unit}", one_line(&entry.name), one_line(&entry.value));
+        let _ = writeln!(out, "#   the file says: {} = {} {unit}", entry.name.trim(), entry.value.trim());
     }
     let _ = writeln!(out, "# [specimen]\n# shape = \"ball\"\n# radius = \"35 mm\"\n# modulus = \"28 kPa\"\n");
 }
@@ -218,11 +212,9 @@ fn write_phases(out: &mut String, file: &RecordFile, segmentation: &Segmentation
     }
     let _ = writeln!(out, "# minimum_hold = \"{} s\"\n", short(segmentation.settings.minimum_hold));
     let holds: Vec<_> = segmentation.segments.iter().filter(|segment| segment.phase == Phase::Hold).collect();
-    let _ = writeln!(
-        out,
-        "# Holds found: {}. To correct a limit, uncomment the tables of all of them: where any is",
-        holds.len()
-    );
+    let count = holds.len();
+    let _ =
+        writeln!(out, "# Holds found: {count}. To correct a limit, uncomment the tables of all of them: where any is");
     let _ = writeln!(out, "# given, no others are sought.");
     let time = file.record.time();
     let places = decimals(file.record.sample_interval());

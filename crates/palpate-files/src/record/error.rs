@@ -7,33 +7,17 @@ use palpate::{record::RecordError, units::Dimension};
 use super::{named::NamedColumn, snippet};
 use crate::{
     cell::DecimalMark,
-    error::FileError,
+    error::{FileError, few},
     naming::{Quantity, UNCALIBRATED, unit_factor},
     table::{ColumnInfo, ColumnRef},
 };
 
-/// A unit that the conventions of a machine say, and another in the header of a file.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct MachineUnit {
-    /// The machine.
-    pub machine: String,
-    /// Its unit.
-    pub said: String,
-    /// The unit in the header.
-    pub written: String,
-}
-
 /// Why it is not clear which column holds what.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ColumnError {
-    /// No column was found for a quantity that a record needs.
-    #[error("expected a column of {quantity}, found {}", snippet::described(columns))]
-    Missing {
-        /// What is missing.
-        quantity: Quantity,
-        /// All columns of the file.
-        columns: Vec<ColumnInfo>,
-    },
+    /// No column was found for a quantity that a record needs among all columns of the file.
+    #[error("expected a column of {}, found {}", .0, snippet::described(.1))]
+    Missing(Quantity, Vec<ColumnInfo>),
     /// A column is named as the time, but holds texts such as this.
     #[error("{0}: expected a time, found texts such as \"{1}\"")]
     TimeAsText(NamedColumn, String),
@@ -41,17 +25,12 @@ pub enum ColumnError {
     #[error("{0}: expected numbers in every row, found `{1}`")]
     NotNumbers(NamedColumn, String),
     /// Several columns could hold a quantity.
-    #[error("expected one column of {quantity}, found {}", listed(candidates))]
-    Ambiguous {
-        /// What they could hold.
-        quantity: Quantity,
-        /// The columns.
-        candidates: Vec<NamedColumn>,
-    },
+    #[error("expected one column of {}, found {}", .0, listed(.1, " and "))]
+    Ambiguous(Quantity, Vec<NamedColumn>),
     /// No column is named as the displacement, but some could hold it.
     #[error(
         "expected a name that says whether {} {}, found none that is known",
-        listed(candidates),
+        listed(candidates, " and "),
         is_displacement(candidates)
     )]
     Unclear {
@@ -60,53 +39,19 @@ pub enum ColumnError {
         /// All columns of the file.
         columns: Vec<ColumnInfo>,
     },
-    /// The units of some columns are written nowhere.
-    #[error("expected a unit for {}, found {}", units_of(columns), none(columns))]
-    NoUnit {
-        /// Keys of the description that would say the unit, a usual unit, and the columns.
-        columns: Vec<(String, &'static str, NamedColumn)>,
-    },
-    /// A header gives a unit that is not understood.
-    #[error("{column}: \"{unit}\" is not a unit of {quantity} (accepted: {})", quantity.dimension().accepted())]
-    UnknownUnit {
-        /// The column.
-        column: NamedColumn,
-        /// What it holds.
-        quantity: Quantity,
-        /// Key of the description that would say the unit.
-        key: String,
-        /// The unit in the header.
-        unit: String,
-    },
-    /// The conventions of a machine say one unit, the header another.
-    #[error("{column}: expected {}, the unit of machine.preset = \"{}\", found {} in the header", units.said, units.machine, units.written)]
-    OtherUnit {
+    /// The units of some columns are written nowhere: keys of the description that would say each, a usual unit, and the
+    /// column.
+    #[error("expected a unit for {}, found {}", listed(.0.iter().map(|(_, _, column)| column), ", "), none(.0))]
+    NoUnit(Vec<(String, &'static str, NamedColumn)>),
+    /// Something is wrong with the unit of a column.
+    #[error("{column}: {problem}")]
+    Unit {
         /// The column.
         column: NamedColumn,
         /// Key of the description that would say the unit.
         key: String,
-        /// The two units.
-        units: Box<MachineUnit>,
-    },
-    /// A scale is given for a column that is not in volts.
-    #[error("{column}: expected volts, which `scale` is for, found {unit}")]
-    ScaleOfNoVolts {
-        /// The column.
-        column: NamedColumn,
-        /// Key of the description that would say the unit.
-        key: String,
-        /// The unit.
-        unit: String,
-    },
-    /// The file says two units for one column.
-    #[error("{column}: expected one unit, found {} in its name and {} beside it", units.0, units.1)]
-    TwoUnits {
-        /// The column.
-        column: NamedColumn,
-        /// Key of the description that would say the unit.
-        key: String,
-        /// The unit in the name, and the other one.
-        units: Box<(String, String)>,
+        /// What is wrong with it.
+        problem: Box<UnitProblem>,
     },
     /// The description names a column that the file does not have, or has more than once.
     #[error("{key}: expected {}, found {found} in the description", snippet::choices(columns))]
@@ -119,13 +64,8 @@ pub enum ColumnError {
         columns: Vec<ColumnInfo>,
     },
     /// One column is said to hold two quantities.
-    #[error("{column}: expected one quantity in a column, found {} and {}", quantities.0, quantities.1)]
-    Twice {
-        /// The column.
-        column: NamedColumn,
-        /// What it is said to hold.
-        quantities: (Quantity, Quantity),
-    },
+    #[error("{0}: expected one quantity in a column, found {1} and {2}")]
+    Twice(NamedColumn, Quantity, Quantity),
     /// A column is to be added to one that was stamped by another clock.
     #[error("expected two columns of one clock to add up, found {0} and {1}")]
     ClocksDiffer(NamedColumn, NamedColumn),
@@ -142,79 +82,60 @@ pub enum ColumnError {
     NoSection(NamedColumn),
 }
 
+/// What can be wrong with the unit of a column.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum UnitProblem {
+    /// A header gives a unit that is none of the quantity in the column.
+    #[error("\"{}\" is not a unit of {} (accepted: {})", .1, .0, .0.dimension().accepted())]
+    Unknown(Quantity, String),
+    /// The conventions of a machine say one unit, the header another.
+    #[error("expected {said}, the unit of machine.preset = \"{machine}\", found {written} in the header")]
+    OfMachine {
+        /// The machine.
+        machine: String,
+        /// Its unit.
+        said: String,
+        /// The unit in the header.
+        written: String,
+    },
+    /// A scale is given for a column in this unit, which is not volts.
+    #[error("expected volts, which `scale` is for, found {0}")]
+    NoVolts(String),
+    /// The file says two units: one in the name, the other beside it.
+    #[error("expected one unit, found {0} in its name and {1} beside it")]
+    Two(String, String),
+}
+
 impl ColumnError {
-    pub(super) fn unknown_unit(column: &ColumnInfo, quantity: Quantity, key: String, unit: &str) -> Self {
-        Self::UnknownUnit {
-            column: column.into(),
-            quantity,
-            key,
-            unit: unit.to_owned(),
-        }
+    pub(super) fn unit(column: &ColumnInfo, key: String, problem: UnitProblem) -> Self {
+        let (column, problem) = (column.into(), Box::new(problem));
+        Self::Unit { column, key, problem }
     }
 
     /// What would help; where that is a description, lines to paste into it.
     #[must_use]
     pub fn hint(&self) -> String {
         match self {
-            Self::Missing { columns, .. } => {
+            Self::Missing(_, columns) => {
                 format!("say which column holds what in a test description:\n{}", snippet::of_columns(columns))
             }
             Self::TimeAsText(..) => {
                 "write seconds, or 2024-03-12 10:11:12.5, 12.03.2024 10:11:12.5 or 10:11:12.5 in every row".to_owned()
             }
             Self::NotNumbers(_, found) => crate::error::hint_of_text(found, DecimalMark::Point).to_owned(),
-            Self::Ambiguous {
-                quantity, candidates, ..
-            } => {
+            Self::Ambiguous(quantity, candidates) => {
                 let first = candidates.first().map_or(1, |column| column.number);
                 format!("choose one in a test description:\n[columns.{quantity}]\ncolumn = {first}")
             }
-            Self::Unclear {
-                candidates, columns, ..
-            } => snippet::of_unclear(candidates, columns),
-            Self::NoUnit { columns, .. } => {
+            Self::Unclear { candidates, columns } => snippet::of_unclear(candidates, columns),
+            Self::NoUnit(columns) => {
                 let lines = columns.iter().map(|(key, unit, column)| snippet::of_unit(key, unit, column));
                 let lines: Vec<String> = lines.collect();
                 format!("say it in a test description:\n{}", lines.join("\n"))
             }
-            Self::UnknownUnit {
-                key,
-                quantity,
-                column,
-                unit,
-            } => {
-                if unit_factor(unit, Dimension::Voltage).is_none() {
-                    let lines = snippet::of_unit_and_column(key, quantity.unit_meant(unit), column);
-                    return format!("if another unit is meant, say it in a test description:\n{lines}");
-                }
-                if key == "columns.force.unit" && column.name.as_deref() == Some(UNCALIBRATED) {
-                    return snippet::of_bending(column, unit);
-                }
-                let table = key.rsplit_once('.').map_or("columns", |(table, _)| table);
-                format!(
-                    "say what a volt stands for in a test description:\n[{table}]\nunit = \"{unit}\"\nscale = \"1 {}/V\"\ncolumn = {}",
-                    quantity.usual_unit(),
-                    column.number
-                )
-            }
-            Self::OtherUnit { key, column, units, .. } => format!(
-                "choose another of `palpate inspect --machines`, or say in the test description:\n{}",
-                snippet::of_unit(key, &units.written, column)
-            ),
-            Self::ScaleOfNoVolts { key, column, .. } => format!(
-                "remove `scale`; if the header is wrong and the column holds volts, say so:\n{}",
-                snippet::of_unit_and_column(key, "V", column)
-            ),
-            Self::TwoUnits { key, column, units, .. } => {
-                format!(
-                    "say which one holds in a test description:\n{}",
-                    snippet::of_unit_and_column(key, &units.1, column)
-                )
-            }
+            Self::Unit { column, key, problem } => problem.hint(column, key),
             Self::NoSuchColumn { .. } => "columns count from 1 at the left; a name may go without its unit".to_owned(),
-            Self::Twice { quantities, .. } => {
-                format!("correct columns.{} or columns.{}", quantities.0, quantities.1)
-            }
+            Self::Twice(_, one, other) => format!("correct columns.{one} or columns.{other}"),
             Self::ClocksDiffer(..) => "name two columns of one topic".to_owned(),
             Self::NoEpoch(..) => "give the unit that the time has, such as \"s\"".to_owned(),
             Self::NoHeight(..) => {
@@ -227,8 +148,43 @@ impl ColumnError {
     }
 }
 
-fn listed(columns: &[NamedColumn]) -> String {
-    columns.iter().map(ToString::to_string).collect::<Vec<_>>().join(" and ")
+impl UnitProblem {
+    /// What would help against it for a column whose unit a description says under a key.
+    fn hint(&self, column: &NamedColumn, key: &str) -> String {
+        match self {
+            Self::Unknown(quantity, unit) if unit_factor(unit, Dimension::Voltage).is_none() => {
+                let lines = snippet::of_unit_and_column(key, quantity.unit_meant(unit), column);
+                format!("if another unit is meant, say it in a test description:\n{lines}")
+            }
+            Self::Unknown(_, unit) if key == "columns.force.unit" && column.name.as_deref() == Some(UNCALIBRATED) => {
+                snippet::of_bending(column, unit)
+            }
+            Self::Unknown(quantity, unit) => {
+                let table = key.rsplit_once('.').map_or("columns", |(table, _)| table);
+                format!(
+                    "say what a volt stands for in a test description:\n[{table}]\nunit = \"{unit}\"\nscale = \"1 {}/V\"\ncolumn = {}",
+                    quantity.usual_unit(),
+                    column.number
+                )
+            }
+            Self::OfMachine { written, .. } => format!(
+                "choose another of `palpate inspect --machines`, or say in the test description:\n{}",
+                snippet::of_unit(key, written, column)
+            ),
+            Self::NoVolts(_) => format!(
+                "remove `scale`; if the header is wrong and the column holds volts, say so:\n{}",
+                snippet::of_unit_and_column(key, "V", column)
+            ),
+            Self::Two(_, beside) => {
+                let lines = snippet::of_unit_and_column(key, beside, column);
+                format!("say which one holds in a test description:\n{lines}")
+            }
+        }
+    }
+}
+
+fn listed<'c>(columns: impl IntoIterator<Item = &'c NamedColumn>, between: &str) -> String {
+    columns.into_iter().map(ToString::to_string).collect::<Vec<_>>().join(between)
 }
 
 fn is_displacement(columns: &[NamedColumn]) -> &'static str {
@@ -243,10 +199,6 @@ fn none(columns: &[(String, &'static str, NamedColumn)]) -> &'static str {
     } else {
         "none in the header"
     }
-}
-
-fn units_of(columns: &[(String, &'static str, NamedColumn)]) -> String {
-    columns.iter().map(|(_, _, column)| column.to_string()).collect::<Vec<_>>().join(", ")
 }
 
 /// Where a row stands in a file, from 1.
@@ -340,10 +292,7 @@ fn behind_comma(what: Option<&impl fmt::Display>) -> String {
 
 /// The first few names of parts.
 fn first(parts: &[String]) -> String {
-    const MOST: usize = 5;
-    let named: Vec<String> = parts.iter().take(MOST).map(|part| format!("\"{part}\"")).collect();
-    let more = if parts.len() > MOST { ", …" } else { "" };
-    format!("{}{more}", named.join(", "))
+    few(parts.iter().map(|part| format!("\"{part}\"")), 5, ", ")
 }
 
 /// The message of a record error; less its row where a line of the file is known, which says more. Records count their

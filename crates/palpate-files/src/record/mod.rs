@@ -21,7 +21,7 @@ mod snippet;
 
 pub use column_use::{ColumnUse, Role};
 pub use describe::describe;
-pub use error::{ColumnError, Counted, MachineUnit, ReadError};
+pub use error::{ColumnError, Counted, ReadError, UnitProblem};
 pub use named::NamedColumn;
 pub use parts::{Tests, tests};
 pub use read::{RecordFile, read_part, read_record};

@@ -33,13 +33,13 @@ pub fn tests(contents: &Contents, description: &TestDescription) -> Result<Tests
     }
     let mut tests = Tests {
         parts: Vec::new(),
-        skipped: contents.skipped().to_vec(),
+        skipped: contents.skipped.to_vec(),
     };
-    let several = contents.parts().len() > 1;
+    let several = contents.parts.len() > 1;
     let mut first = None;
-    for (index, part) in contents.parts().iter().enumerate() {
+    for (index, part) in contents.parts.iter().enumerate() {
         match choose::choose(part, description) {
-            Err(error @ (ColumnError::Missing { .. } | ColumnError::NoSuchColumn { .. })) if several => {
+            Err(error @ (ColumnError::Missing(..) | ColumnError::NoSuchColumn { .. })) if several => {
                 tests.skipped.push(SkippedPart {
                     name: part.title().to_owned(),
                     reason: reason(&error),
@@ -51,7 +51,7 @@ pub fn tests(contents: &Contents, description: &TestDescription) -> Result<Tests
     }
     match first {
         Some(source) if tests.parts.is_empty() => Err(ReadError::Column {
-            path: contents.path().to_owned(),
+            path: contents.input.name.clone(),
             source,
         }),
         _ => Ok(tests),
@@ -60,7 +60,7 @@ pub fn tests(contents: &Contents, description: &TestDescription) -> Result<Tests
 
 fn reason(error: &ColumnError) -> String {
     match error {
-        ColumnError::Missing { quantity, .. } => format!("no column of {quantity}"),
+        ColumnError::Missing(quantity, _) => format!("no column of {quantity}"),
         ColumnError::NoSuchColumn { key, found, .. } => format!("{key}: no column {found}"),
         other => other.to_string(),
     }
@@ -68,11 +68,11 @@ fn reason(error: &ColumnError) -> String {
 
 /// The part of a name, or else of a number.
 fn named(contents: &Contents, wanted: &str) -> Result<usize, ReadError> {
-    let parts = contents.parts();
+    let parts = &contents.parts;
     let by_name = parts.iter().position(|part| part.name.as_deref() == Some(wanted));
     let by_number = || wanted.parse::<usize>().ok()?.checked_sub(1).filter(|index| *index < parts.len());
     by_name.or_else(by_number).ok_or_else(|| ReadError::NoSuchPart {
-        path: contents.path().to_owned(),
+        path: contents.input.name.clone(),
         found: wanted.to_owned(),
         parts: parts.iter().map(|part| part.title().to_owned()).collect(),
     })

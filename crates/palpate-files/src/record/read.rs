@@ -88,7 +88,7 @@ pub fn read_record(
         [only] => read_part(&contents, only, description, progress),
         ref several => Err(ReadError::SeveralParts {
             path: path.to_owned(),
-            parts: several.iter().map(|part| contents.parts()[*part].title().to_owned()).collect(),
+            parts: several.iter().map(|part| contents.parts[*part].title().to_owned()).collect(),
         }),
     }
 }
@@ -105,8 +105,8 @@ pub fn read_part(
 ) -> Result<RecordFile, ReadError> {
     let usual = TestDescription::default();
     let test = description.unwrap_or(&usual);
-    let path = contents.path();
-    let about = &contents.parts()[part];
+    let path = &contents.input.name;
+    let about = &contents.parts[part];
     let unclear = |source| ReadError::Column {
         path: path.to_owned(),
         source,
@@ -139,7 +139,7 @@ pub fn read_part(
     let record = raw.into_record().map(|record| record.corrected_before(done)).map_err(|source| ReadError::Record {
         path: path.to_owned(),
         part: about.name.clone(),
-        line: source.row().and_then(|row| read.line_of(row)).map(|line| counted(contents.format(), line)),
+        line: source.row().and_then(|row| read.line_of(row)).map(|line| counted(contents.format, line)),
         source,
     })?;
     Ok(RecordFile {
@@ -148,8 +148,8 @@ pub fn read_part(
         signals,
         columns: plan.columns,
         start,
-        format: contents.format(),
-        packing: contents.packing().clone(),
+        format: contents.format,
+        packing: contents.input.packing.clone(),
         part: about.clone(),
         rows: read.rows(),
         averaged: read.averaged,

@@ -125,13 +125,9 @@ fn longest_run(cells: &[Vec<Cell>]) -> Option<Run> {
 
 fn kinds(rows: &[Vec<Cell>], width: usize) -> Vec<ColumnKind> {
     let kind = |column: usize| {
-        let mut numbers = 0_usize;
-        let mut texts = 0_usize;
-        for cell in rows.iter().filter_map(|row| row.get(column)) {
-            numbers += usize::from(cell.is_numeric());
-            texts += usize::from(*cell == Cell::Text);
-        }
-        match (numbers, texts) {
+        let cells = || rows.iter().filter_map(|row| row.get(column));
+        let numbers = cells().filter(|cell| cell.is_numeric()).count();
+        match (numbers, cells().filter(|cell| **cell == Cell::Text).count()) {
             (0, 0) => ColumnKind::Empty,
             (numbers, texts) if numbers > texts => ColumnKind::Number,
             _ => ColumnKind::Text,

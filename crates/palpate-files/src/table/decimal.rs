@@ -171,18 +171,10 @@ fn fractions(lines: &[&str], block: &Block) -> bool {
 }
 
 fn varying(block: &Block) -> bool {
-    let width = block.kinds.len();
     let rows = block.cells[block.first..].iter();
     let whole = rows.filter(|row| !row.is_empty() && row.iter().all(|cell| *cell == Cell::Whole));
-    let (mut same, mut other) = (0_usize, 0_usize);
-    for row in whole {
-        if row.len() == width {
-            same += 1;
-        } else {
-            other += 1;
-        }
-    }
-    other >= 2 && other * 10 > same
+    let (same, other): (Vec<_>, Vec<_>) = whole.partition(|row| row.len() == block.kinds.len());
+    other.len() >= 2 && other.len() * 10 > same.len()
 }
 
 #[cfg(test)]

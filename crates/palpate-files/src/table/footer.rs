@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::columns::{Columns, Footer};
-use crate::error::FileError;
+use crate::error::{FileError, FileProblem};
 
 /// Most lines behind the data that pass for a footer. More are a part of the record that cannot be read.
 const LONGEST_FOOTER: usize = 50;
@@ -37,13 +37,13 @@ impl Suspect {
 
     /// They were none: the data go on.
     pub(crate) fn interrupted(self, path: &Path, resumes: usize) -> FileError {
-        FileError::Interrupted {
-            path: path.to_owned(),
+        let problem = FileProblem::Interrupted {
             line: self.footer.first_line,
             found: self.footer.sample,
             resumes,
             source: Box::new(self.error),
-        }
+        };
+        FileError::of(path, problem)
     }
 }
 

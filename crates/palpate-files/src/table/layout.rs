@@ -1,4 +1,4 @@
-//! What is known about how a file is written, and what a caller may fix in advance.
+//! What is known about how a file is written.
 
 use std::fmt;
 
@@ -35,22 +35,6 @@ pub struct Layout {
     /// No number seen so far had a mark, and nobody said which it is: a point further down could set off thousands.
     #[serde(skip)]
     pub undecided: bool,
-}
-
-/// What the caller knows about a file better than its bytes do. Everything left `None` is found out.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
-pub struct LayoutOptions {
-    /// What stands between two cells.
-    pub delimiter: Option<Delimiter>,
-    /// The decimal mark of the numbers.
-    pub decimal: Option<DecimalMark>,
-    /// Character encoding.
-    pub encoding: Option<Encoding>,
-    /// Lines at the top to pass over unread: neither metadata nor names are looked for in them.
-    pub skip_lines: Option<usize>,
-    /// `true`: the columns have a line of names, even where it looks like data.
-    /// `false`: they have none, even where a line looks like it.
-    pub header: Option<bool>,
 }
 
 impl fmt::Display for Layout {

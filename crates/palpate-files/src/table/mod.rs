@@ -9,8 +9,8 @@
 //! | `column_ref.rs` | a column as people name it |
 //! | `columns.rs` | columns of numbers as they were read, in bounded memory |
 //! | `footer.rs` | lines behind the data |
-//! | `layout.rs` | how a text is written, and what a caller may fix in advance |
-//! | `reader.rs` | what every format can do |
+//! | `layout.rs` | how a text is written |
+//! | `reader.rs` | what every format can do, and what a caller may fix in advance |
 //! | `block.rs`, `decimal.rs` | the rows of numbers among other lines, and their decimal mark |
 //! | `header.rs`, `metadata.rs` | names and units above them, and named values |
 //! | `recognise.rs`, `epoch.rs` | which column holds a quantity; times counted from 1970 |
@@ -35,7 +35,7 @@ pub(crate) use decimal::Doubt;
 pub(crate) use epoch::EPOCH;
 pub(crate) use footer::Suspect;
 pub(crate) use header::Header;
-pub use layout::{Layout, LayoutOptions};
+pub use layout::Layout;
 pub use part::{Clock, ColumnInfo, ColumnKind, Label, Metadata, Part, SkippedPart};
 pub use reader::ReadOptions;
 pub(crate) use reader::{Found, ReadPart};

@@ -2,20 +2,38 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
+use serde::Deserialize;
+
 use super::{
     columns::Columns,
-    layout::{Layout, LayoutOptions},
+    layout::Layout,
     part::{Part, SkippedPart},
 };
-use crate::error::FileError;
+use crate::{
+    cell::{DecimalMark, Delimiter},
+    error::FileError,
+    input::Encoding,
+};
 
-/// What a caller knows about a file better than its bytes do. Everything left out is found out.
-#[derive(Debug, Clone, Default, PartialEq)]
+/// How the file is written, where it should not be found out, and which of its tests is meant.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+#[schemars(rename = "File")]
 pub struct ReadOptions {
-    /// How delimited text is written.
-    pub layout: LayoutOptions,
-    /// The one part wanted: its name, or its number from 1.
+    /// The one test of a file that holds several: its name (a sheet, a curve, a test_id), or its number from 1.
     pub part: Option<String>,
+    /// Of delimited text: what stands between two cells.
+    pub delimiter: Option<Delimiter>,
+    /// Of delimited text: the decimal mark of the numbers.
+    pub decimal: Option<DecimalMark>,
+    /// Of delimited text: its character encoding.
+    pub encoding: Option<Encoding>,
+    /// Of delimited text: lines at the top to pass over unread. Neither metadata nor names are looked for in them.
+    pub skip_lines: Option<usize>,
+    /// true: the columns have a line of names, even where it looks like data. false: they have none, even where a
+    /// line looks like it.
+    pub header: Option<bool>,
 }
 
 /// What a format found in a file.

@@ -28,10 +28,10 @@ pub(crate) fn read_description(kind: DescriptionKind, name: &str, bytes: &[u8]) 
         DescriptionKind::Protocol => parse_protocol(text, path).map(drop).map_err(complaint),
         DescriptionKind::Sweep => {
             let sweep = parse_sweep(text, path).map_err(complaint)?;
-            assert!(sweep.runs() > 0);
-            for run in [0, sweep.runs() / 2, sweep.runs() - 1] {
+            assert!(sweep.runs > 0);
+            for run in [0, sweep.runs / 2, sweep.runs - 1] {
                 let (numbers, protocol) = sweep.run(run);
-                assert_eq!(numbers.len(), sweep.numbers().len());
+                assert_eq!(numbers.len(), sweep.numbers.len());
                 assert!(numbers.iter().all(|number| number.is_finite()), "{numbers:?}");
                 let _either = protocol;
             }

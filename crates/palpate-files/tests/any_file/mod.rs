@@ -73,7 +73,7 @@ pub(crate) fn read_all(name: &str, bytes: &[u8]) -> Result<usize, Complaint> {
     let file = |error: &palpate_files::FileError| Complaint::of(name, error.to_string(), error.hint());
     let input = Input::from_bytes(name, bytes).map_err(|error| file(&error))?;
     let contents = Contents::of(input, &ReadOptions::default()).map_err(|error| file(&error))?;
-    assert!(!contents.parts().is_empty() && contents.bytes() == bytes.len() as u64);
+    assert!(!contents.parts.is_empty() && contents.input.size == bytes.len() as u64);
     let mut doubt = None;
     match records(name, &contents) {
         Err((complaint, true)) => return Err(complaint),
@@ -81,11 +81,11 @@ pub(crate) fn read_all(name: &str, bytes: &[u8]) -> Result<usize, Complaint> {
         Ok(()) => {}
     }
     let mut rows = 0;
-    for (index, part) in contents.parts().iter().enumerate().take(MOST_PARTS) {
+    for (index, part) in contents.parts.iter().enumerate().take(MOST_PARTS) {
         check(part);
         for columns in choices(part) {
             let read = contents.read(index, &columns, &mut |_, _| {}).map_err(|error| file(&error))?;
-            check_columns(contents.format(), part, &columns, &read);
+            check_columns(contents.format, part, &columns, &read);
             rows += read.rows();
         }
     }

@@ -95,8 +95,8 @@ fn a_wide_table_is_one_test_in_every_format_and_packing() {
     let table = wide();
     for (format, bytes) in all(&[table.slice(0, 12), table.slice(12, 8)]) {
         let contents = open(&bytes).expect("a table");
-        assert_eq!((contents.format(), contents.parts().len(), &contents.parts()[0].name), (format, 1, &None));
-        let columns: Vec<(Option<&str>, Option<&str>)> = contents.parts()[0]
+        assert_eq!((contents.format, contents.parts.len(), &contents.parts[0].name), (format, 1, &None));
+        let columns: Vec<(Option<&str>, Option<&str>)> = contents.parts[0]
             .columns
             .iter()
             .map(|column| (column.name.as_deref(), column.unit.as_deref()))
@@ -125,8 +125,7 @@ fn rows_of_several_tests_may_be_mixed() {
         let table = batch(vec![(name, id), ("time_s", time.clone()), ("force_N", force.clone())]);
         for (_, bytes) in all(&[table.slice(0, 3), table.slice(3, 7)]) {
             let contents = open(&bytes).expect("tables");
-            let found: Vec<(&str, Option<u64>)> =
-                contents.parts().iter().map(|part| (part.title(), part.rows)).collect();
+            let found: Vec<(&str, Option<u64>)> = contents.parts.iter().map(|part| (part.title(), part.rows)).collect();
             let names = if name == "test" { ["1", "0", "2"] } else { ["b", "a", "c"] };
             assert_eq!(found, [(names[0], Some(3)), (names[1], Some(3)), (names[2], Some(4))]);
             for (part, times) in
@@ -154,7 +153,7 @@ fn types_units_and_columns_that_are_passed_over() {
     let table = RecordBatch::try_new(Arc::new(Schema::new(fields)), table.columns().to_vec()).expect("a batch");
     for (_, bytes) in all(std::slice::from_ref(&table)) {
         let contents = open(&bytes).expect("a table");
-        let part = &contents.parts()[0];
+        let part = &contents.parts[0];
         assert!(part.written.ends_with("columns that hold no single values passed over: list"), "{}", part.written);
         let kinds: Vec<ColumnKind> = part.columns.iter().map(|column| column.kind).collect();
         assert_eq!(kinds, [ColumnKind::Number, ColumnKind::Text, ColumnKind::Number]);
@@ -195,7 +194,7 @@ fn read_all(bytes: &[u8]) -> Result<usize, FileError> {
             .collect()
     };
     let read = |(index, part)| Ok(read(&contents, index, &numbers(part))?.rows());
-    contents.parts().iter().enumerate().map(read).sum()
+    contents.parts.iter().enumerate().map(read).sum()
 }
 
 #[test]
@@ -235,7 +234,7 @@ fn packed_tables_and_tables_without_rows() {
         let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
         packed.write_all(&whole).expect("bytes");
         let contents = open(&packed.finish().expect("a file")).expect("a table");
-        assert_eq!((contents.format(), read(&contents, 0, &[1, 2]).expect("columns").rows()), (format, 20));
+        assert_eq!((contents.format, read(&contents, 0, &[1, 2]).expect("columns").rows()), (format, 20));
     }
     for (_, bytes) in all(&[table.slice(0, 0)]) {
         let contents = open(&bytes).expect("a table");

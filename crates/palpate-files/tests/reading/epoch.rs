@@ -78,7 +78,7 @@ fn a_plain_time_of_that_size_is_asked_for_its_unit() {
         matches!(
             &error,
             ReadError::Column {
-                source: ColumnError::NoUnit { .. },
+                source: ColumnError::NoUnit(_),
                 ..
             }
         ),
@@ -90,7 +90,7 @@ fn a_plain_time_of_that_size_is_asked_for_its_unit() {
         matches!(
             &error,
             ReadError::Column {
-                source: ColumnError::NoUnit { .. },
+                source: ColumnError::NoUnit(_),
                 ..
             }
         ),

@@ -84,7 +84,7 @@ impl<'d> OpenedFile<'d> {
     /// What the file holds besides tests, a sentence each.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
-        let path = self.contents.path().display();
+        let path = self.contents.input.name.display();
         let told = |part: &SkippedPart| format!("{path}: skipped {} ({})", part.name, part.reason);
         self.skipped().iter().map(told).collect()
     }
@@ -92,8 +92,8 @@ impl<'d> OpenedFile<'d> {
     /// What to call a part, where the file holds several tests.
     #[must_use]
     pub fn name(&self, part: usize) -> Option<&str> {
-        let several = self.contents.parts().len() > 1;
-        self.contents.parts()[part].name.as_deref().filter(|_| several)
+        let several = self.contents.parts.len() > 1;
+        self.contents.parts[part].name.as_deref().filter(|_| several)
     }
 
     /// The one test of the file.
@@ -104,8 +104,8 @@ impl<'d> OpenedFile<'d> {
         match self.parts() {
             [only] => Ok(*only),
             several => Err(JobError::from(ReadError::SeveralParts {
-                path: self.contents.path().to_owned(),
-                parts: several.iter().map(|part| self.contents.parts()[*part].title().to_owned()).collect(),
+                path: self.contents.input.name.clone(),
+                parts: several.iter().map(|part| self.contents.parts[*part].title().to_owned()).collect(),
             })),
         }
     }
@@ -115,7 +115,7 @@ impl<'d> OpenedFile<'d> {
     /// # Errors
     /// [`JobError`] where it cannot be read, or the watch ends it.
     pub fn read(&self, part: usize, watch: &mut dyn Watch) -> Result<RecordFile, JobError> {
-        let path = self.contents.path();
+        let path = &self.contents.input.name;
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         let task = format!("reading {name}");
         let mut heard = Ok(());
@@ -124,7 +124,7 @@ impl<'d> OpenedFile<'d> {
             heard = heard.and_then(|()| watch.report(Progress { task, done, total }));
         };
         let file = read_part(&self.contents, part, self.described.test.as_ref(), &mut report);
-        let size = self.contents.bytes();
+        let size = self.contents.input.size;
         report(size, size);
         heard?;
         Ok(file?)

@@ -93,8 +93,8 @@ impl Inspected {
         watch: &mut dyn Watch,
     ) -> Result<(), JobError> {
         let (test, out) = (opened.described().test.as_ref(), &mut self.text);
-        let about = &opened.contents().parts()[part];
-        out.push_str(&part_facts(about, opened.contents().format()));
+        let about = &opened.contents().parts[part];
+        out.push_str(&part_facts(about, opened.contents().format));
         let file = opened.read(part, watch).inspect_err(|_| {
             // The columns help to mend what is wrong.
             out.push_str(&columns_table(about, None).to_plain_text());
@@ -131,11 +131,11 @@ pub fn machines_text() -> String {
 
 /// Format, packing and number of tests.
 fn file_facts(contents: &Contents) -> String {
-    let packing = match contents.packing() {
+    let packing = match &contents.input.packing {
         Packing::None => String::new(),
         packed => format!(", {packed}"),
     };
-    format!("{}\n{}{packing}\n", contents.path().display(), contents.format())
+    format!("{}\n{}{packing}\n", contents.input.name.display(), contents.format)
 }
 
 /// One row a test.
@@ -153,7 +153,7 @@ fn many_tests(
         .column(TableColumn::new("Holds", "holds", ""))
         .note("palpate inspect FILE --part NAME shows one of them");
     for part in parts {
-        let name = opened.contents().parts()[*part].title();
+        let name = opened.contents().parts[*part].title();
         table = table.row(match opened.read(*part, watch) {
             Ok(file) => {
                 notes.extend(averaged(&file));

@@ -33,14 +33,14 @@ impl Chart {
             let hint = format!("show one of {}", names.join(", "));
             return Err(JobError::option(format!("⟨show={column}⟩: no such result"), &hint));
         };
-        if let Plan::Grid { counts } = sweep.plan() {
+        if let Plan::Grid { counts } = &sweep.plan {
             let hint = "draw the columns of the table with another program, or sweep fewer numbers";
             let refused = |message: String| Err(JobError::option(message, hint).of(path.display()));
             match counts.as_slice() {
                 [_] | [_, _] => {}
                 [_, _, panels] if *panels <= MOST_PANELS => {}
                 [_, _, panels] => {
-                    let third = &sweep.numbers()[2].path;
+                    let third = &sweep.numbers[2].path;
                     return refused(format!(
                         "expected at most {MOST_PANELS} values of {third}, each of which takes a panel, found {panels}"
                     ));
@@ -49,8 +49,8 @@ impl Chart {
                     return refused(format!("expected a grid of one to three swept numbers, found {}", more.len()));
                 }
             }
-            if sweep.runs() > MOST_CELLS {
-                return refused(format!("expected at most {MOST_CELLS} runs to draw, found {}", sweep.runs()));
+            if sweep.runs > MOST_CELLS {
+                return refused(format!("expected at most {MOST_CELLS} runs to draw, found {}", sweep.runs));
             }
         }
         Ok(Self {
@@ -61,9 +61,9 @@ impl Chart {
 
     /// Draws it from the table at `table`.
     pub(super) fn draw(&self, sweep: &Sweep, table: &Path) -> Result<Vec<u8>, JobError> {
-        let stride = match sweep.plan() {
+        let stride = match &sweep.plan {
             Plan::Grid { .. } => 1,
-            Plan::LatinHypercube { .. } | Plan::Together { .. } => sweep.runs().div_ceil(MOST_POINTS).max(1),
+            Plan::LatinHypercube { .. } | Plan::Together { .. } => sweep.runs.div_ceil(MOST_POINTS).max(1),
         };
         let read =
             |column: &str| read_column(table, column, stride as usize).map_err(|error| unwritten_table(table, &error));
@@ -74,15 +74,15 @@ impl Chart {
         };
         let name = stem(&self.path);
         let caption = caption(sweep, &self.result, stride);
-        let axes = sweep.numbers().iter().map(|number| {
+        let axes = sweep.numbers.iter().map(|number| {
             let values = match number.grid() {
-                Some(values) if matches!(sweep.plan(), Plan::Grid { .. }) => values,
+                Some(values) if matches!(&sweep.plan, Plan::Grid { .. }) => values,
                 _ => read(&number.column)?,
             };
             Ok(axis(number, values))
         });
         let axes = axes.collect::<Result<Vec<_>, JobError>>()?;
-        let figure = match sweep.plan() {
+        let figure = match &sweep.plan {
             Plan::Grid { .. } => sweep_grid_figure(&name, &caption, &axes, &result),
             Plan::LatinHypercube { .. } | Plan::Together { .. } => {
                 Some(sweep_points_figure(&name, &caption, &axes, &result))
@@ -114,21 +114,19 @@ fn axis(number: &SweptNumber, values: Vec<f64>) -> SweptAxis {
 }
 
 fn caption(sweep: &Sweep, result: &ResultColumn, stride: u64) -> String {
-    let title = sweep.base().title.as_ref().map_or(String::new(), |title| format!("{title}. "));
-    let over: Vec<&str> = sweep.numbers().iter().map(|number| number.path.as_str()).collect();
+    let title = sweep.base.title.as_ref().map_or(String::new(), |title| format!("{title}. "));
+    let over: Vec<&str> = sweep.numbers.iter().map(|number| number.path.as_str()).collect();
     let drawn = if stride == 1 { String::new() } else { format!(", one in {stride} drawn") };
-    let is_map = matches!(sweep.plan(), Plan::Grid { counts } if counts.len() > 1);
+    let is_map = matches!(&sweep.plan, Plan::Grid { counts } if counts.len() > 1);
     let grey = if is_map { " Grey: refused." } else { "" };
-    format!("{title}{} over {}; {} runs{drawn}.{grey}", result.label, over.join(", "), sweep.runs())
+    format!("{title}{} over {}; {} runs{drawn}.{grey}", result.label, over.join(", "), sweep.runs)
 }
 
 /// Every `stride`-th value of a column, NaN where it is missing.
 fn read_column(table: &Path, name: &str, stride: usize) -> Result<Vec<f64>, TableError> {
     let table = TableReader::new(File::open(table)?)?;
     let column = table.fields().iter().position(|field| field.name == name);
-    let column = column.ok_or_else(|| TableError::Parquet {
-        message: format!("no column {name}"),
-    })?;
+    let column = column.ok_or_else(|| TableError::Parquet(format!("no column {name}")))?;
     let (mut values, mut row) = (Vec::new(), 0usize);
     for group in 0..table.groups() {
         let Values::Number(numbers) = table.values(group, column)? else {

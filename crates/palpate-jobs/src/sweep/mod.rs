@@ -100,7 +100,7 @@ impl Sweep {
             write_file(&chart.path, &chart.draw(&sweep, &out)?)?;
         }
         let (refused, first) = refused(&out).map_err(|error| unwritten_table(&out, &error))?;
-        let runs = sweep.runs();
+        let runs = sweep.runs;
         let first = first.map(|(run, reason)| format!("{refused} of {runs} runs refused, first run {run}: {reason}"));
         let before = match computed_before {
             0 => String::new(),
@@ -127,12 +127,12 @@ impl Sweep {
         let digest = digest(sweep);
         let folder = beside(out, ".parts");
         let found = depends_on(&folder);
-        if !self.restart && is_complete(out, &digest, sweep.runs()) {
+        if !self.restart && is_complete(out, &digest, sweep.runs) {
             if found.is_some_and(|found| found == digest) {
                 // Killed after the table was whole: only its parts are left over.
                 Store::open(&folder, "sweep", &digest, false)?.remove()?;
             }
-            return Ok(sweep.runs());
+            return Ok(sweep.runs);
         }
         if !self.restart && found.is_some_and(|found| found != digest) {
             return Err(JobError::option(
@@ -142,7 +142,7 @@ impl Sweep {
             .of(folder.display()));
         }
         let store = Store::open(&folder, "sweep", &digest, self.restart)?;
-        let (runs, size) = (sweep.runs(), part_size(sweep.runs()));
+        let (runs, size) = (sweep.runs, part_size(sweep.runs));
         let parts = usize::try_from(runs.div_ceil(size)).unwrap_or(usize::MAX);
         let runs_of = |part: usize| part as u64 * size..runs.min((part as u64 + 1) * size);
         let done: u64 = (0..parts)
@@ -205,7 +205,7 @@ fn table_of(protocol: &Path, out: Option<&Path>) -> Result<PathBuf, JobError> {
 
 /// What the rows of a sweep depend on: the text of the protocol, and who computes them.
 fn digest(sweep: &SweptProtocol) -> String {
-    sha256(format!("palpate {} sweep 1\n{}", env!("CARGO_PKG_VERSION"), sweep.text()).as_bytes())
+    sha256(format!("palpate {} sweep 1\n{}", env!("CARGO_PKG_VERSION"), sweep.text).as_bytes())
 }
 
 /// Whether the table is there and holds all of this sweep.

@@ -8,9 +8,9 @@ use arrow_array::{ArrayRef, FixedSizeListArray, Float64Array, Int64Array, String
 use arrow_schema::{DataType, Field};
 use palpate::simulate::{Sampling, simulate};
 use palpate::watch::{Cancelled, Progress};
-use palpate_files::FileError;
 use palpate_files::description::parse_runs;
 use palpate_files::parquet_table::{Rows, Values};
+use palpate_files::{FileError, FileProblem};
 use palpate_jobs::{sweep_fields, sweep_rows};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -38,10 +38,13 @@ pub(crate) fn simulate_many(
     let (path, text) = match path {
         Some(path) => match std::fs::read_to_string(&path) {
             Ok(text) => (path, text),
-            Err(source) if source.kind() == ErrorKind::NotFound => {
-                return Err(undescribed(FileError::NotFound { path, source }.into()));
+            Err(source) => {
+                let problem = match source.kind() {
+                    ErrorKind::NotFound => FileProblem::NotFound(source),
+                    _ => FileProblem::Unreadable(source),
+                };
+                return Err(undescribed(FileError { path, problem }.into()));
             }
-            Err(source) => return Err(undescribed(FileError::Unreadable { path, source }.into())),
         },
         None => (PathBuf::from("protocol"), text.unwrap_or_default()),
     };
@@ -51,7 +54,7 @@ pub(crate) fn simulate_many(
     let times = times_s.map(|times| doubles(times, "times_s")).transpose()?;
     if let Some(times) = &times {
         // Times outside the motion are wrong for all runs alike, but for those whose holds are swept.
-        let base = sweep.base();
+        let base = &sweep.base;
         simulate(base.drive(), &base.contact, &Sampling::Times(times.clone()))
             .map_err(refused_plainly::<ModelError>)?;
     }
@@ -59,13 +62,13 @@ pub(crate) fn simulate_many(
     let samples = times.as_ref().map_or(0, Vec::len);
     let work = move |heard: Heard| {
         let share = |share: u64| {
-            let runs = share * SHARE..((share + 1) * SHARE).min(sweep.runs());
+            let runs = share * SHARE..((share + 1) * SHARE).min(sweep.runs);
             let times = times.as_deref().unwrap_or_default();
             let (Rows { columns }, forces) =
                 sweep_rows(&sweep, &path, runs, times, &mut |_: Progress<'_>| heard.step())?;
             Ok((columns, forces))
         };
-        (0..sweep.runs().div_ceil(SHARE)).into_par_iter().map(share).collect::<Result<Vec<_>, Cancelled>>()
+        (0..sweep.runs.div_ceil(SHARE)).into_par_iter().map(share).collect::<Result<Vec<_>, Cancelled>>()
     };
     let shares = at_length_told(py, progress.as_ref(), work)?.map_err(refused_plainly::<PalpateError>)?;
     let columns = fields.iter().enumerate().map(|(index, field)| {

@@ -13,7 +13,6 @@ use palpate::{
     simulate::Contact,
     units::Dimension,
 };
-use serde::Deserialize;
 
 use super::{
     file::{MATERIAL_VERSION, MaterialFile, MaterialOrigin},
@@ -96,28 +95,24 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
     })
 }
 
-/// Refuses a file of another version before anything else that may have changed with it.
+/// Refuses a file of another version before anything else that may have changed with it; what is no version, or no table, is
+/// refused with the other tables.
 fn version(source: &Source<'_>) -> Result<(), DescriptionError> {
-    #[derive(Deserialize)]
-    struct Versioned {
-        calibration: Option<Version>,
-    }
-    #[derive(Deserialize)]
-    struct Version {
-        version: Option<u64>,
-    }
-    let found: Versioned = source.tables()?;
-    let Some(calibration) = found.calibration else {
+    let tables: toml::Table = source.tables()?;
+    let Some(calibration) = tables.get("calibration") else {
         let expected = "the table that palpate calibrate writes; a body without it is a protocol's";
         return Err(source.missing("calibration", expected));
     };
-    match calibration.version {
-        Some(MATERIAL_VERSION) => Ok(()),
-        Some(other) => {
-            let expected = format!("{MATERIAL_VERSION}; calibrate again with this version of palpate");
-            Err(source.value("calibration.version", expected, &other))
-        }
-        None => Err(source.missing("calibration.version", "the version of the table, 1")),
+    match calibration.get("version") {
+        Some(version) => match version.as_integer().map(u64::try_from) {
+            Some(Ok(other)) if other != MATERIAL_VERSION => {
+                let expected = format!("{MATERIAL_VERSION}; calibrate again with this version of palpate");
+                Err(source.value("calibration.version", expected, &other))
+            }
+            _ => Ok(()),
+        },
+        None if calibration.is_table() => Err(source.missing("calibration.version", "the version of the table, 1")),
+        None => Ok(()),
     }
 }
 

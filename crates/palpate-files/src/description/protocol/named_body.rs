@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use serde::{Deserialize, de::DeserializeOwned};
+use serde::de::DeserializeOwned;
 
 use crate::description::{
     material::parse_material,
@@ -14,18 +14,13 @@ use crate::description::{
 
 /// The tables of a protocol whose body may be that of a material file: `material = "file"` stands for specimen, law and contact.
 pub(crate) fn protocol_tables<T: DeserializeOwned>(source: &Source<'_>) -> Result<T, DescriptionError> {
-    #[derive(Deserialize)]
-    struct Named {
-        material: Option<toml::Value>,
-    }
-    let named: Named = source.tables()?;
-    let Some(named) = named.material else {
+    let tables: toml::Table = source.tables()?;
+    let Some(named) = tables.get("material") else {
         return source.tables();
     };
-    let toml::Value::String(name) = &named else {
-        return Err(source.value("material", "the path of a material file", &named.to_string()));
+    let Some(name) = named.as_str() else {
+        return Err(source.value("material", "the path of a material file", named));
     };
-    let tables: toml::Table = source.tables()?;
     if let Some(key) = BODY.into_iter().find(|key| tables.contains_key(*key)) {
         return Err(source.both(key, "material"));
     }

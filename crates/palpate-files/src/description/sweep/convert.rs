@@ -33,13 +33,18 @@ const USUAL_SEED: u64 = 1;
 /// A protocol with numbers to replace.
 #[derive(Debug, Clone)]
 pub struct Sweep {
+    /// The text of the file.
+    pub text: String,
+    /// The protocol without its sweep.
+    pub base: Protocol,
+    /// The swept numbers in the order of the file.
+    pub numbers: Vec<SweptNumber>,
+    /// How runs are put together.
+    pub plan: Plan,
+    /// How many runs there are.
+    pub runs: u64,
     path: PathBuf,
-    text: String,
     tables: ProtocolTables,
-    base: Protocol,
-    numbers: Vec<SweptNumber>,
-    plan: Plan,
-    runs: u64,
 }
 
 /// A number that takes many values.
@@ -119,40 +124,10 @@ fn si_unit(dimension: Option<Dimension>) -> &'static str {
 }
 
 impl Sweep {
-    /// The protocol without its sweep.
-    #[must_use]
-    pub fn base(&self) -> &Protocol {
-        &self.base
-    }
-
-    /// The text of the file.
-    #[must_use]
-    pub fn text(&self) -> &str {
-        &self.text
-    }
-
     /// How many `[[step]]` tables the protocol has.
     #[must_use]
     pub fn steps(&self) -> usize {
         self.tables.step.len()
-    }
-
-    /// The swept numbers in the order of the file.
-    #[must_use]
-    pub fn numbers(&self) -> &[SweptNumber] {
-        &self.numbers
-    }
-
-    /// How runs are put together.
-    #[must_use]
-    pub fn plan(&self) -> &Plan {
-        &self.plan
-    }
-
-    /// How many runs there are.
-    #[must_use]
-    pub fn runs(&self) -> u64 {
-        self.runs
     }
 
     /// The values of a run, from 0, in SI, and its protocol with these values in it.
@@ -204,11 +179,11 @@ pub fn read_sweep(path: &Path) -> Result<Sweep, DescriptionError> {
 ///     specimen.radius = "30, 35 mm"
 /// "#;
 /// let sweep = parse_sweep(text, Path::new("squeeze.toml"))?;
-/// assert_eq!(sweep.runs(), 6);
+/// assert_eq!(sweep.runs, 6);
 /// let (values, protocol) = sweep.run(3);
 /// assert_eq!(values, [1e4, 0.035]);
 /// assert_eq!(protocol?.contact.latency().map(|model| model.law.rate_coefficient()), Some(1e4));
-/// assert_eq!(sweep.numbers()[0].column, "law_rate_coefficient_per_s");
+/// assert_eq!(sweep.numbers[0].column, "law_rate_coefficient_per_s");
 /// # Ok::<(), palpate_files::description::DescriptionError>(())
 /// ```
 ///
@@ -248,7 +223,7 @@ pub fn parse_sweep(text: &str, path: &Path) -> Result<Sweep, DescriptionError> {
 /// "#;
 /// let columns = [("law.exponent", vec![5.0, 3.0]), ("specimen.radius", vec![0.03, 0.04])];
 /// let runs = parse_runs(text, Path::new("squeeze.toml"), &columns)?;
-/// assert_eq!((runs.runs(), runs.run(1).0), (2, vec![3.0, 0.04]));
+/// assert_eq!((runs.runs, runs.run(1).0), (2, vec![3.0, 0.04]));
 /// # Ok::<(), palpate_files::description::DescriptionError>(())
 /// ```
 ///

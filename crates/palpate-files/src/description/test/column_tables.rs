@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::columns::{ClockChoice, ColumnChoice, ColumnChoices};
 use crate::{
-    description::text::{error::DescriptionError, quantity::QuantityText, source::Source},
+    description::text::{error::DescriptionError, places::Places, quantity::QuantityText, source::Source},
     naming::{Quantity, unit_factor, volts_are},
     table::{ColumnRef, EPOCH},
 };
@@ -102,7 +102,8 @@ struct DeflectionTable {
 }
 
 impl ColumnsTable {
-    pub(super) fn checked(self, source: &Source<'_>) -> Result<ColumnChoices, DescriptionError> {
+    /// The choices; `machine` has said what the text itself does not.
+    pub(super) fn checked(self, source: &Source<'_>, machine: Option<&str>) -> Result<ColumnChoices, DescriptionError> {
         if self.force.is_some() && self.stress.is_some() {
             return Err(source.both("columns.force", "columns.stress"));
         }
@@ -121,11 +122,11 @@ impl ColumnsTable {
             ..ColumnTable::default()
         });
         let measured = |table: Option<ColumnTable>, key, quantity| {
-            table.map(|table| table.checked(source, key, quantity)).transpose()
+            table.map(|table| table.checked(source, machine, key, quantity)).transpose()
         };
         Ok(ColumnChoices {
             time: measured(time, "time", Quantity::Time)?,
-            displacement: self.displacement.map(|table| table.checked(source)).transpose()?,
+            displacement: self.displacement.map(|table| table.checked(source, machine)).transpose()?,
             force: measured(self.force, "force", Quantity::Force)?,
             stress: measured(self.stress, "stress", Quantity::Stress)?,
             deflection: match deflection {
@@ -140,7 +141,7 @@ impl ColumnsTable {
 const HEIGHT: &str = "the column of the height, such as { column = \"measuredHeight\", sign = -1 }";
 
 impl DisplacementTable {
-    fn checked(self, source: &Source<'_>) -> Result<ColumnChoice, DescriptionError> {
+    fn checked(self, source: &Source<'_>, machine: Option<&str>) -> Result<ColumnChoice, DescriptionError> {
         let key = "columns.displacement.travel_per_unit";
         if self.unit.is_some() && self.travel_per_unit.is_some() {
             return Err(source.both(key, "columns.displacement.unit"));
@@ -161,14 +162,20 @@ impl DisplacementTable {
             also: self.also,
             doubled: self.doubled.unwrap_or(false),
             travel_per_unit,
-            ..plain.checked(source, "displacement", Quantity::Displacement)?
+            ..plain.checked(source, machine, "displacement", Quantity::Displacement)?
         })
     }
 }
 
 impl ColumnTable {
     /// Of the table `[columns.…]` called `name`.
-    fn checked(self, source: &Source<'_>, name: &str, quantity: Quantity) -> Result<ColumnChoice, DescriptionError> {
+    fn checked(
+        self,
+        source: &Source<'_>,
+        machine: Option<&str>,
+        name: &str,
+        quantity: Quantity,
+    ) -> Result<ColumnChoice, DescriptionError> {
         let key = |rest: &str| format!("columns.{name}.{rest}");
         let scale = self.scale.as_deref().map(|scale| checked_scale(source, &key("scale"), scale, quantity));
         let scale = scale.transpose()?;
@@ -180,10 +187,11 @@ impl ColumnTable {
         if let Some(clock) = &self.clock {
             check_unit(source, &key("clock.unit"), clock.unit.as_deref(), Dimension::Time)?;
         }
+        let own_unit = Places::of(source.text).start_exactly(&key("unit")).is_some();
         Ok(ColumnChoice {
             column: self.column,
+            unit_by: machine.filter(|_| self.unit.is_some() && !own_unit).map(str::to_owned),
             unit: self.unit,
-            unit_by: None,
             scale,
             offset: offset.transpose()?.unwrap_or(0.0),
             sign,

@@ -68,16 +68,4 @@ impl ColumnChoices {
         ];
         said.into_iter().filter_map(|(quantity, choice)| Some((quantity, choice.as_ref()?))).collect()
     }
-
-    /// The same with their keys in `[columns]`, to be changed.
-    pub(crate) fn all_mut(&mut self) -> Vec<(&'static str, &mut ColumnChoice)> {
-        let said = [
-            ("time", &mut self.time),
-            ("displacement", &mut self.displacement),
-            ("force", &mut self.force),
-            ("stress", &mut self.stress),
-            ("deflection", &mut self.deflection),
-        ];
-        said.into_iter().filter_map(|(key, choice)| Some((key, choice.as_mut()?))).collect()
-    }
 }

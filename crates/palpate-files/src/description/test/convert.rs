@@ -57,10 +57,7 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
         return Err(source.unused("law", reason, "remove [law], or keep it for a protocol"));
     }
     let geometry = geometry(&source, &tables)?;
-    let mut columns = tables.columns.checked(&source)?;
-    if let Some(name) = &tables.machine.preset {
-        preset::mark_units(&source, name, &mut columns);
-    }
+    let columns = tables.columns.checked(&source, tables.machine.preset.as_deref())?;
     let grows = geometry.as_ref().is_some_and(|body| !matches!(body.shape, Shape::Prism { .. }));
     if grows && columns.stress.is_some() {
         let reason = "for a body whose contact area changes with the squeeze";
@@ -90,7 +87,7 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
     };
     Ok(TestDescription {
         about: tables.about,
-        reading: tables.file.checked(),
+        reading: tables.file,
         columns,
         analysis,
     })

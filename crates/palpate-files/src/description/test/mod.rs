@@ -2,7 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `tables.rs`, `column_tables.rs`, `file.rs` | the tables as they stand |
+//! | `tables.rs`, `column_tables.rs` | the tables as they stand |
 //! | `description.rs` | a checked description ([`TestDescription`]) |
 //! | `convert.rs` | the one to the other |
 //! | `columns.rs` | which column of a file holds what ([`ColumnChoices`]) |
@@ -16,7 +16,6 @@ mod columns;
 mod convert;
 mod corrections;
 mod description;
-mod file;
 mod machines;
 mod preset;
 mod settings;

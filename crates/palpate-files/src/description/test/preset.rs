@@ -5,10 +5,9 @@
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::{columns::ColumnChoices, tables::TestTables};
+use super::tables::TestTables;
 use crate::description::text::{
     error::{DescriptionError, KeyProblem},
-    places::Places,
     source::Source,
     words,
 };
@@ -67,17 +66,6 @@ pub(super) const MACHINES: &[Machine] = machines![
 #[must_use]
 pub fn machines() -> &'static [Machine] {
     MACHINES
-}
-
-/// Remembers which units of the columns the machine says and not the test itself.
-pub(super) fn mark_units(source: &Source<'_>, machine: &str, columns: &mut ColumnChoices) {
-    let places = Places::of(source.text);
-    for (key, choice) in columns.all_mut() {
-        let own = places.start_exactly(&format!("columns.{key}.unit")).is_some();
-        if choice.unit.is_some() && !own {
-            choice.unit_by = Some(machine.to_owned());
-        }
-    }
 }
 
 /// Keys that exclude each other: where the test says one, the other of the preset falls away.

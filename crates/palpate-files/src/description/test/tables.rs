@@ -3,10 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, de::IgnoredAny};
 
-use super::{column_tables::ColumnsTable, description::About, file::FileTable};
-use crate::description::{
-    body::tables::{SidesName, SpecimenTable},
-    text::quantity::QuantityText,
+use super::{column_tables::ColumnsTable, description::About};
+use crate::{
+    description::{
+        body::tables::{SidesName, SpecimenTable},
+        text::quantity::QuantityText,
+    },
+    table::ReadOptions,
 };
 
 /// A squeeze-and-hold test: what its record holds, what was tested, and how to evaluate it. Every table may be
@@ -18,7 +21,7 @@ pub(crate) struct TestTables {
     #[serde(default)]
     pub(crate) about: About,
     #[serde(default)]
-    pub(crate) file: FileTable,
+    pub(crate) file: ReadOptions,
     #[serde(default)]
     pub(crate) columns: ColumnsTable,
     #[serde(default)]

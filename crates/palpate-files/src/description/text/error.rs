@@ -5,7 +5,7 @@ use std::{fmt, path::PathBuf};
 use palpate::units::{Dimension, UnitError};
 
 use super::quantity::usual;
-use crate::error::{FileError, plain, shown};
+use crate::error::{FileError, FileProblem, plain, shown};
 
 /// Ends the words for what is accepted where a value is out of all proportion.
 pub(crate) const BELIEVABLE: &str = "as bodies have it";
@@ -145,7 +145,9 @@ impl DescriptionError {
     #[must_use]
     pub fn hint(&self) -> Option<String> {
         let help = match self {
-            Self::File(FileError::Directory { .. }) => "name the TOML file inside it".to_owned(),
+            Self::File(error) if matches!(error.problem, FileProblem::Directory) => {
+                "name the TOML file inside it".to_owned()
+            }
             Self::File(error) => error.hint()?,
             Self::TooLong { .. } => "give a description in TOML here, not the record itself".to_owned(),
             Self::NotText { .. } => "save the description as UTF-8".to_owned(),

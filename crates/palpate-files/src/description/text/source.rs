@@ -11,7 +11,7 @@ use super::{
     quantity::QuantityText,
     words,
 };
-use crate::error::FileError;
+use crate::error::{FileError, FileProblem};
 
 /// The longest description that is read, in bytes.
 pub(crate) const LONGEST: u64 = 1 << 20;
@@ -21,7 +21,7 @@ pub(crate) fn read(path: &Path, longest: u64) -> Result<String, DescriptionError
     let failed = |source| FileError::from_io(path, source);
     let about = fs::metadata(path).map_err(failed)?;
     if about.is_dir() {
-        return Err(FileError::Directory { path: path.to_owned() }.into());
+        return Err(FileError::of(path, FileProblem::Directory).into());
     }
     if about.len() > longest {
         return Err(DescriptionError::TooLong {

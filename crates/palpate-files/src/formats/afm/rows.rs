@@ -3,7 +3,7 @@
 use super::curve::Curve;
 use crate::{
     cell::{DecimalMark, number},
-    error::{CellPlace, FileError, shorten},
+    error::{CellPlace, FileError, FileProblem, shorten},
     input::{Encoding, Input, LineReader},
     table::{Columns, Found, ReadPart, SkippedPart},
 };
@@ -45,44 +45,32 @@ impl Rows {
                     b"False" if self.delimiter.is_some() => 0.0,
                     b"True" if self.delimiter.is_some() => 1.0,
                     _ => number::parse(cell, DecimalMark::Point)
-                        .ok_or_else(|| no_number(cell, place(input, number, index, self.columns.get(index))))?,
+                        .ok_or_else(|| input.wrong(no_number(cell, place(number, index, self.columns.get(index)))))?,
                 };
             }
         }
-        let (path, line, expected) = (input.name().to_owned(), number, self.columns.len());
-        match found {
-            _ if found < expected => Err(FileError::TooFewCells {
-                path,
-                line,
-                expected,
-                found,
-            }),
-            _ if found > expected => Err(FileError::TooManyCells {
-                path,
-                line,
-                expected,
-                found,
-            }),
-            _ => Ok(()),
+        let (line, expected) = (number, self.columns.len());
+        if found == expected {
+            return Ok(());
         }
+        Err(input.wrong(FileProblem::CellCount { line, expected, found }))
     }
 }
 
-fn place(input: &Input, line: usize, index: usize, name: Option<&String>) -> CellPlace {
+fn place(line: usize, index: usize, name: Option<&String>) -> CellPlace {
     CellPlace {
-        path: input.name().to_owned(),
         line,
         column: index + 1,
         name: name.cloned(),
     }
 }
 
-fn no_number(cell: &[u8], place: CellPlace) -> FileError {
+fn no_number(cell: &[u8], place: CellPlace) -> FileProblem {
     let found = shorten(&String::from_utf8_lossy(cell));
     let decimal = DecimalMark::Point;
     match number::is_not_finite(cell) {
-        true => FileError::NotFinite { place, found },
-        false => FileError::TextInNumbers { place, found, decimal },
+        true => FileProblem::NotFinite { place, found },
+        false => FileProblem::TextInNumbers { place, found, decimal },
     }
 }
 
@@ -130,8 +118,8 @@ impl ReadPart for Lines {
                     let index = columns[chosen] - 1;
                     let name = self.curve.part.columns.get(index).and_then(|column| column.name.as_ref());
                     // A number that is infinite once it is scaled.
-                    let (place, found) = (place(&self.input, number, index, name), "an infinite value".to_owned());
-                    FileError::NotFinite { place, found }
+                    let (place, found) = (place(number, index, name), "an infinite value".to_owned());
+                    self.input.wrong(FileProblem::NotFinite { place, found })
                 })?;
                 read.push(&values, number);
                 index += 1;

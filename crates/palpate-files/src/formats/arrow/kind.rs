@@ -20,7 +20,7 @@ pub(crate) enum Kind {
 
 /// Whether a file is one of these, and which.
 pub(crate) fn recognise(input: &Input) -> Option<Kind> {
-    let beginning = input.beginning();
+    let beginning = &input.beginning;
     if beginning.starts_with(b"PAR1") {
         Some(Kind::Parquet)
     } else if beginning.starts_with(MAGIC) {

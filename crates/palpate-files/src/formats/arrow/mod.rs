@@ -43,7 +43,6 @@ pub(crate) use part::look_into;
 #[cfg(not(feature = "arrow"))]
 pub(crate) fn look_into(
     input: &crate::input::Input,
-    _kind: Kind,
     _options: &crate::table::ReadOptions,
 ) -> Result<crate::table::Found, crate::FileError> {
     Err(input.not_in_this_build(

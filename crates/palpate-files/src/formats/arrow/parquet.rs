@@ -22,7 +22,7 @@ use super::{
     pages::page,
 };
 use crate::{
-    error::FileError,
+    error::{FileError, FileProblem},
     input::{Input, Seekable},
 };
 
@@ -46,7 +46,7 @@ struct Chunks {
 impl Chunks {
     fn of(input: &Input) -> Result<Self, FileError> {
         let input = input.unpacked()?;
-        let size = input.size();
+        let size = input.size;
         Ok(Self { input, size })
     }
 }
@@ -83,7 +83,7 @@ impl ChunkReader for Chunks {
 fn metadata(input: &Input, chunks: &Chunks) -> Result<ArrowReaderMetadata, FileError> {
     let length = ENCRYPTED.len();
     if chunks.get_bytes(chunks.size.wrapping_sub(length as u64), length).is_ok_and(|end| end == ENCRYPTED) {
-        return Err(input.encrypted());
+        return Err(input.wrong(FileProblem::Encrypted));
     }
     let metadata = ArrowReaderMetadata::load(chunks, ArrowReaderOptions::new());
     metadata.map_err(|error| damaged(input, "footer", &error.to_string()))

@@ -5,14 +5,14 @@ use std::ops::ControlFlow;
 use arrow_schema::Field;
 
 use super::{
-    kind::Kind,
+    kind::{Kind, recognise},
     source::Source,
     tests::{self, Test},
     values::{self, Reading},
 };
 use crate::{
     cell::unit,
-    error::{FileError, shorten},
+    error::{FileError, FileProblem, shorten},
     input::Input,
     table::{ColumnInfo, ColumnKind, Columns, Found, Part, ReadOptions, ReadPart, SkippedPart},
 };
@@ -25,7 +25,8 @@ struct Table {
 }
 
 /// Looks into a file of typed columns.
-pub(crate) fn look_into(input: &Input, kind: Kind, _options: &ReadOptions) -> Result<Found, FileError> {
+pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, FileError> {
+    let kind = recognise(input).unwrap_or(Kind::Stream);
     let source = Source::open(input, kind)?;
     let fields = source.schema.fields();
     let readings = fields.iter().enumerate();
@@ -145,7 +146,7 @@ impl ReadPart for Table {
         // Where in a batch every chosen column is.
         let places: Vec<usize> = fields.iter().filter_map(|field| indices.binary_search(field).ok()).collect();
         let span = rows.first().map_or(0, |rows| rows.start)..rows.last().map_or(0, |rows| rows.end);
-        let size = self.source.input.size();
+        let size = self.source.input.size;
         let (mut next, mut row) = (0, vec![0.0; columns.len()]);
         self.source.visit(&indices, span.clone(), &mut |first, batch, (done, total)| {
             let end = first.saturating_add(batch.num_rows() as u64);
@@ -177,7 +178,8 @@ impl ReadPart for Table {
             Ok(if end >= span.end { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
         })?;
         if read.rows() == 0 {
-            return Err(self.source.input.no_rows(self.tests[part].name.as_deref().unwrap_or("the table")));
+            let name = self.tests[part].name.as_deref().unwrap_or("the table");
+            return Err(self.source.input.wrong(FileProblem::NoParts(vec![(name.to_owned(), "no rows".to_owned())])));
         }
         progress(size, size);
         read.finish();
@@ -189,13 +191,8 @@ impl Table {
     fn missing(&self, field: usize, row: u64, found: Option<f64>) -> FileError {
         let place = format!("column {}, row {}", self.source.schema.field(field).name(), row + 1);
         let found = found.map_or_else(|| "none".to_owned(), |value| value.to_string());
-        FileError::bad_cell(
-            self.source.input.name(),
-            place,
-            "a number",
-            found,
-            "remove the row, or choose another column",
-        )
+        let hint = "remove the row, or choose another column";
+        self.source.input.wrong(FileProblem::bad_cell(&place, "a number", found, hint))
     }
 
     fn text_chosen(&self, fields: &[usize]) -> FileError {
@@ -203,6 +200,6 @@ impl Table {
             |field: &&usize| values::reading(self.source.schema.field(**field).data_type()) == Some(Reading::Text);
         let field = fields.iter().find(is_text).map_or("", |field| self.source.schema.field(*field).name().as_str());
         let place = format!("column {field}");
-        FileError::bad_cell(self.source.input.name(), place, "numbers", "texts", "choose another column")
+        self.source.input.wrong(FileProblem::bad_cell(&place, "numbers", "texts", "choose another column"))
     }
 }

@@ -11,7 +11,7 @@ use super::{
     source::Source,
     values::{self, Reading},
 };
-use crate::error::FileError;
+use crate::error::{FileError, FileProblem};
 
 /// Names of a column that tells tests apart.
 const NAMES: [&str; 4] = ["test_id", "test", "specimen_id", "sample_id"];
@@ -66,7 +66,7 @@ pub(super) fn told_apart(source: &Source, column: usize) -> Result<(Vec<Test>, u
     let too_many = |what: &str, most: usize| {
         let hint = "rename the column if it does not tell tests apart, or sort the rows by it";
         let expected = format!("at most {most} {what}");
-        FileError::bad_cell(source.input.name(), format!("column {name}"), expected, "more", hint)
+        source.input.wrong(FileProblem::bad_cell(&format!("column {name}"), expected, "more", hint))
     };
     source.visit(&[column], 0..u64::MAX, &mut |first, batch, _| {
         let texts = batch.columns().first().and_then(values::texts).unwrap_or_default();

@@ -3,7 +3,7 @@
 //! Four bytes say the order of bytes; behind them every number is aligned to its own size, counted from there.
 
 use super::{
-    fields::{Fault, Fields, MOST_ELEMENTS, distinct, names_elements},
+    fields::{Fields, MOST_ELEMENTS, distinct, fault, names_elements},
     schema::{Count, Field, Kind, Schema},
 };
 use crate::input::Number;
@@ -15,7 +15,7 @@ const HEAD: usize = 4;
 const MOST_LEFT: usize = 7;
 
 /// Reads the numbers of a message.
-pub(super) fn read(schema: &Schema, message: &[u8], named: bool) -> Result<Fields, Fault> {
+pub(super) fn read(schema: &Schema, message: &[u8], named: bool) -> Result<Fields, String> {
     let mut walk = Walk {
         schema,
         bytes: Bytes::of(message)?,
@@ -26,7 +26,7 @@ pub(super) fn read(schema: &Schema, message: &[u8], named: bool) -> Result<Field
     walk.structure(0, true, Place::Message)?;
     let left = walk.bytes.data.len() - walk.bytes.at;
     if left > MOST_LEFT {
-        return Err(walk.bytes.fault("the end of the message".to_owned(), format!("{left} bytes more")));
+        return Err(walk.bytes.fault("the end of the message", &format!("{left} bytes more")));
     }
     Ok(walk.fields)
 }
@@ -41,7 +41,7 @@ struct Bytes<'a> {
 }
 
 impl<'a> Bytes<'a> {
-    fn of(message: &'a [u8]) -> Result<Self, Fault> {
+    fn of(message: &'a [u8]) -> Result<Self, String> {
         let head = message.get(..HEAD).map(|head| u16::from_be_bytes([head[0], head[1]]));
         let (little, widest) = match head {
             Some(0x0000) => (false, 8),
@@ -51,7 +51,7 @@ impl<'a> Bytes<'a> {
             Some(0x0007) => (true, 4),
             other => {
                 let found = other.map_or_else(|| format!("{} bytes", message.len()), |head| format!("{head:#06x}"));
-                return Err(Fault::new(Some(0), "a head of plain CDR", found));
+                return Err(fault(Some(0), "a head of plain CDR", &found));
             }
         };
         Ok(Self {
@@ -62,12 +62,12 @@ impl<'a> Bytes<'a> {
         })
     }
 
-    fn fault(&self, expected: String, found: String) -> Fault {
-        Fault::new(Some(HEAD + self.at), expected, found)
+    fn fault(&self, expected: &str, found: &str) -> String {
+        fault(Some(HEAD + self.at), expected, found)
     }
 
     /// The next `count` elements of `size` bytes each, aligned.
-    fn take(&mut self, count: usize, size: usize) -> Result<&'a [u8], Fault> {
+    fn take(&mut self, count: usize, size: usize) -> Result<&'a [u8], String> {
         if count == 0 {
             return Ok(&[]);
         }
@@ -80,22 +80,22 @@ impl<'a> Bytes<'a> {
             }
             None => {
                 let left = self.data.len().saturating_sub(start);
-                Err(self.fault(format!("{count} × {size} bytes"), format!("{left} bytes to the end of the message")))
+                Err(self.fault(&format!("{count} × {size} bytes"), &format!("{left} bytes to the end of the message")))
             }
         }
     }
 
-    fn whole(&mut self) -> Result<u32, Fault> {
+    fn whole(&mut self) -> Result<u32, String> {
         Ok(self.number(Number::U32)? as u32)
     }
 
-    fn text(&mut self) -> Result<&'a [u8], Fault> {
+    fn text(&mut self) -> Result<&'a [u8], String> {
         let length = self.whole()? as usize;
         let bytes = self.take(length, 1)?;
         Ok(bytes.strip_suffix(b"\0").unwrap_or(bytes))
     }
 
-    fn number(&mut self, number: Number) -> Result<f64, Fault> {
+    fn number(&mut self, number: Number) -> Result<f64, String> {
         let taken = self.take(1, number.size())?;
         Ok(number.read(taken, self.little))
     }
@@ -122,7 +122,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn structure(&mut self, index: usize, told: bool, place: Place) -> Result<(), Fault> {
+    fn structure(&mut self, index: usize, told: bool, place: Place) -> Result<(), String> {
         let schema = self.schema;
         let mut labels: Option<Vec<String>> = None;
         for field in &schema.types[index] {
@@ -156,7 +156,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    fn element(&mut self, kind: Kind, told: bool, place: Place) -> Result<(), Fault> {
+    fn element(&mut self, kind: Kind, told: bool, place: Place) -> Result<(), String> {
         match kind {
             Kind::Number(number) => {
                 let value = self.bytes.number(number)?;
@@ -185,7 +185,7 @@ impl Walk<'_> {
         count: usize,
         told: bool,
         labels: &mut Option<Vec<String>>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), String> {
         // Single bytes are pictures and identifiers, never measurements.
         let bytes = matches!(field.kind, Kind::Number(Number::U8 | Number::I8));
         let told = told && count <= MOST_ELEMENTS && !bytes;
@@ -214,7 +214,7 @@ impl Walk<'_> {
     }
 
     /// Texts that name the elements of the arrays behind them.
-    fn labels(&mut self, count: usize, labels: &mut Option<Vec<String>>) -> Result<(), Fault> {
+    fn labels(&mut self, count: usize, labels: &mut Option<Vec<String>>) -> Result<(), String> {
         let mut found = Vec::new();
         for _ in 0..count {
             let text = self.bytes.text()?;

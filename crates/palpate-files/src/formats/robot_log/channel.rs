@@ -1,11 +1,6 @@
 //! The channels of a log: whose messages can be read, and how.
 
-use super::{
-    cdr,
-    fields::{Fault, Fields},
-    json,
-    schema::Schema,
-};
+use super::{cdr, fields::Fields, json, schema::Schema};
 
 /// How the messages of a channel are read.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,7 +38,7 @@ impl Decoder {
     }
 
     /// The numbers of a message, named or not. Those of JSON are always named.
-    pub(super) fn read(&self, message: &[u8], named: bool) -> Result<Fields, Fault> {
+    pub(super) fn read(&self, message: &[u8], named: bool) -> Result<Fields, String> {
         match self {
             Self::Cdr(schema) => cdr::read(schema, message, named),
             Self::Json => json::read(message),

@@ -29,9 +29,9 @@ impl Fields {
     }
 
     /// Adds a number.
-    pub(super) fn push(&mut self, path: &str, value: f64) -> Result<(), Fault> {
+    pub(super) fn push(&mut self, path: &str, value: f64) -> Result<(), String> {
         if self.values.len() == MOST_NUMBERS {
-            return Err(Fault::new(None, format!("at most {MOST_NUMBERS} numbers in a message"), "more"));
+            return Err(fault(None, &format!("at most {MOST_NUMBERS} numbers in a message"), "more"));
         }
         self.values.push(value);
         if let Some(names) = &mut self.names {
@@ -49,23 +49,11 @@ impl Fields {
     }
 }
 
-/// Why a message cannot be read.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Fault {
-    /// Byte of the message, where one is to blame.
-    pub(super) at: Option<usize>,
-    pub(super) expected: String,
-    pub(super) found: String,
-}
-
-impl Fault {
-    pub(super) fn new(at: Option<usize>, expected: impl Into<String>, found: impl Into<String>) -> Self {
-        Self {
-            at,
-            expected: expected.into(),
-            found: found.into(),
-        }
-    }
+/// Why a message cannot be read, as it is said behind its number: at which byte, where one is to blame, what was expected
+/// and what found.
+pub(super) fn fault(at: Option<usize>, expected: &str, found: &str) -> String {
+    let at = at.map_or_else(String::new, |at| format!(", byte {at}"));
+    format!("{at}: expected {expected}, found {found}")
 }
 
 /// Whether the texts of a field name the elements of the arrays beside it: the joints of a robot.

@@ -2,15 +2,15 @@
 
 use serde_json::{Map, Value};
 
-use super::fields::{Fault, Fields, MOST_ELEMENTS, distinct, names_elements};
+use super::fields::{Fields, MOST_ELEMENTS, distinct, fault, names_elements};
 
 /// Reads the numbers of a message. `null` is how JSON writes a number that is none.
-pub(super) fn read(message: &[u8]) -> Result<Fields, Fault> {
+pub(super) fn read(message: &[u8]) -> Result<Fields, String> {
     let value: Value =
-        serde_json::from_slice(message).map_err(|error| Fault::new(None, "a message in JSON", error.to_string()))?;
+        serde_json::from_slice(message).map_err(|error| fault(None, "a message in JSON", &error.to_string()))?;
     let mut fields = Fields::none(true);
     let Value::Object(object) = &value else {
-        return Err(Fault::new(None, "a JSON object", "another value"));
+        return Err(fault(None, "a JSON object", "another value"));
     };
     let stamp = object.get("header").and_then(|header| header.get("stamp")).or_else(|| object.get("stamp"));
     if let Some((seconds, nanoseconds)) = stamp.and_then(time) {
@@ -31,7 +31,7 @@ fn time(value: &Value) -> Option<(i64, i64)> {
 }
 
 /// Adds the numbers in a value; where it is a field of an object, the names beside it may name its elements.
-fn element(path: &str, value: &Value, beside: Option<&Map<String, Value>>, fields: &mut Fields) -> Result<(), Fault> {
+fn element(path: &str, value: &Value, beside: Option<&Map<String, Value>>, fields: &mut Fields) -> Result<(), String> {
     match value {
         Value::Number(number) => fields.push(path, number.as_f64().unwrap_or(f64::NAN)),
         Value::Bool(truth) => fields.push(path, f64::from(u8::from(*truth))),

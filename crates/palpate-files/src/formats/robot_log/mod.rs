@@ -48,8 +48,8 @@ use crate::{
 };
 
 /// Whether a file begins as a log does.
-pub(crate) fn recognise(beginning: &[u8]) -> bool {
-    beginning.starts_with(b"\x89MCAP")
+pub(crate) fn recognise(input: &Input) -> bool {
+    input.beginning.starts_with(b"\x89MCAP")
 }
 
 /// Looks through a log.

@@ -66,7 +66,7 @@ pub(super) fn entry(opcode: u8, content: &[u8]) -> Result<Option<Entry<'_>>, Fau
         },
         op::MESSAGE => {
             let channel = bytes.u16("a message with the number of a channel")?;
-            bytes.u32("a message with a number")?;
+            bytes.number(4, "a message with a number")?;
             let log_time = bytes.u64("a message with a time")?;
             bytes.u64("a message with two times")?;
             Entry::Message {
@@ -86,7 +86,7 @@ pub(super) fn chunk(content: &[u8]) -> Result<Chunk<'_>, Fault> {
     bytes.u64("a chunk with a last time")?;
     Ok(Chunk {
         unpacked_size: bytes.u64("a chunk with a size")?,
-        checksum: bytes.u32("a chunk with a checksum")?,
+        checksum: bytes.number(4, "a chunk with a checksum")? as u32,
         compression: bytes.text("a chunk with the name of a compression")?,
         packed: {
             let length = bytes.u64("a chunk with the length of its records")?;
@@ -108,25 +108,23 @@ impl<'a> Bytes<'a> {
         Ok(taken)
     }
 
-    fn array<const N: usize>(&mut self, expected: Fault) -> Result<[u8; N], Fault> {
-        self.take(N, expected)?.first_chunk().copied().ok_or(expected)
+    /// A whole number of so many bytes, the lowest first.
+    fn number(&mut self, size: usize, expected: Fault) -> Result<u64, Fault> {
+        let bytes = self.take(size, expected)?;
+        Ok(bytes.iter().rev().fold(0, |sum, byte| sum << 8 | u64::from(*byte)))
     }
 
     fn u16(&mut self, expected: Fault) -> Result<u16, Fault> {
-        self.array(expected).map(u16::from_le_bytes)
-    }
-
-    fn u32(&mut self, expected: Fault) -> Result<u32, Fault> {
-        self.array(expected).map(u32::from_le_bytes)
+        Ok(self.number(2, expected)? as u16)
     }
 
     fn u64(&mut self, expected: Fault) -> Result<u64, Fault> {
-        self.array(expected).map(u64::from_le_bytes)
+        self.number(8, expected)
     }
 
     /// Bytes behind their number.
     fn block(&mut self, expected: Fault) -> Result<&'a [u8], Fault> {
-        let length = self.u32(expected)?;
+        let length = self.number(4, expected)?;
         self.take(usize::try_from(length).unwrap_or(usize::MAX), expected)
     }
 

@@ -8,7 +8,7 @@ use std::collections::{BTreeSet, HashMap};
 use super::{
     channel::{Decoder, Definition},
     container,
-    fields::{Fault, Fields},
+    fields::Fields,
     record::Entry,
 };
 use crate::{error::FileError, input::Input, table::SkippedPart};
@@ -160,11 +160,7 @@ impl Surveyor<'_> {
                 return Ok(());
             }
             Ok(None) => format!("its messages have more than {MOST_SERIES} different sets of fields"),
-            Err(fault) => {
-                let at = fault.at.map_or_else(String::new, |at| format!(", byte {at}"));
-                let (expected, found) = (fault.expected, fault.found);
-                format!("message {} of the log{at}: expected {expected}, found {found}", survey.messages)
-            }
+            Err(fault) => format!("message {} of the log{fault}", survey.messages),
         };
         if let Some(channel) = self.survey.channels.remove(&id) {
             self.refuse(id, channel.topic, reason);
@@ -194,7 +190,7 @@ impl Surveyor<'_> {
 
 impl Channel {
     /// The numbers of a message and the series that it belongs to; `None` where it would be one series too many.
-    fn belongs(&mut self, all: &mut Vec<Series>, data: &[u8]) -> Result<Option<(Fields, &Belongs)>, Fault> {
+    fn belongs(&mut self, all: &mut Vec<Series>, data: &[u8]) -> Result<Option<(Fields, &Belongs)>, String> {
         let mut fields = self.decoder.read(data, false)?;
         if !self.known.contains_key(&fields.signature) {
             fields = self.decoder.read(data, true)?;

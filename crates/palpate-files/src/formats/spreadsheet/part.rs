@@ -26,7 +26,7 @@ pub(crate) enum Make {
 
 /// Whether a file is a workbook, and of which make.
 pub(crate) fn recognise(input: &Input) -> Option<Make> {
-    let beginning = input.beginning();
+    let beginning = &input.beginning;
     if beginning.starts_with(xls::SIGNATURE) {
         return Some(Make::Xls);
     }
@@ -47,13 +47,13 @@ struct Workbook {
 }
 
 /// Looks for tests in every sheet of a workbook.
-pub(crate) fn look_into(input: &Input, make: Make, options: &ReadOptions) -> Result<Found, FileError> {
+pub(crate) fn look_into(input: &Input, options: &ReadOptions) -> Result<Found, FileError> {
     let input = input.unpacked()?;
-    let book: Box<dyn Book> = match make {
-        Make::Xlsx => Box::new(Xlsx::open(&input)?),
-        Make::Xls => Box::new(Xls::open(&input)?),
+    let book: Box<dyn Book> = match recognise(&input) {
+        Some(Make::Xls) => Box::new(Xls::open(&input)?),
+        _ => Box::new(Xlsx::open(&input)?),
     };
-    let skip = u32::try_from(options.layout.skip_lines.unwrap_or(0)).unwrap_or(u32::MAX);
+    let skip = u32::try_from(options.skip_lines.unwrap_or(0)).unwrap_or(u32::MAX);
     let (mut looked, mut skipped) = (Vec::new(), Vec::new());
     for (index, sheet) in book.sheets().iter().enumerate() {
         let mut pass = |reason| skipped.push((index, SkippedPart::new(&sheet.name, reason)));
@@ -68,10 +68,10 @@ pub(crate) fn look_into(input: &Input, make: Make, options: &ReadOptions) -> Res
         }
         let numbers = |table: &Table| table.columns.iter().filter(|column| column.kind == ColumnKind::Number).count();
         let holds = |found: &FoundTables| found.tables.iter().any(|table| numbers(table) >= 2);
-        let mut stacked = stacked::find(&sample, &options.layout);
+        let mut stacked = stacked::find(&sample, options);
         stacked.retain(holds);
         let is_stack = !stacked.is_empty();
-        let all = if is_stack { stacked } else { vec![table::find(&sample, &options.layout)] };
+        let all = if is_stack { stacked } else { vec![table::find(&sample, options)] };
         if !all.iter().any(holds) {
             pass("no table of numbers");
             continue;
@@ -160,11 +160,11 @@ impl ReadPart for Workbook {
         };
         let name = self.book.sheets().get(*sheet).map_or("", |sheet| sheet.name.as_str());
         // The bytes of the sheet as a share of those of the file.
-        let size = self.input.size();
+        let size = self.input.size;
         let mut share = |done: u64, total: u64| {
             let share = done as f64 / total.max(1) as f64;
             progress((share * size as f64) as u64, size);
         };
-        read::read(self.input.name(), self.book.as_ref(), (*sheet, name, table), columns, &mut share)
+        read::read(&self.input, self.book.as_ref(), (*sheet, name, table), columns, &mut share)
     }
 }

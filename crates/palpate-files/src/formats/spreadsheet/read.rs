@@ -1,6 +1,6 @@
 //! Reading chosen columns of a table.
 
-use std::{ops::ControlFlow, path::Path};
+use std::ops::ControlFlow;
 
 use super::{
     book::Book,
@@ -9,7 +9,8 @@ use super::{
 };
 use crate::{
     cell::{DecimalMark, number},
-    error::{FileError, shorten},
+    error::{FileError, FileProblem, shorten},
+    input::Input,
     table::{Columns, Doubt, Suspect},
 };
 
@@ -18,14 +19,14 @@ const ROWS_A_REPORT: usize = 4096;
 
 /// Reads columns (numbers from 1) of a table.
 pub(super) fn read(
-    path: &Path,
+    input: &Input,
     book: &dyn Book,
     (sheet, name, table): (usize, &str, &Table),
     columns: &[usize],
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Columns, FileError> {
     let mut reading = Reading {
-        path,
+        input,
         name,
         table,
         chosen: columns.iter().map(|column| column - 1).collect(),
@@ -61,15 +62,12 @@ pub(super) fn read(
     reading.end_row()?;
     progress(ends.0, ends.1);
     let Reading { read, suspect, .. } = reading;
-    read.ended(suspect, || FileError::NoParts {
-        path: path.to_owned(),
-        parts: vec![(name.to_owned(), "no rows".to_owned())],
-    })
+    read.ended(suspect, || input.wrong(FileProblem::NoParts(vec![(name.to_owned(), "no rows".to_owned())])))
 }
 
 /// What has been read, and the row that is being read.
 struct Reading<'a> {
-    path: &'a Path,
+    input: &'a Input,
     name: &'a str,
     table: &'a Table,
     /// Indices of the chosen columns in the table.
@@ -117,7 +115,7 @@ impl Reading<'_> {
 
     fn push(&mut self, number: u32) -> Result<(), FileError> {
         if let Some(suspect) = self.suspect.take() {
-            return Err(suspect.interrupted(self.path, number as usize + 1));
+            return Err(suspect.interrupted(&self.input.name, number as usize + 1));
         }
         let gap = self.last.map_or(0, |last| number - last - 1);
         self.read.ignored.blank += gap as usize;
@@ -131,7 +129,7 @@ impl Reading<'_> {
         let place = self.table.places[column];
         let wrong = |expected: &str, found: &str, hint: &'static str| {
             let cell = format!("sheet {}, cell {}{}", self.name, letters(place), u64::from(row) + 1);
-            FileError::bad_cell(self.path, cell, expected, found, hint)
+            self.input.wrong(FileProblem::bad_cell(&cell, expected, found, hint))
         };
         const MEND: &str = "mend or empty the row, or choose another column";
         let quoted = |text: &str| format!("`{}`", shorten(text));

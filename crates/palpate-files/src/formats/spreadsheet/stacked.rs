@@ -4,7 +4,7 @@ use super::{
     sample::{Row, Sample},
     table::{self, FoundTables, Table},
 };
-use crate::{cell::Cell, table::LayoutOptions};
+use crate::{cell::Cell, table::ReadOptions};
 
 /// Most rows from the names of columns to the first row of numbers.
 const HEADER: usize = 3;
@@ -13,7 +13,7 @@ const FEWEST: usize = 2;
 
 /// The tables of a sample that stand one below the other, each with what stands beside it; empty unless two of them or
 /// more have names of columns with a time among them.
-pub(super) fn find(sample: &Sample, options: &LayoutOptions) -> Vec<FoundTables> {
+pub(super) fn find(sample: &Sample, options: &ReadOptions) -> Vec<FoundTables> {
     let starts = starts(&sample.rows);
     if starts.is_empty() {
         return Vec::new();

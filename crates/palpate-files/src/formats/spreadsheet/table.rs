@@ -7,7 +7,7 @@ use super::{
 use crate::{
     cell::{Cell, DecimalMark},
     error::shorten,
-    table::{ColumnInfo, ColumnKind, Doubt, LayoutOptions, Metadata, block, decimal, header, metadata, names_time},
+    table::{ColumnInfo, ColumnKind, Doubt, Metadata, ReadOptions, block, decimal, header, metadata, names_time},
 };
 
 /// A table in a sheet.
@@ -67,7 +67,7 @@ pub(super) struct FoundTables {
 }
 
 /// The tables in a sample: one, or several side by side where each has a time of its own.
-pub(super) fn find(sample: &Sample, options: &LayoutOptions) -> FoundTables {
+pub(super) fn find(sample: &Sample, options: &ReadOptions) -> FoundTables {
     let groups = groups(&columns_of_data(sample));
     let mut found: Vec<Table> = groups.iter().filter_map(|group| table(sample, group, options)).collect();
     let timed = found.iter().filter(|table| table.names_time()).count();
@@ -117,18 +117,14 @@ fn groups(columns: &[u32]) -> Vec<Vec<u32>> {
 /// The columns of the longest table and of those that begin beside it and are at least half as long.
 fn joined(tables: &[Table]) -> Option<Vec<u32>> {
     let length = |table: &Table| table.last_row - table.first_row;
-    let mut longest = tables.first()?;
-    for table in tables {
-        if length(table) > length(longest) {
-            longest = table;
-        }
-    }
+    // The first of several of one length.
+    let longest = tables.iter().rev().max_by_key(|table| length(table))?;
     let belongs = |table: &&Table| table.first_row == longest.first_row && 2 * length(table) >= length(longest);
     Some(tables.iter().filter(belongs).flat_map(|table| table.places.iter().copied()).collect())
 }
 
 /// The table in some columns of a sample, if there are two rows of numbers or more.
-fn table(sample: &Sample, places: &[u32], options: &LayoutOptions) -> Option<Table> {
+fn table(sample: &Sample, places: &[u32], options: &ReadOptions) -> Option<Table> {
     let held = |row: &Row| places.iter().any(|&place| row.value(place).is_some());
     let rows: Vec<&Row> = sample.rows.iter().filter(|row| held(row)).collect();
     let class = |row: &&Row| -> Vec<Cell> {

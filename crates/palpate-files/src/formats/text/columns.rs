@@ -1,14 +1,12 @@
 //! Streaming chosen columns out of a file.
 
-use std::path::Path;
-
 use super::{
     row::RowPlan,
     rows_ahead::{RowsAhead, Stop},
 };
 use crate::{
     cell::{DecimalMark, Delimiter},
-    error::{DecimalDoubt, FileError},
+    error::{DecimalDoubt, FileError, FileProblem},
     input::{Input, LineReader},
     table::{Columns, Layout, Suspect, decimal},
 };
@@ -28,14 +26,14 @@ const TRIES: usize = 3;
 /// # Errors
 ///
 /// Where the file cannot be read, a column does not exist, or a row is faulty: the first fault is reported with
-/// its line and column. A file without any row gives [`FileError::NoDataRows`].
+/// its line and column. A file without any row gives [`FileProblem::NoDataRows`].
 pub fn read_columns(
     input: &Input,
     layout: &Layout,
     columns: &[usize],
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Columns, FileError> {
-    let path = input.name();
+    let path = &input.name;
     let mut distinct = columns.to_vec();
     distinct.sort_unstable();
     distinct.dedup();
@@ -92,13 +90,15 @@ pub fn read_columns(
     let (done, total) = reader.progress();
     progress(done, total);
     read.bytes = total;
-    let mut read = read.ended(suspect, || FileError::NoDataRows {
-        path: path.to_owned(),
-        lines: reader.line(),
-        header_line: None,
+    let lines = reader.line();
+    let mut read = read.ended(suspect, || {
+        input.wrong(FileProblem::NoDataRows {
+            lines,
+            header_line: None,
+        })
     })?;
     if layout.undecided && layout.decimal == DecimalMark::Point && read.averaged == 1 {
-        refuse_thousands(path, &read)?;
+        refuse_thousands(input, &read)?;
     }
     if distinct != columns {
         read.values = arranged(read.values, &distinct, columns);
@@ -112,15 +112,14 @@ fn is_blank(line: &[u8], delimiter: Delimiter) -> bool {
 }
 
 /// An error where points that come late set off thousands.
-fn refuse_thousands(path: &Path, read: &Columns) -> Result<(), FileError> {
+fn refuse_thousands(input: &Input, read: &Columns) -> Result<(), FileError> {
     let late = read.values.iter().find_map(|values| Some((values, decimal::falls_to_a_thousandth(values)?)));
     match late {
-        Some((values, row)) => Err(FileError::AmbiguousDecimal {
-            path: path.to_owned(),
+        Some((values, row)) => Err(input.wrong(FileProblem::AmbiguousDecimal {
             line: read.line_of(row).unwrap_or(row + 1),
             found: format!("{:.3}` after `{}", values[row], values[row - 1]),
             doubt: DecimalDoubt::PointThousands,
-        }),
+        })),
         None => Ok(()),
     }
 }

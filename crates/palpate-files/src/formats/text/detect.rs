@@ -1,13 +1,11 @@
 //! Finding out how a file is written.
 
-use std::path::Path;
-
 use super::sample::Sample;
 use crate::{
     cell::{Cell, Delimiter, cells, date},
-    error::{FileError, shorten},
+    error::{FileError, FileProblem, shorten},
     input::Input,
-    table::{Block, ColumnInfo, ColumnKind, Header, Layout, LayoutOptions, Metadata, block, decimal, header, metadata},
+    table::{Block, ColumnInfo, ColumnKind, Header, Layout, Metadata, ReadOptions, block, decimal, header, metadata},
 };
 
 /// Finds out how a file of delimited text is written, from at most its first 256 KiB.
@@ -16,19 +14,19 @@ use crate::{
 ///
 /// # Errors
 ///
-/// Where the file cannot be opened, is empty, is no delimited text ([`FileError::Foreign`]), has a
-/// single column, no rows of numbers, or numbers that can be read in two ways ([`FileError::AmbiguousDecimal`]).
-pub fn detect(input: &Input, options: &LayoutOptions) -> Result<Layout, FileError> {
-    let path = input.name();
+/// Where the file cannot be opened, is empty, is no delimited text ([`FileProblem::Foreign`]), has a
+/// single column, no rows of numbers, or numbers that can be read in two ways ([`FileProblem::AmbiguousDecimal`]).
+pub fn detect(input: &Input, options: &ReadOptions) -> Result<Layout, FileError> {
     let sample = Sample::take(input, options.encoding)?;
     let lines = sample.lines();
     let skip = options.skip_lines.unwrap_or(0).min(lines.len());
-    let mut block = find_block(path, &lines, skip, options)?;
-    let decimal = decimal::decide(&lines, &block, options.decimal).map_err(|doubt| FileError::AmbiguousDecimal {
-        path: path.to_owned(),
-        line: doubt.line + 1,
-        found: shorten(&doubt.found),
-        doubt: doubt.doubt,
+    let mut block = find_block(&lines, skip, options).map_err(|problem| input.wrong(problem))?;
+    let decimal = decimal::decide(&lines, &block, options.decimal).map_err(|doubt| {
+        input.wrong(FileProblem::AmbiguousDecimal {
+            line: doubt.line + 1,
+            found: shorten(&doubt.found),
+            doubt: doubt.doubt,
+        })
     })?;
     let undecided = options.decimal.is_none() && decimal::is_unseen(&block);
     let header = header::find(&lines, skip, &mut block, options.header);
@@ -46,11 +44,10 @@ pub fn detect(input: &Input, options: &LayoutOptions) -> Result<Layout, FileErro
     })
 }
 
-fn find_block(path: &Path, lines: &[&str], skip: usize, options: &LayoutOptions) -> Result<Block, FileError> {
+fn find_block(lines: &[&str], skip: usize, options: &ReadOptions) -> Result<Block, FileProblem> {
     let fixed = options.delimiter.as_slice();
     let delimiters = if fixed.is_empty() { &Delimiter::ALL } else { fixed };
-    let one_column = |block: &Block| FileError::OneColumn {
-        path: path.to_owned(),
+    let one_column = |block: &Block| FileProblem::OneColumn {
         line: block.first + 1,
         found: shorten(lines[block.first]),
         delimiter: options.delimiter,
@@ -61,21 +58,20 @@ fn find_block(path: &Path, lines: &[&str], skip: usize, options: &LayoutOptions)
         // The delimiter does not cut the rows, or there are no rows.
         None => {
             let elsewise = options.delimiter.and_then(|_| block::find(lines, skip, &Delimiter::ALL));
-            Err(elsewise.map_or_else(|| without_numbers(path, lines, skip), |block| one_column(&block)))
+            Err(elsewise.map_or_else(|| without_numbers(lines, skip), |block| one_column(&block)))
         }
     }
 }
 
 /// No line holds a number; perhaps one holds names.
-fn without_numbers(path: &Path, lines: &[&str], skip: usize) -> FileError {
+fn without_numbers(lines: &[&str], skip: usize) -> FileProblem {
     let separated = |line: &&str| {
         [Delimiter::Tab, Delimiter::Semicolon, Delimiter::Comma].iter().any(|&delimiter| {
             let row = cells(line, delimiter);
             row.len() > 1 && row.iter().all(|cell| cell.len() <= 60)
         })
     };
-    FileError::NoDataRows {
-        path: path.to_owned(),
+    FileProblem::NoDataRows {
         lines: lines.len(),
         header_line: lines.iter().skip(skip).position(separated).map(|index| skip + index + 1),
     }

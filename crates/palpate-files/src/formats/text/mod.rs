@@ -11,13 +11,13 @@
 //! ```
 //! use palpate_files::input::Input;
 //! use palpate_files::formats::text::{detect, read_columns};
-//! use palpate_files::table::LayoutOptions;
+//! use palpate_files::table::ReadOptions;
 //!
 //! # let folder = tempfile::tempdir()?;
 //! # let path = folder.path().join("press.csv");
 //! std::fs::write(&path, "Time (s);Force (N)\n0,00;0,01\n0,10;0,52\n")?;
 //! let input = Input::open(&path)?;
-//! let layout = detect(&input, &LayoutOptions::default())?;
+//! let layout = detect(&input, &ReadOptions::default())?;
 //! assert_eq!(layout.columns[1].name.as_deref(), Some("Force"));
 //! assert_eq!(layout.columns[1].unit.as_deref(), Some("N"));
 //!

@@ -15,7 +15,7 @@ struct TextFile {
 
 /// Finds out how a file of delimited text is written.
 pub(crate) fn look_into(input: &Input, options: &ReadOptions) -> Result<Found, FileError> {
-    let layout = detect(input, &options.layout)?;
+    let layout = detect(input, options)?;
     let part = Part {
         written: layout.to_string(),
         columns: layout.columns.clone(),

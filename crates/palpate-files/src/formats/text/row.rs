@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::{
     cell::{Cell, Fields, date, number},
-    error::{CellPlace, FileError, shorten},
+    error::{CellPlace, FileError, FileProblem, shorten},
     table::{ColumnKind, Layout, block},
 };
 
@@ -57,11 +57,8 @@ impl<'a> RowPlan<'a> {
         for (place, &column) in columns.iter().enumerate() {
             let task = column.checked_sub(1).and_then(|index| tasks.get_mut(index));
             let Some(task) = task else {
-                return Err(FileError::NoSuchColumn {
-                    path: path.to_owned(),
-                    column,
-                    columns: kinds.len(),
-                });
+                let columns = kinds.len();
+                return Err(FileError::of(path, FileProblem::NoSuchColumn { column, columns }));
             };
             let is_date = kinds.get(column - 1) == Some(&ColumnKind::DateTime);
             *task = if is_date { Task::ReadDate(place) } else { Task::Read(place) };
@@ -170,27 +167,24 @@ impl<'a> RowPlan<'a> {
     /// The error for a fault of `line`, which is line `number` of the file.
     #[cold]
     pub(crate) fn error(&self, fault: Fault, line: &[u8], number: usize) -> FileError {
-        let path = self.path.to_owned();
-        match fault {
-            Fault::TooFew(found) => FileError::TooFewCells {
-                path,
+        let problem = match fault {
+            Fault::TooFew(found) => FileProblem::CellCount {
                 line: number,
                 expected: self.fewest,
                 found,
             },
-            Fault::TooMany => FileError::TooManyCells {
-                path,
+            Fault::TooMany => FileProblem::CellCount {
                 line: number,
                 expected: self.tasks.len(),
                 found: Fields::of(line, self.layout.delimiter).count(),
             },
-            Fault::Cell(index) => self.cell_error(index, line, number),
-        }
+            Fault::Cell(index) => self.bad_cell(index, line, number),
+        };
+        FileError::of(self.path, problem)
     }
 
-    fn cell_error(&self, index: usize, line: &[u8], number: usize) -> FileError {
+    fn bad_cell(&self, index: usize, line: &[u8], number: usize) -> FileProblem {
         let place = CellPlace {
-            path: self.path.to_owned(),
             line: number,
             column: index + 1,
             name: self.layout.columns.get(index).and_then(|column| column.name.clone()),
@@ -201,17 +195,13 @@ impl<'a> RowPlan<'a> {
         let kind = self.layout.columns.get(index).map(|column| column.kind);
         if kind == Some(ColumnKind::DateTime) && !cell.is_empty() {
             let place = format!("line {number}, column {}", index + 1);
-            return FileError::damaged(
-                self.path,
-                place,
-                "a date and time such as 2024-08-24T21:09:40.123",
-                format!("`{found}`"),
-            );
+            let expected = "a date and time such as 2024-08-24T21:09:40.123";
+            return FileProblem::damaged(place, expected, format!("`{found}`"));
         }
         match number::classify(cell) {
-            Cell::Empty => FileError::EmptyCell { place },
-            Cell::NotFinite => FileError::NotFinite { place, found },
-            _ => FileError::TextInNumbers {
+            Cell::Empty => FileProblem::EmptyCell(place),
+            Cell::NotFinite => FileProblem::NotFinite { place, found },
+            _ => FileProblem::TextInNumbers {
                 place,
                 found,
                 decimal: self.layout.decimal,

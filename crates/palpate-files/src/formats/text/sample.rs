@@ -3,7 +3,7 @@
 use std::io::Read;
 
 use crate::{
-    error::{FileError, Foreign, mostly_control, recognise_foreign},
+    error::{FileError, FileProblem, Foreign, mostly_control, recognise_foreign},
     input::{Encoding, Input, LONGEST_LINE, encoding, lines},
 };
 
@@ -26,10 +26,7 @@ impl Sample {
         let read = input.reader()?.take(LONGEST_LINE as u64 + 1).read_to_end(&mut bytes);
         read.map_err(|error| input.failed(error))?;
         let cut = bytes.len() > LONGEST_LINE;
-        let foreign = |looks_like| FileError::Foreign {
-            path: input.name().to_owned(),
-            looks_like,
-        };
+        let foreign = |looks_like| input.wrong(FileProblem::Foreign(looks_like));
         if let Some(looks_like) = recognise_foreign(&bytes) {
             return Err(foreign(looks_like));
         }
@@ -40,17 +37,12 @@ impl Sample {
             return Err(foreign(Foreign::Binary));
         }
         if text.trim().is_empty() && !cut {
-            return Err(FileError::Empty {
-                path: input.name().to_owned(),
-            });
+            return Err(input.wrong(FileProblem::Empty));
         }
         let text = text.into_owned();
         if cut && memchr::memchr2(b'\n', b'\r', text.as_bytes()).is_none() {
-            return Err(FileError::LineTooLong {
-                path: input.name().to_owned(),
-                line: 1,
-                limit: LONGEST_LINE,
-            });
+            let limit = LONGEST_LINE;
+            return Err(input.wrong(FileProblem::LineTooLong { line: 1, limit }));
         }
         Ok(Self { encoding, text, cut })
     }

@@ -146,8 +146,8 @@ const SHARED: &str = "shared-data/header.properties";
 #[test]
 fn stored_numbers_become_forces_and_heights() {
     let contents = opened(&packed(&press()));
-    assert_eq!(contents.format(), Format::JpkForce);
-    let part = &contents.parts()[0];
+    assert_eq!(contents.format, Format::JpkForce);
+    let part = &contents.parts[0];
     assert_eq!(labels(part), [("extend", 0, 4), ("pause", 4, 6), ("retract", 6, 8)]);
     assert_eq!(
         names(part),
@@ -236,10 +236,10 @@ fn old_files_have_their_scalings_in_the_segment() {
         ("segments/0/channels/vDeflection.dat".to_owned(), big16(&[0, 2])),
     ];
     let contents = opened(&packed(&members));
-    assert_eq!(names(&contents.parts()[0]), ["time", "force", "cantilever deflection", "vDeflection"]);
+    assert_eq!(names(&contents.parts[0]), ["time", "force", "cantilever deflection", "vDeflection"]);
     let force = column(&contents, "force");
     assert!(near(force[0], 0.25e-7) && near(force[1], 0.5e-7), "{force:?}");
-    assert!(metadata(&contents.parts()[0], "indentation").unwrap().starts_with("none"));
+    assert!(metadata(&contents.parts[0], "indentation").unwrap().starts_with("none"));
 }
 
 #[test]
@@ -268,7 +268,7 @@ fn a_sensitivity_alone_gives_the_indentation() {
     let text = shared().replace(from, &from.replace("true", "false")).replace("default=force", "default=distance");
     members[1].1 = text.into_bytes();
     let contents = opened(&packed(&members));
-    let part = &contents.parts()[0];
+    let part = &contents.parts[0];
     assert_eq!(names(part)[..3], ["time", "uncalibrated force", "indentation"]);
     assert!(near(column(&contents, "indentation")[3], -(7e-5 + 5e-7)));
     let folder = tempfile::tempdir().unwrap();
@@ -285,16 +285,16 @@ fn segments_that_recorded_nothing_are_skipped_and_their_time_goes_by() {
     let (_, bytes) = members.iter_mut().find(|(name, _)| name == PAUSE).expect("a member");
     *bytes = segment_header("pause", 0, "2.0").into_bytes();
     let contents = opened(&packed(&members));
-    assert_eq!(labels(&contents.parts()[0]), [("extend", 0, 4), ("retract", 4, 6)]);
+    assert_eq!(labels(&contents.parts[0]), [("extend", 0, 4), ("retract", 4, 6)]);
     assert_eq!(column(&contents, "time"), [0.0, 0.5, 1.0, 1.5, 4.0, 5.0]);
-    let [skipped] = contents.skipped() else {
-        panic!("{:?}", contents.skipped())
+    let [skipped] = &contents.skipped[..] else {
+        panic!("{:?}", contents.skipped)
     };
     assert_eq!((skipped.name.as_str(), skipped.reason.as_str()), ("segment 1 (pause)", "it has no rows"));
     // Without the duration of a segment that recorded something there is no time.
     let contents = opened(&changed(PAUSE, "duration=2.0", "duration="));
-    assert!(contents.parts()[0].column_named("time").is_none());
-    assert!(metadata(&contents.parts()[0], "time").unwrap().starts_with("none"));
+    assert!(contents.parts[0].column_named("time").is_none());
+    assert!(metadata(&contents.parts[0], "time").unwrap().starts_with("none"));
 }
 
 #[test]

@@ -73,8 +73,8 @@ fn written(exports: &[Export]) -> Vec<u8> {
 #[test]
 fn segments_become_one_test_with_labels() {
     let contents = opened(&written(&press()));
-    assert_eq!(contents.format(), Format::JpkText);
-    let part = &contents.parts()[0];
+    assert_eq!(contents.format, Format::JpkText);
+    let part = &contents.parts[0];
     assert_eq!(
         labels(part),
         [
@@ -196,8 +196,7 @@ fn segments_without_what_the_others_have_are_skipped_with_a_reason() {
     exports[2].rows.clear();
     exports[4].columns = "height vDeflection other seriesTime time";
     let contents = opened(&written(&exports));
-    let skipped: Vec<String> =
-        contents.skipped().iter().map(|part| format!("{}: {}", part.name, part.reason)).collect();
+    let skipped: Vec<String> = contents.skipped.iter().map(|part| format!("{}: {}", part.name, part.reason)).collect();
     // The height that all segments have is "height" (in the file as the piezo was told).
     assert_eq!(
         skipped,
@@ -206,7 +205,7 @@ fn segments_without_what_the_others_have_are_skipped_with_a_reason() {
             "segment 2 (extend (2)): it has no rows",
         ]
     );
-    let part = &contents.parts()[0];
+    let part = &contents.parts[0];
     assert_eq!(labels(part), [("extend (1)", 0, 3), ("pause (2)", 3, 5), ("retract", 5, 6)]);
     assert_eq!(metadata(part, "indentation"), Some("−(height + deflection)"));
     assert_eq!(metadata(part, "channels left out"), Some("measuredHeight, other (not in every segment)"));
@@ -222,11 +221,11 @@ fn time_without_a_series_is_put_together() {
     let contents = opened(&written(&exports));
     // The first segment ends at 2.5 s with steps of 1 s: the next begins at 3.5 s.
     assert_eq!(column(&contents, "time"), [0.5, 1.5, 2.5, 4.0, 5.0, 6.5, 7.5, 8.5, 10.0]);
-    assert!(metadata(&contents.parts()[0], "time").unwrap().starts_with("time of the file"));
+    assert!(metadata(&contents.parts[0], "time").unwrap().starts_with("time of the file"));
     for export in &mut exports {
         export.columns = "height vDeflection measuredHeight other another";
     }
-    assert!(metadata(&opened(&written(&exports)).parts()[0], "time").unwrap().starts_with("none"));
+    assert!(metadata(&opened(&written(&exports)).parts[0], "time").unwrap().starts_with("none"));
     let plan: String = (0..5)
         .map(|index| {
             let key = format!("# force-settings.segment.{index}");
@@ -237,7 +236,7 @@ fn time_without_a_series_is_put_together() {
     let contents = opened(whole.as_bytes());
     // 8 s for four points is 2 s a point, though fewer were recorded.
     assert_eq!(column(&contents, "time"), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0]);
-    assert!(metadata(&contents.parts()[0], "time").unwrap().starts_with("made of the durations"));
+    assert!(metadata(&contents.parts[0], "time").unwrap().starts_with("made of the durations"));
 }
 
 fn refused_as_record(exports: &[Export]) -> ReadError {
@@ -255,13 +254,13 @@ fn volts_without_calibration_are_asked_about() {
         export.more = "# springConstant: NaN\r\n";
     }
     let contents = opened(&written(&exports));
-    assert_eq!(names(&contents.parts()[0])[..2], ["time", "uncalibrated force"]);
+    assert_eq!(names(&contents.parts[0])[..2], ["time", "uncalibrated force"]);
     let error = refused_as_record(&exports);
     assert!(
         matches!(
             error,
             ReadError::Column {
-                source: ColumnError::UnknownUnit { .. },
+                source: ColumnError::Unit { .. },
                 ..
             }
         ),
@@ -368,7 +367,7 @@ fn what_is_wrong_is_said_with_its_place() {
 #[test]
 fn a_table_with_comments_is_not_an_export() {
     let table = b"# segment: 1\n# Time (s),Force (N)\n0,1\n1,2\n2,3\n";
-    assert_eq!(opened(table).format(), Format::Text);
+    assert_eq!(opened(table).format, Format::Text);
     assert!(open(b"# segment: extend\n# columns: a b\n").is_err());
 }
 

@@ -24,14 +24,14 @@ fn map(numbers: &[usize]) -> Vec<Member> {
 #[test]
 fn every_curve_is_a_test() {
     let contents = opened(&packed(&map(&[0, 2, 10, 9])));
-    let names: Vec<&str> = contents.parts().iter().filter_map(|part| part.name.as_deref()).collect();
+    let names: Vec<&str> = contents.parts.iter().filter_map(|part| part.name.as_deref()).collect();
     assert_eq!(names, ["index/0", "index/2", "index/9", "index/10"]);
     let stored: Vec<f64> = (0..4).map(|part| column_of(&contents, part, "force")[1]).collect();
     for (number, force) in [0.0, 2.0, 9.0, 10.0].into_iter().zip(stored) {
         assert!((force - (0.5 * number + 1.0) * 0.25e-7).abs() < 1e-20, "{force}");
     }
-    assert_eq!(labels(&contents.parts()[3]), [("extend", 0, 2), ("retract", 2, 4)]);
-    assert_eq!(metadata(&contents.parts()[1], "force-scan-series.description.instrument"), Some("JPK00001"));
+    assert_eq!(labels(&contents.parts[3]), [("extend", 0, 2), ("retract", 2, 4)]);
+    assert_eq!(metadata(&contents.parts[1], "force-scan-series.description.instrument"), Some("JPK00001"));
 }
 
 #[test]
@@ -39,9 +39,9 @@ fn a_broken_curve_is_skipped_with_its_reason() {
     let mut members = map(&[0, 1]);
     members.retain(|(name, _)| name != "index/1/segments/1/channels/vDeflection.dat");
     let contents = opened(&packed(&members));
-    assert_eq!(contents.parts().len(), 1);
-    let [skipped] = contents.skipped() else {
-        panic!("{:?}", contents.skipped())
+    assert_eq!(contents.parts.len(), 1);
+    let [skipped] = &contents.skipped[..] else {
+        panic!("{:?}", contents.skipped)
     };
     assert_eq!(skipped.name, "index/1");
     assert!(skipped.reason.contains("channels/vDeflection.dat, found none"), "{}", skipped.reason);
@@ -52,9 +52,9 @@ fn many_curves_are_looked_into() {
     let numbers: Vec<usize> = (0..300).collect();
     let bytes = packed(&map(&numbers));
     let contents = opened(&bytes);
-    assert_eq!(contents.parts().len(), 300);
+    assert_eq!(contents.parts.len(), 300);
     // Of so many the first values are not looked at.
-    assert_eq!(contents.parts()[0].columns[0].sample, "…");
+    assert_eq!(contents.parts[0].columns[0].sample, "…");
     assert_eq!(read_all(&bytes).unwrap(), 1200);
 }
 

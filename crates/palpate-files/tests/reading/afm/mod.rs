@@ -24,7 +24,7 @@ fn opened(bytes: &[u8]) -> Contents {
 
 /// The values of the column called `name` in a part.
 fn column_of(contents: &Contents, part: usize, name: &str) -> Vec<f64> {
-    let number = contents.parts()[part].column_named(name).unwrap_or_else(|| panic!("no column {name}")).number;
+    let number = contents.parts[part].column_named(name).unwrap_or_else(|| panic!("no column {name}")).number;
     let read = contents.read(part, &[number], &mut |_, _| {}).unwrap_or_else(|error| panic!("{error}"));
     read.values.into_iter().next().expect("one column")
 }
@@ -37,7 +37,7 @@ fn column(contents: &Contents, name: &str) -> Vec<f64> {
 fn read_all(bytes: &[u8]) -> Result<usize, FileError> {
     let contents = open(bytes)?;
     let mut rows = 0;
-    for (index, part) in contents.parts().iter().enumerate() {
+    for (index, part) in contents.parts.iter().enumerate() {
         let all: Vec<usize> = (1..=part.columns.len()).collect();
         let read = contents.read(index, &all, &mut |_, _| {})?;
         assert!(read.values.iter().flatten().all(|value| value.is_finite()));

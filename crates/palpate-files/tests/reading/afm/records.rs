@@ -67,7 +67,7 @@ fn four_pauses_of_ten_seconds() {
         return;
     };
     let contents = Contents::open(&path, &ReadOptions::default()).unwrap();
-    assert_eq!(*contents.packing(), Packing::Gzip);
+    assert_eq!(contents.input.packing, Packing::Gzip);
     let file = read(&path);
     let rows: Vec<usize> = file.part.labels.iter().map(|label| label.end - label.start).collect();
     assert_eq!(rows, [4096, 4096, 1991, 4096, 1638, 4096, 1482, 4096, 4096]);

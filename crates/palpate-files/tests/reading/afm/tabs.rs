@@ -23,8 +23,8 @@ fn press() -> Vec<u8> {
 #[test]
 fn the_segments_are_labels() {
     let contents = opened(&press());
-    assert_eq!(contents.format(), Format::AfmTab);
-    let part = &contents.parts()[0];
+    assert_eq!(contents.format, Format::AfmTab);
+    let part = &contents.parts[0];
     assert_eq!(labels(part), [("approach", 0, 2), ("intermediate", 2, 4), ("retract", 4, 5)]);
     assert_eq!(
         names(part),
@@ -63,11 +63,11 @@ fn variants() {
     // Commas between the cells, truths for segments, no metadata.
     let rows = "0,4e-6,False\n1e-6,1e-6,True\n";
     let contents = opened(&file("", "# force,tip position,segment\n", rows));
-    assert_eq!(labels(&contents.parts()[0]), [("segment 0", 0, 1), ("segment 1", 1, 2)]);
+    assert_eq!(labels(&contents.parts[0]), [("segment 0", 0, 1), ("segment 1", 1, 2)]);
     assert_eq!(column(&contents, "indentation"), [-4e-6, -1e-6]);
-    assert_eq!(metadata(&contents.parts()[0], "indentation"), Some("−tip position"));
+    assert_eq!(metadata(&contents.parts[0], "indentation"), Some("−tip position"));
     let plain = b"# a,b\n0,1\n1,2\n2,3\n";
-    assert_eq!(opened(plain).format(), Format::Text);
+    assert_eq!(opened(plain).format, Format::Text);
 }
 
 #[test]
@@ -92,8 +92,8 @@ fn what_is_wrong_is_said_with_its_place() {
 fn segments_that_change_all_the_time_are_none() {
     let rows: String = (0..10_000).map(|row| format!("0\t0\t0\t{row}\t{row}\t{row}\n")).collect();
     let contents = opened(&file(METADATA, NAMES, &rows));
-    assert!(contents.parts()[0].labels.is_empty());
-    assert_eq!(contents.parts()[0].rows, Some(10_000));
+    assert!(contents.parts[0].labels.is_empty());
+    assert_eq!(contents.parts[0].rows, Some(10_000));
 }
 
 #[test]

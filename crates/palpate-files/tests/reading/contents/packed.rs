@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use flate2::{Compression, write::GzEncoder};
-use palpate_files::{FileError, input::Packing};
+use palpate_files::{FileProblem, input::Packing};
 use zip::{CompressionMethod, ZipWriter, write::SimpleFileOptions};
 
 use super::{TABLE, check, contents, refused};
@@ -26,7 +26,7 @@ fn zip(members: &[(&str, &[u8])], method: CompressionMethod) -> Vec<u8> {
 #[test]
 fn gzip_of_one_file() {
     let packed = contents("press.csv.gz", gzip(TABLE.as_bytes())).expect("a table");
-    assert_eq!(packed.packing(), &Packing::Gzip);
+    assert_eq!(packed.input.packing, Packing::Gzip);
     check(&packed);
     // What the tools `cat a.gz b.gz` make is one file, too.
     let (first, second) = TABLE.split_at(40);
@@ -38,7 +38,7 @@ fn zip_of_one_file() {
     for method in [CompressionMethod::Deflated, CompressionMethod::Stored] {
         let archive = zip(&[("data/press.csv", TABLE.as_bytes())], method);
         let packed = contents("press.zip", archive).expect("a table");
-        assert_eq!(packed.packing().to_string(), "packed in a zip archive as data/press.csv");
+        assert_eq!(packed.input.packing.to_string(), "packed in a zip archive as data/press.csv");
         check(&packed);
     }
     let macos = [("press.csv", TABLE.as_bytes()), ("__MACOSX/._press.csv", b"\0\x05\x16".as_slice())];
@@ -75,7 +75,10 @@ fn cut_off_anywhere_is_an_error_that_says_so() {
             let cut = contents("cut", &whole[..length]).and_then(|found| found.read(0, &[1], &mut |_, _| {}));
             let error = cut.expect_err("cut off");
             assert!(error.to_string().starts_with("cut: "), "{error}");
-            assert!(matches!(error, FileError::Unreadable { .. } | FileError::Damaged { .. }), "{length}: {error}");
+            assert!(
+                matches!(error.problem, FileProblem::Unreadable(_) | FileProblem::Unlike { .. }),
+                "{length}: {error}"
+            );
         }
     }
 }

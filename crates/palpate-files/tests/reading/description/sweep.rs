@@ -24,17 +24,17 @@ fn refuses(table: &str, key: &str, message: &str, hint: &str) {
 #[test]
 fn a_grid_meets_every_value_with_every_other() {
     let sweep = sweep("law.exponent = \"1, 3, 5\"\nspecimen.radius = \"linear 30..40 mm, 2\"\n").unwrap();
-    assert_eq!(sweep.runs(), 6);
-    assert_eq!(sweep.plan(), &Plan::Grid { counts: vec![3, 2] });
+    assert_eq!(sweep.runs, 6);
+    assert_eq!(sweep.plan, Plan::Grid { counts: vec![3, 2] });
     let runs: Vec<Vec<f64>> = (0..6).map(|run| sweep.run(run).0).collect();
     let expected: Vec<Vec<f64>> = [1.0, 3.0, 5.0].iter().flat_map(|n| [vec![*n, 0.03], vec![*n, 0.04]]).collect();
     assert_eq!(runs, expected);
     let model = sweep.run(3).1.unwrap().contact;
     assert_eq!((model.latency().unwrap().law.exponent(), model.specimen().depth()), (3.0, 0.04));
-    let names: Vec<_> = sweep.numbers().iter().map(|number| (number.column.as_str(), number.unit)).collect();
+    let names: Vec<_> = sweep.numbers.iter().map(|number| (number.column.as_str(), number.unit)).collect();
     assert_eq!(names, [("law_exponent", ""), ("specimen_radius_m", "m")]);
-    assert_eq!(sweep.numbers()[1].spacing, Spacing::Linear);
-    assert_eq!(sweep.numbers()[0].grid(), Some(vec![1.0, 3.0, 5.0]));
+    assert_eq!(sweep.numbers[1].spacing, Spacing::Linear);
+    assert_eq!(sweep.numbers[0].grid(), Some(vec![1.0, 3.0, 5.0]));
 }
 
 #[test]
@@ -44,7 +44,7 @@ fn the_order_of_the_file_is_kept() {
     // There is no [contact] with layers in the file.
     assert!(sweep.is_err());
     let sweep = self::sweep("step.1.rate = \"1, 2 mm/s\"\nlaw.exponent = \"1, 2\"").unwrap();
-    let paths: Vec<_> = sweep.numbers().iter().map(|number| number.path.as_str()).collect();
+    let paths: Vec<_> = sweep.numbers.iter().map(|number| number.path.as_str()).collect();
     assert_eq!(paths, ["step[1].rate", "law.exponent"]);
 }
 
@@ -58,7 +58,7 @@ fn paths_and_lists_in_every_form() {
         "[sweep.step.1]\nhold = \"linear 1..10 s, 2\"",
     ] {
         let sweep = sweep(table).unwrap_or_else(|error| panic!("{table}: {error}"));
-        assert_eq!(sweep.numbers()[0].column, "step_1_hold_s", "{table}");
+        assert_eq!(sweep.numbers[0].column, "step_1_hold_s", "{table}");
         assert_eq!((sweep.run(0).0, sweep.run(1).0), (vec![1.0], vec![10.0]), "{table}");
         assert!((sweep.run(1).1.unwrap().motion.unwrap().end() - 10.6).abs() < 1e-9);
     }
@@ -69,7 +69,7 @@ fn paths_and_lists_in_every_form() {
 fn a_latin_hypercube_has_one_run_in_every_slice() {
     let table = "method = \"latin hypercube\"\nsamples = 50\nseed = 3\nlaw.exponent = \"linear 1..6\"\nlaw.rate_coefficient = \"log 1e2..1e7 /s\"\nspecimen.radius = \"30, 40 mm\"";
     let found = sweep(table).unwrap();
-    assert_eq!(found.runs(), 50);
+    assert_eq!(found.runs, 50);
     let values: Vec<Vec<f64>> = (0..50).map(|run| found.run(run).0).collect();
     let slices = |of: &dyn Fn(&[f64]) -> f64| {
         let mut slices: Vec<i64> = values.iter().map(|values| (50.0 * of(values)).floor() as i64).collect();

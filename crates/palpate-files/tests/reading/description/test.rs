@@ -55,12 +55,9 @@ fn everything_said() {
     "#;
     let all = test(text).unwrap();
     assert_eq!(all.about.note.as_deref(), Some("c"));
-    assert_eq!(
-        (all.reading.layout.delimiter, all.reading.layout.decimal),
-        (Some(Delimiter::Semicolon), Some(DecimalMark::Comma))
-    );
-    assert_eq!((all.reading.layout.encoding, all.reading.layout.header), (Some(Encoding::Gbk), Some(false)));
-    assert_eq!(all.reading.layout.skip_lines, Some(2));
+    assert_eq!((all.reading.delimiter, all.reading.decimal), (Some(Delimiter::Semicolon), Some(DecimalMark::Comma)));
+    assert_eq!((all.reading.encoding, all.reading.header), (Some(Encoding::Gbk), Some(false)));
+    assert_eq!(all.reading.skip_lines, Some(2));
     let displacement = all.columns.displacement.unwrap();
     assert_eq!(displacement.column, Some(ColumnRef::Name("Weg".to_owned())));
     assert_eq!((displacement.sign, displacement.unit.as_deref()), (-1.0, Some("mm")));

@@ -161,7 +161,7 @@ fn a_file_is_told_by_the_names_of_its_columns() {
     let fitting = |text: &str| -> Vec<&str> {
         let input = Input::from_bytes("press.csv", text.as_bytes()).unwrap();
         let contents = Contents::of(input, &ReadOptions::default()).unwrap();
-        machines_of(&contents.parts()[0]).into_iter().map(|machine| machine.name).collect()
+        machines_of(&contents.parts[0]).into_iter().map(|machine| machine.name).collect()
     };
     for file in &FILES {
         assert!(fitting(file.text).contains(&file.machine), "{}: {:?}", file.machine, fitting(file.text));

@@ -1,7 +1,7 @@
 //! Logs that are cut off, overwritten, or lie about lengths: an answer or an error, soon, and never a panic.
 
 use mcap::WriteOptions;
-use palpate_files::FileError;
+use palpate_files::{FileError, FileProblem};
 
 use super::{
     look,
@@ -32,7 +32,7 @@ fn ways() -> [(&'static str, Log); 4] {
 /// Looks into a log and reads all that is in it.
 fn all(bytes: &[u8]) -> Result<(), FileError> {
     let contents = look(bytes)?;
-    let columns: Vec<usize> = (1..=contents.parts()[0].columns.len()).collect();
+    let columns: Vec<usize> = (1..=contents.parts[0].columns.len()).collect();
     contents.read(0, &columns, &mut |_, _| {}).map(|_| ())
 }
 
@@ -80,7 +80,7 @@ fn checksums_are_checked() {
         let place = bytes.len() / 3;
         bytes[place] ^= 0x10;
         let error = all(&bytes).unwrap_err();
-        assert!(matches!(error, FileError::Damaged { .. }), "{error}");
+        assert!(matches!(error.problem, FileProblem::Unlike { .. }), "{error}");
     }
 }
 
@@ -104,7 +104,7 @@ fn lengths_that_lie_cost_no_memory() {
         let bytes = [mcap::MAGIC, &[6], &(chunk.len() as u64).to_le_bytes(), &chunk].concat();
         let error = all(&bytes).unwrap_err();
         assert!(
-            matches!(error, FileError::Damaged { .. } | FileError::TooLarge { .. } | FileError::Swells { .. }),
+            matches!(error.problem, FileProblem::Unlike { .. } | FileProblem::TooLarge { .. } | FileProblem::Swells(_)),
             "{error}"
         );
     }
@@ -120,7 +120,7 @@ fn lengths_that_lie_cost_no_memory() {
         chunk.extend(inner);
         let bytes = [mcap::MAGIC, &[6], &(chunk.len() as u64).to_le_bytes(), &chunk].concat();
         let error = all(&bytes).unwrap_err();
-        assert!(matches!(error, FileError::Damaged { .. }), "{error}");
+        assert!(matches!(error.problem, FileProblem::Unlike { .. }), "{error}");
     }
 }
 
@@ -130,12 +130,12 @@ fn counts_inside_messages_that_lie_skip_the_topic() {
     log.say("/ft", START, &wrench(true, START, 1.0));
     log.say("/joint_states", START, &Cdr::new(true).header(START).u32(u32::MAX).bytes());
     let contents = look(&log.finish()).unwrap();
-    assert_eq!(contents.skipped()[0].name, "/joint_states");
-    assert!(contents.skipped()[0].reason.contains("message 2 of the log, byte "), "{:?}", contents.skipped());
+    assert_eq!(contents.skipped[0].name, "/joint_states");
+    assert!(contents.skipped[0].reason.contains("message 2 of the log, byte "), "{:?}", contents.skipped);
 }
 
 #[test]
 fn a_log_of_nothing_is_no_test() {
     let empty = Log::chunked().finish();
-    assert!(matches!(look(&empty).unwrap_err(), FileError::NoParts { .. }));
+    assert!(matches!(look(&empty).unwrap_err().problem, FileProblem::NoParts(_)));
 }

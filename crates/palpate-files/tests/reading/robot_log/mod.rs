@@ -35,13 +35,13 @@ fn record(bytes: &[u8], test: &str) -> Result<RecordFile, ReadError> {
 
 /// The names of all columns of a log.
 fn names(contents: &Contents) -> Vec<&str> {
-    let columns = contents.parts().iter().flat_map(|part| &part.columns);
+    let columns = contents.parts.iter().flat_map(|part| &part.columns);
     columns.filter_map(|column| column.name.as_deref()).collect()
 }
 
 /// The values of one column of a log.
 fn values(contents: &Contents, name: &str) -> Vec<f64> {
-    let column = contents.parts()[0].column_named(name).unwrap_or_else(|| panic!("{name} in {:?}", names(contents)));
+    let column = contents.parts[0].column_named(name).unwrap_or_else(|| panic!("{name} in {:?}", names(contents)));
     let mut read = contents.read(0, &[column.number], &mut |_, _| {}).unwrap_or_else(|error| panic!("{error}"));
     read.values.remove(0)
 }

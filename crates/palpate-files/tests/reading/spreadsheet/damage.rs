@@ -26,11 +26,11 @@ fn small() -> Vec<u8> {
 #[test]
 fn an_old_workbook_is_read() {
     let contents = open(&xls_book::example()).expect("a workbook");
-    assert_eq!(contents.format(), Format::Xls);
-    let titles: Vec<&str> = contents.parts().iter().map(Part::title).collect();
+    assert_eq!(contents.format, Format::Xls);
+    let titles: Vec<&str> = contents.parts.iter().map(Part::title).collect();
     assert_eq!(titles, ["good", "bad", "clock"]);
-    assert_eq!(contents.skipped()[0].reason, "no table of numbers");
-    assert_eq!(contents.parts()[0].columns[1].unit.as_deref(), Some("N"));
+    assert_eq!(contents.skipped[0].reason, "no table of numbers");
+    assert_eq!(contents.parts[0].columns[1].unit.as_deref(), Some("N"));
     let columns = read(&contents, 0, &[1, 2, 3]).expect("columns");
     assert_eq!(columns.values, [vec![0.1, 0.2, 0.3, 0.4], vec![1.5, 3.0, 4.5, 7.5], vec![-0.25, -0.25, -0.25, 0.5]]);
     assert_eq!(message(read(&contents, 1, &[1, 2])), "book, sheet bad, cell B5: expected a number, found #N/A");
@@ -183,7 +183,7 @@ fn packed_workbooks_are_read() {
         packed.write_all(&whole).expect("bytes");
         let packed = packed.finish().expect("a file");
         let (packed, plain) = (open(&packed).expect("a workbook"), open(&whole).expect("a workbook"));
-        assert_eq!((packed.format(), packed.parts()), (plain.format(), plain.parts()));
+        assert_eq!((packed.format, &packed.parts), (plain.format, &plain.parts));
         assert_eq!(
             read(&packed, 0, &[1, 2]).expect("columns").values,
             read(&plain, 0, &[1, 2]).expect("columns").values
@@ -239,7 +239,7 @@ fn records_of_old_workbooks_that_lie_take_neither_memory_nor_time() {
     let mut more = vec![size, spelled, value, page];
     more.extend((0..1500).map(letters));
     let contents = open(&old(&more)).expect("a workbook");
-    assert_eq!(contents.parts()[0].columns[1].name.as_deref(), Some("Kraft"));
+    assert_eq!(contents.parts[0].columns[1].name.as_deref(), Some("Kraft"));
     assert_eq!(read(&contents, 0, &[1, 2]).expect("columns").values, [[1.0, 2.0, 3.0, 8.0], [2.0, 2.0, 2.0, 9.0]]);
 }
 

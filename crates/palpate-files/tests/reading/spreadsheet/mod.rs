@@ -30,7 +30,7 @@ fn read_all(bytes: &[u8]) -> Result<Vec<Columns>, FileError> {
         let numbers: Vec<usize> = (1..=part.columns.len()).collect();
         read(&contents, index, &numbers)
     };
-    contents.parts().iter().enumerate().map(all).collect()
+    contents.parts.iter().enumerate().map(all).collect()
 }
 
 fn names(part: &Part) -> Vec<(&str, &str)> {

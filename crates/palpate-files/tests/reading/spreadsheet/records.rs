@@ -31,13 +31,13 @@ fn every_test_of_two_workbooks_becomes_a_record() {
     ] {
         let contents = Contents::open(&folder.join("zwick-indentation").join(name), &ReadOptions::default());
         let contents = contents.unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(contents.format(), format);
-        for part in contents.skipped() {
+        assert_eq!(contents.format, format);
+        for part in &contents.skipped {
             println!("{name}: {} skipped: {}", part.name, part.reason);
         }
         let tests = record::tests(&contents, &TestDescription::default()).expect("tests");
         for &index in &tests.parts {
-            let part = &contents.parts()[index];
+            let part = &contents.parts[index];
             let file = record::read_part(&contents, index, None, &mut |_, _| {});
             let file = file.unwrap_or_else(|error| panic!("{}: {error}", part.title()));
             println!(

@@ -40,11 +40,11 @@ fn every_sheet_with_a_test_is_a_part_and_the_others_are_told() {
     ]);
     book.charts = vec!["Kurve"];
     let contents = open(&book.bytes()).expect("a workbook");
-    assert_eq!(contents.format(), Format::Xlsx);
-    let titles: Vec<&str> = contents.parts().iter().map(Part::title).collect();
+    assert_eq!(contents.format, Format::Xlsx);
+    let titles: Vec<&str> = contents.parts.iter().map(Part::title).collect();
     assert_eq!(titles, ["P1", "P2"]);
     let skipped: Vec<(&str, &str)> =
-        contents.skipped().iter().map(|part| (part.name.as_str(), part.reason.as_str())).collect();
+        contents.skipped.iter().map(|part| (part.name.as_str(), part.reason.as_str())).collect();
     let expected = [
         ("Paramètres", "no table of numbers"),
         ("Résultats", "no column of time"),
@@ -52,10 +52,7 @@ fn every_sheet_with_a_test_is_a_part_and_the_others_are_told() {
         ("Kurve", "a chart"),
     ];
     assert_eq!(skipped, expected);
-    assert_eq!(
-        names(&contents.parts()[1]),
-        [("Temps d'essai", "s"), ("Force standard", "N"), ("Allongement", "mm")]
-    );
+    assert_eq!(names(&contents.parts[1]), [("Temps d'essai", "s"), ("Force standard", "N"), ("Allongement", "mm")]);
     let columns = read(&contents, 1, &[2, 1]).expect("columns");
     assert_eq!((columns.rows(), columns.values[0][2], columns.values[1][19]), (20, 3.0, 1.9));
     assert_eq!(columns.line_of(0), Some(4));
@@ -76,7 +73,7 @@ fn named_values_above_and_remarks_below_and_beside() {
     ];
     table.push(vec![T("mean"), N(2.0)]);
     let contents = open(&Book::of(&[("one", &table)]).bytes()).expect("a workbook");
-    let part = &contents.parts()[0];
+    let part = &contents.parts[0];
     assert_eq!(part.columns.len(), 2);
     assert_eq!(part.written, "sheet one, columns A–B, rows 4 to 7, 1 cell beside passed over");
     let value = &part.metadata[0];
@@ -97,9 +94,9 @@ fn tables_side_by_side_are_parts_where_each_has_a_time() {
     table.extend((0..9).map(|row| vec![N(f64::from(row)), N(2.0), E, N(f64::from(row)), N(5.0)]));
     table.extend((9..40).map(|row| vec![N(f64::from(row)), N(2.0)]));
     let contents = open(&Book::of(&[("both", &table)]).bytes()).expect("a workbook");
-    let titles: Vec<&str> = contents.parts().iter().map(Part::title).collect();
+    let titles: Vec<&str> = contents.parts.iter().map(Part::title).collect();
     assert_eq!(titles, ["both, columns A–B", "both, columns D–E"]);
-    assert_eq!(names(&contents.parts()[1])[1], ("Force", "mN"));
+    assert_eq!(names(&contents.parts[1])[1], ("Force", "mN"));
     assert_eq!(read(&contents, 0, &[1]).expect("first").rows(), 40);
     assert_eq!(read(&contents, 1, &[1, 2]).expect("second").values[1], [5.0; 9]);
 
@@ -107,8 +104,8 @@ fn tables_side_by_side_are_parts_where_each_has_a_time() {
     let mut table = vec![vec![T("Time (s)"), T("Force (N)"), E, T("Displacement (mm)"), T("Temperature (°C)")]];
     table.extend((0..9).map(|row| vec![N(f64::from(row)), N(2.0), E, N(4.0), N(5.0)]));
     let contents = open(&Book::of(&[("one", &table)]).bytes()).expect("a workbook");
-    assert_eq!(contents.parts().len(), 1);
-    assert_eq!(contents.parts()[0].written, "sheet one, columns A–B, D–E, rows 2 to 10");
+    assert_eq!(contents.parts.len(), 1);
+    assert_eq!(contents.parts[0].written, "sheet one, columns A–B, D–E, rows 2 to 10");
     assert_eq!(read(&contents, 0, &[3]).expect("columns").values, [vec![4.0; 9]]);
 }
 
@@ -151,8 +148,8 @@ fn shared_texts_prefixes_and_cells_without_a_place() {
     book.strings =
         "<si><t>Ti</t><rPh><t>no</t></rPh></si><si><r><t>Force </t></r><r><t>(&#78;)</t></r></si>".to_owned();
     let contents = open(&book.bytes()).expect("a workbook");
-    assert_eq!(contents.parts()[0].title(), "one & two");
-    assert_eq!(names(&contents.parts()[0]), [("Ti", ""), ("Force", "N")]);
+    assert_eq!(contents.parts[0].title(), "one & two");
+    assert_eq!(names(&contents.parts[0]), [("Ti", ""), ("Force", "N")]);
     assert_eq!(read(&contents, 0, &[1, 2]).expect("columns").values, [vec![0.5, 1.5], vec![2.0, 3.0]]);
 }
 
@@ -166,13 +163,13 @@ fn a_mean_beside_tests_is_none_and_alone_is_one() {
     table.extend((0..5).map(|row| vec![N(f64::from(row)), N(f64::from(row)), N(2.0 * f64::from(row))]));
     let both = Book::of(&[("Eprouvette moyenne", &table), ("Eprouvette 1", &table)]).bytes();
     let contents = open(&both).expect("a workbook");
-    assert_eq!((contents.parts().len(), contents.parts()[0].title()), (1, "Eprouvette 1"));
-    assert_eq!(contents.skipped()[0].reason, "a mean of tests, by its name");
+    assert_eq!((contents.parts.len(), contents.parts[0].title()), (1, "Eprouvette 1"));
+    assert_eq!(contents.skipped[0].reason, "a mean of tests, by its name");
     assert_eq!(read(&contents, 0, &[1]).expect("columns").values, [[0.0, 1.0, 2.0, 3.0, 4.0]]);
     let file = record::read_part(&contents, 0, None, &mut |_, _| {}).expect("a record");
     assert_eq!((file.rows, file.columns.len()), (5, 3));
     let alone = open(&Book::of(&[("Eprouvette moyenne", &table)]).bytes()).expect("a workbook");
-    assert_eq!(alone.parts().len(), 1);
+    assert_eq!(alone.parts.len(), 1);
 }
 
 #[test]
@@ -186,16 +183,12 @@ fn tables_one_below_the_other_are_tests_of_their_own() {
     sheet.extend(zwick("P3"));
     sheet.push(vec![T("end of test")]);
     let contents = open(&Book::of(&[("Press", &sheet)]).bytes()).expect("a workbook");
-    let titles: Vec<&str> = contents.parts().iter().map(Part::title).collect();
+    let titles: Vec<&str> = contents.parts.iter().map(Part::title).collect();
     assert_eq!(titles, ["Press, table 1", "Press, table 2", "Press, table 3"]);
-    assert!(
-        contents.parts()[0].written.contains(&format!("rows 4 to {first}")),
-        "{}",
-        contents.parts()[0].written
-    );
+    assert!(contents.parts[0].written.contains(&format!("rows 4 to {first}")), "{}", contents.parts[0].written);
     let rows: Vec<usize> = (0..3).map(|part| read(&contents, part, &[1, 2, 3]).expect("a table").rows()).collect();
     assert_eq!(rows, [20, 10, 20]);
-    for part in contents.parts() {
+    for part in &contents.parts {
         assert_eq!(names(part), [("Temps d'essai", "s"), ("Force standard", "N"), ("Allongement", "mm")]);
     }
     let second = read(&contents, 1, &[2]).expect("a table");
@@ -207,6 +200,6 @@ fn results_above_a_test_are_no_table_of_their_own() {
     let mut sheet = vec![vec![T("Specimen"), T("Fmax")], vec![T("one"), N(3.0)], vec![T("two"), N(4.0)], vec![]];
     sheet.extend(zwick("P1"));
     let contents = open(&Book::of(&[("Press", &sheet)]).bytes()).expect("a workbook");
-    let titles: Vec<&str> = contents.parts().iter().map(Part::title).collect();
+    let titles: Vec<&str> = contents.parts.iter().map(Part::title).collect();
     assert_eq!(titles, ["Press"]);
 }

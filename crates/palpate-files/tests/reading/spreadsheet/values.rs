@@ -1,12 +1,6 @@
 //! What cells hold.
 
-use palpate_files::{
-    cell::DecimalMark,
-    input::Input,
-    open::Contents,
-    record::read_record,
-    table::{LayoutOptions, ReadOptions},
-};
+use palpate_files::{cell::DecimalMark, input::Input, open::Contents, record::read_record, table::ReadOptions};
 
 use super::{
     message, names, open, read,
@@ -62,10 +56,7 @@ fn numbers_kept_as_texts() {
         "{text}"
     );
     let options = ReadOptions {
-        layout: LayoutOptions {
-            decimal: Some(DecimalMark::Comma),
-            ..LayoutOptions::default()
-        },
+        decimal: Some(DecimalMark::Comma),
         ..ReadOptions::default()
     };
     let input = Input::from_bytes("book", doubtful).expect("bytes");
@@ -91,7 +82,7 @@ fn times_become_seconds() {
         book.formats = vec!["yyyy-mm-dd hh:mm:ss", "[h]:mm:ss"];
         book.from_1904 = from_1904;
         let contents = open(&book.bytes()).expect("a workbook");
-        assert_eq!(names(&contents.parts()[0]), [("Zeit", "s"), ("Kraft", "N")]);
+        assert_eq!(names(&contents.parts[0]), [("Zeit", "s"), ("Kraft", "N")]);
         let columns = read(&contents, 0, &[1]).expect("columns");
         for (row, value) in columns.values[0].iter().enumerate() {
             // Days near 45000 are kept to 0.6 µs.

@@ -1,17 +1,17 @@
 //! Every error, with the place it names and what it suggests.
 
 use palpate_files::{
-    DecimalDoubt, FileError, Foreign,
+    DecimalDoubt, FileError, FileProblem, Foreign,
     cell::{DecimalMark, Delimiter},
     formats::text::detect,
     input::Input,
-    table::LayoutOptions,
+    table::ReadOptions,
 };
 
 use super::{layout_with, read, written};
 
 fn refused(bytes: impl AsRef<[u8]>) -> FileError {
-    layout_with(bytes, LayoutOptions::default()).expect_err("no layout")
+    layout_with(bytes, &ReadOptions::default()).expect_err("no layout")
 }
 
 #[test]
@@ -19,7 +19,7 @@ fn missing_file_keeps_its_source() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("absent.csv");
     let error = Input::open(&path).expect_err("no file");
-    assert!(matches!(error, FileError::NotFound { .. }));
+    assert!(matches!(error.problem, FileProblem::NotFound(_)));
     assert!(std::error::Error::source(&error).is_some_and(<dyn std::error::Error>::is::<std::io::Error>));
     assert!(error.to_string().contains("absent.csv"));
     assert!(error.hint().is_some());
@@ -29,13 +29,13 @@ fn missing_file_keeps_its_source() {
 fn directory() {
     let folder = tempfile::tempdir().expect("a folder");
     let error = Input::open(folder.path()).expect_err("no file");
-    assert!(matches!(error, FileError::Directory { .. }));
+    assert!(matches!(error.problem, FileProblem::Directory));
 }
 
 #[test]
 fn empty() {
     for bytes in [&b""[..], b"\n \r\n", b"\xEF\xBB\xBF", b"\xFF\xFE"] {
-        assert!(matches!(refused(bytes), FileError::Empty { .. }));
+        assert!(matches!(refused(bytes).problem, FileProblem::Empty));
     }
 }
 
@@ -49,7 +49,7 @@ fn no_text() {
         (b"{\"time\": [1, 2]}", Foreign::Json),
     ] {
         let error = refused(bytes);
-        assert!(matches!(error, FileError::Foreign { looks_like, .. } if looks_like == expected), "{error}");
+        assert!(matches!(error.problem, FileProblem::Foreign(looks_like) if looks_like == expected), "{error}");
         assert!(error.hint().is_some());
     }
 }
@@ -57,13 +57,13 @@ fn no_text() {
 #[test]
 fn one_column() {
     let error = refused("Force\n1.5\n2.5\n");
-    assert!(matches!(&error, FileError::OneColumn { line: 2, found, .. } if found == "1.5"));
-    let options = LayoutOptions {
+    assert!(matches!(&error.problem, FileProblem::OneColumn { line: 2, found, .. } if found == "1.5"));
+    let options = ReadOptions {
         delimiter: Some(Delimiter::Tab),
-        ..LayoutOptions::default()
+        ..ReadOptions::default()
     };
-    let error = layout_with("t,F\n0,1.5\n1,2.5\n", options).expect_err("no tab");
-    assert!(matches!(error, FileError::OneColumn { line: 2, .. }));
+    let error = layout_with("t,F\n0,1.5\n1,2.5\n", &options).expect_err("no tab");
+    assert!(matches!(error.problem, FileProblem::OneColumn { line: 2, .. }));
     assert!(error.hint().is_some_and(|hint| hint.contains("tab")));
 }
 
@@ -71,15 +71,15 @@ fn one_column() {
 fn names_but_no_rows() {
     let error = refused("Time,Force\n(s),(N)\n");
     assert!(matches!(
-        error,
-        FileError::NoDataRows {
+        error.problem,
+        FileProblem::NoDataRows {
             header_line: Some(1),
             lines: 2,
             ..
         }
     ));
     let error = refused("Just some words.\n");
-    assert!(matches!(error, FileError::NoDataRows { header_line: None, .. }));
+    assert!(matches!(error.problem, FileProblem::NoDataRows { header_line: None, .. }));
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn uncertain_decimals() {
         ("1.5;2,25\n2.5;3,25\n", DecimalDoubt::Mixed),
     ] {
         let error = refused(text);
-        assert!(matches!(error, FileError::AmbiguousDecimal { doubt, .. } if doubt == expected), "{error}");
+        assert!(matches!(error.problem, FileProblem::AmbiguousDecimal { doubt, .. } if doubt == expected), "{error}");
         assert!(error.hint().is_some());
     }
 }
@@ -99,7 +99,7 @@ fn uncertain_decimals() {
 #[test]
 fn text_in_a_column_of_numbers() {
     let error = read("t,F\n0,1.5\n1,overload\n2,2.5\n", &[1, 2]).expect_err("text");
-    let FileError::TextInNumbers { place, found, .. } = &error else {
+    let FileProblem::TextInNumbers { place, found, .. } = &error.problem else {
         panic!("{error}");
     };
     assert_eq!((place.line, place.column), (3, 2));
@@ -115,7 +115,7 @@ fn text_in_a_column_of_numbers() {
 #[test]
 fn text_in_the_last_row_is_no_footer() {
     let error = read("t,F\n0,1.5\n1,2.5\n2,error\n", &[1, 2]).expect_err("text");
-    assert!(matches!(error, FileError::TextInNumbers { .. }), "{error}");
+    assert!(matches!(error.problem, FileProblem::TextInNumbers { .. }), "{error}");
     let long = "x".repeat(500);
     let error = read(format!("t,F\n0,1.5\n1,{long}\n"), &[2]).expect_err("text");
     assert!(error.to_string().len() < 250);
@@ -127,8 +127,8 @@ fn hints_at_decimal_marks() {
     rows.push_str("100;0,5\n");
     let error = read(&rows, &[2]).expect_err("comma");
     assert!(matches!(
-        error,
-        FileError::TextInNumbers {
+        error.problem,
+        FileProblem::TextInNumbers {
             decimal: DecimalMark::Point,
             ..
         }
@@ -143,7 +143,7 @@ fn not_finite() {
     for word in ["NaN", "-inf", "1e999", "#N/A", "1.#QNAN"] {
         let error = read(format!("t,F\n0,1.5\n1,{word}\n2,2.5\n"), &[1, 2]).expect_err("none");
         assert!(
-            matches!(&error, FileError::NotFinite { place, found } if place.line == 3 && found == word),
+            matches!(&error.problem, FileProblem::NotFinite { place, found } if place.line == 3 && found == word),
             "{error}"
         );
     }
@@ -153,17 +153,17 @@ fn not_finite() {
 #[test]
 fn empty_cell() {
     let error = read("t,F\n0,1.5\n1,\n2,2.5\n", &[1, 2]).expect_err("empty");
-    assert!(matches!(error, FileError::EmptyCell { place } if place.line == 3 && place.column == 2));
+    assert!(matches!(error.problem, FileProblem::EmptyCell(place) if place.line == 3 && place.column == 2));
     let error = read("t,F\n0,1.5\n1,2.5\n2,\n", &[2]).expect_err("empty");
-    assert!(matches!(error, FileError::EmptyCell { .. }));
+    assert!(matches!(error.problem, FileProblem::EmptyCell(_)));
 }
 
 #[test]
 fn ragged_rows() {
     let error = read("t,d,F\n0,1.5,1\n1,2.5\n2,3.5,3\n", &[1, 2, 3]).expect_err("short");
     assert!(matches!(
-        error,
-        FileError::TooFewCells {
+        error.problem,
+        FileProblem::CellCount {
             line: 3,
             expected: 3,
             found: 2,
@@ -171,11 +171,11 @@ fn ragged_rows() {
         }
     ));
     let error = read("t,d,F\n0,1.5,1\n1,2.5,3\n2\n", &[1]).expect_err("cut off");
-    assert!(matches!(error, FileError::TooFewCells { line: 4, .. }));
+    assert!(matches!(error.problem, FileProblem::CellCount { line: 4, .. }));
     let error = read("t,d,F\n0,1.5,1\n1,2,5,3\n2,3.5,3\n3,4.5,5\n", &[1]).expect_err("long");
     assert!(matches!(
-        error,
-        FileError::TooManyCells {
+        error.problem,
+        FileProblem::CellCount {
             line: 3,
             expected: 3,
             found: 4,
@@ -187,37 +187,43 @@ fn ragged_rows() {
 #[test]
 fn faulty_first_row_is_no_header() {
     let error = read("t,F\n0,start\n1,1.5\n2,2.5\n", &[1, 2]).expect_err("text");
-    assert!(matches!(error, FileError::TextInNumbers { place, .. } if place.line == 2));
+    assert!(matches!(error.problem, FileProblem::TextInNumbers { place, .. } if place.line == 2));
 }
 
 #[test]
 fn junk_between_rows() {
     let error = read("t,F\n0,1.5\n1,2.5\nt,F\n0,3.5\n", &[1, 2]).expect_err("two records");
     assert!(
-        matches!(&error, FileError::Interrupted { line: 4, resumes: 5, found, .. } if found == "t,F"),
+        matches!(&error.problem, FileProblem::Interrupted { line: 4, resumes: 5, found, .. } if found == "t,F"),
         "{error}"
     );
     assert!(std::error::Error::source(&error).is_some());
     let mut text = "t,F\n0,1.5\n1,2.5\n".to_owned();
     text.push_str(&"lost,lost\n".repeat(60));
-    assert!(matches!(read(&text, &[1, 2]), Err(FileError::TextInNumbers { .. })));
+    assert!(matches!(
+        read(&text, &[1, 2]),
+        Err(FileError {
+            problem: FileProblem::TextInNumbers { .. },
+            ..
+        })
+    ));
 }
 
 #[test]
 fn no_such_column() {
     for column in [0, 3] {
         let error = read("0,1.5\n1,2.5\n", &[column]).expect_err("no column");
-        assert!(matches!(error, FileError::NoSuchColumn { columns: 2, .. }));
+        assert!(matches!(error.problem, FileProblem::NoSuchColumn { columns: 2, .. }));
     }
 }
 
 #[test]
 fn endless_line() {
     let text = vec![b'7'; 600_000];
-    assert!(matches!(refused(&text), FileError::LineTooLong { line: 1, .. }));
+    assert!(matches!(refused(&text).problem, FileProblem::LineTooLong { line: 1, .. }));
     let late = [b"0,1.5\n1,2.5\n".repeat(30_000), text].concat();
     let error = read(&late, &[1]).expect_err("a long line");
-    assert!(matches!(error, FileError::LineTooLong { line: 60_001, .. }), "{error}");
+    assert!(matches!(error.problem, FileProblem::LineTooLong { line: 60_001, .. }), "{error}");
 }
 
 #[test]
@@ -235,8 +241,14 @@ fn text_in_utf16_is_shown_as_text() {
 fn file_gone_between_looking_and_reading() {
     let file = written("0,1.5\n1,2.5\n");
     let input = Input::open(&file.path).expect("a file");
-    let layout = detect(&input, &LayoutOptions::default()).expect("a layout");
+    let layout = detect(&input, &ReadOptions::default()).expect("a layout");
     std::fs::write(&file.path, "").expect("emptied");
     let error = palpate_files::formats::text::read_columns(&input, &layout, &[1], &mut |_, _| {});
-    assert!(matches!(error, Err(FileError::NoDataRows { .. })));
+    assert!(matches!(
+        error,
+        Err(FileError {
+            problem: FileProblem::NoDataRows { .. },
+            ..
+        })
+    ));
 }

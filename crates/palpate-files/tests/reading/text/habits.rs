@@ -4,7 +4,7 @@ use palpate_files::FileError;
 use palpate_files::cell::{DecimalMark, Delimiter};
 use palpate_files::formats::text::read_columns;
 use palpate_files::input::{Encoding, Input};
-use palpate_files::table::{ColumnKind, LayoutOptions};
+use palpate_files::table::{ColumnKind, ReadOptions};
 
 use super::{layout, layout_with, names, read, units, written};
 
@@ -211,35 +211,35 @@ fn columns_in_any_order_and_repeated() {
 
 #[test]
 fn options_override() {
-    let fixed = LayoutOptions {
+    let fixed = ReadOptions {
         decimal: Some(DecimalMark::Comma),
-        ..LayoutOptions::default()
+        ..ReadOptions::default()
     };
     let thousands = "1,234;5,678\n2,345;6,789\n";
-    assert_eq!(layout_with(thousands, fixed).expect("a layout").decimal, DecimalMark::Comma);
-    let named = LayoutOptions {
+    assert_eq!(layout_with(thousands, &fixed).expect("a layout").decimal, DecimalMark::Comma);
+    let named = ReadOptions {
         header: Some(true),
-        ..LayoutOptions::default()
+        ..ReadOptions::default()
     };
-    let numbered = layout_with("0,1\n0.5,1.5\n0.6,1.6\n", named).expect("a layout");
+    let numbered = layout_with("0,1\n0.5,1.5\n0.6,1.6\n", &named).expect("a layout");
     assert_eq!((names(&numbered), numbered.first_data_line), (vec!["0", "1"], 2));
-    let nameless = LayoutOptions {
+    let nameless = ReadOptions {
         header: Some(false),
-        ..LayoutOptions::default()
+        ..ReadOptions::default()
     };
-    assert_eq!(layout_with("t,F\n0,1.5\n1,2.5\n", nameless).expect("a layout").header_line, None);
-    let skipping = LayoutOptions {
+    assert_eq!(layout_with("t,F\n0,1.5\n1,2.5\n", &nameless).expect("a layout").header_line, None);
+    let skipping = ReadOptions {
         skip_lines: Some(2),
-        ..LayoutOptions::default()
+        ..ReadOptions::default()
     };
-    let skipped = layout_with("7,8\nold,names\nt,F\n0,1.5\n", skipping).expect("a layout");
+    let skipped = layout_with("7,8\nold,names\nt,F\n0,1.5\n", &skipping).expect("a layout");
     assert_eq!((skipped.header_line, skipped.first_data_line), (Some(3), 4));
-    let blanks = LayoutOptions {
+    let blanks = ReadOptions {
         delimiter: Some(Delimiter::Blanks),
         encoding: Some(Encoding::Windows1252),
-        ..LayoutOptions::default()
+        ..ReadOptions::default()
     };
-    let layout = layout_with("1\t2.5\n2\t3.5\n", blanks).expect("a layout");
+    let layout = layout_with("1\t2.5\n2\t3.5\n", &blanks).expect("a layout");
     assert_eq!((layout.delimiter, layout.encoding), (Delimiter::Blanks, Encoding::Windows1252));
 }
 

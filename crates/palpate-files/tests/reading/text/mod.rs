@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use palpate_files::FileError;
 use palpate_files::formats::text::{detect, read_columns};
 use palpate_files::input::Input;
-use palpate_files::table::{Columns, Layout, LayoutOptions};
+use palpate_files::table::{Columns, Layout, ReadOptions};
 
 /// A file on disk for as long as this lives.
 struct Written {
@@ -24,18 +24,18 @@ fn written(bytes: impl AsRef<[u8]>) -> Written {
     Written { _folder: folder, path }
 }
 
-fn layout_with(bytes: impl AsRef<[u8]>, options: LayoutOptions) -> Result<Layout, FileError> {
-    detect(&Input::open(&written(bytes).path)?, &options)
+fn layout_with(bytes: impl AsRef<[u8]>, options: &ReadOptions) -> Result<Layout, FileError> {
+    detect(&Input::open(&written(bytes).path)?, options)
 }
 
 fn layout(bytes: impl AsRef<[u8]>) -> Layout {
-    layout_with(bytes, LayoutOptions::default()).expect("a layout")
+    layout_with(bytes, &ReadOptions::default()).expect("a layout")
 }
 
 fn read(bytes: impl AsRef<[u8]>, columns: &[usize]) -> Result<Columns, FileError> {
     let file = written(bytes);
     let input = Input::open(&file.path)?;
-    let layout = detect(&input, &LayoutOptions::default())?;
+    let layout = detect(&input, &ReadOptions::default())?;
     read_columns(&input, &layout, columns, &mut |_, _| {})
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use palpate_files::cell::{DecimalMark, Delimiter};
 use palpate_files::formats::text::{detect, read_columns};
 use palpate_files::input::{Encoding, Input};
-use palpate_files::table::{Columns, Layout, LayoutOptions};
+use palpate_files::table::{Columns, Layout, ReadOptions};
 
 use super::{names, units};
 
@@ -23,7 +23,7 @@ fn folder() -> Option<PathBuf> {
 fn open(folder: &Path, name: &str, columns: &[usize]) -> (Layout, Columns) {
     let path = folder.join(name);
     let input = Input::open(&path).unwrap_or_else(|error| panic!("{error}"));
-    let layout = detect(&input, &LayoutOptions::default()).unwrap_or_else(|error| panic!("{error}"));
+    let layout = detect(&input, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"));
     let read = read_columns(&input, &layout, columns, &mut |_, _| {});
     (layout, read.unwrap_or_else(|error| panic!("{error}")))
 }

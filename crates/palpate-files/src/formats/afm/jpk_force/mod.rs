@@ -19,7 +19,7 @@ mod segment;
 mod stored;
 
 use crate::{
-    error::FileError,
+    error::{FileError, FileProblem},
     formats::afm::{
         assemble::assemble,
         curve::{Curve, Segment},
@@ -41,7 +41,7 @@ const MOST_SAMPLED: usize = 256;
 
 /// Whether a file is an archive of force curves.
 pub(crate) fn recognise(input: &Input) -> bool {
-    let beginning = input.beginning();
+    let beginning = &input.beginning;
     is_zip(beginning)
         && Archive::open(input)
             .is_ok_and(|archive| archive.has(HEADER) && !archive.curves().is_ok_and(|all| all.is_empty()))
@@ -79,7 +79,7 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
                     places.push(place);
                 }
             }
-            Err(error) if several => skipped.push(SkippedPart::new(name, without_path(input, &error))),
+            Err(error) if several => skipped.push(SkippedPart::new(name, without_path(&error))),
             Err(error) => return Err(error),
         }
     }
@@ -95,10 +95,9 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
 }
 
 /// The message of an error less the file it is about.
-fn without_path(input: &Input, error: &FileError) -> String {
-    let text = error.to_string();
-    let short = text.strip_prefix(&format!("{}: ", input.name().display())).map(str::to_owned);
-    short.unwrap_or(text)
+fn without_path(error: &FileError) -> String {
+    let problem = error.problem.to_string();
+    problem.strip_prefix(": ").map_or_else(|| error.to_string(), str::to_owned)
 }
 
 /// Where the channels of each segment are stored.
@@ -170,7 +169,7 @@ impl ReadPart for JpkForce {
         let (found, _) = curve(&self.input, &mut archive, &self.shared, place, false)?;
         let (curve, members) = found.ok_or_else(nothing)?;
         let mut read = Columns::of(columns.len());
-        let total = self.input.size();
+        let total = self.input.size;
         for (done, segment) in curve.segments.iter().enumerate() {
             progress(total * done as u64 / curve.segments.len() as u64, total);
             self.read_segment(&mut archive, segment, &members[segment.number], columns, &mut read)?;
@@ -217,7 +216,8 @@ impl JpkForce {
             chosen.fill(index, &numbers, &mut row).map_err(|place| {
                 let place = format!("segment {}, row {}, column {}", segment.number, index + 1, columns[place]);
                 let hint = "export the curve again, or choose another column";
-                FileError::bad_cell(self.input.name(), place, "a finite number", "none, or an infinite one", hint)
+                let (expected, found) = ("a finite number", "none, or an infinite one");
+                self.input.wrong(FileProblem::bad_cell(&place, expected, found, hint))
             })?;
             read.push_values(&row);
         }

@@ -21,7 +21,7 @@ use scan::Block;
 
 /// Whether a file begins like a text export: comment lines that name a segment and its columns.
 pub(crate) fn recognise(input: &Input) -> bool {
-    let text = String::from_utf8_lossy(input.beginning());
+    let text = String::from_utf8_lossy(&input.beginning);
     let text = text.trim_start_matches('\u{feff}').trim_start();
     let head = text.lines().take_while(|line| line.starts_with('#') || line.trim().is_empty());
     let (mut columns, mut segment) = (false, false);

@@ -28,7 +28,7 @@ use scan::{MOST_SEGMENTS, Scan, scan};
 
 /// Whether a file begins like one of afmformats: its name in the first line, or marked metadata.
 pub(crate) fn recognise(input: &Input) -> bool {
-    let text = String::from_utf8_lossy(input.beginning());
+    let text = String::from_utf8_lossy(&input.beginning);
     let text = text.trim_start_matches('\u{feff}');
     let mut head = text.lines().take_while(|line| line.starts_with('#') || line.trim().is_empty());
     let named = |line: &str| line.starts_with("# afmformats ") || line.trim_end() == BEGIN;

@@ -1,5 +1,7 @@
 //! Streams of a compound file: sectors that are chained by a table ([MS-CFB]).
 
+use std::borrow::Cow;
+
 use super::records::{u16_at, u32_at};
 
 /// First bytes of a compound file.
@@ -12,11 +14,8 @@ const SMALL: usize = 64;
 
 /// A compound file with its tables read.
 pub(super) struct Compound<'a> {
-    bytes: &'a [u8],
-    sector: usize,
-    next: Vec<u32>,
-    next_small: Vec<u32>,
-    small: Vec<u8>,
+    large: Sectors<'a>,
+    small: Sectors<'a>,
     smallest_large: u64,
     entries: Vec<Entry>,
 }
@@ -27,113 +26,110 @@ struct Entry {
     size: u64,
 }
 
+/// Sectors of one size, and which follows which.
+struct Sectors<'a> {
+    bytes: Cow<'a, [u8]>,
+    size: usize,
+    next: Vec<u32>,
+}
+
 impl<'a> Compound<'a> {
     /// `None` where its tables break off or run in a ring.
-    pub(super) fn of(bytes: &'a [u8]) -> Option<Self> {
-        let sector = match u16_at(bytes, 30)? {
+    pub(super) fn of(file: &'a [u8]) -> Option<Self> {
+        let size = match u16_at(file, 30)? {
             9 => 512,
             12 => 4096,
             _ => return None,
         };
-        let mut compound = Self {
-            bytes,
-            sector,
-            next: Vec::new(),
-            next_small: Vec::new(),
-            small: Vec::new(),
-            smallest_large: u64::from(u32_at(bytes, 56)?),
-            entries: Vec::new(),
-        };
-        compound.next = compound.table()?;
-        let directory = compound.chain(u32_at(bytes, 48)?, u64::MAX)?;
-        compound.entries = directory.chunks_exact(128).filter_map(entry).collect();
-        let root = compound.entries.first()?;
-        let (start, size) = (root.start, root.size);
-        if u32_at(bytes, 64)? > 0 {
-            let table = compound.chain(u32_at(bytes, 60)?, u64::MAX)?;
-            compound.next_small = numbers(&table);
-            compound.small = compound.chain(start, size)?;
+        let mut large = Sectors::of(file.get(size..)?, size);
+        large.next = table(file, &large)?;
+        let directory = large.chain(u32_at(file, 48)?, u64::MAX)?;
+        let entries: Vec<Entry> = directory.chunks_exact(128).filter_map(entry).collect();
+        let root = entries.first()?;
+        let mut small = Sectors::of(&[], SMALL);
+        if u32_at(file, 64)? > 0 {
+            small.next = numbers(&large.chain(u32_at(file, 60)?, u64::MAX)?);
+            small.bytes = large.chain(root.start, root.size)?.into();
         }
-        Some(compound)
-    }
-
-    fn sectors(&self) -> usize {
-        self.bytes.len() / self.sector
-    }
-
-    fn sector(&self, number: u32) -> Option<&'a [u8]> {
-        let start = (number as usize).checked_add(1)?.checked_mul(self.sector)?;
-        // The last sector of a file may be short.
-        let end = start.checked_add(self.sector)?.min(self.bytes.len());
-        self.bytes.get(start..end).filter(|sector| !sector.is_empty())
-    }
-
-    /// The table that says which sector follows which. Its own sectors are listed in the header, and in a chain behind.
-    fn table(&self) -> Option<Vec<u32>> {
-        let mut list = numbers(self.bytes.get(76..512)?);
-        let mut more = u32_at(self.bytes, 68)?;
-        let mut steps = 0;
-        while more < LAST_SECTOR {
-            steps += 1;
-            let mut sector = numbers(self.sector(more)?);
-            more = sector.pop()?;
-            list.extend(sector);
-            if steps > self.sectors() {
-                return None;
-            }
-        }
-        let mut table = Vec::new();
-        for number in list.into_iter().filter(|number| *number < LAST_SECTOR).take(self.sectors() + 1) {
-            table.extend(numbers(self.sector(number)?));
-        }
-        Some(table)
-    }
-
-    /// The bytes of a chain of sectors, at most `size` of them.
-    fn chain(&self, start: u32, size: u64) -> Option<Vec<u8>> {
-        chain(&self.next, start, size, self.sectors(), |number| self.sector(number))
-    }
-
-    fn small_chain(&self, start: u32, size: u64) -> Option<Vec<u8>> {
-        chain(&self.next_small, start, size, self.small.len() / SMALL, |number| {
-            let from = (number as usize).checked_mul(SMALL)?;
-            self.small.get(from..from + SMALL)
+        Some(Self {
+            large,
+            small,
+            smallest_large: u64::from(u32_at(file, 56)?),
+            entries,
         })
     }
 
+    fn entry(&self, name: &str) -> Option<&Entry> {
+        self.entries.iter().find(|entry| entry.name.eq_ignore_ascii_case(name))
+    }
+
     pub(super) fn has(&self, name: &str) -> bool {
-        self.entries.iter().any(|entry| entry.name.eq_ignore_ascii_case(name))
+        self.entry(name).is_some()
     }
 
     /// The bytes of a stream; `None` where there is none of this name or it breaks off.
     pub(super) fn stream(&self, name: &str) -> Option<Vec<u8>> {
-        let entry = self.entries.iter().find(|entry| entry.name.eq_ignore_ascii_case(name))?;
-        if entry.size < self.smallest_large {
-            self.small_chain(entry.start, entry.size)
-        } else {
-            self.chain(entry.start, entry.size)
-        }
+        let entry = self.entry(name)?;
+        let sectors = if entry.size < self.smallest_large { &self.small } else { &self.large };
+        sectors.chain(entry.start, entry.size)
     }
 }
 
-/// The bytes of a chain, which has no more than `most` sectors unless it runs in a ring.
-fn chain<'s>(
-    next: &[u32],
-    start: u32,
-    size: u64,
-    most: usize,
-    sector: impl Fn(u32) -> Option<&'s [u8]>,
-) -> Option<Vec<u8>> {
-    let (mut bytes, mut number) = (Vec::new(), start);
-    for _ in 0..=most {
-        if number >= LAST_SECTOR || bytes.len() as u64 >= size {
-            bytes.truncate(usize::try_from(size).unwrap_or(usize::MAX));
-            return Some(bytes);
+impl<'a> Sectors<'a> {
+    fn of(bytes: &'a [u8], size: usize) -> Self {
+        Self {
+            bytes: bytes.into(),
+            size,
+            next: Vec::new(),
         }
-        bytes.extend_from_slice(sector(number)?);
-        number = *next.get(number as usize)?;
     }
-    None
+
+    /// How many there are, but for one that may be cut short.
+    fn count(&self) -> usize {
+        self.bytes.len() / self.size
+    }
+
+    fn get(&self, number: u32) -> Option<&[u8]> {
+        let start = (number as usize).checked_mul(self.size)?;
+        // The last sector of a file may be short.
+        let end = start.checked_add(self.size)?.min(self.bytes.len());
+        self.bytes.get(start..end).filter(|sector| !sector.is_empty())
+    }
+
+    /// The bytes of a chain, at most `size` of them; it has no more sectors than there are unless it runs in a ring.
+    fn chain(&self, start: u32, size: u64) -> Option<Vec<u8>> {
+        let (mut bytes, mut number) = (Vec::new(), start);
+        for _ in 0..=self.count() + 1 {
+            if number >= LAST_SECTOR || bytes.len() as u64 >= size {
+                bytes.truncate(usize::try_from(size).unwrap_or(usize::MAX));
+                return Some(bytes);
+            }
+            bytes.extend_from_slice(self.get(number)?);
+            number = *self.next.get(number as usize)?;
+        }
+        None
+    }
+}
+
+/// The table that says which sector follows which. Its own sectors are listed in the header, and in a chain behind.
+fn table(file: &[u8], sectors: &Sectors<'_>) -> Option<Vec<u32>> {
+    let mut list = numbers(file.get(76..512)?);
+    let mut more = u32_at(file, 68)?;
+    let mut steps = 0;
+    while more < LAST_SECTOR {
+        steps += 1;
+        let mut sector = numbers(sectors.get(more)?);
+        more = sector.pop()?;
+        list.extend(sector);
+        if steps > sectors.count() + 1 {
+            return None;
+        }
+    }
+    let mut table = Vec::new();
+    for number in list.into_iter().filter(|number| *number < LAST_SECTOR).take(sectors.count() + 2) {
+        table.extend(numbers(sectors.get(number)?));
+    }
+    Some(table)
 }
 
 fn numbers(bytes: &[u8]) -> Vec<u32> {

@@ -14,10 +14,10 @@ mod sift;
 
 use std::{collections::BTreeSet, io::Cursor, ops::ControlFlow};
 
-use calamine::{Data, Range, Reader, XlsOptions};
+use calamine::{Data, Range, Reader};
 
 use crate::{
-    error::FileError,
+    error::{FileError, FileProblem},
     formats::spreadsheet::{
         book::{Book, DAYS_FROM_1900, DAYS_FROM_1904, Sheet, Visitor},
         cell::{Cell, Value},
@@ -27,9 +27,6 @@ use crate::{
 use compound::Compound;
 pub(super) use compound::SIGNATURE;
 use sift::Sifted;
-
-/// The code page of UTF-16: texts of this format are in no other, whatever it says.
-const UTF_16: u16 = 1200;
 
 /// A workbook whose cells are in memory.
 pub(super) struct Xls {
@@ -43,11 +40,9 @@ impl Xls {
     pub(super) fn open(input: &Input) -> Result<Self, FileError> {
         let sifted = sifted(input)?;
         contained(input, || {
-            let mut options = XlsOptions::default();
-            options.force_codepage = Some(UTF_16);
             let file = Cursor::new(container::around("Workbook", &sifted.stream));
             let wrong = |error: calamine::XlsError| input.damaged("workbook", "sheets of cells", error.to_string());
-            let mut reading = calamine::Xls::new_with_options(file, options).map_err(wrong)?;
+            let mut reading = calamine::Xls::new(file).map_err(wrong)?;
             let (mut cells, mut names) = (Vec::new(), BTreeSet::new());
             for name in reading.sheet_names() {
                 let range = reading.worksheet_range(&name).map_err(wrong)?;
@@ -80,22 +75,22 @@ fn sifted(input: &Input) -> Result<Sifted, FileError> {
     let compound = Compound::of(&bytes)
         .ok_or_else(|| input.damaged("compound file", "a chain of sectors", "one that breaks off"))?;
     if compound.has("EncryptedPackage") {
-        return Err(input.encrypted());
+        return Err(input.wrong(FileProblem::Encrypted));
     }
     let Some(stream) = compound.stream("Workbook") else {
         let found = if compound.has("Book") { "one of Excel 95 or older" } else { "none" };
         let hint = "open it where it was made and save its table as .xlsx or CSV";
-        return Err(input.unfit("compound file", "a workbook of Excel 97 or later", found, hint));
+        return Err(input.wrong(FileProblem::unfit("compound file", "a workbook of Excel 97 or later", found, hint)));
     };
     let sifted = sift::sift(&stream).map_err(|(place, expected)| match expected.starts_with("at most") {
         true => {
             let hint = "clear what stands far away from the table, or save the workbook as .xlsx";
-            input.unfit(place, expected, "more", hint)
+            input.wrong(FileProblem::unfit(place, expected, "more", hint))
         }
         false => input.damaged(place, expected, "other bytes, or their end"),
     })?;
     if sifted.encrypted {
-        return Err(input.encrypted());
+        return Err(input.wrong(FileProblem::Encrypted));
     }
     if sifted.stream.len() > container::MOST_OF_STREAM {
         return Err(input.too_large("the cells of a workbook", container::MOST_OF_STREAM as u64));

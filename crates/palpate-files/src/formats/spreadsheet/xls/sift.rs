@@ -44,9 +44,8 @@ pub(super) fn sift(stream: &[u8]) -> Result<Sifted, Wrong> {
     let (mut room, mut gone_over) = (MOST_CELLS, 0);
     for (index, (start, written)) in starts.into_iter().enumerate() {
         let place = format!("sheet {}", sifted.sheets[index].name);
-        let Ok(begins) = u32::try_from(sifted.stream.len()) else {
-            return Err((place, "at most 4 GiB"));
-        };
+        // A stream of 4 GiB is refused before it is read.
+        let begins = sifted.stream.len() as u32;
         sifted.stream[written..written + 4].copy_from_slice(&begins.to_le_bytes());
         sifted.put(BEGIN, &[0x00, 0x06, 0x10, 0x00]);
         let mut cells = Cells::default();

@@ -4,6 +4,8 @@
 //! that are too large for its numbers, takes the first shared text where a number is none, and drops what stands in a
 //! value beside plain text. All of this is damage here, and told with its place.
 
+use std::borrow::Cow;
+
 use quick_xml::{
     escape::resolve_xml_entity,
     events::{BytesStart, Event, attributes::Attribute},
@@ -11,7 +13,7 @@ use quick_xml::{
 
 use super::package::{MOST_KEPT, MOST_OF_SHEET, Package};
 use crate::{
-    error::FileError,
+    error::{FileError, FileProblem},
     formats::spreadsheet::{
         book::MOST_SHEETS,
         cell::{MOST_COLUMNS, MOST_ROWS, letters, reference},
@@ -136,11 +138,9 @@ impl Checked<'_> {
         match name.as_ref() {
             "si" => self.tally.texts += 1,
             "sst" => {
-                let said = self.attributes(element)?;
-                for said in said.iter().filter(|said| said.key.local_name().as_ref() == "uniqueCount") {
-                    let said = said.value.trim().parse().unwrap_or(u64::MAX);
-                    self.tally.texts_said = self.tally.texts_said.max(said);
-                }
+                let said = self.said(element, "uniqueCount")?;
+                let said = said.map_or(0, |said| said.trim().parse().unwrap_or(u64::MAX));
+                self.tally.texts_said = self.tally.texts_said.max(said);
             }
             "xf" | "font" | "fill" | "border" => self.tally.styles += 1,
             "sheetData" => {
@@ -163,31 +163,32 @@ impl Checked<'_> {
         all.map_err(|error| self.package.damaged(self.path, "attributes", &error.to_string()))
     }
 
+    /// The value of an attribute, the first of exactly this name, as `calamine` takes it.
+    fn said<'a>(&self, element: &'a BytesStart<'_>, name: &str) -> Result<Option<Cow<'a, str>>, FileError> {
+        let mut all = self.attributes(element)?.into_iter();
+        Ok(all.find(|attribute| attribute.key.as_ref() == name).map(|attribute| attribute.value))
+    }
+
     /// Parts that are read are those gone over here: other names would lead around.
     fn relation(&mut self, element: &BytesStart<'_>) -> Result<(), FileError> {
-        let (mut kind, mut target) = (String::new(), String::new());
-        for attribute in self.attributes(element)? {
-            match attribute.key.local_name().as_ref() {
-                "Type" => kind = attribute.value.rsplit('/').next().unwrap_or_default().to_owned(),
-                "Target" => target = attribute.value.into_owned(),
-                _ => {}
-            }
-        }
+        let kind = self.said(element, "Type")?.unwrap_or_default();
+        let kind = kind.rsplit('/').next().unwrap_or_default();
+        let target = self.said(element, "Target")?.unwrap_or_default();
         let lower = target.to_ascii_lowercase();
-        match kind.as_str() {
+        match kind {
             "officeDocument" if lower.ends_with(".bin") => {
                 let (expected, found) = ("a workbook of XML parts (.xlsx)", "one of binary parts (.xlsb)");
                 let hint = "open it where it was made and save it as .xlsx";
-                return Err(self.package.input.unfit("zip archive", expected, found, hint));
+                return Err(self.package.input.wrong(FileProblem::unfit("zip archive", expected, found, hint)));
             }
-            "officeDocument" if self.path == "_rels/.rels" => target.clone_into(&mut self.found.document),
+            "officeDocument" if self.path == "_rels/.rels" => target.as_ref().clone_into(&mut self.found.document),
             _ => {}
         }
         // Texts and styles are looked for under one name only, and sheets without them would show other values.
         let document = self.found.document.to_lowercase();
         let folder = document.trim_start_matches('/').rsplit_once('/').map_or("", |(folder, _)| folder);
         let only = |name: &str| lower == name || lower.trim_start_matches('/') == format!("{folder}/{name}");
-        let fits = match kind.as_str() {
+        let fits = match kind {
             "officeDocument" | "worksheet" => lower.ends_with(".xml"),
             "styles" => only("styles.xml"),
             "sharedStrings" => only("sharedstrings.xml"),
@@ -201,44 +202,38 @@ impl Checked<'_> {
 
     fn begin_in_rows(&mut self, element: &BytesStart<'_>) -> Result<(), FileError> {
         let name = element.local_name();
-        let attributes = if matches!(name.as_ref(), "row" | "c") { self.attributes(element)? } else { Vec::new() };
-        let said = |wanted: &str| {
-            let found = attributes.iter().find(|attribute| attribute.key.local_name().as_ref() == wanted);
-            found.map(|attribute| attribute.value.as_ref())
+        let (place, kind) = match name.as_ref() {
+            "row" | "c" => (self.said(element, "r")?, self.said(element, "t")?),
+            _ => (None, None),
         };
         let damaged = |expected: &str, found: &str| Err(self.package.damaged(self.path, expected, found));
         let Some(rows) = &mut self.rows else { return Ok(()) };
         match (name.as_ref(), &mut rows.cell) {
             ("row", _) => {
-                if let Some(text) = said("r") {
-                    let number = text.parse::<u32>().ok().filter(|number| (1..=MOST_ROWS).contains(number));
-                    let Some(number) = number else {
-                        return damaged("the number of a row", text);
-                    };
-                    rows.row = number - 1;
+                if let Some(text) = place {
+                    match text.parse() {
+                        Ok(number @ 1..=MOST_ROWS) => rows.row = number - 1,
+                        _ => return damaged("the number of a row", &text),
+                    }
                 }
             }
             ("c", _) => {
-                let place = match said("r") {
+                let place = match place {
                     None => (rows.row, rows.column),
-                    Some(text) => match reference(text) {
+                    Some(text) => match reference(&text) {
                         Some(place) => place,
-                        None => return damaged("the place of a cell", text),
+                        None => return damaged("the place of a cell", &text),
                     },
                 };
                 rows.column = place.1;
-                let kind = said("t").unwrap_or("n").to_owned();
                 rows.cell = Some(OpenCell {
-                    kind,
+                    kind: kind.unwrap_or("n".into()).into_owned(),
                     ..OpenCell::default()
                 });
-                let late = rows.last.is_some_and(|last| last >= place);
+                let late = rows.last.replace(place).is_some_and(|last| last >= place);
                 if late || place.0 >= MOST_ROWS || place.1 >= MOST_COLUMNS {
-                    let named = format!("{}, cell {}{}", self.path, letters(place.1), u64::from(place.0) + 1);
-                    let (expected, found) = ("cells row by row inside of a sheet", "a cell out of order");
-                    return Err(self.package.damaged(&named, expected, found));
+                    return self.wrong("cells row by row inside of a sheet", "a cell out of order");
                 }
-                rows.last = Some(place);
             }
             ("v", Some(cell)) if !cell.valued && !cell.in_value => {
                 cell.in_value = true;

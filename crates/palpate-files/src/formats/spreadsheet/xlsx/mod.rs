@@ -18,7 +18,7 @@ use std::{
 use calamine::{Reader, SheetType};
 
 use crate::{
-    error::{FileError, shown},
+    error::{FileError, FileProblem, shown},
     formats::spreadsheet::{
         book::{Book, DAYS_FROM_1900, DAYS_FROM_1904, Sheet, Visitor},
         cell::{Cell, Value},
@@ -44,7 +44,7 @@ impl Xlsx {
         let found = guard::check(&Package::open(input)?)?;
         if !found.has_sheets {
             let hint = "name a workbook, or open this file where it was made and save its table as .xlsx or CSV";
-            return Err(input.unfit("zip archive", "a workbook with sheets", found.document, hint));
+            return Err(input.wrong(FileProblem::unfit("zip archive", "a workbook with sheets", found.document, hint)));
         }
         let reading: Reading = contained(input, || {
             let stored = BufReader::with_capacity(1 << 16, input.seekable()?);
