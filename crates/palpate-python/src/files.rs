@@ -142,6 +142,7 @@ pub(crate) fn convert(
 ///     A description or a law that is wrong, a table that cannot be written.
 #[pyfunction]
 #[pyo3(signature = (paths, out, *, test=None, laws=None, intervals=None, fit_until_s=None, restart=false))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn batch(
     py: Python<'_>,
     paths: Vec<PathBuf>,

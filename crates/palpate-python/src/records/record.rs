@@ -553,6 +553,7 @@ impl Record {
     /// OptionError
     ///     A law that is none, or has no such form.
     #[pyo3(signature = (*, test=None, laws=None, cuts=None, creep=false, intervals=None, fit_until_s=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn compare(
         &self,
         py: Python<'_>,
