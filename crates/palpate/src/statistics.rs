@@ -1,6 +1,6 @@
 //! Small robust statistics that several steps share.
 
-pub(crate) use crate::vector::products::dot;
+pub(crate) use crate::vector::dot;
 use std::cell::Cell;
 
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
@@ -33,6 +33,12 @@ pub(crate) fn range(values: &[f64]) -> f64 {
 /// Arithmetic mean. NaN for an empty slice.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Root of the mean square of measured less simulated.
+pub(crate) fn rms(measured: &[f64], simulated: &[f64]) -> f64 {
+    let square: f64 = measured.iter().zip(simulated).map(|(m, s)| (m - s).powi(2)).sum();
+    (square / measured.len() as f64).sqrt()
 }
 
 /// Standard deviation of white noise on top of a signal that is straight over three samples.

@@ -258,30 +258,18 @@ pub fn factor(unit: &str, dimension: Dimension) -> Option<f64> {
 /// # Errors
 /// [`UnitError`] when there is no number, no unit, a unit of another kind, or a value that is not finite.
 pub fn parse(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
-    let trimmed = text.trim();
-    let (number, unit) = split_number(trimmed);
-    let value: f64 = number.parse().map_err(|_| UnitError::NotANumber {
-        dimension,
-        found: text.to_owned(),
-    })?;
+    let (number, unit) = split_number(text.trim());
+    let (unit, found) = (unit.to_owned(), text.to_owned());
+    let Ok(value) = number.parse::<f64>() else {
+        return Err(UnitError::NotANumber { dimension, found });
+    };
     if unit.is_empty() {
-        return Err(UnitError::MissingUnit {
-            dimension,
-            found: text.to_owned(),
-        });
+        return Err(UnitError::MissingUnit { dimension, found });
     }
-    let factor = factor(unit, dimension).ok_or_else(|| UnitError::UnknownUnit {
-        dimension,
-        unit: unit.to_owned(),
-    })?;
-    let scaled = scale(value, factor);
-    if scaled.is_finite() {
-        Ok(scaled)
-    } else {
-        Err(UnitError::NotFinite {
-            dimension,
-            found: text.to_owned(),
-        })
+    match factor(&unit, dimension).map(|factor| scale(value, factor)) {
+        None => Err(UnitError::UnknownUnit { dimension, unit }),
+        Some(scaled) if scaled.is_finite() => Ok(scaled),
+        Some(_) => Err(UnitError::NotFinite { dimension, found }),
     }
 }
 

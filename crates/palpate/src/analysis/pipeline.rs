@@ -1,11 +1,9 @@
 //! The order of the steps.
 
-use super::error::AnalysisError;
-use super::finding::Finding;
 use super::holds::{HoldAnalysis, analyze_hold};
-use super::options::AnalysisOptions;
 use super::prepare::{ClockSkew, Prepared, corrected, signal_findings};
 use super::together::{Across, ModulusSource, Overlay, across, changing_rate, implied_modulus, overlay};
+use super::{AnalysisError, AnalysisOptions, Finding};
 use crate::contact::{Specimen, SpecimenError};
 use crate::number::significant;
 use crate::record::{Record, SignalReport};

@@ -187,8 +187,8 @@ impl CalibrationData {
         self.samples
     }
 
-    /// Contact displacements (m) of the rows of a table of equilibrium forces: where the jaw was held, the deepest, and some between where
-    /// these are far apart.
+    /// Contact displacements (m) of the rows of a table of equilibrium forces: where the jaw was held, the deepest, and some between
+    /// where these are far apart.
     #[must_use]
     pub fn levels(&self) -> &[f64] {
         &self.levels

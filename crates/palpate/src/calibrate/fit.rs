@@ -9,6 +9,7 @@ use crate::analysis::HoldoutError;
 use crate::fit::{Assessed, Estimate, NoiseModel, Scale, Termination};
 use crate::forecast::{Criteria, criteria};
 use crate::simulate::{Motion, simulate_force};
+use crate::statistics::rms;
 use crate::watch::{Stages, Watch};
 
 /// Distance from the best value, as a logarithm, beyond which an end counts as open: a factor of a million.
@@ -89,13 +90,7 @@ pub fn calibrate(
     }
     let mut stages = Stages::new(format!("calibrating {candidate}"), watch);
     let found = search(&prepared, data, &mut stages)?;
-    let problem = Problem {
-        prepared: &prepared,
-        motion: data.motion(),
-        times: &data.times()[..data.fitted()],
-        forces: &data.forces()[..data.fitted()],
-        held: None,
-    };
+    let problem = Problem::of(&prepared, data);
     let contact = prepared.contact(&found.theta).ok_or(CalibrateError::NoStiffness)?;
     let simulated = simulate_force(data.motion(), &contact, data.times())?;
     // A number at its bound has no error, the others have theirs beside it.
@@ -212,11 +207,6 @@ fn transformed(covariance: &[Vec<f64>], gradients: &[Vec<f64>]) -> Vec<Vec<f64>>
     let entry = |i: usize, j: usize| product(&gradients[i.min(j)], &gradients[i.max(j)]);
     let size = gradients.len();
     (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
-}
-
-fn rms(measured: &[f64], simulated: &[f64]) -> f64 {
-    let square: f64 = measured.iter().zip(simulated).map(|(m, s)| (m - s).powi(2)).sum();
-    (square / measured.len() as f64).sqrt()
 }
 
 /// What the fitted part of the record has shown.

@@ -7,7 +7,7 @@
 //! | `data.rs` | what is fitted: a motion of the jaw and the force it met | |
 //! | `candidate.rs` | a law of the layer and one of the relaxed force | (10), (11) |
 //! | `prepared.rs` | the numbers of a candidate that are searched | |
-//! | `starts.rs`, `search.rs`, `problem.rs` | a grid, then damped steps | |
+//! | `search.rs`, `problem.rs` | a grid, then damped steps | |
 //! | `fit.rs` | from there to numbers with intervals | |
 //! | `profile.rs` | intervals by the profile of what is left over | |
 //! | `material.rs` | the body with its numbers | |
@@ -24,7 +24,6 @@ mod prepared;
 mod problem;
 mod profile;
 mod search;
-mod starts;
 
 pub use candidate::{Candidate, EquilibriumLaw, RateLaw};
 pub use data::CalibrationData;

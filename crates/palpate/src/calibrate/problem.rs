@@ -1,5 +1,6 @@
 //! Residuals of a candidate, and damped steps to where they are least.
 
+use super::CalibrationData;
 use super::prepared::Prepared;
 use crate::optimise::{Cholesky, Termination, distance};
 use crate::simulate::{Motion, simulate_force};
@@ -27,7 +28,18 @@ pub(super) struct Found {
     pub(super) simulations: u64,
 }
 
-impl Problem<'_> {
+impl<'a> Problem<'a> {
+    /// The fitted part of a record.
+    pub(super) fn of(prepared: &'a Prepared, data: &'a CalibrationData) -> Self {
+        Self {
+            prepared,
+            motion: data.motion(),
+            times: &data.times()[..data.fitted()],
+            forces: &data.forces()[..data.fitted()],
+            held: None,
+        }
+    }
+
     /// Forces with these numbers; `None` where they cannot be simulated.
     pub(super) fn forces_with(&self, theta: &[f64]) -> Option<Vec<f64>> {
         let contact = match self.held {

@@ -67,13 +67,7 @@ pub fn profile(
     let material = &calibration.material;
     let prepared = Prepared::new(material.candidate, data)?;
     let best = &calibration.theta;
-    let problem = Problem {
-        prepared: &prepared,
-        motion: data.motion(),
-        times: &data.times()[..data.fitted()],
-        forces: &data.forces()[..data.fitted()],
-        held: None,
-    };
+    let problem = Problem::of(&prepared, data);
     let least = sum_of_squares(&problem.residuals(best).ok_or(CalibrateError::NoStiffness)?);
     let freedom = (data.fitted() - calibration.free_numbers) as f64;
     let mut stages = Stages::new("following the profiles".to_owned(), watch);

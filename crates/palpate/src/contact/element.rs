@@ -133,7 +133,7 @@ impl Ramps {
     /// Whether the curve passes z on this side, to the accuracy that a ramp of this reach needs.
     fn serves(&self, side: f64, reach: f64, z: f64) -> bool {
         let passed =
-            || self.side * (z - self.steps[0].from()) >= 0.0 && self.side * (self.ends[self.ends.len() - 1] - z) > 0.0;
+            || self.side * (z - self.steps[0].from) >= 0.0 && self.side * (self.ends[self.ends.len() - 1] - z) > 0.0;
         !self.steps.is_empty() && self.side == side && self.reach <= reach && passed()
     }
 
@@ -153,7 +153,7 @@ impl Ramps {
         }
         let moved = time - at;
         let rest = self.steps[index..].iter().map(|step| step.later(moved));
-        steps.extend(rest.take_while(|step| step.start() < until));
+        steps.extend(rest.take_while(|step| step.start < until));
         let last = self.steps.len() - 1;
         (self.steps[last].end() + moved, self.ends[last])
     }
@@ -197,14 +197,14 @@ impl Element {
                 end = ramps.follow(z, speed(z), time, until, &mut steps);
                 break;
             }
-            solver.set_tolerance(TOLERANCE * reach * (1.0 - z).abs().max(1.0));
+            solver.tolerance = TOLERANCE * reach * (1.0 - z).abs().max(1.0);
             let longest = if passes_rest { longest_step(z, speed(z), rest, time) } else { f64::INFINITY };
             steps.push(solver.step(until.min(time + longest), |_, z| speed(z)));
-            end = (solver.time(), solver.state());
+            end = (solver.time, solver.state);
         }
         work.steps += solver.steps;
         work.evaluations += solver.evaluations;
-        let is_longer = ramps.steps.is_empty() || ramps.side != side || side * (ramps.steps[0].from() - start) > 0.0;
+        let is_longer = ramps.steps.is_empty() || ramps.side != side || side * (ramps.steps[0].from - start) > 0.0;
         if solver.steps > 0 && !is_far(end.1) && end.0 <= until && (is_longer || reach < ramps.reach) {
             *ramps = Ramps {
                 side,

@@ -11,8 +11,7 @@
 //!
 //! **While it changes** u₂ is integrated as it stands: it stays smooth at first touch, where the displacement of a ball begins like √t.
 
-use super::balance::{Layer, carried_at, share};
-use super::{Layers, RateDependence, SimulationWork, Specimen};
+use super::{Layer, Layers, RateDependence, SimulationWork, Specimen, carried_at, share};
 use crate::latency::LatencyLaw;
 use crate::ode::{Dop853, Step};
 
@@ -168,21 +167,21 @@ impl Forced {
             // The first step sees the excess fall by a part of itself.
             let first = duration.min(0.1 / relative_rate);
             let mut solver = Dop853::new(0.0, TOLERANCE * first, first);
-            while solver.time() < duration {
+            while solver.time < duration {
                 // s matters as far as it moves x: relative to itself once it is long.
-                let reached = solver.state().max(1.0 / relative_rate).min(duration);
-                solver.set_tolerance(TOLERANCE * reached);
+                let reached = solver.state.max(1.0 / relative_rate).min(duration);
+                solver.tolerance = TOLERANCE * reached;
                 let step = solver.step(duration, |_, s| {
                     let (u, excess) = carried(s);
                     // Beyond what the body carries the step is thrown away below.
                     let u = u.unwrap_or(body.specimen.depth());
                     share(&body.specimen, body.layers, u, excess).0 * body.faster(excess, u)
                 });
-                if carried(solver.state()).0.is_none() {
+                if carried(solver.state).0.is_none() {
                     let start = steps.last().map_or(0.0, Step::end);
                     let good = |elapsed: f64| carried(step.at(elapsed)).0.is_some();
                     return Err(Stopped::TooMuch {
-                        elapsed: last_good(start, solver.time(), good),
+                        elapsed: last_good(start, solver.time, good),
                     });
                 }
                 steps.push(step);
@@ -200,20 +199,20 @@ impl Forced {
         let mut solver = Dop853::new(behind, TOLERANCE * depth, duration / 64.0);
         let mut steps: Vec<Step> = Vec::new();
         let carried = |elapsed: f64, behind: f64| body.carry(force.at(elapsed), behind);
-        while solver.time() < duration {
+        while solver.time < duration {
             if steps.len() == MOST_STEPS {
-                return Err(Stopped::TooStiff { elapsed: solver.time() });
+                return Err(Stopped::TooStiff { elapsed: solver.time });
             }
             let step = solver.step(duration, |elapsed, behind| {
                 // Beyond what the body carries the step is thrown away below.
                 let (u, excess) = carried(elapsed, behind).unwrap_or((0.0, 0.0));
                 -thickness * body.law.rate(excess) * body.faster(excess, u)
             });
-            if carried(solver.time(), solver.state()).is_none() {
+            if carried(solver.time, solver.state).is_none() {
                 let good = |elapsed: f64| carried(elapsed, step.at(elapsed)).is_some();
                 let start = steps.last().map_or(0.0, Step::end);
                 return Err(Stopped::TooMuch {
-                    elapsed: last_good(start, solver.time(), good),
+                    elapsed: last_good(start, solver.time, good),
                 });
             }
             steps.push(step);

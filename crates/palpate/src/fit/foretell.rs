@@ -2,12 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::global::search::finalists;
-use super::law::fitted::Fitted;
-use super::problem::build::build;
-use super::problem::condensed::{Condensed, condense};
-use super::samples::Scaled;
-use super::{FitError, LawOptions, Samples, SpectrumOptions, fit_spectrum};
+use super::{
+    Condensed, FitError, Fitted, LawOptions, Samples, Scaled, SpectrumOptions, build, condense, finalists, fit_spectrum,
+};
 use crate::laws::{BasisFunction, Law, LawCurve, Term};
 use crate::optimise::{Ending, Work, polished, refine};
 

@@ -9,20 +9,19 @@
 //!
 //! | file | what | equations |
 //! |---|---|---|
-//! | `error.rs`, `options.rs`, `estimate.rs`, `samples.rs` | what is fitted and asked, and why it may be refused | |
+//! | `error.rs`, `options.rs`, `samples.rs` | what is fitted and asked, and why it may be refused | |
 //! | `noise/` | how residuals correlate, and the errors and intervals that follow | |
 //! | `problem/` | law, samples and options made ready in the units of the fit | |
 //! | `global/` | from a problem to the global optimum | |
 //! | `parameter.rs`, `result.rs` | what a fit says: a law and its parameters, by name | |
 //! | `law/` | any law fitted to a hold; intervals by curvature, profiles or resampling | |
-//! | `latency.rs`, `selection.rs` | the latency law in the time domain; the lowest order that fits best | (4), (5) |
+//! | `latency.rs` | the latency law in the time domain; the lowest order that fits best | (4), (5) |
 //! | `rate_domain.rs` | strain rate fitted against strain, as the paper does | (9), (10) |
 //! | `spectrum/` | exponentials of all times at once, none of opposite sign | |
 //! | `foretell.rs` | a law fitted to the first part of a hold, held against the rest | |
 //! | `joint/` | several holds at once: one law shared by all, or one each | section IV |
 
 mod error;
-mod estimate;
 mod foretell;
 mod global;
 mod joint;
@@ -35,30 +34,31 @@ mod problem;
 mod rate_domain;
 mod result;
 mod samples;
-mod selection;
 mod spectrum;
 
 pub use crate::laws::ExponentChoice;
 pub use crate::optimise::{Termination, Work};
 pub use error::FitError;
-pub use estimate::{Estimate, Interval};
 pub use foretell::{Forecast, foretell};
-pub(crate) use global::grid::{combinations, distinct};
+pub(crate) use global::{combinations, distinct};
+use global::{finalists, search};
 pub use joint::{
     HoldWeights, JointComparison, JointFit, JointOptions, SharedTrend, TrendPoint, TrendVerdict, compare_joint,
     fit_joint, fit_joint_watched,
 };
-pub use latency::{LatencyFit, fit_hold, fit_hold_watched};
-pub use law::{Bootstrap, bootstrap, fit_law, fit_law_watched, profile_interval};
+pub use latency::{Candidate, LatencyFit, OrderSelection, fit_hold, fit_hold_watched, select_order};
+use law::Fitted;
+pub use law::{fit_law, fit_law_watched, profile_interval};
 pub(crate) use noise::{Assessed, Scale};
 pub use noise::{NoiseModel, Uncertainty};
 pub use options::{
     BootstrapOptions, ConstantChoice, FitOptions, IntervalMethod, LawOptions, Loss, NoiseChoice, SampleChoice,
 };
-pub use parameter::{ParameterKind, ParameterName};
+pub use parameter::{Estimate, Interval, ParameterKind, ParameterName};
 pub use problem::Ghost;
+use problem::{Condensed, Model, Number, Sampled, build, condense, condense_to, ghosts, searched_name};
 pub use rate_domain::fit_rates;
 pub use result::{Domain, Fit, NumberUnit, Parameter};
 pub use samples::Samples;
-pub use selection::{Candidate, OrderSelection, select_order};
+use samples::{Scaled, check_finite};
 pub use spectrum::{Smoothing, SpectrumFit, SpectrumOptions, SpectrumPeak, fit_spectrum};

@@ -53,7 +53,26 @@ pub enum NoiseChoice {
     White,
 }
 
-/// What may be asked of [`bootstrap`](crate::fit::bootstrap).
+/// What may be asked of intervals by resampling.
+///
+/// Draws are fitted from the best numbers downhill, on condensed samples: a thousand take some hundredths of a second.
+/// Intervals run between percentiles of the draws, so they follow the number through any change of scale; the standard error
+/// is the deviation of the draws.
+///
+/// ```
+/// use palpate::fit::{BootstrapOptions, IntervalMethod, LawOptions, Samples, fit_law};
+/// use palpate::laws::Law;
+/// use palpate::test_problems::noisy_hold;
+/// let (times, values) = noisy_hold(500, 1.0, 1e-2);
+/// let error = |intervals: IntervalMethod| {
+///     let options = LawOptions { intervals, ..LawOptions::default() };
+///     let fit = fit_law(&Samples::new(&times, &values), Law::StandardLinearSolid, &options)?;
+///     Ok::<_, palpate::fit::FitError>(fit.estimate("time").unwrap().standard_error.unwrap())
+/// };
+/// let drawn = error(IntervalMethod::Bootstrap(BootstrapOptions::default()))?;
+/// assert!((drawn / error(IntervalMethod::Curvature)? - 1.0).abs() < 0.1);
+/// # Ok::<(), palpate::fit::FitError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct BootstrapOptions {

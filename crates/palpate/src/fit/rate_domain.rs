@@ -1,9 +1,8 @@
 //! Strain rate fitted against strain, equation (10): the paper's way.
 
-use super::samples::check_finite;
 use super::{
     Assessed, Domain, Estimate, Fit, FitError, FitOptions, LatencyFit, NoiseChoice, NumberUnit, Parameter,
-    ParameterKind, Scale,
+    ParameterKind, Scale, check_finite,
 };
 use crate::laws::{ExponentChoice, Law, LawCurve, Response, Term};
 use crate::optimise::{Ending, Refined, Shapes, Solution, Target, Termination, Work, polished, refine};

@@ -2,7 +2,7 @@
 
 use super::error::FitError;
 use crate::optimise::Target;
-use crate::vector::columns::{all_finite, extremes, multiply, rises, shifted};
+use crate::vector::{all_finite, extremes, multiply, rises, shifted};
 
 /// A hold to be fitted: times in s, values in their unit, and how far each may be off.
 ///

@@ -2,8 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `criteria.rs` | AICc and BIC |
-//! | `forward.rs` | forward score: fit the first part of the hold, predict the rest |
+//! | `criteria.rs` | AICc and BIC; forward score: fit the first part of the hold, predict the rest |
 //! | `options.rs`, `result.rs` | what is asked, and what is said |
 //! | `compare.rs` | all laws on one hold, ranked |
 //! | `verdict.rs` | which law to use, how sure that is, what another would cost |
@@ -11,15 +10,14 @@
 
 mod compare;
 mod criteria;
-mod forward;
 mod options;
 mod result;
 mod sentence;
 mod verdict;
 
 pub use compare::{KnownFit, compare_laws, compare_laws_watched};
-pub use criteria::{Criteria, criteria};
-pub use forward::ForwardScore;
+pub use criteria::{Criteria, ForwardScore, criteria};
 pub use options::{CompareOptions, RampChoice};
 pub use result::{Certainty, Comparison, Ranking, Row, Verdict};
+pub(crate) use sentence::listed;
 pub use sentence::name_in_words;

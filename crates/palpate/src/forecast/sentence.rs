@@ -154,8 +154,9 @@ fn rounded(value: f64) -> String {
 }
 
 /// "a", "a and b", "a, b and c".
-fn listed(names: &[String]) -> String {
-    match names {
+pub(crate) fn listed<T: ToString>(things: &[T]) -> String {
+    let names: Vec<String> = things.iter().map(ToString::to_string).collect();
+    match names.as_slice() {
         [] => String::new(),
         [one] => one.clone(),
         [first @ .., last] => format!("{} and {last}", first.join(", ")),

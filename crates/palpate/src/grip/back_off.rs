@@ -2,9 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::least::{bisected, check_duration};
-use super::time_to_slip::ALWAYS;
-use super::{Grip, GripError, Holding, Plan};
+use super::{ALWAYS, Grip, GripError, Holding, Plan, bisected, check_duration};
 use crate::number::significant;
 use crate::simulate::step_ends;
 
@@ -84,12 +82,7 @@ impl Grip<'_> {
     fn relaxed_squeeze(&self, deepest: f64, by: String) -> Result<f64, GripError> {
         let is_enough = |d: f64| self.relaxed_force(d) >= self.needed_force(d);
         if !is_enough(deepest) {
-            return Err(GripError::NoSqueeze {
-                needed: self.needed_force(deepest),
-                reached: self.relaxed_force(deepest),
-                duration: f64::INFINITY,
-                by,
-            });
+            return Err(self.no_squeeze(self.relaxed_force(deepest), f64::INFINITY, by));
         }
         // A hair more, for rounding in the force at the end of the retreat.
         Ok((bisected(0.0, deepest, |d| Ok(is_enough(d)))?.1 * (1.0 + 1e-9)).min(deepest))

@@ -1,9 +1,6 @@
 //! The same grasp with the force held.
 
-use super::error::check;
-use super::holding::beyond;
-use super::least::{bisected, check_duration};
-use super::{Grip, GripError, Plan};
+use super::{Grip, GripError, Plan, beyond, bisected, check, check_duration};
 use crate::calibrate::Prediction;
 use crate::number::significant;
 use crate::simulate::{ProgramStep, SimulateError};
@@ -60,12 +57,8 @@ impl Grip<'_> {
         let ends = self.ends(&steps).map_err(|error| self.not_carried(force, error))?;
         let (start, end) = (ends[0], ends[1]);
         let (deepest, _) = self.limits.deepest(self.contact.specimen());
-        if start.displacement > deepest {
-            return Err(beyond("squeeze", start.displacement, deepest, " m"));
-        }
-        if let Some(closing) = self.limits.closing.filter(|closing| start.time > closing * (1.0 + 1e-9)) {
-            return Err(beyond("time to close", start.time, closing, " s"));
-        }
+        self.check_reach(start.displacement)?;
+        self.check_closing(start.time)?;
         let needed_force = self.needed_force(start.displacement);
         let until = |time: f64| -> Result<f64, GripError> {
             let held = [steps[0], ProgramStep::HoldForce { duration: time }];

@@ -4,8 +4,7 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::GripError;
-use super::error::{above_zero, at_least, check};
+use super::{GripError, above_zero, at_least, check};
 use crate::contact::{Shape, Specimen};
 
 /// Standard gravity, m/s².

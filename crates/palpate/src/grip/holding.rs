@@ -2,9 +2,7 @@
 
 use std::cell::RefCell;
 
-use super::error::check;
-use super::time_to_slip::ALWAYS;
-use super::{Grasp, GripError, Limits, Plan, PlanKind, TimeToSlip};
+use super::{ALWAYS, Grasp, GripError, Limits, Plan, PlanKind, TimeToSlip, check};
 use crate::calibrate::{Material, Prediction};
 use crate::simulate::{Contact, ProgramStep, Sampling, Separation, SimulateError, StepEnd, step_ends, work_by_step};
 use crate::watch::{Cancelled, Progress, Stages};
@@ -148,10 +146,7 @@ impl<'a> Grip<'a> {
     /// # Errors
     /// [`GripError::BeyondLimit`] for a plan that the gripper may not take, [`GripError::Simulate`] for one that cannot be simulated.
     pub fn holding(&self, plan: &Plan) -> Result<Holding, GripError> {
-        let (deepest, _) = self.limits.deepest(self.contact.specimen());
-        if plan.farthest() > deepest {
-            return Err(beyond("squeeze", plan.farthest(), deepest, " m"));
-        }
+        self.check_reach(plan.farthest())?;
         let ends = self.ends(&plan.steps)?;
         let (Some(end), peak_force) = (ends.last(), peak(&ends)) else {
             return Err(SimulateError::EmptyProgram.into());
@@ -225,16 +220,21 @@ impl<'a> Grip<'a> {
         Ok(work_by_step(steps, &self.contact)?.iter().map(|step| step.work + step.given_back).sum())
     }
 
-    fn within_limits(&self, ends: &[StepEnd]) -> Result<(), GripError> {
+    /// Refuses a squeeze (m) beyond the stroke or the body.
+    pub(super) fn check_reach(&self, displacement: f64) -> Result<(), GripError> {
         let (deepest, _) = self.limits.deepest(self.contact.specimen());
-        let far = ends.iter().map(|end| end.displacement).fold(0.0, f64::max);
-        if far > deepest {
-            return Err(beyond("squeeze", far, deepest, " m"));
-        }
-        let closed = ends.last().map_or(0.0, |end| end.time);
-        if let Some(closing) = self.limits.closing.filter(|closing| closed > closing * (1.0 + 1e-9)) {
-            return Err(beyond("time to close", closed, closing, " s"));
-        }
+        if displacement > deepest { Err(beyond("squeeze", displacement, deepest, " m")) } else { Ok(()) }
+    }
+
+    /// Refuses a time (s) to close beyond the limit.
+    pub(super) fn check_closing(&self, time: f64) -> Result<(), GripError> {
+        let limit = self.limits.closing.filter(|closing| time > closing * (1.0 + 1e-9));
+        limit.map_or(Ok(()), |limit| Err(beyond("time to close", time, limit, " s")))
+    }
+
+    fn within_limits(&self, ends: &[StepEnd]) -> Result<(), GripError> {
+        self.check_reach(ends.iter().map(|end| end.displacement).fold(0.0, f64::max))?;
+        self.check_closing(ends.last().map_or(0.0, |end| end.time))?;
         let peak = peak(ends);
         match self.limits.force {
             Some(force) if peak > force * (1.0 + 1e-9) => Err(beyond("force", peak, force, " N")),

@@ -2,10 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::error::check;
-use super::holding::peak;
-use super::time_to_slip::ALWAYS;
-use super::{Grip, GripError, Holding, Plan};
+use super::{ALWAYS, Grip, GripError, Holding, Plan, check, peak};
 use crate::number::significant;
 
 /// What a plan should have least of.
@@ -158,7 +155,7 @@ impl Grip<'_> {
         if assured && self.material.uncertainty.is_none() { Err(GripError::NoIntervals) } else { Ok(()) }
     }
 
-    fn no_squeeze(&self, reached: f64, duration: f64, by: String) -> GripError {
+    pub(super) fn no_squeeze(&self, reached: f64, duration: f64, by: String) -> GripError {
         let (deepest, _) = self.limits.deepest(self.contact.specimen());
         GripError::NoSqueeze {
             needed: self.needed_force(deepest),

@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::GripError;
-use super::error::above_zero;
+use super::{GripError, above_zero};
 use crate::contact::Specimen;
 
 /// What the gripper can do, and how long it may take.

@@ -2,10 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::error::{above_zero, check};
-use super::holding::beyond;
-use super::least::{bisected, check_duration};
-use super::{Grip, GripError};
+use super::{Grip, GripError, above_zero, beyond, bisected, check, check_duration};
 use crate::calibrate::Prediction;
 use crate::simulate::ProgramStep;
 
@@ -110,10 +107,7 @@ impl Grip<'_> {
                 best
             }
         };
-        let (deepest, _) = self.limits.deepest(self.contact.specimen());
-        if found.end_displacement > deepest {
-            return Err(beyond("squeeze", found.end_displacement, deepest, " m"));
-        }
+        self.check_reach(found.end_displacement)?;
         let needed = found.moves.iter().map(|made| self.needed_force(made.to)).fold(0.0, f64::max);
         if band.low < needed * (1.0 - 1e-9) {
             return Err(GripError::BandSlips { low: band.low, needed });

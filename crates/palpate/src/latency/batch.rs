@@ -11,7 +11,7 @@
 
 use super::LatencyLaw;
 use crate::vector::elementary::{Logarithm, exp};
-use crate::vector::{fill, in_place};
+use crate::vector::{fill, first, in_place};
 
 /// (n − 1) λt beyond which the logarithm is taken of this.
 const LARGEST: f64 = 1e308;
@@ -45,31 +45,13 @@ impl LatencyLaw {
     }
 }
 
-/// φ, ∂φ/∂ln λ and ∂φ/∂n for every time; arguments as for [`decay_many`].
+/// The first `N` of φ, ∂φ/∂ln λ and ∂φ/∂n for every time; arguments as for [`decay_many`].
+///
+/// What is not asked for is not computed.
 ///
 /// # Panics
-/// If the slices differ in length.
-pub fn decay_with_gradient_many(
-    times: &[f64],
-    rate: f64,
-    exponent: f64,
-    value: &mut [f64],
-    by_log_rate: &mut [f64],
-    by_exponent: &mut [f64],
-) {
-    decay_columns(times, rate, exponent, [value, by_log_rate, by_exponent]);
-}
-
-/// φ and ∂φ/∂ln λ for every time.
-///
-/// # Panics
-/// If the slices differ in length.
-pub fn decay_with_log_rate_many(times: &[f64], rate: f64, exponent: f64, value: &mut [f64], by_log_rate: &mut [f64]) {
-    decay_columns(times, rate, exponent, [value, by_log_rate]);
-}
-
-/// The first `N` of φ, ∂φ/∂ln λ and ∂φ/∂n; what is not asked for is not computed.
-fn decay_columns<const N: usize>(times: &[f64], rate: f64, exponent: f64, columns: [&mut [f64]; N]) {
+/// If the slices differ in length, or more than three are given.
+pub fn decay_columns<const N: usize>(times: &[f64], rate: f64, exponent: f64, columns: [&mut [f64]; N]) {
     let p = exponent - 1.0;
     let inverse = 1.0 / p;
     // One loop for every kind of root, so that no loop has a branch.
@@ -141,11 +123,6 @@ fn fill_by_root<const N: usize>(
     );
 }
 
-#[inline(always)]
-fn first<const N: usize>(all: [f64; 3]) -> [f64; N] {
-    std::array::from_fn(|index| all[index])
-}
-
 /// n = 1: φ = e⁻ˢ, ∂φ/∂ln λ = −s φ, ∂φ/∂n = φ s²/2, grouped so that no product overflows.
 #[inline(always)]
 fn exponential(s: f64) -> [f64; 3] {
@@ -197,8 +174,21 @@ fn inverse_fourth_root(w: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::latency::decay_with_gradient;
+    use crate::latency::decay;
     use crate::vector::tests::on_every_level;
+
+    /// φ, ∂φ/∂ln λ and ∂φ/∂n at s = λt from the standard library; near n = 1 the last is a power series in z = (n − 1) s,
+    /// s² φ Σ_{k≥2} (−1)^k (k−1)/k · z^(k−2).
+    fn one_at_a_time(s: f64, exponent: f64) -> [f64; 3] {
+        let (value, p) = (decay(s, exponent), exponent - 1.0);
+        let z = p * s;
+        let series = || (2..19).rev().fold(0.0, |sum, k| f64::from(k - 1) / f64::from(k) - z * sum);
+        let far = || ((z.ln_1p() - z / (1.0 + z)) / p) / p;
+        match value {
+            0.0 => [0.0; 3],
+            _ => [value, -(s / (1.0 + z)) * value, value * if z.abs() < 0.1 { s * s * series() } else { far() }],
+        }
+    }
 
     #[test]
     fn many_at_once_equal_one_at_a_time() {
@@ -206,15 +196,14 @@ mod tests {
         for exponent in [0.4, 0.8, 0.999_999, 1.0, 1.0 + 1e-13, 1.000_001, 1.5, 2.0, 3.0, 4.4, 5.0, 7.0, 30.0] {
             let found = on_every_level(|| {
                 let mut out = [vec![0.0; 101], vec![0.0; 101], vec![0.0; 101]];
-                let [value, by_rate, by_exponent] = &mut out;
-                decay_with_gradient_many(&times, 0.7, exponent, value, by_rate, by_exponent);
+                decay_columns(&times, 0.7, exponent, out.each_mut().map(Vec::as_mut_slice));
                 out.concat()
             });
             for (i, t) in times.iter().enumerate() {
-                let one = decay_with_gradient(0.7 * t, exponent);
-                assert!((found[i] - one.value).abs() <= 2e-14 * one.value, "n={exponent} t={t}");
-                assert!((found[101 + i] - one.by_log_rate).abs() <= 4e-14 * one.by_log_rate.abs());
-                assert!((found[202 + i] - one.by_exponent).abs() <= 1e-12 * one.by_exponent.abs());
+                let [value, by_log_rate, by_exponent] = one_at_a_time(0.7 * t, exponent);
+                assert!((found[i] - value).abs() <= 2e-14 * value, "n={exponent} t={t}");
+                assert!((found[101 + i] - by_log_rate).abs() <= 4e-14 * by_log_rate.abs());
+                assert!((found[202 + i] - by_exponent).abs() <= 1e-12 * by_exponent.abs());
             }
         }
     }
@@ -237,7 +226,7 @@ mod tests {
             let [mut alone, mut value, mut slope] = [vec![0.0; 600], vec![0.0; 600], vec![0.0; 600]];
             let mut replaced = times.clone();
             decay_many(&times, 0.7, exponent, &mut alone);
-            decay_with_log_rate_many(&times, 0.7, exponent, &mut value, &mut slope);
+            decay_columns(&times, 0.7, exponent, [&mut value, &mut slope]);
             in_place(&mut replaced, |times, phi| decay_many(times, 0.7, exponent, phi));
             assert_eq!((&alone, &alone), (&value, &replaced), "n = {exponent}");
         }

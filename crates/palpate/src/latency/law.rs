@@ -1,10 +1,41 @@
-//! The law with its numbers put in.
+//! The normalised closed form, and the law with its numbers put in.
 
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 use serde::{Deserialize, Serialize};
 
-use super::decay::decay;
+/// Normalised excess strain x(t)/x₀ under the latency law at constant equilibrium strain.
+///
+/// φ(t; λ, n) = [1 + (n − 1) λ t]^(−1/(n − 1)),  φ = exp(−λ t) at n = 1,  and for n < 1
+/// φ = 0 from t = 1/((1 − n) λ) on. Equations (4) and (5) of the paper are x₀ φ with
+/// λ = v |x₀|ⁿ⁻¹ and x₀ of either sign. It is the q-exponential e_q(−λ t) with q = n.
+///
+/// `scaled_time` is λ t ≥ 0 (a pure number), `exponent` is n > 0. Returns a number from 0 to 1.
+///
+/// Evaluated as exp(−ln(1 + p s)/p) with p = n − 1 and `ln_1p`, so that the limit n → 1 is reached
+/// smoothly: the relative error stays near |ln φ| × 1e-16 for every n.
+///
+/// ```
+/// use palpate::latency::decay;
+/// assert_eq!(decay(0.0, 5.0), 1.0);
+/// // n = 5 after λt = 20: 81^(-1/4) = 1/3
+/// assert!((decay(20.0, 5.0) - 1.0 / 3.0).abs() < 1e-15);
+/// // n = 1/2 reaches equilibrium at λt = 2 and stays
+/// assert_eq!(decay(2.5, 0.5), 0.0);
+/// ```
+#[must_use]
+pub fn decay(scaled_time: f64, exponent: f64) -> f64 {
+    let p = exponent - 1.0;
+    let z = p * scaled_time;
+    if z <= -1.0 {
+        return 0.0;
+    }
+    if z == 0.0 {
+        // n = 1, t = 0, or a product too small to tell from them.
+        return (-scaled_time).exp();
+    }
+    (-z.ln_1p() / p).exp()
+}
 
 /// Numbers that make no law.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]

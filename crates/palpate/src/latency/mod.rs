@@ -10,21 +10,18 @@
 //!
 //! | file | what | equations |
 //! |---|---|---|
-//! | `law.rs` | the law with its numbers put in, and the linear law | (1), (2), (3), (10) |
-//! | `decay.rs` | the closed form φ and its derivatives, one value at a time | (4), (5) |
-//! | `batch.rs` | the same for many times at once, at the speed of vector units | (4), (5) |
+//! | `law.rs` | the closed form φ, the law with its numbers put in, and the linear law | (1)–(5), (10) |
+//! | `batch.rs` | φ and its derivatives for many times at once, at the speed of vector units | (4), (5) |
 //! | `lanes.rs` | the law for kernels over many contacts or layers | (2)–(5) |
 
 #[cfg(feature = "std")]
 mod batch;
-mod decay;
 #[cfg(feature = "std")]
 pub(crate) mod lanes;
 mod law;
 
 #[cfg(feature = "std")]
-pub use batch::{decay_many, decay_with_gradient_many, decay_with_log_rate_many};
-pub use decay::{Decay, decay, decay_with_gradient};
+pub use batch::{decay_columns, decay_many};
 #[cfg(feature = "std")]
 pub(crate) use law::signed_power;
-pub use law::{LatencyLaw, LawError, LinearLatency};
+pub use law::{LatencyLaw, LawError, LinearLatency, decay};

@@ -1,4 +1,4 @@
-//! The list of functions of time that laws are made of.
+//! What laws are made of and described by: functions of time, the choice of an exponent, the response, words.
 
 use serde::{Deserialize, Serialize};
 
@@ -35,4 +35,46 @@ impl BasisFunction {
     pub(crate) fn superposes(&self) -> bool {
         !matches!(self, Self::Latency | Self::LatencyWith(_))
     }
+}
+
+/// Whether the exponent was given or found.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ExponentChoice {
+    /// Held at this value.
+    Fixed(f64),
+    /// Found with the other numbers.
+    Free,
+}
+
+impl ExponentChoice {
+    /// The exponent, if it was given.
+    pub(crate) fn given(self) -> Option<f64> {
+        match self {
+            Self::Fixed(n) => Some(n),
+            Self::Free => None,
+        }
+    }
+}
+
+/// What is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Response {
+    /// Force, stress or strain of a contact held at constant displacement.
+    #[default]
+    Relaxation,
+    /// Displacement or strain at constant force, and recovery after release.
+    Creep,
+}
+
+/// A law in words: what tables, figures and help show of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Description {
+    /// Name in running text, such as "standard linear solid".
+    pub title: &'static str,
+    /// The law for relaxation, or for creep if it has no other form.
+    pub equation: &'static str,
+    /// Where it is used or comes from.
+    pub source: &'static str,
 }

@@ -1,7 +1,8 @@
 //! A law with its numbers put in.
 
-use super::{BasisFunction, Column, Kernel, Loading, Response, Superposition};
 use serde::{Deserialize, Serialize};
+
+use super::{BasisFunction, Column, Kernel, Loading, Response, Superposition};
 
 /// One term of a [`LawCurve`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

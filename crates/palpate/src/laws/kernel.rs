@@ -27,24 +27,21 @@ pub(crate) struct ShapeNumber {
 }
 
 impl ShapeNumber {
+    pub(in crate::laws) const fn new(name: &'static str, kind: NumberKind) -> Self {
+        Self { name, kind }
+    }
+
     /// A pure number.
     pub(in crate::laws) const fn pure(name: &'static str, low: f64, high: f64, coarse: &'static [f64]) -> Self {
-        let kind = NumberKind::Pure { low, high, coarse };
-        Self { name, kind }
+        Self::new(name, NumberKind::Pure { low, high, coarse })
     }
 }
 
 /// The time of a shape.
-pub(in crate::laws) const TIME: ShapeNumber = ShapeNumber {
-    name: "time",
-    kind: NumberKind::Time,
-};
+pub(in crate::laws) const TIME: ShapeNumber = ShapeNumber::new("time", NumberKind::Time);
 
 /// What sets the unit of a shape that grows.
-pub(in crate::laws) const REFERENCE: ShapeNumber = ShapeNumber {
-    name: "reference",
-    kind: NumberKind::Reference,
-};
+pub(in crate::laws) const REFERENCE: ShapeNumber = ShapeNumber::new("reference", NumberKind::Reference);
 
 /// The derivatives of a shape of two numbers.
 pub(in crate::laws) fn two(derivatives: &mut [Vec<f64>]) -> [&mut Vec<f64>; 2] {

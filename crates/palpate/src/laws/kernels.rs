@@ -1,6 +1,5 @@
 //! What every basis function can do, from its file.
 
-use super::basis::BasisFunction;
 use super::continuous::diffusion::Diffusion;
 use super::continuous::fractional_zener::MittagLeffler;
 use super::continuous::fung_continuous::FungContinuous;
@@ -10,7 +9,7 @@ use super::continuous::power::{PowerDecay, PowerGrowth};
 use super::continuous::stretched::Stretched;
 use super::discrete::exponential::Exponential;
 use super::discrete::maxwell::Straight;
-use super::kernel::{Kernel, ShapeNumber};
+use super::{BasisFunction, Kernel, ShapeNumber};
 
 fn with<R>(basis: &BasisFunction, act: impl FnOnce(&dyn Kernel) -> R) -> R {
     match *basis {

@@ -27,24 +27,19 @@
 mod basis;
 mod continuous;
 mod curve;
-mod description;
 mod discrete;
-mod exponent;
 mod form;
 mod kernel;
 mod kernels;
 mod law;
 mod loading;
-mod response;
 mod superposition;
 
-pub use basis::BasisFunction;
+pub use basis::{BasisFunction, Description, ExponentChoice, Response};
 pub use curve::{LawCurve, Term};
-pub use description::Description;
-pub use exponent::ExponentChoice;
 pub(crate) use form::{Column, Form};
 pub(crate) use kernel::{Kernel, NumberKind};
+use kernel::{REFERENCE, ShapeNumber, TIME, two};
 pub use law::{Law, MOST_TERMS, UnknownLaw};
 pub use loading::{Loading, LoadingError};
-pub use response::Response;
 pub(crate) use superposition::Superposition;

@@ -13,6 +13,7 @@ use std::ops::Range;
 
 use super::loading::Piece;
 use super::{BasisFunction, Kernel, Loading};
+use crate::special::{gauss_legendre, legendre};
 
 /// Nodes of a panel.
 const NODES: usize = 16;
@@ -177,46 +178,19 @@ fn panel(pieces: &[Piece], from: f64, to: f64, rule: &[(f64, f64)], inner: &[(f6
         // Half as many nodes integrate the polynomials exactly, without the cancellation of their antiderivatives.
         let mut means = [0.0; NODES];
         for (x, weight) in inner {
-            let values = legendre((center + width * x - middle) / half);
+            let values: [f64; NODES] = legendre((center + width * x - middle) / half);
             means.iter_mut().zip(values).for_each(|(sum, value)| *sum += 0.5 * weight * value);
         }
         moments.iter_mut().zip(means).for_each(|(sum, mean)| *sum += share * mean);
     }
     let node = |(x, weight): &(f64, f64)| {
-        let terms = legendre(*x).into_iter().zip(&moments).enumerate();
+        let terms = legendre::<NODES>(*x).into_iter().zip(&moments).enumerate();
         Node {
             age: middle + half * x,
             weight: weight * terms.map(|(k, (value, moment))| (k as f64 + 0.5) * value * moment).sum::<f64>(),
         }
     };
     rule.iter().map(node).collect()
-}
-
-/// P₀ … P₁₅ at x.
-fn legendre(x: f64) -> [f64; NODES] {
-    let mut values = [1.0; NODES];
-    values[1] = x;
-    for k in 2..NODES {
-        values[k] = ((2 * k - 1) as f64 * x * values[k - 1] - (k - 1) as f64 * values[k - 2]) / k as f64;
-    }
-    values
-}
-
-/// Nodes and weights of Gauss's rule on [−1, 1]: zeros of P_N by Newton's method from Tricomi's guess.
-fn gauss_legendre<const N: usize>() -> [(f64, f64); N] {
-    std::array::from_fn(|i| {
-        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (N as f64 + 0.5)).cos();
-        let mut slope = 0.0;
-        for _ in 0..8 {
-            let (mut before, mut value) = (1.0, x);
-            for k in 2..=N {
-                (before, value) = (value, ((2 * k - 1) as f64 * x * value - (k - 1) as f64 * before) / k as f64);
-            }
-            slope = N as f64 * (before - x * value) / (1.0 - x * x);
-            x -= value / slope;
-        }
-        (x, 2.0 / ((1.0 - x * x) * slope * slope))
-    })
 }
 
 #[cfg(test)]
@@ -309,12 +283,5 @@ mod tests {
             superposition.value(&BasisFunction::Stretched, &[0.0, 1e-3, 0.1, 1.0, 9.0], &[1.0, 0.3], out);
         }
         assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-13), "{a:?} {b:?}");
-    }
-
-    #[test]
-    fn gauss_rule_is_that_of_the_tables() {
-        let rule = gauss_legendre::<8>();
-        let expected = (0.183_434_642_495_649_8, 0.362_683_783_378_362);
-        assert!((rule[3].0 - expected.0).abs() < 1e-15 && (rule[3].1 - expected.1).abs() < 1e-15, "{rule:?}");
     }
 }

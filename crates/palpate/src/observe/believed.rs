@@ -6,9 +6,7 @@
 //! that the standings z of the directions, N(0, 1) before the first reading, follow from the forces by a Kalman filter of a state that does
 //! not move (recursive least squares with a prior, Kalman 1960).
 
-use super::kept::Kept;
-use super::normal::Normal;
-use super::{ObserveError, ObserverOptions};
+use super::{Kept, Normal, ObserveError, ObserverOptions};
 use crate::calibrate::Material;
 use crate::contact::RateDependence;
 use crate::latency::LatencyLaw;
@@ -235,10 +233,7 @@ impl Believed {
 
     /// Exponent of the law of a hold, and what the calibration leaves open of it.
     pub(super) fn exponent(&self) -> Normal {
-        Normal {
-            mean: self.best.model.law.exponent().max(1.0),
-            deviation: self.exponent_deviation,
-        }
+        Normal::new(self.best.model.law.exponent().max(1.0), self.exponent_deviation)
     }
 
     /// Whether the forces are those of the calibrated body.
@@ -258,10 +253,7 @@ impl Believed {
         let along = |row: &[f64]| row.iter().zip(slopes).map(|(entry, slope)| entry * slope).sum::<f64>();
         let rows = self.covariance.chunks_exact(count.max(1));
         let variance: f64 = rows.zip(slopes).map(|(row, slope)| slope * along(row)).sum();
-        Normal {
-            mean: value,
-            deviation: variance.max(0.0).sqrt(),
-        }
+        Normal::new(value, variance.max(0.0).sqrt())
     }
 
     /// Force that a hold here tends to, N.

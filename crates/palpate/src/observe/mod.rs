@@ -61,6 +61,8 @@ mod saying;
 mod signal;
 
 pub use error::ObserveError;
+use kept::{Kept, kept};
+use normal::Normal;
 pub use observation::{ContactPhase, Held, Observation, Slip, SlipForecast};
 pub use observer::Observer;
 pub use options::ObserverOptions;

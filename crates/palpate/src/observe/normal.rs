@@ -11,6 +11,12 @@ pub(super) struct Normal {
 }
 kept!(Normal: mean, deviation);
 
+impl Normal {
+    pub(super) fn new(mean: f64, deviation: f64) -> Self {
+        Self { mean, deviation }
+    }
+}
+
 impl From<Normal> for Estimate {
     fn from(normal: Normal) -> Self {
         Self {

@@ -2,10 +2,8 @@
 
 use super::believed::Believed;
 use super::hold::{Bins, Crossing, FEWEST, HoldFit};
-use super::kept::{Kept, kept};
-use super::normal::Normal;
 use super::signal::{Alone, Change, NoiseMeter, Smooth, Stand};
-use super::{Held, Observation, ObserveError, ObserverOptions, Slip};
+use super::{Held, Kept, Normal, Observation, ObserveError, ObserverOptions, Slip, kept};
 use crate::statistics::coverage_factor;
 
 /// Noise (standard deviations of one reading) within which a signal stands.
@@ -64,7 +62,7 @@ pub struct Observer {
 }
 
 /// All that readings have changed, but for what a material makes of them.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Seen {
     pub(super) last: Option<f64>,
     pub(super) displacement_noise: NoiseMeter,
@@ -100,20 +98,10 @@ impl Observer {
         let noise = options.noise;
         let believed = options.material.as_ref().map(|material| Believed::new(material, &options)).transpose()?;
         let seen = Seen {
-            last: None,
             displacement_noise: NoiseMeter::new(noise.map(|noise| noise.0)),
             force_noise: NoiseMeter::new(noise.map(|noise| noise.1)),
-            smooth: Smooth::default(),
-            jaw: Stand::default(),
-            grip: Stand::default(),
             reached: [(f64::INFINITY, f64::NEG_INFINITY); 2],
-            relaxation: Bins::new(),
-            relaxes_from: 0.0,
-            creep: Bins::new(),
-            displacement_seen: false,
-            alone: Alone::default(),
-            hold: None,
-            doubted: None,
+            ..Seen::default()
         };
         Ok(Self {
             options,
@@ -166,7 +154,7 @@ impl Observer {
             return;
         }
         if let Some((time, (displacement, force))) = self.seen.doubted.take()
-            && !self.seen.jaw.stands()
+            && !self.seen.jaw.stands
         {
             believed.feed(time, displacement, force);
         }
@@ -245,7 +233,7 @@ impl Observer {
         if matches!(grip, Change::Moved | Change::Left | Change::Crept) {
             self.seen.creep.clear();
         } else if let Some(displacement) = displacement {
-            self.seen.creep.push(time - self.seen.grip.start(), displacement);
+            self.seen.creep.push(time - self.seen.grip.start, displacement);
         }
         let jaw = match displacement {
             Some(displacement) => {
@@ -257,7 +245,7 @@ impl Observer {
                 let tolerance = self.seen.force_noise.deviation().map(|noise| NOISE * noise * Smooth::kept());
                 let predicted =
                     self.seen.hold.and_then(|hold| hold.fit).map(|fit| fit.force(time - self.seen.relaxes_from));
-                self.seen.alone.feed(time, self.seen.smooth.level(), tolerance, predicted)
+                self.seen.alone.feed(time, self.seen.smooth.level, tolerance, predicted)
             }
         };
         if matches!(jaw, Change::Moved | Change::Left | Change::Crept) || self.is_open() {
@@ -267,18 +255,18 @@ impl Observer {
         } else if !self.seen.jaw.is_doubtful() {
             self.seen.relaxation.push(time - self.seen.relaxes_from, force);
         }
-        let told = force_tolerance.is_some_and(|tolerance| self.seen.smooth.level().abs() > PLAIN * tolerance);
+        let told = force_tolerance.is_some_and(|tolerance| self.seen.smooth.level.abs() > PLAIN * tolerance);
         self.begin_or_end(jaw, grip, told)
     }
 
     /// `told` is whether the force is large enough for its standing still to mean anything.
     fn begin_or_end(&mut self, jaw: Change, grip: Change, told: bool) -> bool {
-        let jaw_stands = self.seen.displacement_seen && self.seen.jaw.stands();
-        let stands = jaw_stands || (!self.seen.displacement_seen && self.seen.alone.stands() && told);
+        let jaw_stands = self.seen.displacement_seen && self.seen.jaw.stands;
+        let stands = jaw_stands || (!self.seen.displacement_seen && self.seen.alone.stands && told);
         if let Some(hold) = &mut self.seen.hold {
             hold.readings = hold.readings.saturating_add(1);
             let goes_on = match hold.held {
-                Held::Displacement if jaw == Change::Crept && self.seen.grip.stands() => {
+                Held::Displacement if jaw == Change::Crept && self.seen.grip.stands => {
                     *hold = Hold::new(Held::Force, hold.since);
                     true
                 }
@@ -301,8 +289,8 @@ impl Observer {
         }
         self.seen.hold = if stands {
             Some(Hold::new(Held::Displacement, self.seen.relaxes_from))
-        } else if self.seen.displacement_seen && self.seen.grip.stands() && self.seen.jaw.slowed() && told {
-            Some(Hold::new(Held::Force, self.seen.grip.start()))
+        } else if self.seen.displacement_seen && self.seen.grip.stands && self.seen.jaw.slowed() && told {
+            Some(Hold::new(Held::Force, self.seen.grip.start))
         } else {
             None
         };
@@ -318,12 +306,12 @@ impl Observer {
         let largest = self.seen.reached[1].1.abs().max(self.seen.reached[1].0.abs());
         let edge = (OPEN.0 * largest).max(OPEN.1 * noise);
         // What is held has to fall further to be lost.
-        self.seen.smooth.level().abs() <= if self.seen.hold.is_some() { 0.5 * edge } else { edge }
+        self.seen.smooth.level.abs() <= if self.seen.hold.is_some() { 0.5 * edge } else { edge }
     }
 
     fn fit(&mut self, time: f64) {
         let Some(mut hold) = self.seen.hold else { return };
-        let from = if hold.held == Held::Displacement { self.seen.relaxes_from } else { self.seen.grip.start() };
+        let from = if hold.held == Held::Displacement { self.seen.relaxes_from } else { self.seen.grip.start };
         let elapsed = time - from;
         if elapsed < hold.due {
             return;
@@ -351,13 +339,10 @@ impl Observer {
             && readings >= f64::from(READINGS)
         {
             let confidence = self.options.confidence;
-            let exponent = self.believed.as_ref().map_or(
-                Normal {
-                    mean: self.options.exponent,
-                    deviation: self.options.exponent_deviation,
-                },
-                Believed::exponent,
-            );
+            let exponent = self
+                .believed
+                .as_ref()
+                .map_or(Normal::new(self.options.exponent, self.options.exponent_deviation), Believed::exponent);
             hold.fit = HoldFit::new(bins, exponent, noise, |freedom| coverage_factor(confidence, freedom));
         } else {
             // Every tick, until there are enough.

@@ -1,8 +1,7 @@
 //! What an observer says after a tick: its state as an observation, and warnings.
 
-use super::normal::Normal;
 use super::signal::Smooth;
-use super::{ContactPhase, Held, Observation, Observer, Slip, SlipForecast};
+use super::{ContactPhase, Held, Normal, Observation, Observer, Slip, SlipForecast};
 use crate::grip::TimeToSlip;
 
 /// Slip that cannot be excluded is no warning where the best value is so many times farther than the warning is wanted: in the first moments
@@ -25,7 +24,7 @@ impl Observer {
             time,
             phase,
             began,
-            force: self.seen.smooth.level(),
+            force: self.seen.smooth.level,
             time_to_slip: self.options.slip_force.map(|_| SlipForecast::Unknown),
             ..Observation::default()
         };
@@ -38,13 +37,8 @@ impl Observer {
                 said.force = fit.force(elapsed);
                 let equilibrium = fit.equilibrium();
                 said.equilibrium_force = equilibrium.map(Into::into);
-                said.excess_force = equilibrium.map(|equilibrium| {
-                    Normal {
-                        mean: said.force - equilibrium.mean,
-                        ..equilibrium
-                    }
-                    .into()
-                });
+                said.excess_force = equilibrium
+                    .map(|equilibrium| Normal::new(said.force - equilibrium.mean, equilibrium.deviation).into());
                 said.relative_rate = fit.relaxes().then(|| fit.relative_rate(elapsed));
             }
             self.say_believed(&mut said, hold.held);
@@ -78,7 +72,7 @@ impl Observer {
     }
 
     fn direction(&self) -> f64 {
-        if self.seen.displacement_seen { self.seen.jaw.direction() } else { self.seen.grip.direction() }
+        if self.seen.displacement_seen { self.seen.jaw.direction } else { self.seen.grip.direction }
     }
 
     fn warning(&self, said: &Observation) -> Slip {

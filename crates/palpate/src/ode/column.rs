@@ -2,10 +2,9 @@
 
 use fearless_simd::{Simd, SimdBase, f64x8};
 
-use crate::vector::aligned::Aligned;
+use crate::vector::Aligned;
 
-use super::tableau::{A, C, D, E3, E5};
-use super::{DENSE_STAGES, STAGES, combined};
+use super::{A, C, D, DENSE_STAGES, E3, E5, STAGES, combined};
 
 /// Numbers in one vector.
 pub(crate) const WIDTH: usize = 8;
@@ -13,7 +12,7 @@ pub(crate) const WIDTH: usize = 8;
 /// Dormand–Prince 8(5,3) with dense output for a chain: number i is moved by number i − 1 alone, the first one from outside.
 ///
 /// Only the first [`active`](Self::active) numbers are followed; the rest has not been reached yet and stays as it is.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Column {
     pub(crate) state: Aligned,
     /// Numbers that are followed, a multiple of [`WIDTH`].
@@ -21,7 +20,7 @@ pub(crate) struct Column {
     len: usize,
     /// Numbers that share the tolerance: these, and those of other columns.
     sharers: f64,
-    time: f64,
+    pub(crate) time: f64,
     width: f64,
     narrowest: f64,
     tolerance: f64,
@@ -59,17 +58,11 @@ impl Column {
             active: WIDTH.min(room),
             len,
             sharers: sharers as f64,
-            time: 0.0,
-            width: 0.0,
-            narrowest: 0.0,
             tolerance,
-            has_slope: false,
             stages: Aligned::zeros(DENSE_STAGES * room),
             point: Aligned::zeros(room),
             before: Aligned::zeros(room),
-            last: (0.0, 0.0),
-            steps: 0,
-            evaluations: 0,
+            ..Self::default()
         }
     }
 
@@ -82,10 +75,6 @@ impl Column {
     /// The numbers.
     pub(crate) fn numbers(&self) -> &[f64] {
         &self.state[..self.len]
-    }
-
-    pub(crate) fn time(&self) -> f64 {
-        self.time
     }
 
     /// Whether all numbers are followed.
@@ -410,7 +399,7 @@ mod tests {
                 column.at(simd, end - 0.5 * width, &mut inside);
                 column.leave();
             });
-            ends = ends.max(off(column.numbers(), column.time()));
+            ends = ends.max(off(column.numbers(), column.time));
             halfway = halfway.max(off(&inside, end - 0.5 * width));
         }
         (ends, halfway)

@@ -38,9 +38,11 @@ const ACCIDENT: f64 = 0.004;
 /// One accepted step and the polynomial that stands for the solution inside it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Step {
-    start: f64,
+    /// Start of the step.
+    pub(crate) start: f64,
     width: f64,
-    from: f64,
+    /// The state at its start.
+    pub(crate) from: f64,
     terms: [f64; 7],
 }
 
@@ -76,16 +78,6 @@ impl Step {
         }
     }
 
-    /// The state at its start.
-    pub(crate) fn from(&self) -> f64 {
-        self.from
-    }
-
-    /// Start of the step.
-    pub(crate) fn start(&self) -> f64 {
-        self.start
-    }
-
     /// End of the step.
     pub(crate) fn end(&self) -> f64 {
         self.start + self.width
@@ -93,14 +85,14 @@ impl Step {
 }
 
 /// Dormand–Prince 8(5,3) for one number with an absolute tolerance.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Dop853 {
-    time: f64,
-    state: f64,
+    pub(crate) time: f64,
+    pub(crate) state: f64,
     slope: Option<f64>,
     width: f64,
     narrowest: f64,
-    tolerance: f64,
+    pub(crate) tolerance: f64,
     /// Accepted steps.
     pub(crate) steps: u64,
     /// Evaluations of the right-hand side.
@@ -120,30 +112,14 @@ impl Dop853 {
     /// Starts at time 0 in `state` with a first step of `width`; errors are kept below `tolerance` a step.
     pub(crate) fn new(state: f64, tolerance: f64, width: f64) -> Self {
         Self {
-            time: 0.0,
             state,
-            slope: None,
             width,
             // At a point where the right-hand side has no derivative (x = 0, n < 1) the step may shrink to
             // this and no further; the error of so narrow a step is far below the tolerance.
             narrowest: width * 1e-12,
             tolerance,
-            steps: 0,
-            evaluations: 0,
+            ..Self::default()
         }
-    }
-
-    /// Changes the error allowed in the steps to come.
-    pub(crate) fn set_tolerance(&mut self, tolerance: f64) {
-        self.tolerance = tolerance;
-    }
-
-    pub(crate) fn time(&self) -> f64 {
-        self.time
-    }
-
-    pub(crate) fn state(&self) -> f64 {
-        self.state
     }
 
     /// Takes one step towards `until` (not beyond it) along ẏ = `rhs`(t, y) and returns its dense output.
@@ -211,7 +187,7 @@ mod tests {
         let exact = |t: f64| 1.0 / (1.0 + t);
         for i in 1..=steps {
             let step = solver.step(width * f64::from(i), |_, y| -y * y);
-            ends = ends.max((solver.state() - exact(solver.time())).abs());
+            ends = ends.max((solver.state - exact(solver.time)).abs());
             for part in [0.25, 0.5, 0.75] {
                 let t = width * (f64::from(i) - part);
                 inside = inside.max((step.at(t) - exact(t)).abs());

@@ -5,12 +5,12 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `cholesky.rs` | factors of small symmetric matrices |
+//! | `cholesky.rs`, `elimination.rs` | factors of small symmetric matrices; small systems that are not symmetric |
 //! | `bounded.rs` | linear least squares with bounds: a method of active sets |
 //! | `separable/` | nonlinear least squares with the linear numbers projected out and bounds on all: damped steps |
 //! | `orthogonal.rs` | the same model with orthogonal columns, where normal equations lose digits |
 //! | `minimum.rs` | a function of one or two numbers that is known by its values alone |
-//! | `termination.rs`, `work.rs` | why a search ended, and what it cost |
+//! | `termination.rs` | why a search ended, and what it cost |
 //!
 //! One of each kind. `bounded.rs` ends after finitely many sets of bounds and is exact, but solves linear problems only. Damped steps
 //! need derivatives of the residuals; a likelihood has none, so `minimum.rs` takes values. The step itself stands once, in
@@ -18,19 +18,19 @@
 
 mod bounded;
 mod cholesky;
+mod elimination;
 mod minimum;
 mod orthogonal;
 mod separable;
 mod termination;
-mod work;
 
 pub(crate) use bounded::{BoundedProblem, BoundedSolver, Held};
 pub(crate) use cholesky::{Cholesky, Few, Square};
+pub(crate) use elimination::eliminate;
 pub(crate) use minimum::{Level, Minimum, minimise};
 pub(crate) use orthogonal::Orthogonal;
 pub(crate) use separable::{
     Ending, Near, Refined, Shapes, Solution, Spare, Target, curvature, descend, distance, polished, refine, standing,
     stepped, stepped_within,
 };
-pub use termination::Termination;
-pub use work::Work;
+pub use termination::{Termination, Work};

@@ -1,10 +1,10 @@
 //! A separable model at one place, with orthogonal columns: exact where columns nearly imitate each other.
 
 use super::separable::{Shapes, Target};
-use crate::vector::columns::multiply;
-use crate::vector::products::dot;
+use crate::vector::{dot, multiply};
 
 /// The columns of a model, made orthogonal one after the other (Gram and Schmidt, twice), and what they leave of the values.
+#[derive(Default)]
 pub(crate) struct Orthogonal {
     pub(crate) theta: Vec<f64>,
     pub(crate) square: f64,
@@ -43,13 +43,9 @@ impl Orthogonal {
         }
         let mut here = Self {
             theta: theta.to_vec(),
-            square: 0.0,
-            axes: Vec::new(),
-            parts: Vec::new(),
-            beside_cliff: false,
-            along: Vec::new(),
             rest: target.values.to_vec(),
             derivatives,
+            ..Self::default()
         };
         for mut column in columns {
             let before = dot(&column, &column);

@@ -1,4 +1,4 @@
-//! Why a search ended.
+//! Why a search ended, and what it cost.
 
 use serde::{Deserialize, Serialize};
 
@@ -30,4 +30,19 @@ impl Termination {
     pub fn is_good(self) -> bool {
         self == Self::Converged
     }
+}
+
+/// What a fit cost, in counts that do not depend on the machine.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Work {
+    /// Points of the coarse search.
+    pub grid_points: u64,
+    /// Starts refined.
+    pub starts: u64,
+    /// Evaluations of the columns over the condensed samples.
+    pub condensed: u64,
+    /// Evaluations of the columns over all samples.
+    pub evaluations: u64,
+    /// Accepted steps.
+    pub iterations: u64,
 }

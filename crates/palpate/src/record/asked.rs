@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::correct::Compliance;
-use super::correction::Baseline;
+use super::{Baseline, Compliance};
 
 /// What to do about a force that is stamped later than the displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

@@ -51,7 +51,7 @@ pub enum Baseline {
 }
 
 /// What was subtracted from a record.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tare {
     /// Force without contact, N.
     pub force: f64,

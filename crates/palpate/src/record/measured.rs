@@ -1,8 +1,7 @@
 //! The record itself.
 
 use super::checks::{self, RecordError};
-use super::correction::Correction;
-use super::signals::SignalReport;
+use super::{Correction, SignalReport};
 use crate::statistics::median;
 
 /// A force record of a squeeze-and-hold test; SI units, the direction of loading is positive.

@@ -1,7 +1,6 @@
 //! Time stamps that repeat or step back, mended where that is safe.
 
-use super::checks::RecordError;
-use super::correction::{Clock, Correction};
+use super::{Clock, Correction, RecordError};
 
 /// One row in this many may be out of order.
 const ROWS_PER_LATE: usize = 50;

@@ -1,10 +1,8 @@
 //! Columns as a file holds them, before anything is checked.
 
 use super::checks::{self, RecordError};
-use super::correction::Clock;
-use super::measured::Record;
 use super::mend::{Mended, mended};
-use super::signals::SignalReport;
+use super::{Clock, Record, SignalReport};
 
 /// Columns in SI as they were read: nothing is checked, nothing is mended.
 ///

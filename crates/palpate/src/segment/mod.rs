@@ -4,7 +4,6 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `options.rs` | every threshold as an option, and the value it took |
 //! | `segmentation.rs` | the phases of a record, and what else was found with them |
 //! | `error.rs` | why no phases were found |
 //! | `standstill/` | where a column stands still |
@@ -15,7 +14,6 @@
 
 mod error;
 mod mode;
-mod options;
 mod phases;
 mod relaxation;
 mod segmentation;
@@ -24,9 +22,12 @@ mod touch;
 
 pub use error::SegmentError;
 pub(crate) use mode::{PARTS, SEEN, change, error_of_mean, mode as held_in};
-pub use options::{HoldStart, SegmentOptions, SegmentSettings};
+use mode::{mode, mode_at_large};
 pub use phases::{GivenHold, find_phases, phases_with};
 pub use relaxation::{Relaxation, RelaxationType, classify_relaxation};
 pub(crate) use segmentation::ramps_before;
-pub use segmentation::{After, HoldMode, Phase, Ripple, Rupture, Segment, Segmentation};
+pub use segmentation::{
+    After, HoldMode, HoldStart, Phase, Ripple, Rupture, Segment, SegmentOptions, SegmentSettings, Segmentation,
+};
+use standstill::{Held, Level, Levels, levels};
 pub use touch::{ContactChoice, ContactPoint, TouchEstimate, TouchMethod, find_contact_of, free_samples};

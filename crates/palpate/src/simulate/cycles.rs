@@ -2,11 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::contact::{ContactRef, by_law};
-use super::energy::energy_watched;
-use super::trajectory::simulate_watched;
-use super::walk::Course;
-use super::{Drive, Sampling, SimulateError};
+use super::{ContactRef, Course, Drive, Sampling, SimulateError, by_law, energy_watched, simulate_watched};
 use crate::watch::{Stages, Unwatched, Watch};
 
 /// What the jaw did between two knots of a drive, J; both contacts of a body that is squeezed from two sides.

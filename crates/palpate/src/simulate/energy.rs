@@ -2,12 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::contact::{ContactRef, by_law};
-use super::layer::{InMotion, Layer};
 use super::trajectory::sample_times;
-use super::walk::Course;
-use super::walk::{Stretch, StretchState, walk};
-use super::{Drive, Sampling, SimulateError};
+use super::{ContactRef, Course, Drive, InMotion, Layer, Sampling, SimulateError, Stretch, StretchState, by_law, walk};
 use crate::contact::UnderForce;
 use crate::watch::{Stages, Unwatched, Watch};
 
@@ -32,14 +28,6 @@ pub struct EnergySplit {
     pub stored: Vec<f64>,
     /// Lost, at the rate E A depth v |x|ⁿ⁺¹/(m − 1) a contact; by a linear law E A depth Σ λ_k x_k²/g_k.
     pub lost: Vec<f64>,
-}
-
-impl Energy {
-    /// What a closed cycle lost: the work between two samples at which the body is in the same state.
-    #[must_use]
-    pub fn lost_between(&self, from: usize, to: usize) -> f64 {
-        self.work[to] - self.work[from]
-    }
 }
 
 /// Energy of `model` under a motion, a force or a program.

@@ -64,3 +64,11 @@ pub use {
     walk::{ContactEvent, ContactEventKind, StepEnd, step_ends},
     wave::{StrainWave, WAVE_TOLERANCE, strain_wave, strain_wave_within},
 };
+
+#[cfg(feature = "std")]
+use {
+    contact::by_law,
+    latency::Latency,
+    layer::{InMotion, Layer, crossing},
+    walk::{Course, Stretch, StretchState, walk},
+};

@@ -2,14 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::contact::{ContactRef, by_law};
 use super::energy::{Account, stored_at};
-use super::layer::Layer;
 use super::trajectory::{Trajectory, check_times, extend_forces, sample_times};
-use super::walk::Course;
-use super::walk::walk;
-use super::{ContactEvent, Drive, Sampling, SimulateError, StepEnd};
-use crate::vector::columns::all_finite;
+use super::{ContactEvent, ContactRef, Course, Drive, Layer, Sampling, SimulateError, StepEnd, by_law, walk};
+use crate::vector::all_finite;
 use crate::watch::{Stages, Unwatched};
 
 /// A simulation in a few numbers, SI units, compression positive.
@@ -107,10 +103,15 @@ fn summed_up<L: Layer>(
     let times = times_and_knots(&course, sampling)?;
     let share = model.specimen().contact_displacement(1.0);
     let (last, contacts) = (course.end(), 1.0 / share);
-    let (mut peak, mut next) = (Peak::default(), 0);
+    let mut peak = Peak {
+        force: f64::NEG_INFINITY,
+        time: 0.0,
+        forces: Vec::new(),
+    };
+    let mut next = 0;
     let (mut account, mut stored) = (Account::default(), 0.0);
     let mut end = Trajectory::default();
-    let mut ends = course.ends().to_vec();
+    let mut ends = course.ends.clone();
     let mut forces = check_times((course.start(), last), wanted).is_ok().then(Vec::new);
     let (events, _) = walk(course.drive, model, &mut |stretch| {
         let inside = |time: &f64| *time < stretch.end || stretch.end == last;
@@ -190,16 +191,6 @@ struct Peak {
     force: f64,
     time: f64,
     forces: Vec<f64>,
-}
-
-impl Default for Peak {
-    fn default() -> Self {
-        Self {
-            force: f64::NEG_INFINITY,
-            time: 0.0,
-            forces: Vec::new(),
-        }
-    }
 }
 
 impl Peak {

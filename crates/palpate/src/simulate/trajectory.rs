@@ -2,13 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::contact::{ContactRef, by_law};
-use super::layer::{InMotion, Layer};
-use super::walk::Course;
-use super::walk::{Stretch, StretchState, walk};
-use super::{ContactEvent, Drive, Motion, SimulateError, SimulationWork};
+use super::{
+    ContactEvent, ContactRef, Course, Drive, InMotion, Layer, Motion, SimulateError, SimulationWork, Stretch,
+    StretchState, by_law, walk,
+};
 use crate::contact::UnderForce;
-use crate::vector::columns::{all_finite, rises_or_stays};
+use crate::vector::{all_finite, rises_or_stays};
 use crate::watch::{Stages, Unwatched, Watch};
 
 /// When to report.

@@ -17,19 +17,23 @@ pub(super) struct Complex {
 
 impl Complex {
     #[inline(always)]
+    pub(super) fn new(re: f64, im: f64) -> Self {
+        Self { re, im }
+    }
+
+    #[inline(always)]
     pub(super) fn times(self, other: Self) -> Self {
-        Self {
-            re: self.re * other.re - self.im * other.im,
-            im: self.re * other.im + self.im * other.re,
-        }
+        Self::new(self.re * other.re - self.im * other.im, self.re * other.im + self.im * other.re)
     }
 
     #[inline(always)]
     pub(super) fn scaled(self, by: f64) -> Self {
-        Self {
-            re: by * self.re,
-            im: by * self.im,
-        }
+        Self::new(by * self.re, by * self.im)
+    }
+
+    #[inline(always)]
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self::new(self.re + other.re, self.im + other.im)
     }
 
     /// 1/(1 + self).
@@ -37,23 +41,18 @@ impl Complex {
     pub(super) fn one_over_one_plus(self) -> Self {
         let re = 1.0 + self.re;
         let inverse = 1.0 / (re * re + self.im * self.im);
-        Self {
-            re: re * inverse,
-            im: -self.im * inverse,
-        }
+        Self::new(re * inverse, -self.im * inverse)
     }
 
     pub(super) fn exp(self) -> Self {
         let (sin, cos) = self.im.sin_cos();
-        Self { re: cos, im: sin }.scaled(self.re.exp())
+        Self::new(cos, sin).scaled(self.re.exp())
     }
 
     pub(super) fn exp_m1(self) -> Self {
         let half = (0.5 * self.im).sin();
-        Self {
-            re: self.re.exp_m1() * self.im.cos() - 2.0 * half * half,
-            im: self.re.exp() * self.im.sin(),
-        }
+        let re = self.re.exp_m1() * self.im.cos() - 2.0 * half * half;
+        Self::new(re, self.re.exp() * self.im.sin())
     }
 }
 
@@ -63,24 +62,11 @@ pub(super) static CONTOUR: LazyLock<[(Complex, Complex); NODES]> = LazyLock::new
     std::array::from_fn(|j| {
         let theta = (j as f64 + 0.5) * PI / NODES as f64;
         let (sin, cos) = (0.6407 * theta).sin_cos();
-        let z = Complex {
-            re: total * (0.5017 * theta * cos / sin - 0.6122),
-            im: total * 0.2645 * theta,
-        };
+        let z = Complex::new(total * (0.5017 * theta * cos / sin - 0.6122), total * 0.2645 * theta);
         // z′/(24 i): real and imaginary part change places.
-        let slope = Complex {
-            re: 0.2645,
-            im: -0.5017 * (cos / sin - 0.6407 * theta / (sin * sin)),
-        };
-        let log = Complex {
-            re: z.re.hypot(z.im).ln(),
-            im: z.im.atan2(z.re),
-        };
-        let inverse = Complex {
-            re: -log.re,
-            im: -log.im,
-        }
-        .exp();
+        let slope = Complex::new(0.2645, -0.5017 * (cos / sin - 0.6407 * theta / (sin * sin)));
+        let log = Complex::new(z.re.hypot(z.im).ln(), z.im.atan2(z.re));
+        let inverse = Complex::new(-log.re, -log.im).exp();
         (log, slope.times(inverse).times(z.exp()).scaled(2.0))
     })
 });

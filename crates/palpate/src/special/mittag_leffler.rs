@@ -202,17 +202,10 @@ impl Sum {
         for node in &self.nodes {
             for (i, by_log_rate) in by_log_rate.iter_mut().enumerate() {
                 let (a, b) = node.of_both(samples, i);
-                let sum = Complex {
-                    re: a.re + b.re - 1.0,
-                    im: a.im + b.im,
-                };
+                let sum = Complex::new(a.re + b.re - 1.0, a.im + b.im);
                 let steeper = node.difference(samples, i, a, b).times(sum);
                 let slower = node.power.scaled(rest * samples.x[i]).times(a).times(a);
-                let slope = Complex {
-                    re: steeper.re + slower.re,
-                    im: steeper.im + slower.im,
-                };
-                *by_log_rate += node.weight.times(slope).re;
+                *by_log_rate += node.weight.times(steeper.plus(slower)).re;
             }
         }
         for (s, by_log_rate) in samples.s.iter().zip(by_log_rate) {
@@ -234,10 +227,7 @@ impl Node {
     #[inline(always)]
     fn difference(&self, samples: &Samples, i: usize, a: Complex, b: Complex) -> Complex {
         let of_s = samples.excess[i];
-        let excess = Complex {
-            re: -of_s - (1.0 + of_s) * self.excess.re,
-            im: -(1.0 + of_s) * self.excess.im,
-        };
+        let excess = Complex::new(-of_s - (1.0 + of_s) * self.excess.re, -(1.0 + of_s) * self.excess.im);
         a.times(self.inverse.scaled(samples.s[i]).times(b)).times(excess)
     }
 }

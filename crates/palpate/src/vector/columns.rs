@@ -2,8 +2,7 @@
 
 use fearless_simd::{Simd, SimdBase, dispatch, f64x8};
 
-use super::products::LANES;
-use super::{accelerated, level};
+use super::{LANES, accelerated, level};
 
 /// Whether every number is finite.
 pub(crate) fn all_finite(column: &[f64]) -> bool {

@@ -14,16 +14,18 @@
 //! | `products.rs` | scalar products, normal equations, residuals |
 //! | `shapes.rs` | exponential, stretched exponential and logarithm of time with their derivatives |
 
-pub(crate) mod aligned;
-pub(crate) mod columns;
+mod aligned;
+mod columns;
 pub(crate) mod elementary;
-pub(crate) mod moments;
-pub(crate) mod products;
+mod moments;
+mod products;
 mod shapes;
 
-pub(crate) use shapes::{
-    exponential_many, exponential_values, logarithm_many, logarithm_values, stretched_many, stretched_values,
-};
+pub(crate) use aligned::Aligned;
+pub(crate) use columns::{add_multiple, all_finite, extremes, multiply, rises, rises_or_stays, shifted};
+pub(crate) use moments::moments;
+pub(crate) use products::{LANES, cross_products, dot, form_residuals, lane_sums, normal_equations};
+pub(crate) use shapes::{exponential_columns, logarithm_columns, stretched_columns};
 
 use fearless_simd::{Level, dispatch};
 
@@ -73,6 +75,12 @@ pub(crate) fn fill<const N: usize>(inputs: &[f64], mut outputs: [&mut [f64]; N],
             }
         },
     );
+}
+
+/// The first `N` of `all`.
+#[inline(always)]
+pub(crate) fn first<const N: usize, const M: usize>(all: [f64; M]) -> [f64; N] {
+    std::array::from_fn(|index| all[index])
 }
 
 /// Replaces numbers by what `work` makes of a copy of them, part by part.

@@ -1,87 +1,38 @@
 //! Shapes of time with their derivatives, all columns in one pass.
 //!
 //! Times t ≥ 0 and rates λ > 0 in each other's units. Derivatives are taken by ln λ, the number that fits search in.
-//! Forms that end in `_values` leave them out.
+//! The first `N` of the columns are filled; what is not asked for is not computed.
 //!
 //! # Panics
 //! All panic if the slices differ in length.
 
 use super::elementary::{exp, ln, ln_1p};
-use super::fill;
+use super::{fill, first};
 
 /// φ = exp(−λ t) and ∂φ/∂ln λ = −λ t φ.
-pub(crate) fn exponential_many(times: &[f64], rate: f64, value: &mut [f64], by_log_rate: &mut [f64]) {
+pub(crate) fn exponential_columns<const N: usize>(times: &[f64], rate: f64, columns: [&mut [f64]; N]) {
     fill(
         times,
-        [value, by_log_rate],
+        columns,
         #[inline(always)]
-        |t| exponential(rate * t),
-    );
-}
-
-/// φ = exp(−λ t).
-pub(crate) fn exponential_values(times: &[f64], rate: f64, value: &mut [f64]) {
-    fill(
-        times,
-        [value],
-        #[inline(always)]
-        |t| [exponential(rate * t)[0]],
+        |t| {
+            let s = rate * t;
+            let phi = exp(-s);
+            first([phi, -s * phi])
+        },
     );
 }
 
 /// The stretched exponential of Kohlrausch, Williams and Watts, φ = exp(−(λ t)^β), β > 0.
 ///
 /// With s = λ t, u = s^β:  ∂φ/∂ln λ = −β u φ  and  ∂φ/∂β = −u ln(s) φ, both 0 at t = 0.
-pub(crate) fn stretched_many(
-    times: &[f64],
-    rate: f64,
-    exponent: f64,
-    value: &mut [f64],
-    by_log_rate: &mut [f64],
-    by_exponent: &mut [f64],
-) {
+pub(crate) fn stretched_columns<const N: usize>(times: &[f64], rate: f64, exponent: f64, columns: [&mut [f64]; N]) {
     fill(
         times,
-        [value, by_log_rate, by_exponent],
+        columns,
         #[inline(always)]
-        |t| stretched(rate * t, exponent),
+        |t| first(stretched(rate * t, exponent)),
     );
-}
-
-/// φ = exp(−(λ t)^β).
-pub(crate) fn stretched_values(times: &[f64], rate: f64, exponent: f64, value: &mut [f64]) {
-    fill(
-        times,
-        [value],
-        #[inline(always)]
-        |t| [stretched(rate * t, exponent)[0]],
-    );
-}
-
-/// ln(1 + λ t) and its derivative by ln λ, λ t/(1 + λ t).
-pub(crate) fn logarithm_many(times: &[f64], rate: f64, value: &mut [f64], by_log_rate: &mut [f64]) {
-    fill(
-        times,
-        [value, by_log_rate],
-        #[inline(always)]
-        |t| logarithm(rate * t),
-    );
-}
-
-/// ln(1 + λ t).
-pub(crate) fn logarithm_values(times: &[f64], rate: f64, value: &mut [f64]) {
-    fill(
-        times,
-        [value],
-        #[inline(always)]
-        |t| [logarithm(rate * t)[0]],
-    );
-}
-
-#[inline(always)]
-fn exponential(s: f64) -> [f64; 2] {
-    let phi = exp(-s);
-    [phi, -s * phi]
 }
 
 #[inline(always)]
@@ -95,9 +46,17 @@ fn stretched(s: f64, exponent: f64) -> [f64; 3] {
     [phi, -exponent * slope, -log * slope]
 }
 
-#[inline(always)]
-fn logarithm(s: f64) -> [f64; 2] {
-    [ln_1p(s), s / (1.0 + s)]
+/// ln(1 + λ t) and its derivative by ln λ, λ t/(1 + λ t).
+pub(crate) fn logarithm_columns<const N: usize>(times: &[f64], rate: f64, columns: [&mut [f64]; N]) {
+    fill(
+        times,
+        columns,
+        #[inline(always)]
+        |t| {
+            let s = rate * t;
+            first([ln_1p(s), s / (1.0 + s)])
+        },
+    );
 }
 
 #[cfg(test)]
@@ -125,8 +84,8 @@ mod tests {
 
     #[test]
     fn exponential_and_its_slope() {
-        let found = columns(|[phi, slope]| exponential_many(&times(), 0.7, phi, slope));
-        let values = columns(|[phi]| exponential_values(&times(), 0.7, phi));
+        let found = columns::<2>(|all| exponential_columns(&times(), 0.7, all));
+        let values = columns::<1>(|all| exponential_columns(&times(), 0.7, all));
         assert_eq!(found[0], values[0]);
         assert_eq!((found[0][0], found[1][0]), (1.0, 0.0));
         for (i, s) in times().iter().map(|t| 0.7 * t).enumerate() {
@@ -139,8 +98,8 @@ mod tests {
     #[test]
     fn stretched_exponential_and_its_slopes() {
         for exponent in [0.05, 0.3, 0.5, 1.0, 1.7, 2.0] {
-            let found = columns(|[phi, a, b]| stretched_many(&times(), 0.7, exponent, phi, a, b));
-            let values = columns(|[phi]| stretched_values(&times(), 0.7, exponent, phi));
+            let found = columns::<3>(|all| stretched_columns(&times(), 0.7, exponent, all));
+            let values = columns::<1>(|all| stretched_columns(&times(), 0.7, exponent, all));
             assert_eq!(found[0], values[0]);
             assert_eq!([found[0][0], found[1][0], found[2][0]], [1.0, 0.0, 0.0]);
             for (i, s) in times().iter().map(|t| 0.7 * t).enumerate().skip(1) {
@@ -158,8 +117,8 @@ mod tests {
     /// β = 1 is the exponential.
     #[test]
     fn stretched_exponential_ends_in_the_exponential() {
-        let found = columns(|[phi, a, b]| stretched_many(&times(), 2.0, 1.0, phi, a, b));
-        let expected = columns(|[phi, slope]| exponential_many(&times(), 2.0, phi, slope));
+        let found = columns::<3>(|all| stretched_columns(&times(), 2.0, 1.0, all));
+        let expected = columns::<2>(|all| exponential_columns(&times(), 2.0, all));
         for (i, t) in times().iter().enumerate() {
             let tolerance = 1e-15 * (1.0 + t * (1.0 + (2.0 * t.max(1e-300)).ln().abs()) + 30.0);
             assert_close(found[0][i], expected[0][i], tolerance, "φ");
@@ -169,8 +128,8 @@ mod tests {
 
     #[test]
     fn logarithm_and_its_slope() {
-        let found = columns(|[value, slope]| logarithm_many(&times(), 3.0, value, slope));
-        let values = columns(|[value]| logarithm_values(&times(), 3.0, value));
+        let found = columns::<2>(|all| logarithm_columns(&times(), 3.0, all));
+        let values = columns::<1>(|all| logarithm_columns(&times(), 3.0, all));
         assert_eq!(found[0], values[0]);
         assert_eq!((found[0][0], found[1][0]), (0.0, 0.0));
         for (i, s) in times().iter().map(|t| 3.0 * t).enumerate() {
@@ -185,11 +144,11 @@ mod tests {
         let times: Vec<f64> = (1..40).map(|i| 0.25 * f64::from(i)).collect();
         let stretched_at = |log_rate: f64, exponent: f64| {
             let mut value = vec![0.0; times.len()];
-            stretched_values(&times, log_rate.exp(), exponent, &mut value);
+            stretched_columns(&times, log_rate.exp(), exponent, [&mut value]);
             value
         };
         let [mut phi, mut by_log_rate, mut by_exponent] = [vec![0.0; 39], vec![0.0; 39], vec![0.0; 39]];
-        stretched_many(&times, (-1.0f64).exp(), 0.6, &mut phi, &mut by_log_rate, &mut by_exponent);
+        stretched_columns(&times, (-1.0f64).exp(), 0.6, [&mut phi, &mut by_log_rate, &mut by_exponent]);
         let by_rate = (stretched_at(-1.0 + STEP, 0.6), stretched_at(-1.0 - STEP, 0.6), by_log_rate);
         let by_power = (stretched_at(-1.0, 0.6 + STEP), stretched_at(-1.0, 0.6 - STEP), by_exponent);
         for (above, below, slope) in [by_rate, by_power] {

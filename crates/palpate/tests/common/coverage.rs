@@ -1,6 +1,6 @@
 //! How often intervals contain the truth: simulated holds with noise, fitted many times.
 
-use palpate::fit::{BootstrapOptions, LawOptions, Samples, bootstrap, fit_law, profile_interval};
+use palpate::fit::{BootstrapOptions, IntervalMethod, LawOptions, Samples, fit_law, profile_interval};
 use palpate::laws::{BasisFunction, ExponentChoice, Law, LawCurve, Response, Term};
 use palpate::test_problems::Noise;
 
@@ -101,7 +101,16 @@ impl Case {
                 seed: index,
                 ..BootstrapOptions::default()
             };
-            bootstrap(&samples, self.law, &options, &how).expect("a bootstrap")
+            let intervals = IntervalMethod::Bootstrap(how);
+            fit_law(
+                &samples,
+                self.law,
+                &LawOptions {
+                    intervals,
+                    ..options.clone()
+                },
+            )
+            .expect("a bootstrap")
         });
         let found = |(name, _): &(&str, f64)| {
             let estimate = *fit.estimate(name).expect("a number");

@@ -4,6 +4,9 @@ use crate::analysis::finding::Finding;
 use crate::fit::{Fit, FitError, Termination};
 use crate::forecast::Comparison;
 use crate::laws::Law;
+use crate::record::Record;
+use crate::segment::{After, HoldMode, PARTS, SEEN, Segment, change, error_of_mean};
+use crate::statistics::{mean, range};
 use crate::watch::Cancelled;
 
 /// A comparison or fit; none where nothing could be fitted.
@@ -40,4 +43,37 @@ pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
         findings.push(Finding::LawsIndistinguishable { laws: alike });
     }
     findings
+}
+
+/// What shows that a hold is not one of constant displacement with a force that relaxes.
+pub(super) fn not_a_hold(record: &Record, segment: &Segment) -> Option<Finding> {
+    let moved = change(record, segment.start, segment.end);
+    let (travel, change) = moved.map_or((0.0, 0.0), |moved| (moved.travel, moved.force));
+    match segment.mode {
+        Some(HoldMode::ForceHeld) => Some(Finding::FeedbackControlled { travel, change }),
+        Some(HoldMode::Neither) if moved.is_some() => Some(Finding::NothingHeld { travel, change }),
+        _ => drift(record, segment),
+    }
+}
+
+/// Means of ten equal parts.
+fn means(values: &[f64]) -> Vec<f64> {
+    let bounds: Vec<usize> = (0..=PARTS).map(|i| i * values.len() / PARTS).collect();
+    bounds.windows(2).map(|pair| mean(&values[pair[0]..pair[1]])).collect()
+}
+
+/// The force rises in a hold after loading: at once, or again after it has fallen.
+fn drift(record: &Record, segment: &Segment) -> Option<Finding> {
+    /// Of what it fell, and of the force's range in the record.
+    const LEAST_SHARES: [f64; 2] = [0.03, 2e-3];
+    let force = &record.force()[segment.fit_start..segment.end];
+    if segment.after != Some(After::Loading) || force.len() < 3 * PARTS {
+        return None;
+    }
+    let parts = means(force);
+    let lowest = parts.iter().copied().fold(f64::MAX, f64::min);
+    let (rise, fall) = (parts[PARTS - 1] - lowest, parts[0] - lowest);
+    let seen = rise > SEEN * std::f64::consts::SQRT_2 * error_of_mean(force);
+    let matters = rise > LEAST_SHARES[0] * fall && rise > LEAST_SHARES[1] * range(record.force());
+    (seen && matters).then_some(Finding::DriftInsteadOfRelaxation { rise, fall })
 }

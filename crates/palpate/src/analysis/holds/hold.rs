@@ -2,12 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::behaviour::not_a_hold;
-use super::compared::{comparison_findings, fitted};
-use super::holdout::HoldoutError;
+use super::compared::{comparison_findings, fitted, not_a_hold};
 use super::rate_bias::{RateBias, rate_bias};
-use crate::analysis::finding::Finding;
-use crate::analysis::options::AnalysisOptions;
+use crate::analysis::{AnalysisOptions, Finding};
 use crate::contact::Specimen;
 use crate::fit::{
     ExponentChoice, FitError, LatencyFit, OrderSelection, Samples, Termination, fit_hold_watched, fit_rates,
@@ -373,4 +370,15 @@ fn confounded(fit: &LatencyFit) -> Option<f64> {
     let covariance = fit.covariance.as_ref()?;
     let correlation = covariance[0][3] / (covariance[0][0] * covariance[3][3]).sqrt();
     (correlation.abs() > CLOSE).then_some(correlation)
+}
+
+/// Error of a fit over samples that it was not fitted to.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct HoldoutError {
+    /// Root mean square of measured less predicted, in the unit of the signal.
+    pub rmse: f64,
+    /// The same as a share of the drop of the signal over the whole hold, or of the largest force of the whole record.
+    pub relative: f64,
+    /// Samples that were held out.
+    pub samples: usize,
 }

@@ -4,19 +4,16 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `corrected.rs` | the corrections that were asked for, in order |
-//! | `prepared.rs` | the same with zero at first touch |
+//! | `corrected.rs` | the corrections that were asked for, in order, then zero at first touch |
 //! | `skew.rs`, `kink.rs` | how much later the force is stamped than the displacement |
 //! | `signals.rs` | what the columns, and what was done to them, give cause to say |
 
 mod corrected;
 mod kink;
-mod prepared;
 mod signals;
 mod skew;
 
-pub use corrected::{Corrected, corrected};
-pub use prepared::{Prepared, prepared};
+pub use corrected::{Corrected, Prepared, corrected, prepared};
 pub(super) use signals::signal_findings;
 pub use signals::suspicious_signs;
 pub use skew::{ClockSkew, clock_skew};

@@ -1,8 +1,6 @@
 //! What the columns of a record, and what was done to them, give cause to say.
 
-use super::corrected::Corrected;
-use super::prepared::Prepared;
-use crate::analysis::finding::Finding;
+use crate::analysis::{Corrected, Finding, Prepared};
 use crate::record::{Column, Correction, Record, SignalReport, Values};
 use crate::segment::{ContactChoice, ContactPoint, Segmentation};
 use crate::statistics::{median, noise};

@@ -120,13 +120,13 @@ fn edge(
     let times = &record.time()[range.clone()];
     let border = record.time()[after.start];
     let stretch = 0.5 * (times[times.len() - 1] - times[0]);
-    let jaw = kink(times, &displacement[range.clone()], border, 0.6 * stretch, false)?;
+    let jaw = kink::<3>(times, &displacement[range.clone()], border, 0.6 * stretch)?;
     let late = if lag == 0.0 { after.start } else { record.time().partition_point(|t| *t < border + lag) };
     if late < side || late + side > record.len() {
         return None;
     }
     let range = late - side..late + side;
-    let force = kink(&record.time()[range.clone()], &record.force()[range], border + lag, 0.6 * stretch, true)?;
+    let force = kink::<4>(&record.time()[range.clone()], &record.force()[range], border + lag, 0.6 * stretch)?;
     let stands_out = |kink: &Kink| kink.bend.abs() * stretch > 4.0 * kink.noise;
     (stands_out(&jaw) && stands_out(&force)).then_some(Edge {
         difference: force.time - jaw.time,

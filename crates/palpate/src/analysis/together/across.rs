@@ -3,8 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::joint::{JointAnalysis, joint};
-use crate::analysis::holds::HoldAnalysis;
-use crate::analysis::options::AnalysisOptions;
+use crate::analysis::{AnalysisOptions, HoldAnalysis};
 use crate::fit::LatencyFit;
 use crate::segment::After;
 use crate::statistics::coverage_factor;

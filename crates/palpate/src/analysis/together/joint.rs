@@ -2,9 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::finding::Finding;
 use crate::analysis::holds::{HoldAnalysis, Signal, fitted};
-use crate::analysis::options::AnalysisOptions;
+use crate::analysis::{AnalysisOptions, Finding};
 use crate::fit::{
     ExponentChoice, HoldWeights, JointComparison, JointFit, JointOptions, Samples, TrendVerdict, compare_joint,
     fit_joint_watched,

@@ -1,14 +1,13 @@
 //! The same displacement simulated with the fitted numbers.
 
-use crate::analysis::holds::HoldAnalysis;
-use crate::analysis::options::AnalysisOptions;
+use crate::analysis::{AnalysisOptions, HoldAnalysis};
 use crate::contact::{Layers, Specimen};
 use crate::fit::LatencyFit;
 use crate::latency::LatencyLaw;
 use crate::record::Record;
 use crate::segment::{After, Segmentation};
 use crate::simulate::{ContactModel, Motion, Separation, simulate_force};
-use crate::statistics::median;
+use crate::statistics::{median, rms};
 
 /// Samples of the record that are compared, at most.
 const MOST_SAMPLES: usize = 20_000;
@@ -131,9 +130,4 @@ fn fitted_layers(error: impl Fn(Layers) -> f64) -> Option<Layers> {
     }
     let log = 0.5 * (low + high);
     at(log).is_finite().then(|| layers(log).ok()).flatten()
-}
-
-fn rms(measured: &[f64], simulated: &[f64]) -> f64 {
-    let square: f64 = measured.iter().zip(simulated).map(|(m, s)| (m - s).powi(2)).sum();
-    (square / measured.len() as f64).sqrt()
 }

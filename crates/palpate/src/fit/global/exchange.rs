@@ -1,16 +1,11 @@
-//! A series of exponentials with terms replaced: two of them are taken away and sought again everywhere beside those that stay.
+//! A series of exponentials with a term added, or with terms replaced: two of them are taken away and sought again everywhere beside those that stay.
 //!
 //! Where the signal is far above the noise a grid of all rates at once sees only the valley of the strongest terms. With these kept where
 //! they are, a grid of two shows what the others might be instead: one elsewhere, both, or both as one.
 
-use super::grid::{Grid, distinct, rates};
-use super::lattice::Lattice;
-use super::merged::exact::local;
-use super::merged::valley::Valley;
-use super::plane::Plane;
-use crate::fit::problem::condensed::Condensed;
-use crate::fit::problem::model::Model;
-use crate::optimise::{Work, distance};
+use super::{Grid, Lattice, Plane, Valley, distinct, local, rates};
+use crate::fit::problem::{Condensed, Model};
+use crate::optimise::{Orthogonal, Shapes, Work, distance};
 
 /// Terms that are replaced at once.
 const REPLACED: usize = 2;
@@ -87,4 +82,32 @@ pub(crate) fn paired(model: &Model, nodes: &Condensed, kept: &[f64], work: &mut 
         terms: REPLACED,
     };
     lattice.valleys(FOLLOWED, work).into_iter().map(|others| [kept, &others].concat()).collect()
+}
+
+/// Step of the rate that is added, in ln λ.
+const STEP: f64 = 0.25;
+
+/// Distance in ln λ of a twin, a term beside one that is there.
+const BESIDE: f64 = 0.1;
+
+/// The rates `theta` of the series `fewer` with one more: wherever that takes off more than a little faster or slower one would, and
+/// beside each of those there; with the residual square over the nodes with the rates that were there before kept.
+///
+/// Where noise opens narrow valleys a coarse grid of all rates at once sees none of them, because its slow rates fit too badly.
+pub(crate) fn grown(fewer: &Model, nodes: &Condensed, theta: &[f64]) -> Vec<(f64, Vec<f64>)> {
+    let shapes = fewer.at(&nodes.times);
+    let here = Orthogonal::new(&shapes, theta, nodes.target());
+    let (low, high) = shapes.bounds(0);
+    let steps = ((high - low) / STEP).ceil() as usize;
+    let rates: Vec<f64> = (0..=steps).map(|i| low + (high - low) * i as f64 / steps as f64).collect();
+    let gain = |rate: &f64| here.gain(nodes.column(fewer, 0, &[*rate]));
+    let gains: Vec<f64> = rates.iter().map(gain).collect();
+    let highest = |i: &usize| {
+        let beside = [i.checked_sub(1), Some(i + 1)].map(|j| j.and_then(|j| gains.get(j)).copied().unwrap_or(0.0));
+        gains[*i] > beside[0] && gains[*i] >= beside[1]
+    };
+    let start = |(rate, gain): (f64, f64)| (here.square - gain, [theta, &[rate]].concat());
+    let peaks = (0..=steps).filter(highest).map(|i| (rates[i], gains[i]));
+    let twins = theta.iter().map(|rate| (rate + BESIDE).min(high)).map(|rate| (rate, gain(&rate)));
+    peaks.chain(twins).map(start).collect()
 }

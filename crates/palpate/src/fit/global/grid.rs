@@ -2,8 +2,7 @@
 
 use std::iter;
 
-use crate::fit::problem::condensed::Condensed;
-use crate::fit::problem::model::Model;
+use crate::fit::{Condensed, Model};
 use crate::laws::{BasisFunction, NumberKind};
 
 /// How fine a grid is.

@@ -1,8 +1,7 @@
 //! Laws that end in finite time: wherever the end passes a sample the residual has a kink, and a valley of its own between two.
 
 use super::grid::ends_of;
-use crate::fit::problem::model::Model;
-use crate::fit::samples::Scaled;
+use crate::fit::{Model, Scaled};
 use crate::optimise::{Orthogonal, Shapes, Solution};
 
 /// Intervals between samples that are looked at.

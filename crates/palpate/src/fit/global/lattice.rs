@@ -4,10 +4,9 @@
 //! optimum often lies. Columns are made orthogonal one after the other, exact where rates are near each other.
 
 use super::plane::Plane;
-use crate::fit::problem::condensed::Condensed;
-use crate::fit::problem::model::Model;
+use crate::fit::{Condensed, Model};
 use crate::optimise::Work;
-use crate::vector::products::dot;
+use crate::vector::dot;
 
 /// Distance in ln λ of terms that count as one taken twice.
 const APART: f64 = 0.02;

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | `grid.rs`, `plane.rs` | values that are tried, and nodes with all that needs no search projected out |
 //! | `lattice.rs`, `starts.rs` | the exhaustive coarse search |
-//! | `growth.rs`, `exchange.rs` | exponentials added to a series, and replaced in it |
+//! | `exchange.rs` | exponentials added to a series, and replaced in it |
 //! | `kinks.rs` | laws that end in finite time |
 //! | `merged/` | local searches where terms merge |
 //! | `thorough.rs` | the search for hard cases |
@@ -15,7 +15,6 @@
 
 mod exchange;
 pub(crate) mod grid;
-mod growth;
 mod kinks;
 mod lattice;
 mod merged;
@@ -23,3 +22,15 @@ mod plane;
 pub(crate) mod search;
 pub(crate) mod starts;
 mod thorough;
+
+use exchange::{exchanged, grown, paired, rising};
+pub(super) use grid::{Grid, coarse, rates};
+pub(crate) use grid::{combinations, distinct};
+use grid::{ends, finite_end, rates_with_end};
+use kinks::{first_kinks, near_kinks};
+use lattice::Lattice;
+use merged::{Valley, exact, inflation, local, rounding};
+use plane::Plane;
+pub(super) use search::{finalists, search};
+use starts::{fine_starts, starts};
+use thorough::thorough;

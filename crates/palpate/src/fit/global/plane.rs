@@ -1,7 +1,6 @@
 //! Nodes with all that needs no search projected out.
 
-use crate::fit::problem::condensed::Condensed;
-use crate::fit::problem::model::Model;
+use crate::fit::{Condensed, Model};
 use crate::statistics::dot;
 
 /// The nodes with all that needs no search, the constant and shapes without free numbers, projected out.

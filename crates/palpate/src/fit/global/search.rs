@@ -1,15 +1,7 @@
 //! From a model and samples to the global optimum.
 
-use super::grid::ends;
-use super::growth::grown;
-use super::kinks::near_kinks;
-use super::merged::exact::{exact, inflation, local};
-use super::starts::starts;
-use super::thorough::thorough;
-use crate::fit::problem::condensed::{Condensed, condense};
-use crate::fit::problem::ghosts::{Ghost, ghosts};
-use crate::fit::problem::model::{Model, Sampled};
-use crate::fit::samples::Scaled;
+use super::{ends, exact, grown, inflation, local, near_kinks, starts, thorough};
+use crate::fit::{Condensed, Ghost, Model, Sampled, Scaled, condense, ghosts};
 use crate::optimise::{
     Ending, Near, Refined, Solution, Square, Target, Termination, Work, curvature, descend, distance, polished, refine,
     standing, stepped,
@@ -145,10 +137,7 @@ fn valleys(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut 
     let (shapes, target) = (model.at(&nodes.times), nodes.target());
     let mut aside = Work::default();
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
-    let rough = Ending {
-        gain: ROUGH,
-        most_iterations,
-    };
+    let rough = Ending::new(ROUGH, most_iterations);
     let explore = |start: &[f64], aside: &mut Work| {
         let refined = refine(&shapes, target, start, rough, aside);
         (refined.point.square + nodes.inside, refined.into_theta(&shapes))
@@ -216,10 +205,7 @@ fn longer(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut W
 const FELT: f64 = 20.0;
 
 /// No step at all.
-const AS_IT_IS: Ending = Ending {
-    gain: 0.0,
-    most_iterations: 0,
-};
+const AS_IT_IS: Ending = Ending::new(0.0, 0);
 
 /// Times the least residual square, above which a law that ends in finite time is not the best with another exponent: those tried are
 /// as near to each other as to the laws without an end.

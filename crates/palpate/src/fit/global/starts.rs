@@ -1,14 +1,10 @@
 //! The exhaustive coarse search that makes starting values unnecessary.
 
-use super::grid::{Grid, coarse, combinations, finite_end, rates, rates_with_end};
-use super::lattice::Lattice;
-use super::plane::Plane;
-use crate::fit::problem::condensed::Condensed;
-use crate::fit::problem::model::Model;
+use super::{Grid, Lattice, Plane, coarse, combinations, finite_end, rates, rates_with_end};
+use crate::fit::problem::{Condensed, Model};
 use crate::optimise::{Cholesky, Few, Work};
 use crate::statistics::dot;
-use crate::vector::columns::multiply;
-use crate::vector::products::{LANES, lane_sums};
+use crate::vector::{LANES, lane_sums, multiply};
 
 /// Points from which to refine the free numbers of a model, best first: the valleys that a coarse grid shows.
 ///

@@ -4,17 +4,8 @@
 //! half the digits just where shapes imitate each other. The result may still be one that no data determine; but no other is
 //! better.
 
-use super::exchange::{exchanged, paired, rising};
-use super::grid::{Grid, distinct};
-use super::growth::grown;
-use super::kinks::first_kinks;
-use super::merged::apart::rounding;
-use super::merged::exact::local;
-use super::merged::valley::Valley;
-use super::starts::fine_starts;
-use crate::fit::problem::condensed::{Condensed, condense_to};
-use crate::fit::problem::model::Model;
-use crate::fit::samples::Scaled;
+use super::{Grid, Valley, distinct, exchanged, fine_starts, first_kinks, grown, local, paired, rising, rounding};
+use crate::fit::{Condensed, Model, Scaled, condense_to};
 use crate::laws::NumberKind;
 use crate::optimise::{Ending, Solution, Termination, Work, distance, polished, refine, standing};
 

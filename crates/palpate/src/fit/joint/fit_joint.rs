@@ -5,8 +5,7 @@ use super::hold::{Hold, View};
 use super::report::Joint;
 use super::result::law_options;
 use super::starts::{Start, finalists};
-use crate::fit::law::fitted::Fitted;
-use crate::fit::{FitError, HoldWeights, JointFit, JointOptions, LawOptions, Samples};
+use crate::fit::{FitError, Fitted, HoldWeights, JointFit, JointOptions, LawOptions, Samples};
 use crate::laws::{ExponentChoice, Law, NumberKind};
 use crate::optimise::{Ending, Shapes, Termination, Work};
 use crate::statistics::mean;
@@ -175,16 +174,15 @@ impl Joint {
         work: &mut Work,
         watch: &mut dyn Watch,
     ) -> Result<(Point, Termination), Cancelled> {
-        let start = |(hold, solution): (&Hold, &crate::optimise::Solution)| Start {
-            shared: hold.shared(&solution.nonlinear, &solution.linear),
-            own: self.solutions.iter().map(|solution| solution.linear.clone()).collect(),
+        let start = |(hold, solution): (&Hold, &crate::optimise::Solution)| {
+            Start::new(
+                hold.shared(&solution.nonlinear, &solution.linear),
+                self.solutions.iter().map(|solution| solution.linear.clone()).collect(),
+            )
         };
         let separate: Vec<Start> = self.holds.iter().zip(&self.solutions).map(start).collect();
         let views: Vec<View<'_>> = self.holds.iter().map(View::all).collect();
-        let ending = Ending {
-            gain: 1e-22,
-            most_iterations,
-        };
+        let ending = Ending::new(1e-22, most_iterations);
         let first = separate[0].clone();
         let mut starts = finalists(&self.holds, &self.bounds, separate, most_iterations, work, watch)?.into_iter();
         let mut settle = |start: Start| {

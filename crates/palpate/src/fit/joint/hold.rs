@@ -1,11 +1,9 @@
 //! One hold among several: how the shared numbers come to it, and what it says about them.
 
-use crate::fit::problem::model::Model;
-use crate::fit::samples::Scaled;
+use crate::fit::{Model, Scaled};
 use crate::laws::NumberKind;
 use crate::optimise::{Cholesky, Shapes, Target, Work};
-use crate::vector::columns::multiply;
-use crate::vector::products::{dot, form_residuals, normal_equations};
+use crate::vector::{dot, form_residuals, multiply, normal_equations};
 
 /// A hold in its own units, with what ties it to the others.
 pub(crate) struct Hold {

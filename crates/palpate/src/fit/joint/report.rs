@@ -2,8 +2,7 @@
 
 use super::arrow::Point;
 use super::hold::Hold;
-use crate::fit::law::fitted::Fitted;
-use crate::fit::{Assessed, Fit, JointFit, JointOptions, ParameterName};
+use crate::fit::{Assessed, Fit, Fitted, JointFit, JointOptions, ParameterName};
 use crate::laws::{Law, NumberKind};
 use crate::optimise::{Cholesky, Few, Solution, Termination, Work};
 use crate::statistics::{effective_count, lag_one_correlation};

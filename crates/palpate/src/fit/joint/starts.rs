@@ -4,8 +4,7 @@ use super::arrow::{Point, refine};
 use super::hold::{Hold, View};
 use crate::fit::global::grid::{Grid, coarse, combinations, distinct, rates};
 use crate::fit::global::starts::starts as valleys;
-use crate::fit::problem::condensed::{Condensed, condense};
-use crate::fit::problem::model::Model;
+use crate::fit::{Condensed, Model, condense};
 use crate::optimise::{Ending, Work, refine as refine_one};
 use crate::watch::{Cancelled, Progress, Watch};
 
@@ -14,6 +13,12 @@ use crate::watch::{Cancelled, Progress, Watch};
 pub(crate) struct Start {
     pub(crate) shared: Vec<f64>,
     pub(crate) own: Vec<Vec<f64>>,
+}
+
+impl Start {
+    pub(crate) fn new(shared: Vec<f64>, own: Vec<Vec<f64>>) -> Self {
+        Self { shared, own }
+    }
 }
 
 /// Points of the grid that are refined.
@@ -44,10 +49,7 @@ pub(crate) fn finalists(
     } else {
         grid(holds, &nodes, bounds, work)
     });
-    let ending = Ending {
-        gain: 1e-10,
-        most_iterations,
-    };
+    let ending = Ending::new(1e-10, most_iterations);
     let mut found: Vec<(f64, Start)> = Vec::new();
     for start in starts {
         watch.report(Progress::counted("fitting holds together", holds.len(), holds.len() + 1))?;
@@ -56,10 +58,7 @@ pub(crate) fn finalists(
         let point = Point::new(&views, &inner, &start.own, &mut aside);
         let (point, _) = refine(&views, bounds, point, ending, &mut aside);
         if point.square.is_finite() {
-            let start = Start {
-                shared: point.shared.clone(),
-                own: point.own(),
-            };
+            let start = Start::new(point.shared.clone(), point.own());
             found.push((point.square + inside, start));
         }
     }
@@ -88,10 +87,9 @@ fn near(apart: f64) -> impl Fn(&Start, &Start) -> bool {
 fn with_mean(separate: Vec<Start>) -> Vec<Start> {
     let count = separate.len() as f64;
     let mean = |p: usize| separate.iter().map(|start| start.shared[p]).sum::<f64>() / count;
-    let middle = separate.first().map(|first| Start {
-        shared: (0..first.shared.len()).map(mean).collect(),
-        own: first.own.clone(),
-    });
+    let middle = separate
+        .first()
+        .map(|first| Start::new((0..first.shared.len()).map(mean).collect(), first.own.clone()));
     distinct(middle.into_iter().chain(separate), usize::MAX, near(0.3))
 }
 
@@ -100,19 +98,13 @@ fn by_exponent(holds: &[Hold], nodes: &[Condensed], work: &mut Work) -> Vec<Star
     let number = holds[0].model.numbers.get(1);
     let exponents = number.map_or_else(Vec::new, |number| coarse(number.kind, number.bounds, number.fixed));
     let alone = |exponent: f64, work: &mut Work| -> Option<Start> {
-        let mut start = Start {
-            shared: vec![0.0, exponent],
-            own: Vec::new(),
-        };
+        let mut start = Start::new(vec![0.0, exponent], Vec::new());
         for (hold, nodes) in holds.iter().zip(nodes) {
             let mut numbers = hold.model.numbers.clone();
             numbers[1].fixed = Some(exponent);
             let model = Model::new(hold.model.form.clone(), hold.model.constant, numbers, Vec::new());
             let valley = valleys(&model, nodes, 1, work).into_iter().next()?;
-            let ending = Ending {
-                gain: 1e-5,
-                most_iterations: 50,
-            };
+            let ending = Ending::new(1e-5, 50);
             let mut aside = Work::default();
             let fit = refine_one(&model.at(&nodes.times), nodes.target(), &valley, ending, &mut aside);
             work.condensed += aside.evaluations;
@@ -136,8 +128,7 @@ fn grid(holds: &[Hold], nodes: &[Condensed], bounds: &[(f64, f64)], work: &mut W
         work.grid_points += 1;
         let point = Point::new(&views, &shared, &own, &mut aside);
         if point.square.is_finite() {
-            let own = own.clone();
-            found.push((point.square, Start { shared, own }));
+            found.push((point.square, Start::new(shared, own.clone())));
         }
     }
     work.condensed += aside.evaluations;

@@ -12,79 +12,25 @@
 //! nothing of correlation beyond it; both would make intervals too narrow, so that residuals are first scaled to
 //! the variance of the noise ([`NoiseModel`]) times that of its long sums over that of sums of independent blocks.
 
-use serde::{Deserialize, Serialize};
-
 use super::derived::derived;
-use super::fitted::Fitted;
-use crate::fit::problem::condensed::condense;
 use crate::fit::{
-    BootstrapOptions, Estimate, Fit, FitError, LawOptions, NoiseModel, Parameter, ParameterName, Samples, Scale,
+    BootstrapOptions, Estimate, Fit, FitError, Fitted, LawOptions, NoiseModel, Parameter, Scale, condense,
 };
 use crate::laws::Law;
 use crate::optimise::{Ending, Work, refine};
 use crate::random::Noise as Random;
-use crate::watch::{Progress, Unwatched, Watch};
-
-/// What a bootstrap says.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Bootstrap {
-    /// The numbers as in the result of the fit; the standard error is the deviation of the draws, the interval theirs by
-    /// percentiles. Neither where a number was held.
-    pub numbers: Vec<(ParameterName, Estimate)>,
-    /// Samples a block.
-    pub block: usize,
-    /// Draws that could be fitted.
-    pub repetitions: usize,
-}
-
-impl Bootstrap {
-    /// A number by its name.
-    #[must_use]
-    pub fn estimate(&self, name: &str) -> Option<&Estimate> {
-        self.numbers.iter().find(|(known, _)| *known == *name).map(|(_, estimate)| estimate)
-    }
-}
-
-/// Bootstrap intervals of all numbers of a law.
-///
-/// Draws are fitted from the best numbers downhill, on condensed samples: a thousand take some hundredths of a second.
-/// Intervals run between percentiles of the draws, so they follow the number through any change of scale.
-///
-/// ```
-/// use palpate::fit::{BootstrapOptions, LawOptions, Samples, bootstrap, fit_law};
-/// use palpate::laws::Law;
-/// use palpate::test_problems::noisy_hold;
-/// let (times, values) = noisy_hold(500, 1.0, 1e-2);
-/// let (samples, law, options) = (Samples::new(&times, &values), Law::StandardLinearSolid, LawOptions::default());
-/// let drawn = bootstrap(&samples, law, &options, &BootstrapOptions::default())?;
-/// let fit = fit_law(&samples, law, &options)?;
-/// let errors = [drawn.estimate("time"), fit.estimate("time")].map(|found| found.unwrap().standard_error.unwrap());
-/// assert!((errors[0] / errors[1] - 1.0).abs() < 0.1);
-/// # Ok::<(), palpate::fit::FitError>(())
-/// ```
-///
-/// # Errors
-/// As [`fit_law`](crate::fit::fit_law).
-pub fn bootstrap(
-    samples: &Samples<'_>,
-    law: Law,
-    options: &LawOptions,
-    how: &BootstrapOptions,
-) -> Result<Bootstrap, FitError> {
-    let mut fitted = Fitted::new(samples, law, options, &mut Work::default())?;
-    let fit = fitted.report(law, options, Work::default());
-    fitted.resample(&fit, options, how, &mut Unwatched)
-}
+use crate::watch::{Progress, Watch};
 
 impl Fitted {
-    /// Bootstrap intervals of all parameters of this fit.
+    /// All numbers of this fit by draws: the standard error is their deviation, the interval runs between percentiles; neither
+    /// where a number was held.
     pub(crate) fn resample(
         &mut self,
         fit: &Fit,
         options: &LawOptions,
         how: &BootstrapOptions,
         watch: &mut dyn Watch,
-    ) -> Result<Bootstrap, FitError> {
+    ) -> Result<Vec<Estimate>, FitError> {
         let count = self.scaled.times.len();
         let block = how.block.unwrap_or_else(|| fit.noise.block(count)).clamp(1, count);
         let mut draws: Vec<Vec<f64>> = vec![Vec::new(); fit.parameters.len()];
@@ -105,18 +51,12 @@ impl Fitted {
                 }
             }
         }
-        let repetitions = draws.first().map_or(0, Vec::len);
         let summary = |(number, mut all): (&Parameter, Vec<f64>)| {
             let free = number.estimate.standard_error.is_some() && all.len() > 1;
             let value = number.estimate.value;
-            let estimate = if free { summarized(value, &mut all, options.confidence) } else { Estimate::fixed(value) };
-            (number.name, estimate)
+            if free { summarized(value, &mut all, options.confidence) } else { Estimate::fixed(value) }
         };
-        Ok(Bootstrap {
-            numbers: fit.parameters.iter().zip(draws).map(summary).collect(),
-            block,
-            repetitions,
-        })
+        Ok(fit.parameters.iter().zip(draws).map(summary).collect())
     }
 }
 
@@ -165,10 +105,7 @@ impl Fitted {
         let best = (self.solution.linear.clone(), self.solution.nonlinear.clone());
         let measured = std::mem::replace(&mut self.scaled.values, values);
         let nodes = condense(&self.scaled);
-        let ending = Ending {
-            gain: 1e-8,
-            most_iterations: options.most_iterations,
-        };
+        let ending = Ending::new(1e-8, options.most_iterations);
         let refined = refine(&self.model.at(&nodes.times), nodes.target(), &best.1, ending, &mut Work::default());
         self.solution.linear = refined.point.linear.to_vec();
         self.solution.nonlinear = refined.point.theta.to_vec();
@@ -204,6 +141,7 @@ impl NoiseModel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::{IntervalMethod, Samples, fit_law};
     use crate::test_problems::noisy_hold;
 
     #[test]
@@ -227,11 +165,14 @@ mod tests {
                 repetitions: 99,
                 ..BootstrapOptions::default()
             };
-            bootstrap(&samples, Law::StandardLinearSolid, &LawOptions::default(), &how).unwrap()
+            let options = LawOptions {
+                intervals: IntervalMethod::Bootstrap(how),
+                ..LawOptions::default()
+            };
+            fit_law(&samples, Law::StandardLinearSolid, &options).unwrap()
         };
         assert_eq!(run(7), run(7));
         assert_ne!(run(7).estimate("time"), run(8).estimate("time"));
-        assert_eq!((run(7).repetitions, run(7).block), (99, 1));
     }
 
     #[test]

@@ -1,7 +1,6 @@
 //! Numbers that follow from those that were searched, with their gradients.
 
-use super::fitted::Fitted;
-use crate::fit::{Estimate, NumberUnit, Parameter, ParameterKind, ParameterName, Scale};
+use crate::fit::{Estimate, Fitted, NumberUnit, Parameter, ParameterKind, ParameterName, Scale};
 use crate::laws::{BasisFunction, Kernel, Law, Response};
 
 /// What makes an estimate of a value, its derivatives by the searched numbers (of ln value on the logarithmic scale) and that scale.
@@ -73,14 +72,26 @@ impl<'a> View<'a> {
         self.constant + self.amplitudes().iter().sum::<f64>()
     }
 
+    /// A number that is known on a straight scale: its value and ∂/∂ the searched ones.
+    fn linear(&self, name: impl Into<ParameterName>, unit: NumberUnit, value: f64, gradient: &[f64]) -> Parameter {
+        let (name, estimate) = (name.into(), (self.estimate)(value, gradient, Scale::Linear));
+        Parameter { name, unit, estimate }
+    }
+
+    /// The same for a number above 0, with ∂/∂ of its logarithm.
+    fn log(&self, name: impl Into<ParameterName>, unit: NumberUnit, value: f64, gradient: &[f64]) -> Parameter {
+        let (name, estimate) = (name.into(), (self.estimate)(value, gradient, Scale::Log));
+        Parameter { name, unit, estimate }
+    }
+
+    fn total(&self, name: ParameterKind) -> Parameter {
+        self.linear(name, NumberUnit::Signal, self.sum(), &self.sum_gradient())
+    }
+
     /// Signal at the start of relaxation; signal at the end of creep.
     fn start(&self) -> Parameter {
         let creep = self.fitted.model.form.response == Response::Creep;
-        Parameter {
-            name: if creep { ParameterKind::Final } else { ParameterKind::Start }.into(),
-            unit: NumberUnit::Signal,
-            estimate: (self.estimate)(self.sum(), &self.sum_gradient(), Scale::Linear),
-        }
+        self.total(if creep { ParameterKind::Final } else { ParameterKind::Start })
     }
 
     /// v = λ |Δ|^(1 − n).
@@ -92,15 +103,8 @@ impl<'a> View<'a> {
             _ => (self.numbers[1], self.place(1)),
         };
         let entries = [(Some(self.first), -(n - 1.0) / amplitude), (self.place(0), 1.0), (exponent, -log_amplitude)];
-        Parameter {
-            name: ParameterKind::RateCoefficient.into(),
-            unit: NumberUnit::RateCoefficient,
-            estimate: (self.estimate)(
-                (self.numbers[0] - (n - 1.0) * log_amplitude).exp(),
-                &self.gradient(&entries),
-                Scale::Log,
-            ),
-        }
+        let value = (self.numbers[0] - (n - 1.0) * log_amplitude).exp();
+        self.log(ParameterKind::RateCoefficient, NumberUnit::RateCoefficient, value, &self.gradient(&entries))
     }
 
     /// N, c₀, cᵢ and νᵢ.
@@ -112,26 +116,17 @@ impl<'a> View<'a> {
             if let Some(place) = place {
                 gradient[place] += 1.0 / total;
             }
-            Parameter {
-                name: ParameterName::of_term(ParameterKind::Share, term),
-                unit: NumberUnit::One,
-                estimate: (self.estimate)(part / total, &gradient, Scale::Linear),
-            }
+            let name = ParameterName::of_term(ParameterKind::Share, term);
+            self.linear(name, NumberUnit::One, part / total, &gradient)
         };
-        let mut all = vec![Parameter {
-            name: ParameterKind::ElasticResponse.into(),
-            ..self.start()
-        }];
-        all.push(share(0, self.constant, self.fitted.model.constant.then_some(0)));
+        let rest = share(0, self.constant, self.fitted.model.constant.then_some(0));
+        let mut all = vec![self.total(ParameterKind::ElasticResponse), rest];
         for (i, amplitude) in self.amplitudes().iter().enumerate() {
             all.push(share(i + 1, *amplitude, Some(self.first + i)));
         }
         for (i, number) in self.numbers.iter().enumerate() {
-            all.push(Parameter {
-                name: ParameterName::of_term(ParameterKind::TermRate, i + 1),
-                unit: NumberUnit::PerSecond,
-                estimate: (self.estimate)(number.exp(), &self.gradient(&[(self.place(i), 1.0)]), Scale::Log),
-            });
+            let name = ParameterName::of_term(ParameterKind::TermRate, i + 1);
+            all.push(self.log(name, NumberUnit::PerSecond, number.exp(), &self.gradient(&[(self.place(i), 1.0)])));
         }
         all
     }
@@ -147,25 +142,11 @@ impl<'a> View<'a> {
             (Some(self.first), 1.0 / (self.constant * log_ratio)),
             (self.place(1), -strength / log_ratio),
         ];
+        let short = self.gradient(&[(self.place(0), -1.0), (self.place(1), -1.0)]);
         vec![
-            Parameter {
-                name: ParameterKind::ElasticResponse.into(),
-                ..self.start()
-            },
-            Parameter {
-                name: ParameterKind::Strength.into(),
-                unit: NumberUnit::One,
-                estimate: (self.estimate)(strength, &self.gradient(&entries), Scale::Linear),
-            },
-            Parameter {
-                name: ParameterKind::TimeShort.into(),
-                unit: NumberUnit::Second,
-                estimate: (self.estimate)(
-                    (-self.numbers[0] - log_ratio).exp(),
-                    &self.gradient(&[(self.place(0), -1.0), (self.place(1), -1.0)]),
-                    Scale::Log,
-                ),
-            },
+            self.total(ParameterKind::ElasticResponse),
+            self.linear(ParameterKind::Strength, NumberUnit::One, strength, &self.gradient(&entries)),
+            self.log(ParameterKind::TimeShort, NumberUnit::Second, (-self.numbers[0] - log_ratio).exp(), &short),
         ]
     }
 
@@ -177,23 +158,15 @@ impl<'a> View<'a> {
             let (amplitude, log_rate) = (self.amplitudes()[i], self.numbers[numbers.start]);
             let place = Some(self.first + i);
             if *shape == BasisFunction::Straight {
-                all.push(Parameter {
-                    name: ParameterKind::FlowRate.into(),
-                    unit: NumberUnit::SignalPerSecond,
-                    estimate: (self.estimate)(
-                        amplitude * log_rate.exp(),
-                        &self.gradient(&[(place, log_rate.exp())]),
-                        Scale::Linear,
-                    ),
-                });
+                let gradient = self.gradient(&[(place, log_rate.exp())]);
+                let rate = amplitude * log_rate.exp();
+                all.push(self.linear(ParameterKind::FlowRate, NumberUnit::SignalPerSecond, rate, &gradient));
             } else if *shape == BasisFunction::PowerGrowth {
                 let factor = (log_rate * self.numbers[numbers.start + 1]).exp();
                 let entries = [(place, factor), (self.place(numbers.start + 1), amplitude * factor * log_rate)];
-                all.push(Parameter {
-                    name: ParameterKind::Coefficient.into(),
-                    unit: NumberUnit::SignalPerPower,
-                    estimate: (self.estimate)(amplitude * factor, &self.gradient(&entries), Scale::Linear),
-                });
+                let gradient = self.gradient(&entries);
+                let coefficient = amplitude * factor;
+                all.push(self.linear(ParameterKind::Coefficient, NumberUnit::SignalPerPower, coefficient, &gradient));
             }
         }
         all

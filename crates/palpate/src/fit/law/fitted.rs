@@ -1,7 +1,6 @@
 //! A law fitted, in the units of the fit and in those of the caller.
 
-use crate::fit::problem::model::{Model, searched_name};
-use crate::fit::samples::Scaled;
+use crate::fit::{Model, Scaled, searched_name};
 use crate::laws::{LawCurve, NumberKind, Term};
 use crate::optimise::Solution;
 

@@ -6,7 +6,6 @@
 //! | `derived.rs` | numbers that follow from those that were searched |
 //! | `report.rs` | from both to the result |
 //! | `robust.rs` | outliers made to count less |
-//! | `solve.rs` | the way to a solution |
 //! | `profile.rs`, `bootstrap.rs` | intervals that may be asymmetric or open, and those from resampled residuals |
 //! | `fit_law.rs` | the whole way |
 //! | `prediction.rs` | the curve at a time, with its interval |
@@ -19,8 +18,7 @@ mod prediction;
 mod profile;
 mod report;
 mod robust;
-mod solve;
 
-pub use bootstrap::{Bootstrap, bootstrap};
 pub use fit_law::{fit_law, fit_law_watched};
+pub(super) use fitted::Fitted;
 pub use profile::profile_interval;

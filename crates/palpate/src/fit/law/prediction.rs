@@ -1,8 +1,7 @@
 //! What a fit says about a time, with an interval.
 
 use crate::fit::noise::uncertainty::variance_of;
-use crate::fit::problem::model::searched_name;
-use crate::fit::{Estimate, Fit, Scale};
+use crate::fit::{Estimate, Fit, Scale, searched_name};
 use crate::laws::{Column, Kernel};
 
 impl Fit {

@@ -10,11 +10,8 @@
 //! `lmfit.conf_interval`. Where residuals correlate, w is the variance of the number for noise of their kind over that for
 //! white noise, and t has the degrees of freedom of that variance ([`Uncertainty`](super::Uncertainty)).
 
-use super::fitted::Fitted;
 use crate::fit::noise::uncertainty::variance_of;
-use crate::fit::problem::condensed::condense;
-use crate::fit::problem::model::Model;
-use crate::fit::{Fit, FitError, Interval, LawOptions, Samples};
+use crate::fit::{Fit, FitError, Fitted, Interval, LawOptions, Model, Samples, condense};
 use crate::laws::{Law, NumberKind};
 use crate::optimise::{Ending, Shapes, Target, Work, refine};
 use crate::statistics::coverage_factor;

@@ -1,9 +1,7 @@
 //! From a solution to the result: parameters with errors and intervals.
 
 use super::derived::{Estimating, derived};
-use super::fitted::Fitted;
-use crate::fit::problem::ghosts::ghosts;
-use crate::fit::{Assessed, Domain, Estimate, Fit, LawOptions, Loss, NumberUnit, Parameter, Scale};
+use crate::fit::{Assessed, Domain, Estimate, Fit, Fitted, LawOptions, Loss, NumberUnit, Parameter, Scale, ghosts};
 use crate::laws::{Law, NumberKind};
 use crate::optimise::{Few, Shapes, Termination, Work};
 

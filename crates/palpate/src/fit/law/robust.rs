@@ -7,10 +7,7 @@
 //! K² · scale² · Σ ψ(u)²/(N − p) / (mean ψ′(u))² · (JᵀJ)⁻¹,    K = 1 + (p/N) var ψ′ / (mean ψ′)²
 //! ```
 
-use super::fitted::Fitted;
-use crate::fit::global::search::search;
-use crate::fit::samples::Scaled;
-use crate::fit::{FitError, LawOptions, Loss};
+use crate::fit::{FitError, Fitted, LawOptions, Loss, Scaled, search};
 use crate::optimise::{Ending, Solution, Termination, Work, polished, refine, standing};
 use crate::statistics::mean;
 

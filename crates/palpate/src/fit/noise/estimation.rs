@@ -1,10 +1,7 @@
 //! Which noise left the residuals of a fit.
 
-use super::found::Noise;
-use super::lags::Lags;
-use super::likelihood::Neighbours;
-use super::mixture::Mixture;
-use super::model::NoiseModel;
+use super::likelihood::{Mixture, Neighbours};
+use super::model::{Lags, Noise, NoiseModel};
 
 /// Fall of −2 ln L that one more number of the noise has to bring.
 const EVIDENCE: f64 = 4.0;
@@ -69,6 +66,7 @@ fn stretches(series: &[f64]) -> Vec<f64> {
 }
 
 /// What a glance at the residuals says, so that white ones cost next to nothing.
+#[derive(Default)]
 struct Signs {
     /// Neighbours correlate.
     neighbours: bool,
@@ -82,10 +80,7 @@ impl Signs {
         let count = residuals.len() as f64;
         let Lags { square, first, second } = *lags;
         if residuals.len() < 8 || square <= f64::MIN_POSITIVE * 1e20 {
-            return Self {
-                neighbours: false,
-                slow: false,
-            };
+            return Self::default();
         }
         let taken = parameters as f64 / count;
         let neighbours = first + taken > 2.0 / count.sqrt();
@@ -109,11 +104,11 @@ impl Signs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::noise::columns::Columns;
     use crate::fit::noise::likelihood::{Likelihood, correlation_of};
+    use crate::fit::noise::rows::Columns;
     use crate::optimise::Cholesky;
     use crate::statistics::dot;
-    use crate::vector::products::cross_products;
+    use crate::vector::cross_products;
 
     /// Noise of this model from a fixed sequence.
     fn simulated(model: NoiseModel, samples: usize, seed: u64) -> Vec<f64> {

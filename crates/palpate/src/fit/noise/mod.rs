@@ -12,19 +12,14 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `model.rs` | how noise correlates |
-//! | `lags.rs`, `rows.rs`, `columns.rs` | sums over residuals and columns |
-//! | `found.rs` | a noise, and how sure it is |
-//! | `likelihood.rs`, `mixture.rs` | the restricted likelihood of AR(1), and of white noise with AR(1) |
+//! | `model.rs` | how noise correlates; a noise that was found, lags of residuals |
+//! | `rows.rs` | sums over residuals and columns |
+//! | `likelihood.rs` | the restricted likelihood of AR(1), and of white noise with AR(1) |
 //! | `estimation.rs` | which noise left the residuals |
 //! | `uncertainty.rs` | errors and intervals that follow |
 
-mod columns;
 mod estimation;
-mod found;
-mod lags;
 mod likelihood;
-mod mixture;
 pub(crate) mod model;
 mod rows;
 pub(crate) mod uncertainty;

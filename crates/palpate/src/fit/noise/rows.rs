@@ -3,7 +3,8 @@
 
 use fearless_simd::{Simd, SimdBase, dispatch, f64x8};
 
-use crate::vector::{accelerated, level};
+use super::model::NoiseModel;
+use crate::vector::{accelerated, cross_products, level};
 
 /// Columns in one vector.
 const LANES: usize = 8;
@@ -162,6 +163,42 @@ pub(crate) fn whitened_squares(column: &[f64], filters: &[Filter]) -> Vec<f64> {
         squares.into_iter().take(filters.len())
     };
     filters.chunks(LANES).flat_map(many).collect()
+}
+
+/// The columns of a Jacobian J, ready for products with correlations between them.
+pub(crate) struct Columns {
+    size: usize,
+    /// JᵀJ.
+    product: Vec<f64>,
+    rows: Rows,
+}
+
+impl Columns {
+    pub(crate) fn new(columns: &[&[f64]]) -> Self {
+        let size = columns.len();
+        let mut product = vec![0.0; size * size];
+        cross_products(columns, columns, &mut product);
+        Self {
+            size,
+            product,
+            rows: Rows::new(columns),
+        }
+    }
+
+    /// JᵀRJ, row-major, with R the correlations of this noise, in one pass over the columns.
+    ///
+    /// F_i = ρ (F_{i−1} + J_{i−1}) sums all that came before, so that JᵀRJ = JᵀJ + s (JᵀF + FᵀJ).
+    pub(crate) fn quadratic(&self, model: NoiseModel) -> Vec<f64> {
+        let (correlation, share) = model.numbers();
+        let mut product = self.product.clone();
+        let across = self.rows.with_sums_before(correlation);
+        for i in 0..self.size {
+            for j in 0..self.size {
+                product[i * self.size + j] += share * (across[i * self.size + j] + across[j * self.size + i]);
+            }
+        }
+        product
+    }
 }
 
 #[cfg(test)]

@@ -2,13 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::columns::Columns;
-use super::found::Noise;
-use super::lags::Lags;
+use super::model::{Lags, Noise};
+use super::rows::Columns;
 use crate::fit::{Estimate, NoiseChoice, NoiseModel};
 use crate::optimise::{Cholesky, Few, Solution, Termination};
 use crate::statistics::{coverage_factor, dot};
-use crate::vector::products::cross_products;
+use crate::vector::cross_products;
 
 /// How a number is brought to its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

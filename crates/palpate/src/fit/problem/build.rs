@@ -2,9 +2,7 @@
 
 use std::iter;
 
-use super::model::{Model, Number};
-use crate::fit::samples::Scaled;
-use crate::fit::{ConstantChoice, FitError, LawOptions, Samples};
+use crate::fit::{ConstantChoice, FitError, LawOptions, Model, Number, Samples, Scaled};
 use crate::laws::{Form, Law, NumberKind};
 
 impl LawOptions {

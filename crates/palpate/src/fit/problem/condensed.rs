@@ -2,13 +2,9 @@
 
 use std::ops::Range;
 
-use super::model::Model;
-use crate::fit::samples::Scaled;
+use crate::fit::{Model, Scaled};
 use crate::optimise::Target;
-use crate::vector::accelerated;
-use crate::vector::columns::multiply;
-use crate::vector::moments::moments;
-use crate::vector::products::LANES;
+use crate::vector::{LANES, accelerated, moments, multiply};
 
 /// The nodes that stand for scaled samples.
 pub(crate) fn condense(scaled: &Scaled) -> Condensed {

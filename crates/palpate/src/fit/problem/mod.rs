@@ -12,4 +12,8 @@ pub(crate) mod condensed;
 pub(crate) mod ghosts;
 pub(crate) mod model;
 
+pub(super) use build::build;
+pub(super) use condensed::{Condensed, condense, condense_to};
 pub use ghosts::Ghost;
+pub(super) use ghosts::ghosts;
+pub(super) use model::{Model, Number, Sampled, searched_name};

@@ -2,7 +2,7 @@
 
 use crate::latency::decay_many;
 use crate::statistics::dot;
-use crate::vector::columns::multiply;
+use crate::vector::multiply;
 
 /// Samples taken at a time, so that all columns of a block stay in the nearest cache.
 const BLOCK: usize = 64;

@@ -71,13 +71,6 @@ impl SpectrumFit {
         self.amplitudes.iter().filter(|height| **height > 0.0).count()
     }
 
-    /// Share of the whole relaxation that the fit puts after the end of the hold, 0 to 1: there it is extrapolation.
-    #[must_use]
-    pub fn share_after_hold(&self) -> f64 {
-        let whole = self.remaining(0.0);
-        if whole > 0.0 { self.remaining(self.duration) / whole } else { 0.0 }
-    }
-
     /// Whether the slowest grid time carries weight. If so, the drift at the end is confounded with the constant, the
     /// spectrum might as well go on beyond its grid, and the equilibrium is a convention of the grid, not a finding.
     #[must_use]

@@ -11,8 +11,7 @@
 //!
 //! Early, 1 − φ grows as the square root of time; late, φ falls as (8/π²) exp(−t/τ).
 
-use crate::laws::description::Description;
-use crate::laws::kernel::{Kernel, ShapeNumber, TIME};
+use crate::laws::{Description, Kernel, ShapeNumber, TIME};
 use crate::special::diffusion_decay_many;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {

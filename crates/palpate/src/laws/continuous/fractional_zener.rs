@@ -9,8 +9,7 @@
 //! | time τ | s | above 0 | between the two powers, t^α before and t^(−α) after |
 //! | order α | 1 | 0.05 to 1 | 1: standard linear solid |
 
-use crate::laws::description::Description;
-use crate::laws::kernel::{Kernel, ShapeNumber, TIME, two};
+use crate::laws::{Description, Kernel, ShapeNumber, TIME, two};
 use crate::special::{mittag_leffler_decay_many, mittag_leffler_decay_value_many};
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
@@ -25,8 +24,7 @@ pub(in crate::laws) struct MittagLeffler;
 impl Kernel for MittagLeffler {
     fn numbers(&self) -> &'static [ShapeNumber] {
         const COARSE: [f64; 10] = [0.05, 0.1, 0.18, 0.27, 0.38, 0.5, 0.63, 0.77, 0.9, 1.0];
-        const NUMBERS: [ShapeNumber; 2] = [TIME, ShapeNumber::pure("order", 0.05, 1.0, &COARSE)];
-        &NUMBERS
+        const { &[TIME, ShapeNumber::pure("order", 0.05, 1.0, &COARSE)] }
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {

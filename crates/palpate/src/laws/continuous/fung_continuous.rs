@@ -11,8 +11,7 @@
 //!
 //! Limit: ϱ → 1 is the standard linear solid.
 
-use crate::laws::description::Description;
-use crate::laws::kernel::{Kernel, NumberKind, ShapeNumber, two};
+use crate::laws::{Description, Kernel, NumberKind, ShapeNumber, two};
 use crate::special::fung_continuous_many;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
@@ -27,12 +26,8 @@ pub(in crate::laws) struct FungContinuous;
 impl Kernel for FungContinuous {
     fn numbers(&self) -> &'static [ShapeNumber] {
         const COARSE: [f64; 10] = [0.05, 1.5, 3.0, 4.5, 6.0, 8.0, 10.0, 13.0, 17.0, 25.0];
-        const TIME_LONG: ShapeNumber = ShapeNumber {
-            name: "time_long",
-            kind: NumberKind::Time,
-        };
-        const NUMBERS: [ShapeNumber; 2] = [TIME_LONG, ShapeNumber::pure("log_ratio", 0.05, 25.0, &COARSE)];
-        &NUMBERS
+        const TIME_LONG: ShapeNumber = ShapeNumber::new("time_long", NumberKind::Time);
+        const { &[TIME_LONG, ShapeNumber::pure("log_ratio", 0.05, 25.0, &COARSE)] }
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {

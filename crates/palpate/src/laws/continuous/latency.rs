@@ -12,9 +12,8 @@
 //! Limits: n → 1 is the standard linear solid; n = 2 the hyperbola 1/(1 + λt) that food science writes as Peleg's
 //! t/(k₁ + k₂t) (Peleg 1980), with Δ = 1/k₂ and λ = k₂/k₁; large n the logarithm; without equilibrium a power law.
 
-use crate::latency::{decay_many, decay_with_gradient_many, decay_with_log_rate_many};
-use crate::laws::kernel::{ShapeNumber, two};
-use crate::laws::{BasisFunction, Description, ExponentChoice, Kernel, NumberKind};
+use crate::latency::{decay_columns, decay_many};
+use crate::laws::{BasisFunction, Description, ExponentChoice, Kernel, NumberKind, ShapeNumber, two};
 
 /// In words; two exponents have names of their own.
 pub(in crate::laws) fn description(exponent: ExponentChoice) -> Description {
@@ -44,10 +43,7 @@ impl ExponentChoice {
     }
 }
 
-const RATE: ShapeNumber = ShapeNumber {
-    name: "relative_rate",
-    kind: NumberKind::Rate,
-};
+const RATE: ShapeNumber = ShapeNumber::new("relative_rate", NumberKind::Rate);
 
 /// Exponents of a coarse search.
 const COARSE: [f64; 15] = [0.2, 0.3, 0.6, 1.0, 1.4, 2.0, 2.7, 3.6, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0, 30.0];
@@ -67,7 +63,7 @@ impl Kernel for FreeLatency {
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
         let [by_rate, by_exponent] = two(derivatives);
-        decay_with_gradient_many(times, theta[0].exp(), theta[1], value, by_rate, by_exponent);
+        decay_columns(times, theta[0].exp(), theta[1], [value, by_rate, by_exponent]);
     }
 }
 
@@ -86,6 +82,6 @@ impl Kernel for FixedLatency {
     }
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
-        decay_with_log_rate_many(times, theta[0].exp(), self.exponent, value, &mut derivatives[0]);
+        decay_columns(times, theta[0].exp(), self.exponent, [value, &mut derivatives[0]]);
     }
 }

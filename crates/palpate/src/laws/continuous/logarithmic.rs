@@ -8,9 +8,8 @@
 //! | amplitude Δ | of y | any | change per e-fold of time |
 //! | time 1/λ | s | above 0 | where the logarithm begins |
 
-use crate::laws::description::Description;
-use crate::laws::kernel::{Kernel, ShapeNumber, TIME};
-use crate::vector::{logarithm_many, logarithm_values};
+use crate::laws::{Description, Kernel, ShapeNumber, TIME};
+use crate::vector::logarithm_columns;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "logarithmic",
@@ -31,10 +30,10 @@ impl Kernel for Logarithm {
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
-        logarithm_values(times, theta[0].exp(), value);
+        logarithm_columns(times, theta[0].exp(), [value]);
     }
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
-        logarithm_many(times, theta[0].exp(), value, &mut derivatives[0]);
+        logarithm_columns(times, theta[0].exp(), [value, &mut derivatives[0]]);
     }
 }

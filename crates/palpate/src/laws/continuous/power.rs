@@ -10,9 +10,8 @@
 //! | time t₀ (relaxation) | s | above 0 | where the power begins |
 //! | exponent α | 1 | 0.005 to 5; in creep 0.01 to 2 | 0: elastic, 1: viscous |
 
-use crate::latency::{decay_many, decay_with_gradient_many};
-use crate::laws::description::Description;
-use crate::laws::kernel::{Kernel, REFERENCE, ShapeNumber, TIME, two};
+use crate::latency::{decay_columns, decay_many};
+use crate::laws::{Description, Kernel, REFERENCE, ShapeNumber, TIME, two};
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "power law",
@@ -26,8 +25,7 @@ pub(in crate::laws) struct PowerDecay;
 impl Kernel for PowerDecay {
     fn numbers(&self) -> &'static [ShapeNumber] {
         const COARSE: [f64; 14] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.35, 0.6, 1.0, 1.6, 2.5, 4.0, 5.0];
-        const NUMBERS: [ShapeNumber; 2] = [TIME, ShapeNumber::pure("exponent", 0.005, 5.0, &COARSE)];
-        &NUMBERS
+        const { &[TIME, ShapeNumber::pure("exponent", 0.005, 5.0, &COARSE)] }
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
@@ -37,7 +35,7 @@ impl Kernel for PowerDecay {
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
         let [by_rate, by_exponent] = two(derivatives);
         let alpha = theta[1];
-        decay_with_gradient_many(times, alpha * theta[0].exp(), 1.0 + 1.0 / alpha, value, by_rate, by_exponent);
+        decay_columns(times, alpha * theta[0].exp(), 1.0 + 1.0 / alpha, [value, by_rate, by_exponent]);
         // The latency law in (ln λ', n) with λ' = αλ, n = 1 + 1/α.
         for (by_alpha, by_rate) in by_exponent.iter_mut().zip(by_rate.iter()) {
             *by_alpha = by_rate / alpha - *by_alpha / (alpha * alpha);
@@ -51,8 +49,7 @@ pub(in crate::laws) struct PowerGrowth;
 impl Kernel for PowerGrowth {
     fn numbers(&self) -> &'static [ShapeNumber] {
         const COARSE: [f64; 14] = [0.01, 0.03, 0.06, 0.1, 0.15, 0.22, 0.32, 0.45, 0.6, 0.8, 1.0, 1.3, 1.6, 2.0];
-        const NUMBERS: [ShapeNumber; 2] = [REFERENCE, ShapeNumber::pure("exponent", 0.01, 2.0, &COARSE)];
-        &NUMBERS
+        const { &[REFERENCE, ShapeNumber::pure("exponent", 0.01, 2.0, &COARSE)] }
     }
 
     fn decays(&self) -> bool {

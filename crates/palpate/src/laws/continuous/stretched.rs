@@ -9,9 +9,8 @@
 //! | time τ = 1/λ | s | above 0 | where e⁻¹ of it is left |
 //! | stretching β | 1 | 0.05 to 2 | 1: exponential; smaller: wider |
 
-use crate::laws::description::Description;
-use crate::laws::kernel::{Kernel, ShapeNumber, TIME, two};
-use crate::vector::{stretched_many, stretched_values};
+use crate::laws::{Description, Kernel, ShapeNumber, TIME, two};
+use crate::vector::stretched_columns;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "stretched exponential",
@@ -25,16 +24,15 @@ pub(in crate::laws) struct Stretched;
 impl Kernel for Stretched {
     fn numbers(&self) -> &'static [ShapeNumber] {
         const COARSE: [f64; 12] = [0.05, 0.1, 0.15, 0.22, 0.3, 0.4, 0.53, 0.7, 0.9, 1.2, 1.6, 2.0];
-        const NUMBERS: [ShapeNumber; 2] = [TIME, ShapeNumber::pure("stretching", 0.05, 2.0, &COARSE)];
-        &NUMBERS
+        const { &[TIME, ShapeNumber::pure("stretching", 0.05, 2.0, &COARSE)] }
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
-        stretched_values(times, theta[0].exp(), theta[1], value);
+        stretched_columns(times, theta[0].exp(), theta[1], [value]);
     }
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
         let [by_rate, by_stretching] = two(derivatives);
-        stretched_many(times, theta[0].exp(), theta[1], value, by_rate, by_stretching);
+        stretched_columns(times, theta[0].exp(), theta[1], [value, by_rate, by_stretching]);
     }
 }

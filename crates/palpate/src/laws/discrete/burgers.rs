@@ -9,7 +9,7 @@
 //! | time τ | s | above 0 | retardation time |
 //! | flow rate | of y per s | any | slope of the flow that never comes back |
 
-use crate::laws::description::Description;
+use crate::laws::basis::Description;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "Burgers",

@@ -1,7 +1,7 @@
 //! The shape exp(−λt) that Maxwell, Kelvin–Voigt, standard linear solid, Burgers, Prony and Fung share.
 
 use crate::laws::kernel::{Kernel, ShapeNumber, TIME};
-use crate::vector::{exponential_many, exponential_values};
+use crate::vector::exponential_columns;
 
 /// exp(−t/τ).
 pub(in crate::laws) struct Exponential;
@@ -12,10 +12,10 @@ impl Kernel for Exponential {
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
-        exponential_values(times, theta[0].exp(), value);
+        exponential_columns(times, theta[0].exp(), [value]);
     }
 
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
-        exponential_many(times, theta[0].exp(), value, &mut derivatives[0]);
+        exponential_columns(times, theta[0].exp(), [value, &mut derivatives[0]]);
     }
 }

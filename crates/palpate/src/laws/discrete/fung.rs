@@ -11,7 +11,7 @@
 //!
 //! It is Prony's series in other numbers: N = y_e + Σ Δᵢ, c₀ = y_e/N, cᵢ = Δᵢ/N, νᵢ = 1/τᵢ.
 
-use crate::laws::description::Description;
+use crate::laws::basis::Description;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "Fung, reduced relaxation function",

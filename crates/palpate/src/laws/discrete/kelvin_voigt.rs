@@ -7,7 +7,7 @@
 //! | amplitude Δ | of y | any | what the creep tends to |
 //! | time τ | s | above 0 | retardation time, viscosity over stiffness |
 
-use crate::laws::description::Description;
+use crate::laws::basis::Description;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "Kelvin–Voigt",

@@ -9,8 +9,7 @@
 //! | instantaneous y₀ (creep) | of y | any | elastic part |
 //! | flow rate (creep) | of y per s | any | slope of the flow |
 
-use crate::laws::description::Description;
-use crate::laws::kernel::{Kernel, REFERENCE, ShapeNumber};
+use crate::laws::{Description, Kernel, REFERENCE, ShapeNumber};
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "Maxwell",

@@ -8,7 +8,7 @@
 //! | equilibrium y_e | of y | any | what the signal tends to |
 //! | amplitudes hⱼ | of y | 0 or more | relaxation strength at τⱼ |
 
-use crate::laws::description::Description;
+use crate::laws::basis::Description;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "dense spectrum",

@@ -11,7 +11,7 @@
 //!
 //! It is Prony with one term, the latency law with n = 1 and the fractional Zener solid of order 1.
 
-use crate::laws::description::Description;
+use crate::laws::basis::Description;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "standard linear solid",

@@ -1,7 +1,6 @@
 //! A hold in a bounded number of means.
 
-use crate::observe::kept::kept;
-use crate::observe::normal::Normal;
+use crate::observe::{Normal, kept};
 
 /// Most means.
 pub(in crate::observe) const MOST: usize = 64;
@@ -32,14 +31,14 @@ pub(in crate::observe) struct Bins {
 }
 kept!(Bins: bins, len; |bins| bins.len <= MOST);
 
-impl Bins {
-    pub(in crate::observe) fn new() -> Self {
-        Self {
-            bins: [Bin::default(); MOST],
-            len: 0,
-        }
+impl Default for Bins {
+    fn default() -> Self {
+        let bins = [Bin::default(); MOST];
+        Self { bins, len: 0 }
     }
+}
 
+impl Bins {
     pub(in crate::observe) fn clear(&mut self) {
         self.len = 0;
     }
@@ -90,10 +89,7 @@ impl Bins {
             return None;
         }
         let rate = product / squares;
-        Some(Normal {
-            mean: rate,
-            deviation: ((all - rate * product).max(0.0) / freedom / squares).sqrt(),
-        })
+        Some(Normal::new(rate, ((all - rate * product).max(0.0) / freedom / squares).sqrt()))
     }
 
     /// Makes one of the two neighbours that are the shortest for their age.
@@ -143,7 +139,7 @@ mod tests {
 
     #[test]
     fn a_million_readings_are_kept_as_few_means_none_long_for_its_age() {
-        let mut bins = Bins::new();
+        let mut bins = Bins::default();
         for i in 0..1_000_000 {
             bins.push(1e-3 * f64::from(i), f64::from(i));
         }

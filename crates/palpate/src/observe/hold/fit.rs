@@ -7,8 +7,7 @@
 
 use super::bins::{Bin, MOST};
 use crate::latency::decay;
-use crate::observe::kept::kept;
-use crate::observe::normal::Normal;
+use crate::observe::{Normal, kept};
 
 /// Most values of λ on either side of the best.
 const SIDE: usize = 10;
@@ -211,10 +210,7 @@ impl HoldFit {
     /// The force at a time with its standard deviation.
     pub(in crate::observe) fn force_at(&self, time: f64) -> Normal {
         let (low, high) = self.interval(time);
-        Normal {
-            mean: self.force(time),
-            deviation: 0.5 * (high - low) / self.factor,
-        }
+        Normal::new(self.force(time), 0.5 * (high - low) / self.factor)
     }
 
     /// The force that the hold tends to; `None` until its interval is narrower than the force.
@@ -284,15 +280,12 @@ mod tests {
     use crate::random::Noise;
 
     fn hold(seed: u64, exponent: f64, noise: f64, seconds: f64) -> HoldFit {
-        let given = Normal {
-            mean: exponent,
-            deviation: 0.0,
-        };
+        let given = Normal::new(exponent, 0.0);
         fitted_at(given, seed, exponent, noise, seconds)
     }
 
     fn fitted_at(given: Normal, seed: u64, exponent: f64, noise: f64, seconds: f64) -> HoldFit {
-        let (mut bins, mut noise_source) = (Bins::new(), Noise::new(seed));
+        let (mut bins, mut noise_source) = (Bins::default(), Noise::new(seed));
         for i in 0..(seconds * 500.0) as usize {
             let t = i as f64 / 500.0;
             bins.push(t, 1.2 + 1.7 * decay(6.0 * t, exponent) + noise * noise_source.normal());

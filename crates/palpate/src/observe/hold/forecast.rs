@@ -1,8 +1,7 @@
 //! From a force that falls and its interval to the time when it has fallen to the force of slip.
 
 use crate::grip::TimeToSlip;
-use crate::observe::kept::kept;
-use crate::observe::observation::SlipForecast;
+use crate::observe::{SlipForecast, kept};
 
 /// What lies later than this (s) is called never.
 const END: f64 = 1e9;

@@ -18,7 +18,7 @@ pub(in crate::observe) struct Alone {
     foot: (f64, f64),
     peak: f64,
     since: f64,
-    stands: bool,
+    pub(in crate::observe) stands: bool,
     falls: bool,
     least: f64,
     off: u32,
@@ -77,9 +77,5 @@ impl Alone {
     fn moved(&mut self, time: f64, level: f64) -> Change {
         (self.peak, self.since, self.stands, self.off, self.seen) = (level, time, false, 0, true);
         Change::Moved
-    }
-
-    pub(in crate::observe) fn stands(&self) -> bool {
-        self.stands
     }
 }

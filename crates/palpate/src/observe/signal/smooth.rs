@@ -14,7 +14,7 @@ const GAP: f64 = 20.0;
 /// An α-β filter: it follows a ramp without lag (Benedict and Bordner 1962).
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::observe) struct Smooth {
-    level: f64,
+    pub(in crate::observe) level: f64,
     rate: f64,
     usual: f64,
     seen: bool,
@@ -43,10 +43,6 @@ impl Smooth {
         }
     }
 
-    pub(in crate::observe) fn level(&self) -> f64 {
-        self.level
-    }
-
     /// The share of the noise of a reading that the level keeps, as a standard deviation.
     pub(in crate::observe) fn kept() -> f64 {
         // For white noise, (2α² + 2β − 3αβ)/(α(4 − 2α − β)).
@@ -65,12 +61,12 @@ mod tests {
         for i in 0..400 {
             smooth.feed(0.01, 0.03 * f64::from(i), None);
         }
-        assert!((smooth.level() - 0.03 * 399.0).abs() < 1e-9);
+        assert!((smooth.level - 0.03 * 399.0).abs() < 1e-9);
         smooth.feed(5.0, 2.0, None);
-        assert_eq!(smooth.level(), 2.0);
+        assert_eq!(smooth.level, 2.0);
         for value in [3.0, 4.0, 5.0, 5.0, 5.0] {
             smooth.feed(0.05, value, Some(0.05));
-            assert_eq!(smooth.level(), value);
+            assert_eq!(smooth.level, value);
         }
     }
 }

@@ -16,7 +16,8 @@ const PLACE: f64 = 64.0;
 /// A place that a signal may have come to, and its speed on the way there.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::observe) struct Stand {
-    start: f64,
+    /// First reading of the stand, s.
+    pub(in crate::observe) start: f64,
     /// Mean time of the readings that made the place, s.
     middle: f64,
     last: f64,
@@ -29,8 +30,10 @@ pub(in crate::observe) struct Stand {
     speed: Option<f64>,
     /// The highest speed since it last stood.
     fastest: f64,
-    direction: f64,
-    stands: bool,
+    /// Whether the last motion went up (1), down (−1), or there was none (0).
+    pub(in crate::observe) direction: f64,
+    /// Whether the stand was told.
+    pub(in crate::observe) stands: bool,
 }
 kept!(Stand: start, middle, last, place, count, readings, outside, drifts_since, speed, fastest, direction, stands);
 
@@ -124,24 +127,9 @@ impl Stand {
         self.stands && self.outside > 0
     }
 
-    /// Whether the stand was told.
-    pub(in crate::observe) fn stands(&self) -> bool {
-        self.stands
-    }
-
     /// Whether the signal stands, or goes at less than half its highest speed since it last stood.
     pub(in crate::observe) fn slowed(&self) -> bool {
         self.stands || self.speed.is_none_or(|speed| speed < 0.5 * self.fastest)
-    }
-
-    /// First reading of the stand, s.
-    pub(in crate::observe) fn start(&self) -> f64 {
-        self.start
-    }
-
-    /// Whether the last motion went up (1), down (−1), or there was none (0).
-    pub(in crate::observe) fn direction(&self) -> f64 {
-        self.direction
     }
 }
 

@@ -4,8 +4,27 @@ use smallvec::SmallVec;
 
 use super::point::Point;
 use super::step::block;
-use crate::optimise::{Cholesky, Shapes, Solution, Target, Termination};
-use crate::vector::products::normal_equations;
+use crate::optimise::{Cholesky, Few, Shapes, Target, Termination};
+use crate::vector::normal_equations;
+
+/// Where the search ended: everything that estimates and errors are made of.
+#[derive(Debug, Clone)]
+pub(crate) struct Solution {
+    pub(crate) linear: Vec<f64>,
+    pub(crate) nonlinear: Vec<f64>,
+    pub(crate) residuals: Vec<f64>,
+    pub(crate) residual_square: f64,
+    /// Variance of the noise of a sample of weight one, s² = RSS/(N − p) in least squares.
+    pub(crate) variance: f64,
+    /// Columns and derivatives there, times the roots of the weights.
+    pub(crate) columns: Vec<Vec<f64>>,
+    pub(crate) derivatives: Vec<Vec<f64>>,
+    /// Sums of squares of the columns.
+    pub(crate) column_squares: Few,
+    /// (JᵀJ)⁻¹ over linear, then nonlinear numbers, row-major; `None` if singular.
+    pub(crate) inverse_normal: Option<Vec<f64>>,
+    pub(crate) termination: Termination,
+}
 
 /// The solution at a point, with the `last` step still to be taken from there if there is one.
 pub(crate) fn finish(

@@ -7,25 +7,23 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `target.rs`, `solution.rs` | what is fitted, and where a search ended |
+//! | `target.rs` | what is fitted |
 //! | `point.rs` | the model at one θ: columns, best linear numbers, residuals |
 //! | `step.rs` | the Gauss–Newton step |
 //! | `refine.rs` | damped steps from anywhere |
 //! | `newton.rs` | undamped steps close to the optimum |
-//! | `finish.rs` | from the last point to a solution with its errors |
+//! | `finish.rs` | where a search ended: from the last point to a solution with its errors |
 
 mod finish;
 mod newton;
 mod point;
 mod refine;
-mod solution;
 mod step;
 mod target;
 
-pub(crate) use finish::standing;
+pub(crate) use finish::{Solution, standing};
 pub(crate) use newton::{Near, curvature, descend, polished};
 pub(crate) use point::{Shapes, Spare};
 pub(crate) use refine::{Refined, refine};
-pub(crate) use solution::Solution;
 pub(crate) use step::{distance, stepped, stepped_within};
 pub(crate) use target::{Ending, Target};

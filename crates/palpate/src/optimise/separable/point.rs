@@ -3,8 +3,7 @@
 use std::cell::RefCell;
 
 use crate::optimise::{BoundedProblem, BoundedSolver, Cholesky, Few, Held, Square, Target, Termination};
-use crate::vector::columns::{add_multiple, multiply};
-use crate::vector::products::{cross_products, dot, form_residuals, normal_equations};
+use crate::vector::{add_multiple, cross_products, dot, form_residuals, multiply, normal_equations};
 
 /// The columns of a separable model and their derivatives.
 pub(crate) trait Shapes {

@@ -1,6 +1,6 @@
 //! What is fitted, and how a local search ends.
 
-use crate::vector::products::dot;
+use crate::vector::dot;
 
 /// What is fitted: values, and the square roots of their weights if they differ.
 #[derive(Clone, Copy)]
@@ -51,11 +51,12 @@ pub(crate) struct Ending {
 }
 
 impl Ending {
+    pub(crate) const fn new(gain: f64, most_iterations: usize) -> Self {
+        Self { gain, most_iterations }
+    }
+
     /// As far as double precision goes.
     pub(crate) fn tight(most_iterations: usize) -> Self {
-        Self {
-            gain: 1e-14,
-            most_iterations,
-        }
+        Self::new(1e-14, most_iterations)
     }
 }

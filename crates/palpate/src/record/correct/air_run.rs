@@ -1,9 +1,7 @@
 //! The zero of a record, and the same motion without a body.
 
-use super::interpolation::interpolated;
-use crate::record::checks::RecordError;
-use crate::record::correction::{Correction, Tare};
-use crate::record::measured::Record;
+use super::resample::interpolated;
+use crate::record::{Correction, Record, RecordError, Tare};
 use crate::statistics::range;
 
 /// How far the jaw of an air run may stand from that of the record, as a share of the way.

@@ -2,9 +2,7 @@
 
 use std::ops::Range;
 
-use crate::record::checks::RecordError;
-use crate::record::correction::{Baseline, Correction};
-use crate::record::measured::Record;
+use crate::record::{Baseline, Correction, Record, RecordError};
 use crate::statistics::median;
 
 impl Record {

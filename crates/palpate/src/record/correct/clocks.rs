@@ -1,11 +1,10 @@
 //! Force and displacement with time stamps of their own.
 
 use super::dropouts::replace;
-use super::interpolation::interpolated;
+use super::resample::interpolated;
 use crate::record::checks::{self, RecordError};
-use crate::record::correction::{Column, Correction};
-use crate::record::measured::Record;
 use crate::record::signals::stray_rows;
+use crate::record::{Column, Correction, Record};
 
 impl Record {
     /// A record whose displacement has time stamps of its own, brought onto the times of the force.

@@ -2,9 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::record::checks::RecordError;
-use crate::record::correction::Correction;
-use crate::record::measured::Record;
+use crate::record::{Correction, Record, RecordError};
 
 /// How far the machine (frame, load cell, grips, cantilever) gives way under a force.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

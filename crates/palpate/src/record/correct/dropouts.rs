@@ -1,8 +1,7 @@
 //! Single rows that strayed, replaced by the mean of their neighbours.
 
-use crate::record::correction::{Column, Correction};
-use crate::record::measured::Record;
 use crate::record::signals::{lost_rows, stray_rows};
+use crate::record::{Column, Correction, Record};
 
 impl Record {
     /// The record with single-row dropouts replaced by the mean of their neighbours.

@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::rounding::rounding_step;
-use crate::record::correction::Column;
+use super::{Column, rounding_step};
 use crate::statistics::{bounds, noise};
 
 /// What a measured column is like; its unit is that of the column.

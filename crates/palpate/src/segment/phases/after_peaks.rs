@@ -5,7 +5,6 @@
 
 use super::turning::extremes;
 use crate::segment::standstill::Level;
-use crate::statistics::median;
 
 /// Share of the change that is done half way, from which on a force relaxes. A straight ramp has done a half; the release of a
 /// ball (force as the power 3/2 of the displacement) two thirds.
@@ -35,11 +34,7 @@ pub(super) fn relaxations(time: &[f64], force: &[f64], turn: f64, fewest: usize)
         let slow =
             change(start, hold.end).abs() / duration(&hold) < SLOW * change(ramp.start, start).abs() / duration(&ramp);
         if bent && slow && duration(&ramp) < RAMP * duration(&hold) {
-            found.push(Level {
-                start,
-                end: hold.end,
-                value: median(&mut force[hold].to_vec()),
-            });
+            found.push(Level::of(force, start, hold.end));
         }
     }
     found

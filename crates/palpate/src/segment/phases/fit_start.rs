@@ -1,8 +1,7 @@
 //! From where in a hold the laws are fitted.
 
 use crate::record::Record;
-use crate::segment::options::{HoldStart, SegmentOptions};
-use crate::segment::segmentation::{After, HoldMode, Phase, Segment, ramps_before};
+use crate::segment::{After, HoldMode, HoldStart, Phase, Segment, SegmentOptions, ramps_before};
 use crate::statistics::noise;
 
 /// Sets from where laws are fitted to each hold.

@@ -4,11 +4,10 @@ use super::ramps::fill_gaps;
 use super::ripple::{of_jaw, without_ripple};
 use super::rupture::ruptures;
 use crate::record::Record;
-use crate::segment::error::SegmentError;
-use crate::segment::mode::{mode, mode_at_large};
-use crate::segment::options::{SegmentOptions, SegmentSettings};
-use crate::segment::segmentation::{After, HoldMode, Phase, Segment, Segmentation};
-use crate::segment::standstill::{Held, Level, Levels, levels};
+use crate::segment::{
+    After, Held, HoldMode, Level, Levels, Phase, Segment, SegmentError, SegmentOptions, SegmentSettings, Segmentation,
+    levels, mode, mode_at_large,
+};
 use crate::statistics::{median, range};
 
 /// Share of its range by which a jaw wanders about what it holds.
@@ -25,12 +24,7 @@ pub(super) fn phases(
 ) -> Result<Segmentation, SegmentError> {
     let ripple = of_jaw(record.time(), displacement);
     let servo = ripple.map_or(0.0, |ripple| RIPPLES * ripple.height).max(SERVO * range(displacement));
-    let held = Held {
-        name: ("displacement", "m"),
-        values: displacement,
-        wander: options.tolerance.unwrap_or(servo),
-        hunts: false,
-    };
+    let held = Held::new(("displacement", "m"), displacement, options.tolerance.unwrap_or(servo), false);
     let found = levels(record.time(), &held, options)?;
     let pressed = force_held(record, &found, options);
     let together = together(record, &found.levels, &pressed);
@@ -85,12 +79,7 @@ fn force_held(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Le
 /// Levels of the force over which the displacement creeps.
 fn creeps(record: &Record, jaw: &Levels, options: &SegmentOptions) -> Vec<Level> {
     let still = &jaw.levels;
-    let held = Held {
-        name: ("force", "N"),
-        values: record.force(),
-        wander: CONTROLLER * range(record.force()),
-        hunts: true,
-    };
+    let held = Held::new(("force", "N"), record.force(), CONTROLLER * range(record.force()), true);
     let Ok(found) = levels(record.time(), &held, options) else {
         return Vec::new();
     };

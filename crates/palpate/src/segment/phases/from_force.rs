@@ -8,10 +8,9 @@
 use super::after_peaks::relaxations;
 use super::ramps::fill_gaps;
 use super::turning::turns;
-use crate::segment::error::SegmentError;
-use crate::segment::options::{SegmentOptions, SegmentSettings};
-use crate::segment::segmentation::{Phase, Segment, Segmentation};
-use crate::segment::standstill::{Held, Level, levels};
+use crate::segment::{
+    Held, Level, Phase, Segment, SegmentError, SegmentOptions, SegmentSettings, Segmentation, levels,
+};
 use crate::statistics::median;
 
 /// Speed of the core of a hold as a share of the speed of the ramps.
@@ -26,12 +25,7 @@ const SLOW: f64 = 0.1;
 pub(super) fn phases(time: &[f64], force: &[f64], options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
     let (low, high) = force.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(*f), high.max(*f)));
     let range = high - low;
-    let held = Held {
-        name: ("force", "N"),
-        values: force,
-        wander: WANDER * range,
-        hunts: false,
-    };
+    let held = Held::new(("force", "N"), force, WANDER * range, false);
     let searched = SegmentOptions {
         still_below: Some(options.still_below.unwrap_or(STILL_BELOW)),
         ..*options

@@ -1,17 +1,40 @@
-//! Holds whose limits someone gives.
+//! The phases of a record: all of them sought, or with holds whose limits someone gives.
 
 use serde::{Deserialize, Serialize};
 
-use super::find::find_phases;
 use super::fit_start::place_fits;
 use super::ramps::fill_gaps;
+use super::{from_both, from_force};
 use crate::record::Record;
-use crate::segment::error::SegmentError;
-use crate::segment::mode::mode;
-use crate::segment::options::{SegmentOptions, SegmentSettings};
-use crate::segment::segmentation::{HoldMode, Phase, Segmentation};
-use crate::segment::standstill::{Held, Level, levels};
-use crate::statistics::{median, noise_in_time, range};
+use crate::segment::{
+    Held, HoldMode, Level, Phase, SegmentError, SegmentOptions, SegmentSettings, Segmentation, levels, mode,
+};
+use crate::statistics::{noise_in_time, range};
+
+/// Fewest samples in which phases can be seen.
+const NEEDED: usize = 8;
+
+/// Finds the phases of a record: from its displacement and its force, or from its force alone where the displacement is missing.
+///
+/// Every hold says what is held in it ([`HoldMode`](crate::segment::HoldMode)). Where the machine holds the force, the hold lasts as long as the force
+/// stays, however far the jaw creeps.
+///
+/// # Errors
+/// [`SegmentError`] when nothing moves, or when no standstill after a ramp is long enough to be a hold.
+pub fn find_phases(record: &Record, options: &SegmentOptions) -> Result<Segmentation, SegmentError> {
+    if record.len() < NEEDED {
+        return Err(SegmentError::TooShort {
+            needed: NEEDED,
+            found: record.len(),
+        });
+    }
+    let mut segmentation = match record.displacement() {
+        Some(displacement) => from_both::phases(record, displacement, options)?,
+        None => from_force::phases(record.time(), record.force(), options)?,
+    };
+    place_fits(record, options, &mut segmentation.segments);
+    Ok(segmentation)
+}
 
 /// A hold with limits that are given and not sought.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -68,12 +91,7 @@ pub fn phases_with(
         }
     }
     let (values, settings) = searched(record, held, options);
-    let at = |(start, end): (usize, usize)| Level {
-        start,
-        end,
-        value: median(&mut values[start..end].to_vec()),
-    };
-    let given: Vec<Level> = places.iter().map(|(place, ..)| at(*place)).collect();
+    let given: Vec<Level> = places.iter().map(|((start, end), ..)| Level::of(&values, *start, *end)).collect();
     let mut segments = fill_gaps(&values, &given, 2.0 * settings.tolerance);
     for ((start, end), hold, _) in &places {
         let segment = segments.iter_mut().find(|segment| (segment.start, segment.end) == (*start, *end));
@@ -127,12 +145,7 @@ fn samples(record: &Record, hold: &GivenHold, number: usize) -> Result<(usize, u
 /// The column without spikes and the thresholds of a search, also where a search would find nothing.
 fn searched(record: &Record, values: &[f64], options: &SegmentOptions) -> (Vec<f64>, SegmentSettings) {
     let wander = options.tolerance.unwrap_or(0.002 * range(values));
-    let held = Held {
-        name: ("displacement", "m"),
-        values,
-        wander,
-        hunts: false,
-    };
+    let held = Held::new(("displacement", "m"), values, wander, false);
     let from_displacement = record.displacement().is_some();
     if let Ok(found) = levels(record.time(), &held, options) {
         let settings = SegmentSettings {

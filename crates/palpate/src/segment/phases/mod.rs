@@ -4,8 +4,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `find.rs` | phases that are sought |
-//! | `given.rs` | holds whose limits someone gives |
+//! | `given.rs` | phases that are sought, and holds whose limits someone gives |
 //! | `from_both.rs` | phases where displacement and force were recorded |
 //! | `from_force.rs` | phases where only the force was |
 //! | `after_peaks.rs` | holds of a force that relaxes slowly all along |
@@ -16,7 +15,6 @@
 //! | `fit_start.rs` | from where in a hold the laws are fitted |
 
 mod after_peaks;
-mod find;
 mod fit_start;
 mod from_both;
 mod from_force;
@@ -26,5 +24,4 @@ mod ripple;
 mod rupture;
 mod turning;
 
-pub use find::find_phases;
-pub use given::{GivenHold, phases_with};
+pub use given::{GivenHold, find_phases, phases_with};

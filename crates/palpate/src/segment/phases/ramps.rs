@@ -1,7 +1,6 @@
 //! What lies between the holds.
 
-use crate::segment::segmentation::{After, HoldMode, Phase, Segment, ramps_before};
-use crate::segment::standstill::Level;
+use crate::segment::{After, HoldMode, Level, Phase, Segment, ramps_before};
 
 /// Turns holds and the gaps between them into segments that cover the record.
 ///

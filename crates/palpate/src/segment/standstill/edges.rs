@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use super::line::Line;
-use super::pieces::Piece;
+use super::pieces::{Line, Piece};
 use super::standstills::Standstill;
 
 /// Share of a sample interval by which an edge may be off: the rounding of a time column, far below a sample.
@@ -117,7 +116,7 @@ impl Column<'_> {
 /// When two lines meet; `None` if they are as good as parallel.
 fn meeting(ramp: &Line, level: &Line) -> Option<f64> {
     let slopes = ramp.slope() - level.slope();
-    let origin = level.middle();
+    let origin = level.time;
     let meeting = origin + (level.at(origin) - ramp.at(origin)) / slopes;
     (slopes.abs() > 1e-3 * level.slope().abs() && meeting.is_finite()).then_some(meeting)
 }

@@ -2,7 +2,25 @@
 
 use super::moves::{Move, goes_on, ramp};
 use super::smooth::gain_of_corners;
-use super::stillness::Stillness;
+
+/// What counts as standing still.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stillness {
+    /// Standard deviation of the noise.
+    pub(super) noise: f64,
+    /// How far pieces of one standstill may lie apart.
+    pub(super) band: f64,
+    /// Drift over the standstill, as a share of how far the column would have gone at the speed beside it.
+    pub(super) share: f64,
+    /// Farthest drift over a standstill.
+    pub(super) drift: f64,
+    /// How far the column would have gone on, at least, on its faster and on its slower side.
+    pub(super) goes_on: [f64; 2],
+    /// Fewest samples.
+    pub(super) samples: usize,
+    /// Shortest duration, where one is asked for; then `goes_on` does not count.
+    pub(super) duration: Option<f64>,
+}
 
 /// What speaks for moves first..=last as a standstill: the gain of its corners, infinite where they are jumps; `None` if it
 /// is none.

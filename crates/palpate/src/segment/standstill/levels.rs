@@ -6,12 +6,10 @@
 //! 4. The edges of a standstill are where the lines through ramp and level meet.
 
 use super::edges::sharpened;
-use super::level::Level;
+use super::evidence::Stillness;
 use super::pieces::{Piece, Roughness, pieces};
 use super::standstills::{Refused, Standstill, joined, standstills};
-use super::stillness::Stillness;
-use crate::segment::error::SegmentError;
-use crate::segment::options::{SegmentOptions, SegmentSettings};
+use crate::segment::{SegmentError, SegmentOptions, SegmentSettings};
 use crate::statistics::{median, noise_in_time, quantum, range};
 
 /// Drift of a standstill as a share of the way at the speed of the slower ramp beside it.
@@ -40,6 +38,22 @@ pub(in crate::segment) struct Held<'a> {
     pub(in crate::segment) hunts: bool,
 }
 
+impl<'a> Held<'a> {
+    pub(in crate::segment) fn new(
+        name: (&'static str, &'static str),
+        values: &'a [f64],
+        wander: f64,
+        hunts: bool,
+    ) -> Self {
+        Self {
+            name,
+            values,
+            wander,
+            hunts,
+        }
+    }
+}
+
 /// The levels of a column, and the thresholds that found them.
 pub(in crate::segment) struct Levels {
     /// The column without spikes.
@@ -62,7 +76,11 @@ impl Levels {
         sharpened(time, &self.values, &self.pieces, self.near, &mut found);
         // The corners of this column may lie elsewhere; what they cut short is not better.
         let [found] = found;
-        if found.end - found.start < other.end - other.start { *other } else { level(&self.values, found) }
+        if found.end - found.start < other.end - other.start {
+            *other
+        } else {
+            Level::of(&self.values, found.start, found.end)
+        }
     }
 
     /// Why there is no hold.
@@ -131,7 +149,7 @@ pub(in crate::segment) fn levels(
         minimum_hold: options.minimum_hold.unwrap_or(stillness.goes_on[0] / ramp_speed),
         minimum_samples: stillness.samples,
     };
-    let levels = found.iter().map(|found| level(&values, *found)).collect();
+    let levels = found.iter().map(|found| Level::of(&values, found.start, found.end)).collect();
     Ok(Levels {
         values,
         levels,
@@ -140,15 +158,6 @@ pub(in crate::segment) fn levels(
         pieces,
         near,
     })
-}
-
-fn level(values: &[f64], found: Standstill) -> Level {
-    let Standstill { start, end } = found;
-    Level {
-        start,
-        end,
-        value: median(&mut values[start..end].to_vec()),
-    }
 }
 
 /// Speed of the ramps: half of the way outside standstills is travelled faster than this.
@@ -211,4 +220,20 @@ pub(in crate::segment) fn without_spikes(values: &[f64], noise: f64) -> Vec<f64>
         }
     }
     clean
+}
+
+/// Samples in which a column stands still, and the value it has there.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::segment) struct Level {
+    pub(in crate::segment) start: usize,
+    pub(in crate::segment) end: usize,
+    pub(in crate::segment) value: f64,
+}
+
+impl Level {
+    /// With the median of `values` there.
+    pub(in crate::segment) fn of(values: &[f64], start: usize, end: usize) -> Self {
+        let value = median(&mut values[start..end].to_vec());
+        Self { start, end, value }
+    }
 }

@@ -4,26 +4,20 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `levels.rs` | the steps in order, and every threshold |
-//! | `level.rs` | a standstill with its value |
-//! | `pieces.rs`, `line.rs` | a column as a polygon of straight lines |
+//! | `levels.rs` | the steps in order, and every threshold; a standstill with its value |
+//! | `pieces.rs` | a column as a polygon of straight lines |
 //! | `moves.rs` | the polygon as what the column does |
 //! | `standstills.rs` | which parts of the polygon are standstills |
-//! | `stillness.rs` | what counts as standing still |
-//! | `evidence.rs` | what speaks for a standstill |
+//! | `evidence.rs` | what counts as standing still, and what speaks for it |
 //! | `smooth.rs` | a standstill has corners, a turning point has none |
 //! | `edges.rs` | where exactly a standstill begins and ends |
 
 mod edges;
 mod evidence;
-mod level;
 mod levels;
-mod line;
 mod moves;
 mod pieces;
 mod smooth;
 mod standstills;
-mod stillness;
 
-pub(super) use level::Level;
-pub(super) use levels::{Held, Levels, levels};
+pub(super) use levels::{Held, Level, Levels, levels};

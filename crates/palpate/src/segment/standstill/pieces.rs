@@ -1,9 +1,65 @@
 //! A noisy column as a polygon: straight pieces, joined from the bottom up.
 
-use std::cmp::Ordering;
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::line::Line;
+/// Moments of some samples about their mean, from which the straight line through them follows.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Line {
+    pub(super) count: f64,
+    /// Mean time of the samples.
+    pub(super) time: f64,
+    value: f64,
+    tt: f64,
+    tv: f64,
+    vv: f64,
+}
+
+impl Line {
+    pub(super) fn of_sample(time: f64, value: f64) -> Self {
+        Self {
+            count: 1.0,
+            time,
+            value,
+            ..Self::default()
+        }
+    }
+
+    /// The line through the samples of a range.
+    pub(super) fn through(time: &[f64], values: &[f64], range: std::ops::Range<usize>) -> Self {
+        range.fold(Self::default(), |line, i| line.joined(&Self::of_sample(time[i], values[i])))
+    }
+
+    /// The line through the samples of both.
+    pub(super) fn joined(&self, other: &Self) -> Self {
+        let count = self.count + other.count;
+        let (share, apart) = (other.count / count, (other.time - self.time, other.value - self.value));
+        let weight = self.count * share;
+        Self {
+            count,
+            time: self.time + share * apart.0,
+            value: self.value + share * apart.1,
+            tt: self.tt + other.tt + weight * apart.0 * apart.0,
+            tv: self.tv + other.tv + weight * apart.0 * apart.1,
+            vv: self.vv + other.vv + weight * apart.1 * apart.1,
+        }
+    }
+
+    /// Slope; 0 for a single sample.
+    pub(super) fn slope(&self) -> f64 {
+        if self.tt > 0.0 { self.tv / self.tt } else { 0.0 }
+    }
+
+    /// Value of the line at a time.
+    pub(super) fn at(&self, time: f64) -> f64 {
+        self.value + self.slope() * (time - self.time)
+    }
+
+    /// Sum of the squares that the line leaves.
+    pub(super) fn left(&self) -> f64 {
+        if self.tt > 0.0 { (self.vv - self.tv * self.tv / self.tt).max(0.0) } else { self.vv }
+    }
+}
 
 /// Samples `start..end` and the line through them.
 #[derive(Debug, Clone, Copy)]
@@ -11,6 +67,12 @@ pub(super) struct Piece {
     pub(super) start: usize,
     pub(super) end: usize,
     pub(super) line: Line,
+}
+
+impl Piece {
+    fn new(start: usize, end: usize, line: Line) -> Self {
+        Self { start, end, line }
+    }
 }
 
 /// What a polygon may leave of a column.
@@ -32,33 +94,14 @@ const FINER: f64 = 7.0;
 /// The least of that.
 const LEAST_KEPT_APART: f64 = 10.0;
 
-/// A proposal to join the piece that begins at `left` with the one that begins at `right`.
-struct Proposal {
-    cost: f64,
-    left: usize,
-    right: usize,
-    end: usize,
-}
+/// A proposal to join two pieces: the rank of its cost, where they begin, and where the second ends. A heap gives the cheapest
+/// first; of equals the earliest.
+type Proposal = Reverse<(i64, usize, usize, usize)>;
 
-impl PartialEq for Proposal {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Proposal {}
-
-impl PartialOrd for Proposal {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Proposal {
-    /// The cheapest is the greatest, since a heap gives the greatest first; of equals the earliest.
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.cost.total_cmp(&self.cost).then(other.left.cmp(&self.left))
-    }
+/// An integer that stands to others as `cost` to theirs by `total_cmp`.
+fn rank(cost: f64) -> i64 {
+    let bits = cost.to_bits() as i64;
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
 /// Cuts a column into straight pieces.
@@ -92,63 +135,38 @@ fn joined(time: &[f64], values: &[f64], roughness: Roughness, price: f64) -> Vec
     let mut lines: Vec<Line> = first.iter().map(|piece| piece.line).collect();
     let mut ends: Vec<usize> = (1..=count).collect();
     let mut before: Vec<usize> = (0..count).map(|i| i.saturating_sub(1)).collect();
-    let mut proposals: BinaryHeap<Proposal> = (1..count)
-        .map(|right| Proposal {
-            // Single samples join at no cost.
-            cost: if first[right - 1].end - first[right - 1].start + first[right].end - first[right].start == 2 {
-                0.0
-            } else {
-                cost(&lines[right - 1], &lines[right])
-            },
-            left: right - 1,
-            right,
-            end: right + 1,
-        })
-        .collect();
-    while let Some(Proposal {
-        cost: price,
-        left,
-        right,
-        end,
-    }) = proposals.pop()
-    {
+    let mut proposals: BinaryHeap<Proposal> = BinaryHeap::new();
+    let propose = |proposals: &mut BinaryHeap<Proposal>, cost: f64, left: usize, right: usize, end: usize| {
+        if cost <= 1.0 {
+            proposals.push(Reverse((rank(cost), left, right, end)));
+        }
+    };
+    for right in 1..count {
+        // Single samples join at no cost.
+        let samples = first[right - 1].end - first[right - 1].start + first[right].end - first[right].start;
+        let cost = if samples == 2 { 0.0 } else { cost(&lines[right - 1], &lines[right]) };
+        propose(&mut proposals, cost, right - 1, right, right + 1);
+    }
+    while let Some(Reverse((_, left, right, end))) = proposals.pop() {
         // Out of date: one of the two has grown or gone since.
         if ends[left] != right || ends[right] != end {
-            continue;
-        }
-        if price.is_nan() || price > 1.0 {
             continue;
         }
         lines[left] = lines[left].joined(&lines[right]);
         (ends[left], ends[right]) = (end, 0);
         if end < count {
             before[end] = left;
-            let price = cost(&lines[left], &lines[end]);
-            proposals.push(Proposal {
-                cost: price,
-                left,
-                right: end,
-                end: ends[end],
-            });
+            propose(&mut proposals, cost(&lines[left], &lines[end]), left, end, ends[end]);
         }
         if left > 0 {
             let first = before[left];
-            proposals.push(Proposal {
-                cost: cost(&lines[first], &lines[left]),
-                left: first,
-                right: left,
-                end,
-            });
+            propose(&mut proposals, cost(&lines[first], &lines[left]), first, left, end);
         }
     }
     let mut pieces = Vec::new();
     let mut start = 0;
     while start < count {
-        pieces.push(Piece {
-            start: first[start].start,
-            end: first[ends[start] - 1].end,
-            line: lines[start],
-        });
+        pieces.push(Piece::new(first[start].start, first[ends[start] - 1].end, lines[start]));
         start = ends[start];
     }
     pieces
@@ -162,11 +180,7 @@ fn first_pieces(time: &[f64], values: &[f64], cost: &impl Fn(&Line, &Line) -> f6
     for begin in (0..values.len()).step_by(run) {
         let first = pieces.len();
         for i in begin..(begin + run).min(values.len()) {
-            pieces.push(Piece {
-                start: i,
-                end: i + 1,
-                line: Line::of_sample(time[i], values[i]),
-            });
+            pieces.push(Piece::new(i, i + 1, Line::of_sample(time[i], values[i])));
             // As in a binary count: a carry joins two runs of one length.
             let mut length = 1;
             while (i + 1 - begin) % (2 * length) == 0 {
@@ -221,11 +235,7 @@ fn fewest(fine: &[Piece], roughness: Roughness, price: f64) -> Vec<Piece> {
     let mut end = fine.len();
     while end > 0 {
         let (_, start, line) = best[end];
-        pieces.push(Piece {
-            start: fine[start].start,
-            end: fine[end - 1].end,
-            line,
-        });
+        pieces.push(Piece::new(fine[start].start, fine[end - 1].end, line));
         end = start;
     }
     pieces.reverse();

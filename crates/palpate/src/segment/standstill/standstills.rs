@@ -3,10 +3,9 @@
 //! A standstill is where the column goes by far less than it does beside it. Nothing global is needed for that: a slow ramp
 //! between two levels is none, since they are slower, and a level that drifts is one, between ramps that are faster.
 
-use super::evidence::{SEEN, evidence};
+use super::evidence::{SEEN, Stillness, evidence};
 use super::moves::{Move, moves};
 use super::pieces::Piece;
-use super::stillness::Stillness;
 use crate::statistics::mean;
 
 /// Overshoot of a servo, or the way it still creeps after a ramp, as a share of the ramp.

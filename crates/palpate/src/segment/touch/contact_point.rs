@@ -28,7 +28,7 @@ pub enum ContactChoice {
 }
 
 /// First touch.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ContactPoint {
     /// Sample of first touch, if it lies in the record.
     pub sample: Option<usize>,
@@ -55,11 +55,7 @@ impl ContactPoint {
                 force: 0.0,
                 displacement,
             },
-            displacement_error: None,
-            air_travel: 0.0,
-            method: None,
-            estimates: Vec::new(),
-            spread: None,
+            ..Self::default()
         }
     }
 

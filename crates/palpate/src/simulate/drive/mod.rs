@@ -4,15 +4,12 @@
 //! |---|---|
 //! | `motion.rs` | the displacement of the jaw: a protocol's steps, or a measured series; straight between its knots |
 //! | `history.rs` | the force on the contact, straight between its knots |
-//! | `program.rs` | steps in displacement and in force, one after the other |
-//! | `any.rs` | any of them |
+//! | `any.rs` | steps in displacement and in force, one after the other; any of the three |
 
 mod any;
 mod history;
 mod motion;
-mod program;
 
-pub use any::Drive;
+pub use any::{Drive, ProgramStep};
 pub use history::ForceHistory;
 pub use motion::{Motion, MotionError, ProtocolStep, protocol};
-pub use program::ProgramStep;

@@ -2,9 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::law::LinearLaw;
 use crate::contact::{Layer, Specimen, carried_at};
-use crate::simulate::Separation;
+use crate::simulate::{LinearLaw, Separation};
 
 /// What a linear law remembers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

@@ -2,8 +2,7 @@
 
 use super::{LinearContact, Memory, Moving, Pressed, Surface};
 use crate::contact::{Specimen, Stopped};
-use crate::simulate::layer::Layer;
-use crate::simulate::{Separation, SimulationWork};
+use crate::simulate::{Layer, Separation, SimulationWork};
 
 impl Layer for LinearContact {
     /// x_k, one for every term.

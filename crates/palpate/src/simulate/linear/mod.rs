@@ -18,8 +18,7 @@
 //! | `stage.rs` | the memory while q is a polynomial of time: exact |
 //! | `moving.rs` | while the jaw moves at constant speed |
 //! | `pressed.rs` | while the force goes straight |
-//! | `recovery.rs` | what fades while no force changes |
-//! | `surface.rs` | the surface once the jaw has left it |
+//! | `recovery.rs` | what fades while no force changes, and the surface once the jaw has left it |
 //! | `layer.rs` | all of it as the walk through a drive asks for it |
 
 mod contact;
@@ -30,10 +29,9 @@ mod moving;
 mod pressed;
 mod recovery;
 mod stage;
-mod surface;
 
 pub use contact::{LinearContact, Memory};
 pub use law::{LinearLaw, LinearLawError, LinearTerm};
 use moving::Moving;
 use pressed::Pressed;
-use surface::Surface;
+use recovery::Surface;

@@ -3,9 +3,8 @@
 //! A memory of strain has a closed form, since strain goes straight. A memory of force is driven by F_e(u(t)): stages over which that is a
 //! polynomial to rounding.
 
-use super::contact::{LinearContact, Memory};
 use super::stage::{DEGREE, GAUSS, Stage, legendre};
-use crate::simulate::layer::{InMotion, crossing};
+use crate::simulate::{InMotion, LinearContact, Memory, crossing};
 
 /// Difference of q from its polynomial, relative to the largest q.
 const TOLERANCE: f64 = 1e-13;

@@ -11,9 +11,9 @@ use std::sync::LazyLock;
 
 use super::recovery::Recovery;
 use super::stage::{DEGREE, Stage, dot, fading, integrated};
-use super::{LinearContact, LinearTerm, Memory};
 use crate::contact::{Carried, ForceLine, Stopped, UnderForce, last_good};
-use crate::simulate::SimulationWork;
+use crate::optimise::eliminate;
+use crate::simulate::{LinearContact, LinearTerm, Memory, SimulationWork};
 
 /// Error of q, relative to the largest that the forces of a piece ask for at once.
 const TOLERANCE: f64 = 1e-12;
@@ -172,7 +172,7 @@ impl Pressed {
         for (node, rate) in rates.iter_mut().enumerate() {
             *rate = contact.value(contact.carried(force(node), behind)?) - from;
         }
-        if !solve(std::array::from_fn(|node| places[node].1), &mut rates) {
+        if !eliminate(std::array::from_fn(|node| places[node].1), &mut rates, 0.0) {
             return None;
         }
         // Off, and its slope against q + Σ x_k and q, at a place.
@@ -198,7 +198,7 @@ impl Pressed {
                     *slot = weight * ((stiffness + bend) * value + stiffness * own);
                 }
             }
-            if !solve(matrix, &mut off) {
+            if !eliminate(matrix, &mut off, 0.0) {
                 return None;
             }
             let moved = (0..DEGREE).map(|node| dot(&off, &places[node].1).abs()).fold(0.0, f64::max);
@@ -328,34 +328,6 @@ static WHERE: LazyLock<[(f64, [f64; DEGREE]); PLACES]> = LazyLock::new(|| {
         (part, integrated(part))
     })
 });
-
-/// Replaces `right` by the solution of a small system, by elimination with row exchange; `false` if it has none.
-fn solve(mut matrix: [[f64; DEGREE]; DEGREE], right: &mut [f64; DEGREE]) -> bool {
-    for column in 0..DEGREE {
-        let size = |row: &usize| matrix[*row][column].abs();
-        let pivot = (column..DEGREE).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(column);
-        let found = matrix[pivot][column];
-        if !(found.abs() > 0.0 && found.is_finite()) {
-            return false;
-        }
-        matrix.swap(column, pivot);
-        right.swap(column, pivot);
-        let (upper, lower) = matrix.split_at_mut(column + 1);
-        let known = upper[column];
-        for (row, numbers) in lower.iter_mut().enumerate() {
-            let factor = numbers[column] / known[column];
-            for (number, known) in numbers.iter_mut().zip(known) {
-                *number -= factor * known;
-            }
-            right[column + 1 + row] -= factor * right[column];
-        }
-    }
-    for row in (0..DEGREE).rev() {
-        let known: f64 = (row + 1..DEGREE).map(|column| matrix[row][column] * right[column]).sum();
-        right[row] = (right[row] - known) / matrix[row][row];
-    }
-    right.iter().all(|value| value.is_finite())
-}
 
 #[cfg(test)]
 mod tests {

@@ -11,6 +11,7 @@
 use std::sync::LazyLock;
 
 use super::law::{LinearLaw, LinearTerm};
+use crate::special;
 
 /// Polynomials of q̇.
 pub(super) const DEGREE: usize = 6;
@@ -96,26 +97,16 @@ pub(super) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
 
 /// P_p(2c − 1).
 pub(super) fn legendre(part: f64) -> [f64; DEGREE] {
-    let all = one_more(2.0 * part - 1.0);
-    std::array::from_fn(|p| all[p])
+    special::legendre(2.0 * part - 1.0)
 }
 
 /// ∫₀ᶜ P_p(2s − 1) ds = (P_{p+1} − P_{p−1})/(2 (2p + 1)).
 pub(super) fn integrated(part: f64) -> [f64; DEGREE] {
-    let all = one_more(2.0 * part - 1.0);
+    let all: [f64; DEGREE + 1] = special::legendre(2.0 * part - 1.0);
     std::array::from_fn(|p| match p {
         0 => part,
         _ => (all[p + 1] - all[p - 1]) / (4 * p + 2) as f64,
     })
-}
-
-fn one_more(y: f64) -> [f64; DEGREE + 1] {
-    let mut all = [1.0, y, 0.0, 0.0, 0.0, 0.0, 0.0];
-    for p in 1..DEGREE {
-        let order = p as f64;
-        all[p + 1] = ((2.0 * order + 1.0) * y * all[p] - order * all[p - 1]) / (order + 1.0);
-    }
-    all
 }
 
 /// Where exp(−z s) has become nothing.
@@ -136,25 +127,8 @@ pub(super) fn fading(z: f64, part: f64) -> [f64; DEGREE] {
 }
 
 /// Nodes and weights of Gauss's rule on 0…1.
-pub(super) static GAUSS: LazyLock<[(f64, f64); 24]> = LazyLock::new(|| {
-    let count = GAUSS_NODES as f64;
-    std::array::from_fn(|i| {
-        let mut y = (std::f64::consts::PI * (i as f64 + 0.75) / (count + 0.5)).cos();
-        let mut slope = 1.0;
-        for _ in 0..8 {
-            let (mut last, mut now) = (1.0, y);
-            for p in 1..GAUSS_NODES {
-                let order = p as f64;
-                (last, now) = (now, ((2.0 * order + 1.0) * y * now - order * last) / (order + 1.0));
-            }
-            slope = count * (y * now - last) / (y * y - 1.0);
-            y -= now / slope;
-        }
-        (0.5 * (1.0 - y), 1.0 / ((1.0 - y * y) * slope * slope))
-    })
-});
-
-const GAUSS_NODES: usize = 24;
+pub(super) static GAUSS: LazyLock<[(f64, f64); 24]> =
+    LazyLock::new(|| special::gauss_legendre().map(|(y, weight)| (0.5 * (1.0 - y), 0.5 * weight)));
 
 #[cfg(test)]
 mod tests {

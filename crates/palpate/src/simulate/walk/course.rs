@@ -3,8 +3,9 @@
 use std::borrow::Cow;
 
 use super::program::{StepEnd, ends_of};
-use crate::simulate::layer::Layer;
-use crate::simulate::{Drive, SimulateError};
+use super::walker::{Visit, Walker};
+use crate::contact::SimulationWork;
+use crate::simulate::{ContactEvent, Drive, Layer, SimulateError};
 use crate::watch::Stages;
 
 /// Share of the work that finding the ends of steps is.
@@ -16,7 +17,7 @@ pub(in crate::simulate) struct Course<'a> {
     pub(in crate::simulate) drive: Drive<'a>,
     times: Cow<'a, [f64]>,
     /// Where the steps of a program end.
-    ends: Vec<StepEnd>,
+    pub(in crate::simulate) ends: Vec<StepEnd>,
 }
 
 impl<'a> Course<'a> {
@@ -40,11 +41,6 @@ impl<'a> Course<'a> {
         Ok(Self { drive, times, ends })
     }
 
-    /// Where the steps of a program end; nothing of another drive.
-    pub(in crate::simulate) fn ends(&self) -> &[StepEnd] {
-        &self.ends
-    }
-
     /// Share of the time that has passed at `time` (s).
     pub(in crate::simulate) fn share(&self, time: f64) -> f64 {
         (time - self.start()) / (self.end() - self.start())
@@ -64,4 +60,22 @@ impl<'a> Course<'a> {
     pub(in crate::simulate) fn end(&self) -> f64 {
         self.times[self.times.len() - 1]
     }
+}
+
+/// Walks through what drives the contact, handing every stretch to `visit` in order, and returns the events and the work.
+pub(in crate::simulate) fn walk<'a, L: Layer>(
+    drive: Drive<'_>,
+    model: &'a L,
+    visit: &'a mut Visit<'a, L>,
+) -> Result<(Vec<ContactEvent>, SimulationWork), SimulateError> {
+    let mut walker = Walker::new(model, visit);
+    match drive {
+        Drive::Motion(motion) => walker.travel(motion)?,
+        Drive::Force(history) => walker.press(history)?,
+        Drive::Program(program) => {
+            walker.run(program)?;
+        }
+    }
+    walker.work.events = walker.events.len() as u64;
+    Ok((walker.events, walker.work))
 }

@@ -4,24 +4,18 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `course.rs` | a drive with the times of its knots |
-//! | `whole.rs` | through whatever drives a contact |
-//! | `walker.rs` | along straight pieces of motion and of force |
+//! | `course.rs` | a drive with the times of its knots, and the walk through it |
+//! | `walker.rs` | along straight pieces of motion and of force, where the body can be asked for them |
 //! | `program.rs` | through the steps of a program |
-//! | `stretch.rs` | a stretch of time in which nothing changes its course |
-//! | `event.rs` | contacts lost and regained |
-//! | `checks.rs` | what a body can be asked for at all |
+//! | `stretch.rs` | contacts lost and regained, and the stretches between, in which nothing changes its course |
 
-mod checks;
 mod course;
-mod event;
 mod program;
 mod stretch;
 mod walker;
-mod whole;
 
-pub(super) use course::Course;
-pub use event::{ContactEvent, ContactEventKind};
+pub(super) use course::{Course, walk};
 pub use program::{StepEnd, step_ends};
+pub use stretch::{ContactEvent, ContactEventKind};
 pub(super) use stretch::{Stretch, StretchState};
-pub(super) use whole::walk;
+use walker::{Walker, check_force};

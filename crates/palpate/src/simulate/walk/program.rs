@@ -1,11 +1,8 @@
 //! Walks through a program, step by step.
 
-use super::checks::check_force;
 use super::stretch::{Stretch, force_of};
-use super::walker::Walker;
-use crate::simulate::contact::{ContactRef, by_law};
-use crate::simulate::layer::Layer;
-use crate::simulate::{ProgramStep, SimulateError};
+use super::{Walker, check_force};
+use crate::simulate::{ContactRef, Layer, ProgramStep, SimulateError, by_law};
 use crate::watch::{Stages, Unwatched};
 
 /// Where a step of a program ended.

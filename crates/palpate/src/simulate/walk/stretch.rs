@@ -1,7 +1,30 @@
 //! A stretch of time in which nothing changes its course.
 
+use serde::{Deserialize, Serialize};
+
 use crate::contact::UnderForce;
 use crate::simulate::layer::{InMotion, Layer};
+
+/// A contact that was lost or regained.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ContactEvent {
+    /// Lost or regained.
+    pub kind: ContactEventKind,
+    /// When, s.
+    pub time: f64,
+    /// Displacement of the surface (and of one contact's share of the jaw) at that moment, m.
+    pub contact_displacement: f64,
+}
+
+/// What happened to the contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactEventKind {
+    /// The jaw left the body.
+    Lost,
+    /// The jaw met the body again.
+    Regained,
+}
 
 /// A stretch of time over which the jaw moves at constant speed, or its force changes at a constant rate, and the contact does not change
 /// its state.

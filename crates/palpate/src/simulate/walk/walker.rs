@@ -1,11 +1,9 @@
 //! Goes along straight pieces of motion and force and keeps track of the contact.
 
-use super::checks::{check_displacements, check_force};
-use super::event::{ContactEvent, ContactEventKind};
-use super::stretch::{Stretch, StretchState};
-use crate::contact::{SimulationWork, Stopped, UnderForce};
+use super::stretch::{ContactEvent, ContactEventKind, Stretch, StretchState};
+use crate::contact::{SimulationWork, Specimen, Stopped, UnderForce};
 use crate::simulate::layer::{InMotion, Layer, crossing};
-use crate::simulate::{ForceHistory, Motion, SimulateError};
+use crate::simulate::{ForceHistory, Motion, Separation, SimulateError};
 
 /// The state carried from one stretch to the next.
 enum Contact<L: Layer> {
@@ -268,4 +266,32 @@ fn next_event<L: Layer>(stretch: &Stretch<L>, model: &L) -> Option<ContactEvent>
         time,
         contact_displacement: stretch.jaw_at(time),
     })
+}
+
+/// Checks that a force can be asked for at all.
+pub(in crate::simulate) fn check_force(time: f64, force: f64, model: &impl Layer) -> Result<(), SimulateError> {
+    let bonded = model.is_bonded();
+    if force < 0.0 && !(bonded && model.specimen().has_constant_section()) {
+        return Err(SimulateError::Tension { time, force, bonded });
+    }
+    Ok(())
+}
+
+/// Checks that the body can take every displacement of a motion.
+pub(super) fn check_displacements(
+    motion: &Motion,
+    specimen: &Specimen,
+    separation: Separation,
+) -> Result<(), SimulateError> {
+    let bonded = separation == Separation::Bonded;
+    for (&time, &displacement) in motion.times().iter().zip(motion.displacements()) {
+        specimen
+            .check_contact_displacement(specimen.contact_displacement(displacement), bonded)
+            .map_err(|source| SimulateError::Displacement {
+                time,
+                displacement,
+                source,
+            })?;
+    }
+    Ok(())
 }

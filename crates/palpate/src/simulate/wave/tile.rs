@@ -7,12 +7,10 @@ use std::ops::Range;
 use fearless_simd::{Simd, SimdBase, f64x8};
 
 use super::path::{Knot, Path};
-use super::{ContactModel, SimulationWork};
 use crate::latency::lanes::{Power, block, by_power, each, signed_power};
 use crate::ode::{Column, Slopes, WIDTH};
-use crate::simulate::latency::Latency;
-use crate::simulate::walk::{Stretch, StretchState};
-use crate::vector::aligned::Aligned;
+use crate::simulate::{ContactModel, Latency, SimulationWork, Stretch, StretchState};
+use crate::vector::Aligned;
 
 /// Nodes in a tile: enough to keep vectors busy, few enough to share a step and to stay in the nearest cache.
 pub(super) const TILE: usize = 128;
@@ -143,9 +141,9 @@ impl Tile {
         let (mut knots, mut next, mut inside) = (Vec::new(), 0, Vec::new());
         let before = nodes.numbers().last().copied().unwrap_or(0.0);
         nodes.restart(duration / 64.0);
-        while outer.moves() && nodes.time() < duration {
+        while outer.moves() && nodes.time < duration {
             if nodes.steps - steps == MOST_STEPS {
-                return Err(nodes.time());
+                return Err(nodes.time);
             }
             nodes.cap(chain.longest_step(along.steepest(simd, nodes)));
             nodes.step(simd, duration, &along);
@@ -154,8 +152,8 @@ impl Tile {
                 knots.extend_from_slice(if knots.is_empty() { &ends } else { &ends[1..] });
             }
             let mut looked = false;
-            while let Some(&time) = elapsed.get(next).filter(|time| **time <= nodes.time()) {
-                if time == nodes.time() {
+            while let Some(&time) = elapsed.get(next).filter(|time| **time <= nodes.time) {
+                if time == nodes.time {
                     inside.clear();
                     inside.extend_from_slice(nodes.numbers());
                 } else {
@@ -204,7 +202,7 @@ impl Along<'_, '_> {
         let mut most = f64x8::splat(simd, 0.0);
         nodes.scan(
             simd,
-            |first| self.mover(nodes.time(), first),
+            |first| self.mover(nodes.time, first),
             #[inline(always)]
             |at, outer, inner| {
                 // Behind the last node there is no layer.

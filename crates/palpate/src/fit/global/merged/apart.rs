@@ -1,9 +1,24 @@
 //! Merged rates taken apart: amplitudes in doubles cannot follow rates that meet, since they grow without bounds against each other.
 
-use super::valley::{Valley, valley};
 use crate::fit::problem::model::Sampled;
 use crate::optimise::{Orthogonal, Shapes, Target, Work};
-use crate::vector::products::dot;
+use crate::vector::dot;
+
+/// Where a local search ended.
+pub(crate) struct Valley {
+    pub(crate) theta: Vec<f64>,
+    pub(crate) linear: Vec<f64>,
+    pub(crate) square: f64,
+}
+
+/// The numbers of a place.
+pub(crate) fn valley(here: Orthogonal) -> Valley {
+    Valley {
+        linear: here.linear(),
+        theta: here.theta,
+        square: here.square,
+    }
+}
 
 /// The series with rates as far apart as its amplitudes need to be numbers: of some distances the one that leaves the least.
 pub(crate) fn apart(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], work: &mut Work) -> Valley {

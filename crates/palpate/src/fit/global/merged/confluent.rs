@@ -10,7 +10,7 @@
 //! ∂/∂z_i Σ_j b_j f\[z₀ … z_j\] = B_i f\[z₀ … z_k, z_i\] + what the group itself spans, B_i = Σ_j b_j Π_{l>j} (z_i − z_l).
 
 use crate::optimise::{Orthogonal, Target};
-use crate::vector::{accelerated, exponential_values};
+use crate::vector::{accelerated, exponential_columns};
 
 /// A rate of a group, and which nonlinear number it belongs to; none for the constant.
 #[derive(Clone, Copy)]
@@ -28,7 +28,7 @@ pub(crate) fn confluent(times: &[f64], constant: bool, theta: &[f64], target: Ta
         let middle = group.iter().map(|node| node.rate).sum::<f64>() / group.len() as f64;
         let mut decay = vec![1.0; times.len()];
         if middle > 0.0 {
-            exponential_values(times, middle, &mut decay);
+            exponential_columns(times, middle, [&mut decay]);
         }
         let apart: Vec<f64> = group.iter().map(|node| node.rate - middle).collect();
         for j in 0..apart.len() {

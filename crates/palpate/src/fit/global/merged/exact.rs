@@ -1,13 +1,12 @@
 //! Local searches by orthogonal columns: they keep the digits that normal equations lose.
 
-use super::apart::{apart, rounding};
+use super::apart::{Valley, apart, rounding, valley};
 use super::confluent::confluent;
-use super::valley::{Valley, valley};
 use crate::fit::problem::model::Sampled;
 use crate::optimise::{
     Cholesky, Ending, Orthogonal, Shapes, Solution, Target, Termination, Work, distance, refine, standing, stepped,
 };
-use crate::vector::products::dot;
+use crate::vector::dot;
 
 /// The solution carried on to what doubles allow, where normal equations do not reach it: where numbers nearly imitate each other, and
 /// where next to nothing is left over. `inflation` as of the function of that name.
