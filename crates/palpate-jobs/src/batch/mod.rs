@@ -222,7 +222,6 @@ fn settings(options: &AnalysisOptions, described: &Described) -> Result<String, 
         "test": described.shown(),
         "test_toml": described.text,
         "options": serde_json::to_value(options)?,
-        "reading": format!("{:?}", described.test.as_ref().map(|test| &test.reading)),
     });
     Ok(value.to_string())
 }
