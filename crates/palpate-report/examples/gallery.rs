@@ -162,13 +162,12 @@ fn layers(count: usize) -> Figure {
     }
     let mean = apply(&t, |t| squeeze(t) / 12.0 * 0.6);
     Figure::new(format!("layers-{count}"), format!("Strain in {count} layers over time (a) and its mean (b)."))
-        .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Depth", "mm")).layer(Layer::map(Map::new(
-            t.clone(),
-            depth,
+        .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Depth", "mm")).layer(Layer::map(Map {
+            x: t.clone(),
+            y: depth,
             values,
-            "Layer strain",
-            "",
-        ))))
+            colours: Axis::linear("Layer strain", ""),
+        })))
         .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Mean strain", "")).share(0.5).layer(Layer::line(
             t,
             mean,

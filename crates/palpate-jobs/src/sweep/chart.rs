@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use palpate_files::description::{Plan, Spacing, Sweep, SweptNumber};
 use palpate_files::parquet_table::{TableError, TableReader, Values};
-use palpate_report::figure::MOST_PANELS;
-use palpate_report::study::{SweptAxis, SweptResult, sweep_grid_figure, sweep_points_figure};
+use palpate_report::figure::{Axis, MOST_PANELS};
+use palpate_report::study::{Swept, sweep_grid_figure, sweep_points_figure};
 
 use super::rows::{ResultColumn, results};
 use crate::output::{check_figure, picture, stem, unwritten_table};
@@ -67,9 +67,8 @@ impl Chart {
         };
         let read =
             |column: &str| read_column(table, column, stride as usize).map_err(|error| unwritten_table(table, &error));
-        let result = SweptResult {
-            label: self.result.label.clone(),
-            unit: self.result.unit.to_owned(),
+        let result = Swept {
+            axis: Axis::linear(&self.result.label, self.result.unit),
             values: read(&self.result.name)?,
         };
         let name = stem(&self.path);
@@ -95,7 +94,7 @@ impl Chart {
     }
 }
 
-fn axis(number: &SweptNumber, values: Vec<f64>) -> SweptAxis {
+fn axis(number: &SweptNumber, values: Vec<f64>) -> Swept {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
     let logarithmic = match number.spacing {
@@ -105,12 +104,8 @@ fn axis(number: &SweptNumber, values: Vec<f64>) -> SweptAxis {
         Spacing::Listed => low > 0.0 && high / low > 50.0,
     };
     let unit = if number.unit == "/s" { "1/s" } else { number.unit };
-    SweptAxis {
-        label: number.path.clone(),
-        unit: unit.to_owned(),
-        logarithmic,
-        values,
-    }
+    let axis = if logarithmic { Axis::log(&number.path, unit) } else { Axis::linear(&number.path, unit) };
+    Swept { axis, values }
 }
 
 fn caption(sweep: &Sweep, result: &ResultColumn, stride: u64) -> String {

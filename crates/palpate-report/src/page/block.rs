@@ -20,7 +20,12 @@ pub enum Block {
     /// A table with its caption, numbered on the page.
     Table(Table),
     /// A drawn figure, numbered on the page.
-    Figure(Picture),
+    Figure {
+        /// An SVG element, as [`Figure::to_svg`] writes it; it goes into the page unchanged.
+        svg: String,
+        /// Caption.
+        caption: String,
+    },
     /// What was noticed in the data or in the analysis.
     Findings(Vec<Finding>),
     /// Names with their values.
@@ -29,15 +34,6 @@ pub enum Block {
     Code(String),
     /// Comparisons with a criterion.
     Checks(Vec<Check>),
-}
-
-/// A drawn figure.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Picture {
-    /// An SVG element, as [`Figure::to_svg`] writes it; it goes into the page unchanged.
-    pub svg: String,
-    /// Caption.
-    pub caption: String,
 }
 
 /// A finding with its words.
@@ -84,9 +80,9 @@ impl Block {
     ///
     /// When the figure cannot be drawn.
     pub fn figure(figure: &Figure) -> Result<Self, FigureError> {
-        Ok(Self::Figure(Picture {
+        Ok(Self::Figure {
             svg: figure.to_svg()?,
             caption: figure.caption.clone(),
-        }))
+        })
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::{Block, Check, Finding, Page, Picture};
+use super::{Block, Check, Finding, Page};
 use crate::escape::escape;
 use crate::script::{Level, runs};
 use crate::table::{Cell, Table, mark};
@@ -46,9 +46,8 @@ fn section_ids(page: &Page) -> Vec<String> {
     page.sections
         .iter()
         .map(|section| {
-            let source = if section.id.is_empty() { &section.heading } else { &section.id };
-            let words: String =
-                source.to_lowercase().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { ' ' }).collect();
+            let heading = section.heading.to_lowercase();
+            let words: String = heading.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { ' ' }).collect();
             let stem = words.split_whitespace().collect::<Vec<_>>().join("-");
             let stem = if stem.is_empty() { "section".to_owned() } else { stem };
             let mut id = stem.clone();
@@ -82,7 +81,7 @@ fn written(block: &Block, figures: &mut usize, tables: &mut usize) -> String {
             *tables += 1;
             table_written(table, *tables)
         }
-        Block::Figure(Picture { svg, caption }) => {
+        Block::Figure { svg, caption } => {
             *figures += 1;
             let (number, caption) = (figures, rich(caption));
             format!(

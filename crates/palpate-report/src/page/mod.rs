@@ -12,7 +12,7 @@
 mod block;
 mod html;
 
-pub use block::{Block, Check, Finding, Picture};
+pub use block::{Block, Check, Finding};
 pub use palpate::analysis::Severity;
 
 /// A page with its sections and where its content comes from.
@@ -33,8 +33,6 @@ pub struct Page {
 pub struct Section {
     /// Heading.
     pub heading: String,
-    /// Anchor for links; made from the heading when empty, and made unique within the page.
-    pub id: String,
     /// Content in order.
     pub blocks: Vec<Block>,
 }
@@ -78,16 +76,8 @@ impl Section {
     pub fn new(heading: impl Into<String>) -> Self {
         Self {
             heading: heading.into(),
-            id: String::new(),
             blocks: Vec::new(),
         }
-    }
-
-    /// Sets the anchor for links.
-    #[must_use]
-    pub fn id(mut self, id: impl Into<String>) -> Self {
-        self.id = id.into();
-        self
     }
 
     /// Adds content.

@@ -1,9 +1,8 @@
 //! Laws compared on the holds of a record, of relaxation and of creep alike.
 
-use palpate::analysis::{Analysis, CreepHold, Finding, HoldAnalysis, Signal};
+use palpate::analysis::{Analysis, CreepHold, Finding, Signal};
 use palpate::fit::NumberUnit;
 use palpate::forecast::Comparison;
-use palpate::laws::Response;
 use palpate::segment::After;
 
 use schemars::JsonSchema;
@@ -56,8 +55,6 @@ pub struct ComparedHold {
 pub struct ComparedRecord {
     /// Where it came from.
     pub input: Input,
-    /// Relaxation or creep.
-    pub response: Response,
     /// Its holds.
     pub holds: Vec<ComparedHold>,
     /// What to know about the record as a whole.
@@ -97,23 +94,24 @@ impl Quantity {
     }
 
     /// What a name in JSON ends in for a number of this unit; `None` for one that has no unit of its own.
-    pub(crate) fn suffix(self, unit: NumberUnit) -> Option<&'static str> {
-        Some(match (unit, self) {
-            (NumberUnit::One, _) | (NumberUnit::Signal, Self::Strain) => "",
-            (NumberUnit::Second, _) => "_s",
-            (NumberUnit::PerSecond, _) | (NumberUnit::SignalPerSecond | NumberUnit::RateCoefficient, Self::Strain) => {
-                "_per_s"
-            }
-            (NumberUnit::Signal, Self::Force) => "_n",
-            (NumberUnit::Signal, Self::Displacement) => "_m",
-            (NumberUnit::SignalPerSecond, Self::Force) => "_n_per_s",
-            (NumberUnit::SignalPerSecond, Self::Displacement) => "_m_per_s",
+    pub(crate) fn suffix(self, unit: NumberUnit) -> Option<String> {
+        let own = match self {
+            Self::Strain => "",
+            Self::Force => "_n",
+            Self::Displacement => "_m",
+        };
+        let (own, over_time) = match unit {
+            NumberUnit::One => ("", ""),
+            NumberUnit::Second => ("", "_s"),
+            NumberUnit::PerSecond => ("", "_per_s"),
+            NumberUnit::Signal => (own, ""),
+            NumberUnit::SignalPerSecond => (own, "_per_s"),
             // A power of time in s: what it is after one second.
-            (NumberUnit::SignalPerPower, Self::Strain) => "_at_1_s",
-            (NumberUnit::SignalPerPower, Self::Force) => "_n_at_1_s",
-            (NumberUnit::SignalPerPower, Self::Displacement) => "_m_at_1_s",
-            (NumberUnit::RateCoefficient, Self::Force | Self::Displacement) => return None,
-        })
+            NumberUnit::SignalPerPower => (own, "_at_1_s"),
+            NumberUnit::RateCoefficient if self == Self::Strain => ("", "_per_s"),
+            NumberUnit::RateCoefficient => return None,
+        };
+        Some(format!("{own}{over_time}"))
     }
 }
 
@@ -122,42 +120,6 @@ impl From<Signal> for Quantity {
         match signal {
             Signal::Strain => Self::Strain,
             Signal::Force => Self::Force,
-        }
-    }
-}
-
-impl From<&HoldAnalysis> for ComparedHold {
-    fn from(hold: &HoldAnalysis) -> Self {
-        Self {
-            number: hold.number,
-            after: hold.after,
-            start: hold.start,
-            end: hold.end,
-            fit_start: hold.fit_start,
-            level: hold.displacement,
-            quantity: hold.signal.into(),
-            times: hold.times[..hold.fitted].to_vec(),
-            values: hold.values[..hold.fitted].to_vec(),
-            comparison: hold.comparison.clone(),
-            findings: hold.findings.clone(),
-        }
-    }
-}
-
-impl From<CreepHold> for ComparedHold {
-    fn from(hold: CreepHold) -> Self {
-        Self {
-            number: hold.number,
-            after: hold.after,
-            start: hold.start,
-            end: hold.end,
-            fit_start: hold.fit_start,
-            level: Some(hold.force),
-            quantity: Quantity::Displacement,
-            times: hold.times,
-            values: hold.displacement,
-            comparison: hold.comparison,
-            findings: hold.findings,
         }
     }
 }
@@ -187,10 +149,22 @@ impl ComparedRecord {
     /// The comparison in an analysis.
     #[must_use]
     pub fn of_analysis(analysis: &Analysis, input: Input) -> Self {
+        let holds = analysis.holds.iter().map(|hold| ComparedHold {
+            number: hold.number,
+            after: hold.after,
+            start: hold.start,
+            end: hold.end,
+            fit_start: hold.fit_start,
+            level: hold.displacement,
+            quantity: hold.signal.into(),
+            times: hold.times[..hold.fitted].to_vec(),
+            values: hold.values[..hold.fitted].to_vec(),
+            comparison: hold.comparison.clone(),
+            findings: hold.findings.clone(),
+        });
         Self {
             input,
-            response: Response::Relaxation,
-            holds: analysis.holds.iter().map(ComparedHold::from).collect(),
+            holds: holds.collect(),
             findings: analysis.findings.clone(),
         }
     }
@@ -198,10 +172,22 @@ impl ComparedRecord {
     /// Holds of creep.
     #[must_use]
     pub fn of_creep(holds: Vec<CreepHold>, input: Input) -> Self {
+        let holds = holds.into_iter().map(|hold| ComparedHold {
+            number: hold.number,
+            after: hold.after,
+            start: hold.start,
+            end: hold.end,
+            fit_start: hold.fit_start,
+            level: Some(hold.force),
+            quantity: Quantity::Displacement,
+            times: hold.times,
+            values: hold.displacement,
+            comparison: hold.comparison,
+            findings: hold.findings,
+        });
         Self {
             input,
-            response: Response::Creep,
-            holds: holds.into_iter().map(ComparedHold::from).collect(),
+            holds: holds.collect(),
             findings: Vec::new(),
         }
     }
@@ -214,10 +200,7 @@ impl ComparedRecord {
 
     /// The holds on which laws could be judged.
     pub(crate) fn verdicts(&self) -> impl Iterator<Item = (&ComparedHold, &Comparison)> {
-        let judged = |hold: &'_ ComparedHold| hold.comparison.as_ref().is_some_and(|found| found.verdict.is_some());
-        self.holds
-            .iter()
-            .filter(move |hold| judged(hold))
-            .filter_map(|hold| Some((hold, hold.comparison.as_ref()?)))
+        let compared = self.holds.iter().filter_map(|hold| Some((hold, hold.comparison.as_ref()?)));
+        compared.filter(|(_, comparison)| comparison.verdict.is_some())
     }
 }

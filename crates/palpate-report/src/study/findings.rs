@@ -10,7 +10,7 @@ use crate::wrap::{WIDTH, indented};
 /// Different words for one code that are written out; more are counted.
 pub(super) const MOST_LINES: usize = 6;
 /// The same for a terminal.
-const MOST_PLAIN: usize = 2;
+pub(super) const MOST_PLAIN: usize = 2;
 /// Places before the further lines of a finding on a terminal.
 const INDENT: usize = 9;
 /// A force below this share of the largest one of the record is none.
@@ -170,16 +170,6 @@ fn sentence(text: &str) -> String {
     format!("{first}{}.", characters.as_str())
 }
 
-/// The findings for a terminal: severity and code, then what was seen where.
-pub(super) fn plain(analysis: &Analysis) -> String {
-    lines(&gathered(analysis, MOST_PLAIN))
-}
-
-/// Likewise for a compared record.
-pub(super) fn plain_of(record: &ComparedRecord) -> String {
-    lines(&gathered_of(record, MOST_PLAIN))
-}
-
 /// All findings of a compared record and of its holds.
 pub(super) fn gathered_of(record: &ComparedRecord, most: usize) -> Vec<Gathered> {
     let whole = record.findings.iter().map(|finding| Seen::of(finding, None));
@@ -190,7 +180,8 @@ pub(super) fn gathered_of(record: &ComparedRecord, most: usize) -> Vec<Gathered>
     merged(whole.chain(of_holds).collect(), most)
 }
 
-fn lines(findings: &[Gathered]) -> String {
+/// Findings for a terminal: severity and code, then what was seen where.
+pub(super) fn plain(findings: &[Gathered]) -> String {
     let mut text = String::new();
     for finding in findings {
         let mut head = format!("{:<9}{}  ", word(finding.severity), finding.code);

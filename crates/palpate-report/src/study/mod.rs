@@ -32,6 +32,6 @@ pub use grip::{grip_bundle, grip_figure, grip_table, grip_text, neighbour_table,
 pub use record::{analysis_bundle, analysis_text, cut_figure};
 pub use reproduction::{reproduction_bundle, reproduction_text};
 pub use simulate::{
-    SweptAxis, SweptResult, cycle_table, hysteresis_figure, step_work_table, sweep_grid_figure, sweep_points_figure,
-    trajectory_figure, wave_figure, write_trajectory,
+    Swept, cycle_table, hysteresis_figure, step_work_table, sweep_grid_figure, sweep_points_figure, trajectory_figure,
+    wave_figure, write_trajectory,
 };

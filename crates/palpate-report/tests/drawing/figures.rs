@@ -10,6 +10,11 @@ fn ramp(count: usize) -> Vec<f64> {
     (0..count).map(|i| i as f64).collect()
 }
 
+fn map(x: Vec<f64>, y: Vec<f64>, values: Vec<f64>, label: &str, unit: &str) -> Map {
+    let colours = Axis::linear(label, unit);
+    Map { x, y, values, colours }
+}
+
 fn drawn(figure: &Figure) -> String {
     let svg = figure.to_svg().expect("a drawing");
     roxmltree::Document::parse(&svg).expect("well-formed");
@@ -33,7 +38,7 @@ fn every_kind_of_layer_is_well_formed_and_repeatable() {
                 .layer(Layer::horizontal(10.0, Role::Reference).label("limit"))
                 .layer(Layer::vertical(20.0, Role::Alternative(200)).label("start")),
         )
-        .panel(time_panel().layer(Layer::map(Map::new(x, ramp(3), grid, "Strain", "%"))));
+        .panel(time_panel().layer(Layer::map(map(x, ramp(3), grid, "Strain", "%"))));
     let svg = drawn(&figure);
     assert_eq!(svg, drawn(&figure));
     let document = roxmltree::Document::parse(&svg).expect("well-formed");
@@ -92,7 +97,7 @@ fn odd_data_and_sizes_are_drawn_without_panic() {
                     .layer(Layer::line(x.clone(), y.clone(), Role::Fitted).label("l"))
                     .layer(Layer::points(x.clone(), y.clone(), Role::Measured).error_bars(y.clone()).label("p"))
                     .layer(Layer::band(x.clone(), y.clone(), x.clone(), Role::Simulated))
-                    .layer(Layer::map(Map::new(x.clone(), y.clone(), vec![x[0]; 25], "m", "")))
+                    .layer(Layer::map(map(x.clone(), y.clone(), vec![x[0]; 25], "m", "")))
                     .layer(Layer::span(y[1], x[0], Role::Measured).label("s"))
                     .layer(Layer::horizontal(y[3], Role::Reference).label("h"));
                 drawn(&Figure::new("odd", "").width_mm(1.0).height_mm(f64::NAN).panel(panel));
@@ -113,15 +118,8 @@ fn columns_that_do_not_belong_together_are_refused() {
             ..
         })
     ));
-    let map = Map {
-        x: ramp(2),
-        y: ramp(2),
-        values: ramp(3),
-        label: String::new(),
-        unit: String::new(),
-        range: None,
-    };
-    let error = Figure::new("bad", "").panel(time_panel().layer(Layer::map(map))).to_svg();
+    let short = Layer::map(map(ramp(2), ramp(2), ramp(3), "", ""));
+    let error = Figure::new("bad", "").panel(time_panel().layer(short)).to_svg();
     assert!(matches!(
         error,
         Err(FigureError::Length {

@@ -1,6 +1,6 @@
 //! What can be drawn in a panel.
 
-use super::axis::{Scale, shows};
+use super::axis::{Axis, Scale, shows};
 use super::error::FigureError;
 use super::role::Role;
 
@@ -63,28 +63,9 @@ pub struct Map {
     pub y: Vec<f64>,
     /// Row after row: the value of row `j` and column `i` is at `j * x.len() + i`.
     pub values: Vec<f64>,
-    /// Name of the quantity.
-    pub label: String,
-    /// Unit; empty for a pure number.
-    pub unit: String,
-    /// Values at the two ends of the colours; found from the data when absent or unusable.
-    pub range: Option<(f64, f64)>,
-}
-
-impl Map {
-    /// A heat map coloured from its smallest to its largest value.
-    #[must_use]
-    pub fn new(x: Vec<f64>, y: Vec<f64>, values: Vec<f64>, label: impl Into<String>, unit: impl Into<String>) -> Self {
-        let (label, unit) = (label.into(), unit.into());
-        Self {
-            x,
-            y,
-            values,
-            label,
-            unit,
-            range: None,
-        }
-    }
+    /// The quantity and what stands at the two ends of the colours; without a usable range its smallest and its largest value do. Colours
+    /// are always spaced linearly.
+    pub colours: Axis,
 }
 
 impl Mark {
@@ -143,10 +124,7 @@ impl Layer {
     /// The same layer with a label; layers of one panel with equal labels share a legend entry.
     #[must_use]
     pub fn label(mut self, text: impl Into<String>) -> Self {
-        match &mut self.mark {
-            Mark::Map(map) => map.label = text.into(),
-            _ => self.label = Some(text.into()),
-        }
+        self.label = Some(text.into());
         self
     }
 

@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use super::heatmap;
 use super::svg::{Anchor, Font, Svg, short};
-use crate::figure::content::Axis;
 use crate::figure::layout::{BAR, BAR_GAP, CAPTION, Frame, LEGEND_ROW, Rect, TICK, TICK_LENGTH, width};
 
 const INK: &str = "#222";
@@ -116,7 +115,7 @@ pub(crate) fn draw_colour_bar(svg: &mut Svg, frame: &Frame<'_>) {
         svg.text(x, y + 0.36 * TICK, Anchor::Start, font(TICK), label);
     }
     svg.path(&d, "stroke=\"#222\" stroke-width=\"0.6\"");
-    let caption = Axis::linear(&map.label, &map.unit).caption(ticks.exponent);
+    let caption = map.colours.caption(ticks.exponent);
     let x = area.right() + TICK_LENGTH + 2.0 + Frame::widest(ticks) + 3.0 + CAPTION;
     svg.upward_text(x, area.y + area.h / 2.0, font(CAPTION), &caption);
 }

@@ -201,7 +201,7 @@ pub(crate) fn edges(centres: &[f64], scale: Scale) -> Vec<f64> {
 
 /// Values at the two ends of the colours.
 pub(crate) fn colour_limits(map: &Map) -> (f64, f64) {
-    if let Some(range) = map.range.filter(|range| usable(*range)) {
+    if let Some(range) = map.colours.range.filter(|range| usable(*range)) {
         return range;
     }
     let finite = map.values.iter().copied().filter(|v| v.abs() < 1e300);

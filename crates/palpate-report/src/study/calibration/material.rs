@@ -6,7 +6,7 @@ use palpate::calibrate::{
 };
 use palpate::fit::Interval;
 
-use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
+use crate::figure::{Axis, Figure, Layer, Panel, Role};
 use crate::number::{counted, significant};
 use crate::page::{Block, Page, Section};
 use crate::result::{CalibratedRecord, percent, word};
@@ -158,7 +158,6 @@ pub fn calibration_figure(record: &CalibratedRecord, name: &str) -> Figure {
         .panel(force)
         .panel(left.zero_line())
         .panel(jaw.layer(Layer::line(times.to_vec(), travel, Role::Measured)))
-        .arrangement(Arrangement::Stacked)
         .height_mm(150.0)
 }
 

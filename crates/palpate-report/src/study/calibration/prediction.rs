@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use palpate::calibrate::Prediction;
 
-use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
+use crate::figure::{Axis, Figure, Layer, Panel, Role};
 use crate::number::significant;
 use crate::result::percent;
 use crate::study::simulate::write_series;
@@ -80,9 +80,5 @@ pub fn prediction_figure(prediction: &Prediction, name: &str, caption: &str) -> 
         jaw = jaw.layer(Layer::band(time(), near, far, Role::Fitted));
     }
     jaw = jaw.layer(Layer::line(time(), course.displacement.iter().map(|place| 1e3 * place).collect(), Role::Fitted));
-    Figure::new(name, caption)
-        .panel(force)
-        .panel(jaw)
-        .arrangement(Arrangement::Stacked)
-        .height_mm(120.0)
+    Figure::new(name, caption).panel(force).panel(jaw).height_mm(120.0)
 }

@@ -116,7 +116,7 @@ pub(in crate::study) fn laws(records: &[ComparedRecord], cuts: &[f64]) -> Table 
 pub(in crate::study) fn verdicts(record: &ComparedRecord) -> Option<Table> {
     let judged = record.verdicts();
     let rows: Vec<_> = judged.filter_map(|(hold, found)| Some((hold, found, found.verdict.as_ref()?))).collect();
-    let table = Table::of("verdicts", "Which law to use, hold by hold.", &rows)
+    Table::of("verdicts", "Which law to use, hold by hold.", &rows)
         .column("Hold", "hold", "", |(hold, ..)| Cell::Integer(hold.number as i64))
         .column("Law to use", "law", "", |(.., verdict)| Cell::text(verdict.law.to_string()))
         .column("p", "parameters", "", |(_, found, verdict)| {
@@ -131,8 +131,7 @@ pub(in crate::study) fn verdicts(record: &ComparedRecord) -> Option<Table> {
         .column("Best at cuts", "cuts_won", "", |(_, found, verdict)| {
             Cell::text(format!("{} of {}", verdict.cuts_won, found.cuts.len()))
         })
-        .table();
-    (!rows.is_empty()).then_some(table)
+        .unless_empty()
 }
 
 /// Which law to use, for a terminal: the table of all laws where there is one hold, else one row a hold.
@@ -166,7 +165,7 @@ pub fn comparison_text(records: &[ComparedRecord], left_out: &[LeftOut]) -> Stri
             }
             text.push('\n');
         }
-        let found = findings::plain_of(record);
+        let found = findings::plain(&findings::gathered_of(record, findings::MOST_PLAIN));
         if !found.is_empty() {
             text.push_str(&format!("Findings\n{found}\n"));
         }

@@ -2,7 +2,7 @@
 
 use palpate::calibrate::Prediction;
 
-use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
+use crate::figure::{Axis, Figure, Layer, Panel, Role};
 use crate::result::{GrippedBody, percent};
 
 /// The grips over time: force with the limit at which it slips, margin over that limit, displacement of the jaws; the one that is asked about
@@ -57,6 +57,5 @@ pub fn grip_figure(body: &GrippedBody<'_>, name: &str) -> Figure {
         .panel(force)
         .panel(margin)
         .panel(jaw)
-        .arrangement(Arrangement::Stacked)
         .height_mm(150.0)
 }

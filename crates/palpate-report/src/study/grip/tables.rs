@@ -108,7 +108,7 @@ fn lasts(time: TimeToSlip) -> Cell {
 pub fn sensitivity_table(body: &GrippedBody<'_>) -> Option<Table> {
     let found = &body.answer.back_off.as_ref().ok()?.found.sensitivities;
     let caption = "Squeeze and back off: what happens if a number of the material is 1 % larger than was found.";
-    let table = Table::of("sensitivities", caption, found)
+    Table::of("sensitivities", caption, found)
         .column("Number", "number", "", |one| Cell::text(one.name.replace('_', " ")))
         .column("known to", "standard_error_percent", "%", |one| {
             Cell::number_or(one.error.map(|error| 100.0 * error), 2, "it has no error")
@@ -118,8 +118,7 @@ pub fn sensitivity_table(body: &GrippedBody<'_>) -> Option<Table> {
             Cell::number(if one.missed.abs() < 1e-9 { 0.0 } else { 1e3 * one.missed }, 3)
         })
         .column("Turn farther by", "over_um", "µm", |one| Cell::number(1e6 * one.over, 3))
-        .table();
-    (!found.is_empty()).then_some(table)
+        .unless_empty()
 }
 
 /// The squeezes of a schedule.

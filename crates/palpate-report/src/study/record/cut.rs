@@ -3,7 +3,7 @@
 use palpate::record::Record;
 use palpate::segment::{Phase, Segment};
 
-use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
+use crate::figure::{Axis, Figure, Layer, Panel, Role};
 
 /// Holds whose numbers are readable beside each other.
 const MOST_NAMED: usize = 12;
@@ -31,7 +31,7 @@ pub fn cut_figure(record: &Record, segments: &[Segment], name: &str) -> Figure {
         1 => "Shaded: the one hold that was found.".to_owned(),
         count => format!("Shaded: the {count} holds that were found."),
     };
-    let figure = Figure::new(name, caption).arrangement(Arrangement::Stacked).panel(force);
+    let figure = Figure::new(name, caption).panel(force);
     match record.displacement() {
         None => figure,
         Some(displacement) => {

@@ -35,7 +35,7 @@ pub(super) fn record(analysis: &Analysis, name: &str) -> Figure {
         caption
             .push_str(" The simulated curve follows the measured displacement with the numbers fitted to the holds.");
     }
-    let mut figure = Figure::new(name, caption).panel(force).arrangement(Arrangement::Stacked);
+    let mut figure = Figure::new(name, caption).panel(force);
     if let Some(displacement) = analysis.record.displacement() {
         let millimetres = displacement.iter().map(|d| d * 1e3).collect();
         let panel = Panel::new(Axis::linear("Time", "s"), Axis::linear("Displacement", "mm"));

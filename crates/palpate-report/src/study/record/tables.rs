@@ -180,7 +180,7 @@ pub(super) fn paper_table(analysis: &Analysis, after: After) -> Option<Table> {
         hold.rate_fit_with(n).map_or(Cell::missing("no fit"), cell)
     };
     let coefficient = |fit: &LatencyFit| rate(fit, fit.rate_coefficient());
-    let table = Table::of(name, caption, &rows)
+    Table::of(name, caption, &rows)
         .column("Hold", "hold", "", |(hold, _)| Cell::Integer(hold.number as i64))
         .column("Displacement", "displacement_mm", "mm", |(hold, _)| displacement(hold))
         .column("εₑ (time)", "equilibrium_strain", "", |(hold, fit)| equilibrium(hold, fit))
@@ -193,8 +193,7 @@ pub(super) fn paper_table(analysis: &Analysis, after: After) -> Option<Table> {
             let free = hold.fits.iter().find(|fit| fit.choice() == ExponentChoice::Free);
             free.map_or(Cell::missing("not asked"), free_exponent)
         })
-        .table();
-    (!rows.is_empty()).then_some(table)
+        .unless_empty()
 }
 
 /// Evidence for the exponent over all holds: the paper's "lowest order which fits the best".
@@ -228,7 +227,7 @@ pub(super) fn joint(analysis: &Analysis) -> Option<Table> {
     let trend = |one: &JointAnalysis, of: fn(&SharedTrend) -> f64| {
         Cell::number_or(one.comparison.trend.as_ref().map(of), 3, "one strain")
     };
-    let table = Table::of("joint", caption, joint)
+    Table::of("joint", caption, joint)
         .column("Holds after", "holds", "", |one| {
             Cell::text(match one.which {
                 JointHolds::Loading => "loading",
@@ -247,8 +246,7 @@ pub(super) fn joint(analysis: &Analysis) -> Option<Table> {
         .column("from", "trend_low", "", |one| trend(one, |trend| trend.interval.0))
         .column("to", "trend_high", "", |one| trend(one, |trend| trend.interval.1))
         .column("v is", "verdict", "", |one| Cell::text(word(one.comparison.verdict).replace('_', " ")))
-        .table();
-    (!joint.is_empty()).then_some(table)
+        .unless_empty()
 }
 
 /// How well each law, fitted to the first part of the holds, foretells the rest.
@@ -260,7 +258,7 @@ pub(super) fn predictions(analysis: &Analysis) -> Option<Table> {
         let fits = hold.fits.iter().zip(&hold.predictions);
         rows.extend(fits.filter_map(|(fit, prediction)| Some((hold, fit, (*prediction)?))));
     }
-    let table = Table::of("predictions", caption, &rows)
+    Table::of("predictions", caption, &rows)
         .column("Hold", "hold", "", |(hold, ..)| Cell::Integer(hold.number as i64))
         .column("n", "exponent", "", |(_, fit, _)| {
             Cell::text(match fit.choice() {
@@ -276,14 +274,13 @@ pub(super) fn predictions(analysis: &Analysis) -> Option<Table> {
             Cell::number(100.0 * beyond.relative, 3)
         })
         .column("Samples beyond", "samples_beyond", "", |(.., beyond)| Cell::Integer(beyond.samples as i64))
-        .table();
-    (!rows.is_empty()).then_some(table)
+        .unless_empty()
 }
 
 /// Equilibria after loading and after unloading at one displacement.
 pub(super) fn agreements(analysis: &Analysis) -> Option<Table> {
     let levels = &analysis.across.agreements;
-    let table = Table::of("agreement", "Equilibrium after loading and after unloading at one displacement.", levels)
+    Table::of("agreement", "Equilibrium after loading and after unloading at one displacement.", levels)
         .column("Displacement", "displacement_mm", "mm", |level| Cell::number(1e3 * level.displacement, 4))
         .column("Hold after loading", "hold_loading", "", |level| Cell::Integer(level.loading as i64))
         .column("Hold after unloading", "hold_unloading", "", |level| Cell::Integer(level.unloading as i64))
@@ -293,8 +290,7 @@ pub(super) fn agreements(analysis: &Analysis) -> Option<Table> {
             Cell::number(level.loading_equilibrium - level.unloading_equilibrium, 2)
         })
         .column("Difference over its error", "z", "", |level| Cell::number_or(level.z, 3, "no errors"))
-        .table();
-    (!levels.is_empty()).then_some(table)
+        .unless_empty()
 }
 
 /// All tables that a record gives rise to.
@@ -344,7 +340,7 @@ pub fn analysis_text(analysis: &Analysis, input: &Input) -> String {
     if !asked.is_empty() {
         text.push_str(&format!("Corrections\n  {}\n\n", asked.join("\n  ")));
     }
-    let findings = findings::plain(analysis);
+    let findings = findings::plain(&findings::gathered(analysis, findings::MOST_PLAIN));
     if !findings.is_empty() {
         text.push_str(&format!("Findings\n{findings}\n"));
     }

@@ -49,7 +49,6 @@ fn protocol(name: &str, test: &ReproducedTest, what: &str) -> Figure {
     Figure::new(name, format!("{what}, at 500 mm/min: simulated force of the bonded contact above, displacement of the jaw below, in the layout of the paper's figure 4."))
         .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Force", "N")).share(1.7).zero_line().layer(line(test.bonded.force.clone())))
         .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Displacement", "mm")).layer(line(millimetres)))
-        .arrangement(Arrangement::Stacked)
         .without_letters()
 }
 

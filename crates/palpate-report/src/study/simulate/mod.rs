@@ -13,7 +13,7 @@ mod trajectory;
 mod wave;
 
 pub use hysteresis::{cycle_table, hysteresis_figure, step_work_table};
-pub use sweep::{SweptAxis, SweptResult, sweep_grid_figure, sweep_points_figure};
+pub use sweep::{Swept, sweep_grid_figure, sweep_points_figure};
 pub(super) use trajectory::write_series;
 pub use trajectory::{trajectory_figure, write_trajectory};
 pub use wave::wave_figure;

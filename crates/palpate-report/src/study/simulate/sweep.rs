@@ -1,42 +1,20 @@
 //! A sweep as a figure: a curve, a heat map, heat maps side by side, or points.
 
-use crate::figure::{Arrangement, Axis, Figure, Layer, MOST_PANELS, Map, Panel, Role, Scale};
+use crate::figure::{Arrangement, Axis, Figure, Layer, MOST_PANELS, Map, Panel, Role};
 use crate::number::significant;
 use crate::study::grid::grid;
 
-/// A swept number.
+/// A swept number, or a result of the runs.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SweptAxis {
-    /// What the axis is called.
-    pub label: String,
-    /// Symbol of its unit; empty of a pure number.
-    pub unit: String,
-    /// Whether equal ratios take equal room.
-    pub logarithmic: bool,
-    /// Its values: of a grid each one once, of points one a run.
+pub struct Swept {
+    /// The axis that it is shown on.
+    pub axis: Axis,
+    /// Of a number its values: of a grid each one once, of points one a run. Of a result one value a run, NaN where there is none; of a
+    /// grid with the last number changing from run to run.
     pub values: Vec<f64>,
 }
 
-/// A result of the runs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SweptResult {
-    /// What it is called.
-    pub label: String,
-    /// Symbol of its unit.
-    pub unit: String,
-    /// One value a run, NaN where there is none; of a grid with the last axis changing from run to run.
-    pub values: Vec<f64>,
-}
-
-impl SweptAxis {
-    fn axis(&self) -> Axis {
-        let scale = if self.logarithmic { Scale::Log } else { Scale::Linear };
-        Axis {
-            scale,
-            ..Axis::linear(&self.label, &self.unit)
-        }
-    }
-
+impl Swept {
     /// Places of the values in rising order.
     fn rising(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.values.len()).collect();
@@ -50,7 +28,7 @@ impl SweptAxis {
 /// The first axis runs across, the second up. `None` for no axis, for more than three, for more than [`MOST_PANELS`] values of the third,
 /// and where the results are not one for each run.
 #[must_use]
-pub fn sweep_grid_figure(name: &str, caption: &str, axes: &[SweptAxis], result: &SweptResult) -> Option<Figure> {
+pub fn sweep_grid_figure(name: &str, caption: &str, axes: &[Swept], result: &Swept) -> Option<Figure> {
     let runs: usize = axes.iter().map(|axis| axis.values.len()).product();
     if runs != result.values.len() {
         return None;
@@ -61,15 +39,12 @@ pub fn sweep_grid_figure(name: &str, caption: &str, axes: &[SweptAxis], result: 
             let order = x.rising();
             let pick = |values: &[f64]| order.iter().map(|i| values[*i]).collect::<Vec<f64>>();
             let (across, up) = (pick(&x.values), pick(&result.values));
-            let mut panel = Panel::new(x.axis(), Axis::linear(&result.label, &result.unit)).layer(Layer::line(
-                across.clone(),
-                up.clone(),
-                Role::Series(0),
-            ));
+            let line = Layer::line(across.clone(), up.clone(), Role::Series(0));
+            let mut panel = panel(&x.axis, &result.axis).layer(line);
             if across.len() <= 60 {
                 panel = panel.layer(Layer::points(across, up, Role::Series(0)));
             }
-            Some(figure.panel(panel.empty_note("Every run was refused")))
+            Some(figure.panel(panel))
         }
         [x, y] => Some(figure.panel(heat_map((x, y), result, |i, j| i * y.values.len() + j, None))),
         [x, y, z] if z.values.len() <= MOST_PANELS => {
@@ -77,8 +52,8 @@ pub fn sweep_grid_figure(name: &str, caption: &str, axes: &[SweptAxis], result: 
             let columns = if z.values.len() <= 4 { 2 } else { 3 };
             let panels = z.rising().into_iter().map(|k| {
                 let at = |i: usize, j: usize| (i * y.values.len() + j) * z.values.len() + k;
-                let unit = if z.unit.is_empty() { String::new() } else { format!(" {}", z.unit) };
-                let title = format!("{} = {}{unit}", z.label, short(z.values[k]));
+                let unit = if z.axis.unit.is_empty() { String::new() } else { format!(" {}", z.axis.unit) };
+                let title = format!("{} = {}{unit}", z.axis.label, short(z.values[k]));
                 heat_map((x, y), result, at, range).title(title)
             });
             grid(name, caption.to_owned(), panels.collect(), columns, 62.0)
@@ -89,7 +64,7 @@ pub fn sweep_grid_figure(name: &str, caption: &str, axes: &[SweptAxis], result: 
 
 /// Runs without an order: a panel of points for every swept number.
 #[must_use]
-pub fn sweep_points_figure(name: &str, caption: &str, axes: &[SweptAxis], result: &SweptResult) -> Figure {
+pub fn sweep_points_figure(name: &str, caption: &str, axes: &[Swept], result: &Swept) -> Figure {
     let columns = if axes.len() == 1 { 1 } else { 2 };
     let mut figure = Figure::new(name, caption);
     if columns > 1 {
@@ -98,15 +73,18 @@ pub fn sweep_points_figure(name: &str, caption: &str, axes: &[SweptAxis], result
     }
     axes.iter().fold(figure, |figure, axis| {
         let points = Layer::points(axis.values.clone(), result.values.clone(), Role::Series(0));
-        let panel = Panel::new(axis.axis(), Axis::linear(&result.label, &result.unit)).layer(points);
-        figure.panel(panel.empty_note("Every run was refused"))
+        figure.panel(panel(&axis.axis, &result.axis).layer(points))
     })
+}
+
+fn panel(x: &Axis, y: &Axis) -> Panel {
+    Panel::new(x.clone(), y.clone()).empty_note("Every run was refused")
 }
 
 /// The values at column i and row j stand at `at(i, j)`.
 fn heat_map(
-    (x, y): (&SweptAxis, &SweptAxis),
-    result: &SweptResult,
+    (x, y): (&Swept, &Swept),
+    result: &Swept,
     at: impl Fn(usize, usize) -> usize,
     range: Option<(f64, f64)>,
 ) -> Panel {
@@ -116,11 +94,12 @@ fn heat_map(
         x: across.iter().map(|i| x.values[*i]).collect(),
         y: up.iter().map(|j| y.values[*j]).collect(),
         values: values.collect(),
-        label: result.label.clone(),
-        unit: result.unit.clone(),
-        range,
+        colours: Axis {
+            range,
+            ..result.axis.clone()
+        },
     };
-    Panel::new(x.axis(), y.axis()).layer(Layer::map(map)).empty_note("Every run was refused")
+    panel(&x.axis, &y.axis).layer(Layer::map(map))
 }
 
 /// A value as people write it in a title: 2 and not 2.00.
@@ -145,19 +124,16 @@ fn limits(values: &[f64]) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
 
-    fn axis(label: &str, values: &[f64]) -> SweptAxis {
-        SweptAxis {
-            label: label.to_owned(),
-            unit: "mm".to_owned(),
-            logarithmic: false,
+    fn axis(label: &str, values: &[f64]) -> Swept {
+        Swept {
+            axis: Axis::linear(label, "mm"),
             values: values.to_vec(),
         }
     }
 
-    fn result(values: Vec<f64>) -> SweptResult {
-        SweptResult {
-            label: "Force".to_owned(),
-            unit: "N".to_owned(),
+    fn result(values: Vec<f64>) -> Swept {
+        Swept {
+            axis: Axis::linear("Force", "N"),
             values,
         }
     }
@@ -185,7 +161,7 @@ mod tests {
         let figure = sweep_grid_figure("f", "", &axes, &result(values)).unwrap();
         let maps = maps(&figure);
         assert_eq!(maps.len(), 3);
-        assert!(maps.iter().all(|map| map.range == Some((0.0, 11.0))));
+        assert!(maps.iter().all(|map| map.colours.range == Some((0.0, 11.0))));
         // z = 6 stands second in the file and first in the figure.
         assert_eq!(maps[0].values[0], 1.0);
         assert!(figure.to_svg().unwrap().contains("z = 6 mm"));

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use palpate::simulate::{ContactEventKind, Trajectory};
 
-use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
+use crate::figure::{Axis, Figure, Layer, Panel, Role};
 use crate::number::exact;
 
 /// Writes the series as CSV, one row a sample: time, displacements, force, strains, rate, all in SI.
@@ -79,6 +79,5 @@ pub fn trajectory_figure(trajectory: &Trajectory, name: &str, caption: &str) -> 
         .panel(force)
         .panel(strain)
         .panel(displacement.layer(Layer::line(time(), millimetres, Role::Series(0))))
-        .arrangement(Arrangement::Stacked)
         .height_mm(150.0)
 }

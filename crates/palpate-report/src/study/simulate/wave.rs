@@ -2,23 +2,27 @@
 
 use palpate::simulate::StrainWave;
 
-use crate::figure::{Arrangement, Axis, Figure, Layer, Map, Panel, Role};
+use crate::figure::{Axis, Figure, Layer, Map, Panel, Role};
 
 /// Strain of every layer as a map over time, and as lines.
 #[must_use]
 pub fn wave_figure(name: &str, wave: &StrainWave, caption: &str) -> Figure {
     let layers = wave.strain.len();
-    let depth: Vec<f64> = (1..=layers).map(|i| i as f64).collect();
-    let values = wave.strain.iter().flatten().copied().collect();
+    let strains = Map {
+        x: wave.time.clone(),
+        y: (1..=layers).map(|i| i as f64).collect(),
+        values: wave.strain.iter().flatten().copied().collect(),
+        colours: Axis::linear("Strain", ""),
+    };
     let map = Panel::new(Axis::linear("Time", "s"), Axis::linear("Layer (1 = contact)", ""))
-        .layer(Layer::map(Map::new(wave.time.clone(), depth, values, "Strain", "")))
+        .layer(Layer::map(strains))
         .share(1.2);
     let mut lines = Panel::new(Axis::linear("Time", "s"), Axis::linear("Strain", ""));
     for (series, layer) in shown(layers).into_iter().enumerate() {
         let line = Layer::line(wave.time.clone(), wave.strain[layer].clone(), Role::Series(series as u8));
         lines = lines.layer(line.label(format!("layer {}", layer + 1)));
     }
-    Figure::new(name, caption).panel(map).panel(lines).arrangement(Arrangement::Stacked)
+    Figure::new(name, caption).panel(map).panel(lines)
 }
 
 /// Layers that have a line: the contact, every second one behind it, and the innermost; of many the contact, the quarters and the innermost.
