@@ -3,20 +3,10 @@
 use std::fmt::Write as _;
 
 use super::heatmap;
-use super::svg::{Anchor, Font, Svg, short};
+use super::svg::{Anchor, BOLD, Svg, font, short};
 use crate::figure::layout::{BAR, BAR_GAP, CAPTION, Frame, LEGEND_ROW, Rect, TICK, TICK_LENGTH, width};
 
-const INK: &str = "#222";
 const FRAME: &str = "stroke=\"#222\" stroke-width=\"0.7\"";
-
-pub(crate) const fn font(size: f64) -> Font {
-    Font {
-        size,
-        colour: INK,
-        bold: false,
-        halo: false,
-    }
-}
 
 /// The frame, its ticks and everything written around it.
 pub(crate) fn draw_axes(svg: &mut Svg, frame: &Frame<'_>) {
@@ -75,11 +65,7 @@ fn draw_heading(svg: &mut Svg, frame: &Frame<'_>) {
     let mut x = frame.area.x;
     if let Some(letter) = frame.letter {
         let letter = format!("({letter})");
-        let bold = Font {
-            bold: true,
-            ..font(CAPTION + 0.5)
-        };
-        svg.text(x, y, Anchor::Start, bold, &letter);
+        svg.text(x, y, Anchor::Start, font(CAPTION + 0.5).with(BOLD), &letter);
         x += width(&letter, CAPTION + 0.5) + 5.0;
     }
     if let Some(title) = &frame.panel.title {
@@ -92,11 +78,7 @@ pub(crate) fn draw_colour_bar(svg: &mut Svg, frame: &Frame<'_>) {
     let (Some((bar, ticks)), Some(map)) = (&frame.bar, frame.panel.map()) else {
         return;
     };
-    let area = Rect {
-        x: frame.area.right() + BAR_GAP,
-        w: BAR,
-        ..frame.area
-    };
+    let area = Rect::new(frame.area.right() + BAR_GAP, frame.area.y, BAR, frame.area.h);
     let steps = 64;
     for i in 0..steps {
         let share = f64::from(i) / f64::from(steps - 1);
@@ -123,9 +105,6 @@ pub(crate) fn draw_colour_bar(svg: &mut Svg, frame: &Frame<'_>) {
 /// What stands in a panel without data.
 pub(crate) fn draw_empty(svg: &mut Svg, frame: &Frame<'_>) {
     let Rect { x, y, w, h } = frame.area;
-    let grey = Font {
-        colour: "#777",
-        ..font(CAPTION)
-    };
+    let grey = font(CAPTION).in_colour("#777");
     svg.text(x + w / 2.0, y + h / 2.0 + 3.0, Anchor::Middle, grey, &frame.panel.empty_note);
 }

@@ -15,61 +15,49 @@ const STRETCHES: usize = 1200;
 ///
 /// A long line keeps, for every narrow column of the page, its first, lowest, highest and last
 /// position, so that no peak is lost. `width` is the width of the plot.
-pub(crate) fn line<F>(count: usize, width: f64, position: F) -> Vec<Vec<Position>>
-where
-    F: Fn(usize) -> Position,
-{
+pub(crate) fn line(count: usize, width: f64, position: impl Fn(usize) -> Position) -> Vec<Vec<Position>> {
     if count <= PLAIN {
         return gather(count, position, |_| false);
     }
     let most = (width * COLUMNS_PER_UNIT).ceil() as usize;
-    let column = |p: Position| (p.0 * COLUMNS_PER_UNIT).floor();
-    let mut last = f64::NAN;
-    let mut runs = 0usize;
-    for i in 0..count {
-        let here = column(position(i));
-        runs += usize::from(here != last);
-        last = here;
-    }
-    if runs <= 2 * most.max(100) {
-        let mut last = f64::NAN;
-        return gather(count, &position, |i| {
-            let here = column(position(i));
+    let in_columns = || {
+        let (position, mut last) = (&position, f64::NAN);
+        move |i: usize| {
+            let here = (position(i).0 * COLUMNS_PER_UNIT).floor();
             std::mem::replace(&mut last, here) == here
-        });
+        }
+    };
+    let mut same = in_columns();
+    if (0..count).filter(|i| !same(*i)).count() <= 2 * most.max(100) {
+        return gather(count, &position, in_columns());
     }
     let length = count.div_ceil(STRETCHES);
     gather(count, position, |i| i % length != 0)
 }
 
 /// Collects positions into pieces; `continues(i)` says that `i` falls into the bucket before it.
-fn gather<F, C>(count: usize, position: F, mut continues: C) -> Vec<Vec<Position>>
-where
-    F: Fn(usize) -> Position,
-    C: FnMut(usize) -> bool,
-{
-    let mut pieces = Vec::new();
-    let mut piece = Vec::new();
+fn gather(
+    count: usize,
+    position: impl Fn(usize) -> Position,
+    mut continues: impl FnMut(usize) -> bool,
+) -> Vec<Vec<Position>> {
+    let (mut pieces, mut piece) = (Vec::new(), Vec::new());
     let mut bucket = Bucket::default();
     for i in 0..count {
         let here = position(i);
-        let same = continues(i);
-        if !(here.0.is_finite() && here.1.is_finite()) {
-            bucket.empty_into(&mut piece);
-            if !piece.is_empty() {
-                pieces.push(std::mem::take(&mut piece));
-            }
-            continue;
-        }
-        if !same {
+        let finite = here.0.is_finite() && here.1.is_finite();
+        if !(continues(i) && finite) {
             bucket.empty_into(&mut piece);
         }
-        bucket.add(i, here);
+        if finite {
+            bucket.add(i, here);
+        } else {
+            pieces.push(std::mem::take(&mut piece));
+        }
     }
     bucket.empty_into(&mut piece);
-    if !piece.is_empty() {
-        pieces.push(piece);
-    }
+    pieces.push(piece);
+    pieces.retain(|piece| !piece.is_empty());
     pieces
 }
 
@@ -111,30 +99,24 @@ impl Bucket {
 }
 
 /// Lower and upper edge of a band, one pair for each narrow column once it is long.
-pub(crate) fn band<F>(count: usize, edges: F) -> Vec<Vec<(f64, f64, f64)>>
-where
-    F: Fn(usize) -> (f64, f64, f64),
-{
-    let mut pieces: Vec<Vec<(f64, f64, f64)>> = vec![Vec::new()];
+pub(crate) fn band(count: usize, edges: impl Fn(usize) -> (f64, f64, f64)) -> Vec<Vec<(f64, f64, f64)>> {
+    let (mut pieces, mut piece) = (Vec::new(), Vec::<(f64, f64, f64)>::new());
     let mut last_column = f64::NAN;
     for (x, low, high) in (0..count).map(edges) {
         if !(x.is_finite() && low.is_finite() && high.is_finite()) {
-            pieces.push(Vec::new());
-            last_column = f64::NAN;
+            pieces.push(std::mem::take(&mut piece));
             continue;
         }
         let column = (x * COLUMNS_PER_UNIT).floor();
         let same = count > PLAIN && column == last_column;
         last_column = column;
-        let Some(piece) = pieces.last_mut() else {
-            continue;
-        };
         match piece.last_mut().filter(|_| same) {
             // Page coordinates grow downwards.
             Some(last) => *last = (last.0, last.1.max(low), last.2.min(high)),
             None => piece.push((x, low, high)),
         }
     }
+    pieces.push(piece);
     pieces.retain(|piece| !piece.is_empty());
     pieces
 }

@@ -1,9 +1,11 @@
 //! Heat maps: colours, cells and the embedded picture.
 
+use std::ops::Range;
+
 use base64::Engine as _;
 
 use crate::figure::content::{Map, Scale};
-use crate::figure::layout::{Rect, colour_limits, edges};
+use crate::figure::layout::{Frame, colour_limits, edges};
 
 /// The colour map *viridis* at equal steps: perceptually uniform, safe for colour-blind readers,
 /// and rising steadily in lightness so that it survives a grey printer.
@@ -35,24 +37,20 @@ pub(crate) fn colour(share: f64) -> [u8; 3] {
 
 /// The map as a picture that fills `area`, ready to be embedded.
 ///
-/// `column` and `row` give the page position of a horizontal and of a vertical value. Cells
-/// narrower than a picture element are averaged.
-pub(crate) fn picture<X, Y>(map: &Map, area: Rect, column: X, row: Y) -> Result<String, String>
-where
-    X: Fn(f64) -> f64,
-    Y: Fn(f64) -> f64,
-{
+/// Cells narrower than a picture element are averaged.
+pub(crate) fn picture(map: &Map, frame: &Frame<'_>) -> Result<String, String> {
+    let area = frame.area;
     let size = |length: f64| (length * RESOLUTION).ceil().clamp(1.0, 4000.0) as usize;
     let (w, h) = (size(area.w), size(area.h));
-    let across = Cells::new(map.x.iter().map(|x| (column(*x) - area.x) / area.w), w);
-    let down = Cells::new(map.y.iter().map(|y| (row(*y) - area.y) / area.h), h);
+    let across = cells(map.x.iter().map(|x| (frame.x.at(*x) - area.x) / area.w), w);
+    let down = cells(map.y.iter().map(|y| (frame.y.at(*y) - area.y) / area.h), h);
     let (low, high) = colour_limits(map);
     let mut pixels = Vec::with_capacity(w * h);
     let mut line = vec![LEVELS; w];
     let mut before = None;
-    for rows in &down.members {
+    for rows in &down {
         if before.replace(rows) != Some(rows) {
-            for (pixel, columns) in line.iter_mut().zip(&across.members) {
+            for (pixel, columns) in line.iter_mut().zip(&across) {
                 let mean = mean(map, columns.clone(), rows.clone());
                 *pixel = level((mean - low) / (high - low));
             }
@@ -71,46 +69,39 @@ fn level(share: f64) -> u8 {
 }
 
 /// Which samples each picture element shows.
-struct Cells {
-    members: Vec<std::ops::Range<usize>>,
-}
-
-impl Cells {
-    /// `centres` are shares of the picture; they may rise or fall.
-    fn new(centres: impl Iterator<Item = f64>, count: usize) -> Self {
-        let centres: Vec<f64> = centres.map(|c| c * count as f64).collect();
-        let mut order: Vec<usize> = (0..centres.len()).filter(|i| centres[*i].is_finite()).collect();
-        let falls = order.len() > 1 && centres[order[0]] > centres[order[order.len() - 1]];
-        if falls {
-            order.reverse();
-        }
-        let sorted: Vec<f64> = order.iter().map(|i| centres[*i]).collect();
-        let borders = edges(&sorted, Scale::Linear);
-        let members = (0..count)
-            .map(|pixel| {
-                let (start, end) = (pixel as f64, pixel as f64 + 1.0);
-                let first = sorted.partition_point(|c| *c < start);
-                let past = sorted.partition_point(|c| *c < end);
-                let (first, past) = if past > first + 1 {
-                    (first, past)
-                } else {
-                    let cell = borders.partition_point(|b| *b <= pixel as f64 + 0.5);
-                    if cell == 0 || cell > sorted.len() { (0, 0) } else { (cell - 1, cell) }
-                };
-                if first >= past {
-                    0..0
-                } else if falls {
-                    order[past - 1]..order[first] + 1
-                } else {
-                    order[first]..order[past - 1] + 1
-                }
-            })
-            .collect();
-        Self { members }
+/// `centres` are shares of the picture; they may rise or fall.
+fn cells(centres: impl Iterator<Item = f64>, count: usize) -> Vec<Range<usize>> {
+    let centres: Vec<f64> = centres.map(|c| c * count as f64).collect();
+    let mut order: Vec<usize> = (0..centres.len()).filter(|i| centres[*i].is_finite()).collect();
+    let falls = order.len() > 1 && centres[order[0]] > centres[order[order.len() - 1]];
+    if falls {
+        order.reverse();
     }
+    let sorted: Vec<f64> = order.iter().map(|i| centres[*i]).collect();
+    let borders = edges(&sorted, Scale::Linear);
+    (0..count)
+        .map(|pixel| {
+            let (start, end) = (pixel as f64, pixel as f64 + 1.0);
+            let first = sorted.partition_point(|c| *c < start);
+            let past = sorted.partition_point(|c| *c < end);
+            let (first, past) = if past > first + 1 {
+                (first, past)
+            } else {
+                let cell = borders.partition_point(|b| *b <= pixel as f64 + 0.5);
+                if cell == 0 || cell > sorted.len() { (0, 0) } else { (cell - 1, cell) }
+            };
+            if first >= past {
+                0..0
+            } else if falls {
+                order[past - 1]..order[first] + 1
+            } else {
+                order[first]..order[past - 1] + 1
+            }
+        })
+        .collect()
 }
 
-fn mean(map: &Map, columns: std::ops::Range<usize>, rows: std::ops::Range<usize>) -> f64 {
+fn mean(map: &Map, columns: Range<usize>, rows: Range<usize>) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for row in rows {
         for value in &map.values[row * map.x.len()..][columns.clone()] {
@@ -159,11 +150,11 @@ mod tests {
 
     #[test]
     fn picture_elements_take_the_cell_they_lie_in() {
-        let cells = Cells::new([0.25, 0.75].into_iter(), 4);
-        assert_eq!(cells.members, [0..1, 0..1, 1..2, 1..2]);
-        let cells = Cells::new([0.75, 0.25].into_iter(), 4);
-        assert_eq!(cells.members, [1..2, 1..2, 0..1, 0..1]);
-        let cells = Cells::new((0..8).map(|i| (f64::from(i) + 0.5) / 8.0), 2);
-        assert_eq!(cells.members, [0..4, 4..8]);
+        let members = cells([0.25, 0.75].into_iter(), 4);
+        assert_eq!(members, [0..1, 0..1, 1..2, 1..2]);
+        let members = cells([0.75, 0.25].into_iter(), 4);
+        assert_eq!(members, [1..2, 1..2, 0..1, 0..1]);
+        let members = cells((0..8).map(|i| (f64::from(i) + 0.5) / 8.0), 2);
+        assert_eq!(members, [0..4, 4..8]);
     }
 }

@@ -1,8 +1,7 @@
 //! Legends: what they list and where they cover nothing.
 
-use super::axes::font;
 use super::series;
-use super::svg::{Anchor, Svg, polyline};
+use super::svg::{Anchor, Svg, font, polyline};
 use crate::figure::content::{Mark, Panel, Style};
 use crate::figure::layout::{CAPTION, LEGEND_ROW, Occupancy, Position, Rect, width};
 
@@ -89,12 +88,7 @@ pub(crate) fn free_place(entries: &[Entry], taken: &Occupancy) -> Option<Rect> {
     if room_x < 0.0 || room_y < 0.0 || w > 0.7 * area.w {
         return None;
     }
-    let at = |along: f64, down: f64| Rect {
-        x: area.x + INSET + along * room_x,
-        y: area.y + INSET + down * room_y,
-        w,
-        h,
-    };
+    let at = |along: f64, down: f64| Rect::new(area.x + INSET + along * room_x, area.y + INSET + down * room_y, w, h);
     let corners = [(1.0, 0.0), (0.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
     let steps = || (1..20).map(|i| f64::from(i) / 20.0);
     let edges = steps()
@@ -102,15 +96,7 @@ pub(crate) fn free_place(entries: &[Entry], taken: &Occupancy) -> Option<Rect> {
         .chain(steps().map(|s| (1.0 - s, 0.0)))
         .chain(steps().map(|s| (1.0 - s, 1.0)))
         .chain(steps().map(|s| (0.0, s)));
-    let free = |place: &Rect| {
-        let wide = Rect {
-            x: place.x - 3.0,
-            y: place.y - 3.0,
-            w: w + 6.0,
-            h: h + 6.0,
-        };
-        taken.covered(wide) == 0
-    };
+    let free = |place: &Rect| taken.covered(Rect::new(place.x - 3.0, place.y - 3.0, w + 6.0, h + 6.0)) == 0;
     corners.into_iter().chain(edges).map(|(along, down)| at(along, down)).find(free)
 }
 
@@ -131,13 +117,7 @@ pub(crate) fn draw_rows(svg: &mut Svg, entries: &[Entry], (x, y): Position, room
 
 fn draw_entry(svg: &mut Svg, entry: &Entry, x: f64, middle: f64) {
     if let Some(style) = entry.band {
-        let swatch = Rect {
-            x,
-            y: middle - 3.5,
-            w: SAMPLE,
-            h: 7.0,
-        };
-        svg.rect(swatch, &series::band_attributes(style));
+        svg.rect(Rect::new(x, middle - 3.5, SAMPLE, 7.0), &series::band_attributes(style));
     }
     if let Some(style) = entry.line {
         let d = polyline(&[(x, middle), (x + SAMPLE, middle)], false);

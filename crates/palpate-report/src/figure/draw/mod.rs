@@ -119,8 +119,7 @@ impl Figure {
 
     fn draw_map(&self, svg: &mut Svg, frame: &Frame<'_>) -> Result<(), FigureError> {
         if let Some(map) = frame.panel.map() {
-            let picture = heatmap::picture(map, frame.area, |x| frame.x.at(x), |y| frame.y.at(y));
-            let data = picture.map_err(|reason| FigureError::Image {
+            let data = heatmap::picture(map, frame).map_err(|reason| FigureError::Image {
                 figure: self.name.clone(),
                 reason,
             })?;

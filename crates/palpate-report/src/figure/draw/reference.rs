@@ -1,8 +1,7 @@
 //! Shaded stretches, reference lines, and their names.
 
-use super::axes::font;
 use super::series;
-use super::svg::{Anchor, Font, Svg, polyline};
+use super::svg::{Anchor, HALO, Svg, font, polyline};
 use crate::figure::content::{Mark, Role};
 use crate::figure::layout::{Frame, Occupancy, Rect, TICK, width};
 
@@ -22,26 +21,18 @@ pub(crate) struct Name<'a> {
 pub(crate) fn draw_spans(svg: &mut Svg, frame: &Frame<'_>) {
     for (from, to, role, _) in spans(frame) {
         let attributes = format!("fill=\"{}\" fill-opacity=\"0.12\"", role.style().colour);
-        svg.rect(
-            Rect {
-                x: from,
-                w: to - from,
-                ..frame.area
-            },
-            &attributes,
-        );
+        svg.rect(Rect::new(from, frame.area.y, to - from, frame.area.h), &attributes);
     }
 }
 
 /// Names of shaded stretches above the frame; a name without room is left out.
 pub(crate) fn draw_span_names(svg: &mut Svg, frame: &Frame<'_>) {
-    let mut named = spans(frame);
-    named.retain(|(.., label)| label.is_some());
+    let mut named: Vec<_> =
+        spans(frame).into_iter().filter_map(|(from, to, _, label)| Some((from, to, label?))).collect();
     // Wide stretches have the first claim to their name.
     named.sort_by(|a, b| (b.1 - b.0).total_cmp(&(a.1 - a.0)));
     let mut taken: Vec<(f64, f64)> = Vec::new();
-    for (from, to, _, label) in named {
-        let Some(label) = label else { continue };
+    for (from, to, label) in named {
         let half = width(label, TICK) / 2.0;
         let leftmost = frame.area.x + half;
         let rightmost = leftmost.max(frame.area.right() - half);
@@ -53,11 +44,7 @@ pub(crate) fn draw_span_names(svg: &mut Svg, frame: &Frame<'_>) {
         });
         if let Some((middle, left, right)) = place {
             taken.push((left, right));
-            let grey = Font {
-                colour: "#555",
-                ..font(TICK)
-            };
-            svg.text(middle, frame.area.y - 3.0, Anchor::Middle, grey, label);
+            svg.text(middle, frame.area.y - 3.0, Anchor::Middle, font(TICK).in_colour("#555"), label);
         }
     }
 }
@@ -143,7 +130,7 @@ fn places(area: Rect, [start, end]: Ends, w: f64) -> Vec<Rect> {
             };
             let inside = x >= area.x && x + w <= area.right() && y >= area.y;
             if inside && y + HEIGHT <= area.bottom() {
-                places.push(Rect { x, y, w, h: HEIGHT });
+                places.push(Rect::new(x, y, w, HEIGHT));
             }
         }
     }
@@ -153,11 +140,7 @@ fn places(area: Rect, [start, end]: Ends, w: f64) -> Vec<Rect> {
 /// Draws the names of reference lines.
 pub(crate) fn draw_reference_names(svg: &mut Svg, names: &[Name<'_>]) {
     for Name { place, label } in names {
-        let font = Font {
-            colour: "#555",
-            halo: true,
-            ..font(TICK)
-        };
+        let font = font(TICK).in_colour("#555").with(HALO);
         svg.text(place.x, place.bottom() - 1.5, Anchor::Start, font, label);
     }
 }

@@ -25,10 +25,7 @@ pub(crate) fn band_attributes(style: Style) -> String {
 
 /// Draws the lines of a panel and notes where they run.
 pub(crate) fn draw_line(svg: &mut Svg, frame: &Frame<'_>, line: (&[f64], &[f64]), role: Role) {
-    let mut d = String::new();
-    for piece in line_pieces(frame, line) {
-        d.push_str(&polyline(&piece, false));
-    }
+    let d: String = line_pieces(frame, line).iter().map(|piece| polyline(piece, false)).collect();
     let mut attributes = line_attributes(role.style());
     if d.contains("h0") {
         attributes.push_str(" stroke-linecap=\"round\"");
@@ -43,20 +40,15 @@ fn line_pieces(frame: &Frame<'_>, (x, y): (&[f64], &[f64])) -> Vec<Vec<Position>
 pub(crate) fn draw_band(svg: &mut Svg, frame: &Frame<'_>, (x, low, high): (&[f64], &[f64], &[f64]), role: Role) {
     let pieces = decimate::band(x.len(), |i| {
         // On a logarithmic axis a band that reaches zero goes down to the frame.
-        let floor = |v: f64| {
-            if v <= 0.0 { frame.y.at(v.max(frame.y.low)) } else { frame.y.at(v) }
-        };
-        (frame.x.at(x[i]), floor(low[i]), frame.y.at(high[i]))
+        let floor = if low[i] <= 0.0 { low[i].max(frame.y.low) } else { low[i] };
+        (frame.x.at(x[i]), frame.y.at(floor), frame.y.at(high[i]))
     });
-    let mut d = String::new();
-    for piece in pieces {
-        let outline: Vec<Position> = piece
-            .iter()
-            .map(|(x, low, _)| (*x, *low))
-            .chain(piece.iter().rev().map(|(x, _, high)| (*x, *high)))
-            .collect();
-        d.push_str(&polyline(&outline, true));
-    }
+    let outline = |piece: &Vec<(f64, f64, f64)>| {
+        let low = piece.iter().map(|(x, low, _)| (*x, *low));
+        let high = piece.iter().rev().map(|(x, _, high)| (*x, *high));
+        polyline(&low.chain(high).collect::<Vec<Position>>(), true)
+    };
+    let d: String = pieces.iter().map(outline).collect();
     svg.path(&d, &band_attributes(role.style()));
 }
 

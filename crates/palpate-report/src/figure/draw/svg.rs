@@ -16,10 +16,34 @@ pub(crate) enum Anchor {
 /// How a text looks.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Font {
-    pub(crate) size: f64,
-    pub(crate) colour: &'static str,
-    pub(crate) bold: bool,
-    pub(crate) halo: bool,
+    size: f64,
+    colour: &'static str,
+    /// Further attributes, each behind a blank.
+    more: &'static str,
+}
+
+/// What makes a text bold.
+pub(crate) const BOLD: &str = " font-weight=\"bold\"";
+/// What sets a text off from lines that it lies on.
+pub(crate) const HALO: &str = " stroke=\"#fff\" stroke-width=\"2\" stroke-linejoin=\"round\" paint-order=\"stroke\"";
+
+/// Plain text of that size.
+pub(crate) fn font(size: f64) -> Font {
+    Font {
+        size,
+        colour: "#222",
+        more: "",
+    }
+}
+
+impl Font {
+    pub(crate) fn in_colour(self, colour: &'static str) -> Self {
+        Self { colour, ..self }
+    }
+
+    pub(crate) fn with(self, more: &'static str) -> Self {
+        Self { more, ..self }
+    }
 }
 
 /// An SVG document under construction; lengths are points.
@@ -114,17 +138,12 @@ impl Svg {
             Anchor::Middle => " text-anchor=\"middle\"",
             Anchor::End => " text-anchor=\"end\"",
         };
-        let bold = if font.bold { " font-weight=\"bold\"" } else { "" };
-        let halo = if font.halo {
-            " stroke=\"#fff\" stroke-width=\"2\" stroke-linejoin=\"round\" paint-order=\"stroke\""
-        } else {
-            ""
-        };
         let _ = writeln!(
             self.body,
-            "<text {place} font-size=\"{}\" fill=\"{}\"{anchor}{bold}{halo}>{}</text>",
+            "<text {place} font-size=\"{}\" fill=\"{}\"{anchor}{}>{}</text>",
             short(font.size),
             font.colour,
+            font.more,
             markup(content, font.size)
         );
     }

@@ -57,7 +57,7 @@ struct Margins {
 /// Places all panels; `legend_rows` tells how many legend rows stand above each.
 pub(crate) fn arrange<'a>(figure: &'a Figure, legend_rows: &[usize]) -> Vec<Frame<'a>> {
     let columns = figure.columns();
-    let rows = figure.panels.len().div_ceil(columns.max(1));
+    let rows = figure.panels.len().div_ceil(columns);
     let shared = figure.shares_x();
     let last_row = |i: usize| i + columns >= figure.panels.len();
     let (page_w, page_h) = figure.size_points();
@@ -86,14 +86,9 @@ pub(crate) fn arrange<'a>(figure: &'a Figure, legend_rows: &[usize]) -> Vec<Fram
             }
         })
         .collect();
-    let guess = Rect {
-        x: 0.0,
-        y: 0.0,
-        w: (page_w / columns.max(1) as f64 - 60.0).max(20.0),
-        h: (page_h / rows.max(1) as f64 - 40.0).max(20.0),
-    };
+    let (w, h) = (page_w / columns as f64 - 60.0, page_h / rows.max(1) as f64 - 40.0);
     for frame in &mut frames {
-        frame.settle(guess);
+        frame.settle(Rect::new(0.0, 0.0, w.max(20.0), h.max(20.0)));
     }
     // Tick labels decide the margins, and margins the ticks: twice is enough to agree.
     for _ in 0..2 {
@@ -104,7 +99,6 @@ pub(crate) fn arrange<'a>(figure: &'a Figure, legend_rows: &[usize]) -> Vec<Fram
 }
 
 fn place(frames: &mut [Frame<'_>], margins: &[Margins], columns: usize, page: (f64, f64)) {
-    let columns = columns.max(1);
     let rows = frames.len().div_ceil(columns);
     let most = |pick: fn(&Margins) -> f64, keep: &dyn Fn(usize) -> bool| {
         let kept = margins.iter().enumerate().filter(|(i, _)| keep(*i));
@@ -136,12 +130,7 @@ fn place(frames: &mut [Frame<'_>], margins: &[Margins], columns: usize, page: (f
         for (c, (left, right)) in sides.iter().enumerate() {
             if let Some(frame) = frames.get_mut(r * columns + c) {
                 frame.left = x;
-                frame.settle(Rect {
-                    x: x + left,
-                    y: y + top,
-                    w,
-                    h,
-                });
+                frame.settle(Rect::new(x + left, y + top, w, h));
             }
             x += left + w + right + GAP;
         }
@@ -208,7 +197,7 @@ impl Figure {
     fn columns(&self) -> usize {
         match self.arrangement {
             Arrangement::Stacked => 1,
-            Arrangement::SideBySide => self.panels.len(),
+            Arrangement::SideBySide => self.panels.len().max(1),
             Arrangement::Grid(columns) => columns.clamp(1, self.panels.len().max(1)),
         }
     }
