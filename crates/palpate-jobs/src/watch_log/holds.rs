@@ -112,9 +112,8 @@ impl HoldSeen {
         WatchedHoldDocument {
             warned_s: self.warned,
             slipped_s: self.slipped,
-            ..WatchedHoldDocument::new(self.held, (self.since, self.until), self.forces)
+            ..WatchedHoldDocument::new(self.held, (self.since, self.until), self.forces, self.equilibrium, self.creep)
         }
-        .with_last(self.equilibrium, self.creep)
     }
 
     fn follow(&mut self, seen: &Observation, held: Held) {

@@ -21,47 +21,56 @@ pub enum WatchDocument {
     Observation(ObservationDocument),
 }
 
-/// A hold as it was watched.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct WatchedHoldDocument {
-    /// Standard deviation of the speed of creep, m/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub creep_rate_deviation_m_per_s: Option<f64>,
-    /// The last speed of creep, m/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub creep_rate_m_per_s: Option<f64>,
-    /// When it was last seen, s.
-    pub end_s: f64,
-    /// Standard deviation of the equilibrium force, N.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub equilibrium_force_deviation_n: Option<f64>,
-    /// The last equilibrium force, N.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub equilibrium_force_n: Option<f64>,
-    /// `hold_ends`; left out in the summary.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub event: Option<String>,
-    /// Force when it was last seen, N.
-    pub force_end_n: f64,
-    /// Force when it began, N.
-    pub force_start_n: f64,
-    /// What was held for most of its ticks: `displacement` or `force`.
-    pub held: String,
-    /// First time at or below the force of slip, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub slipped_s: Option<f64>,
-    /// When it began, s.
-    pub start_s: f64,
-    /// When its end was seen, s; left out in the summary.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub time_s: Option<f64>,
-    /// First warning, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub warned_s: Option<f64>,
-}
-
 documents! {
+    /// A hold as it was watched.
+    #[serde(deny_unknown_fields)]
+    WatchedHoldDocument(
+        held: Held,
+        times: (f64, f64),
+        forces: (f64, f64),
+        equilibrium_force: Option<Estimate>,
+        creep_rate: Option<Estimate>
+    ) with {
+        let ((start, end), (force_start, force_end)) = (times, forces);
+        let (equilibrium, equilibrium_deviation) = parted(equilibrium_force);
+        let (creep, creep_deviation) = parted(creep_rate);
+    } {
+        /// Standard deviation of the speed of creep, m/s.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        creep_rate_deviation_m_per_s: Option<f64> = creep_deviation,
+        /// The last speed of creep, m/s.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        creep_rate_m_per_s: Option<f64> = creep,
+        /// When it was last seen, s.
+        end_s: f64 = end,
+        /// Standard deviation of the equilibrium force, N.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        equilibrium_force_deviation_n: Option<f64> = equilibrium_deviation,
+        /// The last equilibrium force, N.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        equilibrium_force_n: Option<f64> = equilibrium,
+        /// `hold_ends`; left out in the summary.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        event: Option<String> = None,
+        /// Force when it was last seen, N.
+        force_end_n: f64 = force_end,
+        /// Force when it began, N.
+        force_start_n: f64 = force_start,
+        /// What was held for most of its ticks: `displacement` or `force`.
+        held: String = word(held),
+        /// First time at or below the force of slip, s.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        slipped_s: Option<f64> = None,
+        /// When it began, s.
+        start_s: f64 = start,
+        /// When its end was seen, s; left out in the summary.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        time_s: Option<f64> = None,
+        /// First warning, s.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        warned_s: Option<f64> = None,
+    }
+
     /// The holds of a log.
     #[serde(deny_unknown_fields)]
     WatchSummaryDocument(holds: Vec<WatchedHoldDocument>) {
@@ -150,27 +159,6 @@ fn parted(number: Option<Estimate>) -> (Option<f64>, Option<f64>) {
 }
 
 impl WatchedHoldDocument {
-    /// The document of a hold: what was held from when to when, and its force at both ends.
-    #[must_use]
-    pub fn new(held: Held, (start, end): (f64, f64), (force_start, force_end): (f64, f64)) -> Self {
-        Self {
-            end_s: end,
-            force_end_n: force_end,
-            force_start_n: force_start,
-            held: word(held),
-            start_s: start,
-            ..Self::default()
-        }
-    }
-
-    /// The same with the last equilibrium force and speed of creep.
-    #[must_use]
-    pub fn with_last(mut self, equilibrium_force: Option<Estimate>, creep_rate: Option<Estimate>) -> Self {
-        (self.equilibrium_force_n, self.equilibrium_force_deviation_n) = parted(equilibrium_force);
-        (self.creep_rate_m_per_s, self.creep_rate_deviation_m_per_s) = parted(creep_rate);
-        self
-    }
-
     /// The same as the line that tells of its end.
     #[must_use]
     pub fn ended(mut self, time: f64) -> Self {

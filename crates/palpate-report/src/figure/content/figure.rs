@@ -52,6 +52,13 @@ impl Figure {
         self
     }
 
+    /// Adds panels.
+    #[must_use]
+    pub fn panels(mut self, panels: impl IntoIterator<Item = Panel>) -> Self {
+        self.panels.extend(panels);
+        self
+    }
+
     /// Sets how panels stand to each other.
     #[must_use]
     pub fn arrangement(mut self, arrangement: Arrangement) -> Self {

@@ -29,6 +29,12 @@ impl Panel {
         }
     }
 
+    /// A quantity over time in seconds.
+    #[must_use]
+    pub fn over_time(quantity: &str, unit: &str) -> Self {
+        Self::new(Axis::linear("Time", "s"), Axis::linear(quantity, unit))
+    }
+
     /// Sets the heading above the axes.
     #[must_use]
     pub fn title(mut self, title: impl Into<String>) -> Self {

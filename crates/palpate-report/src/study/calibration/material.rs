@@ -6,11 +6,12 @@ use palpate::calibrate::{
 };
 use palpate::fit::Interval;
 
-use crate::figure::{Axis, Figure, Layer, Panel, Role};
+use crate::figure::{Figure, Layer, Panel, Role};
 use crate::number::{counted, significant};
 use crate::page::{Block, Page, Section};
 use crate::result::{CalibratedRecord, percent, word};
 use crate::study::bundle::StudyError;
+use crate::study::grid::displacement_panel;
 use crate::table::{Cell, Table};
 use crate::wrap::wrapped;
 
@@ -136,10 +137,9 @@ pub fn calibration_page(record: &CalibratedRecord) -> Result<Page, StudyError> {
 pub fn calibration_figure(record: &CalibratedRecord, name: &str) -> Figure {
     let (times, forces) = (record.data.times(), record.data.forces());
     let motion = record.data.motion();
-    let time = || Axis::linear("Time", "s");
-    let mut force = Panel::new(time(), Axis::linear("Force", "N")).share(1.6);
+    let mut force = Panel::over_time("Force", "N").share(1.6);
     force = force.layer(Layer::line(times.to_vec(), forces.to_vec(), Role::Measured).label("measured"));
-    let mut left = Panel::new(time(), Axis::linear("Measured − simulated", "N"));
+    let mut left = Panel::over_time("Measured − simulated", "N");
     for (index, made) in record.made().take(MOST).enumerate() {
         let role = if index == 0 { Role::Fitted } else { Role::Alternative(index as u8 - 1) };
         let law = made.material.candidate.to_string();
@@ -152,12 +152,11 @@ pub fn calibration_figure(record: &CalibratedRecord, name: &str) -> Figure {
         force = force.layer(Layer::vertical(at, Role::Reference).label("fitted | foretold"));
         left = left.layer(Layer::vertical(at, Role::Reference));
     }
-    let travel = times.iter().map(|time| 1e3 * motion.displacement_at(*time)).collect();
-    let jaw = Panel::new(time(), Axis::linear("Displacement", "mm"));
+    let travel: Vec<f64> = times.iter().map(|time| motion.displacement_at(*time)).collect();
     Figure::new(name, "A whole record with the laws calibrated on it, and what each leaves over.")
         .panel(force)
         .panel(left.zero_line())
-        .panel(jaw.layer(Layer::line(times.to_vec(), travel, Role::Measured)))
+        .panel(displacement_panel(times, &travel, Role::Measured))
         .height_mm(150.0)
 }
 

@@ -4,9 +4,10 @@ use std::io::{self, Write};
 
 use palpate::calibrate::Prediction;
 
-use crate::figure::{Axis, Figure, Layer, Panel, Role};
+use crate::figure::{Figure, Layer, Panel, Role};
 use crate::number::significant;
 use crate::result::percent;
+use crate::study::grid::displacement_panel;
 use crate::study::simulate::write_series;
 use crate::table::{Cell, Table};
 
@@ -58,13 +59,13 @@ pub fn prediction_table(prediction: &Prediction) -> Table {
 #[must_use]
 pub fn prediction_figure(prediction: &Prediction, name: &str, caption: &str) -> Figure {
     let course = &prediction.trajectory;
-    let (time, axis) = (|| course.time.clone(), || Axis::linear("Time", "s"));
+    let time = || course.time.clone();
     let ends =
         |interval: &dyn Fn(usize) -> (f64, f64)| -> (Vec<f64>, Vec<f64>) { (0..course.len()).map(interval).unzip() };
     let (low, high) = ends(&|i| prediction.force_interval(i));
     let (reading_low, reading_high) = ends(&|i| prediction.reading_interval(i));
     let share = percent(prediction.confidence);
-    let force = Panel::new(axis(), Axis::linear("Force", "N"))
+    let force = Panel::over_time("Force", "N")
         .share(1.6)
         .layer(
             Layer::band(time(), reading_low, reading_high, Role::Alternative(0)).label(format!("one reading, {share}")),
@@ -75,10 +76,9 @@ pub fn prediction_figure(prediction: &Prediction, name: &str, caption: &str) -> 
         let (near, far) = prediction.displacement_interval(i);
         (1e3 * near, 1e3 * far)
     });
-    let mut jaw = Panel::new(axis(), Axis::linear("Displacement", "mm"));
+    let mut jaw = displacement_panel(&course.time, &course.displacement, Role::Fitted);
     if prediction.displacement_deviation.iter().any(|deviation| *deviation > 0.0) {
         jaw = jaw.layer(Layer::band(time(), near, far, Role::Fitted));
     }
-    jaw = jaw.layer(Layer::line(time(), course.displacement.iter().map(|place| 1e3 * place).collect(), Role::Fitted));
     Figure::new(name, caption).panel(force).panel(jaw).height_mm(120.0)
 }

@@ -5,9 +5,9 @@ use palpate::forecast::{Comparison, Row, name_in_words};
 use palpate::laws::Law;
 
 use crate::figure::{Axis, Figure, Layer, MOST_PANELS, Panel, Role};
-use crate::number::significant;
+use crate::number::{counted, significant};
 use crate::result::{ComparedHold, ComparedRecord};
-use crate::study::grid::{columns, grid};
+use crate::study::grid::{columns, first_of, grid};
 
 /// Laws that a panel shows; there are no more markers that can be told apart.
 const MOST_LAWS: usize = 8;
@@ -29,7 +29,7 @@ pub(in crate::study) fn all(record: &ComparedRecord, suffix: &str) -> Vec<Figure
 /// A figure of one panel a hold, `all` of them or the first.
 fn by_hold(name: &str, caption: &str, panels: Vec<Panel>, row_mm: f64, all: usize) -> Option<Figure> {
     let (shown, columns) = (panels.len(), columns(panels.len()));
-    let more = if shown < all { format!(" Shown: the first {shown} of {all} holds.") } else { String::new() };
+    let more = first_of(shown, all, "holds");
     let row_mm = if columns == 1 { 1.4 * row_mm } else { row_mm };
     grid(name, format!("{caption}{more}"), panels, columns, row_mm)
 }
@@ -196,10 +196,8 @@ pub(super) fn chosen(record: &ComparedRecord) -> String {
         }
     }
     counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    let told: Vec<String> = counts
-        .into_iter()
-        .map(|(name, count)| format!("{name} ({count} {})", if count == 1 { "hold" } else { "holds" }))
-        .collect();
+    let told: Vec<String> =
+        counts.into_iter().map(|(name, count)| format!("{name} ({})", counted(count, "hold"))).collect();
     told.join(", ")
 }
 

@@ -4,8 +4,9 @@ use palpate::analysis::{Analysis, HoldAnalysis, Signal};
 use palpate::fit::{ExponentChoice, LatencyFit, Termination};
 use palpate::segment::{After, Phase};
 
+use super::cut::{MOST_NAMED, shaded};
 use crate::figure::{Arrangement, Axis, Figure, Layer, MOST_PANELS, Panel, Role};
-use crate::study::grid::{columns, grid};
+use crate::study::grid::{columns, displacement_panel, first_of, grid};
 
 /// Points that a fitted curve is drawn with.
 const CURVE: usize = 200;
@@ -15,33 +16,23 @@ const MOST_SERIES: usize = 8;
 /// Force over displacement over time with the phases, the paper's figure 4; the simulated force laid over where there is one.
 pub(super) fn record(analysis: &Analysis, name: &str) -> Figure {
     let time = analysis.record.time();
-    let mut force = Panel::new(Axis::linear("Time", "s"), Axis::linear("Force", "N")).share(1.7);
-    for (i, hold) in analysis.holds.iter().enumerate() {
-        let span = Layer::span(hold.start, hold.end, Role::Series(0));
-        // Names are readable while there are few.
-        let named = analysis.holds.len() <= MOST_PANELS;
-        force = force.layer(if named { span.label(format!("{}", i + 1)) } else { span });
-    }
-    force = force.layer(Layer::line(time.to_vec(), analysis.record.force().to_vec(), Role::Measured).label("measured"));
+    let holds: Vec<(f64, f64)> = analysis.holds.iter().map(|hold| (hold.start, hold.end)).collect();
+    let measured = Layer::line(time.to_vec(), analysis.record.force().to_vec(), Role::Measured).label("measured");
+    let mut force = shaded(Panel::over_time("Force", "N").share(1.7), &holds).layer(measured);
     if let Some(overlay) = &analysis.overlay {
         let n = overlay.model.law.exponent();
         let label = format!("simulated, n = {n}");
         force = force.layer(Layer::line(overlay.time.clone(), overlay.force.clone(), Role::Simulated).label(label));
     }
-    let numbered = if analysis.holds.len() <= MOST_PANELS { ", with their numbers" } else { "" };
+    let numbered = if holds.len() <= MOST_NAMED { ", with their numbers" } else { "" };
     let quantities = if analysis.record.displacement().is_some() { "Force and displacement" } else { "Force" };
     let mut caption = format!("{quantities} over time. Shaded: the holds that were found{numbered}.");
     if analysis.overlay.is_some() {
         caption
             .push_str(" The simulated curve follows the measured displacement with the numbers fitted to the holds.");
     }
-    let mut figure = Figure::new(name, caption).panel(force);
-    if let Some(displacement) = analysis.record.displacement() {
-        let millimetres = displacement.iter().map(|d| d * 1e3).collect();
-        let panel = Panel::new(Axis::linear("Time", "s"), Axis::linear("Displacement", "mm"));
-        figure = figure.panel(panel.layer(Layer::line(time.to_vec(), millimetres, Role::Measured)));
-    }
-    figure
+    let jaw = analysis.record.displacement().map(|place| displacement_panel(time, place, Role::Measured));
+    Figure::new(name, caption).panel(force).panels(jaw)
 }
 
 /// Strain rate against strain with the fitted law, hold by hold: the paper's figure 6. `None` where no strain is known.
@@ -82,7 +73,7 @@ pub(in crate::study) fn strain_rates(analysis: &Analysis, name: &str) -> Option<
     // Long legends stand above the axes and need room of their own.
     let height = if most > 5 { 84.0 } else { 66.0 };
     let figure = Figure::new(name, caption).arrangement(Arrangement::SideBySide).height_mm(height);
-    Some(panels.into_iter().fold(figure, Figure::panel))
+    Some(figure.panels(panels))
 }
 
 /// At most `most` holds, spread over the displacements, in the order of the record.
@@ -167,19 +158,10 @@ pub(super) fn holds(analysis: &Analysis, name: &str) -> Option<Figure> {
     let columns = columns(fitted.len());
     let caption = format!(
         "Relaxation over the logarithm of the time since the start of the fit, with the law at the common exponent and with a free exponent.{}",
-        first_of(fitted.len(), all.len())
+        first_of(fitted.len(), all.len(), "fitted holds")
     );
     let panels = fitted.iter().map(|hold| hold_panel(analysis, hold)).collect();
     grid(name, caption, panels, columns, if columns == 1 { 95.0 } else { 62.0 })
-}
-
-/// What a caption says where only the first holds have a panel.
-fn first_of(shown: usize, all: usize) -> String {
-    if shown < all {
-        format!(" Shown: the first {shown} of {all} fitted holds.")
-    } else {
-        String::new()
-    }
 }
 
 fn hold_panel(analysis: &Analysis, hold: &HoldAnalysis) -> Panel {
@@ -232,7 +214,7 @@ pub(super) fn residuals(analysis: &Analysis, name: &str) -> Option<Figure> {
     };
     let caption = format!(
         "What the preferred fit of each hold leaves over (measured less fitted). Noise scatters about zero; a wave is shape that the law misses.{}{exact}",
-        first_of(fitted.len(), worth.len())
+        first_of(fitted.len(), worth.len(), "fitted holds")
     );
     let panel = |(hold, fit): &(&HoldAnalysis, &LatencyFit)| {
         let visible = hold.times.partition_point(|t| *t <= 0.0);

@@ -32,7 +32,7 @@ pub(super) fn law(name: &str, law: LatencyLaw, reach: f64) -> Figure {
 pub(super) fn closed_form(name: &str, law: LatencyLaw, start: f64, equilibrium: f64) -> Figure {
     let times: Vec<f64> = (0..POINTS).map(|i| 10.0 * (i as f64 / (POINTS - 1) as f64).powi(2)).collect();
     let strain = |from: f64| times.iter().map(|t| equilibrium + law.excess_after(from, *t)).collect::<Vec<f64>>();
-    let over_time = Panel::new(Axis::linear("Time", "s"), Axis::linear("Strain", ""))
+    let over_time = Panel::over_time("Strain", "")
         .title("Type I and Type II")
         .layer(Layer::line(times.clone(), strain(start), Role::Series(0)).label("Type I, equation (5)"))
         .layer(Layer::line(times.clone(), strain(-start), Role::Series(1)).label("Type II, equation (4)"))

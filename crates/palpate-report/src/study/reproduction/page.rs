@@ -5,10 +5,11 @@ use palpate::segment::After;
 use palpate::simulate::Trajectory;
 
 use super::law_figures;
-use crate::figure::{Arrangement, Axis, Figure, Layer, Panel, Role};
+use crate::figure::{Arrangement, Figure, Layer, Panel, Role};
 use crate::page::{Block, Page, Section};
 use crate::result::{ReproducedTest, Reproduction};
 use crate::study::bundle::StudyError;
+use crate::study::grid::displacement_panel;
 use crate::study::record::figures as record_figures;
 use crate::study::simulate::wave_figure;
 use crate::table::{Cell, Table};
@@ -45,10 +46,9 @@ pub(super) fn figures(study: &Reproduction) -> Vec<Figure> {
 /// Force above, displacement below: the layout of the paper's figure 4.
 fn protocol(name: &str, test: &ReproducedTest, what: &str) -> Figure {
     let line = |values: Vec<f64>| Layer::line(test.bonded.time.clone(), values, Role::Series(0));
-    let millimetres = test.bonded.displacement.iter().map(|d| 1e3 * d).collect();
     Figure::new(name, format!("{what}, at 500 mm/min: simulated force of the bonded contact above, displacement of the jaw below, in the layout of the paper's figure 4."))
-        .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Force", "N")).share(1.7).zero_line().layer(line(test.bonded.force.clone())))
-        .panel(Panel::new(Axis::linear("Time", "s"), Axis::linear("Displacement", "mm")).layer(line(millimetres)))
+        .panel(Panel::over_time("Force", "N").share(1.7).zero_line().layer(line(test.bonded.force.clone())))
+        .panel(displacement_panel(&test.bonded.time, &test.bonded.displacement, Role::Series(0)))
         .without_letters()
 }
 
@@ -61,7 +61,7 @@ fn final_unloading(study: &Reproduction) -> Figure {
             pairs.filter(|(t, _)| (from..=until).contains(*t)).map(|(t, f)| (*t, *f)).unzip()
         };
         let ((bonded_t, bonded_f), (free_t, free_f)) = (cut(&test.bonded), cut(&test.unilateral));
-        Panel::new(Axis::linear("Time", "s"), Axis::linear("Force", "N"))
+        Panel::over_time("Force", "N")
             .title(title)
             .zero_line()
             .layer(Layer::line(bonded_t, bonded_f, Role::Series(0)).label("bonded (the paper)"))

@@ -6,6 +6,7 @@ use palpate::simulate::{ContactEventKind, Trajectory};
 
 use crate::figure::{Axis, Figure, Layer, Panel, Role};
 use crate::number::exact;
+use crate::study::grid::displacement_panel;
 
 /// Writes the series as CSV, one row a sample: time, displacements, force, strains, rate, all in SI.
 ///
@@ -61,7 +62,6 @@ fn force_axis(trajectory: &Trajectory) -> Axis {
 #[must_use]
 pub fn trajectory_figure(trajectory: &Trajectory, name: &str, caption: &str) -> Figure {
     let time = || trajectory.time.clone();
-    let millimetres = trajectory.displacement.iter().map(|d| d * 1e3).collect();
     let mut force = Panel::new(Axis::linear("Time", "s"), force_axis(trajectory)).share(1.6);
     force = force.layer(Layer::line(time(), trajectory.force.clone(), Role::Series(0)));
     for event in trajectory.events.iter().take(8) {
@@ -71,13 +71,12 @@ pub fn trajectory_figure(trajectory: &Trajectory, name: &str, caption: &str) -> 
         };
         force = force.layer(Layer::vertical(event.time, Role::Reference).label(label));
     }
-    let displacement = Panel::new(Axis::linear("Time", "s"), Axis::linear("Displacement", "mm"));
-    let strain = Panel::new(Axis::linear("Time", "s"), Axis::linear("Strain", ""))
+    let strain = Panel::over_time("Strain", "")
         .layer(Layer::line(time(), trajectory.strain.clone(), Role::Series(0)).label("contact layer"))
         .layer(Layer::line(time(), trajectory.equilibrium_strain.clone(), Role::Series(1)).label("equilibrium"));
     Figure::new(name, caption)
         .panel(force)
         .panel(strain)
-        .panel(displacement.layer(Layer::line(time(), millimetres, Role::Series(0))))
+        .panel(displacement_panel(&trajectory.time, &trajectory.displacement, Role::Series(0)))
         .height_mm(150.0)
 }

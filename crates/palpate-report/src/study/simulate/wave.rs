@@ -14,10 +14,8 @@ pub fn wave_figure(name: &str, wave: &StrainWave, caption: &str) -> Figure {
         values: wave.strain.iter().flatten().copied().collect(),
         colours: Axis::linear("Strain", ""),
     };
-    let map = Panel::new(Axis::linear("Time", "s"), Axis::linear("Layer (1 = contact)", ""))
-        .layer(Layer::map(strains))
-        .share(1.2);
-    let mut lines = Panel::new(Axis::linear("Time", "s"), Axis::linear("Strain", ""));
+    let map = Panel::over_time("Layer (1 = contact)", "").layer(Layer::map(strains)).share(1.2);
+    let mut lines = Panel::over_time("Strain", "");
     for (series, layer) in shown(layers).into_iter().enumerate() {
         let line = Layer::line(wave.time.clone(), wave.strain[layer].clone(), Role::Series(series as u8));
         lines = lines.layer(line.label(format!("layer {}", layer + 1)));
