@@ -17,7 +17,7 @@ use palpate_report::figure::Figure;
 use palpate_report::study::{
     cycle_table, hysteresis_figure, step_work_table, trajectory_figure, wave_figure, write_trajectory,
 };
-use palpate_report::table::{Cell, Table, TableColumn};
+use palpate_report::table::{Cell, Table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -334,14 +334,14 @@ fn latency(model: &ContactModel) -> String {
 }
 
 fn wave_table(wave: &StrainWave) -> Table {
-    let mut table = Table::new("wave", "Strain of every layer.").column(TableColumn::new("Time", "time_s", "s"));
+    let mut table = Table::new("wave", "Strain of every layer.").column("Time", "time_s", "s");
     for layer in 1..=wave.strain.len() {
-        table = table.column(TableColumn::new(format!("Layer {layer}"), format!("strain_layer_{layer}"), ""));
+        table = table.column(format!("Layer {layer}"), format!("strain_layer_{layer}"), "");
     }
     table.rows = (0..wave.time.len())
         .map(|row| {
-            let strains = wave.strain.iter().map(|strain| Cell::number(strain[row], 6));
-            std::iter::once(Cell::number(wave.time[row], 6)).chain(strains).collect()
+            let strains = wave.strain.iter().map(|strain| Cell::Number(strain[row], 6));
+            std::iter::once(Cell::Number(wave.time[row], 6)).chain(strains).collect()
         })
         .collect();
     table
@@ -349,17 +349,15 @@ fn wave_table(wave: &StrainWave) -> Table {
 
 fn energy_table(energy: &Energy) -> Table {
     let mut table = Table::new("energy", "Work of the jaw and what becomes of it.")
-        .column(TableColumn::new("Time", "time_s", "s"))
-        .column(TableColumn::new("Work", "work_j", "J"))
-        .column(TableColumn::new("Given back", "given_back_j", "J"));
+        .column("Time", "time_s", "s")
+        .column("Work", "work_j", "J")
+        .column("Given back", "given_back_j", "J");
     let mut columns = vec![&energy.time, &energy.work, &energy.given_back];
     if let Some(split) = &energy.split {
-        table = table
-            .column(TableColumn::new("Stored", "stored_j", "J"))
-            .column(TableColumn::new("Lost", "lost_j", "J"));
+        table = table.column("Stored", "stored_j", "J").column("Lost", "lost_j", "J");
         columns.extend([&split.stored, &split.lost]);
     }
-    let row = |i: usize| columns.iter().map(|column| Cell::number(column[i], 9)).collect();
+    let row = |i: usize| columns.iter().map(|column| Cell::Number(column[i], 9)).collect();
     table.rows = (0..energy.time.len()).map(row).collect();
     table
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use palpate_report::figure::{Arrangement, Axis, Figure, Layer, Map, Panel, Role};
 use palpate_report::page::{Block, Check, Finding, Page, Section, Severity};
-use palpate_report::table::{Cell, Table, TableColumn};
+use palpate_report::table::{Cell, Table};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).ok_or("give a folder to write to")?;
@@ -227,25 +227,25 @@ fn degenerate() -> Figure {
 
 fn law_table() -> Table {
     let mut table = Table::new("law", "Fitted law of each hold; ± is one standard error.")
-        .column(TableColumn::new("Specimen", "specimen", ""))
-        .column(TableColumn::new("Hold", "hold", ""))
-        .column(TableColumn::new("Equilibrium strain", "equilibrium_strain", ""))
-        .column(TableColumn::new("Rate coefficient", "rate_coefficient_per_s", "s⁻¹"))
-        .column(TableColumn::new("Root mean square", "rms_n", "N"))
+        .column("Specimen", "specimen", "")
+        .column("Hold", "hold", "")
+        .column("Equilibrium strain", "equilibrium_strain", "")
+        .column("Rate coefficient", "rate_coefficient_per_s", "s⁻¹")
+        .column("Root mean square", "rms_n", "N")
         .note("Strains are positive in compression.");
     for hold in 1..=4i64 {
         let strain = 0.083_21 + 0.041 * hold as f64;
         let rate = if hold == 3 {
             Cell::missing("hold shorter than two relaxation times")
         } else {
-            Cell::uncertain(0.021_34 / hold as f64, 0.000_43)
+            Cell::Uncertain(0.021_34 / hold as f64, 0.000_43)
         };
         table = table.row(vec![
             Cell::text("pad A"),
             Cell::Integer(hold),
-            Cell::uncertain(strain, 0.0012),
+            Cell::Uncertain(strain, 0.0012),
             rate,
-            Cell::number(2.345_6e-4 * hold as f64, 3),
+            Cell::Number(2.345_6e-4 * hold as f64, 3),
         ]);
     }
     table

@@ -11,7 +11,7 @@ use palpate_report::number::significant;
 use palpate_report::result::mode_word;
 use palpate_report::sparkline::{sparkline, strip};
 use palpate_report::study::cut_figure;
-use palpate_report::table::{Cell, Table, TableColumn};
+use palpate_report::table::{Cell, Table};
 
 /// Characters of a sparkline: what fits into a narrow terminal beside its label.
 const WIDTH: usize = 64;
@@ -129,26 +129,26 @@ impl Cut {
     fn phases(&self, segmentation: &Segmentation) -> String {
         let record = &self.record;
         let mut table = Table::new("phases", "Phases")
-            .column(TableColumn::new("Phase", "phase", ""))
-            .column(TableColumn::new("Held", "mode", ""))
-            .column(TableColumn::new("From", "start_s", "s"))
-            .column(TableColumn::new("To", "end_s", "s"))
-            .column(TableColumn::new("Samples", "samples", ""))
-            .column(TableColumn::new("Displacement", "displacement_mm", "mm"))
-            .column(TableColumn::new("Force at start", "force_start_n", "N"))
-            .column(TableColumn::new("Force at end", "force_end_n", "N"));
+            .column("Phase", "phase", "")
+            .column("Held", "mode", "")
+            .column("From", "start_s", "s")
+            .column("To", "end_s", "s")
+            .column("Samples", "samples", "")
+            .column("Displacement", "displacement_mm", "mm")
+            .column("Force at start", "force_start_n", "N")
+            .column("Force at end", "force_end_n", "N");
         for segment in &segmentation.segments {
             let last = segment.end - 1;
             let end = record.displacement().map(|displacement| 1e3 * displacement[last]);
             table = table.row(vec![
                 Cell::text(format!("{:?}", segment.phase).to_lowercase()),
                 Cell::text(segment.mode.map(mode_word).unwrap_or_default()),
-                Cell::number(record.time()[segment.start], 6),
-                Cell::number(record.time()[last], 6),
+                Cell::Number(record.time()[segment.start], 6),
+                Cell::Number(record.time()[last], 6),
                 Cell::Integer(segment.len() as i64),
                 Cell::number_or(end, 4, "not recorded"),
-                Cell::number(record.force()[segment.start], 4),
-                Cell::number(record.force()[last], 4),
+                Cell::Number(record.force()[segment.start], 4),
+                Cell::Number(record.force()[last], 4),
             ]);
         }
         for rupture in &segmentation.ruptures {

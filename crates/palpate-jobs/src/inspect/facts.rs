@@ -7,7 +7,7 @@ use palpate_files::open::Format;
 use palpate_files::record::{RecordFile, Role};
 use palpate_files::table::{ColumnKind, Part};
 use palpate_report::number::significant;
-use palpate_report::table::{Cell, Table, TableColumn};
+use palpate_report::table::{Cell, Table};
 
 /// Most named values that are shown: force curves of an AFM have hundreds.
 const MOST_METADATA: usize = 16;
@@ -39,11 +39,11 @@ pub(super) fn part_facts(part: &Part, format: Format) -> String {
 
 pub(super) fn columns_table(part: &Part, file: Option<&RecordFile>) -> Table {
     let mut table = Table::new("columns", "Columns")
-        .column(TableColumn::new("Column", "number", ""))
-        .column(TableColumn::new("Name", "name", ""))
-        .column(TableColumn::new("Unit", "unit", ""))
-        .column(TableColumn::new("First value", "sample", ""))
-        .column(TableColumn::new("Used as", "used_as", ""));
+        .column("Column", "number", "")
+        .column("Name", "name", "")
+        .column("Unit", "unit", "")
+        .column("First value", "sample", "")
+        .column("Used as", "used_as", "");
     for column in &part.columns {
         let used = file.into_iter().flat_map(|file| &file.columns).filter(|used| used.number == column.number);
         let roles = used.map(|used| {

@@ -16,7 +16,7 @@ use palpate_files::input::Packing;
 use palpate_files::open::Contents;
 use palpate_files::record::describe;
 use palpate_report::figure::Figure;
-use palpate_report::table::{Cell, Table, TableColumn};
+use palpate_report::table::{Cell, Table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -122,8 +122,8 @@ impl Inspected {
 #[must_use]
 pub fn machines_text() -> String {
     let table = Table::new("machines", "Machines")
-        .column(TableColumn::new("Name", "name", ""))
-        .column(TableColumn::new("What", "about", ""))
+        .column("Name", "name", "")
+        .column("What", "about", "")
         .note("in a test description: [machine] preset = \"NAME\"; what the description says itself goes before");
     let rows = machines().iter().map(|machine| [machine.name, machine.about().trim_end_matches('.')]);
     rows.map(|row| row.map(Cell::text).to_vec()).fold(table, Table::row).to_plain_text()
@@ -146,11 +146,11 @@ fn many_tests(
     watch: &mut dyn Watch,
 ) -> Result<String, JobError> {
     let mut table = Table::new("tests", "Tests")
-        .column(TableColumn::new("Test", "part", ""))
-        .column(TableColumn::new("Rows", "rows", ""))
-        .column(TableColumn::new("Duration", "duration_s", "s"))
-        .column(TableColumn::new("Largest force", "force_max_n", "N"))
-        .column(TableColumn::new("Holds", "holds", ""))
+        .column("Test", "part", "")
+        .column("Rows", "rows", "")
+        .column("Duration", "duration_s", "s")
+        .column("Largest force", "force_max_n", "N")
+        .column("Holds", "holds", "")
         .note("palpate inspect FILE --part NAME shows one of them");
     for part in parts {
         let name = opened.contents().parts[*part].title();
@@ -164,8 +164,8 @@ fn many_tests(
                 vec![
                     Cell::text(name),
                     Cell::Integer(file.rows as i64),
-                    Cell::number(time[time.len() - 1] - time[0], 5),
-                    Cell::number(record.force().iter().fold(0.0, |most: f64, force| most.max(force.abs())), 4),
+                    Cell::Number(time[time.len() - 1] - time[0], 5),
+                    Cell::Number(record.force().iter().fold(0.0, |most: f64, force| most.max(force.abs())), 4),
                     holds.map_or_else(|| Cell::text("none"), |count| Cell::Integer(count as i64)),
                 ]
             }

@@ -65,10 +65,11 @@ pub(super) fn gathered(analysis: &Analysis, most: usize) -> Vec<Gathered> {
 fn merged(mut seen: Vec<Seen<'_>>, most: usize) -> Vec<Gathered> {
     let mut list = Vec::new();
     while let Some(first) = seen.first() {
-        let (severity, code) = (first.severity, first.finding.code());
-        let (alike, rest) =
-            seen.into_iter().partition(|other| other.severity == severity && other.finding.code() == code);
-        list.push(gather((severity, code), alike, most));
+        let (severity, finding) = (first.severity, first.finding);
+        let (alike, rest) = seen
+            .into_iter()
+            .partition(|other| other.severity == severity && other.finding.code() == finding.code());
+        list.push(gather(severity, finding, alike, most));
         seen = rest;
     }
     list.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
@@ -80,7 +81,6 @@ struct Seen<'a> {
     severity: Severity,
     finding: &'a RecordFinding,
     hold: Option<usize>,
-    text: String,
 }
 
 impl<'a> Seen<'a> {
@@ -89,7 +89,6 @@ impl<'a> Seen<'a> {
             severity: finding.severity(),
             finding,
             hold,
-            text: finding.seen(),
         }
     }
 }
@@ -100,18 +99,19 @@ fn open(analysis: &Analysis, hold: &HoldAnalysis) -> bool {
     hold.force_start.abs().max(hold.force_end.abs()) <= NO_FORCE * largest
 }
 
-fn gather((severity, code): (Severity, &'static str), alike: Vec<Seen<'_>>, most: usize) -> Gathered {
-    let released = severity == Severity::Info && code == RecordFinding::NoContactArea.code();
-    let (meaning, remedy) = match alike.first() {
-        Some(_) if released => (
+/// All that say the same as `finding`, with that severity, as one.
+fn gather(severity: Severity, finding: &RecordFinding, alike: Vec<Seen<'_>>, most: usize) -> Gathered {
+    let (meaning, remedy) = if severity == Severity::Info && matches!(finding, RecordFinding::NoContactArea) {
+        (
             "the jaw is back at first touch and the contact is open; such a hold is not fitted",
             "nothing, if the contact was meant to be open",
-        ),
-        Some(first) => (first.finding.meaning(), first.finding.remedy()),
-        None => ("", ""),
+        )
+    } else {
+        (finding.meaning(), finding.remedy())
     };
     let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
-    for Seen { hold, text, .. } in alike {
+    for Seen { hold, finding, .. } in alike {
+        let text = finding.seen();
         match groups.iter_mut().find(|(other, _)| *other == text) {
             Some((_, holds)) => holds.extend(hold),
             None => groups.push((text, hold.into_iter().collect())),
@@ -127,7 +127,7 @@ fn gather((severity, code): (Severity, &'static str), alike: Vec<Seen<'_>>, most
     }
     Gathered {
         severity,
-        code,
+        code: finding.code(),
         lines,
         meaning,
         remedy,
@@ -204,7 +204,6 @@ mod tests {
             severity: Severity::Info,
             finding,
             hold: Some(hold),
-            text: finding.seen(),
         }
     }
 
@@ -214,12 +213,8 @@ mod tests {
             exponents: exponents.to_vec(),
         };
         let (low, high) = (of(&[2.0, 3.0]), of(&[5.0, 7.0]));
-        let told = gather(
-            (Severity::Info, low.code()),
-            vec![seen(&low, 2), seen(&high, 6), seen(&low, 3), seen(&high, 10)],
-            MOST_LINES,
-        )
-        .told();
+        let all = vec![seen(&low, 2), seen(&high, 6), seen(&low, 3), seen(&high, 10)];
+        let told = gather(Severity::Info, &low, all, MOST_LINES).told();
         assert_eq!(
             told.seen,
             "Holds 2, 3: the exponents 2, 3 fit equally well.\nHolds 6, 10: the exponents 5, 7 fit equally well."
@@ -234,7 +229,7 @@ mod tests {
             })
             .collect();
         let all = findings.iter().enumerate().map(|(i, finding)| seen(finding, i + 1)).collect();
-        let told = gather((Severity::Caution, findings[0].code()), all, MOST_LINES).told();
+        let told = gather(Severity::Caution, &findings[0], all, MOST_LINES).told();
         assert_eq!(told.seen.lines().count(), MOST_LINES + 1);
         assert!(told.seen.lines().last().is_some_and(|last| last.starts_with("Holds 7–12: likewise")));
     }

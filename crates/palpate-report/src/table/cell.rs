@@ -6,20 +6,10 @@ use crate::number::{exact, significant, with_error};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Cell {
-    /// A number, rounded for people.
-    Number {
-        /// The exact value.
-        value: f64,
-        /// Significant digits that people see.
-        digits: usize,
-    },
-    /// A number whose error decides how far people see it; machines get the value alone.
-    Uncertain {
-        /// The exact value.
-        value: f64,
-        /// Its standard error.
-        error: f64,
-    },
+    /// A number and the significant digits that people see.
+    Number(f64, usize),
+    /// A number and its standard error, which decides how far people see it; machines get the number alone.
+    Uncertain(f64, f64),
     /// A count.
     Integer(i64),
     /// Words.
@@ -29,18 +19,6 @@ pub enum Cell {
 }
 
 impl Cell {
-    /// A number with the significant digits that people see.
-    #[must_use]
-    pub fn number(value: f64, digits: usize) -> Self {
-        Self::Number { value, digits }
-    }
-
-    /// A number with its standard error.
-    #[must_use]
-    pub fn uncertain(value: f64, error: f64) -> Self {
-        Self::Uncertain { value, error }
-    }
-
     /// Words.
     #[must_use]
     pub fn text(text: impl Into<String>) -> Self {
@@ -56,15 +34,15 @@ impl Cell {
     /// A number if there is one, otherwise why there is none.
     #[must_use]
     pub fn number_or(value: Option<f64>, digits: usize, reason: &str) -> Self {
-        value.map_or_else(|| Self::missing(reason), |value| Self::number(value, digits))
+        value.map_or_else(|| Self::missing(reason), |value| Self::Number(value, digits))
     }
 
     /// What a person reads; a missing value is a dash.
     #[must_use]
     pub fn shown(&self) -> String {
         match self {
-            Self::Number { value, digits } => significant(*value, *digits),
-            Self::Uncertain { value, error } => with_error(*value, *error),
+            Self::Number(value, digits) => significant(*value, *digits),
+            Self::Uncertain(value, error) => with_error(*value, *error),
             Self::Integer(value) => value.to_string().replace('-', "−"),
             Self::Text(text) => text.clone(),
             Self::Missing(_) => "–".to_owned(),
@@ -76,7 +54,7 @@ impl Cell {
     pub fn stored(&self) -> String {
         match self {
             // Adding zero turns −0 into 0.
-            Self::Number { value, .. } | Self::Uncertain { value, .. } => exact(*value + 0.0),
+            Self::Number(value, _) | Self::Uncertain(value, _) => exact(*value + 0.0),
             Self::Integer(value) => value.to_string(),
             Self::Text(text) => text.clone(),
             Self::Missing(_) => String::new(),
@@ -92,7 +70,7 @@ impl Cell {
     }
 
     pub(crate) fn is_numeric(&self) -> bool {
-        matches!(self, Self::Number { .. } | Self::Uncertain { .. } | Self::Integer(_))
+        matches!(self, Self::Number(..) | Self::Uncertain(..) | Self::Integer(_))
     }
 
     pub(crate) fn is_written_text(&self) -> bool {

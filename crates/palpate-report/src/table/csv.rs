@@ -15,19 +15,15 @@ pub(crate) fn write(table: &Table) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Cell, Table, TableColumn};
+    use super::super::{Cell, Table};
 
     #[test]
     fn another_reader_gets_every_value_back() {
         let values = [0.1 + 0.2, -1e-300, 6.022e23, 42.0];
         let words = ["plain", "a,b", "say \"so\"", "two\r\nlines"];
-        let mut table = Table::new("t", "").column(TableColumn::new("Value", "value_n", "N")).column(TableColumn::new(
-            "Remark, free",
-            "remark",
-            "",
-        ));
+        let mut table = Table::new("t", "").column("Value", "value_n", "N").column("Remark, free", "remark", "");
         for (value, word) in values.iter().zip(words) {
-            table = table.row(vec![Cell::number(*value, 3), Cell::text(word)]);
+            table = table.row(vec![Cell::Number(*value, 3), Cell::text(word)]);
         }
         table = table.row(vec![Cell::missing("lost"), Cell::Integer(-7)]);
 
@@ -44,7 +40,7 @@ mod tests {
 
     #[test]
     fn a_lone_missing_value_is_not_a_blank_line() {
-        let table = Table::new("t", "").column(TableColumn::new("A", "a", "")).row(vec![Cell::missing("none")]);
+        let table = Table::new("t", "").column("A", "a", "").row(vec![Cell::missing("none")]);
         assert_eq!(table.to_csv(), "a\r\n\"\"\r\n");
     }
 }

@@ -21,14 +21,14 @@ fn line(cells: impl Iterator<Item = String>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Cell, Table, TableColumn};
+    use super::super::{Cell, Table};
 
     #[test]
     fn numbers_stand_right_and_bars_are_kept() {
         let text = Table::new("t", "")
-            .column(TableColumn::new("Law", "law", ""))
-            .column(TableColumn::new("Force", "force_n", "N"))
-            .row(vec![Cell::text("a|b"), Cell::number(1.25, 2)])
+            .column("Law", "law", "")
+            .column("Force", "force_n", "N")
+            .row(vec![Cell::text("a|b"), Cell::Number(1.25, 2)])
             .row(vec![Cell::text("**c**"), Cell::missing("none")])
             .to_markdown();
         assert_eq!(text, "| Law | Force (N) |\n| --- | --: |\n| a\\|b | 1.2 |\n| **c** | – |\n");

@@ -30,16 +30,6 @@ pub struct TableColumn {
 }
 
 impl TableColumn {
-    /// A column.
-    #[must_use]
-    pub fn new(heading: impl Into<String>, key: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self {
-            heading: heading.into(),
-            key: key.into(),
-            unit: unit.into(),
-        }
-    }
-
     /// Heading with its unit, as in `Force (N)`.
     #[must_use]
     pub fn title(&self) -> String {
@@ -96,8 +86,12 @@ impl Table {
 
     /// Adds a column on the right.
     #[must_use]
-    pub fn column(mut self, column: TableColumn) -> Self {
-        self.columns.push(column);
+    pub fn column(mut self, heading: impl Into<String>, key: impl Into<String>, unit: impl Into<String>) -> Self {
+        self.columns.push(TableColumn {
+            heading: heading.into(),
+            key: key.into(),
+            unit: unit.into(),
+        });
         self
     }
 
@@ -172,7 +166,7 @@ impl<T> Columns<'_, T> {
         unit: &str,
         cell: impl Fn(&T) -> Cell,
     ) -> Self {
-        self.table.columns.push(TableColumn::new(heading, key, unit));
+        self.table = self.table.column(heading, key, unit);
         for (row, item) in self.table.rows.iter_mut().zip(self.items) {
             row.push(cell(item));
         }
@@ -210,9 +204,9 @@ mod tests {
     #[test]
     fn numeric_columns_may_lack_values_but_hold_no_text() {
         let table = Table::new("t", "")
-            .column(TableColumn::new("A", "a", "s"))
-            .column(TableColumn::new("B", "b", ""))
-            .row(vec![Cell::number(1.0, 2), Cell::Integer(1)])
+            .column("A", "a", "s")
+            .column("B", "b", "")
+            .row(vec![Cell::Number(1.0, 2), Cell::Integer(1)])
             .row(vec![Cell::missing("none"), Cell::text("x")])
             .row(vec![]);
         assert!(table.is_numeric(0) && !table.is_numeric(1) && !table.is_numeric(7));

@@ -62,14 +62,14 @@ fn line(out: &mut String, cells: &[String], widths: &[usize], right: &[bool]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Cell, Table, TableColumn};
+    use super::super::{Cell, Table};
 
     #[test]
     fn columns_line_up_and_reasons_follow() {
         let text = Table::new("law", "Fitted law.")
-            .column(TableColumn::new("Specimen", "specimen", ""))
-            .column(TableColumn::new("Force", "force_n", "N"))
-            .row(vec![Cell::text("pad\nA"), Cell::number(-12.5, 3)])
+            .column("Specimen", "specimen", "")
+            .column("Force", "force_n", "N")
+            .row(vec![Cell::text("pad\nA"), Cell::Number(-12.5, 3)])
             .row(vec![Cell::text("B"), Cell::missing("no contact")])
             .note("Room temperature.")
             .to_plain_text();

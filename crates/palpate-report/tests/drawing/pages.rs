@@ -2,7 +2,7 @@
 
 use palpate_report::figure::{Axis, Figure, Layer, Panel, Role};
 use palpate_report::page::{Block, Check, Finding, Page, Section, Severity};
-use palpate_report::table::{Cell, Table, TableColumn};
+use palpate_report::table::{Cell, Table};
 
 const HOSTILE: &str = "<script>alert('&')</script>";
 
@@ -11,9 +11,9 @@ fn page() -> String {
         .layer(Layer::line(vec![0.0, 1.0], vec![0.0, 1.0], Role::Measured).label(HOSTILE));
     let figure = Figure::new("f", HOSTILE).panel(panel);
     let table = Table::new("t", HOSTILE)
-        .column(TableColumn::new(HOSTILE, "a", HOSTILE))
-        .column(TableColumn::new("Force", "force_n", "N"))
-        .row(vec![Cell::text(HOSTILE), Cell::number(-1.5e-7, 2)])
+        .column(HOSTILE, "a", HOSTILE)
+        .column("Force", "force_n", "N")
+        .row(vec![Cell::text(HOSTILE), Cell::Number(-1.5e-7, 2)])
         .row(vec![Cell::text("b"), Cell::missing(HOSTILE)])
         .note(HOSTILE);
     let text = || HOSTILE.to_owned();

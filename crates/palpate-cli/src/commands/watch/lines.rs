@@ -6,7 +6,7 @@ use palpate::observe::{Held, Observation, Slip};
 use palpate_jobs::{Event, HoldSeen, Seen};
 use palpate_report::number::significant;
 use palpate_report::result::word;
-use palpate_report::table::{Cell, Table, TableColumn};
+use palpate_report::table::{Cell, Table};
 
 use super::Shown;
 use super::words::{slip, state, uncertain};
@@ -77,27 +77,26 @@ pub(super) fn summary(holds: &[HoldSeen], slip_force: Option<f64>) -> String {
     if holds.is_empty() {
         return "No hold was seen.\n".to_owned();
     }
-    let column = |head: &str, key: &str, unit: &str| TableColumn::new(head, key, unit);
     let mut table = Table::new("holds", "Holds")
-        .column(column("Held", "held", ""))
-        .column(column("From", "start_s", "s"))
-        .column(column("To", "end_s", "s"))
-        .column(column("Force at start", "force_start_n", "N"))
-        .column(column("at end", "force_end_n", "N"))
-        .column(column("Tends to", "equilibrium_force_n", "N"))
-        .column(column("±", "equilibrium_force_deviation_n", "N"))
-        .column(column("Creeps at", "creep_rate_um_per_s", "µm/s"));
+        .column("Held", "held", "")
+        .column("From", "start_s", "s")
+        .column("To", "end_s", "s")
+        .column("Force at start", "force_start_n", "N")
+        .column("at end", "force_end_n", "N")
+        .column("Tends to", "equilibrium_force_n", "N")
+        .column("±", "equilibrium_force_deviation_n", "N")
+        .column("Creeps at", "creep_rate_um_per_s", "µm/s");
     if slip_force.is_some() {
-        table = table.column(column("Warned", "warned_s", "s")).column(column("Slipped", "slipped_s", "s"));
+        table = table.column("Warned", "warned_s", "s").column("Slipped", "slipped_s", "s");
     }
     for hold in holds {
         let unknown = if hold.held == Held::Force { "force held" } else { "not known" };
         let mut row = vec![
             Cell::text(word(hold.held)),
-            Cell::number(hold.since, 5),
-            Cell::number(hold.until, 5),
-            Cell::number(hold.forces.0, 4),
-            Cell::number(hold.forces.1, 4),
+            Cell::Number(hold.since, 5),
+            Cell::Number(hold.until, 5),
+            Cell::Number(hold.forces.0, 4),
+            Cell::Number(hold.forces.1, 4),
             Cell::number_or(hold.equilibrium.map(|force| force.value), 4, unknown),
             Cell::number_or(hold.equilibrium.and_then(|force| force.standard_error), 2, unknown),
             Cell::number_or(hold.creep.map(|creep| 1e6 * creep.value), 3, "not held by force"),

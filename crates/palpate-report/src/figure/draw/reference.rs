@@ -12,10 +12,7 @@ const HEIGHT: f64 = TICK + 1.5;
 type Ends = [(f64, f64); 2];
 
 /// A name with its place.
-pub(crate) struct Name<'a> {
-    pub(crate) place: Rect,
-    label: &'a str,
-}
+pub(crate) type Name<'a> = (Rect, &'a str);
 
 /// Shaded stretches, below everything else.
 pub(crate) fn draw_spans(svg: &mut Svg, frame: &Frame<'_>) {
@@ -107,7 +104,7 @@ pub(crate) fn reference_names<'a>(frame: &'a Frame<'_>, taken: &mut Occupancy) -
             continue;
         };
         taken.mark_rect(place);
-        names.push(Name { place, label });
+        names.push((place, label));
     }
     names
 }
@@ -139,7 +136,7 @@ fn places(area: Rect, [start, end]: Ends, w: f64) -> Vec<Rect> {
 
 /// Draws the names of reference lines.
 pub(crate) fn draw_reference_names(svg: &mut Svg, names: &[Name<'_>]) {
-    for Name { place, label } in names {
+    for (place, label) in names {
         let font = font(TICK).in_colour("#555").with(HALO);
         svg.text(place.x, place.bottom() - 1.5, Anchor::Start, font, label);
     }

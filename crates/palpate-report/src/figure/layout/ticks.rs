@@ -39,14 +39,8 @@ impl Ticks {
 
 fn linear(low: f64, high: f64, count: f64) -> Ticks {
     let wanted = if count >= 2.5 { 3 } else { 2 };
-    let mut ticks = spaced(low, high, Step::above((high - low) / count));
-    for finer in 1..4 {
-        if ticks.major.len() >= wanted {
-            break;
-        }
-        ticks = spaced(low, high, Step::above((high - low) / count / 2f64.powi(finer)));
-    }
-    ticks
+    let finer = |halvings| spaced(low, high, Step::above((high - low) / count / 2f64.powi(halvings)));
+    (0..3).map(finer).find(|ticks| ticks.major.len() >= wanted).unwrap_or_else(|| finer(3))
 }
 
 /// A round distance between ticks.

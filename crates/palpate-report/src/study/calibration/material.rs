@@ -37,12 +37,12 @@ fn laws(record: &CalibratedRecord) -> Table {
     let mut table = Table::of("laws", caption, &record.rows)
         .column("Law", "law", "", |(candidate, _)| Cell::text(candidate.to_string()))
         .column("p", "parameters", "", of_made(|made| Cell::Integer(made.free_numbers as i64)))
-        .column("RMSE", "rmse_n", "N", of_made(|made| Cell::number(made.rmse, 3)))
-        .column("of peak", "rmse_percent", "%", of_made(|made| Cell::number(100.0 * made.relative, 3)))
-        .column("ΔBIC", "delta_bic", "", of_made(|made| Cell::number(made.criteria.bic - least, 3)));
+        .column("RMSE", "rmse_n", "N", of_made(|made| Cell::Number(made.rmse, 3)))
+        .column("of peak", "rmse_percent", "%", of_made(|made| Cell::Number(100.0 * made.relative, 3)))
+        .column("ΔBIC", "delta_bic", "", of_made(|made| Cell::Number(made.criteria.bic - least, 3)));
     if fitted < all {
         let foretold = |number: fn(&HoldoutError) -> f64| {
-            of_made(move |made| made.foretold.as_ref().map_or(Cell::text(""), |found| Cell::number(number(found), 3)))
+            of_made(move |made| made.foretold.as_ref().map_or(Cell::text(""), |found| Cell::Number(number(found), 3)))
         };
         table = table.column("Foretold to", "foretold_rmse_n", "N", foretold(|found| found.rmse)).column(
             "of peak",
@@ -81,8 +81,8 @@ fn numbers_table(material: &Material, profiles: &[NumberProfile]) -> Table {
         .column("Value", "value", "", |number| {
             let (factor, estimate) = (for_people(number.unit).0, number.estimate);
             match estimate.standard_error {
-                Some(error) => Cell::uncertain(factor * estimate.value, factor * error),
-                None => Cell::number(factor * estimate.value, 4),
+                Some(error) => Cell::Uncertain(factor * estimate.value, factor * error),
+                None => Cell::Number(factor * estimate.value, 4),
             }
         })
         .column(format!("{} from", percent(share)), "low", "", |number| interval(number, |ends| ends.0))

@@ -43,7 +43,7 @@ pub fn prediction_table(prediction: &Prediction) -> Table {
         significant(prediction.noise, 2)
     );
     let samples: Vec<usize> = (0..course.len()).collect();
-    let number = |value: f64| Cell::number(value, 4);
+    let number = |value: f64| Cell::Number(value, 4);
     Table::of("prediction", caption, &samples)
         .column("Time", "time_s", "s", |i| number(course.time[*i]))
         .column("Displacement", "displacement_mm", "mm", |i| number(1e3 * course.displacement[*i]))

@@ -27,18 +27,19 @@ pub(in crate::study) fn all(record: &ComparedRecord, suffix: &str) -> Vec<Figure
 }
 
 /// A figure of one panel a hold, `all` of them or the first.
-fn by_hold(name: &str, caption: &str, panels: Vec<Panel>, row_mm: f64, all: usize) -> Option<Figure> {
-    let (shown, columns) = (panels.len(), columns(panels.len()));
-    let more = first_of(shown, all, "holds");
+fn by_hold<T>(name: String, caption: String, row_mm: f64, holds: &[T], panel: impl Fn(&T) -> Panel) -> Option<Figure> {
+    let panels: Vec<Panel> = holds.iter().take(MOST_PANELS).map(panel).collect();
+    let columns = columns(panels.len());
+    let more = first_of(panels.len(), holds.len(), "holds");
     let row_mm = if columns == 1 { 1.4 * row_mm } else { row_mm };
-    grid(name, format!("{caption}{more}"), panels, columns, row_mm)
+    grid(&name, caption + &more, panels, columns, row_mm)
 }
 
 /// Forward error of each law after each cut.
 fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let holds: Vec<_> = record.verdicts().filter(|(_, comparison)| !comparison.cuts.is_empty()).collect();
     let (laws, all) = best_laws(&holds);
-    let panels = holds.iter().take(MOST_PANELS).map(|(hold, comparison)| {
+    let panel = |(hold, comparison): &(&ComparedHold, &Comparison)| {
         let mut panel =
             Panel::new(Axis::linear("Part of the hold that was fitted", "%"), Axis::log("Error over the rest", "%"))
                 .title(hold.short_title());
@@ -47,16 +48,16 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
             panel = panel.layers(row.into_iter().flat_map(|row| forward_layers(row, comparison, series)));
         }
         panel
-    });
+    };
     let left = if all > laws.len() { format!(" The {} best of {all} laws.", laws.len()) } else { String::new() };
     by_hold(
-        &format!("forward_errors{suffix}"),
-        &format!(
+        format!("forward_errors{suffix}"),
+        format!(
             "What each law, fitted to the first part of a hold, foretells of the rest: root mean square error in % of the change of the signal.{left}"
         ),
-        panels.collect(),
         78.0,
-        holds.len(),
+        &holds,
+        panel,
     )
 }
 
@@ -93,8 +94,7 @@ fn forward_layers(row: &Row, comparison: &Comparison, series: usize) -> Vec<Laye
 /// What the best laws leave over, averaged over stretches of ln t.
 fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let holds: Vec<_> = record.verdicts().collect();
-    let mut panels = Vec::new();
-    for (hold, comparison) in holds.iter().take(MOST_PANELS) {
+    let panel = |(hold, comparison): &(&ComparedHold, &Comparison)| {
         let (unit, factor) = hold.quantity.for_people();
         let mut panel = Panel::new(Axis::log("Time", "s"), Axis::linear("Mean residual", unit))
             .title(hold.short_title())
@@ -103,16 +103,16 @@ fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
             let (times, means) = averaged(hold, row, factor);
             panel = panel.layer(Layer::line(times, means, Role::Series(series as u8)).label(row.law.to_string()));
         }
-        panels.push(panel);
-    }
+        panel
+    };
     by_hold(
-        &format!("law_residuals{suffix}"),
-        &format!(
+        format!("law_residuals{suffix}"),
+        format!(
             "What the best laws leave over when fitted to the whole hold (measured less fitted, averaged over {STRETCHES} stretches of ln t). Noise scatters about zero; a wave is shape that the law misses."
         ),
-        panels,
         62.0,
-        holds.len(),
+        &holds,
+        panel,
     )
 }
 
@@ -143,13 +143,12 @@ fn averaged(hold: &ComparedHold, row: &Row, factor: f64) -> (Vec<f64>, Vec<f64>)
 fn spectra(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let spectrum = |comparison: &'_ Comparison| comparison.rows.iter().find_map(|row| row.spectrum.clone());
     let holds: Vec<_> = record.verdicts().filter_map(|(hold, found)| Some((hold, spectrum(found)?))).collect();
-    let panels = holds.iter().take(MOST_PANELS).map(|(hold, fit)| spectrum_panel(hold, fit)).collect();
     by_hold(
-        &format!("spectra{suffix}"),
-        "The dense spectrum of each hold: amplitude over relaxation time; the line marks the length of the hold. Where the slowest time carries weight the spectrum is open-ended, and its equilibrium is a convention of the grid.",
-        panels,
+        format!("spectra{suffix}"),
+        "The dense spectrum of each hold: amplitude over relaxation time; the line marks the length of the hold. Where the slowest time carries weight the spectrum is open-ended, and its equilibrium is a convention of the grid.".to_owned(),
         62.0,
-        holds.len(),
+        &holds,
+        |(hold, fit)| spectrum_panel(hold, fit),
     )
 }
 

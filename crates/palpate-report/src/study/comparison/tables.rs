@@ -43,7 +43,7 @@ fn row_of(comparison: &Comparison, law: Law) -> Option<&Row> {
 /// Numbers of a law: a whole one, but for a smoothed spectrum.
 fn parameters(row: &Row) -> Cell {
     if row.spectrum.is_some() {
-        Cell::number(row.numbers, 2)
+        Cell::Number(row.numbers, 2)
     } else {
         Cell::Integer(row.numbers as i64)
     }

@@ -4,7 +4,7 @@ use palpate::grip::{Holding, Move, TimeToSlip};
 
 use crate::number::significant;
 use crate::result::{GrippedBody, lasted, percent};
-use crate::table::{Cell, Table, TableColumn};
+use crate::table::{Cell, Table};
 use crate::wrap::wrapped;
 
 const NO_INTERVAL: &str = "the calibration says nothing of it";
@@ -15,20 +15,19 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
     let answer = &body.answer;
     let share = percent(body.grip.confidence());
     let caption = format!("Grips by the calibrated law; the end is {} behind the closing.", lasted(answer.shown));
-    let column = |heading: &str, key: &str, unit: &str| TableColumn::new(heading, key, unit);
     let mut table = Table::new("grips", caption)
-        .column(column("Grip", "grip", ""))
-        .column(column("Closed", "closing_s", "s"))
-        .column(column("Squeeze", "displacement_mm", "mm"))
-        .column(column("at end", "end_displacement_mm", "mm"))
-        .column(column("Force", "start_force_n", "N"))
-        .column(column("peak", "peak_force_n", "N"))
-        .column(column("at end", "end_force_n", "N"))
-        .column(column("needed", "needed_force_n", "N"))
-        .column(column("Holds", "lasts_s", "s"))
-        .column(column(&format!("{share} from"), "lasts_low_s", "s"))
-        .column(column("to", "lasts_high_s", "s"))
-        .column(column("Work", "work_mj", "mJ"));
+        .column("Grip", "grip", "")
+        .column("Closed", "closing_s", "s")
+        .column("Squeeze", "displacement_mm", "mm")
+        .column("at end", "end_displacement_mm", "mm")
+        .column("Force", "start_force_n", "N")
+        .column("peak", "peak_force_n", "N")
+        .column("at end", "end_force_n", "N")
+        .column("needed", "needed_force_n", "N")
+        .column("Holds", "lasts_s", "s")
+        .column(format!("{share} from"), "lasts_low_s", "s")
+        .column("to", "lasts_high_s", "s")
+        .column("Work", "work_mj", "mJ");
     let end = |course: &palpate::calibrate::Prediction| course.trajectory.force.last().copied().unwrap_or(0.0);
     let holding = |name: &str, found: &Holding, end: f64| {
         let interval = |pick: fn((TimeToSlip, TimeToSlip)) -> TimeToSlip| {
@@ -36,17 +35,17 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
         };
         vec![
             Cell::text(name),
-            Cell::number(found.closing, 3),
-            Cell::number(1e3 * found.displacement, 4),
-            Cell::number(1e3 * found.displacement, 4),
-            Cell::number(found.start_force, 4),
-            Cell::number(found.peak_force, 4),
-            Cell::number(end, 4),
-            Cell::number(found.needed_force, 4),
+            Cell::Number(found.closing, 3),
+            Cell::Number(1e3 * found.displacement, 4),
+            Cell::Number(1e3 * found.displacement, 4),
+            Cell::Number(found.start_force, 4),
+            Cell::Number(found.peak_force, 4),
+            Cell::Number(end, 4),
+            Cell::Number(found.needed_force, 4),
             lasts(found.lasts),
             interval(|(low, _)| low),
             interval(|(_, high)| high),
-            Cell::number(1e3 * found.work, 3),
+            Cell::Number(1e3 * found.work, 3),
         ]
     };
     if let Ok(squeeze) = &answer.squeeze {
@@ -64,20 +63,20 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
         };
         table = table.row(vec![
             Cell::text("force held"),
-            Cell::number(found.closing, 3),
-            Cell::number(1e3 * found.displacement_start, 4),
-            Cell::number(1e3 * found.displacement_end, 4),
-            Cell::number(found.force, 4),
-            Cell::number(found.force, 4),
+            Cell::Number(found.closing, 3),
+            Cell::Number(1e3 * found.displacement_start, 4),
+            Cell::Number(1e3 * found.displacement_end, 4),
+            Cell::Number(found.force, 4),
+            Cell::Number(found.force, 4),
             match found.stroke_ends {
-                None => Cell::number(found.force, 4),
+                None => Cell::Number(found.force, 4),
                 Some(_) => Cell::missing("the stroke ends before"),
             },
-            Cell::number(found.needed_force, 4),
+            Cell::Number(found.needed_force, 4),
             lasts(until),
             Cell::missing("a force that is held does not fall"),
             Cell::missing("a force that is held does not fall"),
-            Cell::number(1e3 * found.work, 3),
+            Cell::Number(1e3 * found.work, 3),
         ]);
     }
     table
@@ -90,9 +89,9 @@ pub fn neighbour_table(body: &GrippedBody<'_>) -> Option<Table> {
     let squeeze = answer.squeeze.as_ref().ok().filter(|_| answer.neighbours.len() > 1)?;
     let speed = significant(1e3 * squeeze.found.plan.speed(), 3);
     let table = Table::of("neighbours", format!("Squeezes beside it, at {speed} mm/s."), &answer.neighbours)
-        .column("Squeeze", "displacement_mm", "mm", |(place, _)| Cell::number(1e3 * place, 4))
+        .column("Squeeze", "displacement_mm", "mm", |(place, _)| Cell::Number(1e3 * place, 4))
         .column("beside it", "change_percent", "%", |(place, _)| {
-            Cell::number((100.0 * (place / squeeze.found.displacement - 1.0)).round(), 2)
+            Cell::Number((100.0 * (place / squeeze.found.displacement - 1.0)).round(), 2)
         })
         .column("Holds", "lasts_s", "s", |(_, time)| lasts(*time));
     Some(table.table())
@@ -100,7 +99,7 @@ pub fn neighbour_table(body: &GrippedBody<'_>) -> Option<Table> {
 
 /// How long something holds.
 fn lasts(time: TimeToSlip) -> Cell {
-    time.seconds().map_or_else(|| Cell::text("always"), |seconds| Cell::number(seconds, 4))
+    time.seconds().map_or_else(|| Cell::text("always"), |seconds| Cell::Number(seconds, 4))
 }
 
 /// What the numbers of the material do to squeeze and back off.
@@ -115,9 +114,9 @@ pub fn sensitivity_table(body: &GrippedBody<'_>) -> Option<Table> {
         })
         // Rounding alone is nothing.
         .column("Force missed", "missed_mn", "mN", |one| {
-            Cell::number(if one.missed.abs() < 1e-9 { 0.0 } else { 1e3 * one.missed }, 3)
+            Cell::Number(if one.missed.abs() < 1e-9 { 0.0 } else { 1e3 * one.missed }, 3)
         })
-        .column("Turn farther by", "over_um", "µm", |one| Cell::number(1e6 * one.over, 3))
+        .column("Turn farther by", "over_um", "µm", |one| Cell::Number(1e6 * one.over, 3))
         .unless_empty()
 }
 
@@ -128,11 +127,11 @@ pub fn schedule_table(body: &GrippedBody<'_>) -> Option<Table> {
     let moves: Vec<(i64, &Move)> = (1..).zip(&found.moves).collect();
     let table = Table::of("schedule", "When to squeeze again; times since first touch.", &moves)
         .column("Move", "move", "", |(number, _)| Cell::Integer(*number))
-        .column("at", "time_s", "s", |(_, step)| Cell::number(step.time, 5))
-        .column("Jaw from", "from_mm", "mm", |(_, step)| Cell::number(1e3 * step.from, 5))
-        .column("to", "to_mm", "mm", |(_, step)| Cell::number(1e3 * step.to, 5))
-        .column("Force from", "force_from_n", "N", |(_, step)| Cell::number(step.force_from, 4))
-        .column("to", "force_to_n", "N", |(_, step)| Cell::number(step.force_to, 4));
+        .column("at", "time_s", "s", |(_, step)| Cell::Number(step.time, 5))
+        .column("Jaw from", "from_mm", "mm", |(_, step)| Cell::Number(1e3 * step.from, 5))
+        .column("to", "to_mm", "mm", |(_, step)| Cell::Number(1e3 * step.to, 5))
+        .column("Force from", "force_from_n", "N", |(_, step)| Cell::Number(step.force_from, 4))
+        .column("to", "force_to_n", "N", |(_, step)| Cell::Number(step.force_to, 4));
     Some(table.table())
 }
 

@@ -2,7 +2,7 @@
 
 use palpate::analysis::{Analysis, HoldAnalysis, Signal};
 use palpate::fit::{ExponentChoice, LatencyFit, Termination};
-use palpate::segment::{After, Phase};
+use palpate::segment::After;
 
 use super::cut::{MOST_NAMED, shaded};
 use crate::figure::{Arrangement, Axis, Figure, Layer, MOST_PANELS, Panel, Role};
@@ -259,11 +259,6 @@ pub(super) fn trend(analysis: &Analysis, name: &str) -> Option<Figure> {
         );
         Figure::new(name, caption).panel(panel).width_mm(110.0).height_mm(75.0)
     })
-}
-
-/// Whether a record has phases of a kind; keeps captions true.
-pub(super) fn has_phase(analysis: &Analysis, phase: Phase) -> bool {
-    analysis.segmentation.segments.iter().any(|segment| segment.phase == phase)
 }
 
 #[cfg(test)]

@@ -110,7 +110,7 @@ fn summary(analysis: &Analysis) -> String {
         holds_word(after(After::Loading)),
         holds_word(after(After::Unloading)),
     );
-    if figures::has_phase(analysis, Phase::Rest) {
+    if analysis.segmentation.segments.iter().any(|segment| segment.phase == Phase::Rest) {
         text.push_str(" The record begins at rest.");
     }
     if let Some(n) = analysis.across.common_exponent {

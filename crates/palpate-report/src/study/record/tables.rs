@@ -13,7 +13,7 @@ use crate::table::{Cell, Table};
 
 /// An exponent as people write it: 5, not 5.000.
 fn order(n: f64) -> Cell {
-    if n.fract() == 0.0 && n.abs() < 1e6 { Cell::Integer(n as i64) } else { Cell::number(n, 4) }
+    if n.fract() == 0.0 && n.abs() < 1e6 { Cell::Integer(n as i64) } else { Cell::Number(n, 4) }
 }
 
 /// Why a cell has no number though there is a fit.
@@ -28,8 +28,8 @@ fn estimate(estimate: Estimate) -> Cell {
 fn estimate_within(estimate: Estimate, size: f64) -> Cell {
     match estimate.standard_error {
         Some(error) if error > (2.0 * estimate.value.abs()).max(size) => Cell::missing(UNDETERMINED),
-        Some(error) if error > 1e-12 * estimate.value.abs() => Cell::uncertain(estimate.value, error),
-        _ => Cell::number(estimate.value, 5),
+        Some(error) if error > 1e-12 * estimate.value.abs() => Cell::Uncertain(estimate.value, error),
+        _ => Cell::Number(estimate.value, 5),
     }
 }
 
@@ -78,12 +78,12 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
         .column("Hold", "hold", "", |hold| Cell::Integer(hold.number as i64))
         .column("After", "after", "", |hold| Cell::text(hold.after.map(word).unwrap_or_default()))
         .column("Held", "mode", "", |hold| Cell::text(hold.segment.mode.map(mode_word).unwrap_or_default()))
-        .column("From", "start_s", "s", |hold| Cell::number(hold.start, 6))
-        .column("To", "end_s", "s", |hold| Cell::number(hold.end, 6))
-        .column("Fit from", "fit_start_s", "s", |hold| Cell::number(hold.fit_start, 6))
+        .column("From", "start_s", "s", |hold| Cell::Number(hold.start, 6))
+        .column("To", "end_s", "s", |hold| Cell::Number(hold.end, 6))
+        .column("Fit from", "fit_start_s", "s", |hold| Cell::Number(hold.fit_start, 6))
         .column("Displacement", "displacement_mm", "mm", displacement)
-        .column("Force at fit start", "force_start_n", "N", |hold| Cell::number(hold.force_start, 4))
-        .column("Force at end", "force_end_n", "N", |hold| Cell::number(hold.force_end, 4))
+        .column("Force at fit start", "force_start_n", "N", |hold| Cell::Number(hold.force_start, 4))
+        .column("Force at end", "force_end_n", "N", |hold| Cell::Number(hold.force_end, 4))
         .column("Relaxation", "relaxation", "", |hold| {
             Cell::text(match hold.relaxation.kind {
                 RelaxationType::TypeI => "Type I",
@@ -93,7 +93,7 @@ pub(super) fn holds(analysis: &Analysis) -> Table {
         })
         .column("Significance", "p_value", "", |hold| match hold.relaxation.p_value {
             p if p < 1e-4 => Cell::text("< 0.0001"),
-            p => Cell::number(p, 2),
+            p => Cell::Number(p, 2),
         })
         .table()
         .note("Held: what the machine kept, the displacement (the force relaxes), the force (the displacement creeps) or neither.")
@@ -131,7 +131,7 @@ pub(super) fn fits(analysis: &Analysis) -> Table {
             Signal::Strain => rate(fit, fit.rate_coefficient()),
             Signal::Force => Cell::missing("no strain"),
         })
-        .column("RMSE", "rmse", "", |(.., fit)| Cell::number(fit.rmse, 3))
+        .column("RMSE", "rmse", "", |(.., fit)| Cell::Number(fit.rmse, 3))
         .column("ΔBIC", "delta_bic", "", |(hold, i, fit)| {
             let order = hold.order.as_ref().filter(|_| in_time(fit));
             Cell::number_or(order.map(|order| order.candidates[*i].delta_bic), 3, "time domain only")
@@ -201,7 +201,7 @@ pub(super) fn exponents(analysis: &Analysis) -> Table {
     let caption = "Which exponent fits all holds: sum of the information criteria less the lowest sum.";
     Table::of("exponents", caption, &analysis.across.evidence)
         .column("n", "exponent", "", |(n, _)| order(*n))
-        .column("ΔBIC, all holds", "delta_bic", "", |(_, delta)| Cell::number(*delta, 4))
+        .column("ΔBIC, all holds", "delta_bic", "", |(_, delta)| Cell::Number(*delta, 4))
         .column("Holds where it is as good as the best", "holds_as_good", "", |(n, _)| {
             let orders = analysis.holds.iter().filter_map(|hold| hold.order.as_ref());
             let candidates = orders.flat_map(|order| &order.candidates);
@@ -241,7 +241,7 @@ pub(super) fn joint(analysis: &Analysis) -> Option<Table> {
         })
         .column("v", "rate_coefficient_per_s", "s⁻¹", |one| shared(one, "rate_coefficient"))
         .column("p", "p_value", "", |one| Cell::number_or(one.comparison.p, 2, "too few independent samples"))
-        .column("ΔBIC", "delta_bic", "", |one| Cell::number(one.comparison.delta_bic, 4))
+        .column("ΔBIC", "delta_bic", "", |one| Cell::Number(one.comparison.delta_bic, 4))
         .column("d ln v/dεₑ", "trend", "", |one| trend(one, |trend| trend.slope))
         .column("from", "trend_low", "", |one| trend(one, |trend| trend.interval.0))
         .column("to", "trend_high", "", |one| trend(one, |trend| trend.interval.1))
@@ -268,10 +268,10 @@ pub(super) fn predictions(analysis: &Analysis) -> Option<Table> {
         })
         .column("Numbers", "parameters", "", |(_, fit, _)| Cell::Integer(fit.free_numbers() as i64))
         .column("Inside, over the drop", "relative_rmse_inside", "%", |(_, fit, beyond)| {
-            Cell::number(100.0 * fit.rmse * beyond.relative / beyond.rmse, 3)
+            Cell::Number(100.0 * fit.rmse * beyond.relative / beyond.rmse, 3)
         })
         .column("Beyond, over the drop", "relative_rmse_beyond", "%", |(.., beyond)| {
-            Cell::number(100.0 * beyond.relative, 3)
+            Cell::Number(100.0 * beyond.relative, 3)
         })
         .column("Samples beyond", "samples_beyond", "", |(.., beyond)| Cell::Integer(beyond.samples as i64))
         .unless_empty()
@@ -281,13 +281,13 @@ pub(super) fn predictions(analysis: &Analysis) -> Option<Table> {
 pub(super) fn agreements(analysis: &Analysis) -> Option<Table> {
     let levels = &analysis.across.agreements;
     Table::of("agreement", "Equilibrium after loading and after unloading at one displacement.", levels)
-        .column("Displacement", "displacement_mm", "mm", |level| Cell::number(1e3 * level.displacement, 4))
+        .column("Displacement", "displacement_mm", "mm", |level| Cell::Number(1e3 * level.displacement, 4))
         .column("Hold after loading", "hold_loading", "", |level| Cell::Integer(level.loading as i64))
         .column("Hold after unloading", "hold_unloading", "", |level| Cell::Integer(level.unloading as i64))
-        .column("After loading", "equilibrium_loading", "", |level| Cell::number(level.loading_equilibrium, 5))
-        .column("After unloading", "equilibrium_unloading", "", |level| Cell::number(level.unloading_equilibrium, 5))
+        .column("After loading", "equilibrium_loading", "", |level| Cell::Number(level.loading_equilibrium, 5))
+        .column("After unloading", "equilibrium_unloading", "", |level| Cell::Number(level.unloading_equilibrium, 5))
         .column("Difference", "difference", "", |level| {
-            Cell::number(level.loading_equilibrium - level.unloading_equilibrium, 2)
+            Cell::Number(level.loading_equilibrium - level.unloading_equilibrium, 2)
         })
         .column("Difference over its error", "z", "", |level| Cell::number_or(level.z, 3, "no errors"))
         .unless_empty()

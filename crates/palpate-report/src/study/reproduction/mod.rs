@@ -3,11 +3,9 @@
 //! | file | what |
 //! |---|---|
 //! | `law_figures.rs` | the law and its closed form (figures 1 and 2) |
-//! | `page.rs` | figures, tables and the page |
-//! | `bundle.rs` | all files, the summary among them |
+//! | `page.rs` | figures, tables, the page, and all files, the summary among them |
 
-mod bundle;
 mod law_figures;
 mod page;
 
-pub use bundle::{reproduction_bundle, reproduction_text};
+pub use page::{reproduction_bundle, reproduction_text};

@@ -1,14 +1,15 @@
-//! Figures, tables and page of the reproduced study.
+//! Figures, tables, page and all files of the reproduced study.
 
 use palpate::analysis::HoldAnalysis;
 use palpate::segment::After;
 use palpate::simulate::Trajectory;
 
 use super::law_figures;
+use crate::document::ReproductionDocument;
 use crate::figure::{Arrangement, Figure, Layer, Panel, Role};
 use crate::page::{Block, Page, Section};
 use crate::result::{ReproducedTest, Reproduction};
-use crate::study::bundle::StudyError;
+use crate::study::bundle::{Bundle, Pictures, StudyError};
 use crate::study::grid::displacement_panel;
 use crate::study::record::figures as record_figures;
 use crate::study::simulate::wave_figure;
@@ -23,7 +24,7 @@ const MEASURED_COEFFICIENT: [Option<f64>; 5] = [None, Some(2.6e4), Some(2.0e4), 
 const PAPER: &str = "Study of the Relationship Between the Strain and Strain Rate for Viscoelastic Contact Interface in Robotic Grasping";
 
 /// All figures, named after the paper's.
-pub(super) fn figures(study: &Reproduction) -> Vec<Figure> {
+fn figures(study: &Reproduction) -> Vec<Figure> {
     let law = study.model.law;
     let mut figures = vec![
         law_figures::law("figure_1_law", law, 0.15),
@@ -78,7 +79,7 @@ fn final_unloading(study: &Reproduction) -> Figure {
 }
 
 /// Tables I and II, with what the authors measured beside them where it can be read.
-pub(super) fn tables(study: &Reproduction) -> Vec<Table> {
+fn tables(study: &Reproduction) -> Vec<Table> {
     vec![
         paper_table(study, &study.test_a, After::Loading),
         paper_table(study, &study.test_b, After::Unloading),
@@ -102,8 +103,8 @@ fn paper_table(study: &Reproduction, test: &ReproducedTest, after: After) -> Tab
         .column("Displacement", "displacement_mm", "mm", |(_, hold, _)| {
             Cell::number_or(hold.displacement.map(|d| 1e3 * d), 3, "not recorded")
         })
-        .column("εₑ", "equilibrium_strain", "", |(.., fit)| Cell::number(fit.equilibrium().value, 5))
-        .column("v", "rate_coefficient_per_s", "s⁻¹", |(.., fit)| Cell::number(fit.rate_coefficient().value, 5))
+        .column("εₑ", "equilibrium_strain", "", |(.., fit)| Cell::Number(fit.equilibrium().value, 5))
+        .column("v", "rate_coefficient_per_s", "s⁻¹", |(.., fit)| Cell::Number(fit.rate_coefficient().value, 5))
         .column("n (free)", "exponent_free", "", |(_, hold, _)| {
             Cell::number_or(hold.fits.last().map(|fit| fit.exponent().value), 5, "no fit")
         })
@@ -121,7 +122,7 @@ fn paper_table(study: &Reproduction, test: &ReproducedTest, after: After) -> Tab
 }
 
 /// The page.
-pub(super) fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -> Result<Page, StudyError> {
+fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -> Result<Page, StudyError> {
     let picture = |name: &str| -> Result<Vec<Block>, StudyError> {
         let chosen = figures.iter().filter(|figure| figure.name.starts_with(name));
         chosen.map(|figure| Ok(Block::figure(figure)?)).collect()
@@ -163,4 +164,38 @@ pub(super) fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -
     Ok(page
         .provenance("Source", PAPER)
         .provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION"))))
+}
+
+/// All files of the reproduced study.
+///
+/// # Errors
+/// [`StudyError`] when a figure or document cannot be made.
+pub fn reproduction_bundle(study: &Reproduction, pictures: Pictures) -> Result<Bundle, StudyError> {
+    let mut bundle = Bundle::default();
+    let figures = figures(study);
+    for figure in &figures {
+        bundle.figure(figure, pictures)?;
+    }
+    let tables = tables(study);
+    for table in &tables {
+        bundle.table(table);
+    }
+    for (name, test) in [("a", &study.test_a), ("b", &study.test_b)] {
+        bundle.series(&format!("test_{name}_bonded"), &test.bonded)?;
+        bundle.series(&format!("test_{name}_unilateral"), &test.unilateral)?;
+    }
+    bundle.text("report.html", page(study, &figures, &tables)?.to_html());
+    bundle.json("summary.json", &ReproductionDocument::new(study))?;
+    Ok(bundle)
+}
+
+/// Every check in two lines.
+#[must_use]
+pub fn reproduction_text(study: &Reproduction) -> String {
+    let mut text = String::from("What the paper reports, checked on its simulated and re-identified tests:\n\n");
+    for check in &study.checks {
+        let word = if check.passed { "pass" } else { "FAIL" };
+        text.push_str(&format!("  {word}  {}\n        {}\n", check.name, check.found));
+    }
+    text
 }

@@ -54,7 +54,7 @@ fn cost(cycle: &Cycle) -> String {
 #[must_use]
 pub fn step_work_table(steps: &[StepWork]) -> Table {
     let numbered: Vec<(i64, &StepWork)> = (1..).zip(steps).collect();
-    let number = |value: f64| Cell::number(value, 9);
+    let number = |value: f64| Cell::Number(value, 9);
     let table = Table::of("steps", "Work of the jaw in every step.", &numbered)
         .column("Step", "step", "", |(step, _)| Cell::Integer(*step))
         .column("From", "from_s", "s", |(_, step)| number(step.from))
@@ -73,7 +73,7 @@ pub fn step_work_table(steps: &[StepWork]) -> Table {
 #[must_use]
 pub fn cycle_table(cycles: &[Cycle]) -> Table {
     let numbered: Vec<(i64, &Cycle)> = (1..).zip(cycles).collect();
-    let number = |value: f64| Cell::number(value, 6);
+    let number = |value: f64| Cell::Number(value, 6);
     Table::of("cycles", "What every cycle of squeeze and release cost.", &numbered)
         .column("Cycle", "cycle", "", |(cycle, _)| Cell::Integer(*cycle))
         .column("From", "from_s", "s", |(_, cycle)| number(cycle.from))
