@@ -16,7 +16,7 @@ pub use block::{Block, Check, Finding};
 pub use palpate::analysis::Severity;
 
 /// A page with its sections and where its content comes from.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Page {
     /// Title.
     pub title: String,
@@ -44,8 +44,7 @@ impl Page {
         Self {
             title: title.into(),
             subtitle: subtitle.into(),
-            sections: Vec::new(),
-            provenance: Vec::new(),
+            ..Self::default()
         }
     }
 

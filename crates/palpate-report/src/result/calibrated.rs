@@ -110,10 +110,10 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
         let how = how.replace("{}", &name);
         remarks.push(format!("The record {how}. Holds of different excess strain would tell it."));
     }
-    let (correlation, _) = match made.noise {
-        NoiseModel::White => (0.0, 0.0),
-        NoiseModel::Autoregressive { correlation } => (correlation, 1.0),
-        NoiseModel::WhiteAndAutoregressive { correlation, share } => (correlation * share.sqrt(), share),
+    let correlation = match made.noise {
+        NoiseModel::White => 0.0,
+        NoiseModel::Autoregressive { correlation } => correlation,
+        NoiseModel::WhiteAndAutoregressive { correlation, share } => correlation * share.sqrt(),
     };
     if correlation > 0.9 && made.relative > 5e-3 {
         remarks.push(format!(

@@ -76,11 +76,8 @@ impl GrippedBody<'_> {
         if let Some(Ok(schedule)) = &answer.schedule {
             remarks.push(on_schedule(&schedule.found));
         }
-        for (name, error) in self.refused() {
-            if name != self.asked() {
-                remarks.push(format!("No {name}: {error}."));
-            }
-        }
+        let refused = self.refused().into_iter().filter(|(name, _)| *name != self.asked());
+        remarks.extend(refused.map(|(name, error)| format!("No {name}: {error}.")));
         if self.grip.material().body.sides == Sides::One {
             remarks.push(
                 "The material was tested from one side: each of the two jaws moves as far as is said here, towards the other.".to_owned(),

@@ -1,9 +1,9 @@
 //! The files of a study, in memory until all of them exist.
 
-use palpate::simulate::Trajectory;
+use std::io;
 
-use super::simulate::write_trajectory;
 use crate::figure::{Figure, FigureError};
+use crate::page::Block;
 use crate::table::Table;
 
 /// Which pictures to make.
@@ -21,7 +21,7 @@ pub enum StudyError {
     Figure(#[from] FigureError),
     /// Writing to memory.
     #[error(transparent)]
-    Io(#[from] std::io::Error),
+    Io(#[from] io::Error),
     /// JSON.
     #[error("a result could not be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
@@ -33,6 +33,9 @@ pub struct Bundle {
     /// Path with forward slashes, and content.
     pub files: Vec<(String, Vec<u8>)>,
 }
+
+/// Writes a series as CSV.
+type WriteSeries<T> = fn(&mut dyn io::Write, &T) -> io::Result<()>;
 
 /// Resolution of PNG pictures: print quality at the width of a journal's page.
 const DPI: f64 = 300.0;
@@ -50,9 +53,9 @@ impl Bundle {
         Ok(())
     }
 
-    pub(crate) fn series(&mut self, name: &str, trajectory: &Trajectory) -> Result<(), StudyError> {
+    pub(crate) fn series<T>(&mut self, name: &str, write: WriteSeries<T>, series: &T) -> Result<(), StudyError> {
         let mut content = Vec::new();
-        write_trajectory(&mut content, trajectory)?;
+        write(&mut content, series)?;
         self.files.push((format!("series/{name}.csv"), content));
         Ok(())
     }
@@ -67,4 +70,10 @@ impl Bundle {
         self.text(path, text);
         Ok(())
     }
+}
+
+/// The figures whose name starts so, as a page shows them.
+pub(super) fn drawn(figures: &[Figure], name: &str) -> Result<Vec<Block>, StudyError> {
+    let chosen = figures.iter().filter(|figure| figure.name.starts_with(name));
+    chosen.map(|figure| Ok(Block::figure(figure)?)).collect()
 }

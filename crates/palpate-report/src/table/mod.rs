@@ -42,7 +42,7 @@ impl TableColumn {
 }
 
 /// Named columns with their rows.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
     /// Name of the table, fit for a file name without extension.
     pub name: String,
@@ -78,9 +78,7 @@ impl Table {
         Self {
             name: name.into(),
             caption: caption.into(),
-            columns: Vec::new(),
-            rows: Vec::new(),
-            notes: Vec::new(),
+            ..Self::default()
         }
     }
 

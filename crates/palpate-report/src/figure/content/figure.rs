@@ -6,9 +6,10 @@ use super::panel::Panel;
 pub const MOST_PANELS: usize = 12;
 
 /// How the panels of a figure stand to each other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Arrangement {
     /// Below each other; panels that show the same quantity share the horizontal axis.
+    #[default]
     Stacked,
     /// Beside each other.
     SideBySide,
@@ -17,7 +18,7 @@ pub enum Arrangement {
 }
 
 /// A figure with its caption.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Figure {
     /// Name of the figure, fit for a file name without extension.
     pub name: String,
@@ -25,7 +26,7 @@ pub struct Figure {
     pub caption: String,
     pub(crate) panels: Vec<Panel>,
     pub(crate) arrangement: Arrangement,
-    pub(crate) letters: bool,
+    pub(crate) without_letters: bool,
     width_mm: Option<f64>,
     height_mm: Option<f64>,
 }
@@ -37,11 +38,7 @@ impl Figure {
         Self {
             name: name.into(),
             caption: caption.into(),
-            panels: Vec::new(),
-            arrangement: Arrangement::Stacked,
-            letters: true,
-            width_mm: None,
-            height_mm: None,
+            ..Self::default()
         }
     }
 
@@ -83,7 +80,7 @@ impl Figure {
     /// Leaves the letters (a), (b), … away that figures of several panels carry.
     #[must_use]
     pub fn without_letters(mut self) -> Self {
-        self.letters = false;
+        self.without_letters = true;
         self
     }
 

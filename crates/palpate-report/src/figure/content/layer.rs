@@ -68,57 +68,52 @@ pub struct Map {
     pub colours: Axis,
 }
 
-impl Mark {
-    fn of(self, role: Role) -> Layer {
-        Layer {
-            mark: self,
-            role,
-            label: None,
-        }
-    }
-}
-
 impl Layer {
+    fn of(role: Role, mark: Mark) -> Self {
+        let label = None;
+        Self { mark, role, label }
+    }
+
     /// A line without a legend entry.
     #[must_use]
     pub fn line(x: Vec<f64>, y: Vec<f64>, role: Role) -> Self {
-        Mark::Line { x, y }.of(role)
+        Self::of(role, Mark::Line { x, y })
     }
 
     /// Points without error bars and legend entry.
     #[must_use]
     pub fn points(x: Vec<f64>, y: Vec<f64>, role: Role) -> Self {
-        Mark::Points { x, y, error: None }.of(role)
+        Self::of(role, Mark::Points { x, y, error: None })
     }
 
     /// A band without a legend entry.
     #[must_use]
     pub fn band(x: Vec<f64>, low: Vec<f64>, high: Vec<f64>, role: Role) -> Self {
-        Mark::Band { x, low, high }.of(role)
+        Self::of(role, Mark::Band { x, low, high })
     }
 
     /// A shaded stretch of the horizontal axis without a name.
     #[must_use]
     pub fn span(from: f64, to: f64, role: Role) -> Self {
-        Mark::Span(from, to).of(role)
+        Self::of(role, Mark::Span(from, to))
     }
 
     /// A level across the panel.
     #[must_use]
     pub fn horizontal(at: f64, role: Role) -> Self {
-        Mark::Horizontal(at).of(role)
+        Self::of(role, Mark::Horizontal(at))
     }
 
     /// A position on the horizontal axis.
     #[must_use]
     pub fn vertical(at: f64, role: Role) -> Self {
-        Mark::Vertical(at).of(role)
+        Self::of(role, Mark::Vertical(at))
     }
 
     /// A heat map.
     #[must_use]
     pub fn map(map: Map) -> Self {
-        Mark::Map(map).of(Role::Measured)
+        Self::of(Role::Measured, Mark::Map(map))
     }
 
     /// The same layer with a label; layers of one panel with equal labels share a legend entry.

@@ -62,10 +62,8 @@ pub(crate) fn picture(map: &Map, frame: &Frame<'_>) -> Result<String, String> {
 }
 
 fn level(share: f64) -> u8 {
-    if share.is_nan() {
-        return LEVELS;
-    }
-    (share.clamp(0.0, 1.0) * f64::from(LEVELS - 1)).round() as u8
+    let level = share.clamp(0.0, 1.0) * f64::from(LEVELS - 1);
+    if share.is_nan() { LEVELS } else { level.round() as u8 }
 }
 
 /// Which samples each picture element shows.

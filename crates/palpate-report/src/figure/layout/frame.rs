@@ -213,6 +213,6 @@ impl Figure {
 
     fn letter(&self, index: usize) -> Option<char> {
         let letter = u8::try_from(index).ok().filter(|i| *i < 26).map(|i| char::from(b'a' + i));
-        letter.filter(|_| self.letters && self.panels.len() > 1)
+        letter.filter(|_| !self.without_letters && self.panels.len() > 1)
     }
 }

@@ -39,9 +39,7 @@ pub fn grip_bundle(body: &GrippedBody<'_>, pictures: Pictures) -> Result<Bundle,
     }
     for (name, course) in ["squeeze", "back_off", "force_held", "schedule"].into_iter().zip(body.grips()) {
         let Some(Ok(course)) = course else { continue };
-        let mut content = Vec::new();
-        write_prediction(&mut content, course)?;
-        bundle.files.push((format!("series/{name}.csv"), content));
+        bundle.series(name, write_prediction, course)?;
     }
     page = page
         .provenance("Material", &body.path)

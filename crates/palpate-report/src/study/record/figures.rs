@@ -237,16 +237,9 @@ pub(super) fn trend(analysis: &Analysis, name: &str) -> Option<Figure> {
         (After::Loading, Role::Measured, "after loading"),
         (After::Unloading, Role::Alternative(0), "after unloading"),
     ] {
-        let fits: Vec<&LatencyFit> = analysis
-            .holds
-            .iter()
-            .filter(|hold| hold.after == Some(after) && hold.signal == Signal::Strain)
-            .filter_map(|hold| hold.fit_with(n))
-            .filter(|fit| fit.termination.is_good())
-            .collect();
-        if fits.is_empty() {
-            continue;
-        }
+        let holds = analysis.holds.iter().filter(|hold| hold.after == Some(after) && hold.signal == Signal::Strain);
+        let fits = holds.filter_map(|hold| hold.fit_with(n)).filter(|fit| fit.termination.is_good());
+        let fits: Vec<&LatencyFit> = fits.collect();
         points += fits.len();
         let x = fits.iter().map(|fit| fit.equilibrium().value).collect();
         let y = fits.iter().map(|fit| fit.rate_coefficient().value).collect();

@@ -11,7 +11,7 @@ use crate::document::AnalysisDocument;
 use crate::number::significant;
 use crate::page::{Block, Page, Section};
 use crate::result::{ComparedRecord, Input};
-use crate::study::bundle::{Bundle, Pictures, StudyError};
+use crate::study::bundle::{Bundle, Pictures, StudyError, drawn};
 use crate::study::comparison;
 use crate::study::findings;
 
@@ -21,16 +21,14 @@ use crate::study::findings;
 /// [`StudyError`] when a figure or document cannot be made.
 pub fn analysis_bundle(analysis: &Analysis, input: Input, pictures: Pictures) -> Result<Bundle, StudyError> {
     let mut bundle = Bundle::default();
-    let figures: Vec<_> = [Some(figures::record(analysis, "record"))]
-        .into_iter()
-        .chain([
-            figures::strain_rates(analysis, "strain_rates"),
-            figures::holds(analysis, "holds"),
-            figures::residuals(analysis, "residuals"),
-            figures::trend(analysis, "trend"),
-        ])
-        .flatten()
-        .collect();
+    let figures = [
+        Some(figures::record(analysis, "record")),
+        figures::strain_rates(analysis, "strain_rates"),
+        figures::holds(analysis, "holds"),
+        figures::residuals(analysis, "residuals"),
+        figures::trend(analysis, "trend"),
+    ];
+    let figures: Vec<_> = figures.into_iter().flatten().collect();
     let compared = ComparedRecord::of_analysis(analysis, input.clone());
     let of_laws = comparison::figures::all(&compared, "");
     for figure in figures.iter().chain(&of_laws) {
@@ -59,21 +57,17 @@ fn page(
     figures: &[crate::figure::Figure],
     comparison: Option<Vec<Block>>,
 ) -> Result<Page, StudyError> {
-    let figure = |name: &str| figures.iter().find(|figure| figure.name == name);
-    let mut record = Section::new("The record").block(Block::paragraph(summary(analysis)));
-    if let Some(picture) = figure("record") {
-        record = record.block(Block::figure(picture)?);
-    }
-    record = record.block(Block::Table(tables::holds(analysis)));
+    let record = Section::new("The record")
+        .block(Block::paragraph(summary(analysis)))
+        .blocks(drawn(figures, "record")?)
+        .block(Block::Table(tables::holds(analysis)));
     let mut laws = Section::new("The law, hold by hold");
     for after in [After::Loading, After::Unloading] {
         laws = laws.blocks(tables::paper_table(analysis, after).map(Block::Table));
     }
     laws = laws.block(Block::Table(tables::exponents(analysis)));
     for name in ["holds", "residuals", "strain_rates", "trend"] {
-        if let Some(picture) = figure(name) {
-            laws = laws.block(Block::figure(picture)?);
-        }
+        laws = laws.blocks(drawn(figures, name)?);
     }
     laws = laws.blocks(joint_sentence(analysis).or_else(|| trend_sentence(analysis)).map(Block::Paragraph));
     laws = laws.blocks(tables::joint(analysis).map(Block::Table));

@@ -9,10 +9,10 @@ use crate::document::ReproductionDocument;
 use crate::figure::{Arrangement, Figure, Layer, Panel, Role};
 use crate::page::{Block, Page, Section};
 use crate::result::{ReproducedTest, Reproduction};
-use crate::study::bundle::{Bundle, Pictures, StudyError};
+use crate::study::bundle::{Bundle, Pictures, StudyError, drawn};
 use crate::study::grid::displacement_panel;
 use crate::study::record::figures as record_figures;
-use crate::study::simulate::wave_figure;
+use crate::study::simulate::{wave_figure, write_trajectory};
 use crate::table::{Cell, Table};
 
 /// Equilibrium strains of Table I as the authors measured them (compression negative in the paper).
@@ -123,10 +123,6 @@ fn paper_table(study: &Reproduction, test: &ReproducedTest, after: After) -> Tab
 
 /// The page.
 fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -> Result<Page, StudyError> {
-    let picture = |name: &str| -> Result<Vec<Block>, StudyError> {
-        let chosen = figures.iter().filter(|figure| figure.name.starts_with(name));
-        chosen.map(|figure| Ok(Block::figure(figure)?)).collect()
-    };
     let model = &study.model;
     let page = Page::new(
         PAPER,
@@ -145,22 +141,22 @@ fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -> Result<Pa
             ]))
             .block(Block::Checks(study.checks.clone())),
     )
-    .section(Section::new("The law").blocks(picture("figure_1_")?).blocks(picture("figure_2")?))
+    .section(Section::new("The law").blocks(drawn(figures, "figure_1_")?).blocks(drawn(figures, "figure_2")?))
     .section(
         Section::new("The two tests")
-            .blocks(picture("figure_4a")?)
-            .blocks(picture("figure_4b")?)
-            .blocks(picture("figure_8")?)
+            .blocks(drawn(figures, "figure_4a")?)
+            .blocks(drawn(figures, "figure_4b")?)
+            .blocks(drawn(figures, "figure_8")?)
             .block(Block::paragraph(
                 "The authors remark that their simulation drops faster than the ball did when the jaw leaves at about 53 s. The reason is in the model: a bonded contact can pull. With a jaw that can only push, the contact is lost, the force stays at zero, and the dent left behind recovers by the same law.",
             )),
     )
     .section(
         Section::new("Strain rate against strain")
-            .blocks(picture("figure_6")?)
+            .blocks(drawn(figures, "figure_6")?)
             .blocks(tables.iter().cloned().map(Block::Table)),
     )
-    .section(Section::new("The strain wave").blocks(picture("figure_7")?));
+    .section(Section::new("The strain wave").blocks(drawn(figures, "figure_7")?));
     Ok(page
         .provenance("Source", PAPER)
         .provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION"))))
@@ -181,8 +177,8 @@ pub fn reproduction_bundle(study: &Reproduction, pictures: Pictures) -> Result<B
         bundle.table(table);
     }
     for (name, test) in [("a", &study.test_a), ("b", &study.test_b)] {
-        bundle.series(&format!("test_{name}_bonded"), &test.bonded)?;
-        bundle.series(&format!("test_{name}_unilateral"), &test.unilateral)?;
+        bundle.series(&format!("test_{name}_bonded"), write_trajectory, &test.bonded)?;
+        bundle.series(&format!("test_{name}_unilateral"), write_trajectory, &test.unilateral)?;
     }
     bundle.text("report.html", page(study, &figures, &tables)?.to_html());
     bundle.json("summary.json", &ReproductionDocument::new(study))?;

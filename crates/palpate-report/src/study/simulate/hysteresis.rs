@@ -20,17 +20,13 @@ pub fn hysteresis_figure(trajectory: &Trajectory, cycles: &[Cycle], name: &str, 
         let travel = trajectory.displacement[start..end].iter().map(|d| 1e3 * d).collect();
         Layer::line(travel, trajectory.force[start..end].to_vec(), Role::Series(role))
     };
-    let mut panel = Panel::new(Axis::linear("Displacement", "mm"), Axis::linear("Force", "N"));
-    match cycles {
-        [] => panel = panel.layer(curve(f64::NEG_INFINITY, f64::INFINITY, 0)),
-        _ => {
-            for (i, cycle) in cycles.iter().enumerate().take(CURVES) {
-                let label = format!("cycle {}: {}", i + 1, cost(cycle));
-                panel = panel.layer(curve(cycle.from, cycle.until, i as u8).label(label));
-            }
-        }
-    }
-    Figure::new(name, caption).panel(panel)
+    let whole = cycles.is_empty().then(|| curve(f64::NEG_INFINITY, f64::INFINITY, 0));
+    let loops = cycles.iter().zip(0u8..).take(CURVES).map(|(cycle, i)| {
+        let label = format!("cycle {}: {}", i + 1, cost(cycle));
+        curve(cycle.from, cycle.until, i).label(label)
+    });
+    let panel = Panel::new(Axis::linear("Displacement", "mm"), Axis::linear("Force", "N"));
+    Figure::new(name, caption).panel(panel.layers(whole).layers(loops))
 }
 
 /// What a cycle cost, in words.

@@ -48,13 +48,15 @@ pub fn sweep_grid_figure(name: &str, caption: &str, axes: &[Swept], result: &Swe
         }
         [x, y] => Some(figure.panel(heat_map((x, y), result, |i, j| i * y.values.len() + j, None))),
         [x, y, z] if z.values.len() <= MOST_PANELS => {
-            let range = limits(&result.values);
+            // All maps have the same colours.
+            let finite = result.values.iter().filter(|value| value.is_finite());
+            let range = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
             let columns = if z.values.len() <= 4 { 2 } else { 3 };
             let panels = z.rising().into_iter().map(|k| {
                 let at = |i: usize, j: usize| (i * y.values.len() + j) * z.values.len() + k;
                 let unit = if z.axis.unit.is_empty() { String::new() } else { format!(" {}", z.axis.unit) };
                 let title = format!("{} = {}{unit}", z.axis.label, short(z.values[k]));
-                heat_map((x, y), result, at, range).title(title)
+                heat_map((x, y), result, at, Some(range)).title(title)
             });
             grid(name, caption.to_owned(), panels.collect(), columns, 62.0)
         }
@@ -65,11 +67,10 @@ pub fn sweep_grid_figure(name: &str, caption: &str, axes: &[Swept], result: &Swe
 /// Runs without an order: a panel of points for every swept number.
 #[must_use]
 pub fn sweep_points_figure(name: &str, caption: &str, axes: &[Swept], result: &Swept) -> Figure {
-    let columns = if axes.len() == 1 { 1 } else { 2 };
     let mut figure = Figure::new(name, caption);
-    if columns > 1 {
-        let rows = axes.len().div_ceil(columns) as f64;
-        figure = figure.arrangement(Arrangement::Grid(columns)).height_mm(62.0 * rows);
+    if axes.len() != 1 {
+        let rows = axes.len().div_ceil(2) as f64;
+        figure = figure.arrangement(Arrangement::Grid(2)).height_mm(62.0 * rows);
     }
     axes.iter().fold(figure, |figure, axis| {
         let points = Layer::points(axis.values.clone(), result.values.clone(), Role::Series(0));
@@ -105,19 +106,8 @@ fn heat_map(
 /// A value as people write it in a title: 2 and not 2.00.
 fn short(value: f64) -> String {
     let text = significant(value, 3);
-    match text.contains('.') && !text.contains('×') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
-    }
-}
-
-/// Smallest and largest value, so that the colours of all panels mean the same.
-fn limits(values: &[f64]) -> Option<(f64, f64)> {
-    let finite = values.iter().copied().filter(|value| value.is_finite());
-    finite.fold(None, |limits, value| {
-        let (low, high) = limits.unwrap_or((value, value));
-        Some((low.min(value), high.max(value)))
-    })
+    let decimal = text.contains('.') && !text.contains('×');
+    if decimal { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 #[cfg(test)]
