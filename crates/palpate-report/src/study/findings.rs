@@ -31,7 +31,10 @@ pub(super) struct Gathered {
 impl Gathered {
     /// As a page shows it.
     pub(super) fn told(&self) -> Finding {
-        let lines: Vec<String> = self.lines.iter().map(|(place, seen)| line(place, seen)).collect();
+        let line = |(place, seen): &(String, String)| {
+            if place.is_empty() { sentence(seen) } else { format!("{place}: {seen}.") }
+        };
+        let lines: Vec<String> = self.lines.iter().map(line).collect();
         Finding {
             severity: self.severity,
             code: self.code.to_owned(),
@@ -158,10 +161,6 @@ fn holds_named(holds: &[usize]) -> String {
         1 => format!("Hold {}", named.join(", ")),
         _ => format!("Holds {}", named.join(", ")),
     }
-}
-
-fn line(place: &str, seen: &str) -> String {
-    if place.is_empty() { sentence(seen) } else { format!("{place}: {seen}.") }
 }
 
 fn sentence(text: &str) -> String {

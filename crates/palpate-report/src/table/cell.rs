@@ -68,12 +68,4 @@ impl Cell {
             _ => None,
         }
     }
-
-    pub(crate) fn is_numeric(&self) -> bool {
-        matches!(self, Self::Number(..) | Self::Uncertain(..) | Self::Integer(_))
-    }
-
-    pub(crate) fn is_written_text(&self) -> bool {
-        matches!(self, Self::Text(text) if !text.is_empty())
-    }
 }

@@ -133,10 +133,10 @@ impl Table {
 
     /// Whether a column holds numbers and is set flush right.
     pub(crate) fn is_numeric(&self, column: usize) -> bool {
-        let mut cells = (0..self.rows.len()).map(|row| self.cell(row, column));
+        let cells = || (0..self.rows.len()).map(|row| self.cell(row, column));
         // A column whose every number is missing is still one of numbers.
-        cells.any(|cell| cell.is_numeric() || matches!(cell, Cell::Missing(_)))
-            && !(0..self.rows.len()).any(|row| self.cell(row, column).is_written_text())
+        cells().any(|cell| !matches!(cell, Cell::Text(_)))
+            && cells().all(|cell| !matches!(cell, Cell::Text(text) if !text.is_empty()))
     }
 
     /// Why values are missing, in order of appearance; a reason is listed once.

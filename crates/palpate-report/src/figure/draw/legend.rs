@@ -52,12 +52,6 @@ pub(crate) fn entries(panel: &Panel) -> Vec<Entry> {
     entries
 }
 
-/// Size of a legend that lists its entries below each other.
-fn block_size(entries: &[Entry]) -> (f64, f64) {
-    let widest = entries.iter().map(|e| width(&e.label, CAPTION)).fold(0.0, f64::max);
-    (SAMPLE + SPACE + widest + 4.0, entries.len() as f64 * LEGEND_ROW + 2.0)
-}
-
 /// How many rows the entries need when set one after the other.
 pub(crate) fn rows(entries: &[Entry], room: f64) -> usize {
     row_positions(entries, room).last().map_or(0, |(row, _)| row + 1)
@@ -82,7 +76,8 @@ fn row_positions(entries: &[Entry], room: f64) -> Vec<(usize, f64)> {
 
 /// A place for the legend inside the axes that covers nothing, corners first.
 pub(crate) fn free_place(entries: &[Entry], taken: &Occupancy) -> Option<Rect> {
-    let (w, h) = block_size(entries);
+    let widest = entries.iter().map(|entry| width(&entry.label, CAPTION)).fold(0.0, f64::max);
+    let (w, h) = (SAMPLE + SPACE + widest + 4.0, entries.len() as f64 * LEGEND_ROW + 2.0);
     let area = taken.area;
     let (room_x, room_y) = (area.w - w - 2.0 * INSET, area.h - h - 2.0 * INSET);
     if room_x < 0.0 || room_y < 0.0 || w > 0.7 * area.w {

@@ -84,8 +84,12 @@ impl Figure {
         reference::draw_spans(svg, frame);
         let empty = frame.panel.is_empty();
         svg.open_clip(frame.area);
-        if !empty {
-            self.draw_map(svg, frame)?;
+        if let Some(map) = frame.panel.map().filter(|_| !empty) {
+            let data = heatmap::picture(map, frame).map_err(|reason| FigureError::Image {
+                figure: self.name.clone(),
+                reason,
+            })?;
+            svg.image(frame.area, &data);
         }
         for layer in &frame.panel.layers {
             if let Mark::Band { x, low, high } = &layer.mark {
@@ -114,17 +118,6 @@ impl Figure {
         }
         axes::draw_axes(svg, frame);
         reference::draw_span_names(svg, frame);
-        Ok(())
-    }
-
-    fn draw_map(&self, svg: &mut Svg, frame: &Frame<'_>) -> Result<(), FigureError> {
-        if let Some(map) = frame.panel.map() {
-            let data = heatmap::picture(map, frame).map_err(|reason| FigureError::Image {
-                figure: self.name.clone(),
-                reason,
-            })?;
-            svg.image(frame.area, &data);
-        }
         Ok(())
     }
 }

@@ -24,8 +24,7 @@ pub(crate) fn draw_spans(svg: &mut Svg, frame: &Frame<'_>) {
 
 /// Names of shaded stretches above the frame; a name without room is left out.
 pub(crate) fn draw_span_names(svg: &mut Svg, frame: &Frame<'_>) {
-    let mut named: Vec<_> =
-        spans(frame).into_iter().filter_map(|(from, to, _, label)| Some((from, to, label?))).collect();
+    let mut named: Vec<_> = spans(frame).filter_map(|(from, to, _, label)| Some((from, to, label?))).collect();
     // Wide stretches have the first claim to their name.
     named.sort_by(|a, b| (b.1 - b.0).total_cmp(&(a.1 - a.0)));
     let mut taken: Vec<(f64, f64)> = Vec::new();
@@ -47,18 +46,13 @@ pub(crate) fn draw_span_names(svg: &mut Svg, frame: &Frame<'_>) {
 }
 
 /// Borders on the page, role and name of the stretches that reach into the panel.
-fn spans<'a>(frame: &'a Frame<'_>) -> Vec<(f64, f64, Role, Option<&'a str>)> {
-    let mut spans = Vec::new();
-    for layer in &frame.panel.layers {
-        if let Mark::Span(from, to) = &layer.mark {
-            let (a, b) = (frame.x.at(from.min(*to)), frame.x.at(from.max(*to)));
-            let (a, b) = (a.max(frame.area.x), b.min(frame.area.right()));
-            if a < b {
-                spans.push((a, b, layer.role, layer.label.as_deref()));
-            }
-        }
-    }
-    spans
+fn spans<'a>(frame: &'a Frame<'_>) -> impl Iterator<Item = (f64, f64, Role, Option<&'a str>)> {
+    frame.panel.layers.iter().filter_map(|layer| {
+        let Mark::Span(from, to) = layer.mark else { return None };
+        let (a, b) = (frame.x.at(from.min(to)), frame.x.at(from.max(to)));
+        let (a, b) = (a.max(frame.area.x), b.min(frame.area.right()));
+        (a < b).then_some((a, b, layer.role, layer.label.as_deref()))
+    })
 }
 
 /// Levels and positions across the panel.
@@ -69,10 +63,9 @@ pub(crate) fn draw_references(svg: &mut Svg, frame: &Frame<'_>) {
 }
 
 /// Ends, role and name of the reference lines within the axes.
-fn references<'a>(frame: &'a Frame<'_>) -> Vec<(Ends, Role, Option<&'a str>)> {
-    let Frame { area, .. } = frame;
-    let mut references = Vec::new();
-    for layer in &frame.panel.layers {
+fn references<'a>(frame: &'a Frame<'_>) -> impl Iterator<Item = (Ends, Role, Option<&'a str>)> {
+    let area = frame.area;
+    frame.panel.layers.iter().filter_map(move |layer| {
         let ends = match layer.mark {
             Mark::Horizontal(at) if frame.y.contains(at) => {
                 let y = frame.y.at(at);
@@ -82,21 +75,19 @@ fn references<'a>(frame: &'a Frame<'_>) -> Vec<(Ends, Role, Option<&'a str>)> {
                 let x = frame.x.at(at);
                 [(x, area.y), (x, area.bottom())]
             }
-            _ => continue,
+            _ => return None,
         };
-        references.push((ends, layer.role, layer.label.as_deref()));
-    }
-    references
+        Some((ends, layer.role, layer.label.as_deref()))
+    })
 }
 
 /// Names beside their reference lines, at the end and on the side that cover least.
 pub(crate) fn reference_names<'a>(frame: &'a Frame<'_>, taken: &mut Occupancy) -> Vec<Name<'a>> {
-    let references = references(frame);
-    for (ends, ..) in &references {
-        taken.mark_line(ends);
+    for (ends, ..) in references(frame) {
+        taken.mark_line(&ends);
     }
     let mut names = Vec::new();
-    for (ends, _, label) in references {
+    for (ends, _, label) in references(frame) {
         let Some(label) = label else { continue };
         let places = places(frame.area, ends, width(label, TICK));
         let covered = |place: &Rect| taken.covered(*place);

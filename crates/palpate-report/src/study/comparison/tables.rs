@@ -228,11 +228,10 @@ fn median_row(records: &[ComparedRecord], laws: &[Law]) -> Option<Vec<Cell>> {
         let scores = forward.iter().flat_map(|found| &found.rows).filter(|row| row.law == *law);
         let mut scores: Vec<f64> = scores.filter_map(|row| row.forward.score).collect();
         scores.sort_by(f64::total_cmp);
-        let median = match scores.len() {
-            0 => None,
-            count => Some(f64::midpoint(scores[(count - 1) / 2], scores[count / 2])),
-        };
-        cells.push(Cell::text(median.map_or("–".to_owned(), |median| significant(100.0 * median, 2))));
+        cells.push(Cell::text(match scores.len() {
+            0 => "–".to_owned(),
+            count => significant(100.0 * f64::midpoint(scores[(count - 1) / 2], scores[count / 2]), 2),
+        }));
     }
     Some(cells)
 }

@@ -61,18 +61,17 @@ fn page(
         .block(Block::paragraph(summary(analysis)))
         .blocks(drawn(figures, "record")?)
         .block(Block::Table(tables::holds(analysis)));
-    let mut laws = Section::new("The law, hold by hold");
-    for after in [After::Loading, After::Unloading] {
-        laws = laws.blocks(tables::paper_table(analysis, after).map(Block::Table));
-    }
-    laws = laws.block(Block::Table(tables::exponents(analysis)));
+    let mut laws = Section::new("The law, hold by hold")
+        .blocks(tables::paper_tables(analysis).map(Block::Table))
+        .block(Block::Table(tables::exponents(analysis)));
     for name in ["holds", "residuals", "strain_rates", "trend"] {
         laws = laws.blocks(drawn(figures, name)?);
     }
-    laws = laws.blocks(joint_sentence(analysis).or_else(|| trend_sentence(analysis)).map(Block::Paragraph));
-    laws = laws.blocks(tables::joint(analysis).map(Block::Table));
-    laws = laws.blocks(tables::agreements(analysis).map(Block::Table));
-    laws = laws.blocks(tables::predictions(analysis).map(Block::Table));
+    laws = laws
+        .blocks(joint_sentence(analysis).or_else(|| trend_sentence(analysis)).map(Block::Paragraph))
+        .blocks(tables::joint(analysis).map(Block::Table))
+        .blocks(tables::agreements(analysis).map(Block::Table))
+        .blocks(tables::predictions(analysis).map(Block::Table));
     let mut page = Page::new(&input.title, "Squeeze-and-hold test: phases, strains and the latency law")
         .section(Section::new("Findings").blocks(findings(analysis)))
         .section(record)

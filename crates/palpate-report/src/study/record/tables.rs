@@ -20,12 +20,8 @@ fn order(n: f64) -> Cell {
 const AT_EDGE: &str = "ended at the edge of its range";
 const UNDETERMINED: &str = "undetermined: its standard error is far larger than itself";
 
-fn estimate(estimate: Estimate) -> Cell {
-    estimate_within(estimate, 0.0)
-}
-
 /// An estimate, unless its error is far beyond both itself and `size`, the size of what it could be.
-fn estimate_within(estimate: Estimate, size: f64) -> Cell {
+fn estimate(estimate: Estimate, size: f64) -> Cell {
     match estimate.standard_error {
         Some(error) if error > (2.0 * estimate.value.abs()).max(size) => Cell::missing(UNDETERMINED),
         Some(error) if error > 1e-12 * estimate.value.abs() => Cell::Uncertain(estimate.value, error),
@@ -33,29 +29,25 @@ fn estimate_within(estimate: Estimate, size: f64) -> Cell {
     }
 }
 
+/// A number of a fit, unless the fit ended at the edge of that number.
+fn unless_at_edge(fit: &LatencyFit, edge: Termination, number: Cell) -> Cell {
+    if fit.termination == edge { Cell::missing(AT_EDGE) } else { number }
+}
+
 /// The equilibrium: its error may exceed it where it is near zero, but not what was measured.
 fn equilibrium(hold: &HoldAnalysis, fit: &LatencyFit) -> Cell {
     let largest = hold.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    match fit.termination {
-        Termination::EquilibriumAtBound => Cell::missing(AT_EDGE),
-        _ => estimate_within(fit.equilibrium(), largest),
-    }
+    unless_at_edge(fit, Termination::EquilibriumAtBound, estimate(fit.equilibrium(), largest))
 }
 
 /// A rate, absolute or relative.
 fn rate(fit: &LatencyFit, of: Estimate) -> Cell {
-    match fit.termination {
-        Termination::RateAtBound => Cell::missing(AT_EDGE),
-        _ => estimate(of),
-    }
+    unless_at_edge(fit, Termination::RateAtBound, estimate(of, 0.0))
 }
 
 /// The exponent of a free fit.
 fn free_exponent(fit: &LatencyFit) -> Cell {
-    match fit.termination {
-        Termination::ExponentAtBound => Cell::missing(AT_EDGE),
-        _ => estimate(fit.exponent()),
-    }
+    unless_at_edge(fit, Termination::ExponentAtBound, estimate(fit.exponent(), 0.0))
 }
 
 /// A correction in words, if neither a finding nor first touch tells of it.
@@ -163,8 +155,13 @@ fn rate_bias_note(hold: &HoldAnalysis) -> Option<String> {
     ))
 }
 
+/// Tables I and II of the paper for this record, so far as it has such holds.
+pub(super) fn paper_tables(analysis: &Analysis) -> impl Iterator<Item = Table> {
+    [After::Loading, After::Unloading].into_iter().filter_map(|after| paper_table(analysis, after))
+}
+
 /// Table I (after loading) or II (after unloading) of the paper for this record.
-pub(super) fn paper_table(analysis: &Analysis, after: After) -> Option<Table> {
+fn paper_table(analysis: &Analysis, after: After) -> Option<Table> {
     let n = analysis.across.common_exponent?;
     let (name, number) = match after {
         After::Loading => ("table_1_loading", "I"),
@@ -296,8 +293,7 @@ pub(super) fn agreements(analysis: &Analysis) -> Option<Table> {
 /// All tables that a record gives rise to.
 pub(super) fn all(analysis: &Analysis) -> Vec<Table> {
     let mut tables = vec![holds(analysis)];
-    tables.extend(paper_table(analysis, After::Loading));
-    tables.extend(paper_table(analysis, After::Unloading));
+    tables.extend(paper_tables(analysis));
     tables.push(exponents(analysis));
     tables.extend(joint(analysis));
     tables.extend(predictions(analysis));
@@ -311,8 +307,7 @@ pub(super) fn all(analysis: &Analysis) -> Vec<Table> {
 pub fn analysis_text(analysis: &Analysis, input: &Input) -> String {
     let mut text = String::new();
     let mut tables = vec![holds(analysis)];
-    tables.extend(paper_table(analysis, After::Loading));
-    tables.extend(paper_table(analysis, After::Unloading));
+    tables.extend(paper_tables(analysis));
     if analysis.specimen.is_none() {
         tables.push(fits(analysis));
     }
