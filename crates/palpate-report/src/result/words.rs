@@ -31,8 +31,13 @@ pub(crate) fn percent(share: f64) -> String {
 pub fn slips_word(forecast: SlipForecast) -> &'static str {
     match forecast {
         SlipForecast::Unknown => "not_known_yet",
-        SlipForecast::Known { low, .. } if low == TimeToSlip::Never => "never",
-        SlipForecast::Known { best, .. } if best == TimeToSlip::Never => "perhaps_never",
+        SlipForecast::Known {
+            low: TimeToSlip::Never, ..
+        } => "never",
+        SlipForecast::Known {
+            best: TimeToSlip::Never,
+            ..
+        } => "perhaps_never",
         SlipForecast::Known { .. } => "after",
     }
 }

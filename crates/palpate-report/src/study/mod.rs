@@ -4,7 +4,7 @@
 //!
 //! | room | study |
 //! |---|---|
-//! | `bundle.rs`, `grid.rs`, `findings.rs` | the files of a study, in memory until all exist; panels in rows; what was found, gathered over the holds |
+//! | `bundle.rs`, `grid.rs`, `findings.rs` | the files of a study, in memory until all exist; figures of many panels, panels of many figures; what was found, gathered over the holds |
 //! | `simulate/` | simulated contacts, waves, sweeps |
 //! | `calibration/` | a whole record calibrated, and what the material predicts |
 //! | `grip/` | a planned grip |

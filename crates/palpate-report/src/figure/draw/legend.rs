@@ -16,9 +16,8 @@ const INSET: f64 = 4.0;
 pub(crate) struct Entry {
     label: String,
     line: Option<Style>,
-    points: Option<Style>,
-    /// Whether the points are so many that they are drawn as dots.
-    crowd: bool,
+    /// Of points also whether they are so many that they are drawn as dots.
+    points: Option<(Style, bool)>,
     band: Option<Style>,
 }
 
@@ -39,14 +38,11 @@ pub(crate) fn entries(panel: &Panel) -> Vec<Entry> {
             });
             entries.len() - 1
         });
-        let style = Some(layer.role.style());
+        let style = layer.role.style();
         match &layer.mark {
-            Mark::Line { .. } => entries[index].line = style,
-            Mark::Points { x, .. } => {
-                entries[index].points = style;
-                entries[index].crowd = x.len() > series::CROWD;
-            }
-            _ => entries[index].band = style,
+            Mark::Line { .. } => entries[index].line = Some(style),
+            Mark::Points { x, .. } => entries[index].points = Some((style, x.len() > series::CROWD)),
+            _ => entries[index].band = Some(style),
         }
     }
     entries
@@ -118,11 +114,11 @@ fn draw_entry(svg: &mut Svg, entry: &Entry, x: f64, middle: f64) {
         let d = polyline(&[(x, middle), (x + SAMPLE, middle)], false);
         svg.path(&d, &series::line_attributes(style));
     }
-    if let Some(style) = entry.points.filter(|_| entry.crowd) {
-        let dots = [-4.5, 0.0, 4.5].map(|along| (x + SAMPLE / 2.0 + along, middle));
-        series::draw_dots(svg, &dots, style);
-    } else if let Some(style) = entry.points {
-        series::draw_markers(svg, &[(x + SAMPLE / 2.0, middle)], style, 2.0);
+    let centre = x + SAMPLE / 2.0;
+    match entry.points {
+        Some((style, true)) => series::draw_dots(svg, &[-4.5, 0.0, 4.5].map(|along| (centre + along, middle)), style),
+        Some((style, false)) => series::draw_markers(svg, &[(centre, middle)], style, 2.0),
+        None => {}
     }
     let baseline = middle + 0.36 * CAPTION;
     svg.text(x + SAMPLE + SPACE, baseline, Anchor::Start, font(CAPTION), &entry.label);

@@ -27,12 +27,12 @@ pub(in crate::study) fn all(record: &ComparedRecord, suffix: &str) -> Vec<Figure
 }
 
 /// A figure of one panel a hold, `all` of them or the first.
-fn by_hold<T>(name: String, caption: String, row_mm: f64, holds: &[T], panel: impl Fn(&T) -> Panel) -> Option<Figure> {
+fn by_hold<T>(name: &str, caption: String, row_mm: f64, holds: &[T], panel: impl Fn(&T) -> Panel) -> Option<Figure> {
     let panels: Vec<Panel> = holds.iter().take(MOST_PANELS).map(panel).collect();
     let columns = columns(panels.len());
     let more = first_of(panels.len(), holds.len(), "holds");
     let row_mm = if columns == 1 { 1.4 * row_mm } else { row_mm };
-    grid(&name, caption + &more, panels, columns, row_mm)
+    grid(name, caption + &more, panels, columns, row_mm)
 }
 
 /// Forward error of each law after each cut.
@@ -51,7 +51,7 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     };
     let left = if all > laws.len() { format!(" The {} best of {all} laws.", laws.len()) } else { String::new() };
     by_hold(
-        format!("forward_errors{suffix}"),
+        &format!("forward_errors{suffix}"),
         format!(
             "What each law, fitted to the first part of a hold, foretells of the rest: root mean square error in % of the change of the signal.{left}"
         ),
@@ -106,7 +106,7 @@ fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
         panel
     };
     by_hold(
-        format!("law_residuals{suffix}"),
+        &format!("law_residuals{suffix}"),
         format!(
             "What the best laws leave over when fitted to the whole hold (measured less fitted, averaged over {STRETCHES} stretches of ln t). Noise scatters about zero; a wave is shape that the law misses."
         ),
@@ -144,7 +144,7 @@ fn spectra(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let spectrum = |comparison: &'_ Comparison| comparison.rows.iter().find_map(|row| row.spectrum.clone());
     let holds: Vec<_> = record.verdicts().filter_map(|(hold, found)| Some((hold, spectrum(found)?))).collect();
     by_hold(
-        format!("spectra{suffix}"),
+        &format!("spectra{suffix}"),
         "The dense spectrum of each hold: amplitude over relaxation time; the line marks the length of the hold. Where the slowest time carries weight the spectrum is open-ended, and its equilibrium is a convention of the grid.".to_owned(),
         62.0,
         &holds,

@@ -67,13 +67,10 @@ pub(in crate::study) fn strain_rates(analysis: &Analysis, name: &str) -> Option<
         most = most.max(shown.len());
         panels.push(panel.title(title));
     }
-    if panels.is_empty() {
-        return None;
-    }
     // Long legends stand above the axes and need room of their own.
     let height = if most > 5 { 84.0 } else { 66.0 };
     let figure = Figure::new(name, caption).arrangement(Arrangement::SideBySide).height_mm(height);
-    Some(figure.panels(panels))
+    (!panels.is_empty()).then(|| figure.panels(panels))
 }
 
 /// At most `most` holds, spread over the displacements, in the order of the record.

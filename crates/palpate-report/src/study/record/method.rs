@@ -11,10 +11,8 @@ const METHOD: &str = "Phases are cut from the record without labels. Strain is f
 
 /// The method in words, then the settings it ran with.
 pub(super) fn blocks(analysis: &Analysis) -> Vec<Block> {
-    let mut pairs = phases(analysis);
-    pairs.extend(touch(analysis));
-    pairs.extend(fits(analysis));
-    let pairs = pairs.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+    let pairs = [phases(analysis), touch(analysis), fits(analysis)].into_iter().flatten();
+    let pairs = pairs.map(|(name, value)| (name.to_owned(), value)).collect();
     vec![Block::paragraph(METHOD), Block::KeyValues(pairs)]
 }
 
