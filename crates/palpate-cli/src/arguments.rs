@@ -7,7 +7,7 @@ use palpate::calibrate::RateLaw;
 use palpate::laws::Law;
 use palpate_files::description::{schema_material, schema_protocol, schema_test};
 use palpate_jobs as jobs;
-use palpate_jobs::typed::{Choice, coverage, exponent, force, law, length, one_of, seconds, time};
+use palpate_jobs::typed::{Choice, coverage, exponent, force, law, length, number, one_of, seconds, time};
 use palpate_report::document::{
     AnalysisDocument, CalibrationDocument, ComparisonDocument, GripDocument, ReproductionDocument, WatchDocument,
 };
@@ -639,19 +639,17 @@ fn named(laws: &[Law]) -> String {
 }
 
 fn deviation(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(deviation) if (0.0..=10.0).contains(&deviation) => Ok(deviation),
-        _ => Err("expected a number from 0 to 10".to_owned()),
-    }
+    number(text, |deviation| (0.0..=10.0).contains(&deviation), "a number from 0 to 10")
 }
 
 fn replay_speed(text: &str) -> Result<ReplaySpeed, String> {
     match text.trim() {
         "max" => Ok(ReplaySpeed::Max),
-        number => match number.trim_start_matches('×').parse::<f64>() {
-            Ok(times) if times.is_finite() && times > 0.0 => Ok(ReplaySpeed::Times(times)),
-            _ => Err("expected a number above 0, such as 10, or max".to_owned()),
-        },
+        times => {
+            let times = times.trim_start_matches('×');
+            let is_speed = |times: f64| times.is_finite() && times > 0.0;
+            number(times, is_speed, "a number above 0, such as 10, or max").map(ReplaySpeed::Times)
+        }
     }
 }
 

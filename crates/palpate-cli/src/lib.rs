@@ -19,6 +19,7 @@ mod terminal;
 use std::ffi::OsString;
 
 use clap::Parser;
+use palpate_jobs::Verdict;
 
 use crate::arguments::{Arguments, Command};
 
@@ -54,7 +55,8 @@ where
         Command::Completions(arguments) => commands::completions::run(&arguments),
     };
     match result {
-        Ok(verdict) => verdict.exit_code(),
+        Ok(Verdict::Positive) => 0,
+        Ok(Verdict::Negative) => 1,
         Err(error) => {
             failure::tell(&error);
             2

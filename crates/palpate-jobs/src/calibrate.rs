@@ -147,10 +147,7 @@ impl Calibrate {
             profiles,
         };
         let notes = few.into_iter().collect();
-        Ok(Outcome {
-            notes,
-            ..Outcome::of(Calibrated { record, confidence })
-        })
+        Ok(Outcome::of(Calibrated { record, confidence }).noted(notes))
     }
 }
 

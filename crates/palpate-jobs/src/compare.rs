@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::without;
 use crate::input::{Described, Measurement, NamedRecords, called};
-use crate::{ErrorKind, JobError, Outcome, Results, Verdict};
+use crate::{ErrorKind, JobError, Outcome, Results};
 
 /// Compare laws: which one predicts a hold, how sure that is, and what another would cost.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -209,11 +209,8 @@ impl Compared {
     }
 
     fn outcome(self) -> Outcome<Self> {
-        let verdict = Verdict::of(!self.records.is_empty());
-        Outcome {
-            verdict,
-            ..Outcome::of(self)
-        }
+        let compared = !self.records.is_empty();
+        Outcome::of(self).answered(compared)
     }
 
     fn settings(&self) -> ComparisonSettingsDocument {

@@ -49,7 +49,7 @@ impl Convert {
         if file.record.displacement().is_none() {
             notes.push("no column of displacement was found: the table has time and force alone".to_owned());
         }
-        let options = opened.described().options();
+        let options = opened.described.options();
         if options.corrections != CorrectionOptions::default() {
             let before = file.record.corrections().len();
             let place = file.path.display().to_string();
@@ -57,10 +57,7 @@ impl Convert {
             notes.extend(done(&file, before));
         }
         let origin = origin(&file, opened)?;
-        Ok(Outcome {
-            notes,
-            ..Outcome::of(Converted { file, origin })
-        })
+        Ok(Outcome::of(Converted { file, origin }).noted(notes))
     }
 }
 
@@ -100,7 +97,7 @@ fn origin(file: &RecordFile, opened: &OpenedFile<'_>) -> Result<serde_json::Valu
         "input": opened.input(file, None)?,
         "columns": file.columns,
         "corrections": file.record.corrections(),
-        "test_toml": opened.described().text,
+        "test_toml": opened.described.text,
         "software": Software::this(),
     }))
 }

@@ -5,6 +5,7 @@ use std::io;
 use std::path::Path;
 
 use palpate::analysis::AnalysisError;
+use palpate::simulate::SimulateError;
 use palpate::watch::Cancelled;
 use palpate_files::description::DescriptionError;
 use palpate_files::record::ReadError;
@@ -75,6 +76,14 @@ impl JobError {
         Self::new(ErrorKind::File(error.kind()), error, None).of(path.display())
     }
 
+    /// Of a simulation that cannot go on.
+    pub(crate) fn simulation(error: SimulateError) -> Self {
+        match error {
+            SimulateError::Cancelled(cancelled) => cancelled.into(),
+            error => Self::new(ErrorKind::Model, error, None),
+        }
+    }
+
     /// Of an analysis, with its hint.
     pub(crate) fn analysis(error: &AnalysisError, place: &str) -> Self {
         match error {
@@ -83,16 +92,16 @@ impl JobError {
         }
     }
 
-    /// The whole message with the file in front, options as plain names.
-    fn told(&self) -> String {
+    /// The message with the file in front, options spelled as a front end writes them.
+    pub fn told(&self, spell: impl Fn(&str) -> String) -> String {
         let place = self.place.as_ref().map_or(String::new(), |place| format!("{place}: "));
-        format!("{place}{}", self.message)
+        format!("{place}{}", spell(&self.message))
     }
 }
 
 impl fmt::Display for JobError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&spelled(&self.told(), &|name, _| name.to_owned()))
+        f.write_str(&self.told(|message| spelled(message, &|name, _| name.to_owned())))
     }
 }
 
@@ -116,8 +125,7 @@ impl From<ReadError> for JobError {
             ReadError::File(error) => error.io_kind().map_or(ErrorKind::Record, ErrorKind::File),
             _ => ErrorKind::Record,
         };
-        let hint = error.hint();
-        Self::new(kind, error, hint)
+        Self::new(kind, &error, error.hint())
     }
 }
 
@@ -127,8 +135,7 @@ impl From<DescriptionError> for JobError {
             DescriptionError::File(error) => error.io_kind().map_or(ErrorKind::Option, ErrorKind::File),
             _ => ErrorKind::Option,
         };
-        let hint = error.hint();
-        Self::new(kind, error, hint)
+        Self::new(kind, &error, error.hint())
     }
 }
 

@@ -7,15 +7,14 @@ use palpate::grip::{Band, Control, Grasp, Grip, GripError, Limits, Objective, Qu
 use palpate::watch::Watch;
 use palpate_files::description::{MaterialFile, read_material};
 use palpate_report::document::GripDocument;
-use palpate_report::figure::Figure;
 use palpate_report::result::GrippedBody;
-use palpate_report::study::{Bundle, Pictures, grip_bundle, grip_figure, grip_text};
+use palpate_report::study::{Bundle, Pictures, grip_bundle, grip_text};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::options::checked_confidence;
 use crate::output::sha256;
-use crate::{ErrorKind, JobError, Outcome, Results, Verdict};
+use crate::{ErrorKind, JobError, Outcome, Results};
 
 /// Plan a grip of a calibrated body between two jaws: how long it holds, and how to squeeze. Mass and friction have to be given.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -304,9 +303,9 @@ impl PlanGrip {
         checked_confidence(self.confidence)?;
         let grip = self.gripper(&source.file.material).map_err(|error| ungripped(&error))?;
         let answer = grip.answer_watched(&question, watch).map_err(|error| ungripped(&error))?;
-        let (verdict, notes) = match answer.holds() {
-            Ok(holds) => (Verdict::of(holds), Vec::new()),
-            Err(error) if error.is_answer() => (Verdict::Negative, vec![error.hint().to_owned()]),
+        let (holds, notes) = match answer.holds() {
+            Ok(holds) => (holds, Vec::new()),
+            Err(error) if error.is_answer() => (false, vec![error.hint().to_owned()]),
             Err(error) => return Err(ungripped(&error)),
         };
         let result = GrippedBody {
@@ -315,15 +314,7 @@ impl PlanGrip {
             grip,
             answer,
         };
-        Ok(Outcome { result, verdict, notes })
-    }
-}
-
-impl Outcome<GrippedBody<'_>> {
-    /// Force, margin and displacement over time.
-    #[must_use]
-    pub fn figure(&self) -> Figure {
-        grip_figure(&self.result, "grip")
+        Ok(Outcome::of(result).answered(holds).noted(notes))
     }
 }
 

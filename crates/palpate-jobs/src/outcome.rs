@@ -14,23 +14,6 @@ pub enum Verdict {
     Negative,
 }
 
-impl Verdict {
-    /// Of a condition that holds in a positive one.
-    #[must_use]
-    pub fn of(positive: bool) -> Self {
-        if positive { Self::Positive } else { Self::Negative }
-    }
-
-    /// The exit code of a command: 0 or 1.
-    #[must_use]
-    pub fn exit_code(self) -> u8 {
-        match self {
-            Self::Positive => 0,
-            Self::Negative => 1,
-        }
-    }
-}
-
 /// The outcome of a job. Text, document and files are made of its result when they are wanted; nothing is computed again.
 #[derive(Debug, Clone)]
 pub struct Outcome<R> {
@@ -76,5 +59,19 @@ impl<R> Outcome<R> {
             verdict: Verdict::Positive,
             notes: Vec::new(),
         }
+    }
+
+    /// The same, with what to know beside it.
+    #[must_use]
+    pub fn noted(mut self, notes: Vec<String>) -> Self {
+        self.notes = notes;
+        self
+    }
+
+    /// The same, where the answer may be a no.
+    #[must_use]
+    pub fn answered(mut self, positive: bool) -> Self {
+        self.verdict = if positive { Verdict::Positive } else { Verdict::Negative };
+        self
     }
 }

@@ -12,7 +12,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::options::checked_confidence;
-use crate::{ErrorKind, JobError, Outcome};
+use crate::{JobError, Outcome};
 
 /// Predict what a calibrated body does under a protocol, with intervals.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -71,12 +71,10 @@ impl Predict {
         at.dedup();
         let mut predict = |sampling: &Sampling| {
             material.predict_watched(protocol.drive(), sampling, confidence, watch).map_err(|error| {
-                if let SimulateError::Cancelled(cancelled) = error {
-                    return cancelled.into();
-                }
                 let beyond = matches!(error, SimulateError::SampleTime { .. });
                 let hint = beyond.then(|| "ask for times inside the protocol, or lengthen its last hold".to_owned());
-                JobError::new(ErrorKind::Model, error, hint).of(place)
+                let refused = JobError::simulation(error).of(place);
+                JobError { hint, ..refused }
             })
         };
         // Single times make no curve.
@@ -89,14 +87,12 @@ impl Predict {
         let notes = open.into_iter().chain(beyond).collect();
         let caption = format!("What {name} does, by its calibrated law.");
         let caption = protocol.title.as_deref().map_or(caption.clone(), |title| format!("{title}. {caption}"));
-        Ok(Outcome {
-            notes,
-            ..Outcome::of(Predicted {
-                prediction,
-                course,
-                caption,
-            })
-        })
+        let predicted = Predicted {
+            prediction,
+            course,
+            caption,
+        };
+        Ok(Outcome::of(predicted).noted(notes))
     }
 }
 

@@ -5,8 +5,8 @@ use palpate::number::significant;
 use palpate::record::{Record, RecordError};
 use palpate::segment::{After, ContactChoice, RelaxationType};
 use palpate::simulate::{
-    ContactEventKind, ContactModel, Motion, Sampling, Separation, SimulateError, Trajectory, WAVE_TOLERANCE,
-    simulate_watched, strain_wave_within,
+    ContactEventKind, ContactModel, Motion, Sampling, Separation, Trajectory, WAVE_TOLERANCE, simulate_watched,
+    strain_wave_within,
 };
 use palpate::test_problems::{paper_ball, paper_test_a, paper_test_b};
 use palpate::watch::{Progress, Watch};
@@ -16,7 +16,7 @@ use palpate_report::study::{Bundle, Pictures, reproduction_bundle, reproduction_
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{ErrorKind, JobError, Outcome, Results, Verdict};
+use crate::{ErrorKind, JobError, Outcome, Results};
 
 /// Start of the last unloading of test (a) in the paper's simulation, s.
 const LAST_UNLOADING: f64 = 53.0;
@@ -42,10 +42,8 @@ impl Reproduce {
             checks: Vec::new(),
         };
         result.checks = checks(&result);
-        Ok(Outcome {
-            verdict: Verdict::of(result.all_passed()),
-            ..Outcome::of(result)
-        })
+        let passed = result.all_passed();
+        Ok(Outcome::of(result).answered(passed))
     }
 }
 
@@ -66,17 +64,13 @@ impl Results for Reproduction {
 }
 
 fn reproduced(motion: &Motion, model: &ContactModel, watch: &mut dyn Watch) -> Result<ReproducedTest, JobError> {
-    let simulated = |error: SimulateError| match error {
-        SimulateError::Cancelled(cancelled) => cancelled.into(),
-        error => JobError::new(ErrorKind::Model, error, None),
-    };
     watch.report(Progress::open("simulating and re-identifying the paper's tests", 0))?;
     let sampling = Sampling::Rate(SAMPLE_RATE);
     let free = ContactModel {
         separation: Separation::Unilateral,
         ..model.clone()
     };
-    let bonded = simulate_watched(motion, model, &sampling, watch).map_err(simulated)?;
+    let bonded = simulate_watched(motion, model, &sampling, watch).map_err(JobError::simulation)?;
     let record = Record::new(bonded.time.clone(), Some(bonded.displacement.clone()), bonded.force.clone());
     let record = record.map_err(|error: RecordError| JobError::new(ErrorKind::Record, error, None))?;
     let options = AnalysisOptions {
@@ -96,8 +90,9 @@ fn reproduced(motion: &Motion, model: &ContactModel, watch: &mut dyn Watch) -> R
             AnalysisError::Cancelled(cancelled) => cancelled.into(),
             error => JobError::new(ErrorKind::Record, error, None),
         })?,
-        unilateral: simulate_watched(motion, &free, &sampling, watch).map_err(simulated)?,
-        wave: strain_wave_within(motion, model, &Sampling::Rate(10.0), WAVE_TOLERANCE, watch).map_err(simulated)?,
+        unilateral: simulate_watched(motion, &free, &sampling, watch).map_err(JobError::simulation)?,
+        wave: strain_wave_within(motion, model, &Sampling::Rate(10.0), WAVE_TOLERANCE, watch)
+            .map_err(JobError::simulation)?,
         bonded,
     })
 }

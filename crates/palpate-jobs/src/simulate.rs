@@ -95,15 +95,8 @@ impl Simulate {
             let depth = (1e7 * event.contact_displacement).round() / 1e4 + 0.0;
             notes.push(format!("contact {what} at {:.4} s, surface at {depth:.4} mm", event.time));
         }
-        let result = Simulated {
-            trajectory,
-            scene,
-            job: self,
-        };
-        Ok(Outcome {
-            notes,
-            ..Outcome::of(result)
-        })
+        let job = self;
+        Ok(Outcome::of(Simulated { trajectory, scene, job }).noted(notes))
     }
 
     /// The body of the protocol, driven by a record from its first row on.
@@ -209,7 +202,14 @@ impl Simulated {
     /// The strain of every layer as CSV.
     #[must_use]
     pub fn wave_csv(wave: &StrainWave) -> String {
-        wave_table(wave).to_csv()
+        let rows: Vec<usize> = (0..wave.time.len()).collect();
+        let mut table = Table::of("wave", "Strain of every layer.", &rows)
+            .column("Time", "time_s", "s", |row| Cell::Number(wave.time[*row], 6));
+        for (index, strain) in wave.strain.iter().enumerate() {
+            let (heading, key) = (format!("Layer {}", index + 1), format!("strain_layer_{}", index + 1));
+            table = table.column(heading, key, "", |row| Cell::Number(strain[*row], 6));
+        }
+        table.table().to_csv()
     }
 
     /// The same as the figure in the file at `path`.
@@ -275,10 +275,7 @@ impl Scene {
     }
 
     fn refused(&self, error: SimulateError) -> JobError {
-        match error {
-            SimulateError::Cancelled(cancelled) => cancelled.into(),
-            error => JobError::new(ErrorKind::Model, error, None).of(&self.place),
-        }
+        JobError::simulation(error).of(&self.place)
     }
 
     fn caption(&self, what: &str) -> String {
@@ -333,31 +330,20 @@ fn latency(model: &ContactModel) -> String {
     format!("n = {}, v = {:e} 1/s, {layers} layers", law.exponent(), law.rate_coefficient())
 }
 
-fn wave_table(wave: &StrainWave) -> Table {
-    let mut table = Table::new("wave", "Strain of every layer.").column("Time", "time_s", "s");
-    for layer in 1..=wave.strain.len() {
-        table = table.column(format!("Layer {layer}"), format!("strain_layer_{layer}"), "");
-    }
-    table.rows = (0..wave.time.len())
-        .map(|row| {
-            let strains = wave.strain.iter().map(|strain| Cell::Number(strain[row], 6));
-            std::iter::once(Cell::Number(wave.time[row], 6)).chain(strains).collect()
-        })
-        .collect();
-    table
-}
-
 fn energy_table(energy: &Energy) -> Table {
-    let mut table = Table::new("energy", "Work of the jaw and what becomes of it.")
-        .column("Time", "time_s", "s")
-        .column("Work", "work_j", "J")
-        .column("Given back", "given_back_j", "J");
-    let mut columns = vec![&energy.time, &energy.work, &energy.given_back];
+    let rows: Vec<usize> = (0..energy.time.len()).collect();
+    let at = |row: usize, series: &[f64]| Cell::Number(series[row], 9);
+    let mut table = Table::of("energy", "Work of the jaw and what becomes of it.", &rows)
+        .column("Time", "time_s", "s", |row| at(*row, &energy.time))
+        .column("Work", "work_j", "J", |row| at(*row, &energy.work))
+        .column("Given back", "given_back_j", "J", |row| at(*row, &energy.given_back));
     if let Some(split) = &energy.split {
-        table = table.column("Stored", "stored_j", "J").column("Lost", "lost_j", "J");
-        columns.extend([&split.stored, &split.lost]);
+        table = table.column("Stored", "stored_j", "J", |row| at(*row, &split.stored)).column(
+            "Lost",
+            "lost_j",
+            "J",
+            |row| at(*row, &split.lost),
+        );
     }
-    let row = |i: usize| columns.iter().map(|column| Cell::Number(column[i], 9)).collect();
-    table.rows = (0..energy.time.len()).map(row).collect();
-    table
+    table.table()
 }

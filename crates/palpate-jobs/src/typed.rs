@@ -159,15 +159,21 @@ fn positive(text: &str, dimension: Dimension) -> Result<f64, String> {
     }
 }
 
+/// A number without a unit that is one of those `expected`.
+///
+/// # Errors
+/// What was expected.
+pub fn number(text: &str, is_one: impl Fn(f64) -> bool, expected: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|number| is_one(*number));
+    number.ok_or_else(|| format!("expected {expected}"))
+}
+
 /// An exponent of a law.
 ///
 /// # Errors
 /// What was expected.
 pub fn exponent(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(n) if n.is_finite() && n > 0.0 => Ok(n),
-        _ => Err("expected exponents above 0, such as 1,3,5".to_owned()),
-    }
+    number(text, |n| n.is_finite() && n > 0.0, "exponents above 0, such as 1,3,5")
 }
 
 /// From where in a hold to fit.
@@ -199,10 +205,7 @@ pub fn law(text: &str) -> Result<Law, String> {
 /// # Errors
 /// What was expected.
 pub fn share(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(share) if share > 0.0 && share < 1.0 => Ok(share),
-        _ => Err("expected shares of the hold between 0 and 1, such as 0.25,0.5".to_owned()),
-    }
+    number(text, |share| share > 0.0 && share < 1.0, "shares of the hold between 0 and 1, such as 0.25,0.5")
 }
 
 /// A coverage of intervals.
@@ -210,10 +213,7 @@ pub fn share(text: &str) -> Result<f64, String> {
 /// # Errors
 /// What was expected.
 pub fn coverage(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(share) if share > 0.0 && share < 1.0 => Ok(share),
-        _ => Err("expected a coverage between 0 and 1, such as 0.95".to_owned()),
-    }
+    number(text, |share| share > 0.0 && share < 1.0, "a coverage between 0 and 1, such as 0.95")
 }
 
 /// Which samples are fitted.

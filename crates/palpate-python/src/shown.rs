@@ -1,11 +1,11 @@
 //! Classes that show what a result says.
 
-/// The methods of such a class: a getter for each array and for each value, a pickle of what its objects hold, and methods of its own. The
-/// arrays are the columns of a table too.
+/// The methods of such a class: a getter for each array and for each value, with Python where it needs that, a pickle of what its objects
+/// hold, and methods of its own. The arrays are the columns of a table too.
 macro_rules! shown {
     (
         $class:ident: $me:ident
-        values { $($(#[$doc:meta])* $name:ident: $of:ty = $value:expr,)* }
+        values { $($(#[$doc:meta])* $name:ident$(<$life:lifetime>($py:ident))?: $of:ty = $value:expr,)* }
         methods { $($methods:tt)* }
     ) => {
         #[pymethods]
@@ -13,7 +13,7 @@ macro_rules! shown {
             $(
                 $(#[$doc])*
                 #[getter]
-                fn $name(&$me) -> $of {
+                fn $name$(<$life>)?(&$me $(, $py: Python<$life>)?) -> $of {
                     $value
                 }
             )*
@@ -44,15 +44,15 @@ macro_rules! shown {
 
         $crate::shown::shown! {
             $class: $me
-            values { $($values)* }
+            values {
+                $($(#[$about])* $array<'py>(py): Bound<'py, numpy::PyArray1<f64>> = numpy::PyArray1::from_vec(py, $numbers),)*
+                $($values)*
+            }
             methods {
-                $(
-                    $(#[$about])*
-                    #[getter]
-                    fn $array<'py>(&$me, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
-                        numpy::PyArray1::from_vec(py, $numbers)
-                    }
-                )*
+                #[pyo3(signature = (requested_schema=None))]
+                fn __arrow_c_stream__(&self, py: Python<'_>, requested_schema: Option<Py<PyAny>>) -> PyResult<Py<PyAny>> {
+                    self.to_arrow()?.__arrow_c_stream__(py, requested_schema)
+                }
 
                 $($methods)*
             }

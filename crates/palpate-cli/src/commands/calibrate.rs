@@ -8,22 +8,16 @@ use crate::arguments::{CalibrateArguments, Format};
 use crate::progress::Bars;
 use crate::terminal::{notes, print};
 
-pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Verdict, JobError> {
-    let CalibrateArguments {
-        record,
-        test,
-        out,
-        figure,
-        ..
-    } = arguments;
-    keep_apart([record].into_iter().chain(test), out.iter().chain(figure))?;
+pub(crate) fn run(asked: &CalibrateArguments) -> Result<Verdict, JobError> {
+    let (out, figure) = (&asked.out, &asked.figure);
+    keep_apart([&asked.record].into_iter().chain(&asked.test), out.iter().chain(figure))?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
-    let described = Described::read(test.as_deref(), arguments.part.as_deref())?;
-    let opened = OpenedFile::open(record, &described)?;
+    let described = Described::read(asked.test.as_deref(), asked.part.as_deref())?;
+    let opened = OpenedFile::open(&asked.record, &described)?;
     notes(&opened.notes());
     let measured = opened.measurement(opened.only()?, &mut Bars::default())?;
     notes(&measured.notes);
-    let outcome = arguments.job().run(measured, &mut Bars::default())?;
+    let outcome = asked.job().run(measured, &mut Bars::default())?;
     notes(&outcome.notes);
     let drawn = figure.as_ref().map(|path| picture(path, &outcome.result.figure())).transpose()?;
     if let (Some(path), Some(material)) = (out, outcome.result.material()) {
@@ -32,7 +26,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Verdict, JobError> {
     if let (Some(path), Some(bytes)) = (figure, drawn) {
         write_file(path, &bytes)?;
     }
-    print(&match arguments.format {
+    print(&match asked.format {
         Format::Text => outcome.result.text(),
         Format::Json => outcome.result.json()?,
     })?;

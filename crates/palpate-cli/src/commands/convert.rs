@@ -8,11 +8,11 @@ use crate::arguments::ConvertArguments;
 use crate::progress::Bars;
 use crate::terminal::{note, notes};
 
-pub(crate) fn run(arguments: &ConvertArguments) -> Result<Verdict, JobError> {
-    let ConvertArguments { record, test, out, .. } = arguments;
-    keep_apart([record].into_iter().chain(test), [out])?;
+pub(crate) fn run(asked: &ConvertArguments) -> Result<Verdict, JobError> {
+    let (record, out) = (&asked.record, &asked.out);
+    keep_apart([record].into_iter().chain(&asked.test), [out])?;
     Converted::check_name(out)?;
-    let described = Described::read(test.as_deref(), arguments.part.as_deref())?;
+    let described = Described::read(asked.test.as_deref(), asked.part.as_deref())?;
     let opened = OpenedFile::open(record, &described)?;
     notes(&opened.notes());
     let outcome = Convert {}.run(&opened, &mut Bars::default())?;

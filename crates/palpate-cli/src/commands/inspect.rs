@@ -8,23 +8,17 @@ use crate::arguments::InspectArguments;
 use crate::progress::Bars;
 use crate::terminal::{note, notes, print};
 
-pub(crate) fn run(arguments: &InspectArguments) -> Result<Verdict, JobError> {
-    let InspectArguments {
-        record,
-        test,
-        figure,
-        write_test,
-        ..
-    } = arguments;
+pub(crate) fn run(asked: &InspectArguments) -> Result<Verdict, JobError> {
+    let (test, figure, write_test) = (&asked.test, &asked.figure, &asked.write_test);
     // Without a list of machines there is a record: the command line asks for one.
-    let Some(record) = record.as_ref().filter(|_| !arguments.machines) else {
+    let Some(record) = asked.record.as_ref().filter(|_| !asked.machines) else {
         print(&machines_text())?;
         return Ok(Verdict::Positive);
     };
     keep_apart([record].into_iter().chain(test), figure.iter().chain(write_test))?;
     figure.as_deref().map_or(Ok(()), check_figure)?;
     write_test.as_deref().map_or(Ok(()), check_new)?;
-    let described = Described::read(test.as_deref(), arguments.part.as_deref())?;
+    let described = Described::read(test.as_deref(), asked.part.as_deref())?;
     let opened = OpenedFile::open(record, &described)?;
     let job = Inspect {
         only: figure.is_some() || write_test.is_some(),

@@ -8,66 +8,51 @@ use crate::arguments::SimulateArguments;
 use crate::progress::Bars;
 use crate::terminal::{notes, print_with};
 
-pub(crate) fn run(arguments: &SimulateArguments) -> Result<Verdict, JobError> {
-    let SimulateArguments {
-        protocol,
-        drive,
-        test,
-        out,
-        ..
-    } = arguments;
-    let SimulateArguments {
-        figure,
-        hysteresis,
-        wave,
-        strain_map,
-        energy,
-        energy_by_step,
-        energy_by_cycle,
-        ..
-    } = arguments;
-    let tables = [out, wave, energy, energy_by_step, energy_by_cycle].into_iter().flatten();
-    let figures = [figure, hysteresis, strain_map].into_iter().flatten();
-    keep_apart([protocol].into_iter().chain(drive).chain(test), tables.clone().chain(figures))?;
-    tables.into_iter().try_for_each(|path| check_series(path))?;
+pub(crate) fn run(asked: &SimulateArguments) -> Result<Verdict, JobError> {
+    let series = [&asked.out, &asked.wave, &asked.energy, &asked.energy_by_step, &asked.energy_by_cycle];
+    let figures = [&asked.figure, &asked.hysteresis, &asked.strain_map].into_iter().flatten();
+    let series = series.into_iter().flatten();
+    let reads = [&asked.protocol].into_iter().chain(&asked.drive).chain(&asked.test);
+    keep_apart(reads, series.clone().chain(figures))?;
+    series.into_iter().try_for_each(|path| check_series(path))?;
     let bars = &mut Bars::default();
-    let described = Described::read(test.as_deref().filter(|_| drive.is_some()), None)?;
-    let opened = drive.as_ref().map(|path| OpenedFile::open(path, &described)).transpose()?;
+    let described = Described::read(asked.test.as_deref().filter(|_| asked.drive.is_some()), None)?;
+    let opened = asked.drive.as_ref().map(|path| OpenedFile::open(path, &described)).transpose()?;
     let measured = opened.map(|opened| opened.measurement(opened.only()?, bars)).transpose()?;
     let driver = measured.as_ref().map(|measured| (&measured.record, measured.input.path.as_str()));
     measured.iter().for_each(|measured| notes(&measured.notes));
-    let outcome = arguments.job().run(protocol, driver, bars)?;
+    let outcome = asked.job().run(&asked.protocol, driver, bars)?;
     let simulated = &outcome.result;
     // Everything is made before anything is written.
     let mut made = Vec::new();
-    if let Some(path) = figure {
+    if let Some(path) = &asked.figure {
         made.push((path, picture(path, &simulated.figure(path))?));
     }
-    if let Some(path) = hysteresis {
+    if let Some(path) = &asked.hysteresis {
         made.push((path, picture(path, &simulated.hysteresis(path, bars)?)?));
     }
-    if let Some(path) = energy_by_step {
+    if let Some(path) = &asked.energy_by_step {
         made.push((path, simulated.energy_by_step(bars)?.into_bytes()));
     }
-    if let Some(path) = energy_by_cycle {
+    if let Some(path) = &asked.energy_by_cycle {
         made.push((path, simulated.energy_by_cycle(bars)?.into_bytes()));
     }
-    if wave.is_some() || strain_map.is_some() {
+    if asked.wave.is_some() || asked.strain_map.is_some() {
         let strains = simulated.wave(bars)?;
-        if let Some(path) = strain_map {
+        if let Some(path) = &asked.strain_map {
             made.push((path, picture(path, &simulated.wave_figure(&strains, path))?));
         }
-        if let Some(path) = wave {
+        if let Some(path) = &asked.wave {
             made.push((path, Simulated::wave_csv(&strains).into_bytes()));
         }
     }
-    if let Some(path) = energy {
+    if let Some(path) = &asked.energy {
         made.push((path, simulated.energy(bars)?.into_bytes()));
     }
     for (path, bytes) in &made {
         write_file(path, bytes)?;
     }
-    match out {
+    match &asked.out {
         Some(path) => write_file_with(path, |out| simulated.write_series(out))?,
         None => print_with(|out| simulated.write_series(out))?,
     }

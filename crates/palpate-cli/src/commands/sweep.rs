@@ -6,11 +6,9 @@ use crate::arguments::SweepArguments;
 use crate::progress::Bars;
 use crate::terminal::notes;
 
-pub(crate) fn run(arguments: &SweepArguments) -> Result<Verdict, JobError> {
-    let SweepArguments {
-        protocol, out, figure, ..
-    } = arguments;
-    let outcome = arguments.job.run(protocol, out.as_deref(), figure.as_deref(), &mut Bars::default())?;
+pub(crate) fn run(asked: &SweepArguments) -> Result<Verdict, JobError> {
+    let (out, figure) = (asked.out.as_deref(), asked.figure.as_deref());
+    let outcome = asked.job.run(&asked.protocol, out, figure, &mut Bars::default())?;
     notes(&outcome.notes);
     Ok(outcome.verdict)
 }

@@ -30,7 +30,7 @@ use crate::output::{is_same, keep_apart, sha256};
 use crate::store::{Store, beside};
 use crate::threads::{Share, over_threads};
 use crate::written_by_batch::is_written_by_batch;
-use crate::{ErrorKind, JobError, Outcome, Verdict};
+use crate::{ErrorKind, JobError, Outcome};
 use table::Format;
 
 /// Analyse many records into one table, a row per hold and law.
@@ -134,11 +134,8 @@ impl Batch {
         })?;
         let batched = table::write(out, format, &store, places.iter().map(|(place, _)| place), &settings)?;
         let before = places.iter().filter(|(_, before)| *before).count();
-        Ok(Outcome {
-            verdict: Verdict::of(batched.failures.is_empty()),
-            notes: batched.notes(out, paths.len(), before, started),
-            result: batched,
-        })
+        let (all, notes) = (batched.failures.is_empty(), batched.notes(out, paths.len(), before, started));
+        Ok(Outcome::of(batched).answered(all).noted(notes))
     }
 
     fn options(&self, described: &Described) -> AnalysisOptions {
@@ -176,8 +173,8 @@ fn file(
     let mut entry = Entry::default();
     match source.and_then(|source| OpenedFile::of(source, described)) {
         Ok(opened) => {
-            entry.tests = opened.parts().len();
-            for part in opened.parts() {
+            entry.tests = opened.tests.parts.len();
+            for part in &opened.tests.parts {
                 match document(&opened, *part, options, share) {
                     Ok(document) => entry.rows.extend(rows::rows(&document)),
                     Err(error) if error.kind == ErrorKind::Cancelled => return Err(error),

@@ -96,7 +96,7 @@ impl NamedRecords {
             });
             let opened = OpenedFile::open(path, &self.described);
             opened.iter().for_each(|opened| told(&opened.notes()));
-            let parts = opened.as_ref().map_or(&[0][..], OpenedFile::parts);
+            let parts = opened.as_ref().map_or(&[0][..], |opened| &opened.tests.parts);
             let (several, mut taken) = (parts.len() > 1, Vec::new());
             for part in parts {
                 let (name, measurement) = match &opened {

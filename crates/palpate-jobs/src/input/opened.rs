@@ -29,9 +29,12 @@ pub struct Measurement {
 
 /// A file of records that was looked into.
 pub struct OpenedFile<'d> {
-    contents: Contents,
-    tests: Tests,
-    described: &'d Described,
+    /// What is in the file.
+    pub contents: Contents,
+    /// Its tests among its parts, and what was passed over.
+    pub tests: Tests,
+    /// What is said about its tests.
+    pub described: &'d Described,
     digest: FileDigest,
 }
 
@@ -57,36 +60,12 @@ impl<'d> OpenedFile<'d> {
         })
     }
 
-    /// What is in the file.
-    #[must_use]
-    pub fn contents(&self) -> &Contents {
-        &self.contents
-    }
-
-    /// What is said about its tests.
-    #[must_use]
-    pub fn described(&self) -> &'d Described {
-        self.described
-    }
-
-    /// Indices of its tests among its parts.
-    #[must_use]
-    pub fn parts(&self) -> &[usize] {
-        &self.tests.parts
-    }
-
-    /// What was passed over.
-    #[must_use]
-    pub fn skipped(&self) -> &[SkippedPart] {
-        &self.tests.skipped
-    }
-
     /// What the file holds besides tests, a sentence each.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         let path = self.contents.input.name.display();
         let told = |part: &SkippedPart| format!("{path}: skipped {} ({})", part.name, part.reason);
-        self.skipped().iter().map(told).collect()
+        self.tests.skipped.iter().map(told).collect()
     }
 
     /// What to call a part, where the file holds several tests.
@@ -101,7 +80,7 @@ impl<'d> OpenedFile<'d> {
     /// # Errors
     /// [`JobError`] where there are several, with their names.
     pub fn only(&self) -> Result<usize, JobError> {
-        match self.parts() {
+        match &self.tests.parts[..] {
             [only] => Ok(*only),
             several => Err(JobError::from(ReadError::SeveralParts {
                 path: self.contents.input.name.clone(),

@@ -26,7 +26,7 @@ pub(super) struct Cut {
     /// That the clocks differ, if they do.
     skewed: Option<Finding>,
     /// What the columns are like where clocks that differ are put right.
-    signals: Option<SignalReport>,
+    pub(super) signals: Option<SignalReport>,
 }
 
 impl Cut {
@@ -47,11 +47,6 @@ impl Cut {
     /// The phases, if there are any.
     pub(super) fn found(&self) -> Option<&Segmentation> {
         self.found.as_ref().ok()
-    }
-
-    /// What the columns are like, if their clocks were seen to differ.
-    pub(super) fn signals(&self) -> Option<&SignalReport> {
-        self.signals.as_ref()
     }
 
     /// Why the holds that a description gives cannot be those of the record, if so.
@@ -128,29 +123,20 @@ impl Cut {
 
     fn phases(&self, segmentation: &Segmentation) -> String {
         let record = &self.record;
-        let mut table = Table::new("phases", "Phases")
-            .column("Phase", "phase", "")
-            .column("Held", "mode", "")
-            .column("From", "start_s", "s")
-            .column("To", "end_s", "s")
-            .column("Samples", "samples", "")
-            .column("Displacement", "displacement_mm", "mm")
-            .column("Force at start", "force_start_n", "N")
-            .column("Force at end", "force_end_n", "N");
-        for segment in &segmentation.segments {
-            let last = segment.end - 1;
-            let end = record.displacement().map(|displacement| 1e3 * displacement[last]);
-            table = table.row(vec![
-                Cell::text(format!("{:?}", segment.phase).to_lowercase()),
-                Cell::text(segment.mode.map(mode_word).unwrap_or_default()),
-                Cell::Number(record.time()[segment.start], 6),
-                Cell::Number(record.time()[last], 6),
-                Cell::Integer(segment.len() as i64),
-                Cell::number_or(end, 4, "not recorded"),
-                Cell::Number(record.force()[segment.start], 4),
-                Cell::Number(record.force()[last], 4),
-            ]);
-        }
+        let (time, force) = (record.time(), record.force());
+        let mut table = Table::of("phases", "Phases", &segmentation.segments)
+            .column("Phase", "phase", "", |segment| Cell::text(format!("{:?}", segment.phase).to_lowercase()))
+            .column("Held", "mode", "", |segment| Cell::text(segment.mode.map(mode_word).unwrap_or_default()))
+            .column("From", "start_s", "s", |segment| Cell::Number(time[segment.start], 6))
+            .column("To", "end_s", "s", |segment| Cell::Number(time[segment.end - 1], 6))
+            .column("Samples", "samples", "", |segment| Cell::Integer(segment.len() as i64))
+            .column("Displacement", "displacement_mm", "mm", |segment| {
+                let end = record.displacement().map(|displacement| 1e3 * displacement[segment.end - 1]);
+                Cell::number_or(end, 4, "not recorded")
+            })
+            .column("Force at start", "force_start_n", "N", |segment| Cell::Number(force[segment.start], 4))
+            .column("Force at end", "force_end_n", "N", |segment| Cell::Number(force[segment.end - 1], 4))
+            .table();
         for rupture in &segmentation.ruptures {
             table = table.note(Finding::Ruptured(*rupture).seen());
         }

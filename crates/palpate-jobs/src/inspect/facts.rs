@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use palpate::record::{SignalReport, Stamps, Values};
 use palpate_files::open::Format;
 use palpate_files::record::{RecordFile, Role};
-use palpate_files::table::{ColumnKind, Part};
+use palpate_files::table::{ColumnInfo, ColumnKind, Part};
 use palpate_report::number::significant;
 use palpate_report::table::{Cell, Table};
 
@@ -38,38 +38,32 @@ pub(super) fn part_facts(part: &Part, format: Format) -> String {
 }
 
 pub(super) fn columns_table(part: &Part, file: Option<&RecordFile>) -> Table {
-    let mut table = Table::new("columns", "Columns")
-        .column("Column", "number", "")
-        .column("Name", "name", "")
-        .column("Unit", "unit", "")
-        .column("First value", "sample", "")
-        .column("Used as", "used_as", "");
-    for column in &part.columns {
-        let used = file.into_iter().flat_map(|file| &file.columns).filter(|used| used.number == column.number);
-        let roles = used.map(|used| {
-            let sign = if used.sign < 0.0 { ", sign turned" } else { "" };
-            let what = match used.role {
-                Role::Values(quantity) => quantity.to_string(),
-                Role::Added(quantity) => format!("added to {quantity}"),
-                Role::Deflection => "deflection, off the displacement,".to_owned(),
-                Role::ClockOf(quantity) => format!("time of {quantity}"),
-            };
-            match column.kind {
-                ColumnKind::DateTime => format!("{what}, from a {}", used.unit),
-                _ => format!("{what} in {}{sign}", used.unit),
-            }
-        });
-        // One column can be force and deflection of a cantilever.
-        let role = roles.collect::<Vec<_>>().join("; ");
-        table = table.row(vec![
-            Cell::Integer(column.number as i64),
-            Cell::text(column.name.as_deref().unwrap_or("")),
-            Cell::text(column.unit.as_deref().unwrap_or("")),
-            Cell::text(column.sample.as_str()),
-            Cell::text(role),
-        ]);
-    }
-    table
+    Table::of("columns", "Columns", &part.columns)
+        .column("Column", "number", "", |column| Cell::Integer(column.number as i64))
+        .column("Name", "name", "", |column| Cell::text(column.name.as_deref().unwrap_or("")))
+        .column("Unit", "unit", "", |column| Cell::text(column.unit.as_deref().unwrap_or("")))
+        .column("First value", "sample", "", |column| Cell::text(column.sample.as_str()))
+        .column("Used as", "used_as", "", |column| Cell::text(roles(column, file)))
+        .table()
+}
+
+/// What a column is used as: one can be force and deflection of a cantilever.
+fn roles(column: &ColumnInfo, file: Option<&RecordFile>) -> String {
+    let used = file.into_iter().flat_map(|file| &file.columns).filter(|used| used.number == column.number);
+    let roles = used.map(|used| {
+        let sign = if used.sign < 0.0 { ", sign turned" } else { "" };
+        let what = match used.role {
+            Role::Values(quantity) => quantity.to_string(),
+            Role::Added(quantity) => format!("added to {quantity}"),
+            Role::Deflection => "deflection, off the displacement,".to_owned(),
+            Role::ClockOf(quantity) => format!("time of {quantity}"),
+        };
+        match column.kind {
+            ColumnKind::DateTime => format!("{what}, from a {}", used.unit),
+            _ => format!("{what} in {}{sign}", used.unit),
+        }
+    });
+    roles.collect::<Vec<_>>().join("; ")
 }
 
 /// What a record is like; where its clocks differ its columns are looked at with both put right.

@@ -52,27 +52,24 @@ impl Inspect {
     /// [`JobError`] where the watch ends it; whatever else is wrong stands in the result.
     pub fn run(self, opened: &OpenedFile<'_>, watch: &mut dyn Watch) -> Result<Outcome<Inspected>, JobError> {
         let mut found = Inspected {
-            text: file_facts(opened.contents()),
+            text: file_facts(&opened.contents),
             refused: None,
             description: None,
             cut: None,
         };
         let mut notes = Vec::new();
-        let told = match opened.parts() {
+        let told = match &opened.tests.parts[..] {
             [only] => found.one_test(opened, *only, &mut notes, watch),
             _ if self.only => opened.only().map(drop),
             several => many_tests(opened, several, &mut notes, watch).map(|tests| found.text.push_str(&tests)),
         };
-        for part in opened.skipped() {
+        for part in &opened.tests.skipped {
             let _ = writeln!(found.text, "skipped {}: {}", part.name, part.reason);
         }
         found.refused = told.err();
         match found.refused {
             Some(error) if error.kind == ErrorKind::Cancelled => Err(error),
-            _ => Ok(Outcome {
-                notes,
-                ..Outcome::of(found)
-            }),
+            _ => Ok(Outcome::of(found).noted(notes)),
         }
     }
 }
@@ -92,19 +89,19 @@ impl Inspected {
         notes: &mut Vec<String>,
         watch: &mut dyn Watch,
     ) -> Result<(), JobError> {
-        let (test, out) = (opened.described().test.as_ref(), &mut self.text);
-        let about = &opened.contents().parts[part];
-        out.push_str(&part_facts(about, opened.contents().format));
+        let (test, out) = (opened.described.test.as_ref(), &mut self.text);
+        let about = &opened.contents.parts[part];
+        out.push_str(&part_facts(about, opened.contents.format));
         let file = opened.read(part, watch).inspect_err(|_| {
             // The columns help to mend what is wrong.
             out.push_str(&columns_table(about, None).to_plain_text());
-            self.description = Some(describe(opened.contents(), part, None, None));
+            self.description = Some(describe(&opened.contents, part, None, None));
         })?;
         notes.extend(averaged(&file));
         out.push_str(&columns_table(about, Some(&file)).to_plain_text());
         out.push('\n');
         let cut = Cut::of(&file.record, test);
-        out.push_str(&signal_facts(&file, cut.as_ref().ok().and_then(Cut::signals)));
+        out.push_str(&signal_facts(&file, cut.as_ref().ok().and_then(|cut| cut.signals.as_ref())));
         let place = file.path.display().to_string();
         let cut = cut.map_err(|error| JobError::analysis(&error, &place))?;
         out.push_str(&cut.told(test));
@@ -112,7 +109,7 @@ impl Inspected {
             return Err(JobError::new(ErrorKind::Record, error, error.hint().to_owned()).of(place));
         }
         let found = cut.found().map(|segmentation| (&file, segmentation));
-        self.description = Some(describe(opened.contents(), part, Some(&file), found));
+        self.description = Some(describe(&opened.contents, part, Some(&file), found));
         self.cut = Some(cut);
         Ok(())
     }
@@ -121,12 +118,12 @@ impl Inspected {
 /// Machines that a description can name, with what each is, for people.
 #[must_use]
 pub fn machines_text() -> String {
-    let table = Table::new("machines", "Machines")
-        .column("Name", "name", "")
-        .column("What", "about", "")
-        .note("in a test description: [machine] preset = \"NAME\"; what the description says itself goes before");
-    let rows = machines().iter().map(|machine| [machine.name, machine.about().trim_end_matches('.')]);
-    rows.map(|row| row.map(Cell::text).to_vec()).fold(table, Table::row).to_plain_text()
+    Table::of("machines", "Machines", machines())
+        .column("Name", "name", "", |machine| Cell::text(machine.name))
+        .column("What", "about", "", |machine| Cell::text(machine.about().trim_end_matches('.')))
+        .table()
+        .note("in a test description: [machine] preset = \"NAME\"; what the description says itself goes before")
+        .to_plain_text()
 }
 
 /// Format, packing and number of tests.
@@ -153,13 +150,13 @@ fn many_tests(
         .column("Holds", "holds", "")
         .note("palpate inspect FILE --part NAME shows one of them");
     for part in parts {
-        let name = opened.contents().parts[*part].title();
+        let name = opened.contents.parts[*part].title();
         table = table.row(match opened.read(*part, watch) {
             Ok(file) => {
                 notes.extend(averaged(&file));
                 let record = &file.record;
                 let time = record.time();
-                let cut = Cut::of(record, opened.described().test.as_ref()).ok();
+                let cut = Cut::of(record, opened.described.test.as_ref()).ok();
                 let holds = cut.as_ref().and_then(Cut::found).map(|found| found.holds().count());
                 vec![
                     Cell::text(name),

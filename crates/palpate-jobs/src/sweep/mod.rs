@@ -27,7 +27,7 @@ use crate::output::{
 };
 use crate::store::{Store, beside, depends_on};
 use crate::threads::over_threads;
-use crate::{JobError, Outcome, Verdict};
+use crate::{JobError, Outcome};
 use chart::Chart;
 use rows::refusals;
 
@@ -115,11 +115,7 @@ impl Sweep {
             refused,
             computed_before,
         };
-        Ok(Outcome {
-            result,
-            verdict: Verdict::of(refused != runs),
-            notes: first.into_iter().chain([done]).collect(),
-        })
+        Ok(Outcome::of(result).answered(refused != runs).noted(first.into_iter().chain([done]).collect()))
     }
 
     /// Makes the table, unless it is there, and returns how many of its runs were computed before.

@@ -225,9 +225,12 @@ impl ContactStates {
     fn stepped<'py>(
         &mut self,
         py: Python<'py>,
-        (dt, to): (Vec<f64>, Vec<f64>),
+        dt_s: &Bound<'py, PyAny>,
+        (to, name): (&Bound<'py, PyAny>, &str),
         step: fn(&mut State, &ContactModel, f64, f64) -> Result<f64, StepError>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let count = self.states.len();
+        let (dt, to) = (for_each(dt_s, "dt_s", count)?, for_each(to, name, count)?);
         let moved = briefly(py, || {
             let mut states = self.states.clone();
             let mut results = Vec::with_capacity(states.len());
@@ -311,9 +314,7 @@ impl ContactStates {
         dt_s: &Bound<'py, PyAny>,
         displacement_m: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let count = self.states.len();
-        let asked = (for_each(dt_s, "dt_s", count)?, for_each(displacement_m, "displacement_m", count)?);
-        self.stepped(py, asked, State::step)
+        self.stepped(py, dt_s, (displacement_m, "displacement_m"), State::step)
     }
 
     /// Applies a force to every contact within a time step, as `step` does a displacement.
@@ -328,9 +329,7 @@ impl ContactStates {
         dt_s: &Bound<'py, PyAny>,
         force_n: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let count = self.states.len();
-        let asked = (for_each(dt_s, "dt_s", count)?, for_each(force_n, "force_n", count)?);
-        self.stepped(py, asked, State::step_force)
+        self.stepped(py, dt_s, (force_n, "force_n"), State::step_force)
     }
 
     /// Forces now, N.

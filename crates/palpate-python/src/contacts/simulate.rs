@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use numpy::PyArray1;
-use palpate::simulate::{ContactEventKind, Trajectory as Simulated, simulate as walk};
+use palpate::simulate::{ContactEvent, ContactEventKind, Trajectory as Simulated, simulate as walk};
 use palpate_files::description::{parse_protocol, read_protocol};
 use palpate_report::study::write_trajectory;
 use pyo3::prelude::*;
@@ -36,6 +36,14 @@ pub(crate) fn simulate(py: Python<'_>, path: Option<PathBuf>, text: Option<&str>
     })
 }
 
+fn told(event: &ContactEvent) -> (&'static str, f64, f64) {
+    let word = match event.kind {
+        ContactEventKind::Lost => "lost",
+        ContactEventKind::Regained => "regained",
+    };
+    (word, event.time, event.contact_displacement)
+}
+
 shown! {
     Trajectory: self
     arrays {
@@ -56,25 +64,13 @@ shown! {
         /// Strain rate of the contact layer, 1/s.
         strain_rate_per_s: self.series.strain_rate.clone(),
     }
-    values {}
-    methods {
+    values {
         /// Whether the jaw touches the body.
-        #[getter]
-        fn in_contact<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
-            PyArray1::from_slice(py, &self.series.in_contact)
-        }
-
+        in_contact<'py>(py): Bound<'py, PyArray1<bool>> = PyArray1::from_slice(py, &self.series.in_contact),
         /// Contacts lost and regained: ("lost" or "regained", time in s, displacement of the surface in m).
-        #[getter]
-        fn events(&self) -> Vec<(&'static str, f64, f64)> {
-            let word = |kind| match kind {
-                ContactEventKind::Lost => "lost",
-                ContactEventKind::Regained => "regained",
-            };
-            let events = self.series.events.iter();
-            events.map(|event| (word(event.kind), event.time, event.contact_displacement)).collect()
-        }
-
+        events: Vec<(&'static str, f64, f64)> = self.series.events.iter().map(told).collect(),
+    }
+    methods {
         fn __len__(&self) -> usize {
             self.series.len()
         }
@@ -91,11 +87,6 @@ shown! {
             let mut columns = self.columns();
             columns.push(("in_contact", Column::column(self.series.in_contact.iter().copied())));
             Table::of(columns)
-        }
-
-        #[pyo3(signature = (requested_schema=None))]
-        fn __arrow_c_stream__(&self, py: Python<'_>, requested_schema: Option<Py<PyAny>>) -> PyResult<Py<PyAny>> {
-            self.to_arrow()?.__arrow_c_stream__(py, requested_schema)
         }
 
         fn __repr__(&self) -> String {

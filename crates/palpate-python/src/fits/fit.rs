@@ -23,8 +23,15 @@ use crate::work::{briefly, plain};
 #[pyclass(name = "Estimate", module = "palpate", frozen, eq)]
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PyEstimate {
-    pub(crate) estimate: Estimate,
-    pub(crate) unit: Cow<'static, str>,
+    estimate: Estimate,
+    unit: Cow<'static, str>,
+}
+
+impl PyEstimate {
+    pub(crate) fn of(estimate: Estimate, unit: &'static str) -> Self {
+        let unit = unit.into();
+        Self { estimate, unit }
+    }
 }
 
 shown! {
@@ -128,44 +135,27 @@ shown! {
         termination: String = word(self.fit.termination),
         /// Whether it ended at an optimum inside the range that was searched.
         is_good: bool = self.fit.termination.is_good(),
+        /// Every number of the law by its name.
+        estimates<'py>(py): PyResult<Bound<'py, PyDict>> = {
+            let estimate = |number: &Parameter| PyEstimate::of(number.estimate, unit_word(number.unit));
+            self.fit.parameters.iter().map(|number| (number.name.to_string(), estimate(number))).into_py_dict(py)
+        },
+        /// Values of all numbers by name.
+        values<'py>(py): PyResult<Bound<'py, PyDict>> = self.fit.parameters.iter()
+            .map(|number| (number.name.to_string(), number.estimate.value))
+            .into_py_dict(py),
+        /// Intervals by profiles, where these were asked for, by name; None for an end that the data leave open.
+        profiles<'py>(py): PyResult<Bound<'py, PyDict>> = self.fit.profiles.iter()
+            .map(|(name, interval)| (name.to_string(), (interval.low, interval.high)))
+            .into_py_dict(py),
+        /// Covariance of the searched numbers; None where the data leave one open.
+        covariance<'py>(py): PyResult<Option<Bound<'py, PyArray2<f64>>>> =
+            self.fit.covariance.as_ref().map(|rows| square(py, rows)).transpose(),
+        /// Correlations of the searched numbers.
+        correlation<'py>(py): PyResult<Option<Bound<'py, PyArray2<f64>>>> =
+            self.fit.correlation().as_ref().map(|rows| square(py, rows)).transpose(),
     }
     methods {
-        /// Every number of the law by its name.
-        #[getter]
-        fn estimates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-            let estimate = |number: &Parameter| PyEstimate {
-                estimate: number.estimate,
-                unit: unit_word(number.unit).into(),
-            };
-            self.fit.parameters.iter().map(|number| (number.name.to_string(), estimate(number))).into_py_dict(py)
-        }
-
-        /// Values of all numbers by name.
-        #[getter]
-        fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-            let numbers = self.fit.parameters.iter();
-            numbers.map(|number| (number.name.to_string(), number.estimate.value)).into_py_dict(py)
-        }
-
-        /// Intervals by profiles, where these were asked for, by name; None for an end that the data leave open.
-        #[getter]
-        fn profiles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-            let profiles = self.fit.profiles.iter();
-            profiles.map(|(name, interval)| (name.to_string(), (interval.low, interval.high))).into_py_dict(py)
-        }
-
-        /// Covariance of the searched numbers; None where the data leave one open.
-        #[getter]
-        fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
-            self.fit.covariance.as_ref().map(|rows| square(py, rows)).transpose()
-        }
-
-        /// Correlations of the searched numbers.
-        #[getter]
-        fn correlation<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
-            self.fit.correlation().as_ref().map(|rows| square(py, rows)).transpose()
-        }
-
         /// The signal at times after the first sample; with `interval`, also its confidence band.
         ///
         /// Parameters

@@ -154,11 +154,6 @@ shown! {
             Table::of(columns)
         }
 
-        #[pyo3(signature = (requested_schema=None))]
-        fn __arrow_c_stream__(&self, py: Python<'_>, requested_schema: Option<Py<PyAny>>) -> PyResult<Py<PyAny>> {
-            self.to_arrow()?.__arrow_c_stream__(py, requested_schema)
-        }
-
         /// The document that ``palpate calibrate --format json`` prints, as plain objects.
         fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
             plain(py, &self.document)

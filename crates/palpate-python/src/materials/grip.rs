@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use palpate::calibrate::Prediction as Predicted;
 use palpate_jobs::output::write_bundle;
-use palpate_jobs::{JobError, MaterialSource, Outcome, PlanGrip, Results};
+use palpate_jobs::{JobError, MaterialSource, PlanGrip, Results};
 use palpate_report::document::{GripDocument, HoldingDocument};
 use palpate_report::result::GrippedBody;
-use palpate_report::study::{Bundle, Pictures};
+use palpate_report::study::{Bundle, Pictures, grip_figure};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use serde::{Deserialize, Serialize};
@@ -37,8 +37,8 @@ pub(crate) struct Grip {
 }
 
 impl Grip {
-    fn made(done: &Outcome<GrippedBody<'_>>) -> Result<Self, JobError> {
-        let (body, answer) = (&done.result, &done.result.answer);
+    fn made(body: &GrippedBody<'_>) -> Result<Self, JobError> {
+        let answer = &body.answer;
         // All of them are text but for pictures, which are not asked for.
         let files = body.bundle(Pictures::default())?.files.into_iter();
         let schedule = answer.schedule.as_ref().and_then(|made| made.as_ref().ok());
@@ -46,7 +46,7 @@ impl Grip {
             document: body.document(),
             question: body.question(),
             text: body.text(),
-            svg: done.figure().to_svg()?,
+            svg: grip_figure(body, "grip").to_svg()?,
             files: files.map(|(path, content)| (path, String::from_utf8_lossy(&content).into_owned())).collect(),
             squeeze: answer.squeeze.as_ref().ok().map(|made| made.course.clone()),
             back_off: answer.back_off.as_ref().ok().map(|made| made.course.clone()),
@@ -57,7 +57,7 @@ impl Grip {
 
     /// Answers, and warns of every question beyond the test.
     pub(crate) fn of(py: Python<'_>, source: MaterialSource, question: PlanGrip) -> PyResult<Self> {
-        let made = job(py, move |watch| Self::made(&question.run(&source, watch)?))?;
+        let made = job(py, move |watch| Self::made(&question.run(&source, watch)?.result))?;
         for beyond in &made.document.extrapolations {
             warn(py, &format!("beyond the test: {beyond}"))?;
         }
@@ -98,21 +98,15 @@ shown! {
         force_held: Option<ForceHeld> = Some(ForceHeld::new(self.document.force_held.clone()?, self.force_held.clone()?)),
         /// Squeezes that keep the force in a band; None if none was asked for, or none does.
         schedule: Option<Schedule> = Some(Schedule::new(self.document.schedule.clone()?, self.schedule.clone()?)),
+        /// How long squeezes a little less and more deep hold: ``displacement_m`` and ``time_to_slip_s``.
+        neighbours: PyResult<Table> =
+            Table::of(columns!(self.document.neighbours, row => displacement_m, time_to_slip_s = seconds(row.lasts))),
+        /// Grips that there are not, by name, each with the reason and what would help.
+        refused<'py>(py): PyResult<Bound<'py, PyDict>> = self.document.refused.iter()
+            .map(|made| (&made.grip, format!("{}\nhint: {}", made.reason, made.hint)))
+            .into_py_dict(py),
     }
     methods {
-        /// How long squeezes a little less and more deep hold: ``displacement_m`` and ``time_to_slip_s``.
-        #[getter]
-        fn neighbours(&self) -> PyResult<Table> {
-            Table::of(columns!(self.document.neighbours, row => displacement_m, time_to_slip_s = seconds(row.lasts)))
-        }
-
-        /// Grips that there are not, by name, each with the reason and what would help.
-        #[getter]
-        fn refused<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-            let refused = self.document.refused.iter();
-            refused.map(|made| (&made.grip, format!("{}\nhint: {}", made.reason, made.hint))).into_py_dict(py)
-        }
-
         /// The document that ``palpate grip --format json`` prints, as plain objects; a material without a file is called "material".
         fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
             plain(py, &self.document)

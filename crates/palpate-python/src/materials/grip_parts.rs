@@ -22,12 +22,15 @@ pub(crate) fn slip_interval(found: &HoldingDocument) -> Option<(f64, f64)> {
     found.interval.map(|[low, high]| (seconds(low), seconds(high)))
 }
 
-/// A class of Python that shows a part of the document: with the course, the fields that are passed on, and methods of its own.
+/// A class of Python that shows a part of the document: with the course, the fields that are passed on or an expression of them, and methods
+/// of its own.
 macro_rules! part {
+    (@ $me:ident, $field:ident) => { $me.found.$field.clone() };
+    (@ $me:ident, $field:ident, $value:expr) => { $value };
     (
         $(#[$about:meta])*
-        $class:ident($document:ty, $course:ty) {
-            $($(#[$doc:meta])* $field:ident: $of:ty,)*
+        $class:ident($document:ty, $course:ty): $me:ident {
+            $($(#[$doc:meta])* $field:ident: $of:ty $(= $value:expr)?,)*
         }
         $($methods:tt)*
     ) => {
@@ -46,8 +49,8 @@ macro_rules! part {
         }
 
         shown! {
-            $class: self
-            values { $($(#[$doc])* $field: $of = self.found.$field.clone(),)* }
+            $class: $me
+            values { $($(#[$doc])* $field: $of = part!(@ $me, $field $(, $value)?),)* }
             methods { $($methods)* }
         }
     };
@@ -55,7 +58,7 @@ macro_rules! part {
 
 part! {
     /// A grip with the displacement held; SI units.
-    Holding(HoldingDocument, Option<Predicted>) {
+    Holding(HoldingDocument, Option<Predicted>): self {
         /// How the jaws close: "squeeze", "settle" (a force is kept before they are locked) or "back_off".
         kind: String,
         /// Where the jaws turn, m; None but for a retreat.
@@ -82,24 +85,12 @@ part! {
         work_j: f64,
         /// How sharply the time depends on the squeeze, d ln(time)/d(displacement), 1/m; None where it slips at once or never.
         sharpness_per_m: Option<f64>,
-    }
-
-    /// From the start of the hold until it slips, s; infinite for always (longer than ten years), 0 if it slips at once.
-    #[getter]
-    fn time_to_slip_s(&self) -> f64 {
-        seconds(self.found.lasts)
-    }
-
-    /// Ends of the interval of that time by what the calibration leaves open, s; None where it says nothing.
-    #[getter]
-    fn time_to_slip_interval_s(&self) -> Option<(f64, f64)> {
-        slip_interval(&self.found)
-    }
-
-    /// Force and displacement over time, with intervals; None for the plain squeeze beside a retreat.
-    #[getter]
-    fn course(&self) -> Option<Prediction> {
-        self.course.clone().map(Prediction::kept)
+        /// From the start of the hold until it slips, s; infinite for always (longer than ten years), 0 if it slips at once.
+        time_to_slip_s: f64 = seconds(self.found.lasts),
+        /// Ends of the interval of that time by what the calibration leaves open, s; None where it says nothing.
+        time_to_slip_interval_s: Option<(f64, f64)> = slip_interval(&self.found),
+        /// Force and displacement over time, with intervals; None for the plain squeeze beside a retreat.
+        course: Option<Prediction> = self.course.clone().map(Prediction::kept),
     }
 
     fn __repr__(&self) -> String {
@@ -121,32 +112,21 @@ part! {
 
 part! {
     /// Squeeze and back off, beside the plain squeeze to the same place; SI units.
-    BackOff(BackOffDocument, Predicted) {
+    BackOff(BackOffDocument, Predicted): self {
         /// Time over which drifts are told, s.
         duration_s: f64,
         /// Change of the force over that time after the retreat, N.
         drift_n: f64,
         /// The same after the plain squeeze, N.
         plain_drift_n: f64,
-    }
-
-    /// The retreat: its hold begins relaxed.
-    #[getter]
-    fn backed(&self) -> Holding {
-        Holding::new(self.found.backed.clone(), Some(self.course.clone()))
-    }
-
-    /// The plain squeeze.
-    #[getter]
-    fn plain(&self) -> Holding {
-        Holding::new(self.found.plain.clone(), None)
-    }
-
-    /// What 1 % more of a number of the material does to it: ``number``, its ``relative_error``, by how much the force at the start of the
-    /// hold misses the relaxed one (``missed_n``), by how much farther the jaws would have to go (``over_m``).
-    #[getter]
-    fn sensitivities(&self) -> PyResult<Table> {
-        Table::of(columns!(self.found.sensitivities, row => number, relative_error, missed_n, over_m))
+        /// The retreat: its hold begins relaxed.
+        backed: Holding = Holding::new(self.found.backed.clone(), Some(self.course.clone())),
+        /// The plain squeeze.
+        plain: Holding = Holding::new(self.found.plain.clone(), None),
+        /// What 1 % more of a number of the material does to it: ``number``, its ``relative_error``, by how much the force at the start of the
+        /// hold misses the relaxed one (``missed_n``), by how much farther the jaws would have to go (``over_m``).
+        sensitivities: PyResult<Table> =
+            Table::of(columns!(self.found.sensitivities, row => number, relative_error, missed_n, over_m)),
     }
 
     fn __repr__(&self) -> String {
@@ -162,7 +142,7 @@ part! {
 
 part! {
     /// The force held: it does not relax, the body creeps; SI units.
-    ForceHeld(PressedDocument, Predicted) {
+    ForceHeld(PressedDocument, Predicted): self {
         /// The force, N.
         force_n: f64,
         /// How long it is held, s.
@@ -183,12 +163,8 @@ part! {
         stroke_ends_s: Option<f64>,
         /// Work of the jaws, J.
         work_j: f64,
-    }
-
-    /// Force and displacement over time, with intervals.
-    #[getter]
-    fn course(&self) -> Prediction {
-        Prediction::kept(self.course.clone())
+        /// Force and displacement over time, with intervals.
+        course: Prediction = Prediction::kept(self.course.clone()),
     }
 
     fn __repr__(&self) -> String {
@@ -206,7 +182,7 @@ part! {
 
 part! {
     /// Squeezes that keep the force in a band; SI units.
-    Schedule(ScheduleDocument, Predicted) {
+    Schedule(ScheduleDocument, Predicted): self {
         /// How long it lasts behind the first squeeze, s.
         duration_s: f64,
         /// Force at its end, N.
@@ -215,30 +191,15 @@ part! {
         end_displacement_m: f64,
         /// Work of the jaws, J.
         work_j: f64,
-    }
-
-    /// What it has least of: "moves" or "work".
-    #[getter]
-    fn objective(&self) -> &'static str {
-        if self.found.objective == "fewest_moves" { "moves" } else { "work" }
-    }
-
-    /// Edges of the band, N.
-    #[getter]
-    fn band_n(&self) -> (f64, f64) {
-        self.found.band_n.into()
-    }
-
-    /// The squeezes, the first among them: ``time_s`` since first touch, ``from_m``, ``to_m``, ``force_from_n``, ``force_to_n``.
-    #[getter]
-    fn moves(&self) -> PyResult<Table> {
-        Table::of(columns!(self.found.moves, row => time_s, from_m, to_m, force_from_n, force_to_n))
-    }
-
-    /// Force and displacement over time, with intervals.
-    #[getter]
-    fn course(&self) -> Prediction {
-        Prediction::kept(self.course.clone())
+        /// What it has least of: "moves" or "work".
+        objective: &'static str = if self.found.objective == "fewest_moves" { "moves" } else { "work" },
+        /// Edges of the band, N.
+        band_n: (f64, f64) = self.found.band_n.into(),
+        /// The squeezes, the first among them: ``time_s`` since first touch, ``from_m``, ``to_m``, ``force_from_n``, ``force_to_n``.
+        moves: PyResult<Table> =
+            Table::of(columns!(self.found.moves, row => time_s, from_m, to_m, force_from_n, force_to_n)),
+        /// Force and displacement over time, with intervals.
+        course: Prediction = Prediction::kept(self.course.clone()),
     }
 
     fn __repr__(&self) -> String {

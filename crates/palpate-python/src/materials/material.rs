@@ -171,10 +171,7 @@ impl Material {
     /// latency law, "overshoot_1", "time_1", ... of a linear one.
     #[getter]
     fn estimates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let estimate = |number: &MaterialNumber| PyEstimate {
-            estimate: number.estimate,
-            unit: unit_word(number.unit).into(),
-        };
+        let estimate = |number: &MaterialNumber| PyEstimate::of(number.estimate, unit_word(number.unit));
         self.numbers_found().iter().map(|number| (&number.name, estimate(number))).into_py_dict(py)
     }
 

@@ -93,11 +93,6 @@ shown! {
             Table::of(self.columns())
         }
 
-        #[pyo3(signature = (requested_schema=None))]
-        fn __arrow_c_stream__(&self, py: Python<'_>, requested_schema: Option<Py<PyAny>>) -> PyResult<Py<PyAny>> {
-            self.to_arrow()?.__arrow_c_stream__(py, requested_schema)
-        }
-
         fn __repr__(&self) -> String {
             let (samples, beyond) = (self.predicted.trajectory.len(), self.predicted.extrapolations.len());
             format!("<palpate.Prediction of {samples} samples, {beyond} extrapolations>")

@@ -37,9 +37,7 @@ impl Finding {
         let found = found.clone();
         Self { found, hold }
     }
-}
 
-impl Finding {
     /// What helps; a document names options as the command does.
     fn remedy_in_python(&self) -> String {
         ["⟨compare/creep⟩", "⟨compare/loss=huber⟩"].iter().fold(self.found.remedy.clone(), |text, option| {
@@ -139,16 +137,16 @@ fn run(py: Python<'_>, asked: &Arc<Asked>) -> PyResult<Outcome<Analyzed>> {
 }
 
 /// What a number of a fit is known to, by the names of the numbers that any of the fits has.
-fn known(fits: &[(usize, &FitDocument)]) -> Vec<(String, ArrayRef)> {
-    let errors: BTreeSet<&String> = fits.iter().flat_map(|(_, fit)| fit.standard_error.keys()).collect();
+fn known(fits: &[&FitDocument]) -> Vec<(String, ArrayRef)> {
+    let errors: BTreeSet<&String> = fits.iter().flat_map(|fit| fit.standard_error.keys()).collect();
     let error = |name: &&String| {
-        let errors = fits.iter().map(|(_, fit)| fit.standard_error.get(*name).copied());
+        let errors = fits.iter().map(|fit| fit.standard_error.get(*name).copied());
         (format!("{name}_standard_error"), Column::column(errors))
     };
-    let intervals: BTreeSet<&String> = fits.iter().flat_map(|(_, fit)| fit.confidence_interval.keys()).collect();
+    let intervals: BTreeSet<&String> = fits.iter().flat_map(|fit| fit.confidence_interval.keys()).collect();
     let ends = |name: &&String| {
         [("low", 0), ("high", 1)].map(|(end, index)| {
-            let ends = fits.iter().map(|(_, fit)| Some(fit.confidence_interval.get(*name)?[index]));
+            let ends = fits.iter().map(|fit| Some(fit.confidence_interval.get(*name)?[index]));
             (format!("{name}_{end}"), Column::column(ends))
         })
     };
@@ -177,20 +175,17 @@ impl Analysis {
     #[getter]
     fn fits(&self) -> PyResult<Table> {
         let holds = self.document.holds.iter();
-        let fits: Vec<_> = holds.flat_map(|hold| hold.fits.iter().map(|fit| (hold.index, fit))).collect();
+        let (holds, fits): (Vec<usize>, Vec<&FitDocument>) =
+            holds.flat_map(|hold| hold.fits.iter().map(|fit| (hold.index, fit))).unzip();
         let known = known(&fits);
-        let mut columns = columns!(fits, row =>
-            hold = row.0, law = row.1.law.as_str(), domain = row.1.domain.as_str(), exponent = row.1.exponent,
-            exponent_fixed = row.1.exponent_fixed, equilibrium_strain = row.1.equilibrium_strain,
-            equilibrium_force_n = row.1.equilibrium_force_n, excess_strain = row.1.excess_strain,
-            excess_force_n = row.1.excess_force_n, relative_rate_per_s = row.1.relative_rate_per_s,
-            rate_coefficient_per_s = row.1.rate_coefficient_per_s
-        );
+        let mut columns = columns!(holds, hold => hold = *hold);
+        columns.extend(columns!(fits, fit =>
+            law, domain, exponent, exponent_fixed, equilibrium_strain, equilibrium_force_n, excess_strain, excess_force_n,
+            relative_rate_per_s, rate_coefficient_per_s
+        ));
         columns.extend(known.iter().map(|(name, column)| (name.as_str(), Arc::clone(column))));
-        columns.extend(columns!(fits, row =>
-            rmse = row.1.rmse, residual_correlation = row.1.residual_correlation, samples = row.1.samples,
-            delta_bic = row.1.delta_bic, prediction_error = row.1.prediction_error,
-            termination = row.1.termination.as_str()
+        columns.extend(columns!(fits, fit =>
+            rmse, residual_correlation, samples, delta_bic, prediction_error, termination
         ));
         Table::of(columns)
     }

@@ -109,16 +109,12 @@ shown! {
         certainty: Option<&str> = self.verdict(|verdict| &verdict.certainty),
         /// All that in one sentence.
         sentence: Option<&str> = self.verdict(|verdict| &verdict.sentence),
+        /// The laws, best first, a row each.
+        laws: PyResult<Table> = Table::of(columns!(self.document.laws, law =>
+            law, parameters, rmse, delta_aicc, delta_bic, forward_score, termination, error
+        )),
     }
     methods {
-        /// The laws, best first, a row each.
-        #[getter]
-        fn laws(&self) -> PyResult<Table> {
-            Table::of(columns!(self.document.laws, law =>
-                law, parameters, rmse, delta_aicc, delta_bic, forward_score, termination, error
-            ))
-        }
-
         /// Everything as plain objects.
         fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
             plain(py, &self.document)
@@ -159,14 +155,14 @@ shown! {
         #[getter]
         fn laws(&self) -> PyResult<Table> {
             let holds = self.document.records.iter().flat_map(|record| &record.holds);
-            let rows: Vec<_> = holds
+            let (holds, laws): (Vec<usize>, Vec<_>) = holds
                 .flat_map(|hold| hold.comparison.iter().flat_map(|found| &found.laws).map(|law| (hold.index, law)))
-                .collect();
-            Table::of(columns!(rows, row =>
-                hold = row.0, law = row.1.law.as_str(), parameters = row.1.parameters, rmse = row.1.rmse,
-                delta_aicc = row.1.delta_aicc, delta_bic = row.1.delta_bic, forward_score = row.1.forward_score,
-                termination = row.1.termination.as_deref(), error = row.1.error.as_deref()
-            ))
+                .unzip();
+            let mut columns = columns!(holds, hold => hold = *hold);
+            columns.extend(columns!(laws, law =>
+                law, parameters, rmse, delta_aicc, delta_bic, forward_score, termination, error
+            ));
+            Table::of(columns)
         }
 
         /// The document that ``palpate compare --format json`` prints, as plain objects.

@@ -124,7 +124,8 @@ fn read_parts(py: Python<'_>, path: PathBuf, described: &Described, only: bool) 
         if only {
             opened.only()?;
         }
-        opened.parts().iter().map(|part| opened.measurement(*part, watch)).collect::<Result<Vec<_>, _>>()
+        let parts = opened.tests.parts.iter();
+        parts.map(|part| opened.measurement(*part, watch)).collect::<Result<Vec<_>, _>>()
     })?;
     let record = |Measurement { record, input, .. }| Record {
         record,

@@ -44,14 +44,23 @@ impl Shown for Lines {
 }
 
 fn happened(out: &mut dyn Write, event: &Event) -> io::Result<()> {
+    let (time, what) = told(event);
     match event {
-        Event::Began(seen) => writeln!(out, "{:>9.3} s  hold: {}", seen.time, state(seen)),
-        Event::Changed(seen) => writeln!(out, "{:>9.3} s  it is the {}", seen.time, state(seen)),
-        Event::Ended(time, hold) => {
-            let lasted = significant(hold.until - hold.since, 4);
-            writeln!(out, "{time:>9.3} s  end of the hold after {lasted} s")
+        Event::Ended(_, hold) => {
+            writeln!(out, "{time:>9.3} s  {what} after {} s", significant(hold.until - hold.since, 4))
         }
-        Event::Warned(seen) => writeln!(out, "{:>9.3} s  WARNING: {}", seen.time, warning(seen)),
+        Event::Warned(_) => writeln!(out, "{time:>9.3} s  WARNING: {what}"),
+        _ => writeln!(out, "{time:>9.3} s  {what}"),
+    }
+}
+
+/// When something happened, s, and what.
+pub(super) fn told(event: &Event) -> (f64, String) {
+    match event {
+        Event::Began(seen) => (seen.time, format!("hold: {}", state(seen))),
+        Event::Changed(seen) => (seen.time, format!("it is the {}", state(seen))),
+        Event::Ended(time, _) => (*time, "end of the hold".to_owned()),
+        Event::Warned(seen) => (seen.time, warning(seen)),
     }
 }
 
@@ -77,35 +86,26 @@ pub(super) fn summary(holds: &[HoldSeen], slip_force: Option<f64>) -> String {
     if holds.is_empty() {
         return "No hold was seen.\n".to_owned();
     }
-    let mut table = Table::new("holds", "Holds")
-        .column("Held", "held", "")
-        .column("From", "start_s", "s")
-        .column("To", "end_s", "s")
-        .column("Force at start", "force_start_n", "N")
-        .column("at end", "force_end_n", "N")
-        .column("Tends to", "equilibrium_force_n", "N")
-        .column("±", "equilibrium_force_deviation_n", "N")
-        .column("Creeps at", "creep_rate_um_per_s", "µm/s");
+    let unknown = |hold: &HoldSeen| if hold.held == Held::Force { "force held" } else { "not known" };
+    let mut table = Table::of("holds", "Holds", holds)
+        .column("Held", "held", "", |hold| Cell::text(word(hold.held)))
+        .column("From", "start_s", "s", |hold| Cell::Number(hold.since, 5))
+        .column("To", "end_s", "s", |hold| Cell::Number(hold.until, 5))
+        .column("Force at start", "force_start_n", "N", |hold| Cell::Number(hold.forces.0, 4))
+        .column("at end", "force_end_n", "N", |hold| Cell::Number(hold.forces.1, 4))
+        .column("Tends to", "equilibrium_force_n", "N", |hold| {
+            Cell::number_or(hold.equilibrium.map(|force| force.value), 4, unknown(hold))
+        })
+        .column("±", "equilibrium_force_deviation_n", "N", |hold| {
+            Cell::number_or(hold.equilibrium.and_then(|force| force.standard_error), 2, unknown(hold))
+        })
+        .column("Creeps at", "creep_rate_um_per_s", "µm/s", |hold| {
+            Cell::number_or(hold.creep.map(|creep| 1e6 * creep.value), 3, "not held by force")
+        });
     if slip_force.is_some() {
-        table = table.column("Warned", "warned_s", "s").column("Slipped", "slipped_s", "s");
+        table = table
+            .column("Warned", "warned_s", "s", |hold| Cell::number_or(hold.warned, 5, "no warning"))
+            .column("Slipped", "slipped_s", "s", |hold| Cell::number_or(hold.slipped, 5, "no slip"));
     }
-    for hold in holds {
-        let unknown = if hold.held == Held::Force { "force held" } else { "not known" };
-        let mut row = vec![
-            Cell::text(word(hold.held)),
-            Cell::Number(hold.since, 5),
-            Cell::Number(hold.until, 5),
-            Cell::Number(hold.forces.0, 4),
-            Cell::Number(hold.forces.1, 4),
-            Cell::number_or(hold.equilibrium.map(|force| force.value), 4, unknown),
-            Cell::number_or(hold.equilibrium.and_then(|force| force.standard_error), 2, unknown),
-            Cell::number_or(hold.creep.map(|creep| 1e6 * creep.value), 3, "not held by force"),
-        ];
-        if slip_force.is_some() {
-            row.push(Cell::number_or(hold.warned, 5, "no warning"));
-            row.push(Cell::number_or(hold.slipped, 5, "no slip"));
-        }
-        table = table.row(row);
-    }
-    table.to_plain_text()
+    table.table().to_plain_text()
 }

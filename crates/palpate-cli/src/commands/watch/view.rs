@@ -11,7 +11,7 @@ use palpate_report::number::significant;
 use palpate_report::sparkline::sparkline;
 
 use super::Shown;
-use super::lines::{scaled, summary, warning};
+use super::lines::{scaled, summary, told, warning};
 use super::words::{slip, state, uncertain};
 
 /// Time between two pictures.
@@ -63,16 +63,11 @@ impl View {
     }
 
     fn note(&mut self, event: &Event) {
-        let what = match event {
-            Event::Began(seen) => format!("{:.2} s  hold: {}", seen.time, state(seen)),
-            Event::Changed(seen) => format!("{:.2} s  it is the {}", seen.time, state(seen)),
-            Event::Ended(time, _) => format!("{time:.2} s  end of the hold"),
-            Event::Warned(seen) => format!("{:.2} s  {}", seen.time, warning(seen)),
-        };
+        let (time, what) = told(event);
         if self.happened.len() == LAST {
             self.happened.remove(0);
         }
-        self.happened.push(what);
+        self.happened.push(format!("{time:.2} s  {what}"));
     }
 
     fn draw(&mut self, out: &mut dyn Write, seen: &Observation) -> io::Result<()> {
