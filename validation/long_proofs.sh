@@ -35,7 +35,7 @@ for name in "${names[@]}"; do
         ;;
     segmentation) validation/segmentation.sh ;;
     calibration) validation/calibration.sh ;;
-    coverage) python3 validation/coverage.py ;;
+    coverage) python3 validation/interval_coverage.py ;;
     *)
         echo "long_proofs: no such proof: $name" >&2
         exit 2

@@ -1,4 +1,4 @@
-//! How often the 95 % intervals of fits contain the truth; prints one JSON object a number (read by `validation/coverage.py`).
+//! How often the 95 % intervals of fits contain the truth; prints one JSON object a number (read by `validation/interval_coverage.py`).
 //!
 //! Run it with `cargo run --release -p palpate --example coverage_study [repetitions] [repetitions of the slow methods]`.
 

@@ -6,17 +6,17 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use palpate::batch::{Run, summaries};
 use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::fit::{ExponentChoice, FitOptions, LawOptions, Samples, fit_hold, fit_law};
 use palpate::forecast::{CompareOptions, compare_laws};
 use palpate::latency::LatencyLaw;
 use palpate::laws::Law;
 use palpate::simulate::{
-    ContactModel, ContactRef, ContactState, Motion, Sampling, Separation, simulate, simulate_force, strain_wave_within,
+    ContactModel, ContactState, Motion, Sampling, Separation, simulate, simulate_force, strain_wave_within,
 };
 use palpate::test_problems::{Noise, noisy_hold, paper_ball, paper_test_a};
 use palpate::watch::Unwatched;
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 fn main() {
     let (motion, model) = (paper_test_a(), paper_ball(Separation::Bonded));
@@ -70,20 +70,10 @@ fn cascades() {
 /// 10,000 balls, each with its own numbers, squeezed by 5 mm within 0.6 s and held for 10 s; prints the forces of the first four.
 fn batches() {
     let motion = Motion::new(vec![0.0, 0.6, 10.6], vec![0.0, 0.005, 0.005]).expect("time rises");
-    let sampling = Sampling::Times(vec![10.6]);
     for (name, spread) in [("", 0.0), ("_own_exponents", 2.0)] {
         let models: Vec<ContactModel> = (0..10_000).map(|index| ball(f64::from(index) / 10_000.0, spread)).collect();
-        let run = |model| Run {
-            drive: (&motion).into(),
-            contact: ContactRef::from(model),
-            sampling: &sampling,
-            times: &[],
-        };
-        let runs: Vec<Run<'_>> = models.iter().map(run).collect();
-        let forces = || {
-            let found = summaries(&runs, &mut Unwatched).expect("nothing cancels it");
-            found.iter().map(|run| run.as_ref().expect("the ball takes 5 mm").summary.force).collect::<Vec<_>>()
-        };
+        let force = |model: &ContactModel| simulate_force(&motion, model, &[10.6]).expect("the ball takes 5 mm")[0];
+        let forces = || models.par_iter().map(force).collect::<Vec<f64>>();
         report(&format!("batch_force{name}"), 7, || !black_box(forces()).is_empty());
         println!("{{\"name\":\"forces{name}\",\"seconds\":0,\"forces\":{:?}}}", &forces()[9_996..]);
     }

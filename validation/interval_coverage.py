@@ -1,6 +1,6 @@
 """How often the 95 % intervals of palpate's fits contain the truth.
 
-    python validation/coverage.py            1000 holds a case (300 for profiles and the bootstrap)
+    python validation/interval_coverage.py            1000 holds a case (300 for profiles and the bootstrap)
 
 Runs `cargo run --release -p palpate --example coverage_study`, which simulates the holds, and writes
 validation/results/coverage.md and coverage.svg. Not a reference: nothing in the tests reads it; the fast version that the
@@ -103,7 +103,7 @@ others and has no profile.
 
 {table(rows)}
 
-Written by `validation/coverage.py`; the holds are those of `crates/palpate/tests/common/coverage.rs`.
+Written by `validation/interval_coverage.py`; the holds are those of `crates/palpate/tests/common/coverage.rs`.
 """
     (RESULTS / "coverage.md").write_text(text, encoding="utf-8")
     print(text)
