@@ -1,4 +1,4 @@
-//! What each of many runs comes to.
+//! Thousands of simulations at once on all cores: what each of many runs comes to, under any drive and law.
 
 use crate::simulate::{ContactRef, Drive, RunSummary, Sampling, SimulateError, run_summary};
 use crate::watch::{Cancelled, Progress, Watch};
