@@ -14,7 +14,10 @@
 //! n = 2 that is the law itself.
 //!
 //! In these units all ramps of a law are stretches of one curve on either side of the steady state. A ramp that comes to where an earlier
-//! one was goes on along its steps.
+//! one was goes on along its steps. The first ramp of a contact depends on nothing but the exponent, where it starts and how far it comes:
+//! of many contacts with the same exponent, one is integrated on every thread.
+
+use std::cell::RefCell;
 
 use super::SimulationWork;
 use crate::latency::{LatencyLaw, signed_power};
@@ -159,6 +162,37 @@ impl Ramps {
     }
 }
 
+/// A way to near the steady state that no end of a piece cut short, with what it depends on and what it cost.
+#[derive(Debug, Clone)]
+struct Way {
+    exponent: f64,
+    start: f64,
+    reach: f64,
+    steps: Vec<Step>,
+    /// Time and z at its end.
+    end: (f64, f64),
+    /// The latest time that a step looked at, rejected ones among them: a piece that lasts longer has the same steps.
+    latest: f64,
+    taken: u64,
+    evaluations: u64,
+}
+
+thread_local! {
+    static LAST_WAY: RefCell<Option<Way>> = const { RefCell::new(None) };
+}
+
+impl Way {
+    /// The way that this thread followed last, if a piece that lasts `until` has the same to the last bit.
+    fn followed(exponent: f64, start: f64, reach: f64, until: f64) -> Option<Self> {
+        let asked = [exponent, start, reach].map(f64::to_bits);
+        LAST_WAY.with_borrow(|last| {
+            let way = last.as_ref()?;
+            let is_same = asked == [way.exponent, way.start, way.reach].map(f64::to_bits);
+            (is_same && way.latest < until * (1.0 - 1e-9)).then(|| way.clone())
+        })
+    }
+}
+
 impl Element {
     /// Solves one piece of `duration` (s) from excess strain `initial` under drive `drive` = g (1/s).
     pub(crate) fn solve(
@@ -183,29 +217,50 @@ impl Element {
         let until = rate * duration;
         // What the piece passes through, in units of x*: errors are measured by it.
         let reach = start.abs().max(until).min(1.0);
-        let first = until.min(0.5 * ((1.0 - start) / speed(start)));
-        let mut solver = Dop853::new(start, TOLERANCE * reach, if first > 0.0 { first } else { until });
         let near = if n == 1.0 { f64::INFINITY } else { NEAR / n.max(1.0) };
         // What is not a number is near: nothing is left to follow.
         let is_far = |z: f64| (1.0 - z).abs() > near && !(n == 2.0 && z >= 0.0);
-        let (passes_rest, rest) = (side > 0.0 && is_kinked(n, start), rest_of(n, reach));
-        let mut steps = Vec::with_capacity(32);
-        let mut end = (0.0, start);
-        while end.0 < until && is_far(end.1) {
-            let (time, z) = end;
-            if ramps.serves(side, reach, z) {
-                end = ramps.follow(z, speed(z), time, until, &mut steps);
-                break;
+        let is_first = ramps.steps.is_empty();
+        let followed = if is_first { Way::followed(n, start, reach, until) } else { None };
+        let is_new = followed.is_none();
+        let way = followed.unwrap_or_else(|| {
+            let first = until.min(0.5 * ((1.0 - start) / speed(start)));
+            let mut solver = Dop853::new(start, TOLERANCE * reach, if first > 0.0 { first } else { until });
+            let (passes_rest, rest) = (side > 0.0 && is_kinked(n, start), rest_of(n, reach));
+            let mut steps = Vec::with_capacity(32);
+            let mut end = (0.0, start);
+            while end.0 < until && is_far(end.1) {
+                let (time, z) = end;
+                if ramps.serves(side, reach, z) {
+                    end = ramps.follow(z, speed(z), time, until, &mut steps);
+                    break;
+                }
+                solver.tolerance = TOLERANCE * reach * (1.0 - z).abs().max(1.0);
+                let longest = if passes_rest { longest_step(z, speed(z), rest, time) } else { f64::INFINITY };
+                steps.push(solver.step(until.min(time + longest), |_, z| speed(z)));
+                end = (solver.time, solver.state);
             }
-            solver.tolerance = TOLERANCE * reach * (1.0 - z).abs().max(1.0);
-            let longest = if passes_rest { longest_step(z, speed(z), rest, time) } else { f64::INFINITY };
-            steps.push(solver.step(until.min(time + longest), |_, z| speed(z)));
-            end = (solver.time, solver.state);
+            Way {
+                exponent: n,
+                start,
+                reach,
+                steps,
+                end,
+                latest: solver.latest,
+                taken: solver.steps,
+                evaluations: solver.evaluations,
+            }
+        });
+        work.steps += way.taken;
+        work.evaluations += way.evaluations;
+        let end = way.end;
+        let is_whole = way.taken > 0 && !is_far(end.1);
+        if is_first && is_new && is_whole && way.latest < until {
+            LAST_WAY.set(Some(way.clone()));
         }
-        work.steps += solver.steps;
-        work.evaluations += solver.evaluations;
-        let is_longer = ramps.steps.is_empty() || ramps.side != side || side * (ramps.steps[0].from - start) > 0.0;
-        if solver.steps > 0 && !is_far(end.1) && end.0 <= until && (is_longer || reach < ramps.reach) {
+        let steps = way.steps;
+        let is_longer = is_first || ramps.side != side || side * (ramps.steps[0].from - start) > 0.0;
+        if is_whole && end.0 <= until && (is_longer || reach < ramps.reach) {
             *ramps = Ramps {
                 side,
                 reach,
@@ -392,6 +447,34 @@ mod tests {
                     // At x = 0 a power that is not whole has a kink, which costs a step an order or two.
                     assert!(off < 5e-11 * steady, "n = {n}, from {part}, t = {t}: {off:e}");
                 }
+            }
+        }
+    }
+
+    /// What a thread knows of other contacts saves it work and changes no bit, whether a piece ends before or behind what it knows.
+    #[test]
+    fn the_way_of_another_contact_is_that_of_this_one_to_the_last_bit() {
+        let solved = |law: LatencyLaw, drive: f64, duration: f64| {
+            let mut work = SimulationWork::default();
+            let element = Element::solve(law, 0.0, drive, duration, &mut Ramps::default(), &mut work);
+            let excess = [0.1, 0.5, 0.9, 1.0].map(|part| element.excess_at(part * duration).to_bits());
+            (excess, work)
+        };
+        for n in [0.7, 1.0, 2.0, 2.5, 5.0, 7.3] {
+            let reference = LatencyLaw::new(n, 2e4).unwrap();
+            solved(reference, 0.5, 1e3);
+            let pace = 0.5 / reference.steady_excess(0.5);
+            let known = |until| Way::followed(n, 0.0, 1.0, until).is_some();
+            assert_eq!(known(1e3 * pace), n != 1.0 && n != 2.0, "n = {n}");
+            for i in 1..=60 {
+                let law = LatencyLaw::new(n, 1e3 * f64::from(1 + i % 7)).unwrap();
+                let drive = if i % 3 == 0 { -0.2 } else { 0.9 };
+                // From a tenth of the way to the steady state to far behind it.
+                let until = 0.1 * 1.15f64.powi(i);
+                let duration = until * (law.steady_excess(drive) / drive);
+                let alone = std::thread::spawn(move || solved(law, drive, duration)).join().unwrap();
+                assert_eq!(solved(law, drive, duration), alone, "n = {n}, as far as {until}");
+                solved(reference, 0.5, 1e3);
             }
         }
     }

@@ -93,6 +93,8 @@ pub(crate) struct Dop853 {
     width: f64,
     narrowest: f64,
     pub(crate) tolerance: f64,
+    /// The latest time that a step was tried to.
+    pub(crate) latest: f64,
     /// Accepted steps.
     pub(crate) steps: u64,
     /// Evaluations of the right-hand side.
@@ -136,6 +138,7 @@ impl Dop853 {
             // A last sliver is taken together with the step before it.
             let last = self.width >= remaining * (1.0 - 1e-12);
             let width = if last { remaining } else { self.width };
+            self.latest = self.latest.max(self.time + width);
             fill!(self, width, stages, rhs, 1 2 3 4 5 6 7 8 9 10 11 12);
             let error = self.error(width, &stages);
             // err^(−1/8)
