@@ -357,7 +357,7 @@ pub(crate) struct CalibrateArguments {
     #[arg(long, conflicts_with = "rivals")]
     pub(crate) no_rivals: bool,
     /// Law of the force once relaxation is over
-    #[arg(long, value_parser = one_of(EQUILIBRIA), default_value = "even-strain")]
+    #[arg(long, value_enum, default_value_t)]
     pub(crate) equilibrium: jobs::Equilibrium,
     /// Poisson's ratio for Hertz's law; 0.5 if not given
     #[arg(long, value_name = "NUMBER")]
@@ -501,7 +501,7 @@ pub(crate) struct WatchArguments {
     pub(crate) confidence: f64,
     /// Times real time, or max; 10 on a terminal and max elsewhere if not given
     #[arg(long, value_name = "NUMBER|max", value_parser = replay_speed, allow_hyphen_values = true)]
-    pub(crate) speed: Option<ReplaySpeed>,
+    pub(crate) speed: Option<f64>,
     /// Time of the log between two lines
     #[arg(long, value_name = "TIME", default_value = seconds(jobs::WatchLog::default().every_s), value_parser = time, allow_hyphen_values = true)]
     pub(crate) every: f64,
@@ -521,15 +521,6 @@ impl WatchArguments {
             every_s: self.every,
         }
     }
-}
-
-/// How fast a log is replayed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum ReplaySpeed {
-    /// So many times real time.
-    Times(f64),
-    /// As fast as it goes.
-    Max,
 }
 
 /// Output of `watch` on standard output.
@@ -615,13 +606,6 @@ const DRIVES: &[Choice<jobs::DriveBy>] = &[
     ("force", "The measured force", jobs::DriveBy::Force),
 ];
 
-/// Law of the force once relaxation is over.
-const EQUILIBRIA: &[Choice<jobs::Equilibrium>] = &[
-    ("even-strain", "Modulus × displacement/depth × contact area", jobs::Equilibrium::EvenStrain),
-    ("hertz", "Hertz's, for balls and pads", jobs::Equilibrium::Hertz),
-    ("table", "A monotone table with a row where the jaw was held", jobs::Equilibrium::Table),
-];
-
 /// What the rate coefficient v depends on.
 const RATES: &[Choice<RateLaw>] = &[
     ("constant", "Nothing: one number", RateLaw::Constant),
@@ -642,14 +626,12 @@ fn deviation(text: &str) -> Result<f64, String> {
     number(text, |deviation| (0.0..=10.0).contains(&deviation), "a number from 0 to 10")
 }
 
-fn replay_speed(text: &str) -> Result<ReplaySpeed, String> {
+/// So many times real time; infinite for as fast as it goes.
+fn replay_speed(text: &str) -> Result<f64, String> {
+    let is_speed = |times: f64| times.is_finite() && times > 0.0;
     match text.trim() {
-        "max" => Ok(ReplaySpeed::Max),
-        times => {
-            let times = times.trim_start_matches('×');
-            let is_speed = |times: f64| times.is_finite() && times > 0.0;
-            number(times, is_speed, "a number above 0, such as 10, or max").map(ReplaySpeed::Times)
-        }
+        "max" => Ok(f64::INFINITY),
+        times => number(times.trim_start_matches('×'), is_speed, "a number above 0, such as 10, or max"),
     }
 }
 

@@ -47,14 +47,14 @@ pub struct Analyze {
     /// From where in a hold to fit: "peak", "settled", or so many seconds after the peak.
     #[schemars(with = "serde_json::Value")]
     #[cfg_attr(feature = "clap", arg(
-        long, value_name = "WHERE", value_parser = crate::typed::hold_start,
+        long, value_name = "WHERE", value_parser = palpate_files::description::parse_hold_start,
         help = "From where in a hold to fit: peak, settled, or \"peak + 0.5 s\"",
     ))]
     pub hold_start: Option<HoldStart>,
     /// First touch: "auto", "as_recorded", a displacement in m, or a rule.
     #[schemars(with = "serde_json::Value")]
     #[cfg_attr(feature = "clap", arg(
-        long, value_name = "WHERE", value_parser = crate::typed::touch,
+        long, value_name = "WHERE", value_parser = palpate_files::description::parse_touch,
         help = "First touch: auto, \"as recorded\", or a displacement",
     ))]
     pub touch: Option<ContactChoice>,
@@ -160,6 +160,16 @@ impl Analyze {
     }
 }
 
+impl Analyzed {
+    /// Report, document, tables and figures by their names.
+    ///
+    /// # Errors
+    /// [`JobError`] where a figure or document cannot be made.
+    pub fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
+        Ok(analysis_bundle(&self.analysis, self.input.clone(), pictures)?)
+    }
+}
+
 impl Results for Analyzed {
     type Document = AnalysisDocument;
 
@@ -169,9 +179,5 @@ impl Results for Analyzed {
 
     fn text(&self) -> String {
         analysis_text(&self.analysis, &self.input)
-    }
-
-    fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
-        Ok(analysis_bundle(&self.analysis, self.input.clone(), pictures)?)
     }
 }

@@ -7,7 +7,7 @@ use palpate_files::description::{MaterialFile, MaterialOrigin};
 use palpate_report::document::CalibrationDocument;
 use palpate_report::figure::Figure;
 use palpate_report::result::CalibratedRecord;
-use palpate_report::study::{Bundle, Pictures, calibration_figure, calibration_text};
+use palpate_report::study::{calibration_figure, calibration_text};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -42,6 +42,7 @@ pub struct Calibrate {
 
 /// Law of the force once relaxation is over, by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum Equilibrium {
     /// Modulus × displacement/depth × contact area.
@@ -184,14 +185,6 @@ impl Results for Calibrated {
 
     fn text(&self) -> String {
         calibration_text(&self.record)
-    }
-
-    fn bundle(&self, _: Pictures) -> Result<Bundle, JobError> {
-        let material = self.material().map(|file| ("material.toml".to_owned(), file.to_toml().into_bytes()));
-        let figure = ("figures/calibration.svg".to_owned(), self.figure().to_svg()?.into_bytes());
-        Ok(Bundle {
-            files: material.into_iter().chain([figure]).collect(),
-        })
     }
 }
 

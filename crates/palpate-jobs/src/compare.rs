@@ -13,7 +13,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::without;
-use crate::input::{Described, Measurement, NamedRecords, called};
+use crate::input::{Measurement, NamedRecords, called};
 use crate::{ErrorKind, JobError, Outcome, Results};
 
 /// Compare laws: which one predicts a hold, how sure that is, and what another would cost.
@@ -131,7 +131,7 @@ impl Compare {
         watch: &mut dyn Watch,
         mut told: impl FnMut(&[String]),
     ) -> Result<Outcome<Compared>, JobError> {
-        let mut found = self.of(&records.described)?;
+        let mut found = Compared::none(self.over(records.described.options())?);
         records.each(
             None,
             watch,
@@ -164,10 +164,6 @@ impl Compare {
         Ok(found.outcome())
     }
 
-    fn of(&self, described: &Described) -> Result<Compared, JobError> {
-        Ok(Compared::none(self.over(described.options())?))
-    }
-
     fn one(&self, measured: Measurement, options: &Options, watch: &mut dyn Watch) -> Result<ComparedRecord, JobError> {
         let Measurement { record, input, .. } = measured;
         watch.report(Progress::open(&format!("comparing laws on {}", input.path), 0))?;
@@ -189,10 +185,9 @@ impl Compare {
 
 impl Compared {
     fn none(options: Options) -> Self {
-        let (records, left_out) = (Vec::new(), Vec::new());
         Self {
-            records,
-            left_out,
+            records: Vec::new(),
+            left_out: Vec::new(),
             options,
         }
     }
@@ -218,6 +213,14 @@ impl Compared {
         ComparisonSettingsDocument::new(compared, analysis.segment.hold_start, analysis.fit_until)
     }
 
+    /// Report, document, tables and figures by their names.
+    ///
+    /// # Errors
+    /// [`JobError`] where a figure or document cannot be made.
+    pub fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
+        Ok(comparison_bundle(&self.records, &self.left_out, self.settings(), pictures)?)
+    }
+
     /// One table of all records and holds.
     #[must_use]
     pub fn markdown(&self) -> String {
@@ -234,9 +237,5 @@ impl Results for Compared {
 
     fn text(&self) -> String {
         comparison_text(&self.records, &self.left_out)
-    }
-
-    fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
-        Ok(comparison_bundle(&self.records, &self.left_out, self.settings(), pictures)?)
     }
 }

@@ -13,7 +13,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::input::{OpenedFile, averaged};
-use crate::output::{check_ending, folder_of, place_file};
+use crate::output::{check_ending, folder_of, place_file, unwritten_table};
 use crate::{JobError, Outcome};
 
 /// Under which the file says where its numbers come from.
@@ -80,12 +80,12 @@ impl Converted {
         let (file, origin) = (&self.file, &self.origin);
         place_file(out, folder_of(out), |into| {
             let into = io::BufWriter::new(into);
-            match out.extension().and_then(|ending| ending.to_str()) {
-                Some("parquet") => write_parquet(into, file, origin)?,
-                Some("json") => write_json(into, file, origin)?,
-                _ => write_csv(into, file, origin)?,
-            }
-            Ok(())
+            let written = match out.extension().and_then(|ending| ending.to_str()) {
+                Some("parquet") => write_parquet(into, file, origin),
+                Some("json") => write_json(into, file, origin).map_err(TableError::from),
+                _ => write_csv(into, file, origin).map_err(TableError::from),
+            };
+            written.map_err(|error| unwritten_table(out, &error))
         })
     }
 }

@@ -9,7 +9,6 @@ use palpate::simulate::SimulateError;
 use palpate::watch::Cancelled;
 use palpate_files::description::DescriptionError;
 use palpate_files::record::ReadError;
-use palpate_report::figure::FigureError;
 use palpate_report::spelling::spelled;
 use palpate_report::study::StudyError;
 
@@ -121,32 +120,20 @@ impl From<Cancelled> for JobError {
 
 impl From<ReadError> for JobError {
     fn from(error: ReadError) -> Self {
-        let kind = match &error {
-            ReadError::File(error) => error.io_kind().map_or(ErrorKind::Record, ErrorKind::File),
-            _ => ErrorKind::Record,
-        };
-        Self::new(kind, &error, error.hint())
+        let io = if let ReadError::File(error) = &error { error.io_kind() } else { None };
+        Self::new(io.map_or(ErrorKind::Record, ErrorKind::File), &error, error.hint())
     }
 }
 
 impl From<DescriptionError> for JobError {
     fn from(error: DescriptionError) -> Self {
-        let kind = match &error {
-            DescriptionError::File(error) => error.io_kind().map_or(ErrorKind::Option, ErrorKind::File),
-            _ => ErrorKind::Option,
-        };
-        Self::new(kind, &error, error.hint())
+        let io = if let DescriptionError::File(error) = &error { error.io_kind() } else { None };
+        Self::new(io.map_or(ErrorKind::Option, ErrorKind::File), &error, error.hint())
     }
 }
 
 impl From<StudyError> for JobError {
     fn from(error: StudyError) -> Self {
-        Self::new(ErrorKind::Report, error, None)
-    }
-}
-
-impl From<FigureError> for JobError {
-    fn from(error: FigureError) -> Self {
         Self::new(ErrorKind::Report, error, None)
     }
 }

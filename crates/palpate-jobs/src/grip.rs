@@ -8,7 +8,7 @@ use palpate::watch::Watch;
 use palpate_files::description::{MaterialFile, read_material};
 use palpate_report::document::GripDocument;
 use palpate_report::result::GrippedBody;
-use palpate_report::study::{Bundle, Pictures, grip_bundle, grip_text};
+use palpate_report::study::grip_text;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -327,10 +327,6 @@ impl Results for GrippedBody<'_> {
 
     fn text(&self) -> String {
         grip_text(self)
-    }
-
-    fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
-        Ok(grip_bundle(self, pictures)?)
     }
 }
 

@@ -7,7 +7,7 @@
 //! | file | what |
 //! |---|---|
 //! | `error.rs` | why there is no outcome ([`JobError`]) |
-//! | `outcome.rs` | result, document, text, files and verdict of a job |
+//! | `outcome.rs` | result, document, text and verdict of a job |
 //! | `input/` | records, opened and hashed once |
 //! | `output.rs` | files that appear whole or not at all, and never in the place of one that is read |
 //! | `store.rs` | what can be resumed |

@@ -1,6 +1,5 @@
 //! What a job gives: its result, and everything that can be made of it.
 
-use palpate_report::study::{Bundle, Pictures};
 use serde::Serialize;
 
 use crate::JobError;
@@ -25,7 +24,7 @@ pub struct Outcome<R> {
     pub notes: Vec<String>,
 }
 
-/// A result that is shown as text, as a document and as files.
+/// A result that is shown as text and as a document.
 pub trait Results {
     /// What programs read.
     type Document: Serialize;
@@ -43,12 +42,6 @@ pub trait Results {
 
     /// Tables and sentences for people.
     fn text(&self) -> String;
-
-    /// Report, document, tables and figures by their names.
-    ///
-    /// # Errors
-    /// [`JobError`] where a figure or document cannot be made.
-    fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError>;
 }
 
 impl<R> Outcome<R> {

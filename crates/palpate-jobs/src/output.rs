@@ -21,17 +21,17 @@ const DPI: f64 = 300.0;
 ///
 /// # Errors
 /// [`JobError`] with the first of `writes` that is among `reads`, through links too.
-pub fn keep_apart<'a>(
-    reads: impl IntoIterator<Item = &'a PathBuf>,
-    writes: impl IntoIterator<Item = &'a PathBuf>,
+pub fn keep_apart<R: AsRef<Path>, W: AsRef<Path>>(
+    reads: impl IntoIterator<Item = R>,
+    writes: impl IntoIterator<Item = W>,
 ) -> Result<(), JobError> {
-    let reads: Vec<&PathBuf> = reads.into_iter().collect();
-    match writes.into_iter().find(|out| reads.iter().any(|read| is_same(read, out))) {
+    let reads: Vec<R> = reads.into_iter().collect();
+    match writes.into_iter().find(|out| reads.iter().any(|read| is_same(read.as_ref(), out.as_ref()))) {
         Some(out) => Err(JobError::option(
             "expected another file than those that are read, found one of them",
             "choose another name for what is written",
         )
-        .of(out.display())),
+        .of(out.as_ref().display())),
         None => Ok(()),
     }
 }
@@ -77,7 +77,7 @@ pub fn write_file_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Re
         write(&mut out)?;
         out.flush()
     };
-    place_file(path, folder_of(path), |file| Ok(buffered(file)?))
+    place_file(path, folder_of(path), |file| buffered(file).map_err(|error| unwritten(path, &error)))
 }
 
 /// The folder that a file lies in.
@@ -89,38 +89,15 @@ pub(crate) fn folder_of(path: &Path) -> &Path {
 pub(crate) fn place_file(
     path: &Path,
     folder: &Path,
-    write: impl FnOnce(&fs::File) -> Result<(), Unplaced>,
+    write: impl FnOnce(&fs::File) -> Result<(), JobError>,
 ) -> Result<(), JobError> {
-    let place = || -> Result<(), Unplaced> {
-        fs::create_dir_all(folder)?;
-        let file = tempfile::Builder::new().prefix(TEMPORARY).tempfile_in(folder)?;
-        write(file.as_file())?;
-        file.as_file().sync_all()?;
-        file.persist(path).map_err(|error| error.error)?;
-        Ok(open_to_all(path)?)
-    };
-    place().map_err(|error| match error {
-        Unplaced::Store(error) => error,
-        Unplaced::Table(error) => unwritten_table(path, &error),
-    })
-}
-
-/// Why a table is not in its place.
-pub(crate) enum Unplaced {
-    Store(JobError),
-    Table(TableError),
-}
-
-impl From<TableError> for Unplaced {
-    fn from(error: TableError) -> Self {
-        Self::Table(error)
-    }
-}
-
-impl From<io::Error> for Unplaced {
-    fn from(error: io::Error) -> Self {
-        Self::Table(error.into())
-    }
+    let refused = |error: io::Error| unwritten(path, &error);
+    fs::create_dir_all(folder).map_err(refused)?;
+    let file = tempfile::Builder::new().prefix(TEMPORARY).tempfile_in(folder).map_err(refused)?;
+    write(file.as_file())?;
+    file.as_file().sync_all().map_err(refused)?;
+    file.persist(path).map_err(|error| refused(error.error))?;
+    open_to_all(path).map_err(refused)
 }
 
 /// A failure of a table at `path`.
@@ -280,7 +257,7 @@ pub fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, JobError> {
         Some("png") => figure.to_png(DPI),
         _ => figure.to_svg().map(String::into_bytes),
     };
-    drawn.map_err(|error| JobError::from(error).of(path.display()))
+    drawn.map_err(|error| JobError::new(ErrorKind::Report, error, None).of(path.display()))
 }
 
 /// The name of a figure in a file.

@@ -12,7 +12,7 @@ use palpate::test_problems::{paper_ball, paper_test_a, paper_test_b};
 use palpate::watch::{Progress, Watch};
 use palpate_report::document::ReproductionDocument;
 use palpate_report::result::{Check, ReproducedTest, Reproduction};
-use palpate_report::study::{Bundle, Pictures, reproduction_bundle, reproduction_text};
+use palpate_report::study::reproduction_text;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -41,7 +41,9 @@ impl Reproduce {
             model,
             checks: Vec::new(),
         };
-        result.checks = checks(&result);
+        let all: [fn(&Reproduction) -> Check; 6] =
+            [types, amounts, agreement, lowest_order, identified, last_unloading];
+        result.checks = all.map(|check| check(&result)).into();
         let passed = result.all_passed();
         Ok(Outcome::of(result).answered(passed))
     }
@@ -56,10 +58,6 @@ impl Results for Reproduction {
 
     fn text(&self) -> String {
         reproduction_text(self)
-    }
-
-    fn bundle(&self, pictures: Pictures) -> Result<Bundle, JobError> {
-        Ok(reproduction_bundle(self, pictures)?)
     }
 }
 
@@ -95,17 +93,6 @@ fn reproduced(motion: &Motion, model: &ContactModel, watch: &mut dyn Watch) -> R
             .map_err(JobError::simulation)?,
         bonded,
     })
-}
-
-fn checks(study: &Reproduction) -> Vec<Check> {
-    vec![
-        types(study),
-        amounts(study),
-        agreement(study),
-        lowest_order(study),
-        identified(study),
-        last_unloading(study),
-    ]
 }
 
 fn check(name: &str, criterion: &str, found: String, passed: bool) -> Check {

@@ -6,14 +6,14 @@ use std::path::Path;
 use palpate::contact::RateDependence;
 use palpate::record::Record;
 use palpate::simulate::{
-    Contact, ContactEventKind, ContactModel, Drive, Energy, ForceHistory, Memory, Motion, Sampling, SimulateError,
-    StepWork, StrainWave, Trajectory, WAVE_TOLERANCE, cycles, energy_watched, simulate_watched, strain_wave_within,
-    work_by_step_watched,
+    Contact, ContactModel, Drive, Energy, ForceHistory, Memory, Motion, Sampling, SimulateError, StepWork, StrainWave,
+    Trajectory, WAVE_TOLERANCE, cycles, energy_watched, simulate_watched, strain_wave_within, work_by_step_watched,
 };
 use palpate::test_problems::Noise;
 use palpate::watch::Watch;
 use palpate_files::description::{Protocol, read_protocol, read_scene};
 use palpate_report::figure::Figure;
+use palpate_report::result::word;
 use palpate_report::study::{
     cycle_table, hysteresis_figure, step_work_table, trajectory_figure, wave_figure, write_trajectory,
 };
@@ -87,13 +87,9 @@ impl Simulate {
         let trajectory = simulate_watched(scene.drive(), &scene.contact, &scene.sampling, watch);
         let trajectory = trajectory.map_err(|error| scene.refused(error))?;
         for event in &trajectory.events {
-            let what = match event.kind {
-                ContactEventKind::Lost => "lost",
-                ContactEventKind::Regained => "regained",
-            };
             // Rounded first, so that no minus stands before a zero.
             let depth = (1e7 * event.contact_displacement).round() / 1e4 + 0.0;
-            notes.push(format!("contact {what} at {:.4} s, surface at {depth:.4} mm", event.time));
+            notes.push(format!("contact {} at {:.4} s, surface at {depth:.4} mm", word(event.kind), event.time));
         }
         let job = self;
         Ok(Outcome::of(Simulated { trajectory, scene, job }).noted(notes))
@@ -338,12 +334,8 @@ fn energy_table(energy: &Energy) -> Table {
         .column("Work", "work_j", "J", |row| at(*row, &energy.work))
         .column("Given back", "given_back_j", "J", |row| at(*row, &energy.given_back));
     if let Some(split) = &energy.split {
-        table = table.column("Stored", "stored_j", "J", |row| at(*row, &split.stored)).column(
-            "Lost",
-            "lost_j",
-            "J",
-            |row| at(*row, &split.lost),
-        );
+        table = table.column("Stored", "stored_j", "J", |row| at(*row, &split.stored));
+        table = table.column("Lost", "lost_j", "J", |row| at(*row, &split.lost));
     }
     table.table()
 }

@@ -5,9 +5,7 @@ use palpate::fit::{BootstrapOptions, IntervalMethod, Loss, SampleChoice};
 use palpate::forecast::RampChoice;
 use palpate::grip::{Control, Objective};
 use palpate::laws::Law;
-use palpate::segment::{ContactChoice, HoldStart};
 use palpate::units::{Dimension, parse, split_number};
-use palpate_files::description::{parse_hold_start, parse_touch};
 
 /// A value of an option: its name, what it is, and what it says.
 pub type Choice<T> = (&'static str, &'static str, T);
@@ -174,22 +172,6 @@ pub fn number(text: &str, is_one: impl Fn(f64) -> bool, expected: &str) -> Resul
 /// What was expected.
 pub fn exponent(text: &str) -> Result<f64, String> {
     number(text, |n| n.is_finite() && n > 0.0, "exponents above 0, such as 1,3,5")
-}
-
-/// From where in a hold to fit.
-///
-/// # Errors
-/// What was expected.
-pub fn hold_start(text: &str) -> Result<HoldStart, String> {
-    parse_hold_start(text).map_err(|error| error.to_string())
-}
-
-/// What is taken for first touch.
-///
-/// # Errors
-/// What was expected.
-pub fn touch(text: &str) -> Result<ContactChoice, String> {
-    parse_touch(text).map_err(|error| error.to_string())
 }
 
 /// A law by its name.

@@ -6,9 +6,9 @@ use palpate::laws::Law;
 use palpate_files::description::read_material;
 use palpate_jobs::input::{Described, NamedRecords, OpenedFile};
 use palpate_jobs::output::write_bundle;
-use palpate_jobs::{Batch, Convert, HoldSeen, Inspect, Reproduce, Results, Seen, Sweep, WatchLog};
+use palpate_jobs::{Batch, Convert, HoldSeen, Inspect, Reproduce, Seen, Sweep, WatchLog};
 use palpate_report::document::{WatchDocument, WatchSummaryDocument};
-use palpate_report::study::Pictures;
+use palpate_report::study::{Pictures, reproduction_bundle};
 use pyo3::prelude::*;
 
 use crate::errors::{OptionError, failed, refused_plainly};
@@ -234,7 +234,7 @@ pub(crate) fn sweep(
 pub(crate) fn reproduce(py: Python<'_>, folder: PathBuf, png: bool) -> PyResult<bool> {
     job(py, move |watch| {
         let done = Reproduce {}.run(watch)?;
-        write_bundle(&folder, &done.result.bundle(Pictures { png })?)?;
+        write_bundle(&folder, &reproduction_bundle(&done.result, Pictures { png })?)?;
         Ok(done.result.all_passed())
     })
 }

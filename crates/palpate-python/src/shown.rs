@@ -1,22 +1,49 @@
 //! Classes that show what a result says.
 
-/// The methods of such a class: a getter for each array and for each value, with Python where it needs that, a pickle of what its objects
-/// hold, and methods of its own. The arrays are the columns of a table too.
+/// The methods of such a class: a getter for each array and for each value, with Python where it needs that, and methods of its own. The
+/// arrays are the columns of a table too.
+///
+/// Objects of a class with `values` go into a pickle as what they hold. A class with `getters` says itself how it is pickled; one with
+/// `copied getters` is changed in place, and its copies go their own way.
 macro_rules! shown {
     (
         $class:ident: $me:ident
-        values { $($(#[$doc:meta])* $name:ident$(<$life:lifetime>($py:ident))?: $of:ty = $value:expr,)* }
-        methods { $($methods:tt)* }
+        getters { $($(#[$doc:meta])* $name:ident$(<$life:lifetime>($py:ident))?: $of:ty = $value:expr,)* }
+        $($methods:tt)*
     ) => {
         #[pymethods]
         impl $class {
             $(
                 $(#[$doc])*
                 #[getter]
-                fn $name$(<$life>)?(&$me $(, $py: Python<$life>)?) -> $of {
+                pub(crate) fn $name$(<$life>)?(&$me $(, $py: Python<$life>)?) -> $of {
                     $value
                 }
             )*
+
+            $($methods)*
+        }
+    };
+    ($class:ident: $me:ident copied getters { $($getters:tt)* } $($methods:tt)*) => {
+        $crate::shown::shown! {
+            $class: $me
+            getters { $($getters)* }
+
+            fn __copy__(&self) -> Self {
+                self.clone()
+            }
+
+            fn __deepcopy__(&self, _memo: &Bound<'_, pyo3::types::PyDict>) -> Self {
+                self.clone()
+            }
+
+            $($methods)*
+        }
+    };
+    ($class:ident: $me:ident values { $($values:tt)* } $($methods:tt)*) => {
+        $crate::shown::shown! {
+            $class: $me
+            getters { $($values)* }
 
             #[classmethod]
             fn _from_json(_class: &Bound<'_, pyo3::types::PyType>, json: &str) -> PyResult<Self> {
@@ -34,7 +61,7 @@ macro_rules! shown {
         $class:ident: $me:ident
         arrays { $($(#[$about:meta])* $array:ident: $numbers:expr,)* }
         values { $($values:tt)* }
-        methods { $($methods:tt)* }
+        $($methods:tt)*
     ) => {
         impl $class {
             fn columns(&$me) -> Vec<(&'static str, arrow_array::ArrayRef)> {
@@ -48,14 +75,13 @@ macro_rules! shown {
                 $($(#[$about])* $array<'py>(py): Bound<'py, numpy::PyArray1<f64>> = numpy::PyArray1::from_vec(py, $numbers),)*
                 $($values)*
             }
-            methods {
-                #[pyo3(signature = (requested_schema=None))]
-                fn __arrow_c_stream__(&self, py: Python<'_>, requested_schema: Option<Py<PyAny>>) -> PyResult<Py<PyAny>> {
-                    self.to_arrow()?.__arrow_c_stream__(py, requested_schema)
-                }
 
-                $($methods)*
+            #[pyo3(signature = (requested_schema=None))]
+            fn __arrow_c_stream__(&self, py: Python<'_>, requested_schema: Option<Py<PyAny>>) -> PyResult<Py<PyAny>> {
+                self.to_arrow()?.__arrow_c_stream__(py, requested_schema)
             }
+
+            $($methods)*
         }
     };
 }

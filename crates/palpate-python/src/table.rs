@@ -8,7 +8,7 @@ use arrow_array::types::{Float64Type, Int64Type};
 use arrow_array::{Array, ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
 use arrow_ipc::reader::StreamReader;
 use arrow_ipc::writer::StreamWriter;
-use arrow_schema::{ArrowError, DataType};
+use arrow_schema::DataType;
 use numpy::{PyArray1, PyArrayMethods};
 use palpate::number::significant;
 use pyo3::exceptions::{PyKeyError, PyRuntimeError};
@@ -16,6 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyType};
 use pyo3_arrow::PyTable;
 
+use crate::errors::refused_plainly;
 use crate::work::Made;
 
 /// Columns of results, each named with its unit.
@@ -41,8 +42,7 @@ impl Table {
     pub(crate) fn of(columns: Vec<(&str, ArrayRef)>) -> PyResult<Self> {
         // A column without a missing value may get one in the next table of its kind.
         let columns = columns.into_iter().map(|(name, values)| (name.to_owned(), values, true));
-        let batch = RecordBatch::try_from_iter_with_nullable(columns)
-            .map_err(|error: ArrowError| PyRuntimeError::new_err(error.to_string()))?;
+        let batch = RecordBatch::try_from_iter_with_nullable(columns).map_err(refused_plainly::<PyRuntimeError>)?;
         Ok(Self { batch })
     }
 }
@@ -177,20 +177,19 @@ impl Table {
 
     #[classmethod]
     fn _from_ipc(_class: &Bound<'_, PyType>, bytes: &[u8]) -> PyResult<Self> {
-        let broken = |error: ArrowError| PyRuntimeError::new_err(error.to_string());
-        let mut reader = StreamReader::try_new(Cursor::new(bytes), None).map_err(broken)?;
+        let mut reader = StreamReader::try_new(Cursor::new(bytes), None).map_err(refused_plainly::<PyRuntimeError>)?;
         let schema = reader.schema();
-        let batch = reader.next().transpose().map_err(broken)?;
+        let batch = reader.next().transpose().map_err(refused_plainly::<PyRuntimeError>)?;
         Ok(Self {
             batch: batch.unwrap_or_else(|| RecordBatch::new_empty(schema)),
         })
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py, (Bound<'py, PyBytes>,)>> {
-        let broken = |error: ArrowError| PyRuntimeError::new_err(error.to_string());
-        let mut writer = StreamWriter::try_new(Vec::new(), &self.batch.schema()).map_err(broken)?;
-        writer.write(&self.batch).map_err(broken)?;
-        let bytes = writer.into_inner().map_err(broken)?;
+        let mut writer =
+            StreamWriter::try_new(Vec::new(), &self.batch.schema()).map_err(refused_plainly::<PyRuntimeError>)?;
+        writer.write(&self.batch).map_err(refused_plainly::<PyRuntimeError>)?;
+        let bytes = writer.into_inner().map_err(refused_plainly::<PyRuntimeError>)?;
         Ok((py.get_type::<Self>().getattr("_from_ipc")?, (PyBytes::new(py, &bytes),)))
     }
 

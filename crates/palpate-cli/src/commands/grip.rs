@@ -2,7 +2,7 @@
 
 use palpate_jobs::output::{check_figure, keep_apart, picture, write_bundle, write_file};
 use palpate_jobs::{JobError, MaterialSource, Results, Verdict};
-use palpate_report::study::{Pictures, grip_figure};
+use palpate_report::study::{Pictures, grip_bundle, grip_figure};
 
 use crate::arguments::{Format, GripArguments};
 use crate::progress::Bars;
@@ -16,7 +16,7 @@ pub(crate) fn run(asked: &GripArguments) -> Result<Verdict, JobError> {
     let outcome = asked.job.run(&material, &mut Bars::default())?;
     let drawn = figure.as_ref().map(|path| picture(path, &grip_figure(&outcome.result, "grip"))).transpose()?;
     if let Some(folder) = out {
-        write_bundle(folder, &outcome.result.bundle(Pictures::default())?)?;
+        write_bundle(folder, &grip_bundle(&outcome.result, Pictures::default())?)?;
     }
     if let (Some(path), Some(bytes)) = (figure, drawn) {
         write_file(path, &bytes)?;

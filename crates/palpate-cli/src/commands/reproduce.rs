@@ -2,7 +2,7 @@
 
 use palpate_jobs::output::write_bundle;
 use palpate_jobs::{JobError, Reproduce, Results, Verdict};
-use palpate_report::study::Pictures;
+use palpate_report::study::{Pictures, reproduction_bundle};
 
 use crate::arguments::{Format, ReproduceArguments};
 use crate::progress::Bars;
@@ -10,7 +10,7 @@ use crate::terminal::print;
 
 pub(crate) fn run(arguments: &ReproduceArguments) -> Result<Verdict, JobError> {
     let outcome = Reproduce {}.run(&mut Bars::default())?;
-    let bundle = outcome.result.bundle(Pictures { png: arguments.png })?;
+    let bundle = reproduction_bundle(&outcome.result, Pictures { png: arguments.png })?;
     write_bundle(&arguments.out, &bundle)?;
     let (files, report) = (bundle.files.len(), arguments.out.join("report.html"));
     print(&match arguments.format {

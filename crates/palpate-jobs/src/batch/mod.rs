@@ -61,7 +61,7 @@ pub struct Batch {
     /// From where in a hold to fit: "peak", "settled", or so many seconds after the peak.
     #[schemars(with = "serde_json::Value")]
     #[cfg_attr(feature = "clap", arg(
-        long, value_name = "WHERE", value_parser = crate::typed::hold_start,
+        long, value_name = "WHERE", value_parser = palpate_files::description::parse_hold_start,
         help = "From where in a hold to fit: peak, settled, or \"peak + 0.5 s\"",
     ))]
     pub hold_start: Option<HoldStart>,
@@ -113,12 +113,11 @@ impl Batch {
     pub fn run(&self, records: NamedRecords, out: &Path, watch: &mut dyn Watch) -> Result<Outcome<Batched>, JobError> {
         let started = Instant::now();
         let NamedRecords { mut paths, described } = records;
-        let table = [out.to_owned()];
-        keep_apart(&described.path, &table)?;
+        keep_apart(&described.path, [out])?;
         let format = Format::of(out)?;
         let options = self.options(&described);
         if !is_written_by_batch(out) {
-            keep_apart(&paths, &table)?;
+            keep_apart(&paths, [out])?;
         }
         let journal = beside(out, ".journal");
         // In the folder of the records they are no records.

@@ -10,14 +10,16 @@ struct Line<'a> {
     document: &'a AnalysisDocument,
     hold: &'a HoldDocument,
     law: LawRow<'a>,
+    /// Whether it is the law to use.
+    preferred: bool,
 }
 
 /// A law on a hold.
 enum LawRow<'a> {
     /// The latency law, with n given or free.
-    Latency { fit: &'a FitDocument, preferred: bool },
+    Latency(&'a FitDocument),
     /// Another law of the comparison.
-    Other { law: &'a LawDocument, chosen: bool },
+    Other(&'a LawDocument),
     /// None was fitted; the findings say why.
     None,
 }
@@ -51,7 +53,7 @@ const HOLD: [Column; 19] = [
 /// Columns of the law, whichever it is.
 const LAW: [Column; 7] = [
     (Text, "law", |line| line.name().into()),
-    (Count, "preferred", |line| i64::from(line.preferred()).into()),
+    (Count, "preferred", |line| i64::from(line.preferred).into()),
     (Number, "rmse", |line| line.of_law(|fit| fit.rmse.into(), |_| Value::Null)),
     (Number, "relative_rmse", |line| line.of_law(|fit| relative(fit).into(), |law| law.rmse.into())),
     (Number, "delta_bic", |line| line.of_law(|fit| fit.delta_bic.into(), |law| law.delta_bic.into())),
@@ -103,33 +105,33 @@ pub(super) fn rows(document: &AnalysisDocument) -> Vec<Vec<Value>> {
 
 fn of_hold<'a>(document: &'a AnalysisDocument, hold: &'a HoldDocument) -> impl Iterator<Item = Vec<Value>> {
     let in_time = hold.fits.iter().enumerate().filter(|(_, fit)| fit.domain == "time");
-    let latency = in_time.map(|(index, fit)| LawRow::Latency {
-        fit,
-        preferred: hold.preferred == Some(index),
-    });
+    let latency = in_time.map(|(index, fit)| (LawRow::Latency(fit), hold.preferred == Some(index)));
     let chosen = hold.comparison.as_ref().and_then(|found| found.verdict.as_ref()).map(|verdict| &verdict.law);
     let others = hold.comparison.iter().flat_map(|found| &found.laws).filter(|law| !law.law.starts_with("latency"));
-    let others = others.map(move |law| LawRow::Other {
-        law,
-        chosen: chosen == Some(&law.law),
-    });
-    let mut laws: Vec<LawRow<'_>> = latency.chain(others).collect();
+    let others = others.map(move |law| (LawRow::Other(law), chosen == Some(&law.law)));
+    let mut laws: Vec<(LawRow<'_>, bool)> = latency.chain(others).collect();
     if laws.is_empty() {
-        laws.push(LawRow::None);
+        laws.push((LawRow::None, false));
     }
-    laws.into_iter().map(move |law| row(&Line { document, hold, law }))
+    let line = move |(law, preferred)| Line {
+        document,
+        hold,
+        law,
+        preferred,
+    };
+    laws.into_iter().map(move |law| row(&line(law)))
 }
 
 fn row(line: &Line<'_>) -> Vec<Value> {
     let plain = |columns: &'static [Column]| columns.iter().map(|(.., value)| value(line));
     let uncertain = LATENCY.iter().flat_map(|(name, value)| match &line.law {
-        LawRow::Latency { fit, .. } => {
+        LawRow::Latency(fit) => {
             let interval = fit.confidence_interval.get(*name);
             let error = fit.standard_error.get(*name).copied();
             let [low, high] = [0, 1].map(|end| interval.map(|interval| interval[end]));
             [value(fit), error.into(), low.into(), high.into()]
         }
-        LawRow::Other { .. } | LawRow::None => [const { Value::Null }; 4],
+        LawRow::Other(_) | LawRow::None => [const { Value::Null }; 4],
     });
     plain(&HOLD).chain(plain(&LAW)).chain(uncertain).chain(plain(&LAST)).collect()
 }
@@ -138,8 +140,8 @@ impl Line<'_> {
     /// What stands in the latency law, or in another one.
     fn of_law(&self, latency: fn(&FitDocument) -> Value, other: fn(&LawDocument) -> Value) -> Value {
         match &self.law {
-            LawRow::Latency { fit, .. } => latency(fit),
-            LawRow::Other { law, .. } => other(law),
+            LawRow::Latency(fit) => latency(fit),
+            LawRow::Other(law) => other(law),
             LawRow::None => Value::Null,
         }
     }
@@ -147,18 +149,10 @@ impl Line<'_> {
     /// The name of the law as `--laws` takes it.
     fn name(&self) -> Option<String> {
         match &self.law {
-            LawRow::Latency { fit, .. } if fit.exponent_fixed => Some(format!("latency:{}", fit.exponent)),
-            LawRow::Latency { .. } => Some("latency".to_owned()),
-            LawRow::Other { law, .. } => Some(law.law.clone()),
+            LawRow::Latency(fit) if fit.exponent_fixed => Some(format!("latency:{}", fit.exponent)),
+            LawRow::Latency(_) => Some("latency".to_owned()),
+            LawRow::Other(law) => Some(law.law.clone()),
             LawRow::None => None,
-        }
-    }
-
-    fn preferred(&self) -> bool {
-        match self.law {
-            LawRow::Latency { preferred, .. } => preferred,
-            LawRow::Other { chosen, .. } => chosen,
-            LawRow::None => false,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The rows of all records as one file, written whole or not at all.
 
-use std::io::{BufWriter, Write};
+use std::io::{self, BufWriter, Write};
 use std::ops::Range;
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::rows::{fields, table_rows};
 use super::{Batched, Entry};
 use crate::JobError;
-use crate::output::{Unplaced, check_ending, check_no_folder, place_file};
+use crate::output::{check_ending, check_no_folder, place_file, unwritten_table};
 use crate::store::{Store, beside};
 use crate::written_by_batch::MARK;
 
@@ -40,26 +40,20 @@ pub(super) fn write<'a>(
     settings: &str,
 ) -> Result<Batched, JobError> {
     let mut batched = Batched::default();
-    let entry = |place| Ok::<Entry, JobError>(serde_json::from_slice(&store.read(place)?)?);
+    let refused = |error: TableError| unwritten_table(out, &error);
     // In the folder of the store, where the next batch clears away what a kill leaves behind.
     place_file(out, &beside(out, ".journal"), |file| {
-        let mut sink = Sink::new(format, BufWriter::new(file), settings)?;
+        let mut sink = Sink::new(format, BufWriter::new(file), settings).map_err(refused)?;
         for place in places {
-            let entry = entry(place).map_err(Unplaced::Store)?;
+            let entry: Entry = serde_json::from_slice(&store.read(place)?)?;
             batched.rows += entry.rows.len();
             batched.tests += entry.tests;
             batched.failures.extend(entry.failures);
-            sink.write(&entry.rows)?;
+            sink.write(&entry.rows).map_err(refused)?;
         }
-        sink.finish(settings)
+        sink.finish(settings).map_err(refused)
     })?;
     Ok(batched)
-}
-
-impl From<csv::Error> for Unplaced {
-    fn from(error: csv::Error) -> Self {
-        Self::Table(TableError::Io(error.into()))
-    }
 }
 
 /// A table that takes rows.
@@ -69,25 +63,25 @@ enum Sink<W: Write + Send> {
 }
 
 impl<W: Write + Send> Sink<W> {
-    fn new(format: Format, mut out: W, settings: &str) -> Result<Self, Unplaced> {
+    fn new(format: Format, mut out: W, settings: &str) -> Result<Self, TableError> {
         let fields = fields();
         match format {
             Format::Csv => {
                 // A comment, which readers of CSV can be told to pass over; palpate passes over it by itself.
                 writeln!(out, "# {MARK}: {settings}")?;
                 let mut writer = csv::Writer::from_writer(out);
-                writer.write_record(fields.iter().map(|field| field.name.as_str()))?;
+                writer.write_record(fields.iter().map(|field| field.name.as_str())).map_err(io::Error::from)?;
                 Ok(Self::Csv(Box::new(writer)))
             }
             Format::Parquet => Ok(Self::Parquet(Box::new(TableWriter::new(out, &fields)?), fields)),
         }
     }
 
-    fn write(&mut self, lines: &[Vec<Value>]) -> Result<(), Unplaced> {
+    fn write(&mut self, lines: &[Vec<Value>]) -> Result<(), TableError> {
         match self {
             Self::Csv(writer) => {
                 for line in lines {
-                    writer.write_record(line.iter().map(cell))?;
+                    writer.write_record(line.iter().map(cell)).map_err(io::Error::from)?;
                 }
             }
             Self::Parquet(writer, fields) => {
@@ -98,7 +92,7 @@ impl<W: Write + Send> Sink<W> {
         Ok(())
     }
 
-    fn finish(self, settings: &str) -> Result<(), Unplaced> {
+    fn finish(self, settings: &str) -> Result<(), TableError> {
         match self {
             Self::Csv(mut writer) => writer.flush()?,
             Self::Parquet(writer, _) => writer.finish(&[(MARK, settings)])?,

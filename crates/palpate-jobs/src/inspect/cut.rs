@@ -71,11 +71,9 @@ impl Cut {
             Ok(found) => {
                 out.push_str(&self.phases(found));
                 out.push_str(&self.contact(found, test));
-                if let Some(seen) = found.ripple.map(Finding::JawHunts) {
+                let hunts = found.ripple.map(Finding::JawHunts);
+                for seen in hunts.into_iter().chain(suspicious_signs(&self.record)) {
                     let _ = writeln!(out, "{}; {}", seen.seen(), seen.remedy());
-                }
-                for sign in suspicious_signs(&self.record) {
-                    let _ = writeln!(out, "{}; {}", sign.seen(), sign.remedy());
                 }
             }
             Err(_) if self.refused().is_some() => {}

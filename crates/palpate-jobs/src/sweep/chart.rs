@@ -61,10 +61,8 @@ impl Chart {
 
     /// Draws it from the table at `table`.
     pub(super) fn draw(&self, sweep: &Sweep, table: &Path) -> Result<Vec<u8>, JobError> {
-        let stride = match &sweep.plan {
-            Plan::Grid { .. } => 1,
-            Plan::LatinHypercube { .. } | Plan::Together { .. } => sweep.runs.div_ceil(MOST_POINTS).max(1),
-        };
+        let is_grid = matches!(sweep.plan, Plan::Grid { .. });
+        let stride = if is_grid { 1 } else { sweep.runs.div_ceil(MOST_POINTS).max(1) };
         let read =
             |column: &str| read_column(table, column, stride as usize).map_err(|error| unwritten_table(table, &error));
         let result = Swept {
@@ -75,17 +73,16 @@ impl Chart {
         let caption = caption(sweep, &self.result, stride);
         let axes = sweep.numbers.iter().map(|number| {
             let values = match number.grid() {
-                Some(values) if matches!(&sweep.plan, Plan::Grid { .. }) => values,
+                Some(values) if is_grid => values,
                 _ => read(&number.column)?,
             };
             Ok(axis(number, values))
         });
         let axes = axes.collect::<Result<Vec<_>, JobError>>()?;
-        let figure = match &sweep.plan {
-            Plan::Grid { .. } => sweep_grid_figure(&name, &caption, &axes, &result),
-            Plan::LatinHypercube { .. } | Plan::Together { .. } => {
-                Some(sweep_points_figure(&name, &caption, &axes, &result))
-            }
+        let figure = if is_grid {
+            sweep_grid_figure(&name, &caption, &axes, &result)
+        } else {
+            Some(sweep_points_figure(&name, &caption, &axes, &result))
         };
         let figure = figure.ok_or_else(|| {
             JobError::new(ErrorKind::Report, "expected one row a run, found others", None).of(table.display())

@@ -22,9 +22,7 @@ use serde::{Deserialize, Serialize};
 
 pub use rows::{fields as sweep_fields, simulated as sweep_rows};
 
-use crate::output::{
-    Unplaced, check_ending, check_no_folder, keep_apart, place_file, sha256, unwritten_table, write_file,
-};
+use crate::output::{check_ending, check_no_folder, keep_apart, place_file, sha256, unwritten_table, write_file};
 use crate::store::{Store, beside, depends_on};
 use crate::threads::over_threads;
 use crate::{JobError, Outcome};
@@ -90,8 +88,7 @@ impl Sweep {
         watch: &mut dyn Watch,
     ) -> Result<Outcome<Swept>, JobError> {
         let started = Instant::now();
-        let files = |path: Option<&Path>| path.map(Path::to_owned);
-        keep_apart(&[path.to_owned()], &[files(out), files(figure)].into_iter().flatten().collect::<Vec<_>>())?;
+        keep_apart([path], out.into_iter().chain(figure))?;
         let sweep = read_sweep(path)?;
         let out = table_of(path, out)?;
         let chart = figure.map(|figure| Chart::new(&sweep, figure, &self.show)).transpose()?;
@@ -162,11 +159,12 @@ impl Sweep {
         })?;
         // In the folder of the parts, where the next sweep clears away what a kill leaves behind.
         place_file(out, &folder, |file| {
-            let mut writer = TableWriter::new(file, &fields)?;
+            let refused = |error: TableError| unwritten_table(out, &error);
+            let mut writer = TableWriter::new(file, &fields).map_err(refused)?;
             for place in &places {
-                unpacked(&store.read(place).map_err(Unplaced::Store)?, |rows| writer.write(rows))?;
+                unpacked(&store.read(place)?, |rows| writer.write(rows)).map_err(refused)?;
             }
-            Ok(writer.finish(&[(MARK, &digest)])?)
+            writer.finish(&[(MARK, &digest)]).map_err(refused)
         })?;
         store.remove()?;
         Ok(done)

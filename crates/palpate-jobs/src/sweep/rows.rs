@@ -173,16 +173,9 @@ fn of_steps(protocol: &Protocol, ends: &[f64], steps: usize) -> Vec<Option<f64>>
     let mut row = Vec::with_capacity(steps * STEP.len());
     let mut before = 0.0;
     for table in 1..=steps {
-        let parts: Vec<(ProgramStep, f64)> = protocol
-            .steps
-            .iter()
-            .zip(&protocol.written)
-            .zip(ends)
-            .filter(|((_, written), _)| **written == table)
-            .map(|((step, _), end)| (*step, *end))
-            .collect();
         let (mut ramp, mut end, mut relaxed) = (None, None, None);
-        for (step, force) in parts {
+        let parts = protocol.steps.iter().zip(&protocol.written).zip(ends);
+        for ((step, _), &force) in parts.filter(|((_, written), _)| **written == table) {
             match step {
                 ProgramStep::HoldPosition { .. } => relaxed = (before > 0.0).then(|| 1.0 - force / before),
                 ProgramStep::HoldForce { .. } => {}

@@ -77,20 +77,8 @@ impl Seen {
 const TICKS: usize = 256;
 
 impl WatchLog {
-    /// The observer of a body, whose excess strain is known from first touch on if its material is given.
-    fn observer(&self, material: Option<MaterialFile>) -> Result<Observer, ObserveError> {
-        Observer::new(ObserverOptions {
-            material: material.map(|file| file.material),
-            exponent: self.exponent,
-            exponent_deviation: self.exponent_deviation,
-            slip_force: self.slip_force_n,
-            warn_before: self.warn_before_s,
-            confidence: self.confidence,
-            ..ObserverOptions::default()
-        })
-    }
-
-    /// Feeds the samples of a log, whose name is `place`, one by one; `see` hears of every one, until it is no longer interested.
+    /// Feeds the samples of a log, whose name is `place`, one by one; `see` hears of every one, until it is no longer interested. The excess
+    /// strain is known from first touch on if the material is given.
     ///
     /// # Errors
     /// [`JobError`] where the options or the log are none that can be watched, or the watch ends it.
@@ -105,7 +93,16 @@ impl WatchLog {
             let hint = error.hint().to_owned();
             JobError::new(ErrorKind::Option, error, hint).of(place)
         };
-        let mut observer = self.observer(material).map_err(refused)?;
+        let options = ObserverOptions {
+            material: material.map(|file| file.material),
+            exponent: self.exponent,
+            exponent_deviation: self.exponent_deviation,
+            slip_force: self.slip_force_n,
+            warn_before: self.warn_before_s,
+            confidence: self.confidence,
+            ..ObserverOptions::default()
+        };
+        let mut observer = Observer::new(options).map_err(refused)?;
         let (times, displacement) = (record.time(), record.displacement());
         let (mut holds, mut next) = (Holds::default(), times[0]);
         for (index, (time, force)) in times.iter().zip(record.force()).enumerate() {

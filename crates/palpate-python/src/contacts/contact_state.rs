@@ -7,11 +7,12 @@ use palpate::contact::RateDependence;
 use palpate::simulate::{Contact, ContactModel, ContactState as State, StepError};
 use palpate_files::description::{DescriptionError, parse_scene, read_scene, self_contained};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyList, PyTuple, PyType};
+use pyo3::types::{PyBytes, PyList, PyTuple, PyType};
 
 use crate::arrays::doubles;
 use crate::errors::{ModelError, OptionError, refused_plainly, undescribed};
 use crate::files::said;
+use crate::shown::shown;
 use crate::work::{Made, briefly};
 
 /// A body and its law as a description has them: path of a file or mapping; and a text that makes them again anywhere.
@@ -70,8 +71,17 @@ pub(crate) struct ContactState {
     text: String,
 }
 
-#[pymethods]
-impl ContactState {
+shown! {
+    ContactState: self
+    copied getters {
+        /// Force now, N.
+        force_n: f64 = self.state.force(&self.model),
+        /// Displacement of the surface of the body at one contact, m.
+        surface_m: f64 = self.state.surface(&self.model),
+        /// Whether the jaw touches the body.
+        is_touching: bool = self.state.is_touching(&self.model),
+    }
+
     #[new]
     fn new(model: &Bound<'_, PyAny>) -> PyResult<Self> {
         let (model, text) = described(model)?;
@@ -126,34 +136,8 @@ impl ContactState {
         self.state.step_force(&self.model, dt_s, force_n).map_err(refused_plainly::<ModelError>)
     }
 
-    /// Force now, N.
-    #[getter]
-    fn force_n(&self) -> f64 {
-        self.state.force(&self.model)
-    }
-
-    /// Displacement of the surface of the body at one contact, m.
-    #[getter]
-    fn surface_m(&self) -> f64 {
-        self.state.surface(&self.model)
-    }
-
-    /// Whether the jaw touches the body.
-    #[getter]
-    fn is_touching(&self) -> bool {
-        self.state.is_touching(&self.model)
-    }
-
     fn __eq__(&self, other: &Self) -> bool {
         self.model == other.model && self.state == other.state
-    }
-
-    fn __copy__(&self) -> Self {
-        self.clone()
-    }
-
-    fn __deepcopy__(&self, _memo: &Bound<'_, PyDict>) -> Self {
-        self.clone()
     }
 
     #[classmethod]
@@ -196,7 +180,7 @@ impl ContactState {
 /// ...     forces = contacts.step(1e-3, (k + 1) * np.array([3e-5, 4e-5, 5e-5]))
 /// >>> forces.round(2)
 /// array([1.94, 2.86, 3.89])
-#[pyclass(name = "ContactStates", module = "palpate")]
+#[pyclass(name = "ContactStates", module = "palpate", eq)]
 #[derive(Clone, PartialEq)]
 pub(crate) struct ContactStates {
     models: Vec<ContactModel>,
@@ -259,8 +243,17 @@ impl ContactStates {
     }
 }
 
-#[pymethods]
-impl ContactStates {
+shown! {
+    ContactStates: self
+    copied getters {
+        /// Forces now, N.
+        force_n<'py>(py): Bound<'py, PyArray1<f64>> = self.of_each(py, State::force),
+        /// Displacements of the surfaces at one contact each, m.
+        surface_m<'py>(py): Bound<'py, PyArray1<f64>> = self.of_each(py, State::surface),
+        /// Whether the jaws touch their bodies.
+        is_touching<'py>(py): Bound<'py, PyArray1<bool>> = self.of_each(py, State::is_touching),
+    }
+
     #[new]
     #[pyo3(signature = (model, count=None))]
     fn new(model: &Bound<'_, PyAny>, count: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
@@ -332,38 +325,8 @@ impl ContactStates {
         self.stepped(py, dt_s, (force_n, "force_n"), State::step_force)
     }
 
-    /// Forces now, N.
-    #[getter]
-    fn force_n<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.of_each(py, State::force)
-    }
-
-    /// Displacements of the surfaces at one contact each, m.
-    #[getter]
-    fn surface_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.of_each(py, State::surface)
-    }
-
-    /// Whether the jaws touch their bodies.
-    #[getter]
-    fn is_touching<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
-        self.of_each(py, State::is_touching)
-    }
-
     fn __len__(&self) -> usize {
         self.states.len()
-    }
-
-    fn __eq__(&self, other: &Self) -> bool {
-        self == other
-    }
-
-    fn __copy__(&self) -> Self {
-        self.clone()
-    }
-
-    fn __deepcopy__(&self, _memo: &Bound<'_, PyDict>) -> Self {
-        self.clone()
     }
 
     #[classmethod]

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use numpy::PyArray1;
-use palpate::simulate::{ContactEvent, ContactEventKind, Trajectory as Simulated, simulate as walk};
+use palpate::simulate::{ContactEvent, Trajectory as Simulated, simulate as walk};
 use palpate_files::description::{parse_protocol, read_protocol};
+use palpate_report::result::word;
 use palpate_report::study::write_trajectory;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -36,12 +37,8 @@ pub(crate) fn simulate(py: Python<'_>, path: Option<PathBuf>, text: Option<&str>
     })
 }
 
-fn told(event: &ContactEvent) -> (&'static str, f64, f64) {
-    let word = match event.kind {
-        ContactEventKind::Lost => "lost",
-        ContactEventKind::Regained => "regained",
-    };
-    (word, event.time, event.contact_displacement)
+fn told(event: &ContactEvent) -> (String, f64, f64) {
+    (word(event.kind), event.time, event.contact_displacement)
 }
 
 shown! {
@@ -68,30 +65,29 @@ shown! {
         /// Whether the jaw touches the body.
         in_contact<'py>(py): Bound<'py, PyArray1<bool>> = PyArray1::from_slice(py, &self.series.in_contact),
         /// Contacts lost and regained: ("lost" or "regained", time in s, displacement of the surface in m).
-        events: Vec<(&'static str, f64, f64)> = self.series.events.iter().map(told).collect(),
+        events: Vec<(String, f64, f64)> = self.series.events.iter().map(told).collect(),
     }
-    methods {
-        fn __len__(&self) -> usize {
-            self.series.len()
-        }
 
-        /// All series as the CSV that ``palpate simulate`` prints.
-        fn to_csv(&self) -> PyResult<String> {
-            let mut out = Vec::new();
-            write_trajectory(&mut out, &self.series)?;
-            Ok(String::from_utf8(out)?)
-        }
+    fn __len__(&self) -> usize {
+        self.series.len()
+    }
 
-        /// All series as a table.
-        fn to_arrow(&self) -> PyResult<Table> {
-            let mut columns = self.columns();
-            columns.push(("in_contact", Column::column(self.series.in_contact.iter().copied())));
-            Table::of(columns)
-        }
+    /// All series as the CSV that ``palpate simulate`` prints.
+    fn to_csv(&self) -> PyResult<String> {
+        let mut out = Vec::new();
+        write_trajectory(&mut out, &self.series)?;
+        Ok(String::from_utf8(out)?)
+    }
 
-        fn __repr__(&self) -> String {
-            let (samples, events) = (self.series.len(), self.series.events.len());
-            format!("<palpate.Trajectory of {samples} samples, {events} contacts lost or regained>")
-        }
+    /// All series as a table.
+    fn to_arrow(&self) -> PyResult<Table> {
+        let mut columns = self.columns();
+        columns.push(("in_contact", Column::column(self.series.in_contact.iter().copied())));
+        Table::of(columns)
+    }
+
+    fn __repr__(&self) -> String {
+        let (samples, events) = (self.series.len(), self.series.events.len());
+        format!("<palpate.Trajectory of {samples} samples, {events} contacts lost or regained>")
     }
 }

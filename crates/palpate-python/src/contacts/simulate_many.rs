@@ -114,7 +114,7 @@ fn lists<'a>(rows: impl Iterator<Item = &'a Option<Vec<f64>>>, samples: usize) -
         }
     }
     let item = Arc::new(Field::new("item", DataType::Float64, false));
-    let width = i32::try_from(samples).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    let width = i32::try_from(samples).map_err(refused_plainly::<PyRuntimeError>)?;
     let list = FixedSizeListArray::try_new(item, width, Arc::new(Float64Array::from(flat)), Some(valid.into()));
-    Ok(Arc::new(list.map_err(|error| PyRuntimeError::new_err(error.to_string()))?))
+    Ok(Arc::new(list.map_err(refused_plainly::<PyRuntimeError>)?))
 }

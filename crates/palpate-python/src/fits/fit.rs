@@ -46,14 +46,13 @@ shown! {
         /// Unit in words: "signal", "s", "1/s", "signal/s", "1", "signal^(1-n)/s", "signal/s^alpha"; "m", "N" or "Pa" of a material.
         unit: &str = &self.unit,
     }
-    methods {
-        fn __float__(&self) -> f64 {
-            self.estimate.value
-        }
 
-        fn __repr__(&self) -> String {
-            told(&self.estimate, 6)
-        }
+    fn __float__(&self) -> f64 {
+        self.estimate.value
+    }
+
+    fn __repr__(&self) -> String {
+        told(&self.estimate, 6)
     }
 }
 
@@ -89,10 +88,6 @@ fn unit_word(unit: NumberUnit) -> &'static str {
 #[serde(transparent)]
 pub(crate) struct PyFit {
     fit: Fit,
-}
-
-fn unequal(what: &str, found: usize, times: usize) -> PyErr {
-    refused_plainly::<FitError>(format!("a fit needs as many {what} as times, found {found} and {times}"))
 }
 
 impl PyFit {
@@ -155,78 +150,77 @@ shown! {
         correlation<'py>(py): PyResult<Option<Bound<'py, PyArray2<f64>>>> =
             self.fit.correlation().as_ref().map(|rows| square(py, rows)).transpose(),
     }
-    methods {
-        /// The signal at times after the first sample; with `interval`, also its confidence band.
-        ///
-        /// Parameters
-        /// ----------
-        /// elapsed_s : array_like, shape (N,)
-        ///     Time since the start of the hold, s; before it the signal is that at the start, at NaN it is NaN.
-        /// interval : float, optional
-        ///     Coverage of the band, between 0 and 1.
-        /// of : str
-        ///     Band of the "curve", or of a "sample" with the noise of the fitted ones.
-        ///
-        /// Returns
-        /// -------
-        /// ndarray, shape (N,), or three of them
-        ///     The curve; with `interval` the curve, the lower and the upper end of the band.
-        ///
-        /// Raises
-        /// ------
-        /// OptionError
-        ///     A coverage that is no share, a word that is none of the two.
-        #[pyo3(signature = (elapsed_s, *, interval=None, of="curve"))]
-        fn predict<'py>(
-            &self,
-            py: Python<'py>,
-            elapsed_s: &Bound<'py, PyAny>,
-            interval: Option<f64>,
-            of: &str,
-        ) -> PyResult<Bound<'py, PyAny>> {
-            let elapsed = doubles(elapsed_s, "elapsed_s")?;
-            let sample = match of {
-                "curve" => false,
-                "sample" => true,
-                other => {
-                    let message = format!("of is \"curve\" or \"sample\", found {other:?}");
-                    return Err(refused_plainly::<OptionError>(message));
-                }
-            };
-            let Some(confidence) = interval else {
-                let values = briefly(py, || self.fit.predict_many(&elapsed))?;
-                return Ok(PyArray1::from_vec(py, values).into_any());
-            };
-            let fit = self.with_confidence(confidence)?;
-            let estimate = |t: &f64| if sample { fit.predict_sample(*t) } else { fit.predict_interval(*t) };
-            let mut estimates: Vec<Estimate> = Vec::with_capacity(elapsed.len());
-            for some in elapsed.chunks(AT_ONCE) {
-                // A band of millions of samples takes seconds: Ctrl-C is heard in between.
-                py.check_signals()?;
-                briefly(py, || estimates.extend(some.iter().map(estimate)))?;
+
+    /// The signal at times after the first sample; with `interval`, also its confidence band.
+    ///
+    /// Parameters
+    /// ----------
+    /// elapsed_s : array_like, shape (N,)
+    ///     Time since the start of the hold, s; before it the signal is that at the start, at NaN it is NaN.
+    /// interval : float, optional
+    ///     Coverage of the band, between 0 and 1.
+    /// of : str
+    ///     Band of the "curve", or of a "sample" with the noise of the fitted ones.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, shape (N,), or three of them
+    ///     The curve; with `interval` the curve, the lower and the upper end of the band.
+    ///
+    /// Raises
+    /// ------
+    /// OptionError
+    ///     A coverage that is no share, a word that is none of the two.
+    #[pyo3(signature = (elapsed_s, *, interval=None, of="curve"))]
+    fn predict<'py>(
+        &self,
+        py: Python<'py>,
+        elapsed_s: &Bound<'py, PyAny>,
+        interval: Option<f64>,
+        of: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let elapsed = doubles(elapsed_s, "elapsed_s")?;
+        let sample = match of {
+            "curve" => false,
+            "sample" => true,
+            other => {
+                let message = format!("of is \"curve\" or \"sample\", found {other:?}");
+                return Err(refused_plainly::<OptionError>(message));
             }
-            let column = |pick: fn(&Estimate) -> f64| PyArray1::from_iter(py, estimates.iter().map(pick));
-            let value = column(|estimate| estimate.value);
-            let low = column(|estimate| estimate.interval.map_or(f64::NAN, |interval| interval.0));
-            let high = column(|estimate| estimate.interval.map_or(f64::NAN, |interval| interval.1));
-            Ok((value, low, high).into_pyobject(py)?.into_any())
+        };
+        let Some(confidence) = interval else {
+            let values = briefly(py, || self.fit.predict_many(&elapsed))?;
+            return Ok(PyArray1::from_vec(py, values).into_any());
+        };
+        let fit = self.with_confidence(confidence)?;
+        let estimate = |t: &f64| if sample { fit.predict_sample(*t) } else { fit.predict_interval(*t) };
+        let mut estimates: Vec<Estimate> = Vec::with_capacity(elapsed.len());
+        for some in elapsed.chunks(AT_ONCE) {
+            // A band of millions of samples takes seconds: Ctrl-C is heard in between.
+            py.check_signals()?;
+            briefly(py, || estimates.extend(some.iter().map(estimate)))?;
         }
+        let column = |pick: fn(&Estimate) -> f64| PyArray1::from_iter(py, estimates.iter().map(pick));
+        let value = column(|estimate| estimate.value);
+        let low = column(|estimate| estimate.interval.map_or(f64::NAN, |interval| interval.0));
+        let high = column(|estimate| estimate.interval.map_or(f64::NAN, |interval| interval.1));
+        Ok((value, low, high).into_pyobject(py)?.into_any())
+    }
 
-        /// The fit as text, in the manner of lmfit.
-        fn report(&self) -> String {
-            report(&self.fit)
-        }
+    /// The fit as text, in the manner of lmfit.
+    fn report(&self) -> String {
+        report(&self.fit)
+    }
 
-        /// Everything about the fit as plain objects.
-        fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-            plain(py, &self.fit)
-        }
+    /// Everything about the fit as plain objects.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.fit)
+    }
 
-        fn __repr__(&self) -> String {
-            let number = |number: &Parameter| format!("{}={}", number.name, told(&number.estimate, 4));
-            let numbers: Vec<String> = self.fit.parameters.iter().map(number).collect();
-            format!("<palpate.Fit {}: {}; {}>", self.fit.law, numbers.join(", "), word(self.fit.termination))
-        }
+    fn __repr__(&self) -> String {
+        let number = |number: &Parameter| format!("{}={}", number.name, told(&number.estimate, 4));
+        let numbers: Vec<String> = self.fit.parameters.iter().map(number).collect();
+        format!("<palpate.Fit {}: {}; {}>", self.fit.law, numbers.join(", "), word(self.fit.termination))
     }
 }
 
@@ -372,7 +366,9 @@ pub(crate) fn fit_hold<'py>(
     let (times, values) = (doubles(time_s, "time_s")?, doubles(signal, "signal")?);
     let deviations = deviations_of(weights)?;
     if let Some(deviations) = deviations.as_ref().filter(|deviations| deviations.len() != times.len()) {
-        return Err(unequal("weights", deviations.len(), times.len()));
+        let (weights, times) = (deviations.len(), times.len());
+        let message = format!("a fit needs as many weights as times, found {weights} and {times}");
+        return Err(refused_plainly::<FitError>(message));
     }
     let asked = keywords.asked()?;
     let fit = briefly(py, || fitted(&times, &values, deviations.as_deref(), &asked))?;

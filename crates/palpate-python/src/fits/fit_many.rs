@@ -28,18 +28,10 @@ use crate::work::{Heard, at_length_told};
 type Curve = Result<ScalarBuffer<f64>, String>;
 
 /// Curves of any lengths. Columns of Arrow never change, and are not copied; arrays of NumPy may change, and are.
-struct Ragged {
-    curves: Vec<Curve>,
-}
+type Ragged = Vec<Curve>;
 
-impl Ragged {
-    fn len(&self) -> usize {
-        self.curves.len()
-    }
-
-    fn curve(&self, index: usize) -> Result<&[f64], String> {
-        self.curves[index].as_deref().map_err(Clone::clone)
-    }
+fn numbers(curve: &Curve) -> Result<&[f64], String> {
+    curve.as_deref().map_err(Clone::clone)
 }
 
 /// Lists of numbers from Arrow, or from anything that `palpate._arrays.as_ragged` understands.
@@ -53,15 +45,10 @@ fn ragged(curves: &Bound<'_, PyAny>, name: &str) -> PyResult<Ragged> {
     let offsets: Vec<usize> = offsets.try_readonly()?.as_array().iter().map(|offset| *offset as usize).collect();
     let values = values.try_readonly()?;
     let values = values.as_slice()?;
-    let (mut ragged, mut copied) = (
-        Ragged {
-            curves: Vec::with_capacity(offsets.len()),
-        },
-        0,
-    );
+    let (mut ragged, mut copied) = (Vec::with_capacity(offsets.len()), 0);
     for (index, ends) in offsets.windows(2).enumerate() {
         let curve = || ScalarBuffer::from(values[ends[0]..ends[1]].to_vec());
-        ragged.curves.push(wrong.remove(&index).map_or_else(|| Ok(curve()), Err));
+        ragged.push(wrong.remove(&index).map_or_else(|| Ok(curve()), Err));
         copied += ends[1] - ends[0];
         if copied > AT_ONCE {
             // A gigabyte takes a second to copy: Ctrl-C is heard in between.
@@ -86,29 +73,19 @@ fn of_arrow(column: &PyChunkedArray, name: &str) -> PyResult<Ragged> {
     };
     let mut curves = Vec::new();
     for chunk in column.chunks() {
-        // Whatever kind of list of whatever kind of number: lists of doubles pass as they are.
-        let rows = match chunk.data_type() {
-            DataType::List(_)
-            | DataType::LargeList(_)
-            | DataType::ListView(_)
-            | DataType::LargeListView(_)
-            | DataType::FixedSizeList(..) => {
-                let item = Arc::new(Field::new("item", DataType::Float64, true));
-                cast(chunk, &DataType::LargeList(item)).map_err(|_| wrong(chunk.data_type()))?
+        let kind = chunk.data_type();
+        let made_of = |to: &DataType| cast(chunk, to).map_err(|_| wrong(kind));
+        match nested(kind) {
+            // Whatever kind of list of whatever kind of number: lists of doubles pass as they are.
+            Some(item) if item.is_numeric() || *item == DataType::Null => {
+                let rows = made_of(&DataType::LargeList(Arc::new(Field::new("item", DataType::Float64, true))))?;
+                curves.extend(rows.as_list::<i64>().iter().map(|row| whole(row, name)));
             }
-            kind if kind.is_numeric() => {
-                let numbers = cast(chunk, &DataType::Float64).map_err(|_| wrong(kind))?;
-                curves.push(whole(Some(numbers), name));
-                continue;
-            }
-            other => return Err(wrong(other)),
-        };
-        if !matches!(nested(chunk.data_type()), Some(kind) if kind.is_numeric() || *kind == DataType::Null) {
-            return Err(wrong(chunk.data_type()));
+            None if kind.is_numeric() => curves.push(whole(Some(made_of(&DataType::Float64)?), name)),
+            _ => return Err(wrong(kind)),
         }
-        curves.extend(rows.as_list::<i64>().iter().map(|row| whole(row, name)));
     }
-    Ok(Ragged { curves })
+    Ok(curves)
 }
 
 /// What a list is a list of.
@@ -133,7 +110,7 @@ fn whole(row: Option<ArrayRef>, name: &str) -> Curve {
 /// Whether one list stands for all curves; it is then the matter of all if it is wrong.
 fn one_for_all(times: &Ragged, curves: usize, name: &str) -> PyResult<bool> {
     match times.len() {
-        1 => times.curve(0).map(|_| true).map_err(refused_plainly::<OptionError>),
+        1 => numbers(&times[0]).map(|_| true).map_err(refused_plainly::<OptionError>),
         count if count == curves => Ok(false),
         count => {
             let message = format!("{name}: expected one list for all curves or one each, {curves}, found {count}");
@@ -161,9 +138,7 @@ pub(crate) fn fit_many(
     let weights = match weights {
         Some(weights) => {
             let of_one = |weights: Curve| deviations(&weights?).map(ScalarBuffer::from);
-            let found = Ragged {
-                curves: ragged(weights, "weights")?.curves.into_iter().map(of_one).collect(),
-            };
+            let found: Ragged = ragged(weights, "weights")?.into_iter().map(of_one).collect();
             Some((one_for_all(&found, curves, "weights")?, found))
         }
         None => None,
@@ -172,9 +147,9 @@ pub(crate) fn fit_many(
     let shape = asked.clone();
     let work = move |heard: Heard| -> Result<Vec<Fitted>, Cancelled> {
         let fit = |index: usize| {
-            let time = times.curve(if one_time { 0 } else { index })?;
-            let deviations = weights.as_ref().map(|(one, found)| found.curve(if *one { 0 } else { index }));
-            fitted(time, values.curve(index)?, deviations.transpose()?, &asked).map_err(|error| error.to_string())
+            let time = numbers(&times[if one_time { 0 } else { index }])?;
+            let deviations = weights.as_ref().map(|(one, found)| numbers(&found[if *one { 0 } else { index }]));
+            fitted(time, numbers(&values[index])?, deviations.transpose()?, &asked).map_err(|error| error.to_string())
         };
         let one = |index: usize| {
             let fit = fit(index);

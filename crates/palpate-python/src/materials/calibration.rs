@@ -104,13 +104,10 @@ shown! {
         rmse_n: f64 = self.asked().rmse_n.unwrap_or(f64::NAN),
         /// How many samples, from the first on, were fitted; the rest was foretold.
         fitted: usize = self.document.fitted,
-    }
-    methods {
         /// The laws, a row each, the one that was asked for first: ``parameters`` searched, root mean square residual ``rmse_n``, the same as a
         /// share of the largest force (``relative``), BIC less the lowest (``delta_bic``), with ``fit_until_s`` the errors of what was
         /// foretold, ``termination``, and why there is no calibration (``error``).
-        #[getter]
-        fn laws(&self) -> PyResult<Table> {
+        laws: PyResult<Table> = {
             let laws = &self.document.laws;
             let mut columns = columns!(laws, law => law, parameters, rmse_n, relative, delta_bic);
             if laws.iter().any(|law| law.foretold.is_some()) {
@@ -122,12 +119,10 @@ shown! {
             }
             columns.extend(columns!(laws, law => termination, error));
             Table::of(columns)
-        }
-
+        },
         /// The numbers of the law that was asked for, by name and unit as in `to_dict`: ``value``, ``standard_error``, ``low`` and ``high`` of
         /// the interval and, where profiles were asked for, ``profile_low`` and ``profile_high``, NaN where the record leaves them open.
-        #[getter]
-        fn numbers(&self) -> PyResult<Table> {
+        numbers: PyResult<Table> = {
             let numbers = &self.asked().numbers;
             let mut columns = columns!(numbers, number =>
                 name, value = number.estimate.value, standard_error = number.estimate.standard_error,
@@ -141,46 +136,46 @@ shown! {
                 ));
             }
             Table::of(columns)
-        }
+        },
+    }
 
-        fn __len__(&self) -> usize {
-            self.samples.len()
-        }
+    fn __len__(&self) -> usize {
+        self.samples.len()
+    }
 
-        /// Columns ``time_s``, ``displacement_m``, ``force_n``, ``simulated_n``, ``residual_n`` and ``is_fitted`` as a table.
-        fn to_arrow(&self) -> PyResult<Table> {
-            let mut columns = self.columns();
-            columns.push(("is_fitted", Column::column((0..self.samples.len()).map(|index| index < self.fitted()))));
-            Table::of(columns)
-        }
+    /// Columns ``time_s``, ``displacement_m``, ``force_n``, ``simulated_n``, ``residual_n`` and ``is_fitted`` as a table.
+    fn to_arrow(&self) -> PyResult<Table> {
+        let mut columns = self.columns();
+        columns.push(("is_fitted", Column::column((0..self.samples.len()).map(|index| index < self.fitted()))));
+        Table::of(columns)
+    }
 
-        /// The document that ``palpate calibrate --format json`` prints, as plain objects.
-        fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-            plain(py, &self.document)
-        }
+    /// The document that ``palpate calibrate --format json`` prints, as plain objects.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.document)
+    }
 
-        /// The same as text, as the command prints it.
-        fn to_json(&self) -> PyResult<String> {
-            printed(&self.document)
-        }
+    /// The same as text, as the command prints it.
+    fn to_json(&self) -> PyResult<String> {
+        printed(&self.document)
+    }
 
-        /// Tables of the laws and of the numbers, and remarks, as text.
-        fn report(&self) -> &str {
-            &self.text
-        }
+    /// Tables of the laws and of the numbers, and remarks, as text.
+    fn report(&self) -> &str {
+        &self.text
+    }
 
-        fn __str__(&self) -> &str {
-            &self.text
-        }
+    fn __str__(&self) -> &str {
+        &self.text
+    }
 
-        fn __repr__(&self) -> String {
-            let (title, law) = (&self.document.input.title, self.material.law());
-            format!("<palpate.Calibration of {title:?}: {law}; {}>", self.termination())
-        }
+    fn __repr__(&self) -> String {
+        let (title, law) = (&self.document.input.title, self.material.law());
+        format!("<palpate.Calibration of {title:?}: {law}; {}>", self.termination())
+    }
 
-        /// Tables and figure, for notebooks.
-        fn _repr_html_(&self) -> String {
-            framed(&self.page)
-        }
+    /// Tables and figure, for notebooks.
+    fn _repr_html_(&self) -> String {
+        framed(&self.page)
     }
 }

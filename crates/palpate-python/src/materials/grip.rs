@@ -7,7 +7,7 @@ use palpate_jobs::output::write_bundle;
 use palpate_jobs::{JobError, MaterialSource, PlanGrip, Results};
 use palpate_report::document::{GripDocument, HoldingDocument};
 use palpate_report::result::GrippedBody;
-use palpate_report::study::{Bundle, Pictures, grip_figure};
+use palpate_report::study::{Bundle, Pictures, StudyError, grip_bundle, grip_figure};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use serde::{Deserialize, Serialize};
@@ -38,20 +38,20 @@ pub(crate) struct Grip {
 
 impl Grip {
     fn made(body: &GrippedBody<'_>) -> Result<Self, JobError> {
-        let answer = &body.answer;
         // All of them are text but for pictures, which are not asked for.
-        let files = body.bundle(Pictures::default())?.files.into_iter();
-        let schedule = answer.schedule.as_ref().and_then(|made| made.as_ref().ok());
+        let files = grip_bundle(body, Pictures::default())?.files.into_iter();
+        let courses = body.grips().map(|made| made?.ok().cloned());
+        let [squeeze, back_off, force_held, schedule] = courses;
         Ok(Self {
             document: body.document(),
             question: body.question(),
             text: body.text(),
-            svg: grip_figure(body, "grip").to_svg()?,
+            svg: grip_figure(body, "grip").to_svg().map_err(StudyError::from)?,
             files: files.map(|(path, content)| (path, String::from_utf8_lossy(&content).into_owned())).collect(),
-            squeeze: answer.squeeze.as_ref().ok().map(|made| made.course.clone()),
-            back_off: answer.back_off.as_ref().ok().map(|made| made.course.clone()),
-            force_held: answer.force_hold.as_ref().ok().map(|made| made.course.clone()),
-            schedule: schedule.map(|made| made.course.clone()),
+            squeeze,
+            back_off,
+            force_held,
+            schedule,
         })
     }
 
@@ -106,57 +106,56 @@ shown! {
             .map(|made| (&made.grip, format!("{}\nhint: {}", made.reason, made.hint)))
             .into_py_dict(py),
     }
-    methods {
-        /// The document that ``palpate grip --format json`` prints, as plain objects; a material without a file is called "material".
-        fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-            plain(py, &self.document)
-        }
 
-        /// The same as text, as the command prints it.
-        fn to_json(&self) -> PyResult<String> {
-            printed(&self.document)
-        }
+    /// The document that ``palpate grip --format json`` prints, as plain objects; a material without a file is called "material".
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.document)
+    }
 
-        /// Force, margin and displacement of the grips over time, as SVG.
-        fn to_svg(&self) -> &str {
-            &self.svg
-        }
+    /// The same as text, as the command prints it.
+    fn to_json(&self) -> PyResult<String> {
+        printed(&self.document)
+    }
 
-        /// Writes what ``palpate grip --out`` writes into a folder, all or none: report.html, grip.json, tables, figure and series.
-        ///
-        /// Parameters
-        /// ----------
-        /// folder : path
-        ///     Made if it is not there.
-        ///
-        /// Returns
-        /// -------
-        /// Path
-        ///     The report.
-        ///
-        /// Raises
-        /// ------
-        /// PalpateError
-        ///     The folder cannot be written to.
-        #[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
-        fn report(&self, folder: PathBuf) -> PyResult<PathBuf> {
-            let bytes = |(path, content): &(String, String)| (path.clone(), content.clone().into_bytes());
-            let files = self.files.iter().map(bytes).collect();
-            write_bundle(&folder, &Bundle { files }).map_err(unwritten)?;
-            Ok(folder.join("report.html"))
-        }
+    /// Force, margin and displacement of the grips over time, as SVG.
+    fn to_svg(&self) -> &str {
+        &self.svg
+    }
 
-        fn __str__(&self) -> &str {
-            &self.text
-        }
+    /// Writes what ``palpate grip --out`` writes into a folder, all or none: report.html, grip.json, tables, figure and series.
+    ///
+    /// Parameters
+    /// ----------
+    /// folder : path
+    ///     Made if it is not there.
+    ///
+    /// Returns
+    /// -------
+    /// Path
+    ///     The report.
+    ///
+    /// Raises
+    /// ------
+    /// PalpateError
+    ///     The folder cannot be written to.
+    #[expect(clippy::needless_pass_by_value, reason = "arguments of Python")]
+    fn report(&self, folder: PathBuf) -> PyResult<PathBuf> {
+        let bytes = |(path, content): &(String, String)| (path.clone(), content.clone().into_bytes());
+        let files = self.files.iter().map(bytes).collect();
+        write_bundle(&folder, &Bundle { files }).map_err(unwritten)?;
+        Ok(folder.join("report.html"))
+    }
 
-        fn __repr__(&self) -> String {
-            format!("<palpate.Grip: {}>", self.document.verdict)
-        }
+    fn __str__(&self) -> &str {
+        &self.text
+    }
 
-        /// The report, for notebooks.
-        fn _repr_html_(&self) -> Option<String> {
-            self.files.iter().find(|(path, _)| path == "report.html").map(|(_, page)| framed(page))
-        }
+    fn __repr__(&self) -> String {
+        format!("<palpate.Grip: {}>", self.document.verdict)
+    }
+
+    /// The report, for notebooks.
+    fn _repr_html_(&self) -> Option<String> {
+        self.files.iter().find(|(path, _)| path == "report.html").map(|(_, page)| framed(page))
     }
 }

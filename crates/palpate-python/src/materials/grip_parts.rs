@@ -51,7 +51,7 @@ macro_rules! part {
         shown! {
             $class: $me
             values { $($(#[$doc])* $field: $of = part!(@ $me, $field $(, $value)?),)* }
-            methods { $($methods)* }
+            $($methods)*
         }
     };
 }

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use numpy::PyArray2;
-use palpate::calibrate::{EquilibriumLaw, Material as Body, MaterialNumber, MaterialUnit};
+use palpate::calibrate::{EquilibriumLaw, Material as Body, MaterialNumber};
 use palpate_files::description::{MaterialFile, parse_material, parse_protocol_of, read_protocol_of};
 use palpate_jobs::output::write_file;
 use palpate_jobs::{MaterialSource, PlanGrip, Predict};
+use palpate_report::result::material_unit;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict, PyType};
 use serde::de::Error;
@@ -18,6 +19,7 @@ use crate::files::said;
 use crate::fits::fit::{PyEstimate, square, told};
 use crate::materials::grip::Grip;
 use crate::materials::prediction::Prediction;
+use crate::shown::shown;
 use crate::table::{Table, columns};
 use crate::work::{Made, job};
 
@@ -85,19 +87,70 @@ pub(crate) mod as_toml {
     }
 }
 
-fn unit_word(unit: MaterialUnit) -> &'static str {
-    match unit {
-        MaterialUnit::One => "1",
-        MaterialUnit::Second => "s",
-        MaterialUnit::PerSecond => "1/s",
-        MaterialUnit::Metre => "m",
-        MaterialUnit::Newton => "N",
-        MaterialUnit::Pascal => "Pa",
+shown! {
+    Material: self
+    getters {
+        /// Name of the law as it was fitted, such as "latency", "latency:5" or "prony:2".
+        law: String = self.source.file.material.candidate.to_string(),
+        /// Law of the force once relaxation is over: "even-strain", "hertz" or "table".
+        equilibrium: &'static str = match self.source.file.material.candidate.equilibrium {
+            EquilibriumLaw::EvenStrain => "even-strain",
+            EquilibriumLaw::Hertz { .. } => "hertz",
+            EquilibriumLaw::Table => "table",
+        },
+        /// The numbers, a row each: ``name``, ``unit``, ``value``, ``standard_error``, ``low`` and ``high``, in SI; the latter three are missing
+        /// for a number that was given, or that the record leaves open.
+        numbers: PyResult<Table> = Table::of(columns!(self.numbers_found(), number =>
+            name, unit = material_unit(number.unit).1, value = number.estimate.value,
+            standard_error = number.estimate.standard_error,
+            low = number.estimate.interval.map(|interval| interval.0),
+            high = number.estimate.interval.map(|interval| interval.1)
+        )),
+        /// Every number by its name: "modulus" (or "equilibrium_force_1", ...), and "exponent", "rate_coefficient" and "layer_thickness" of the
+        /// latency law, "overshoot_1", "time_1", ... of a linear one.
+        estimates<'py>(py): PyResult<Bound<'py, PyDict>> = {
+            let estimate = |number: &MaterialNumber| PyEstimate::of(number.estimate, material_unit(number.unit).1);
+            self.numbers_found().iter().map(|number| (&number.name, estimate(number))).into_py_dict(py)
+        },
+        /// Values of all numbers by name, in SI.
+        values<'py>(py): PyResult<Bound<'py, PyDict>> =
+            self.numbers_found().iter().map(|number| (&number.name, number.estimate.value)).into_py_dict(py),
+        /// Covariance of the natural logarithms of the numbers, in their order; None where the record leaves one open.
+        log_covariance<'py>(py): PyResult<Option<Bound<'py, PyArray2<f64>>>> = {
+            let uncertainty = self.source.file.material.uncertainty.as_ref();
+            uncertainty.map(|found| square(py, &found.covariance)).transpose()
+        },
+        /// Coverage of the intervals of the numbers; None where they have none.
+        confidence: Option<f64> =
+            self.source.file.material.uncertainty.as_ref().map(|uncertainty| uncertainty.confidence),
+        /// Standard deviation of what the law left of the measured force, N: noise of one reading.
+        noise_n: f64 = self.source.file.material.noise,
+        /// What the test has shown, beyond which predictions are extrapolations: ``longest_hold_s``, ``deepest_m``, ``fastest_m_per_s``,
+        /// ``slowest_m_per_s``, ``largest_force_n``.
+        shown<'py>(py): PyResult<Bound<'py, PyDict>> = {
+            let shown = &self.source.file.material.shown;
+            let named = [
+                ("longest_hold_s", shown.longest_hold),
+                ("deepest_m", shown.deepest),
+                ("fastest_m_per_s", shown.fastest),
+                ("slowest_m_per_s", shown.slowest),
+                ("largest_force_n", shown.largest_force),
+            ];
+            named.into_py_dict(py)
+        },
+        /// Where the numbers come from: ``record``, ``sha256`` of its file, ``test`` description, version of ``palpate``, ``samples`` fitted.
+        origin<'py>(py): PyResult<Bound<'py, PyDict>> = {
+            let origin = &self.source.file.origin;
+            let dict = PyDict::new(py);
+            dict.set_item("record", &origin.record)?;
+            dict.set_item("sha256", &origin.sha256)?;
+            dict.set_item("test", &origin.test)?;
+            dict.set_item("palpate", &origin.palpate)?;
+            dict.set_item("samples", origin.samples)?;
+            Ok(dict)
+        },
     }
-}
 
-#[pymethods]
-impl Material {
     /// The material in a file of ``palpate calibrate`` or of `write`, checked.
     ///
     /// Parameters
@@ -137,95 +190,6 @@ impl Material {
     /// The same as text.
     pub(crate) fn to_toml(&self) -> String {
         self.source.file.to_toml()
-    }
-
-    /// Name of the law as it was fitted, such as "latency", "latency:5" or "prony:2".
-    #[getter]
-    pub(crate) fn law(&self) -> String {
-        self.source.file.material.candidate.to_string()
-    }
-
-    /// Law of the force once relaxation is over: "even-strain", "hertz" or "table".
-    #[getter]
-    fn equilibrium(&self) -> &'static str {
-        match self.source.file.material.candidate.equilibrium {
-            EquilibriumLaw::EvenStrain => "even-strain",
-            EquilibriumLaw::Hertz { .. } => "hertz",
-            EquilibriumLaw::Table => "table",
-        }
-    }
-
-    /// The numbers, a row each: ``name``, ``unit``, ``value``, ``standard_error``, ``low`` and ``high``, in SI; the latter three are missing
-    /// for a number that was given, or that the record leaves open.
-    #[getter]
-    fn numbers(&self) -> PyResult<Table> {
-        Table::of(columns!(self.numbers_found(), number =>
-            name, unit = unit_word(number.unit), value = number.estimate.value,
-            standard_error = number.estimate.standard_error,
-            low = number.estimate.interval.map(|interval| interval.0),
-            high = number.estimate.interval.map(|interval| interval.1)
-        ))
-    }
-
-    /// Every number by its name: "modulus" (or "equilibrium_force_1", ...), and "exponent", "rate_coefficient" and "layer_thickness" of the
-    /// latency law, "overshoot_1", "time_1", ... of a linear one.
-    #[getter]
-    fn estimates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let estimate = |number: &MaterialNumber| PyEstimate::of(number.estimate, unit_word(number.unit));
-        self.numbers_found().iter().map(|number| (&number.name, estimate(number))).into_py_dict(py)
-    }
-
-    /// Values of all numbers by name, in SI.
-    #[getter]
-    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        self.numbers_found().iter().map(|number| (&number.name, number.estimate.value)).into_py_dict(py)
-    }
-
-    /// Covariance of the natural logarithms of the numbers, in their order; None where the record leaves one open.
-    #[getter]
-    fn log_covariance<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
-        let uncertainty = self.source.file.material.uncertainty.as_ref();
-        uncertainty.map(|found| square(py, &found.covariance)).transpose()
-    }
-
-    /// Coverage of the intervals of the numbers; None where they have none.
-    #[getter]
-    fn confidence(&self) -> Option<f64> {
-        self.source.file.material.uncertainty.as_ref().map(|uncertainty| uncertainty.confidence)
-    }
-
-    /// Standard deviation of what the law left of the measured force, N: noise of one reading.
-    #[getter]
-    fn noise_n(&self) -> f64 {
-        self.source.file.material.noise
-    }
-
-    /// What the test has shown, beyond which predictions are extrapolations: ``longest_hold_s``, ``deepest_m``, ``fastest_m_per_s``,
-    /// ``slowest_m_per_s``, ``largest_force_n``.
-    #[getter]
-    fn shown<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let shown = &self.source.file.material.shown;
-        let named = [
-            ("longest_hold_s", shown.longest_hold),
-            ("deepest_m", shown.deepest),
-            ("fastest_m_per_s", shown.fastest),
-            ("slowest_m_per_s", shown.slowest),
-            ("largest_force_n", shown.largest_force),
-        ];
-        named.into_py_dict(py)
-    }
-
-    /// Where the numbers come from: ``record``, ``sha256`` of its file, ``test`` description, version of ``palpate``, ``samples`` fitted.
-    #[getter]
-    fn origin<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let origin = &self.source.file.origin;
-        let dict = PyDict::new(py);
-        dict.set_item("record", &origin.record)?;
-        dict.set_item("sha256", &origin.sha256)?;
-        dict.set_item("test", &origin.test)?;
-        dict.set_item("palpate", &origin.palpate)?;
-        dict.set_item("samples", origin.samples)?;
-        Ok(dict)
     }
 
     /// What the body does under a protocol, with intervals: what ``palpate predict`` says.
@@ -459,7 +423,7 @@ impl Material {
 
     fn __repr__(&self) -> String {
         let number = |number: &MaterialNumber| {
-            let (value, unit) = (told(&number.estimate, 4), unit_word(number.unit));
+            let (value, unit) = (told(&number.estimate, 4), material_unit(number.unit).1);
             let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
             format!("{}={value}{unit}", number.name)
         };

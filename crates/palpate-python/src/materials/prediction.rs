@@ -76,32 +76,31 @@ shown! {
         /// The course with the best numbers, with strains and contacts lost and regained.
         trajectory: Trajectory = Trajectory { series: self.predicted.trajectory.clone() },
     }
-    methods {
-        fn __len__(&self) -> usize {
-            self.predicted.trajectory.len()
-        }
 
-        /// All series as the CSV that ``palpate predict`` prints.
-        fn to_csv(&self) -> PyResult<String> {
-            let mut out = Vec::new();
-            write_prediction(&mut out, &self.predicted)?;
-            Ok(String::from_utf8(out)?)
-        }
+    fn __len__(&self) -> usize {
+        self.predicted.trajectory.len()
+    }
 
-        /// All series as a table.
-        fn to_arrow(&self) -> PyResult<Table> {
-            Table::of(self.columns())
-        }
+    /// All series as the CSV that ``palpate predict`` prints.
+    fn to_csv(&self) -> PyResult<String> {
+        let mut out = Vec::new();
+        write_prediction(&mut out, &self.predicted)?;
+        Ok(String::from_utf8(out)?)
+    }
 
-        fn __repr__(&self) -> String {
-            let (samples, beyond) = (self.predicted.trajectory.len(), self.predicted.extrapolations.len());
-            format!("<palpate.Prediction of {samples} samples, {beyond} extrapolations>")
-        }
+    /// All series as a table.
+    fn to_arrow(&self) -> PyResult<Table> {
+        Table::of(self.columns())
+    }
 
-        /// Force with its bands over time, for notebooks.
-        fn _repr_html_(&self) -> PyResult<String> {
-            let figure = prediction_figure(&self.predicted, "prediction", "What the body does, by its calibrated law.");
-            Ok(framed(&figure.to_svg().map_err(refused_plainly::<PalpateError>)?))
-        }
+    fn __repr__(&self) -> String {
+        let (samples, beyond) = (self.predicted.trajectory.len(), self.predicted.extrapolations.len());
+        format!("<palpate.Prediction of {samples} samples, {beyond} extrapolations>")
+    }
+
+    /// Force with its bands over time, for notebooks.
+    fn _repr_html_(&self) -> PyResult<String> {
+        let figure = prediction_figure(&self.predicted, "prediction", "What the body does, by its calibrated law.");
+        Ok(framed(&figure.to_svg().map_err(refused_plainly::<PalpateError>)?))
     }
 }

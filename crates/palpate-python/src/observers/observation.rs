@@ -19,7 +19,7 @@ use crate::table::{Table, columns};
 #[derive(PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Observation {
-    seen: Seen,
+    pub(crate) seen: Seen,
 }
 
 /// Best value and ends of the interval, s; infinite for never.
@@ -39,15 +39,9 @@ fn deviation(number: Option<Estimate>) -> Option<f64> {
     number.and_then(|number| number.standard_error)
 }
 
-impl From<Seen> for Observation {
-    fn from(seen: Seen) -> Self {
-        Self { seen }
-    }
-}
-
 /// Attributes of an observation, which are the columns of observations.
 macro_rules! attributes {
-    ($seen:ident => $($(#[$doc:meta])* $name:ident: $of:ty = $value:expr,)*) => {
+    ($seen:ident { $($(#[$doc:meta])* $name:ident: $of:ty = $value:expr,)* } $($methods:tt)*) => {
         shown! {
             Observation: self
             values {
@@ -56,11 +50,8 @@ macro_rules! attributes {
                     $value
                 },)*
             }
-            methods {
-                fn __repr__(&self) -> String {
-                    self.shown()
-                }
-            }
+
+            $($methods)*
         }
 
         /// Observations as a table: a column for each attribute of `Observation`, numbers that are not known missing.
@@ -70,51 +61,51 @@ macro_rules! attributes {
     };
 }
 
-attributes! { seen =>
-    /// When, s.
-    time_s: f64 = seen.time,
-    /// What happens: "free", "loading", "holding" or "unloading".
-    phase: String = word(seen.phase),
-    /// What is held, "displacement" or "force"; None outside a hold.
-    held: Option<String> = seen.held.map(word),
-    /// When the hold began, s.
-    held_since_s: Option<f64> = seen.held_since,
-    /// True on the one tick that says that a hold began.
-    began: bool = seen.began,
-    /// The force without its noise, N: the fitted curve inside a hold, a filter's elsewhere.
-    force_n: f64 = seen.force,
-    /// The force that a hold of the displacement tends to, N; None until its interval is narrower than the force itself.
-    equilibrium_force_n: Option<f64> = value(seen.equilibrium_force),
-    /// Its standard deviation, N.
-    equilibrium_force_deviation_n: Option<f64> = deviation(seen.equilibrium_force),
-    /// Force in excess of equilibrium, N.
-    excess_force_n: Option<f64> = value(seen.excess_force),
-    /// Its standard deviation, N.
-    excess_force_deviation_n: Option<f64> = deviation(seen.excess_force),
-    /// Strain in excess of equilibrium; only a material tells it.
-    excess_strain: Option<f64> = value(seen.excess_strain),
-    /// Its standard deviation.
-    excess_strain_deviation: Option<f64> = deviation(seen.excess_strain),
-    /// Rate at which the excess falls now, in shares of itself, 1/s.
-    relative_rate_per_s: Option<f64> = seen.relative_rate,
-    /// Speed of the creep while the force is held, m/s.
-    creep_rate_m_per_s: Option<f64> = value(seen.creep_rate),
-    /// Its standard deviation, m/s.
-    creep_rate_deviation_m_per_s: Option<f64> = deviation(seen.creep_rate),
-    /// Whether it slips: "not_known_yet", "never" (by relaxation), "perhaps_never" or "after"; None where no force of slip was given.
-    slips: Option<&'static str> = seen.time_to_slip.map(slips_word),
-    /// How long until the force has fallen to that of slip, s; infinite for never, None where that is not known.
-    time_to_slip_s: Option<f64> = times(seen.time_to_slip).map(|times| times.0),
-    /// Lower end of its interval, s.
-    time_to_slip_low_s: Option<f64> = times(seen.time_to_slip).map(|times| times.1),
-    /// Upper end of its interval, s; infinite where never lies inside.
-    time_to_slip_high_s: Option<f64> = times(seen.time_to_slip).map(|times| times.2),
-    /// "none", "soon" (slip within the time to warn cannot be excluded) or "slipping".
-    warning: String = word(seen.slip),
-}
+attributes! {
+    seen {
+        /// When, s.
+        time_s: f64 = seen.time,
+        /// What happens: "free", "loading", "holding" or "unloading".
+        phase: String = word(seen.phase),
+        /// What is held, "displacement" or "force"; None outside a hold.
+        held: Option<String> = seen.held.map(word),
+        /// When the hold began, s.
+        held_since_s: Option<f64> = seen.held_since,
+        /// True on the one tick that says that a hold began.
+        began: bool = seen.began,
+        /// The force without its noise, N: the fitted curve inside a hold, a filter's elsewhere.
+        force_n: f64 = seen.force,
+        /// The force that a hold of the displacement tends to, N; None until its interval is narrower than the force itself.
+        equilibrium_force_n: Option<f64> = value(seen.equilibrium_force),
+        /// Its standard deviation, N.
+        equilibrium_force_deviation_n: Option<f64> = deviation(seen.equilibrium_force),
+        /// Force in excess of equilibrium, N.
+        excess_force_n: Option<f64> = value(seen.excess_force),
+        /// Its standard deviation, N.
+        excess_force_deviation_n: Option<f64> = deviation(seen.excess_force),
+        /// Strain in excess of equilibrium; only a material tells it.
+        excess_strain: Option<f64> = value(seen.excess_strain),
+        /// Its standard deviation.
+        excess_strain_deviation: Option<f64> = deviation(seen.excess_strain),
+        /// Rate at which the excess falls now, in shares of itself, 1/s.
+        relative_rate_per_s: Option<f64> = seen.relative_rate,
+        /// Speed of the creep while the force is held, m/s.
+        creep_rate_m_per_s: Option<f64> = value(seen.creep_rate),
+        /// Its standard deviation, m/s.
+        creep_rate_deviation_m_per_s: Option<f64> = deviation(seen.creep_rate),
+        /// Whether it slips: "not_known_yet", "never" (by relaxation), "perhaps_never" or "after"; None where no force of slip was given.
+        slips: Option<&'static str> = seen.time_to_slip.map(slips_word),
+        /// How long until the force has fallen to that of slip, s; infinite for never, None where that is not known.
+        time_to_slip_s: Option<f64> = times(seen.time_to_slip).map(|times| times.0),
+        /// Lower end of its interval, s.
+        time_to_slip_low_s: Option<f64> = times(seen.time_to_slip).map(|times| times.1),
+        /// Upper end of its interval, s; infinite where never lies inside.
+        time_to_slip_high_s: Option<f64> = times(seen.time_to_slip).map(|times| times.2),
+        /// "none", "soon" (slip within the time to warn cannot be excluded) or "slipping".
+        warning: String = word(seen.slip),
+    }
 
-impl Observation {
-    fn shown(&self) -> String {
+    fn __repr__(&self) -> String {
         let seen = &self.seen;
         let held = seen.held.map_or_else(String::new, |what| format!(" the {}", word(what)));
         let slip = match (seen.slip, seen.time_to_slip) {

@@ -2,12 +2,13 @@
 
 use palpate::observe::{ObserveError, Observer as Watcher, ObserverOptions};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyType};
+use pyo3::types::{PyBytes, PyType};
 
 use crate::arrays::doubles;
 use crate::errors::{ModelError, OptionError, PalpateError, RecordError, refused, refused_plainly};
 use crate::materials::material::Material;
 use crate::observers::observation::{Observation, columns};
+use crate::shown::shown;
 use crate::table::Table;
 use crate::work::{Made, at_length, unpickled};
 
@@ -97,8 +98,19 @@ fn same_lengths(time: &[f64], force: &[f64], displacement: Option<&[f64]>) -> Py
     Err(refused_plainly::<RecordError>(message))
 }
 
-#[pymethods]
-impl Observer {
+shown! {
+    Observer: self
+    copied getters {
+        /// The calibrated body, if one was given.
+        material: Option<Material> = self.material.clone(),
+        /// Force at and below which what is held slips, N, if one was given.
+        slip_force_n: Option<f64> = self.watcher.options().slip_force,
+        /// How long before slip to warn, s.
+        warn_before_s: f64 = self.watcher.options().warn_before,
+        /// Coverage of the intervals.
+        confidence: f64 = self.watcher.options().confidence,
+    }
+
     #[new]
     #[pyo3(signature = (
         material=None, *, exponent=None, exponent_deviation=None, slip_force_n=None, warn_before_s=1.0, confidence=0.95,
@@ -177,7 +189,7 @@ impl Observer {
     #[pyo3(signature = (time_s, force_n, displacement_m=None))]
     fn feed(&mut self, time_s: f64, force_n: f64, displacement_m: Option<f64>) -> PyResult<Observation> {
         let seen = self.watcher.feed(time_s, displacement_m, force_n);
-        seen.map(Observation::from).map_err(|error| refused_at("", &error))
+        seen.map(|seen| Observation { seen }).map_err(|error| refused_at("", &error))
     }
 
     /// Takes the readings of many ticks, one after the other; all of them, or none if one cannot be taken.
@@ -224,40 +236,8 @@ impl Observer {
         columns(&all)
     }
 
-    /// The calibrated body, if one was given.
-    #[getter]
-    fn material(&self) -> Option<Material> {
-        self.material.clone()
-    }
-
-    /// Force at and below which what is held slips, N, if one was given.
-    #[getter]
-    fn slip_force_n(&self) -> Option<f64> {
-        self.watcher.options().slip_force
-    }
-
-    /// How long before slip to warn, s.
-    #[getter]
-    fn warn_before_s(&self) -> f64 {
-        self.watcher.options().warn_before
-    }
-
-    /// Coverage of the intervals.
-    #[getter]
-    fn confidence(&self) -> f64 {
-        self.watcher.options().confidence
-    }
-
     fn __eq__(&self, other: &Self) -> bool {
         self.watcher.options() == other.watcher.options() && self.watcher.to_bytes() == other.watcher.to_bytes()
-    }
-
-    fn __copy__(&self) -> Self {
-        self.clone()
-    }
-
-    fn __deepcopy__(&self, _memo: &Bound<'_, PyDict>) -> Self {
-        self.clone()
     }
 
     #[classmethod]

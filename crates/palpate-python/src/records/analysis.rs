@@ -62,11 +62,10 @@ shown! {
         /// Number of the hold, from 1; None for the record as a whole.
         hold: Option<usize> = self.hold,
     }
-    methods {
-        fn __repr__(&self) -> String {
-            let place = self.hold.map_or(String::new(), |hold| format!(", hold {hold}"));
-            format!("<palpate.Finding {} ({}{place}): {}>", self.code(), self.severity(), self.seen())
-        }
+
+    fn __repr__(&self) -> String {
+        let place = self.hold.map_or(String::new(), |hold| format!(", hold {hold}"));
+        format!("<palpate.Finding {} ({}{place}): {}>", self.code(), self.severity(), self.seen())
     }
 }
 
@@ -153,53 +152,45 @@ fn known(fits: &[&FitDocument]) -> Vec<(String, ArrayRef)> {
     errors.iter().map(error).chain(intervals.iter().flat_map(ends)).collect()
 }
 
-#[pymethods]
-impl Analysis {
-    /// The phases, a row each.
-    #[getter]
-    fn segments(&self) -> PyResult<Table> {
-        Table::of(columns!(self.document.segments, row => phase, start_s, end_s, first_row, last_row))
-    }
-
-    /// The holds, a row each.
-    #[getter]
-    fn holds(&self) -> PyResult<Table> {
-        Table::of(columns!(self.document.holds, hold =>
+shown! {
+    Analysis: self
+    getters {
+        /// The phases, a row each.
+        segments: PyResult<Table> =
+            Table::of(columns!(self.document.segments, row => phase, start_s, end_s, first_row, last_row)),
+        /// The holds, a row each.
+        holds: PyResult<Table> = Table::of(columns!(self.document.holds, hold =>
             index, start_s, end_s, fit_start_s, displacement_m, after, mode, relaxation, force_change_n,
             force_change_standard_error_n, p_value, force_start_n, force_end_n, signal, preferred, lowest_order
-        ))
-    }
-
-    /// The laws fitted to every hold, a row each: ``hold``, ``domain``, ``exponent``, ``equilibrium_force_n``,
-    /// ``rate_coefficient_per_s``, ..., each with its standard error and interval.
-    #[getter]
-    fn fits(&self) -> PyResult<Table> {
-        let holds = self.document.holds.iter();
-        let (holds, fits): (Vec<usize>, Vec<&FitDocument>) =
-            holds.flat_map(|hold| hold.fits.iter().map(|fit| (hold.index, fit))).unzip();
-        let known = known(&fits);
-        let mut columns = columns!(holds, hold => hold = *hold);
-        columns.extend(columns!(fits, fit =>
-            law, domain, exponent, exponent_fixed, equilibrium_strain, equilibrium_force_n, excess_strain, excess_force_n,
-            relative_rate_per_s, rate_coefficient_per_s
-        ));
-        columns.extend(known.iter().map(|(name, column)| (name.as_str(), Arc::clone(column))));
-        columns.extend(columns!(fits, fit =>
-            rmse, residual_correlation, samples, delta_bic, prediction_error, termination
-        ));
-        Table::of(columns)
-    }
-
-    /// What to know besides the numbers.
-    #[getter]
-    fn findings(&self) -> Vec<Finding> {
-        let whole = self.document.findings.iter().map(|found| Finding::of(found, None));
-        let of_holds = self
-            .document
-            .holds
-            .iter()
-            .flat_map(|hold| hold.findings.iter().map(|found| Finding::of(found, Some(hold.index))));
-        whole.chain(of_holds).collect()
+        )),
+        /// The laws fitted to every hold, a row each: ``hold``, ``domain``, ``exponent``, ``equilibrium_force_n``,
+        /// ``rate_coefficient_per_s``, ..., each with its standard error and interval.
+        fits: PyResult<Table> = {
+            let holds = self.document.holds.iter();
+            let (holds, fits): (Vec<usize>, Vec<&FitDocument>) =
+                holds.flat_map(|hold| hold.fits.iter().map(|fit| (hold.index, fit))).unzip();
+            let known = known(&fits);
+            let mut columns = columns!(holds, hold => hold = *hold);
+            columns.extend(columns!(fits, fit =>
+                law, domain, exponent, exponent_fixed, equilibrium_strain, equilibrium_force_n, excess_strain, excess_force_n,
+                relative_rate_per_s, rate_coefficient_per_s
+            ));
+            columns.extend(known.iter().map(|(name, column)| (name.as_str(), Arc::clone(column))));
+            columns.extend(columns!(fits, fit =>
+                rmse, residual_correlation, samples, delta_bic, prediction_error, termination
+            ));
+            Table::of(columns)
+        },
+        /// What to know besides the numbers.
+        findings: Vec<Finding> = {
+            let whole = self.document.findings.iter().map(|found| Finding::of(found, None));
+            let of_holds = self
+                .document
+                .holds
+                .iter()
+                .flat_map(|hold| hold.findings.iter().map(|found| Finding::of(found, Some(hold.index))));
+            whole.chain(of_holds).collect()
+        },
     }
 
     /// The document that `palpate analyze --format json` prints, as plain objects.

@@ -114,15 +114,14 @@ shown! {
             law, parameters, rmse, delta_aicc, delta_bic, forward_score, termination, error
         )),
     }
-    methods {
-        /// Everything as plain objects.
-        fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-            plain(py, &self.document)
-        }
 
-        fn __repr__(&self) -> String {
-            format!("<palpate.Comparison: {}>", self.sentence().unwrap_or("no law could be fitted"))
-        }
+    /// Everything as plain objects.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.document)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<palpate.Comparison: {}>", self.sentence().unwrap_or("no law could be fitted"))
     }
 }
 
@@ -148,12 +147,10 @@ impl RecordComparison {
 
 shown! {
     RecordComparison: self
-    values {}
-    methods {
+    values {
         /// The laws on every hold, best first, a row each: ``hold``, ``law``, ``parameters``, ``rmse``, ``delta_aicc``, ``delta_bic``,
         /// ``forward_score``, ``termination``, ``error``.
-        #[getter]
-        fn laws(&self) -> PyResult<Table> {
+        laws: PyResult<Table> = {
             let holds = self.document.records.iter().flat_map(|record| &record.holds);
             let (holds, laws): (Vec<usize>, Vec<_>) = holds
                 .flat_map(|hold| hold.comparison.iter().flat_map(|found| &found.laws).map(|law| (hold.index, law)))
@@ -163,25 +160,25 @@ shown! {
                 law, parameters, rmse, delta_aicc, delta_bic, forward_score, termination, error
             ));
             Table::of(columns)
-        }
+        },
+    }
 
-        /// The document that ``palpate compare --format json`` prints, as plain objects.
-        fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-            plain(py, &self.document)
-        }
+    /// The document that ``palpate compare --format json`` prints, as plain objects.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.document)
+    }
 
-        /// The same as text, as the command prints it.
-        fn to_json(&self) -> PyResult<String> {
-            printed(&self.document)
-        }
+    /// The same as text, as the command prints it.
+    fn to_json(&self) -> PyResult<String> {
+        printed(&self.document)
+    }
 
-        fn __str__(&self) -> &str {
-            &self.text
-        }
+    fn __str__(&self) -> &str {
+        &self.text
+    }
 
-        fn __repr__(&self) -> String {
-            let holds = self.document.records.iter().map(|record| record.holds.len()).sum::<usize>();
-            format!("<palpate.RecordComparison of {holds} holds>")
-        }
+    fn __repr__(&self) -> String {
+        let holds = self.document.records.iter().map(|record| record.holds.len()).sum::<usize>();
+        format!("<palpate.RecordComparison of {holds} holds>")
     }
 }

@@ -26,6 +26,7 @@ use crate::materials::calibration::Calibration;
 use crate::records::analysis::Analysis;
 use crate::records::compare::RecordComparison;
 use crate::records::kept::Kept;
+use crate::shown::shown;
 use crate::table::{Column, Table, columns};
 use crate::work::{Made, at_length, briefly, job, made_again, unpickled};
 
@@ -209,8 +210,22 @@ impl Record {
     }
 }
 
-#[pymethods]
-impl Record {
+shown! {
+    Record: self
+    getters {
+        /// Title of the record, for reports.
+        title: &str = &self.input.title,
+        /// Time, s.
+        time_s<'py>(py): Bound<'py, PyArray1<f64>> = PyArray1::from_slice(py, self.record.time()),
+        /// Displacement of the jaw, m; None where it was not recorded.
+        displacement_m<'py>(py): Option<Bound<'py, PyArray1<f64>>> =
+            self.record.displacement().map(|values| PyArray1::from_slice(py, values)),
+        /// Force, N.
+        force_n<'py>(py): Bound<'py, PyArray1<f64>> = PyArray1::from_slice(py, self.record.force()),
+        /// What was done to the record, in words and in order.
+        corrections: Vec<String> = self.record.corrections().iter().map(ToString::to_string).collect(),
+    }
+
     /// A record of arrays in SI, loading positive.
     ///
     /// Parameters
@@ -293,36 +308,6 @@ impl Record {
             part: self.described.test.as_ref().and_then(|said| said.reading.part.clone()),
         };
         made_again::<Self>(py, &parts)
-    }
-
-    /// Title of the record, for reports.
-    #[getter]
-    fn title(&self) -> &str {
-        &self.input.title
-    }
-
-    /// Time, s.
-    #[getter]
-    fn time_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.record.time())
-    }
-
-    /// Displacement of the jaw, m; None where it was not recorded.
-    #[getter]
-    fn displacement_m<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.record.displacement().map(|values| PyArray1::from_slice(py, values))
-    }
-
-    /// Force, N.
-    #[getter]
-    fn force_n<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.record.force())
-    }
-
-    /// What was done to the record, in words and in order.
-    #[getter]
-    fn corrections(&self) -> Vec<String> {
-        self.record.corrections().iter().map(ToString::to_string).collect()
     }
 
     fn __len__(&self) -> usize {

@@ -1,24 +1,17 @@
 //! `palpate.calibration/1`: laws calibrated on a whole record.
 
 use palpate::analysis::HoldoutError;
-use palpate::calibrate::{CalibrateError, Calibration, Candidate, MaterialNumber, MaterialUnit, NumberProfile};
+use palpate::calibrate::{CalibrateError, Calibration, Candidate, MaterialNumber, NumberProfile};
 use palpate::fit::Interval;
 
 use super::comparison::NumberDocument;
 use super::software::Software;
-use crate::result::{CalibratedRecord, Input, word};
+use crate::result::{CalibratedRecord, Input, material_unit, word};
 
 documents! {
     /// A number of a calibrated law, in the unit at the end of its name.
     CalibratedNumberDocument(number: &MaterialNumber, profiles: &[NumberProfile]) with {
-        let suffix = match number.unit {
-            MaterialUnit::One => "",
-            MaterialUnit::Second => "_s",
-            MaterialUnit::PerSecond => "_per_s",
-            MaterialUnit::Metre => "_m",
-            MaterialUnit::Newton => "_n",
-            MaterialUnit::Pascal => "_pa",
-        };
+        let (suffix, ..) = material_unit(number.unit);
         let profile = profiles.iter().find(|profile| profile.name == number.name);
     } {
         /// Name with its unit, such as `modulus_pa`, `exponent`, `rate_coefficient_per_s`, `layer_thickness_m`.
@@ -27,8 +20,7 @@ documents! {
         #[serde(flatten)]
         estimate: NumberDocument = NumberDocument::new(&number.estimate),
         /// Profile interval; left out where none was asked for.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        profile: Option<ProfileDocument> = profile.map(|found| ProfileDocument::new(found.interval)),
+        profile?: Option<ProfileDocument> = profile.map(|found| ProfileDocument::new(found.interval)),
     }
 
     /// A profile interval; an end that the record leaves open is `null`.

@@ -118,14 +118,9 @@ documents! {
         let lowest = rows.iter().filter_map(|row| row.criteria).map(|c| c.aicc).fold(f64::INFINITY, f64::min);
     } {
         /// What the laws were fitted to: `strain`, `force` or `displacement`.
-        signal: String = quantity.name().to_owned(),
+        signal: String = word(quantity),
         /// Its unit: `1`, `N` or `m`.
-        signal_unit: String = match quantity {
-            Quantity::Strain => "1",
-            Quantity::Force => "N",
-            Quantity::Displacement => "m",
-        }
-        .to_owned(),
+        signal_unit: String = quantity.unit().to_owned(),
         /// Laws are ranked by `forward` (score) or `information` (BIC).
         ranking: String = word(comparison.ranking),
         /// Cut points at which something is left to foretell, s after the start of the fit.
@@ -200,8 +195,7 @@ documents! {
         /// Coverage of the intervals.
         confidence: f64 = options.fit.confidence,
         /// What the intervals of fits rest on, if not the curvature: `profile` or `bootstrap`.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        intervals: Option<String> = unusual(options.fit.intervals),
+        intervals?: Option<String> = unusual(options.fit.intervals),
         /// Fitted only this long from the start of the fit, s.
         fit_until_s: Option<f64> = fit_until,
         /// `peak`, `settled` or `peak + … s`.

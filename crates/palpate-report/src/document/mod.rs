@@ -13,18 +13,23 @@
 //! | `watch.rs` | `palpate.watch/1`, a watched contact, one object a line |
 //! | `reproduction.rs` | `palpate.reproduction/1`, the summary of the reproduced study |
 
-/// Documents: of each field its meaning, its type, and what of the result it says.
+/// Documents: of each field its meaning, its type, and what of the result it says. A field with `?` behind its name is left out where there
+/// is none; any other is `null` then.
 macro_rules! documents {
     ($(
         $(#[$about:meta])*
         $name:ident($($from:ident: $source:ty),*) $(with { $($local:stmt;)* })? {
-            $($(#[$meaning:meta])* $field:ident: $type:ty = $value:expr,)*
+            $($(#[$meaning:meta])* $field:ident$(?$($mark:lifetime)?)?: $type:ty = $value:expr,)*
         }
     )*) => { $(
         #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
         $(#[$about])*
         pub struct $name {
-            $($(#[$meaning])* pub $field: $type,)*
+            $(
+                $(#[$meaning])*
+                $(#[serde(skip_serializing_if = "Option::is_none")] $($mark)?)?
+                pub $field: $type,
+            )*
         }
 
         impl $name {

@@ -24,8 +24,7 @@ documents! {
         /// Length of a prism, m.
         length_m: Option<f64> = shape["length"].as_f64(),
         /// Thickness of a pad, m.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        thickness_m: Option<f64> = shape["thickness"].as_f64(),
+        thickness_m?: Option<f64> = shape["thickness"].as_f64(),
         /// Modulus, Pa.
         modulus_pa: Option<f64> = analysis.specimen.as_ref().map(Specimen::modulus),
         /// `given` or `estimated`.
@@ -72,8 +71,7 @@ documents! {
         /// Coverage of the intervals.
         confidence: f64 = options.fit.confidence,
         /// What the intervals of fits rest on, if not the curvature: `profile` or `bootstrap`.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        intervals: Option<String> = unusual(options.fit.intervals),
+        intervals?: Option<String> = unusual(options.fit.intervals),
         /// Fitted only this long from the start of the fit, s.
         fit_until_s: Option<f64> = options.fit_until,
         /// Samples on each side of a strain rate, at least.

@@ -36,22 +36,17 @@ documents! {
         let (creep, creep_deviation) = parted(creep_rate);
     } {
         /// Standard deviation of the speed of creep, m/s.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        creep_rate_deviation_m_per_s: Option<f64> = creep_deviation,
+        creep_rate_deviation_m_per_s?: Option<f64> = creep_deviation,
         /// The last speed of creep, m/s.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        creep_rate_m_per_s: Option<f64> = creep,
+        creep_rate_m_per_s?: Option<f64> = creep,
         /// When it was last seen, s.
         end_s: f64 = end,
         /// Standard deviation of the equilibrium force, N.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        equilibrium_force_deviation_n: Option<f64> = equilibrium_deviation,
+        equilibrium_force_deviation_n?: Option<f64> = equilibrium_deviation,
         /// The last equilibrium force, N.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        equilibrium_force_n: Option<f64> = equilibrium,
+        equilibrium_force_n?: Option<f64> = equilibrium,
         /// `hold_ends`; left out in the summary.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        event: Option<String> = None,
+        event?: Option<String> = None,
         /// Force when it was last seen, N.
         force_end_n: f64 = force_end,
         /// Force when it began, N.
@@ -59,16 +54,13 @@ documents! {
         /// What was held for most of its ticks: `displacement` or `force`.
         held: String = word(held),
         /// First time at or below the force of slip, s.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        slipped_s: Option<f64> = None,
+        slipped_s?: Option<f64> = None,
         /// When it began, s.
         start_s: f64 = start,
         /// When its end was seen, s; left out in the summary.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        time_s: Option<f64> = None,
+        time_s?: Option<f64> = None,
         /// First warning, s.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        warned_s: Option<f64> = None,
+        warned_s?: Option<f64> = None,
     }
 
     /// The holds of a log.
@@ -96,61 +88,45 @@ documents! {
         let warns = seen.time_to_slip.is_some() || seen.slip != Slip::None;
     } {
         /// Standard deviation of the speed of creep, m/s.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        creep_rate_deviation_m_per_s: Option<f64> = creep_deviation,
+        creep_rate_deviation_m_per_s?: Option<f64> = creep_deviation,
         /// Speed of the creep while the force is held, m/s.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        creep_rate_m_per_s: Option<f64> = creep,
+        creep_rate_m_per_s?: Option<f64> = creep,
         /// Standard deviation of the equilibrium force, N.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        equilibrium_force_deviation_n: Option<f64> = equilibrium_deviation,
+        equilibrium_force_deviation_n?: Option<f64> = equilibrium_deviation,
         /// The force that a hold of the displacement tends to, N.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        equilibrium_force_n: Option<f64> = equilibrium,
+        equilibrium_force_n?: Option<f64> = equilibrium,
         /// `tick`, `hold_begins`, `hold_changes` or `warning`.
         event: String = event.to_owned(),
         /// Standard deviation of the excess force, N.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        excess_force_deviation_n: Option<f64> = excess_deviation,
+        excess_force_deviation_n?: Option<f64> = excess_deviation,
         /// Force in excess of equilibrium, N.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        excess_force_n: Option<f64> = excess,
+        excess_force_n?: Option<f64> = excess,
         /// Strain in excess of equilibrium.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        excess_strain: Option<f64> = strain,
+        excess_strain?: Option<f64> = strain,
         /// Standard deviation of the excess strain.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        excess_strain_deviation: Option<f64> = strain_deviation,
+        excess_strain_deviation?: Option<f64> = strain_deviation,
         /// The force without its noise, N.
         force_n: f64 = seen.force,
         /// What is held: `displacement` or `force`.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        held: Option<String> = hold.map(|(held, _)| word(held)),
+        held?: Option<String> = hold.map(|(held, _)| word(held)),
         /// When the hold began, s.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        held_since_s: Option<f64> = hold.map(|(_, since)| since),
+        held_since_s?: Option<f64> = hold.map(|(_, since)| since),
         /// `free`, `loading`, `holding` or `unloading`.
         phase: String = word(seen.phase),
         /// Rate at which the excess falls now, in shares of itself, 1/s.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        relative_rate_per_s: Option<f64> = seen.relative_rate,
+        relative_rate_per_s?: Option<f64> = seen.relative_rate,
         /// `not_known_yet`, `never`, `perhaps_never` or `after`; left out without a force of slip.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        slips: Option<String> = seen.time_to_slip.map(|time| slips_word(time).to_owned()),
+        slips?: Option<String> = seen.time_to_slip.map(|time| slips_word(time).to_owned()),
         /// When, s.
         time_s: f64 = seen.time,
         /// Upper end of the interval of the time to slip, s; `null` where never lies inside.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        time_to_slip_high_s: Option<Option<f64>> = times.map(|(_, _, high)| high),
+        time_to_slip_high_s?: Option<Option<f64>> = times.map(|(_, _, high)| high),
         /// Its lower end, s.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        time_to_slip_low_s: Option<f64> = times.map(|(_, low, _)| low),
+        time_to_slip_low_s?: Option<f64> = times.map(|(_, low, _)| low),
         /// How long until the force has fallen to that of slip, s; `null` where that is never.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        time_to_slip_s: Option<Option<f64>> = times.map(|(value, _, _)| value),
+        time_to_slip_s?: Option<Option<f64>> = times.map(|(value, _, _)| value),
         /// `none`, `soon` or `slipping`; left out without a force of slip.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        warning: Option<String> = warns.then(|| word(seen.slip)),
+        warning?: Option<String> = warns.then(|| word(seen.slip)),
     }
 }
 

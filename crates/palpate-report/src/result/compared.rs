@@ -13,7 +13,7 @@ use crate::number::significant;
 use crate::word::word;
 
 /// What the laws were fitted to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Quantity {
     /// Strain of the contact layer.
     Strain,
@@ -74,32 +74,28 @@ pub struct LeftOut {
 }
 
 impl Quantity {
-    /// Name of the quantity in text and JSON.
-    #[must_use]
-    pub fn name(self) -> &'static str {
+    /// Its unit, what a name in JSON ends in for it, and unit for people with what turns SI into it.
+    fn units(self) -> (&'static str, &'static str, (&'static str, f64)) {
         match self {
-            Self::Strain => "strain",
-            Self::Force => "force",
-            Self::Displacement => "displacement",
+            Self::Strain => ("1", "", ("", 1.0)),
+            Self::Force => ("N", "_n", ("N", 1.0)),
+            Self::Displacement => ("m", "_m", ("mm", 1e3)),
         }
+    }
+
+    /// Its unit.
+    pub(crate) fn unit(self) -> &'static str {
+        self.units().0
     }
 
     /// Unit for people, and what turns SI into it.
     pub(crate) fn for_people(self) -> (&'static str, f64) {
-        match self {
-            Self::Strain => ("", 1.0),
-            Self::Force => ("N", 1.0),
-            Self::Displacement => ("mm", 1e3),
-        }
+        self.units().2
     }
 
     /// What a name in JSON ends in for a number of this unit; `None` for one that has no unit of its own.
     pub(crate) fn suffix(self, unit: NumberUnit) -> Option<String> {
-        let own = match self {
-            Self::Strain => "",
-            Self::Force => "_n",
-            Self::Displacement => "_m",
-        };
+        let (_, own, _) = self.units();
         let (own, over_time) = match unit {
             NumberUnit::One => ("", ""),
             NumberUnit::Second => ("", "_s"),

@@ -31,7 +31,8 @@ impl GrippedBody<'_> {
     }
 
     /// Squeeze, squeeze and back off, force held and schedule: the course of each, or why there is none; a schedule only if one was asked for.
-    pub(crate) fn grips(&self) -> [Option<Result<&Prediction, &GripError>>; 4] {
+    #[must_use]
+    pub fn grips(&self) -> [Option<Result<&Prediction, &GripError>>; 4] {
         let answer = &self.answer;
         [
             Some(answer.squeeze.as_ref().map(|made| &made.course)),

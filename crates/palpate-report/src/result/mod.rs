@@ -29,4 +29,4 @@ pub use gripped::GrippedBody;
 pub use input::Input;
 pub use reproduced::{ReproducedTest, Reproduction};
 pub(crate) use words::{hold_start_word, percent};
-pub use words::{mode_word, slips_word};
+pub use words::{material_unit, mode_word, slips_word};

@@ -45,10 +45,16 @@ impl Bundle {
         self.files.push((path.into(), content.into_bytes()));
     }
 
-    pub(crate) fn figure(&mut self, figure: &Figure, pictures: Pictures) -> Result<(), StudyError> {
-        self.text(format!("figures/{}.svg", figure.name), figure.to_svg()?);
-        if pictures.png {
-            self.files.push((format!("figures/{}.png", figure.name), figure.to_png(DPI)?));
+    pub(crate) fn figures<'a>(
+        &mut self,
+        figures: impl IntoIterator<Item = &'a Figure>,
+        pictures: Pictures,
+    ) -> Result<(), StudyError> {
+        for figure in figures {
+            self.text(format!("figures/{}.svg", figure.name), figure.to_svg()?);
+            if pictures.png {
+                self.files.push((format!("figures/{}.png", figure.name), figure.to_png(DPI)?));
+            }
         }
         Ok(())
     }

@@ -114,11 +114,7 @@ fn gather(severity: Severity, finding: &RecordFinding, alike: Vec<Seen<'_>>, mos
     };
     let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
     for Seen { hold, finding, .. } in alike {
-        let text = finding.seen();
-        match groups.iter_mut().find(|(other, _)| *other == text) {
-            Some((_, holds)) => holds.extend(hold),
-            None => groups.push((text, hold.into_iter().collect())),
-        }
+        entry(&mut groups, finding.seen()).extend(hold);
     }
     // A last line that counts the rest is worth it only if it stands for several.
     let cut = if groups.len() > most + 1 { most } else { groups.len() };
@@ -135,6 +131,15 @@ fn gather(severity: Severity, finding: &RecordFinding, alike: Vec<Seen<'_>>, mos
         meaning,
         remedy,
     }
+}
+
+/// What stands beside a key; a new key goes behind the others.
+pub(super) fn entry<K: PartialEq, V: Default>(entries: &mut Vec<(K, V)>, key: K) -> &mut V {
+    let place = entries.iter().position(|(other, _)| *other == key).unwrap_or(entries.len());
+    if place == entries.len() {
+        entries.push((key, V::default()));
+    }
+    &mut entries[place].1
 }
 
 /// `Hold 2`, `Holds 1–3, 7`, or nothing for the whole record.

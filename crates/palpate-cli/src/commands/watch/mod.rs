@@ -21,7 +21,7 @@ use palpate_files::description::read_material;
 use palpate_jobs::input::{Described, OpenedFile};
 use palpate_jobs::{HoldSeen, JobError, Seen, Verdict};
 
-use crate::arguments::{ReplaySpeed, WatchArguments, WatchFormat};
+use crate::arguments::{WatchArguments, WatchFormat};
 use crate::progress::Bars;
 use crate::terminal::{note, notes, print_with};
 
@@ -50,11 +50,7 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Verdict, JobError> {
         note("the log holds stress: forces are those on 1 m²");
     }
     let on_terminal = io::stdout().is_terminal() && arguments.format == WatchFormat::Text;
-    let speed = match arguments.speed {
-        Some(ReplaySpeed::Times(times)) => Some(times),
-        Some(ReplaySpeed::Max) => None,
-        None => on_terminal.then_some(10.0),
-    };
+    let speed = arguments.speed.or(on_terminal.then_some(10.0)).filter(|times| times.is_finite());
     let mut shown: Box<dyn Shown> = match arguments.format {
         WatchFormat::Jsonl => Box::new(jsonl::Jsonl),
         WatchFormat::Text if on_terminal => {

@@ -1,31 +1,17 @@
 //! A whole record calibrated: tables, text and figure.
 
 use palpate::analysis::HoldoutError;
-use palpate::calibrate::{
-    CalibrateError, Calibration, Candidate, Material, MaterialNumber, MaterialUnit, NumberProfile,
-};
+use palpate::calibrate::{CalibrateError, Calibration, Candidate, Material, MaterialNumber, NumberProfile};
 use palpate::fit::Interval;
 
 use crate::figure::{Figure, Layer, Panel, Role};
 use crate::number::{counted, significant};
 use crate::page::{Block, Page, Section};
-use crate::result::{CalibratedRecord, percent, word};
+use crate::result::{CalibratedRecord, material_unit, percent, word};
 use crate::study::bundle::StudyError;
 use crate::study::grid::displacement_panel;
 use crate::table::{Cell, Table};
 use crate::wrap::wrapped;
-
-/// Factor and unit in which people read a number of a material.
-fn for_people(unit: MaterialUnit) -> (f64, &'static str) {
-    match unit {
-        MaterialUnit::One => (1.0, ""),
-        MaterialUnit::Second => (1.0, "s"),
-        MaterialUnit::PerSecond => (1.0, "1/s"),
-        MaterialUnit::Metre => (1e3, "mm"),
-        MaterialUnit::Newton => (1.0, "N"),
-        MaterialUnit::Pascal => (1e-3, "kPa"),
-    }
-}
 
 /// The laws on the record, in the order in which they were asked for.
 fn laws(record: &CalibratedRecord) -> Table {
@@ -44,12 +30,9 @@ fn laws(record: &CalibratedRecord) -> Table {
         let foretold = |number: fn(&HoldoutError) -> f64| {
             of_made(move |made| made.foretold.as_ref().map_or(Cell::text(""), |found| Cell::Number(number(found), 3)))
         };
-        table = table.column("Foretold to", "foretold_rmse_n", "N", foretold(|found| found.rmse)).column(
-            "of peak",
-            "foretold_percent",
-            "%",
-            foretold(|found| 100.0 * found.relative),
-        );
+        let relative = foretold(|found| 100.0 * found.relative);
+        table = table.column("Foretold to", "foretold_rmse_n", "N", foretold(|found| found.rmse));
+        table = table.column("of peak", "foretold_percent", "%", relative);
     }
     let ended = |made: &Calibration| Cell::text(word(made.termination).replace('_', " "));
     table.column("Ended", "termination", "", of_made(ended)).table()
@@ -71,15 +54,16 @@ fn numbers_table(material: &Material, profiles: &[NumberProfile]) -> Table {
     const LEFT_OPEN: &str = "the record leaves it open";
     const OPEN: &str = "the record leaves it open, or it was given";
     let share = material.uncertainty.as_ref().map_or(0.95, |uncertainty| uncertainty.confidence);
+    let for_people = |number: &MaterialNumber| material_unit(number.unit).2;
     let interval = |number: &MaterialNumber, pick: fn((f64, f64)) -> f64| {
-        let factor = for_people(number.unit).0;
+        let (factor, _) = for_people(number);
         Cell::number_or(number.estimate.interval.map(|ends| factor * pick(ends)), 4, OPEN)
     };
     let mut table = Table::of("numbers", format!("Numbers of the law {}.", material.candidate), &material.numbers)
         .column("Number", "number", "", |number| Cell::text(number.name.replace('_', " ")))
-        .column("Unit", "unit", "", |number| Cell::text(for_people(number.unit).1))
+        .column("Unit", "unit", "", |number| Cell::text(for_people(number).1))
         .column("Value", "value", "", |number| {
-            let (factor, estimate) = (for_people(number.unit).0, number.estimate);
+            let (factor, estimate) = (for_people(number).0, number.estimate);
             match estimate.standard_error {
                 Some(error) => Cell::Uncertain(factor * estimate.value, factor * error),
                 None => Cell::Number(factor * estimate.value, 4),
@@ -90,7 +74,7 @@ fn numbers_table(material: &Material, profiles: &[NumberProfile]) -> Table {
     if !profiles.is_empty() {
         let profile = |number: &MaterialNumber, pick: fn(Interval) -> Option<f64>| {
             let found = profiles.iter().find(|profile| profile.name == number.name);
-            let end = found.and_then(|found| pick(found.interval)).map(|end| for_people(number.unit).0 * end);
+            let end = found.and_then(|found| pick(found.interval)).map(|end| for_people(number).0 * end);
             Cell::number_or(end, 4, if found.is_some() { LEFT_OPEN } else { OPEN })
         };
         table = table

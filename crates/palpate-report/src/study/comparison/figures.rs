@@ -4,10 +4,11 @@ use palpate::fit::SpectrumFit;
 use palpate::forecast::{Comparison, Row, name_in_words};
 use palpate::laws::Law;
 
-use crate::figure::{Axis, Figure, Layer, MOST_PANELS, Panel, Role};
+use crate::figure::{Axis, Figure, Layer, Panel, Role};
 use crate::number::{counted, significant};
 use crate::result::{ComparedHold, ComparedRecord};
-use crate::study::grid::{columns, first_of, grid};
+use crate::study::findings::entry;
+use crate::study::grid::by_hold;
 
 /// Laws that a panel shows; there are no more markers that can be told apart.
 const MOST_LAWS: usize = 8;
@@ -24,15 +25,6 @@ pub(in crate::study) fn all(record: &ComparedRecord, suffix: &str) -> Vec<Figure
         .into_iter()
         .flatten()
         .collect()
-}
-
-/// A figure of one panel a hold, `all` of them or the first.
-fn by_hold<T>(name: &str, caption: String, row_mm: f64, holds: &[T], panel: impl Fn(&T) -> Panel) -> Option<Figure> {
-    let panels: Vec<Panel> = holds.iter().take(MOST_PANELS).map(panel).collect();
-    let columns = columns(panels.len());
-    let more = first_of(panels.len(), holds.len(), "holds");
-    let row_mm = if columns == 1 { 1.4 * row_mm } else { row_mm };
-    grid(name, caption + &more, panels, columns, row_mm)
 }
 
 /// Forward error of each law after each cut.
@@ -55,8 +47,8 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
         format!(
             "What each law, fitted to the first part of a hold, foretells of the rest: root mean square error in % of the change of the signal.{left}"
         ),
-        78.0,
-        &holds,
+        (1.4 * 78.0, 78.0),
+        (&holds, "holds"),
         panel,
     )
 }
@@ -66,10 +58,7 @@ fn best_laws(holds: &[(&ComparedHold, &Comparison)]) -> (Vec<Law>, usize) {
     let mut ranks: Vec<(Law, usize)> = Vec::new();
     for (_, comparison) in holds {
         for (rank, row) in comparison.rows.iter().enumerate() {
-            match ranks.iter_mut().find(|(law, _)| *law == row.law) {
-                Some((_, sum)) => *sum += rank,
-                None => ranks.push((row.law, rank)),
-            }
+            *entry(&mut ranks, row.law) += rank;
         }
     }
     let all = ranks.len();
@@ -110,8 +99,8 @@ fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
         format!(
             "What the best laws leave over when fitted to the whole hold (measured less fitted, averaged over {STRETCHES} stretches of ln t). Noise scatters about zero; a wave is shape that the law misses."
         ),
-        62.0,
-        &holds,
+        (1.4 * 62.0, 62.0),
+        (&holds, "holds"),
         panel,
     )
 }
@@ -145,9 +134,9 @@ fn spectra(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let holds: Vec<_> = record.verdicts().filter_map(|(hold, found)| Some((hold, spectrum(found)?))).collect();
     by_hold(
         &format!("spectra{suffix}"),
-        "The dense spectrum of each hold: amplitude over relaxation time; the line marks the length of the hold. Where the slowest time carries weight the spectrum is open-ended, and its equilibrium is a convention of the grid.".to_owned(),
-        62.0,
-        &holds,
+        "The dense spectrum of each hold: amplitude over relaxation time; the line marks the length of the hold. Where the slowest time carries weight the spectrum is open-ended, and its equilibrium is a convention of the grid.",
+        (1.4 * 62.0, 62.0),
+        (&holds, "holds"),
         |(hold, fit)| spectrum_panel(hold, fit),
     )
 }
@@ -188,11 +177,7 @@ fn spectrum_panel(hold: &ComparedHold, fit: &SpectrumFit) -> Panel {
 pub(super) fn chosen(record: &ComparedRecord) -> String {
     let mut counts: Vec<(String, usize)> = Vec::new();
     for law in record.verdicts().filter_map(|(_, comparison)| Some(comparison.verdict.as_ref()?.law)) {
-        let name = name_in_words(law);
-        match counts.iter_mut().find(|(other, _)| *other == name) {
-            Some((_, count)) => *count += 1,
-            None => counts.push((name, 1)),
-        }
+        *entry(&mut counts, name_in_words(law)) += 1;
     }
     counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     let told: Vec<String> =

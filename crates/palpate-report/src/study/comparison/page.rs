@@ -25,9 +25,7 @@ pub fn comparison_bundle(
     for (index, record) in records.iter().enumerate() {
         let suffix = if records.len() == 1 { String::new() } else { format!("_{}", index + 1) };
         let figures = figures::all(record, &suffix);
-        for figure in &figures {
-            bundle.figure(figure, pictures)?;
-        }
+        bundle.figures(&figures, pictures)?;
         let found = findings::gathered_of(record, findings::MOST_LINES);
         let mut section = Section::new(&record.input.title).blocks(blocks(record, &figures)?);
         if !found.is_empty() {

@@ -88,7 +88,7 @@ pub(super) fn laws_of_hold(record: &ComparedRecord, hold: &ComparedHold) -> Opti
         "{}: {} samples of {} over {} s, which change it by {}.",
         hold.title(),
         comparison.samples,
-        hold.quantity.name(),
+        word(hold.quantity),
         significant(comparison.duration, 4),
         if unit.is_empty() { change } else { format!("{change} {unit}") }
     );

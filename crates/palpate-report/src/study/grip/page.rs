@@ -20,7 +20,7 @@ pub fn grip_bundle(body: &GrippedBody<'_>, pictures: Pictures) -> Result<Bundle,
     let grips = grip_table(body);
     if !grips.rows.is_empty() {
         let figure = grip_figure(body, "grip");
-        bundle.figure(&figure, pictures)?;
+        bundle.figures([&figure], pictures)?;
         bundle.table(&grips);
         verdict = verdict.block(Block::figure(&figure)?).block(Block::Table(grips));
     }

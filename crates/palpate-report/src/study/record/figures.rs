@@ -6,7 +6,7 @@ use palpate::segment::After;
 
 use super::cut::{MOST_NAMED, shaded};
 use crate::figure::{Arrangement, Axis, Figure, Layer, MOST_PANELS, Panel, Role};
-use crate::study::grid::{columns, displacement_panel, first_of, grid};
+use crate::study::grid::{by_hold, displacement_panel, first_of, grid};
 
 /// Points that a fitted curve is drawn with.
 const CURVE: usize = 200;
@@ -150,15 +150,9 @@ fn rate_curve(fit: &LatencyFit, hold: &HoldAnalysis) -> (Vec<f64>, Vec<f64>) {
 
 /// Each hold over the logarithm of time with its fits, and what they leave over.
 pub(super) fn holds(analysis: &Analysis, name: &str) -> Option<Figure> {
-    let all: Vec<&HoldAnalysis> = analysis.holds.iter().filter(|hold| !hold.fits.is_empty()).collect();
-    let fitted = &all[..all.len().min(MOST_PANELS)];
-    let columns = columns(fitted.len());
-    let caption = format!(
-        "Relaxation over the logarithm of the time since the start of the fit, with the law at the common exponent and with a free exponent.{}",
-        first_of(fitted.len(), all.len(), "fitted holds")
-    );
-    let panels = fitted.iter().map(|hold| hold_panel(analysis, hold)).collect();
-    grid(name, caption, panels, columns, if columns == 1 { 95.0 } else { 62.0 })
+    let fitted: Vec<&HoldAnalysis> = analysis.holds.iter().filter(|hold| !hold.fits.is_empty()).collect();
+    let caption = "Relaxation over the logarithm of the time since the start of the fit, with the law at the common exponent and with a free exponent.";
+    by_hold(name, caption, (95.0, 62.0), (&fitted, "fitted holds"), |hold| hold_panel(analysis, hold))
 }
 
 fn hold_panel(analysis: &Analysis, hold: &HoldAnalysis) -> Panel {

@@ -31,20 +31,14 @@ pub fn analysis_bundle(analysis: &Analysis, input: Input, pictures: Pictures) ->
     let figures: Vec<_> = figures.into_iter().flatten().collect();
     let compared = ComparedRecord::of_analysis(analysis, input.clone());
     let of_laws = comparison::figures::all(&compared, "");
-    for figure in figures.iter().chain(&of_laws) {
-        bundle.figure(figure, pictures)?;
-    }
+    bundle.figures(figures.iter().chain(&of_laws), pictures)?;
+    let mut which_law = None;
     if let Some(compare) = &analysis.options.compare {
+        which_law = Some(comparison::page::blocks(&compared, &of_laws)?);
         bundle.table(&comparison::tables::laws(slice::from_ref(&compared), &compare.cuts));
         comparison::tables::verdicts(&compared).iter().for_each(|table| bundle.table(table));
     }
-    for table in tables::all(analysis) {
-        bundle.table(&table);
-    }
-    let which_law = match analysis.options.compare {
-        Some(_) => Some(comparison::page::blocks(&compared, &of_laws)?),
-        None => None,
-    };
+    tables::all(analysis).iter().for_each(|table| bundle.table(table));
     let page = page(analysis, &input, &figures, which_law)?;
     bundle.text("report.html", page.to_html());
     bundle.json("analysis.json", &AnalysisDocument::new(analysis, input))?;

@@ -78,14 +78,7 @@ fn final_unloading(study: &Reproduction) -> Figure {
     .without_letters()
 }
 
-/// Tables I and II, with what the authors measured beside them where it can be read.
-fn tables(study: &Reproduction) -> Vec<Table> {
-    vec![
-        paper_table(study, &study.test_a, After::Loading),
-        paper_table(study, &study.test_b, After::Unloading),
-    ]
-}
-
+/// Table I or II, with what the authors measured beside it where it can be read.
 fn paper_table(study: &Reproduction, test: &ReproducedTest, after: After) -> Table {
     let n = study.model.law.exponent();
     let (name, caption) = match after {
@@ -169,13 +162,10 @@ fn page(study: &Reproduction, figures: &[Figure], tables: &[Table]) -> Result<Pa
 pub fn reproduction_bundle(study: &Reproduction, pictures: Pictures) -> Result<Bundle, StudyError> {
     let mut bundle = Bundle::default();
     let figures = figures(study);
-    for figure in &figures {
-        bundle.figure(figure, pictures)?;
-    }
-    let tables = tables(study);
-    for table in &tables {
-        bundle.table(table);
-    }
+    bundle.figures(&figures, pictures)?;
+    let tables = [(&study.test_a, After::Loading), (&study.test_b, After::Unloading)];
+    let tables = tables.map(|(test, after)| paper_table(study, test, after));
+    tables.iter().for_each(|table| bundle.table(table));
     for (name, test) in [("a", &study.test_a), ("b", &study.test_b)] {
         bundle.series(&format!("test_{name}_bonded"), write_trajectory, &test.bonded)?;
         bundle.series(&format!("test_{name}_unilateral"), write_trajectory, &test.unilateral)?;

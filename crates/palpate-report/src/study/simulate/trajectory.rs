@@ -2,10 +2,11 @@
 
 use std::io::{self, Write};
 
-use palpate::simulate::{ContactEventKind, Trajectory};
+use palpate::simulate::Trajectory;
 
 use crate::figure::{Axis, Figure, Layer, Panel, Role};
 use crate::number::exact;
+use crate::result::word;
 use crate::study::grid::displacement_panel;
 
 /// Writes the series as CSV, one row a sample: time, displacements, force, strains, rate, all in SI.
@@ -65,10 +66,7 @@ pub fn trajectory_figure(trajectory: &Trajectory, name: &str, caption: &str) -> 
     let mut force = Panel::new(Axis::linear("Time", "s"), force_axis(trajectory)).share(1.6);
     force = force.layer(Layer::line(time(), trajectory.force.clone(), Role::Series(0)));
     for event in trajectory.events.iter().take(8) {
-        let label = match event.kind {
-            ContactEventKind::Lost => "contact lost",
-            ContactEventKind::Regained => "contact regained",
-        };
+        let label = format!("contact {}", word(event.kind));
         force = force.layer(Layer::vertical(event.time, Role::Reference).label(label));
     }
     let strain = Panel::over_time("Strain", "")
