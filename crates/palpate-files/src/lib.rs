@@ -16,6 +16,18 @@
 //! | [`record`] | columns and a description joined to a checked record in SI ([`record::read_record`]) |
 //! | [`parquet_table`] | tables of many rows, written as Parquet and read back |
 
+/// Shows types as they are written in a file.
+macro_rules! shown_as_written {
+    ($(#[$about:meta])* $name:ty) => {
+        $(#[$about])*
+        impl std::fmt::Display for $name {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                serde::Serialize::serialize(self, f)
+            }
+        }
+    };
+}
+
 pub mod cell;
 pub mod description;
 mod error;

@@ -14,11 +14,9 @@ pub(crate) fn parse(cell: &[u8]) -> Option<f64> {
     }
     let ((year, month, day), rest) = year_first(cell).or_else(|| year_last(cell))?;
     let (of_day, fraction, rest) = time_of_day(behind(rest, b"T t")?)?;
-    let sound = (1..=12).contains(&month) && (1..=days_of(year, month)).contains(&day);
-    if !sound {
-        return None;
-    }
-    Some((days_since_1970(year, month, day) * 86_400 + of_day - zone(rest)?) as f64 + fraction)
+    let days = days_since_1970(year, month, day);
+    let sound = (1..=12).contains(&month) && day > 0 && days < days_since_1970(year, month + 1, 1);
+    sound.then_some((days * 86_400 + of_day - zone(rest)?) as f64 + fraction)
 }
 
 /// Year, month and day.
@@ -103,26 +101,12 @@ fn zone(text: &[u8]) -> Option<i64> {
     (rest.is_empty() && hours <= 14 && minutes < 60).then_some(sign * (hours * 3600 + minutes * 60))
 }
 
-fn is_leap(year: i64) -> bool {
-    year % 4 == 0 && (year % 100 != 0 || year % 400 == 0)
-}
-
-fn days_of(year: i64, month: i64) -> i64 {
-    match month {
-        2 if is_leap(year) => 29,
-        2 => 28,
-        4 | 6 | 9 | 11 => 30,
-        _ => 31,
-    }
-}
-
 /// Days from 1 January 1970 to a date of the Gregorian calendar.
 pub(crate) fn days_since_1970(year: i64, month: i64, day: i64) -> i64 {
-    let leap_years_to = |year: i64| year / 4 - year / 100 + year / 400;
-    // Leap days before the year, and this year's months before the month.
-    let years = (year - 1970) * 365 + leap_years_to(year - 1) - leap_years_to(1969);
-    let months: i64 = (1..month).map(|month| days_of(year, month)).sum();
-    years + months + day - 1
+    // Counted from March on, the day that leap years have more ends the year, and months differ by a rule.
+    let (year, month) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
+    let leap_days = year.div_euclid(4) - year.div_euclid(100) + year.div_euclid(400);
+    year * 365 + leap_days + (153 * month + 2) / 5 + day - 719_469
 }
 
 #[cfg(test)]

@@ -22,33 +22,28 @@ impl<'a> Fields<'a> {
         let delimiter = delimiter.byte();
         let rest = match delimiter {
             Some(_) => Some(line),
-            None => Some(trim(line, None)).filter(|line| !line.is_empty()),
+            None => Some(trim(line)).filter(|line| !line.is_empty()),
         };
         Self { rest, delimiter }
     }
 
     /// Takes a cell that begins with a quote; `line` starts right behind that quote.
     fn quoted(&mut self, line: &'a [u8]) -> &'a [u8] {
-        let mut end = 0;
-        while let Some(ahead) = line.get(end..).filter(|ahead| !ahead.is_empty()) {
-            let Some(quote) = ahead.iter().position(|&byte| byte == b'"') else {
-                end = line.len();
-                break;
-            };
-            end += quote;
-            if line.get(end + 1) != Some(&b'"') {
-                break;
+        let mut from = 0;
+        let end = loop {
+            match memchr::memchr(b'"', &line[from..]).map(|at| from + at) {
+                Some(quote) if line.get(quote + 1) == Some(&b'"') => from = quote + 2,
+                Some(quote) => break quote,
+                None => break line.len(),
             }
-            end += 2;
-        }
-        let end = end.min(line.len());
+        };
         let cell = &line[..end];
         let behind = line.get(end + 1..).unwrap_or_default();
         self.rest = match self.delimiter {
             Some(delimiter) => behind.iter().position(|&byte| byte == delimiter).map(|place| &behind[place + 1..]),
-            None => Some(trim(behind, None)).filter(|rest| !rest.is_empty()),
+            None => Some(trim(behind)).filter(|rest| !rest.is_empty()),
         };
-        trim(cell, None)
+        trim(cell)
     }
 }
 
@@ -65,7 +60,7 @@ impl<'a> Iterator for Fields<'a> {
         let tail = &line[start..];
         let Some(delimiter) = self.delimiter else {
             let end = tail.iter().position(|&byte| byte == b' ' || byte == b'\t');
-            self.rest = end.map(|end| trim(&tail[end..], None)).filter(|rest| !rest.is_empty());
+            self.rest = end.map(|end| trim(&tail[end..])).filter(|rest| !rest.is_empty());
             return Some(&tail[..end.unwrap_or(tail.len())]);
         };
         let end = tail.iter().position(|&byte| byte == delimiter);
@@ -81,24 +76,15 @@ fn is_blank(byte: u8, delimiter: Option<u8>) -> bool {
 }
 
 #[inline]
-fn trim_end(mut bytes: &[u8], delimiter: Option<u8>) -> &[u8] {
-    while let [rest @ .., last] = bytes {
-        if !is_blank(*last, delimiter) {
-            break;
-        }
-        bytes = rest;
-    }
-    bytes
+fn trim_end(bytes: &[u8], delimiter: Option<u8>) -> &[u8] {
+    let last = bytes.iter().rposition(|&byte| !is_blank(byte, delimiter));
+    &bytes[..last.map_or(0, |last| last + 1)]
 }
 
-fn trim(mut bytes: &[u8], delimiter: Option<u8>) -> &[u8] {
-    while let [first, rest @ ..] = bytes {
-        if !is_blank(*first, delimiter) {
-            break;
-        }
-        bytes = rest;
-    }
-    trim_end(bytes, delimiter)
+/// Less the spaces and tabulators at both ends.
+fn trim(bytes: &[u8]) -> &[u8] {
+    let first = bytes.iter().position(|&byte| !is_blank(byte, None));
+    trim_end(&bytes[first.unwrap_or(bytes.len())..], None)
 }
 
 /// The cells of a line of text.

@@ -1,7 +1,5 @@
 //! The characters that a text is written with: between cells, and inside numbers.
 
-use std::fmt;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -34,11 +32,7 @@ impl Delimiter {
     }
 }
 
-impl fmt::Display for Delimiter {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.serialize(f)
-    }
-}
+shown_as_written!(Delimiter);
 
 /// The character between the whole and the fractional part of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -60,8 +54,4 @@ impl DecimalMark {
     }
 }
 
-impl fmt::Display for DecimalMark {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.serialize(f)
-    }
-}
+shown_as_written!(DecimalMark);

@@ -25,11 +25,8 @@ pub struct CellPlace {
 
 impl fmt::Display for CellPlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "line {}, column {}", self.line, self.column)?;
-        match &self.name {
-            Some(name) => write!(f, " ({})", shown(name)),
-            None => Ok(()),
-        }
+        let name = self.name.as_ref().map_or_else(String::new, |name| format!(" ({})", shown(name)));
+        write!(f, "line {}, column {}{name}", self.line, self.column)
     }
 }
 

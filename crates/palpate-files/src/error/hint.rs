@@ -36,12 +36,13 @@ impl FileError {
                 Some(by) => return Some(format!("the delimiter was fixed to {by}: leave it to be found out")),
                 None => "a record needs a time and a force side by side, separated by tab, semicolon, comma or blanks",
             },
-            FileProblem::NoDataRows { header_line, .. } => match header_line {
-                Some(line) => {
-                    return Some(format!("line {line} looks like names of columns, but no numbers follow"));
-                }
-                None => "check that this is the record itself, or skip the lines before it",
-            },
+            FileProblem::NoDataRows {
+                header_line: Some(line),
+                ..
+            } => {
+                return Some(format!("line {line} looks like names of columns, but no numbers follow"));
+            }
+            FileProblem::NoDataRows { .. } => "check that this is the record itself, or skip the lines before it",
             FileProblem::AmbiguousDecimal { doubt, .. } => doubtful(*doubt),
             FileProblem::NoSuchColumn { .. } => "columns count from 1 at the left",
             FileProblem::TextInNumbers { found, decimal, .. } => hint_of_text(found, *decimal),

@@ -1,7 +1,5 @@
 //! Telling character encodings apart by content.
 
-use std::fmt;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -59,12 +57,10 @@ impl Encoding {
     }
 }
 
-impl fmt::Display for Encoding {
+shown_as_written!(
     /// Its usual name, in lower case.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.serialize(f)
-    }
-}
+    Encoding
+);
 
 /// The encoding that `sample`, the beginning of a file, is most likely written in.
 ///
@@ -91,12 +87,10 @@ fn unmarked_utf16(sample: &[u8]) -> Option<Encoding> {
     let pairs = sample.len() / 2;
     let zeros = |odd: usize| sample.iter().skip(odd).step_by(2).filter(|&&byte| byte == 0).count();
     let (even, odd) = (zeros(0), zeros(1));
-    if pairs >= 2 && odd * 10 > pairs * 6 && even * 100 <= pairs {
-        Some(Encoding::Utf16Le)
-    } else if pairs >= 2 && even * 10 > pairs * 6 && odd * 100 <= pairs {
-        Some(Encoding::Utf16Be)
-    } else {
-        None
+    let only = |many: usize, few: usize| pairs >= 2 && many * 10 > pairs * 6 && few * 100 <= pairs;
+    match only(odd, even) {
+        true => Some(Encoding::Utf16Le),
+        false => only(even, odd).then_some(Encoding::Utf16Be),
     }
 }
 

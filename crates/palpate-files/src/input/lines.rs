@@ -8,18 +8,8 @@ pub(crate) const LONGEST_LINE: usize = 256 * 1024;
 
 /// The lines of `text`, ended by LF, CR LF or CR, without these ends.
 pub(crate) fn of_text(text: &str) -> Vec<&str> {
-    let mut lines = Vec::new();
-    let mut rest = text;
-    while !rest.is_empty() {
-        let Some(end) = memchr::memchr2(b'\n', b'\r', rest.as_bytes()) else {
-            lines.push(rest);
-            break;
-        };
-        let (line, tail) = rest.split_at(end);
-        lines.push(line);
-        rest = tail.strip_prefix("\r\n").unwrap_or(&tail[1..]);
-    }
-    lines
+    let pieces = text.split_terminator('\n').map(|piece| piece.strip_suffix('\r').unwrap_or(piece));
+    pieces.flat_map(|piece| piece.split('\r')).collect()
 }
 
 /// Hands out a file line by line from a buffer of bounded size.

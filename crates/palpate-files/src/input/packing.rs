@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-use flate2::read::MultiGzDecoder;
+use flate2::{CrcReader, read::MultiGzDecoder};
 use zip::{ZipArchive, result::ZipError};
 
 use crate::error::{FileError, FileProblem};
@@ -72,18 +72,14 @@ fn archive(path: &Path, stored: impl Read + Seek) -> Result<Packing, FileError> 
     }
     // Folders, and what macOS puts beside every file.
     let noise = |name: &str| name.ends_with('/') || name.starts_with("__MACOSX/") || name.ends_with(".DS_Store");
-    let mut files: Vec<String> = names.into_iter().filter(|name| !noise(name)).collect();
-    match files.len() {
-        1 => {
-            let member = files.remove(0);
-            let index = archive.index_for_name(&member);
-            let encrypted = index.and_then(|index| Some(archive.by_index_raw(index).ok()?.encrypted()));
-            match encrypted {
-                Some(true) => Err(FileError::of(path, FileProblem::Encrypted)),
-                _ => Ok(Packing::Zip { member }),
-            }
-        }
-        _ => Err(FileError::of(path, FileProblem::Archive(files))),
+    let files: Vec<String> = names.into_iter().filter(|name| !noise(name)).collect();
+    let [member] = &files[..] else {
+        return Err(FileError::of(path, FileProblem::Archive(files)));
+    };
+    let index = archive.index_for_name(member);
+    match index.and_then(|index| Some(archive.by_index_raw(index).ok()?.encrypted())) {
+        Some(true) => Err(FileError::of(path, FileProblem::Encrypted)),
+        _ => Ok(Packing::Zip { member: member.clone() }),
     }
 }
 
@@ -115,8 +111,7 @@ pub(super) fn unpacked<R: Read + Seek + Send + 'static>(
 /// The reader of the archive borrows from it; to hold both, the member's raw bytes are cut out of the archive and
 /// unpacked here.
 struct Member {
-    bytes: Box<dyn Read + Send>,
-    sum: flate2::Crc,
+    bytes: CrcReader<Box<dyn Read + Send>>,
     expected_sum: u32,
 }
 
@@ -140,19 +135,15 @@ impl Member {
             zip::CompressionMethod::Deflated => Box::new(flate2::bufread::DeflateDecoder::new(raw)),
             other => return Err(io::Error::other(format!("some packed by {other:?}; deflate is understood"))),
         };
-        Ok(Self {
-            bytes,
-            sum: flate2::Crc::new(),
-            expected_sum,
-        })
+        let bytes = CrcReader::new(bytes);
+        Ok(Self { bytes, expected_sum })
     }
 }
 
 impl Read for Member {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let got = self.bytes.read(into)?;
-        self.sum.update(&into[..got]);
-        if got == 0 && !into.is_empty() && self.sum.sum() != self.expected_sum {
+        if got == 0 && !into.is_empty() && self.bytes.crc().sum() != self.expected_sum {
             return Err(io::Error::other("others than were packed (checksum)"));
         }
         Ok(got)

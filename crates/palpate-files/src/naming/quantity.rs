@@ -1,7 +1,5 @@
 //! What a column of a record can hold.
 
-use std::fmt;
-
 use palpate::units::Dimension;
 use serde::Serialize;
 
@@ -52,9 +50,7 @@ impl Quantity {
     }
 }
 
-impl fmt::Display for Quantity {
+shown_as_written!(
     /// Its key in a description: `time`, `displacement`, `force` or `stress`.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.serialize(f)
-    }
-}
+    Quantity
+);

@@ -8,10 +8,7 @@ use super::{
 };
 
 /// Not in this build.
-pub struct TableWriter<W: Write + Send> {
-    never: Infallible,
-    out: PhantomData<W>,
-}
+pub struct TableWriter<W: Write + Send>(Infallible, PhantomData<W>);
 
 #[expect(missing_docs, clippy::missing_errors_doc, reason = "as where the feature is there")]
 impl<W: Write + Send> TableWriter<W> {
@@ -20,18 +17,16 @@ impl<W: Write + Send> TableWriter<W> {
     }
 
     pub fn write(&mut self, _: Rows) -> Result<(), TableError> {
-        match self.never {}
+        match self.0 {}
     }
 
     pub fn finish(self, _: &[(&str, &str)]) -> Result<(), TableError> {
-        match self.never {}
+        match self.0 {}
     }
 }
 
 /// Not in this build.
-pub struct TableReader {
-    never: Infallible,
-}
+pub struct TableReader(Infallible);
 
 #[expect(missing_docs, clippy::missing_errors_doc, reason = "as where the feature is there")]
 impl TableReader {
@@ -41,29 +36,29 @@ impl TableReader {
 
     #[must_use]
     pub fn fields(&self) -> &[Field] {
-        match self.never {}
+        match self.0 {}
     }
 
     #[must_use]
     pub fn rows(&self) -> u64 {
-        match self.never {}
+        match self.0 {}
     }
 
     #[must_use]
     pub fn mark(&self, _: &str) -> Option<&str> {
-        match self.never {}
+        match self.0 {}
     }
 
     #[must_use]
     pub fn groups(&self) -> usize {
-        match self.never {}
+        match self.0 {}
     }
 
     pub fn read(&self, _: usize) -> Result<Rows, TableError> {
-        match self.never {}
+        match self.0 {}
     }
 
     pub fn values(&self, _: usize, _: usize) -> Result<Values, TableError> {
-        match self.never {}
+        match self.0 {}
     }
 }

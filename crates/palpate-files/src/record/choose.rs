@@ -33,7 +33,18 @@ pub(super) struct Found<'a> {
     pub(super) choice: Option<&'a ColumnChoice>,
 }
 
-impl Found<'_> {
+impl<'a> Found<'a> {
+    /// A column, and what a description says of it.
+    fn of(role: Role, column: &'a ColumnInfo, choice: Option<&'a ColumnChoice>) -> Self {
+        let unit = choice.and_then(|choice| choice.unit.as_deref());
+        Self {
+            role,
+            column,
+            unit,
+            choice,
+        }
+    }
+
     /// The key of a description that says its unit.
     pub(super) fn key(&self) -> String {
         match self.role {
@@ -122,18 +133,15 @@ impl<'a> Chooser<'a> {
     /// The column of force, or that of stress where the description says so or there is no force.
     fn force_or_stress(&self, test: &'a TestDescription) -> Result<(Found<'a>, Option<&'a ColumnChoice>), ColumnError> {
         let said = &test.columns;
-        let missing = |quantity| move || self.missing(quantity);
-        for (quantity, choice) in [(Quantity::Stress, &said.stress), (Quantity::Force, &said.force)] {
-            if choice.is_some() {
-                let found = self.find(quantity, choice.as_ref())?;
-                return Ok((found.ok_or_else(missing(quantity))?, choice.as_ref()));
-            }
-        }
-        let found = match self.find(Quantity::Force, None)? {
-            Some(force) => Some(force),
-            None => self.find(Quantity::Stress, None)?,
+        let (quantity, choice) = match (&said.stress, &said.force) {
+            (Some(stress), _) => (Quantity::Stress, Some(stress)),
+            (None, force) => (Quantity::Force, force.as_ref()),
         };
-        Ok((found.ok_or_else(missing(Quantity::Force))?, None))
+        let found = match self.find(quantity, choice)? {
+            None if choice.is_none() => self.find(Quantity::Stress, None)?,
+            found => found,
+        };
+        Ok((found.ok_or_else(|| self.missing(quantity))?, choice))
     }
 
     /// The column of a quantity; `None` if nothing says which.
@@ -153,23 +161,14 @@ impl<'a> Chooser<'a> {
         if choice.is_some() && column.is_none() {
             return Err(self.missing(quantity));
         }
-        Ok(column.map(|column| Found {
-            role: Role::Values(quantity),
-            column,
-            unit: choice.and_then(|choice| choice.unit.as_deref()),
-            choice,
-        }))
+        Ok(column.map(|column| Found::of(Role::Values(quantity), column, choice)))
     }
 
     /// The clock that the file itself gives the column of a quantity.
     fn own_clock(&self, quantity: Quantity, values: &Found<'a>) -> Option<Found<'a>> {
         let clock = self.part.clock_of(values.column.number)?;
-        Some(Found {
-            role: Role::ClockOf(quantity),
-            column: self.part.columns.get(clock.column.wrapping_sub(1))?,
-            unit: None,
-            choice: None,
-        })
+        let column = self.part.columns.get(clock.column.wrapping_sub(1))?;
+        Some(Found::of(Role::ClockOf(quantity), column, None))
     }
 
     /// The column that is added to one, which must have the same clock.
@@ -179,11 +178,7 @@ impl<'a> Chooser<'a> {
         };
         let quantity = values.role.measured();
         let column = self.beside(values, &format!("columns.{quantity}.also"), also)?;
-        Ok(Some(Found {
-            role: Role::Added(quantity),
-            column,
-            ..*values
-        }))
+        Ok(Some(Found::of(Role::Added(quantity), column, values.choice)))
     }
 
     /// The column of the deflection of a cantilever whose base stands at `height`; both must have the same clock.
@@ -195,12 +190,7 @@ impl<'a> Chooser<'a> {
         // A description without the column is refused when it is checked.
         let named = choice.column.as_ref().unwrap_or(&ColumnRef::Number(0));
         let column = self.beside(height, "columns.deflection.column", named)?;
-        Ok(Found {
-            role: Role::Deflection,
-            column,
-            unit: choice.unit.as_deref(),
-            choice: Some(choice),
-        })
+        Ok(Found::of(Role::Deflection, column, Some(choice)))
     }
 
     /// Another column that is named under a key, and must have the clock of `values`.
@@ -217,12 +207,11 @@ impl<'a> Chooser<'a> {
     }
 
     fn clock(&self, quantity: Quantity, clock: &'a ClockChoice) -> Result<Found<'a>, ColumnError> {
-        let key = format!("columns.{quantity}.clock.column");
+        let column = self.named(&format!("columns.{quantity}.clock.column"), &clock.column)?;
+        let unit = clock.unit.as_deref();
         Ok(Found {
-            role: Role::ClockOf(quantity),
-            column: self.named(&key, &clock.column)?,
-            unit: clock.unit.as_deref(),
-            choice: None,
+            unit,
+            ..Found::of(Role::ClockOf(quantity), column, None)
         })
     }
 
@@ -261,19 +250,16 @@ impl<'a> Chooser<'a> {
         let free = |column: &&ColumnInfo| used.iter().all(|used| used.number != column.number);
         let possible = recognise::possible_displacements(&self.part.columns).filter(free);
         let candidates: Vec<NamedColumn> = possible.map(NamedColumn::from).collect();
-        let text = recognise::text_named(&self.part.columns, Quantity::Displacement);
-        match text {
-            _ if !candidates.is_empty() => {}
-            // What begins with a digit was meant as a number.
-            Some(column) if number::looks_numeric(&column.sample) => {
-                return Err(Self::as_text(column, Quantity::Displacement));
-            }
-            _ => return Ok(()),
+        if !candidates.is_empty() {
+            let columns = self.part.columns.clone();
+            return Err(ColumnError::Unclear { candidates, columns });
         }
-        Err(ColumnError::Unclear {
-            candidates,
-            columns: self.part.columns.clone(),
-        })
+        // What begins with a digit was meant as a number.
+        let text = recognise::text_named(&self.part.columns, Quantity::Displacement);
+        match text.filter(|column| number::looks_numeric(&column.sample)) {
+            Some(column) => Err(Self::as_text(column, Quantity::Displacement)),
+            None => Ok(()),
+        }
     }
 
     /// Two clocks may be one column, two measured quantities may not.

@@ -15,11 +15,8 @@ pub struct NamedColumn {
 
 impl fmt::Display for NamedColumn {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "column {}", self.number)?;
-        match &self.name {
-            Some(name) => write!(f, " ({name})"),
-            None => Ok(()),
-        }
+        let name = self.name.as_ref().map_or_else(String::new, |name| format!(" ({name})"));
+        write!(f, "column {}{name}", self.number)
     }
 }
 

@@ -40,10 +40,7 @@ pub fn tests(contents: &Contents, description: &TestDescription) -> Result<Tests
     for (index, part) in contents.parts.iter().enumerate() {
         match choose::choose(part, description) {
             Err(error @ (ColumnError::Missing(..) | ColumnError::NoSuchColumn { .. })) if several => {
-                tests.skipped.push(SkippedPart {
-                    name: part.title().to_owned(),
-                    reason: reason(&error),
-                });
+                tests.skipped.push(SkippedPart::new(part.title(), reason(&error)));
                 first.get_or_insert(error);
             }
             _ => tests.parts.push(index),

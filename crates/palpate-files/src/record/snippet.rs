@@ -79,11 +79,10 @@ pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
             Some(unit) if volts(&unit) => format!("unit = \"{unit}\", scale = \"1 {}/V\"", quantity.usual_unit()),
             _ => format!("unit = \"{}\"", quantity.usual_unit()),
         };
-        let mut line = format!("{quantity} = {{ column = {}, {unit} }}", column.number);
+        let line = format!("{quantity} = {{ column = {}, {unit} }}", column.number);
         let name = column.name.as_deref().map_or_else(String::new, |name| format!("{name}, which "));
         let optional = if quantity == Quantity::Displacement { "; leave out if there is none" } else { "" };
-        line.push_str(&format!("  # check: {name}starts with {}{optional}", column.sample));
-        lines.push(line);
+        lines.push(format!("{line}  # check: {name}starts with {}{optional}", column.sample));
     }
     lines.join("\n")
 }
@@ -126,12 +125,8 @@ pub(super) fn of_unit_and_column(key: &str, unit: &str, column: &NamedColumn) ->
 /// The lines that say the unit under `key`, such as `columns.force.unit`.
 pub(super) fn of_unit(key: &str, unit: &str, column: &NamedColumn) -> String {
     let (table, key) = key.rsplit_once('.').unwrap_or(("columns", key));
-    let mut lines = format!("[{table}]\n");
-    if table.ends_with(".clock") {
-        lines.push_str(&format!("column = {}\n", column.number));
-    }
-    lines.push_str(&format!("{key} = \"{unit}\""));
-    lines
+    let column = if table.ends_with(".clock") { format!("column = {}\n", column.number) } else { String::new() };
+    format!("[{table}]\n{column}{key} = \"{unit}\"")
 }
 
 /// The lines that make a force and an indentation of the bending of a cantilever in volts, which the file does not calibrate.

@@ -35,17 +35,13 @@ pub(crate) fn first_number(kinds: &[ColumnKind]) -> Option<usize> {
 
 /// The block of data under whichever of `delimiters` makes most of the lines from `skip` on.
 pub(crate) fn find(lines: &[&str], skip: usize, delimiters: &[Delimiter]) -> Option<Block> {
-    let mut best: Option<(f64, Block)> = None;
-    for &delimiter in delimiters {
+    let runs = delimiters.iter().filter_map(|&delimiter| {
         let cells = classify(lines, skip, delimiter);
-        let Some(run) = longest_run(&cells) else {
-            continue;
-        };
-        if best.as_ref().is_none_or(|(score, _)| run.score > *score) {
-            best = Some((run.score, of_run(run, cells, delimiter)));
-        }
-    }
-    best.map(|(_, block)| block)
+        Some((longest_run(&cells)?, cells, delimiter))
+    });
+    // The first of several with one score.
+    let best = runs.reduce(|best, next| if next.0.score > best.0.score { next } else { best });
+    best.map(|(run, cells, delimiter)| of_run(run, cells, delimiter))
 }
 
 /// The block of data in rows of cells that are split already, as those of a sheet are.

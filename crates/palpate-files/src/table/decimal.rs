@@ -16,15 +16,19 @@ pub(crate) struct Doubt {
     pub(crate) doubt: DecimalDoubt,
 }
 
+impl Doubt {
+    /// A doubt about a text on the line with an index.
+    fn of((line, found): (usize, &str), doubt: DecimalDoubt) -> Self {
+        let found = found.to_owned();
+        Self { line, found, doubt }
+    }
+}
+
 /// The decimal mark of the numbers in `block`. One that is `fixed` settles every doubt but this: a comma that
 /// also stands between the cells cannot be a decimal mark.
 pub(crate) fn decide(lines: &[&str], block: &Block, fixed: Option<DecimalMark>) -> Result<DecimalMark, Doubt> {
     if fixed != Some(DecimalMark::Point) && comma_splits_numbers(lines, block) {
-        return Err(Doubt {
-            line: block.first,
-            found: lines[block.first].to_owned(),
-            doubt: DecimalDoubt::CommaSplitsNumbers,
-        });
+        return Err(Doubt::of((block.first, lines[block.first]), DecimalDoubt::CommaSplitsNumbers));
     }
     match fixed {
         Some(mark) => Ok(mark),
@@ -57,11 +61,9 @@ fn weigh(lines: &[&str], block: &Block) -> Result<DecimalMark, Doubt> {
     };
     let (points, commas) = (texts(Cell::Point), texts(Cell::Comma));
     match points.first() {
-        Some(&(line, found)) if commas.is_empty() && points_set_off_thousands(block, &points) => Err(Doubt {
-            line,
-            found: found.to_owned(),
-            doubt: DecimalDoubt::PointThousands,
-        }),
+        Some(&first) if commas.is_empty() && points_set_off_thousands(block, &points) => {
+            Err(Doubt::of(first, DecimalDoubt::PointThousands))
+        }
         _ => weigh_texts(&points, &commas),
     }
 }
@@ -81,25 +83,19 @@ fn points_set_off_thousands(block: &Block, points: &[(usize, &str)]) -> bool {
 
 /// The decimal mark of numbers with a point and numbers with a comma, each with the index of its line.
 pub(crate) fn weigh_texts(points: &[(usize, &str)], commas: &[(usize, &str)]) -> Result<DecimalMark, Doubt> {
-    let doubt = |(line, found): (usize, &str), doubt| Doubt {
-        line,
-        found: found.to_owned(),
-        doubt,
-    };
     // A few odd cells are for the reading of the columns to report, one by one.
     let rare = |few: &[(usize, &str)], many: &[(usize, &str)]| few.len() * 50 <= many.len();
     match (points.first(), commas.first()) {
         (_, None) => Ok(DecimalMark::Point),
         (Some(_), Some(_)) if rare(commas, points) => Ok(DecimalMark::Point),
         (Some(_), Some(_)) if rare(points, commas) => Ok(DecimalMark::Comma),
-        (Some(&point), Some(&comma)) => Err(doubt(if comma.0 >= point.0 { comma } else { point }, DecimalDoubt::Mixed)),
-        (None, Some(&comma)) => {
-            if commas.iter().all(|(_, text)| looks_like_thousands(text, ',')) {
-                Err(doubt(comma, DecimalDoubt::Thousands))
-            } else {
-                Ok(DecimalMark::Comma)
-            }
+        (Some(&point), Some(&comma)) => {
+            Err(Doubt::of(if comma.0 >= point.0 { comma } else { point }, DecimalDoubt::Mixed))
         }
+        (None, Some(&comma)) if commas.iter().all(|(_, text)| looks_like_thousands(text, ',')) => {
+            Err(Doubt::of(comma, DecimalDoubt::Thousands))
+        }
+        (None, Some(_)) => Ok(DecimalMark::Comma),
     }
 }
 

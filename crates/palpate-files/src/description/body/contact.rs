@@ -21,9 +21,8 @@ pub(crate) fn layers(
         (Some(_), Some(_)) => Err(source.both("contact.layers", key)),
         (None, None) => Ok(None),
         (Some(count), None) => {
-            let expected = "a number of 1 or more";
-            let count = source.number("contact.layers", count, expected, |count| count >= 1.0)?;
-            Ok(Some(LayersChoice::Count(count)))
+            let count = source.number("contact.layers", count, "a number of 1 or more", |count| count >= 1.0);
+            count.map(|count| Some(LayersChoice::Count(count)))
         }
         (None, Some(written)) => {
             let thickness = source.positive(key, written, Dimension::Length)?;

@@ -52,9 +52,6 @@ pub(crate) fn model(
 
 fn layers(source: &Source<'_>, contact: &ContactTable, depth: f64) -> Result<Layers, DescriptionError> {
     let choice = contact::layers(source, contact.layers, contact.layer_thickness.as_ref(), depth)?;
-    let layers = match choice {
-        Some(choice) => choice.layers(depth).ok(),
-        None => Layers::new(USUAL_LAYERS).ok(),
-    };
-    layers.ok_or_else(|| source.missing("contact.layers", "a number of 1 or more"))
+    let layers = choice.map_or_else(|| Layers::new(USUAL_LAYERS), |choice| choice.layers(depth));
+    layers.map_err(|_| source.missing("contact.layers", "a number of 1 or more"))
 }

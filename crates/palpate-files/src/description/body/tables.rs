@@ -1,7 +1,5 @@
 //! The tables `[specimen]`, `[law]` and `[contact]` of a body, as they stand in a protocol or a material.
 
-use std::fmt;
-
 use palpate::contact::Sides;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -74,11 +72,7 @@ pub(crate) enum ShapeName {
     None,
 }
 
-impl fmt::Display for ShapeName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.serialize(f)
-    }
-}
+shown_as_written!(ShapeName);
 
 impl ShapeName {
     /// The sizes that describe it.
@@ -179,11 +173,7 @@ pub(crate) enum MemoryName {
     Force,
 }
 
-impl fmt::Display for LawName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.serialize(f)
-    }
-}
+shown_as_written!(LawName);
 
 impl LawName {
     /// The numbers that it needs.

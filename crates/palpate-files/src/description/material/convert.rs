@@ -103,16 +103,15 @@ fn version(source: &Source<'_>) -> Result<(), DescriptionError> {
         let expected = "the table that palpate calibrate writes; a body without it is a protocol's";
         return Err(source.missing("calibration", expected));
     };
-    match calibration.get("version") {
-        Some(version) => match version.as_integer().map(u64::try_from) {
-            Some(Ok(other)) if other != MATERIAL_VERSION => {
-                let expected = format!("{MATERIAL_VERSION}; calibrate again with this version of palpate");
-                Err(source.value("calibration.version", expected, &other))
-            }
-            _ => Ok(()),
-        },
-        None if calibration.is_table() => Err(source.missing("calibration.version", "the version of the table, 1")),
-        None => Ok(()),
+    let key = "calibration.version";
+    let version = calibration.get("version");
+    match version.and_then(toml::Value::as_integer).map(u64::try_from) {
+        Some(Ok(other)) if other != MATERIAL_VERSION => {
+            let expected = format!("{MATERIAL_VERSION}; calibrate again with this version of palpate");
+            Err(source.value(key, expected, &other))
+        }
+        None if version.is_none() && calibration.is_table() => Err(source.missing(key, "the version of the table, 1")),
+        _ => Ok(()),
     }
 }
 

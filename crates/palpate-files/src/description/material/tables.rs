@@ -1,7 +1,5 @@
 //! The tables of a material file as they stand in it.
 
-use std::fmt;
-
 use palpate::calibrate::{EquilibriumLaw, MaterialUnit};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -120,11 +118,7 @@ impl From<EquilibriumLaw> for CalibratedEquilibriumName {
     }
 }
 
-impl fmt::Display for CalibratedEquilibriumName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.serialize(f)
-    }
-}
+shown_as_written!(CalibratedEquilibriumName);
 
 /// Units of numbers as they are written.
 pub(crate) const UNITS: [(MaterialUnit, Option<&str>); 6] = [

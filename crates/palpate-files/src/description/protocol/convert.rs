@@ -169,11 +169,8 @@ fn sampling(source: &Source<'_>, output: &OutputTable, end: f64) -> Result<Sampl
     match (&output.sample_rate, &output.times) {
         (Some(_), Some(_)) => Err(source.both("output.sample_rate", "output.times")),
         (None, None) => Ok(Sampling::Rate(USUAL_SAMPLE_RATE)),
-        (Some(rate), None) => {
-            let rate = source.positive("output.sample_rate", rate, Dimension::Frequency)?;
-            Ok(Sampling::Rate(rate))
-        }
-        (None, Some(written)) => Ok(Sampling::Times(times(source, written, end)?)),
+        (Some(rate), None) => source.positive("output.sample_rate", rate, Dimension::Frequency).map(Sampling::Rate),
+        (None, Some(written)) => times(source, written, end).map(Sampling::Times),
     }
 }
 

@@ -80,6 +80,7 @@ pub(super) fn list(parts: &[&str], dimension: Option<Dimension>) -> Result<Value
 }
 
 fn range(text: &str, dimension: Option<Dimension>) -> Result<Range, Wrong> {
+    let expected = |words: &str| Wrong::Expected(words.to_owned());
     let wrong = || Wrong::Expected(forms(dimension));
     let text = text.trim();
     let (logarithmic, rest) = match (text.strip_prefix("log "), text.strip_prefix("linear ")) {
@@ -95,21 +96,20 @@ fn range(text: &str, dimension: Option<Dimension>) -> Result<Range, Wrong> {
     let unit = units::split_number(last.trim()).1;
     let (first, last) = (value(first, unit, dimension)?.si, value(last, unit, dimension)?.si);
     if logarithmic && first <= 0.0 {
-        return Err(Wrong::Expected("ends above 0 for log".to_owned()));
+        return Err(expected("ends above 0 for log"));
     }
     if first >= last {
-        return Err(Wrong::Expected("a range that rises: its second end above the first".to_owned()));
+        return Err(expected("a range that rises: its second end above the first"));
     }
     if !(last - first).is_finite() {
-        return Err(Wrong::Expected("ends whose difference is finite".to_owned()));
+        return Err(expected("ends whose difference is finite"));
     }
     let count = match count.map(str::parse) {
         None => None,
         Some(Ok(count @ 2..=MOST_VALUES)) => Some(count),
         Some(Ok(0 | 1)) => {
-            return Err(Wrong::Expected(
-                "a number of values of 2 or more after the comma (write a single value as it is)".to_owned(),
-            ));
+            let more = "a number of values of 2 or more after the comma (write a single value as it is)";
+            return Err(expected(more));
         }
         Some(_) => {
             return Err(Wrong::Expected(format!("a whole number of values from 2 to {MOST_VALUES} after the comma")));

@@ -60,15 +60,9 @@ pub fn parse_hold_start(text: &str) -> Result<HoldStart, ChoiceError> {
         "settled" => return Ok(HoldStart::Settled),
         other => other.strip_prefix("peak").map(str::trim_start),
     };
-    let delay = delay.and_then(|rest| rest.strip_prefix('+'));
-    let Some(delay) = delay else {
-        return Err(error(None));
-    };
-    match units::parse(delay, Dimension::Time) {
-        Ok(seconds) if seconds >= 0.0 => Ok(HoldStart::AfterPeak(seconds)),
-        Ok(_) => Err(error(None)),
-        Err(source) => Err(error(Some(source))),
-    }
+    let delay = delay.and_then(|rest| rest.strip_prefix('+')).ok_or_else(|| error(None))?;
+    let seconds = units::parse(delay, Dimension::Time).map_err(|source| error(Some(source)))?;
+    if seconds < 0.0 { Err(error(None)) } else { Ok(HoldStart::AfterPeak(seconds)) }
 }
 
 /// How first touch is found: `auto`, `as recorded`, by one rule such as `threshold`, or at a displacement such as `2.5 mm`.

@@ -99,24 +99,15 @@ pub(super) fn over_preset(source: &Source<'_>, own: TestTables) -> Result<TestTa
     TestTables::deserialize(Value::Table(tables)).map_err(other)
 }
 
+/// What stands in a table at a path of two names or more.
 fn at<'t>(table: &'t Table, path: &str) -> Option<&'t Value> {
-    match path.split_once('.') {
-        None => table.get(path),
-        Some((first, rest)) => at(table.get(first)?.as_table()?, rest),
-    }
+    let (above, name) = path.rsplit_once('.')?;
+    above.split('.').try_fold(table, |table, key| table.get(key)?.as_table())?.get(name)
 }
 
-fn remove(table: &mut Table, path: &str) {
-    match path.split_once('.') {
-        None => {
-            table.remove(path);
-        }
-        Some((first, rest)) => {
-            if let Some(Value::Table(inner)) = table.get_mut(first) {
-                remove(inner, rest);
-            }
-        }
-    }
+fn remove(table: &mut Table, path: &str) -> Option<Value> {
+    let (above, name) = path.rsplit_once('.')?;
+    above.split('.').try_fold(table, |table, key| table.get_mut(key)?.as_table_mut())?.remove(name)
 }
 
 /// Puts every value of `upper` in place of that of `lower`; tables are laid over one another.

@@ -120,7 +120,7 @@ impl Source<'_> {
         units::parse(&quantity.text, dimension).map_err(|error| self.wrong(key, wrong(error)))
     }
 
-    /// A quantity in SI that must be above zero.
+    /// A quantity in SI that must be above zero and, of a specimen, such as bodies have.
     pub(crate) fn positive(
         &self,
         key: &str,
@@ -128,11 +128,22 @@ impl Source<'_> {
         dimension: Dimension,
     ) -> Result<f64, DescriptionError> {
         let si = self.si(key, quantity, dimension)?;
-        if si > 0.0 {
-            return self.believable(key, quantity, si, dimension);
+        if si <= 0.0 {
+            let expected = format!("a {} above 0 {}", dimension.name(), dimension.units()[0].0);
+            return Err(self.value(key, expected, quantity));
         }
-        let expected = format!("a {} above 0 {}", dimension.name(), dimension.units()[0].0);
-        Err(self.value(key, expected, quantity))
+        // What no body has is a slip of the exponent or of the unit.
+        let (limits, words) = match dimension {
+            _ if !key.starts_with("specimen.") => return Ok(si),
+            Dimension::Length => (1e-9..=1e3, "a length from 1 nm to 1000 m"),
+            Dimension::Area => (1e-18..=1e6, "an area from 1e-12 mm^2 to 1e6 m^2"),
+            Dimension::Pressure => (1.0..=1e13, "a modulus from 1 Pa to 1e4 GPa"),
+            _ => return Ok(si),
+        };
+        if limits.contains(&si) {
+            return Ok(si);
+        }
+        Err(self.value(key, format!("{words}, {BELIEVABLE}"), quantity))
     }
 
     /// Likewise, if it is given.
@@ -153,26 +164,6 @@ impl Source<'_> {
         (first, second): (Dimension, Dimension),
     ) -> Result<Vec<(f64, f64)>, DescriptionError> {
         rows.iter().map(|row| Ok((self.si(key, &row.0, first)?, self.si(key, &row.1, second)?))).collect()
-    }
-
-    /// Refuses sizes and moduli that no body has: a slip of the exponent or of the unit.
-    fn believable(
-        &self,
-        key: &str,
-        quantity: &QuantityText,
-        si: f64,
-        dimension: Dimension,
-    ) -> Result<f64, DescriptionError> {
-        let (limits, words) = match dimension {
-            Dimension::Length => (1e-9..=1e3, "a length from 1 nm to 1000 m"),
-            Dimension::Area => (1e-18..=1e6, "an area from 1e-12 mm^2 to 1e6 m^2"),
-            Dimension::Pressure => (1.0..=1e13, "a modulus from 1 Pa to 1e4 GPa"),
-            _ => return Ok(si),
-        };
-        if !key.starts_with("specimen.") || limits.contains(&si) {
-            return Ok(si);
-        }
-        Err(self.value(key, format!("{words}, {BELIEVABLE}"), quantity))
     }
 
     /// A bare number that `accepts` must accept.

@@ -1,5 +1,7 @@
 //! Which columns the segments of a curve make together.
 
+use std::collections::HashSet;
+
 use super::curve::{Curve, Formula, Line, Segment};
 use crate::{
     error::shorten,
@@ -195,15 +197,9 @@ fn in_rows(kept: &[(String, Draft)]) -> Vec<Label> {
 fn derived(segments: &[&Draft], about: &mut Vec<Metadata>) -> Vec<Column> {
     let mut columns = Vec::new();
     let mut add = |name: &str, unit: Option<&str>, formulas: Option<Vec<Formula>>| {
-        if let Some(formulas) = formulas {
-            columns.push(Column {
-                name: name.to_owned(),
-                unit: unit.map(str::to_owned),
-                formulas,
-            });
-            return true;
-        }
-        false
+        let (name, unit, is_there) = (name.to_owned(), unit.map(str::to_owned), formulas.is_some());
+        columns.extend(formulas.map(|formulas| Column { name, unit, formulas }));
+        is_there
     };
     let lines = |pick: &dyn Fn(&Draft) -> Option<Line>| -> Option<Vec<Formula>> {
         segments.iter().map(|draft| pick(draft).map(Formula::Line)).collect()
@@ -245,12 +241,11 @@ fn indentation(segments: &[&Draft]) -> (Option<Vec<Formula>>, String) {
 fn add_channels(segments: &[&Draft], columns: &mut Vec<Column>) -> Vec<String> {
     let mut left_out: Vec<String> = Vec::new();
     let names = segments.iter().flat_map(|draft| &draft.channels);
-    let mut done: Vec<&str> = Vec::new();
+    let mut done = HashSet::new();
     for Channel { name, unit, .. } in names {
-        if done.contains(&name.as_str()) {
+        if !done.insert(name) {
             continue;
         }
-        done.push(name);
         let line = |draft: &&Draft| {
             let channel = draft.channel(name).filter(|channel| channel.unit == *unit)?;
             Some(Formula::Line(channel.line))

@@ -4,6 +4,8 @@
 //! position are such lines of channels again. A segment has its own lines: calibration and order of channels may
 //! change from one to the next.
 
+use std::collections::BTreeSet;
+
 use crate::table::Part;
 
 /// A quantity as a straight line of the stored numbers of one channel.
@@ -93,31 +95,25 @@ pub(super) struct Curve {
 }
 
 /// The chosen columns of one segment.
-pub(super) struct Chosen<'a> {
-    formulas: Vec<&'a Formula>,
-}
+pub(super) struct Chosen<'a>(Vec<&'a Formula>);
 
 impl Segment {
     /// The columns with these numbers, from 1; they exist.
     pub(super) fn choose(&self, columns: &[usize]) -> Chosen<'_> {
-        Chosen {
-            formulas: columns.iter().filter_map(|column| self.formulas.get(column.wrapping_sub(1))).collect(),
-        }
+        Chosen(columns.iter().filter_map(|column| self.formulas.get(column.wrapping_sub(1))).collect())
     }
 }
 
 impl Chosen<'_> {
     /// The channels that these columns take, in rising order.
     pub(super) fn channels(&self) -> Vec<usize> {
-        let mut channels: Vec<usize> = self.formulas.iter().flat_map(|formula| formula.channels()).collect();
-        channels.sort_unstable();
-        channels.dedup();
-        channels
+        let channels: BTreeSet<usize> = self.0.iter().flat_map(|formula| formula.channels()).collect();
+        channels.into_iter().collect()
     }
 
     /// Computes the values of a row; where one is not finite, its place among the chosen.
     pub(super) fn fill(&self, row: usize, stored: &[f64], into: &mut [f64]) -> Result<(), usize> {
-        for (place, (formula, value)) in self.formulas.iter().zip(into).enumerate() {
+        for (place, (formula, value)) in self.0.iter().zip(into).enumerate() {
             *value = formula.at(row, stored);
             if !value.is_finite() {
                 return Err(place);

@@ -160,22 +160,13 @@ impl Walk<'_> {
         match kind {
             Kind::Number(number) => {
                 let value = self.bytes.number(number)?;
-                if told {
-                    self.fields.push(&self.path, value)?;
-                }
+                if told { self.fields.push(&self.path, value) } else { Ok(()) }
             }
-            Kind::Text => {
-                self.bytes.text()?;
-            }
-            Kind::Time => {
-                self.bytes.take(2, 4)?;
-            }
-            Kind::Filler => {
-                self.bytes.take(1, 1)?;
-            }
-            Kind::Structure(index) => self.structure(index, told, place)?,
+            Kind::Text => self.bytes.text().map(drop),
+            Kind::Time => self.bytes.take(2, 4).map(drop),
+            Kind::Filler => self.bytes.take(1, 1).map(drop),
+            Kind::Structure(index) => self.structure(index, told, place),
         }
-        Ok(())
     }
 
     /// The elements of an array or sequence.
@@ -192,8 +183,7 @@ impl Walk<'_> {
         if let Kind::Number(number) = field.kind
             && !told
         {
-            self.bytes.take(count, number.size())?;
-            return Ok(());
+            return self.bytes.take(count, number.size()).map(drop);
         }
         if field.kind == Kind::Text && told && names_elements(&field.name) {
             return self.labels(count, labels);
@@ -202,10 +192,8 @@ impl Walk<'_> {
         let start = self.path.len();
         for index in 0..count {
             if self.named && told {
-                match labels {
-                    Some(labels) => self.path.push_str(&format!("[{}]", labels[index])),
-                    None => self.path.push_str(&format!("[{index}]")),
-                }
+                let label = labels.map_or_else(|| index.to_string(), |labels| labels[index].clone());
+                self.path.push_str(&format!("[{label}]"));
             }
             self.element(field.kind, told, Place::Part)?;
             self.path.truncate(start);

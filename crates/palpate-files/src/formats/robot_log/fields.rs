@@ -1,5 +1,7 @@
 //! The numbers in one message, whatever it is encoded in.
 
+use std::collections::HashSet;
+
 /// Most elements of an array that become columns; a longer one is no measurement but a picture or a cloud of points.
 pub(super) const MOST_ELEMENTS: usize = 64;
 
@@ -63,7 +65,6 @@ pub(super) fn names_elements(field: &str) -> bool {
 
 /// Whether names tell elements apart.
 pub(super) fn distinct(names: &[String]) -> bool {
-    let mut sorted: Vec<&String> = names.iter().collect();
-    sorted.sort_unstable();
-    sorted.windows(2).all(|pair| pair[0] != pair[1])
+    let mut seen = HashSet::new();
+    names.iter().all(|name| seen.insert(name))
 }

@@ -1,5 +1,7 @@
 //! A log as a file that holds one test: the fields of its topics as columns, each topic with clocks of its own.
 
+use std::collections::BTreeSet;
+
 use super::{
     container,
     record::Entry,
@@ -135,9 +137,7 @@ fn column(number: usize, name: String, unit: Option<&str>, sample: Option<f64>) 
 /// How the log is written, in one line.
 fn written(survey: &Survey) -> String {
     let profile = if survey.profile.is_empty() { String::new() } else { format!(" of {}", survey.profile) };
-    let mut topics: Vec<&str> = survey.series.iter().map(|series| series.topic.as_str()).collect();
-    topics.sort_unstable();
-    topics.dedup();
+    let topics: BTreeSet<&str> = survey.series.iter().map(|series| series.topic.as_str()).collect();
     format!("MCAP{profile}, {} messages, {} topics with numbers", survey.messages, topics.len())
 }
 

@@ -80,14 +80,8 @@ pub(super) const MOST_COLUMNS: u32 = 1 << 14;
 
 /// The letters of a column, from 0: A, B, … Z, AA.
 pub(super) fn letters(column: u32) -> String {
-    let mut left = u64::from(column) + 1;
-    let mut reversed = Vec::new();
-    while left > 0 {
-        left -= 1;
-        reversed.push(char::from(b'A' + (left % 26) as u8));
-        left /= 26;
-    }
-    reversed.into_iter().rev().collect()
+    let before = column.checked_sub(26).map_or_else(String::new, |beyond| letters(beyond / 26));
+    format!("{before}{}", char::from(b'A' + (column % 26) as u8))
 }
 
 /// Row and column, from 0, of a reference such as `B12`; `None` where it is none, or lies outside of any sheet.

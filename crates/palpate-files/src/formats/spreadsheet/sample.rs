@@ -1,6 +1,6 @@
 //! The beginning of a sheet.
 
-use std::ops::ControlFlow;
+use std::{collections::BTreeSet, ops::ControlFlow};
 
 use super::{
     book::Book,
@@ -71,9 +71,7 @@ impl Sample {
     /// The columns that hold anything in the rows from index `first` on, each once, in their order.
     pub(super) fn columns(&self, first: usize) -> Vec<u32> {
         let rows = self.rows.iter().skip(first);
-        let mut columns: Vec<u32> = rows.flat_map(|row| row.cells.iter().map(|(column, _)| *column)).collect();
-        columns.sort_unstable();
-        columns.dedup();
-        columns
+        let columns: BTreeSet<u32> = rows.flat_map(|row| row.cells.iter().map(|(column, _)| *column)).collect();
+        columns.into_iter().collect()
     }
 }

@@ -35,18 +35,11 @@ pub(super) struct Table {
 impl Table {
     /// Its columns as people name them: `columns A–D` or `columns A–C, E`.
     pub(super) fn range(&self) -> String {
-        let mut ranges: Vec<(u32, u32)> = Vec::new();
-        for &place in &self.places {
-            match ranges.last_mut() {
-                Some((_, end)) if *end + 1 == place => *end = place,
-                _ => ranges.push((place, place)),
-            }
-        }
-        let range = |&(start, end): &(u32, u32)| match start == end {
-            true => letters(start),
-            false => format!("{}–{}", letters(start), letters(end)),
+        let range = |range: &[u32]| match *range {
+            [first, .., last] => format!("{}–{}", letters(first), letters(last)),
+            _ => range.iter().copied().map(letters).collect(),
         };
-        let ranges: Vec<String> = ranges.iter().map(range).collect();
+        let ranges: Vec<String> = groups(&self.places).map(range).collect();
         format!("columns {}", ranges.join(", "))
     }
 
@@ -68,8 +61,8 @@ pub(super) struct FoundTables {
 
 /// The tables in a sample: one, or several side by side where each has a time of its own.
 pub(super) fn find(sample: &Sample, options: &ReadOptions) -> FoundTables {
-    let groups = groups(&columns_of_data(sample));
-    let mut found: Vec<Table> = groups.iter().filter_map(|group| table(sample, group, options)).collect();
+    let columns = columns_of_data(sample);
+    let mut found: Vec<Table> = groups(&columns).filter_map(|group| table(sample, group, options)).collect();
     let timed = found.iter().filter(|table| table.names_time()).count();
     if timed >= 2 {
         found.retain(Table::names_time);
@@ -103,15 +96,8 @@ fn columns_of_data(sample: &Sample) -> Vec<u32> {
 }
 
 /// Columns without an empty one between them.
-fn groups(columns: &[u32]) -> Vec<Vec<u32>> {
-    let mut groups: Vec<Vec<u32>> = Vec::new();
-    for &column in columns {
-        match groups.last_mut() {
-            Some(group) if group.last().is_some_and(|last| last + 1 == column) => group.push(column),
-            _ => groups.push(vec![column]),
-        }
-    }
-    groups
+fn groups(columns: &[u32]) -> impl Iterator<Item = &[u32]> {
+    columns.chunk_by(|one, next| one + 1 == *next)
 }
 
 /// The columns of the longest table and of those that begin beside it and are at least half as long.
@@ -200,18 +186,19 @@ fn decimal(
     if let Some(fixed) = fixed {
         return Ok(fixed);
     }
-    let (mut points, mut commas) = (Vec::new(), Vec::new());
-    for row in data {
-        let numbers = places.iter().zip(kinds).filter(|(_, kind)| **kind == ColumnKind::Number);
-        for (&place, _) in numbers {
-            if let Some(Value::Text(text)) = row.value(place) {
-                match row.value(place).map(Value::class) {
-                    Some(Cell::Point) => points.push((row.number as usize, text.trim())),
-                    Some(Cell::Comma) => commas.push((row.number as usize, text.trim())),
+    let texts = |wanted: Cell| {
+        let mut found: Vec<(usize, &str)> = Vec::new();
+        for row in data {
+            for (&place, _) in places.iter().zip(kinds).filter(|(_, kind)| **kind == ColumnKind::Number) {
+                match row.value(place) {
+                    Some(value @ Value::Text(text)) if value.class() == wanted => {
+                        found.push((row.number as usize, text.trim()));
+                    }
                     _ => {}
                 }
             }
         }
-    }
-    decimal::weigh_texts(&points, &commas)
+        found
+    };
+    decimal::weigh_texts(&texts(Cell::Point), &texts(Cell::Comma))
 }

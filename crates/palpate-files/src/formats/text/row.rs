@@ -18,8 +18,8 @@ pub(crate) struct RowPlan<'a> {
     fewest: usize,
     /// Index of the first column of numbers, which tells rows of data from other lines.
     leading: usize,
-    /// Delimiter and decimal mark, where rows can be read in one pass.
-    plain: Option<(u8, u8)>,
+    /// The delimiter, where rows can be read in one pass.
+    plain: Option<u8>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,11 +72,7 @@ impl<'a> RowPlan<'a> {
             tasks,
             fewest: last_read.max(last_number.map_or(0, |index| index + 1)),
             leading,
-            plain: layout
-                .delimiter
-                .byte()
-                .zip(Some(layout.decimal.byte()))
-                .filter(|(delimiter, mark)| delimiter != mark),
+            plain: layout.delimiter.byte().filter(|delimiter| *delimiter != layout.decimal.byte()),
         })
     }
 
@@ -89,7 +85,7 @@ impl<'a> RowPlan<'a> {
     /// bytes it has, its end included; `None` is no verdict.
     #[inline]
     pub(super) fn read_plain(&self, bytes: &[u8], row: &mut [f64]) -> Option<usize> {
-        let (delimiter, mark) = self.plain?;
+        let delimiter = self.plain?;
         let mut at = 0;
         for (count, task) in self.tasks.iter().enumerate() {
             while bytes.get(at) == Some(&b' ') {
@@ -98,7 +94,7 @@ impl<'a> RowPlan<'a> {
             let rest = &bytes[at..];
             at += match task {
                 Task::Read(place) => {
-                    let (value, end) = number::leading(rest, mark)?;
+                    let (value, end) = number::leading(rest, self.layout.decimal)?;
                     row[*place] = value;
                     end
                 }

@@ -51,12 +51,8 @@ impl<'a> Archive<'a> {
         if zip.len() > MOST_MEMBERS {
             return Err(input.damaged("zip archive", format!("at most {MOST_MEMBERS} members"), zip.len().to_string()));
         }
-        let mut members = BTreeMap::new();
-        for index in 0..zip.len() {
-            if let Some(Ok(name)) = zip.name_for_index(index) {
-                members.insert(name.into_owned(), index);
-            }
-        }
+        let member = |index| Some((zip.name_for_index(index)?.ok()?.into_owned(), index));
+        let members = (0..zip.len()).filter_map(member).collect();
         Ok(Self { input, zip, members })
     }
 

@@ -109,6 +109,11 @@ impl Header<'_> {
         }
     }
 
+    /// The first of several numbers that is there.
+    fn first_number(&self, keys: &[String]) -> Result<Option<f64>, FileError> {
+        keys.iter().find_map(|key| self.number(key).transpose()).transpose()
+    }
+
     fn count(&self, key: &str) -> Result<Option<usize>, FileError> {
         match self.properties.value(key).map(|text| (text, text.parse::<usize>())) {
             None => Ok(None),
@@ -134,11 +139,8 @@ impl Header<'_> {
     }
 
     fn duration(&self) -> Result<Option<f64>, FileError> {
-        let own = self.number("force-segment-header.duration")?;
-        let duration = match own {
-            Some(_) => own,
-            None => self.number("force-segment-header.settings.segment-settings.duration")?,
-        };
+        let keys = ["duration", "settings.segment-settings.duration"];
+        let duration = self.first_number(&keys.map(|key| format!("force-segment-header.{key}")))?;
         Ok(duration.filter(|duration| *duration > 0.0))
     }
 
@@ -147,12 +149,8 @@ impl Header<'_> {
         let keys = |end: &str| [format!("channel.{name}.data.{end}"), format!("channel.{name}.{end}")];
         let text = |end: &str| self.properties.first(&keys(end));
         let number = |end: &str| {
-            let [first, second] = keys(end);
-            let found = match self.number(&first)? {
-                Some(value) => Some(value),
-                None => self.number(&second)?,
-            };
-            found.ok_or_else(|| self.bad(&first, "a number", "nothing".to_owned()))
+            let found = self.first_number(&keys(end))?;
+            found.ok_or_else(|| self.bad(&keys(end)[0], "a number", "nothing".to_owned()))
         };
         let data = text("type").unwrap_or("nothing");
         let stored = match data {

@@ -18,25 +18,7 @@ impl<'a> Records<'a> {
     pub(super) fn from(stream: &'a [u8], place: usize) -> Self {
         Self { stream, place }
     }
-
-    /// The records that go on with the one before, which was too long for one.
-    pub(super) fn continued(&mut self) -> Vec<&'a [u8]> {
-        let mut pieces = Vec::new();
-        loop {
-            let before = self.place;
-            match self.next() {
-                Some(Record { kind: CONTINUE, bytes }) => pieces.push(bytes),
-                _ => {
-                    self.place = before;
-                    return pieces;
-                }
-            }
-        }
-    }
 }
-
-/// The kind of records that go on with the one before.
-pub(super) const CONTINUE: u16 = 0x003C;
 
 impl<'a> Iterator for Records<'a> {
     type Item = Record<'a>;

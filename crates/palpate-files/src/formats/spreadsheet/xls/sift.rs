@@ -6,7 +6,7 @@
 //! So dimensions, formulas, drawings and names are left out, formulas become the values they had, and what is left is
 //! counted first.
 
-use super::records::{CONTINUE, Record, Records, letters, u16_at, u32_at};
+use super::records::{Record, Records, letters, u16_at, u32_at};
 use crate::formats::spreadsheet::book::Sheet;
 
 /// Most cells from the first to the last of every sheet, all sheets together: some 0.5 GB while they are read.
@@ -20,6 +20,8 @@ const BEGIN: u16 = 0x0809;
 const END: u16 = 0x000A;
 const SHEET: u16 = 0x0085;
 const TEXTS: u16 = 0x00FC;
+/// Goes on with the record before, which was too long for one.
+const CONTINUE: u16 = 0x003C;
 const NUMBER: u16 = 0x0203;
 const LABEL: u16 = 0x0204;
 const TRUTH_OR_FAULT: u16 = 0x0205;
@@ -84,7 +86,7 @@ impl Sifted {
     /// Takes what stands before the sheets: where every sheet begins, and where this is written. Else what was expected.
     fn globals(&mut self, stream: &[u8]) -> Result<Vec<(usize, usize)>, &'static str> {
         let mut starts = Vec::new();
-        let mut records = Records::from(stream, 0);
+        let mut records = Records::from(stream, 0).peekable();
         let first = records.next().filter(|record| record.kind == BEGIN && u16_at(record.bytes, 0) == Some(0x0600));
         self.put(BEGIN, first.ok_or("a workbook of Excel 97 or later")?.bytes);
         loop {
@@ -108,13 +110,11 @@ impl Sifted {
                     self.sheets.push(sheet);
                 }
                 TEXTS => {
-                    let continued = records.continued();
-                    if continued.len() > MOST_CONTINUED {
-                        return Err("shared texts in at most 16384 records");
-                    }
                     self.put(TEXTS, bytes);
-                    for piece in continued {
-                        self.put(CONTINUE, piece);
+                    let mut left = MOST_CONTINUED;
+                    while let Some(more) = records.next_if(|record| record.kind == CONTINUE) {
+                        left = left.checked_sub(1).ok_or("shared texts in at most 16384 records")?;
+                        self.put(CONTINUE, more.bytes);
                     }
                 }
                 // How days are counted; number formats; styles of cells.
