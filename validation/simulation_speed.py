@@ -7,7 +7,8 @@
 2. layers: all m layers at the end of protocol (a). SciPy: solve_ivp restarted at the kinks, rtol 1e-8, atol 1e-10 of the
    radius, the fastest of DOP853, RK45, LSODA and LSODA with a banded Jacobian. palpate: strain_wave_within 1e-8.
 3. batch: 10,000 balls of 8 layers, each with its own radius, modulus and rate coefficient, 5 mm in 0.6 s and a hold of
-   10 s; the final force within 1e-6, each by simulate_force, on all cores. numba and JAX: classical Runge-Kutta at 1 ms, contacts in blocks of 64 side by side
+   10 s; the final force within 1e-6, each by simulate_force, on all cores: a thread
+   integrates the ramp once, since they share n. numba and JAX: classical Runge-Kutta at 1 ms, contacts in blocks of 64 side by side
    and spread over the cores (numba), or all of them as arrays in one compiled loop (JAX). They are run for a part of the
    steps, with all contacts, and the time is scaled up.
 4. step: one tick of a controller (ContactState::step).
