@@ -43,11 +43,11 @@ validation/real_records.sh "$PALPATE_DATA"
 Each law is fitted to the first quarter, third and half of a hold and held against the rest. The columns are its root mean
 square error there, averaged over the three, **in % of the change of the signal over the hold**; the smallest is bold. In
 brackets: a fit to the whole hold that ended at the edge of its range, or whose terms merge. Δ: the hold is too short to
-foretell, and the column is the excess of BIC. *Law to use* is the one with the fewest numbers among those that do as well as
+predict, and the column is the excess of BIC. *Law to use* is the one with the fewest numbers among those that do as well as
 the best, *sure* says how clear that is, *as good* how many others do as well. What the columns and findings mean:
 [Choose a law](../guides/choose-a-law.md), [Read the report](../guides/reading-the-report.md#findings).
 
-The errors contain the noise of the samples that are foretold: no law can be better than that. The records themselves are not
+The errors contain the noise of the samples that are predicted: no law can be better than that. The records themselves are not
 part of this repository.
 TEXT
 

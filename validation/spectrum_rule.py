@@ -1,6 +1,6 @@
 """Which grid and which smoothing a relaxation spectrum should have: foresight of simulated holds.
 
-Not a reference: it prints how well the first third of a hold foretells the rest, for every rule tried. Holds are sums of 1 to
+Not a reference: it prints how well the first third of a hold predicts the rest, for every rule tried. Holds are sums of 1 to
 5 exponentials, latency laws, stretched exponentials, powers and logarithms, of 200 to 2000 samples evenly or
 logarithmically spaced, signal to noise 1e2 to 1e5, the noise white or with correlation 0.8. The error is the rms distance
 from the law without noise, over the drop of the whole hold.

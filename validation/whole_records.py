@@ -1,4 +1,4 @@
-"""Whole real records: laws calibrated on the first part of each, and how well they foretell the rest.
+"""Whole real records: laws calibrated on the first part of each, and how well they predict the rest.
 
     python validation/whole_records.py DATA [--palpate PALPATE]     writes docs/validation/whole-records.md
 
@@ -23,8 +23,8 @@ RECORDS = [
         "silicone-steps/2_7-5_E2pin_20mm_capac_relax.csv",
         "examples/tests/silicone-steps.toml",
         {
-            "62 s": "the first stretch and its hold; foretold: all unloading and four more stretches",
-            "160 s": "two and a half cycles; foretold: the next two and a half",
+            "62 s": "the first stretch and its hold; predicted: all unloading and four more stretches",
+            "160 s": "two and a half cycles; predicted: the next two and a half",
         },
     ),
     (
@@ -32,24 +32,24 @@ RECORDS = [
         "silicone-steps/1_7-5_Epin_20mm_v1.csv",
         "examples/tests/silicone-steps.toml",
         {
-            "200 s": "three stretches to 4 mm; foretold: stretches to 8 mm and 12 mm, up to 1400 s",
-            "560 s": "stretches to 4 mm and 8 mm; foretold: stretches to 8 mm and 12 mm, up to 1400 s",
+            "200 s": "three stretches to 4 mm; predicted: stretches to 8 mm and 12 mm, up to 1400 s",
+            "560 s": "stretches to 4 mm and 8 mm; predicted: stretches to 8 mm and 12 mm, up to 1400 s",
         },
     ),
     (
         "Soft foam in compression",
         "foam/XtraSoft.csv",
         "validation/records/foam.toml",
-        {"35 s": "the only ramp and half of its hold; foretold: the other half, and the way back"},
+        {"35 s": "the only ramp and half of its hold; predicted: the other half, and the way back"},
     ),
     (
         "VHB 4910 tape in tension, stretched 2.5 times",
         "vhb4910/relax_2d5.csv",
         "validation/records/vhb4910.toml",
         {
-            "60 s": "the ramp and 50 s of its hold; foretold: 30 minutes",
-            "200 s": "the ramp and 190 s of its hold; foretold: 30 minutes",
-            "600 s": "the ramp and ten minutes of its hold; foretold: another twenty",
+            "60 s": "the ramp and 50 s of its hold; predicted: 30 minutes",
+            "200 s": "the ramp and 190 s of its hold; predicted: 30 minutes",
+            "600 s": "the ramp and ten minutes of its hold; predicted: another twenty",
         },
     ),
     (
@@ -57,9 +57,9 @@ RECORDS = [
         "vhb4910/relax_3d0.csv",
         "validation/records/vhb4910.toml",
         {
-            "60 s": "the ramp and 50 s of its hold; foretold: 30 minutes",
-            "200 s": "the ramp and 190 s of its hold; foretold: 30 minutes",
-            "600 s": "the ramp and ten minutes of its hold; foretold: another twenty",
+            "60 s": "the ramp and 50 s of its hold; predicted: 30 minutes",
+            "200 s": "the ramp and 190 s of its hold; predicted: 30 minutes",
+            "600 s": "the ramp and ten minutes of its hold; predicted: another twenty",
         },
     ),
 ]
@@ -72,20 +72,20 @@ Records of others, each calibrated on its first part, ramps and holds alike, and
 python validation/whole_records.py "$PALPATE_DATA"
 ```
 
-*Left over* is the root mean square of measured less simulated force over what was fitted, *foretold* that over all that came later, both
-**in % of the largest force of the record** and with the noise of the samples in them; the smallest foretold is bold. *p* is how many
+*Left over* is the root mean square of measured less simulated force over what was fitted, *held-out error* that over all that came later, both
+**in % of the largest force of the record** and with the noise of the samples in them; the smallest held-out error is bold. *p* is how many
 numbers a law has, *ΔBIC* how far it stands behind the best of the fits. In brackets: the search for the numbers did not converge, or
 they lie at a bound. What is fitted and how: [Calibration of a whole record](../theory/calibration.md).
 
 What to take from it:
 
-- On half-hour holds the latency law with a constant v foretells best from the first ten minutes, with some tenth of the error of a Prony
-  series of three terms. From less than a minute no law foretells well but the one with v by strain, which fits the ramp.
-- The law that fits best need not foretell best. On records of one stretch v by strain has the lowest ΔBIC everywhere: one level shows no trend, and
-  its factor bends to the ramp instead. From ten minutes of VHB, and on foam, it foretells worse than constant v.
-- On silicone in steps up and down v by direction is the best fit of all but one part, and foretells as well as constant v or better once it has seen
+- On half-hour holds the latency law with a constant v predicts best from the first ten minutes, with some tenth of the error of a Prony
+  series of three terms. From less than a minute no law predicts well but the one with v by strain, which fits the ramp.
+- The law that fits best need not predict best. On records of one stretch v by strain has the lowest ΔBIC everywhere: one level shows no trend, and
+  its factor bends to the ramp instead. From ten minutes of VHB, and on foam, it predicts worse than constant v.
+- On silicone in steps up and down v by direction is the best fit of all but one part, and predicts as well as constant v or better once it has seen
   more than one cycle; all laws lie within a factor of 1.5 of each other there.
-- One ramp and half a hold of foam tell the relaxed force nowhere else: no law foretells the way back.
+- One ramp and half a hold of foam tell the equilibrium force nowhere else: no law predicts the way back.
 
 The records are not part of this repository. Sections that their authors did not give are assumed; they scale the modulus and nothing
 that stands here.
@@ -95,7 +95,7 @@ that stands here.
 def calibrated(palpate, data, record, test, until):
     """The JSON document of one calibration."""
     command = [palpate, "calibrate", str(data / record), "--test", str(ROOT / test), "--fit-until", until]
-    command += ["--rate", "by-strain", "--rivals", LAWS, "--format", "json"]
+    command += ["--rate", "by-strain", "--alternatives", LAWS, "--format", "json"]
     made = subprocess.run(command, capture_output=True, text=True, check=False)
     if made.returncode not in (0, 1):
         raise SystemExit(f"{' '.join(command)}\n{made.stderr}")
@@ -108,18 +108,18 @@ def percent(share):
 
 def rows(document):
     """A row for each law; those that could not be fitted say why."""
-    known = [law["foretold"]["relative"] for law in document["laws"] if law["foretold"]]
+    known = [law["holdout"]["relative"] for law in document["laws"] if law["holdout"]]
     for law in document["laws"]:
-        if not law["foretold"]:
+        if not law["holdout"]:
             yield f"| {law['law']} | | | | {law['error']} |"
             continue
-        foretold = percent(law["foretold"]["relative"])
-        if law["foretold"]["relative"] == min(known):
-            foretold = f"**{foretold}**"
+        predicted = percent(law["holdout"]["relative"])
+        if law["holdout"]["relative"] == min(known):
+            predicted = f"**{predicted}**"
         if law["termination"] != "converged" or law["log_covariance"] is None:
-            foretold = f"({foretold})"
+            predicted = f"({predicted})"
         behind = law["delta_bic"]
-        yield f"| {law['law']} | {law['parameters']} | {percent(law['relative'])} | {behind:.0f} | {foretold} |"
+        yield f"| {law['law']} | {law['parameters']} | {percent(law['relative'])} | {behind:.0f} | {predicted} |"
 
 
 def main():
@@ -132,10 +132,10 @@ def main():
         page.append(f"\n## {title}\n")
         for until, what in parts.items():
             document = calibrated(asked.palpate, asked.data.resolve(), record, test, until)
-            samples = next(law["foretold"]["samples"] for law in document["laws"] if law["foretold"])
-            page.append(f"\nFitted up to {until}: {what}. {document['fitted']} samples fitted, {samples} foretold.\n\n")
-            page.append(f"<!-- palpate calibrate {record} --test {test} --fit-until \"{until}\" --rate by-strain --rivals {LAWS} -->\n\n")
-            page.append("| Law | p | Left over (%) | ΔBIC | Foretold (%) |\n| --- | --: | --: | --: | --: |\n")
+            samples = next(law["holdout"]["samples"] for law in document["laws"] if law["holdout"])
+            page.append(f"\nFitted up to {until}: {what}. {document['fitted']} samples fitted, {samples} predicted.\n\n")
+            page.append(f"<!-- palpate calibrate {record} --test {test} --fit-until \"{until}\" --rate by-strain --alternatives {LAWS} -->\n\n")
+            page.append("| Law | p | Left over (%) | ΔBIC | Held-out error (%) |\n| --- | --: | --: | --: | --: |\n")
             page.extend(f"{row}\n" for row in rows(document))
             print(f"{record}, {until}", flush=True)
     PAGE.write_text("".join(page), encoding="utf-8")

@@ -231,7 +231,7 @@ pub(crate) struct ConvertArguments {
 Examples:
   palpate analyze press.csv                               tables on the terminal
   palpate analyze press.csv --test ball.toml --out study  report, JSON, tables, figures
-  palpate analyze tape.csv --fit-until \"600 s\"            does each law foretell the rest?
+  palpate analyze tape.csv --fit-until \"600 s\"            does each law predict the rest?
   palpate analyze *.csv --test strip.toml --out studies   one folder a record
   palpate analyze press.csv --format json | jq '.holds[].fits[0]'")]
 pub(crate) struct AnalyzeArguments {
@@ -289,7 +289,7 @@ pub(crate) struct BatchArguments {
     pub(crate) job: jobs::Batch,
 }
 
-/// Compare laws: which one foretells a hold, how sure that is, and what another would cost.
+/// Compare laws: which one predicts a hold, how sure that is, and what another would cost.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Laws: latency, latency:N (n given), maxwell, kelvin-voigt, standard-linear-solid, burgers,
@@ -325,7 +325,7 @@ pub(crate) struct CompareArguments {
 /// Calibrate a body on a whole record, ramps and holds alike: one set of numbers that predicts.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The numbers are those of the law and of the relaxed force: with the latency law n, v, the layer
+The numbers are those of the law and of the equilibrium force: with the latency law n, v, the layer
 thickness and a modulus (or a table of forces). A material file holds them with their intervals;
 palpate predict takes it, --test takes it for the body, and a protocol names it: material = \"FILE\".
 
@@ -333,8 +333,8 @@ Laws: latency, latency:N (n given), standard-linear-solid, prony:K (K terms), fu
 
 Examples:
   palpate calibrate press.csv --test ball.toml --out material.toml
-  palpate calibrate press.csv --test ball.toml --fit-until \"60 s\"     does it foretell the rest?
-  palpate calibrate press.csv --test ball.toml --equilibrium table     no law of the relaxed force
+  palpate calibrate press.csv --test ball.toml --fit-until \"60 s\"     does it predict the rest?
+  palpate calibrate press.csv --test ball.toml --equilibrium table     no law of the equilibrium force
   palpate calibrate steps.csv --test ball.toml --rate by-strain        has v a trend with the strain?
   palpate schema material                                             what a material file holds")]
 pub(crate) struct CalibrateArguments {
@@ -351,21 +351,21 @@ pub(crate) struct CalibrateArguments {
     #[arg(long, value_name = "LAW", default_value_t = jobs::Calibrate::default().law, value_parser = law)]
     pub(crate) law: Law,
     /// Laws to hold against it on the same record
-    #[arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = law, default_value = named(&jobs::Calibrate::default().rivals))]
-    pub(crate) rivals: Vec<Law>,
+    #[arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = law, default_value = named(&jobs::Calibrate::default().alternatives))]
+    pub(crate) alternatives: Vec<Law>,
     /// Calibrate the one law alone
-    #[arg(long, conflicts_with = "rivals")]
-    pub(crate) no_rivals: bool,
+    #[arg(long, conflicts_with = "alternatives")]
+    pub(crate) no_alternatives: bool,
     /// Law of the force once relaxation is over
     #[arg(long, value_enum, default_value_t)]
     pub(crate) equilibrium: jobs::Equilibrium,
     /// Poisson's ratio for Hertz's law; 0.5 if not given
     #[arg(long, value_name = "NUMBER")]
     pub(crate) poisson_ratio: Option<f64>,
-    /// What the rate coefficient v of the latency law depends on, by one more number; the other choices are rivals then
+    /// What the rate coefficient v of the latency law depends on, by one more number; the other choices are alternatives then
     #[arg(long, value_parser = one_of(RATES), default_value = "constant")]
     pub(crate) rate: RateLaw,
-    /// Fit only up to this time of the record and foretell the rest
+    /// Fit only up to this time of the record and predict the rest
     #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
     pub(crate) fit_until: Option<f64>,
     /// Add profile intervals: asymmetric, and open where the record leaves a number open
@@ -389,7 +389,7 @@ impl CalibrateArguments {
     pub(crate) fn job(&self) -> jobs::Calibrate {
         jobs::Calibrate {
             law: self.law,
-            rivals: if self.no_rivals { Vec::new() } else { self.rivals.clone() },
+            alternatives: if self.no_alternatives { Vec::new() } else { self.alternatives.clone() },
             equilibrium: self.equilibrium,
             poisson_ratio: self.poisson_ratio,
             rate: self.rate,

@@ -23,7 +23,7 @@ pub struct Analyze {
     /// Fit only this long from the start of each hold and predict the rest.
     #[cfg_attr(feature = "clap", arg(
         long = "fit-until", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true,
-        help = "Fit only this long from the start of each hold and foretell the rest",
+        help = "Fit only this long from the start of each hold and predict the rest",
     ))]
     pub fit_until_s: Option<f64>,
     /// Exponents to try, besides a free one.

@@ -24,7 +24,7 @@ pub struct Calibrate {
     pub law: Law,
     /// Laws to hold against it on the same record.
     #[schemars(with = "Vec<String>")]
-    pub rivals: Vec<Law>,
+    pub alternatives: Vec<Law>,
     /// Law of the force once relaxation is over.
     pub equilibrium: Equilibrium,
     /// Poisson's ratio for Hertz's law; 0.5 if not given.
@@ -47,7 +47,7 @@ pub struct Calibrate {
 pub enum Equilibrium {
     /// Modulus × displacement/depth × contact area.
     #[default]
-    EvenStrain,
+    UniformStrain,
     /// Hertz's, for balls and pads.
     Hertz,
     /// A monotone table with a row where the jaw was held.
@@ -60,13 +60,13 @@ impl Default for Calibrate {
             law: Law::Latency {
                 exponent: palpate::laws::ExponentChoice::Free,
             },
-            rivals: vec![
+            alternatives: vec![
                 Law::StandardLinearSolid,
                 Law::Prony { terms: 2 },
                 Law::Prony { terms: 3 },
                 Law::Fung { terms: 2 },
             ],
-            equilibrium: Equilibrium::EvenStrain,
+            equilibrium: Equilibrium::UniformStrain,
             poisson_ratio: None,
             rate: RateLaw::Constant,
             fit_until_s: None,
@@ -86,7 +86,7 @@ pub struct Calibrated {
 }
 
 impl Calibrate {
-    /// The law of the relaxed force.
+    /// The law of the equilibrium force.
     fn equilibrium(&self) -> Result<EquilibriumLaw, JobError> {
         match (self.equilibrium, self.poisson_ratio) {
             (Equilibrium::Hertz, ratio) => Ok(EquilibriumLaw::Hertz {
@@ -96,19 +96,23 @@ impl Calibrate {
                 "⟨poisson_ratio⟩ is for Hertz's law, which is not asked for",
                 "add ⟨equilibrium=hertz⟩, or leave ⟨poisson_ratio⟩ out",
             )),
-            (Equilibrium::EvenStrain, None) => Ok(EquilibriumLaw::EvenStrain),
+            (Equilibrium::UniformStrain, None) => Ok(EquilibriumLaw::UniformStrain),
             (Equilibrium::Table, None) => Ok(EquilibriumLaw::Table),
         }
     }
 
-    /// What is fitted: first what is asked for, then its rivals.
+    /// What is fitted: first what is asked for, then its alternatives.
     fn candidates(&self) -> Result<Vec<Candidate>, JobError> {
         let chosen = Candidate {
             law: self.law,
             equilibrium: self.equilibrium()?,
             rate: self.rate,
         };
-        Ok(if self.rivals.is_empty() { vec![chosen] } else { chosen.with_rivals(&self.rivals) })
+        Ok(if self.alternatives.is_empty() {
+            vec![chosen]
+        } else {
+            chosen.with_alternatives(&self.alternatives)
+        })
     }
 
     /// Calibrates the laws on a record.
@@ -130,7 +134,7 @@ impl Calibrate {
         for candidate in candidates {
             match calibrate(&data, candidate, confidence, watch) {
                 Err(CalibrateError::Cancelled(cancelled)) => return Err(cancelled.into()),
-                // Without the law that was asked for its rivals are of no use.
+                // Without the law that was asked for its alternatives are of no use.
                 Err(error) if rows.is_empty() => return Err(refused(error)),
                 made => rows.push((candidate, made)),
             }

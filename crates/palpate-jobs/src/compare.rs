@@ -31,7 +31,7 @@ pub struct Compare {
     #[cfg_attr(feature = "clap", arg(
         long, value_name = "SHARE,…", value_delimiter = ',', value_parser = crate::typed::share,
         allow_hyphen_values = true,
-        help = "Parts of a hold that are fitted to foretell the rest, as shares of its duration",
+        help = "Parts of a hold that are fitted to predict the rest, as shares of its duration",
     ))]
     pub cuts: Option<Vec<f64>>,
     /// Compare laws of creep: displacement in holds of constant force.

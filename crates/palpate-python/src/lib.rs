@@ -2,7 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `records/` | `read`, `Record`, `Analysis`, `Finding`; laws compared by what they foretell; a record in a pickle |
+//! | `records/` | `read`, `Record`, `Analysis`, `Finding`; laws compared by what they predict; a record in a pickle |
 //! | `fits/` | `fit_hold`, `Fit`, `Estimate`; thousands of holds in one call; laws as functions of arrays |
 //! | `contacts/` | `simulate`, `Trajectory`; one protocol with many numbers; `ContactState`, `ContactStates` |
 //! | `materials/` | one set of numbers for a whole record, what it predicts, and how to squeeze and how long that holds |

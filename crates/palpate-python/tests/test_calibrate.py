@@ -40,7 +40,7 @@ def record() -> palpate.Record:
 
 @pytest.fixture(scope="module")
 def calibration(record: palpate.Record) -> palpate.Calibration:
-    return record.calibrate(rivals=["standard-linear-solid"])
+    return record.calibrate(alternatives=["standard-linear-solid"])
 
 
 @pytest.fixture(scope="module")
@@ -51,17 +51,17 @@ def material(calibration: palpate.Calibration) -> palpate.Material:
 @pytest.mark.parametrize(
     ("flags", "keywords"),
     [
-        (["--rivals", "prony:2", "--fit-until", "61 s"], {"rivals": ["prony:2"], "fit_until_s": 61.0}),
-        (["--law", "latency:5", "--equilibrium", "table", "--no-rivals"], {"law": "latency:5", "equilibrium": "table", "rivals": []}),
+        (["--alternatives", "prony:2", "--fit-until", "61 s"], {"alternatives": ["prony:2"], "fit_until_s": 61.0}),
+        (["--law", "latency:5", "--equilibrium", "table", "--no-alternatives"], {"law": "latency:5", "equilibrium": "table", "alternatives": []}),
         (
-            ["--law", "standard-linear-solid", "--equilibrium", "hertz", "--poisson-ratio", "0.4", "--no-rivals", "--confidence", "0.9"],
-            {"law": "standard-linear-solid", "equilibrium": "hertz", "poisson_ratio": 0.4, "rivals": [], "confidence": 0.9},
+            ["--law", "standard-linear-solid", "--equilibrium", "hertz", "--poisson-ratio", "0.4", "--no-alternatives", "--confidence", "0.9"],
+            {"law": "standard-linear-solid", "equilibrium": "hertz", "poisson_ratio": 0.4, "alternatives": [], "confidence": 0.9},
         ),
-        (["--rate", "by-strain", "--no-rivals"], {"rate": "by-strain", "rivals": []}),
-        (["--rate", "by-direction", "--rivals", "prony:2"], {"rate": "by-direction", "rivals": ["prony:2"]}),
-        (["--profile", "--no-rivals"], {"profile": True, "rivals": []}),
+        (["--rate", "by-strain", "--no-alternatives"], {"rate": "by-strain", "alternatives": []}),
+        (["--rate", "by-direction", "--alternatives", "prony:2"], {"rate": "by-direction", "alternatives": ["prony:2"]}),
+        (["--profile", "--no-alternatives"], {"profile": True, "alternatives": []}),
     ],
-    ids=["foretold", "table", "hertz", "by strain", "by direction", "profile"],
+    ids=["predicted", "table", "hertz", "by strain", "by direction", "profile"],
 )
 def test_a_calibration_is_that_of_the_command_line_to_the_last_bit(
     record: palpate.Record, flags: list[str], keywords: dict[str, Any], tmp_path: Path
@@ -79,12 +79,12 @@ def test_a_calibration_is_that_of_the_command_line_to_the_last_bit(
     assert laws["law"].to_list() == [law["law"] for law in document["laws"]]
     assert laws["rmse_n"].to_list() == [law["rmse_n"] for law in document["laws"]]
     if "fit_until_s" in keywords:
-        assert laws["foretold_rmse_n"].to_list() == [law["foretold"]["rmse_n"] for law in document["laws"]]
-        assert calibration.sentence == "Of the laws tried, latency foretells the rest of the record best."
+        assert laws["holdout_rmse_n"].to_list() == [law["holdout"]["rmse_n"] for law in document["laws"]]
+        assert calibration.sentence == "Of the laws tried, latency predicts the rest of the record best."
 
 
 def test_its_text_is_that_of_the_command_line(calibration: palpate.Calibration) -> None:
-    told = done("calibrate", RECORD, "--test", TEST, "--rivals", "standard-linear-solid")
+    told = done("calibrate", RECORD, "--test", TEST, "--alternatives", "standard-linear-solid")
     assert str(calibration) == calibration.report() == told
 
 
@@ -104,7 +104,7 @@ def test_numbers_have_intervals_and_units(material: palpate.Material) -> None:
     relative = np.array(material.numbers["standard_error"]) / material.numbers["value"]
     np.testing.assert_allclose(np.sqrt(np.diag(covariance)), relative, rtol=1e-6)
     given = palpate.Material.read(ROOT / "examples/records/ball-material.toml")
-    assert given.law == "latency" and given.equilibrium == "even-strain"
+    assert given.law == "latency" and given.equilibrium == "uniform-strain"
     assert given.shown["longest_hold_s"] == pytest.approx(20.0) and given.shown["deepest_m"] == pytest.approx(0.015, rel=1e-3)
     assert given.origin["record"] == "examples/records/ball.csv" and len(given.origin["sha256"]) == 64
     assert given.origin["samples"] == 2061 and given.noise_n == pytest.approx(0.05, rel=0.05)
@@ -118,7 +118,7 @@ def test_what_is_left_over_is_the_record_less_the_law(record: palpate.Record, ca
     frame = polars.DataFrame(calibration)
     assert frame.columns == ["time_s", "displacement_m", "force_n", "simulated_n", "residual_n", "is_fitted"]
     assert frame["is_fitted"].all() and frame["residual_n"].to_list() == calibration.residual_n.tolist()
-    half = record.calibrate(rivals=[], fit_until_s=61.0)
+    half = record.calibrate(alternatives=[], fit_until_s=61.0)
     is_fitted = polars.DataFrame(half)["is_fitted"].to_numpy()
     assert np.array_equal(is_fitted, half.time_s <= 61.0) and is_fitted.sum() == half.fitted
     # The simulation of the calibration is one that anybody can make, but for the corners of the measured motion.
@@ -192,13 +192,13 @@ def test_a_material_describes_the_body_of_a_record(material: palpate.Material) -
     bare = palpate.read(RECORD)
     analysis = bare.analyze(test=material, compare=False)
     assert "modulus" in analysis.to_json() and analysis == palpate.read(RECORD, test=material).analyze(compare=False)
-    again = bare.calibrate(test=material, rivals=[]).material
+    again = bare.calibrate(test=material, alternatives=[]).material
     assert again.values["exponent"] == pytest.approx(material.values["exponent"], rel=1e-2)
 
 
 @pytest.mark.parametrize("law", ["standard-linear-solid", "prony:2", "fung:2", "latency:5"])
 def test_every_law_makes_a_material_that_can_be_kept(record: palpate.Record, law: str, tmp_path: Path) -> None:
-    calibration = record.calibrate(law=law, rivals=[])
+    calibration = record.calibrate(law=law, alternatives=[])
     material = calibration.material
     assert material.law == law and calibration.sentence is None
     material.write(tmp_path / "material.toml")
@@ -216,11 +216,11 @@ def test_every_law_makes_a_material_that_can_be_kept(record: palpate.Record, law
 
 @pytest.mark.parametrize(("rate", "factor"), [("by-strain", "strain_factor"), ("by-direction", "unloading_factor")])
 def test_a_rate_coefficient_that_varies_is_one_more_number(record: palpate.Record, rate: str, factor: str, tmp_path: Path) -> None:
-    calibration = record.calibrate(rate=rate, rivals=["prony:2"])
+    calibration = record.calibrate(rate=rate, alternatives=["prony:2"])
     material = calibration.material
     low, high = material.estimates[factor].interval or (np.nan, np.nan)
     assert low < 1.0 < high  # the ball's coefficient is constant
-    assert len(calibration.laws["law"]) == 4  # the other rates are rivals, too
+    assert len(calibration.laws["law"]) == 4  # the other rates are alternatives, too
     material.write(tmp_path / "material.toml")
     assert palpate.Material.read(tmp_path / "material.toml") == material == pickle.loads(pickle.dumps(material))
     force = palpate.simulate({"material": material, "step": SQUEEZE}).force_n
@@ -228,7 +228,7 @@ def test_a_rate_coefficient_that_varies_is_one_more_number(record: palpate.Recor
 
 
 def test_profile_intervals_stand_beside_the_others(record: palpate.Record) -> None:
-    asked = record.calibrate(rivals=[], profile=True)
+    asked = record.calibrate(alternatives=[], profile=True)
     numbers = polars.DataFrame(asked.numbers)
     assert numbers["name"].to_list() == ["modulus_pa", "exponent", "rate_coefficient_per_s", "layer_thickness_m"]
     value, low, high = (numbers[name].to_numpy() for name in ("value", "profile_low", "profile_high"))
@@ -237,7 +237,7 @@ def test_profile_intervals_stand_beside_the_others(record: palpate.Record) -> No
     for end in ("low", "high"):
         np.testing.assert_allclose(np.log(numbers[f"profile_{end}"] / value), np.log(numbers[end] / value), rtol=0.1)
     assert "profile from" in asked.report() and pickle.loads(pickle.dumps(asked)) == asked
-    assert "profile_low" not in polars.DataFrame(record.calibrate(rivals=[]).numbers).columns
+    assert "profile_low" not in polars.DataFrame(record.calibrate(alternatives=[]).numbers).columns
 
 
 def test_all_of_it_comes_back(calibration: palpate.Calibration, material: palpate.Material) -> None:
@@ -257,7 +257,7 @@ def test_a_number_that_is_left_open_is_a_warning(material: palpate.Material, tmp
     force, place = 2 * np.minimum(t, 1) + 0.01 * np.sin(50 * t), 5e-3 * np.minimum(t, 1)
     elastic = palpate.Record.from_arrays(time_s=t, displacement_m=place, force_n=force)
     with pytest.warns(palpate.PalpateWarning, match="left a number open"):
-        calibration = elastic.calibrate(law="prony:4", test={"specimen": {"shape": "ball", "radius": "35 mm"}}, rivals=[])
+        calibration = elastic.calibrate(law="prony:4", test={"specimen": {"shape": "ball", "radius": "35 mm"}}, alternatives=[])
     assert not calibration.is_good and calibration.material.log_covariance is None
     assert calibration.remarks[0].startswith("Terms of the series came together")
     assert pickle.loads(pickle.dumps(calibration)) == calibration
@@ -286,8 +286,8 @@ def test_what_cannot_be_calibrated_has_the_words_of_the_command_line(
     record: palpate.Record, flags: list[str], keywords: dict[str, Any], kind: type[Exception]
 ) -> None:
     with pytest.raises(kind) as caught:
-        record.calibrate(rivals=[], **keywords)
-    told = command("calibrate", RECORD, "--test", TEST, "--no-rivals", *flags).stderr
+        record.calibrate(alternatives=[], **keywords)
+    told = command("calibrate", RECORD, "--test", TEST, "--no-alternatives", *flags).stderr
     assert told.strip() == f"error: {RECORD}: {caught.value}"
 
 
@@ -295,7 +295,7 @@ def test_a_record_without_a_body_or_without_a_motion_is_refused(record: palpate.
     bare = palpate.read(RECORD)
     with pytest.raises(palpate.OptionError, match=r"needs the geometry of the body, which is not described\nhint: .*\[specimen\]"):
         bare.calibrate()
-    assert bare.calibrate(test={"specimen": {"shape": "ball", "radius": "35 mm"}}, rivals=[]).is_good
+    assert bare.calibrate(test={"specimen": {"shape": "ball", "radius": "35 mm"}}, alternatives=[]).is_good
     still = palpate.Record.from_arrays(time_s=record.time_s, force_n=record.force_n)
     with pytest.raises(palpate.RecordError, match="needs the displacement of the jaw, which the record does not have"):
         still.calibrate(test=TEST)
@@ -305,9 +305,9 @@ def test_a_record_without_a_body_or_without_a_motion_is_refused(record: palpate.
     ("keywords", "told"),
     [
         ({"law": "foo"}, 'no law is called "foo"'),
-        ({"rivals": ["foo"]}, 'no law is called "foo"'),
-        ({"rivals": "prony:2"}, "rivals: expected a list of laws, found 'prony:2'"),
-        ({"equilibrium": "flat"}, 'equilibrium is one of "even-strain", "hertz", "table", found "flat"'),
+        ({"alternatives": ["foo"]}, 'no law is called "foo"'),
+        ({"alternatives": "prony:2"}, "alternatives: expected a list of laws, found 'prony:2'"),
+        ({"equilibrium": "flat"}, 'equilibrium is one of "uniform-strain", "hertz", "table", found "flat"'),
         ({"poisson_ratio": 0.3}, "poisson_ratio is for Hertz's law, which is not asked for\nhint: add equilibrium=\"hertz\""),
         ({"confidence": 95}, "confidence is a share between 0 and 1, found 95"),
     ],

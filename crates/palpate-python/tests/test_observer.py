@@ -85,15 +85,15 @@ def test_observations_are_those_of_the_command_line_to_the_last_bit(flags: list[
             assert (cell is None or cell != cell) if known is None else cell == known, name
 
 
-def test_a_slip_is_foretold_and_a_hold_that_stays_is_not() -> None:
+def test_a_slip_is_predicted_and_a_hold_that_stays_is_not() -> None:
     t = np.arange(30_001) * 1e-3
     hold = palpate.laws.latency(np.maximum(t - 0.5, 0.0), 1.2, 1.7, 6.0, 5.0)
     force, place = np.where(t < 0.5, 5.8 * t, hold), np.minimum(0.01 * t, 0.005)
     slips_at = t[500 + np.argmax(force[500:] < 2.0)]
     seen = palpate.Observer(slip_force_n=2.0, warn_before_s=0.2).feed_many(t, force, place)
     before = (t > 0.8) & (t < slips_at)
-    foretold = t[before] + seen["time_to_slip_s"][before]
-    np.testing.assert_allclose(foretold, slips_at, atol=0.02)
+    predicted = t[before] + seen["time_to_slip_s"][before]
+    np.testing.assert_allclose(predicted, slips_at, atol=0.02)
     assert np.all(seen["time_to_slip_low_s"][before] <= seen["time_to_slip_high_s"][before])
     soon, slipping = seen["warning"].index("soon"), seen["warning"].index("slipping")
     assert slips_at - 0.4 < t[soon] < t[slipping] < slips_at + 0.01
@@ -203,7 +203,7 @@ def test_a_material_says_the_exponent_itself_and_obeys_the_latency_law(material:
     for name in ("exponent", "exponent_deviation"):
         with pytest.raises(palpate.OptionError, match=f"{name}: expected either this or material, found both\nhint: leave {name} out"):
             palpate.Observer(material, **{name: 1.0})
-    linear = palpate.read(RECORD, test=TEST).calibrate(law="standard-linear-solid", rivals=[]).material
+    linear = palpate.read(RECORD, test=TEST).calibrate(law="standard-linear-solid", alternatives=[]).material
     with pytest.raises(palpate.ModelError, match="knows a hold of the latency law alone, the material obeys a linear law\nhint: calibrate with law="):
         palpate.Observer(linear)
     with pytest.raises(TypeError):

@@ -121,7 +121,7 @@ def test_a_mapping_may_hold_any_number_and_text() -> None:
         palpate.simulate({**PAPER, "specimen": {**PAPER["specimen"], "radius": 0.035}})
 
 
-def test_laws_are_compared_by_what_they_foretell() -> None:
+def test_laws_are_compared_by_what_they_predict() -> None:
     t, y = relaxation(800, 1e-4)
     comparison = palpate.compare(t, y, laws=["latency:5", "standard-linear-solid", "prony:2"])
     assert comparison.law == "latency:5" and comparison.certainty == "clear"

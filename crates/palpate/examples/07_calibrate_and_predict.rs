@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let data = CalibrationData::new(body, ball.separation, motion, times, forces, &held)?;
 
     for law in ["latency", "standard-linear-solid", "prony:2"] {
-        let candidate = Candidate::new(law.parse()?, EquilibriumLaw::EvenStrain);
+        let candidate = Candidate::new(law.parse()?, EquilibriumLaw::UniformStrain);
         let found = calibrate(&data, candidate, 0.95, &mut Unwatched)?;
         println!("{law}: leaves {:.3} N, BIC {:.0}", found.rmse, found.criteria.bic);
         for number in &found.material.numbers {

@@ -25,7 +25,7 @@ fn calibrated() -> Result<Material, Box<dyn std::error::Error>> {
     };
     let held = [0.005, 0.010, 0.015, 0.020, 0.025];
     let data = CalibrationData::new(body, ball.separation, motion, times, forces, &held)?;
-    let candidate = Candidate::new("latency".parse()?, EquilibriumLaw::EvenStrain);
+    let candidate = Candidate::new("latency".parse()?, EquilibriumLaw::UniformStrain);
     Ok(calibrate(&data, candidate, 0.95, &mut Unwatched)?.material)
 }
 

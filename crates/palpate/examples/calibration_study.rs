@@ -69,7 +69,7 @@ fn report((test, fitted): (&str, &str), halves: &[BTreeMap<&str, Count>; 2], rec
 
 fn counts(motion: &Motion, law: &str, seeds: std::ops::Range<u64>) -> BTreeMap<&'static str, Count> {
     let mut counts: BTreeMap<&str, Count> = BTreeMap::new();
-    let candidate = Candidate::new(law.parse().expect("a law"), EquilibriumLaw::EvenStrain);
+    let candidate = Candidate::new(law.parse().expect("a law"), EquilibriumLaw::UniformStrain);
     for seed in seeds {
         let found = calibrate(&data(motion, seed), candidate, 0.95, &mut Unwatched).expect("a calibration");
         for (name, _, truth) in TRUTH {

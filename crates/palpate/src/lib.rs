@@ -18,7 +18,7 @@
 //! | [`laws`] | every law of relaxation and creep |
 //! | [`special`] | Mittag-Leffler, exponential integral and their kin |
 //! | [`fit`] | laws fitted to holds, with standard errors and a reason to end |
-//! | [`forecast`] | which law to use, by what each foretells |
+//! | [`forecast`] | which law to use, by what each predicts |
 //! | [`contact`] | the body, its layers and its contact, equations (7) and (11) |
 //! | [`simulate`] | from a motion of the jaw to the force |
 //! | [`batch`] | thousands of contacts at once |

@@ -10,7 +10,7 @@ use tempfile::{TempDir, tempdir};
 /// A folder with the material of the example record.
 fn calibrated() -> (TempDir, String) {
     let folder = tempdir().unwrap();
-    let text = calibrate(folder.path(), &["--no-rivals", "--out", "ball.toml"]);
+    let text = calibrate(folder.path(), &["--no-alternatives", "--out", "ball.toml"]);
     (folder, text)
 }
 
@@ -32,9 +32,9 @@ fn row(text: &str, start: &str) -> Vec<f64> {
 }
 
 #[test]
-fn one_record_gives_numbers_with_intervals_and_rivals_beside_them() {
+fn one_record_gives_numbers_with_intervals_and_alternatives_beside_them() {
     let folder = tempdir().unwrap();
-    let more = ["--rivals", "standard-linear-solid,prony:2", "--figure", "cal.svg", "--format", "json"];
+    let more = ["--alternatives", "standard-linear-solid,prony:2", "--figure", "cal.svg", "--format", "json"];
     let document: Value = serde_json::from_str(&calibrate(folder.path(), &more)).unwrap();
     assert_eq!(document["schema"], "palpate.calibration/1");
     let laws = document["laws"].as_array().unwrap();
@@ -60,13 +60,13 @@ fn one_record_gives_numbers_with_intervals_and_rivals_beside_them() {
 }
 
 #[test]
-fn calibrated_on_the_loading_the_unloading_is_foretold() {
+fn calibrated_on_the_loading_the_unloading_is_predicted() {
     let folder = tempdir().unwrap();
     let text = calibrate(folder.path(), &["--fit-until", "61 s"]);
     let (latency, solid) = (row(&text, "latency"), row(&text, "standard-linear-solid"));
-    // p, RMSE, of peak, ΔBIC, foretold to, of peak: the noise of 0.05 N is met, and no more.
+    // p, RMSE, of peak, ΔBIC, predicted to, of peak: the noise of 0.05 N is met, and no more.
     assert!(latency[4] < 0.06 && solid[4] > 5.0 * latency[4], "{text}");
-    assert!(text.contains("latency foretells the rest of the record best"), "{text}");
+    assert!(text.contains("latency predicts the rest of the record best"), "{text}");
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn what_cannot_be_calibrated_or_predicted_is_said_and_nothing_is_written() {
     ] {
         let told = refused(
             folder,
-            &[&["calibrate", &record, "--test", &test, "--no-rivals", "--out", "new.toml"], more].concat(),
+            &[&["calibrate", &record, "--test", &test, "--no-alternatives", "--out", "new.toml"], more].concat(),
         );
         assert!(told.contains(expected), "{more:?}: {told}");
     }
@@ -175,7 +175,7 @@ fn what_cannot_be_calibrated_or_predicted_is_said_and_nothing_is_written() {
 }
 
 #[test]
-fn silicone_steps_are_foretold_from_their_first_part() {
+fn silicone_steps_are_predicted_from_their_first_part() {
     let Some(folder) = data("silicone-steps") else { return };
     let Some(record) = std::fs::read_dir(folder)
         .unwrap()
@@ -189,10 +189,12 @@ fn silicone_steps_are_foretold_from_their_first_part() {
     let test = std::fs::read_to_string(example("tests/silicone-steps.toml")).unwrap();
     let test = file(own.path(), "test.toml", test.replace("length = \"20 mm\"", "length = \"40 mm\""));
     let record = record.display().to_string();
-    let text =
-        done(own.path(), &["calibrate", &record, "--test", &test, "--fit-until", "160 s", "--rivals", "prony:2"]);
-    let foretold = row(&text, "latency")[5];
-    assert!(foretold < 3.0, "{foretold} % of the peak: {text}");
+    let text = done(
+        own.path(),
+        &["calibrate", &record, "--test", &test, "--fit-until", "160 s", "--alternatives", "prony:2"],
+    );
+    let holdout = row(&text, "latency")[5];
+    assert!(holdout < 3.0, "{holdout} % of the peak: {text}");
 }
 
 /// Where much is left over the bottom is steeper than the first derivatives say; the search went from one side of it to the other until its
@@ -204,11 +206,21 @@ fn a_record_that_the_law_does_not_describe_ends_at_an_optimum_with_its_numbers_l
     };
     let (record, test) =
         (record.display().to_string(), root().join("validation/records/vhb4910.toml").display().to_string());
-    let arguments = ["calibrate", &record, "--test", &test, "--fit-until", "600 s", "--no-rivals", "--format", "json"];
+    let arguments = [
+        "calibrate",
+        &record,
+        "--test",
+        &test,
+        "--fit-until",
+        "600 s",
+        "--no-alternatives",
+        "--format",
+        "json",
+    ];
     let document: Value = serde_json::from_str(&done(Path::new("."), &arguments)).unwrap();
     let law = &document["laws"][0];
     assert_eq!(law["termination"], "converged");
-    assert!(law["foretold"]["relative"].as_f64().unwrap() < 0.003, "{law}");
+    assert!(law["holdout"]["relative"].as_f64().unwrap() < 0.003, "{law}");
     for number in law["numbers"].as_array().unwrap() {
         if let Some(ends) = number["interval"].as_array() {
             assert!(ends[1].as_f64().unwrap() / ends[0].as_f64().unwrap() < 1e13, "{number}");

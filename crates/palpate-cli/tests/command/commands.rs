@@ -368,7 +368,7 @@ fn foam_hold_lies_within_a_sample_of_its_labels() {
 }
 
 #[test]
-fn vhb_four_numbers_from_ten_minutes_foretell_the_next_twenty() {
+fn vhb_four_numbers_from_ten_minutes_predict_the_next_twenty() {
     for name in ["relax_3d0", "relax_2d5"] {
         let Some(record) = data(&format!("vhb4910/{name}.csv")) else {
             return;

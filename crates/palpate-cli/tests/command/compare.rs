@@ -43,7 +43,7 @@ fn the_law_that_made_the_record_is_chosen_and_the_sentence_says_so() {
         let rate = &made["numbers"]["rate_coefficient_per_s"];
         let (value, error) = (rate["value"].as_f64().unwrap(), rate["standard_error"].as_f64().unwrap());
         assert!((value - 2e4).abs() < 4.0 * error, "v = {value} ± {error}");
-        // Its error beyond the first half is the noise of what is foretold.
+        // Its error beyond the first half is the noise of what is predicted.
         let last = made["forecasts"].as_array().unwrap().last().unwrap();
         let (error, noise) = (last["error"].as_f64().unwrap(), comparison["noise"].as_f64().unwrap());
         let noise = noise / comparison["change"].as_f64().unwrap();

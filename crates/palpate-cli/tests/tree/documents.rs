@@ -281,3 +281,48 @@ fn every_dependency_builds_with_our_rust() {
         .collect();
     assert!(newer.is_empty(), "newer than Rust {ours}:\n{}", newer.join("\n"));
 }
+
+/// Words of this project's own for which the field has one, and that one.
+const REFUSED_WORDS: [(&str, &str); 10] = [
+    ("foretell", "predict"),
+    ("foretold", "predicted, held-out"),
+    ("rival", "alternative"),
+    ("relaxed force", "equilibrium force"),
+    ("relaxed_force", "equilibrium_force"),
+    ("even strain", "uniform strain"),
+    ("even_strain", "uniform_strain"),
+    ("even-strain", "uniform-strain"),
+    ("evenstrain", "UniformStrain"),
+    ("materialnumber", "MaterialParameter"),
+];
+
+/// Messages, options, identifiers, snapshots and documents speak the language of the field.
+#[test]
+fn no_word_of_our_own_stands_where_the_field_has_one() {
+    let own = "crates/palpate-cli/tests/tree/documents.rs";
+    let kinds = [
+        ("crates", "rs"),
+        ("crates", "py"),
+        ("crates", "pyi"),
+        ("crates", "snap"),
+        ("crates", "md"),
+        ("docs", "md"),
+        ("examples", "toml"),
+    ];
+    let mut paths: Vec<String> = kinds.iter().flat_map(|(folder, extension)| files(folder, extension)).collect();
+    // What changed is told with the names that were.
+    paths.extend(documents().into_iter().filter(|path| path != "CHANGELOG.md"));
+    let mut wrong = Vec::new();
+    for path in paths.iter().filter(|path| *path != own) {
+        for (index, line) in read(path).to_lowercase().lines().enumerate() {
+            for (refused, instead) in REFUSED_WORDS {
+                // "arrival" holds a word that it is not.
+                let at = line.match_indices(refused).any(|(at, _)| !line[..at].ends_with(char::is_alphabetic));
+                if at {
+                    wrong.push(format!("{path}:{}: \"{refused}\"; say \"{instead}\"", index + 1));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

@@ -120,7 +120,7 @@ pub enum FileProblem {
     },
     /// A small file that unpacks to more than this many times its size.
     #[error(": expected a file that unpacks to at most {0} times its size, found one of more")]
-    Swells(u64),
+    DecompressionLimit(u64),
     /// No part of the file is a table of numbers: the parts that were looked at, with why they are none.
     #[error(": expected a test, found none{}", skipped(.0))]
     NoParts(Vec<(String, String)>),

@@ -27,7 +27,7 @@ impl FileError {
             FileProblem::Unlike { hint, .. } => hint,
             FileProblem::Encrypted => "open it where it was made and save it without a password",
             FileProblem::TooLarge { .. } => "split the file, or export less of it",
-            FileProblem::Swells(_) => {
+            FileProblem::DecompressionLimit(_) => {
                 "copy or export it again; if you trust it, unpack it, or write it anew without compression"
             }
             FileProblem::NoParts(_) => "a test needs a table of numbers with time and force side by side",

@@ -165,7 +165,7 @@ impl Input {
 
     /// What is packed here unpacks to more than is [`warranted`](Self::warranted).
     pub(crate) fn swells(&self) -> FileError {
-        self.wrong(FileProblem::Swells(MOST_TIMES))
+        self.wrong(FileProblem::DecompressionLimit(MOST_TIMES))
     }
 
     /// The bytes as they lie there, packed or not.

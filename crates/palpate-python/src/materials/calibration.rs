@@ -14,7 +14,7 @@ use crate::shown::shown;
 use crate::table::{Column, Table, columns};
 use crate::work::{job, plain, printed};
 
-/// One set of numbers for a whole record, ramps and holds alike: a material, what its law leaves over, and its rivals.
+/// One set of numbers for a whole record, ramps and holds alike: a material, what its law leaves over, and its alternatives.
 ///
 /// Made by `Record.calibrate`. ``print(calibration)`` shows what ``palpate calibrate`` does; series are tables for polars, pandas and
 /// pyarrow, and a notebook shows tables and figure.
@@ -30,7 +30,7 @@ pub(crate) struct Calibration {
     material: Material,
 }
 
-/// Measured and simulated force; the first samples were fitted, the rest was foretold.
+/// Measured and simulated force; the first samples were fitted, the rest was held out.
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Sample {
     time: f64,
@@ -92,7 +92,7 @@ shown! {
     values {
         /// The body with the numbers of the law that was asked for.
         material: Material = self.material.clone(),
-        /// Which law foretells best, or has the lowest BIC, in a sentence; None without rivals.
+        /// Which law predicts best, or has the lowest BIC, in a sentence; None without alternatives.
         sentence: Option<&str> = self.sentence.as_deref(),
         /// What the numbers alone do not tell, in sentences.
         remarks: Vec<String> = self.document.remarks.clone(),
@@ -102,19 +102,19 @@ shown! {
         is_good: bool = self.termination() == "converged",
         /// Root mean square residual over the fitted samples, N.
         rmse_n: f64 = self.asked().rmse_n.unwrap_or(f64::NAN),
-        /// How many samples, from the first on, were fitted; the rest was foretold.
+        /// How many samples, from the first on, were fitted; the rest was held out.
         fitted: usize = self.document.fitted,
         /// The laws, a row each, the one that was asked for first: ``parameters`` searched, root mean square residual ``rmse_n``, the same as a
         /// share of the largest force (``relative``), BIC less the lowest (``delta_bic``), with ``fit_until_s`` the errors of what was
-        /// foretold, ``termination``, and why there is no calibration (``error``).
+        /// predicted, ``termination``, and why there is no calibration (``error``).
         laws: PyResult<Table> = {
             let laws = &self.document.laws;
             let mut columns = columns!(laws, law => law, parameters, rmse_n, relative, delta_bic);
-            if laws.iter().any(|law| law.foretold.is_some()) {
+            if laws.iter().any(|law| law.holdout.is_some()) {
                 columns.extend(columns!(laws, law =>
-                    foretold_rmse_n = law.foretold.as_ref().map(|foretold| foretold.rmse_n),
-                    foretold_relative = law.foretold.as_ref().map(|foretold| foretold.relative),
-                    foretold_samples = law.foretold.as_ref().map(|foretold| foretold.samples)
+                    holdout_rmse_n = law.holdout.as_ref().map(|holdout| holdout.rmse_n),
+                    holdout_relative = law.holdout.as_ref().map(|holdout| holdout.relative),
+                    holdout_samples = law.holdout.as_ref().map(|holdout| holdout.samples)
                 ));
             }
             columns.extend(columns!(laws, law => termination, error));

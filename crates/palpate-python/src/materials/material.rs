@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use numpy::PyArray2;
-use palpate::calibrate::{EquilibriumLaw, Material as Body, MaterialNumber};
+use palpate::calibrate::{EquilibriumLaw, Material as Body, MaterialParameter};
 use palpate_files::description::{MaterialFile, parse_material, parse_protocol_of, read_protocol_of};
 use palpate_jobs::output::write_file;
 use palpate_jobs::{MaterialSource, PlanGrip, Predict};
@@ -69,7 +69,7 @@ impl Material {
         if self.source.file.material.uncertainty.is_none() { warn(py, OPEN) } else { Ok(()) }
     }
 
-    fn numbers_found(&self) -> &[MaterialNumber] {
+    fn numbers_found(&self) -> &[MaterialParameter] {
         &self.source.file.material.numbers
     }
 }
@@ -92,9 +92,9 @@ shown! {
     getters {
         /// Name of the law as it was fitted, such as "latency", "latency:5" or "prony:2".
         law: String = self.source.file.material.candidate.to_string(),
-        /// Law of the force once relaxation is over: "even-strain", "hertz" or "table".
+        /// Law of the force once relaxation is over: "uniform-strain", "hertz" or "table".
         equilibrium: &'static str = match self.source.file.material.candidate.equilibrium {
-            EquilibriumLaw::EvenStrain => "even-strain",
+            EquilibriumLaw::UniformStrain => "uniform-strain",
             EquilibriumLaw::Hertz { .. } => "hertz",
             EquilibriumLaw::Table => "table",
         },
@@ -109,7 +109,7 @@ shown! {
         /// Every number by its name: "modulus" (or "equilibrium_force_1", ...), and "exponent", "rate_coefficient" and "layer_thickness" of the
         /// latency law, "overshoot_1", "time_1", ... of a linear one.
         estimates<'py>(py): PyResult<Bound<'py, PyDict>> = {
-            let estimate = |number: &MaterialNumber| PyEstimate::of(number.estimate, material_unit(number.unit).1);
+            let estimate = |number: &MaterialParameter| PyEstimate::of(number.estimate, material_unit(number.unit).1);
             self.numbers_found().iter().map(|number| (&number.name, estimate(number))).into_py_dict(py)
         },
         /// Values of all numbers by name, in SI.
@@ -333,7 +333,7 @@ shown! {
     /// ...     ],
     /// ... })
     /// >>> record = palpate.Record.from_arrays(time_s=made.time_s, displacement_m=made.displacement_m, force_n=made.force_n)
-    /// >>> material = record.calibrate(test={"specimen": {"shape": "ball", "radius": "35 mm"}}, rivals=[]).material
+    /// >>> material = record.calibrate(test={"specimen": {"shape": "ball", "radius": "35 mm"}}, alternatives=[]).material
     /// >>> grip = material.grip(mass_kg=0.25, friction=0.6, squeeze_m=0.005)
     /// >>> round(grip.squeeze.needed_force_n, 3), round(grip.time_to_slip_s, 2)
     /// (2.043, 0.61)
@@ -422,7 +422,7 @@ shown! {
     }
 
     fn __repr__(&self) -> String {
-        let number = |number: &MaterialNumber| {
+        let number = |number: &MaterialParameter| {
             let (value, unit) = (told(&number.estimate, 4), material_unit(number.unit).1);
             let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
             format!("{}={value}{unit}", number.name)

@@ -1,4 +1,4 @@
-//! Laws compared on one hold by what they foretell.
+//! Laws compared on one hold by what they predict.
 
 use palpate::fit::{LawOptions, Samples};
 use palpate::forecast::{CompareOptions, compare_laws};

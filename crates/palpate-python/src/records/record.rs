@@ -413,20 +413,20 @@ shown! {
     /// test : path, mapping or Material, optional
     ///     A test description in place of that of the record; one of them has to know the body: ``{"specimen": {"shape": "ball", "radius":
     ///     "35 mm"}}``.
-    /// rivals : sequence of str, optional
+    /// alternatives : sequence of str, optional
     ///     Laws to hold against it on the same record; "standard-linear-solid", "prony:2", "prony:3" and "fung:2" if left out, none for
     ///     an empty list.
     /// equilibrium : str
-    ///     Law of the force once relaxation is over: "even-strain" (modulus x displacement/depth x contact area, equation (11)), "hertz", or
+    ///     Law of the force once relaxation is over: "uniform-strain" (modulus x displacement/depth x contact area, equation (11)), "hertz", or
     ///     "table", a monotone one with a row where the jaw was held.
     /// poisson_ratio : float, optional
     ///     For Hertz's law, from 0 to 0.5; 0.5 if left out.
     /// rate : str
     ///     What the rate coefficient v of the latency law depends on, by one more number: "constant"; "by-strain", v f^(ε_e/0.1) with
     ///     f = ``strain_factor``; or "by-direction", v after loading and f v after unloading with f = ``unloading_factor``. The other
-    ///     two are rivals then.
+    ///     two are alternatives then.
     /// fit_until_s : float, optional
-    ///     Fit only up to this time of the record, s, and foretell the rest.
+    ///     Fit only up to this time of the record, s, and predict the rest.
     /// confidence : float, optional
     ///     Coverage of the intervals, between 0 and 1; that of the description, or 0.95, if left out.
     /// profile : bool
@@ -435,7 +435,7 @@ shown! {
     /// Returns
     /// -------
     /// Calibration
-    ///     The material, what is left over of the record, and the rivals.
+    ///     The material, what is left over of the record, and the alternatives.
     ///
     /// Raises
     /// ------
@@ -444,7 +444,7 @@ shown! {
     /// OptionError
     ///     No body described, a law of single holds alone, a time outside the record, or any other option that is wrong.
     /// ModelError
-    ///     A body that the jaw goes through, a law of the relaxed force that does not go with it.
+    ///     A body that the jaw goes through, a law of the equilibrium force that does not go with it.
     /// FitError
     ///     Too few samples, or a force that does not rise with the squeeze.
     ///
@@ -466,20 +466,20 @@ shown! {
     /// >>> record = palpate.Record.from_arrays(
     /// ...     time_s=squeezed.time_s, displacement_m=squeezed.displacement_m, force_n=squeezed.force_n
     /// ... )
-    /// >>> calibration = record.calibrate(test={"specimen": ball}, rivals=[])
+    /// >>> calibration = record.calibrate(test={"specimen": ball}, alternatives=[])
     /// >>> round(calibration.material.values["exponent"], 2)
     /// 5.0
     /// >>> prediction = calibration.material.predict([{"to": "8 mm", "rate": "500 mm/min", "hold": "20 s"}], at_s=[10.0])
     /// >>> round(float(prediction.force_n[0]), 2)
     /// 3.45
-    #[pyo3(signature = (*, law="latency", test=None, rivals=None, equilibrium="even-strain", poisson_ratio=None, rate="constant", fit_until_s=None, confidence=None, profile=false))]
+    #[pyo3(signature = (*, law="latency", test=None, alternatives=None, equilibrium="uniform-strain", poisson_ratio=None, rate="constant", fit_until_s=None, confidence=None, profile=false))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn calibrate(
         &self,
         py: Python<'_>,
         law: &str,
         test: Option<&Bound<'_, PyAny>>,
-        rivals: Option<&Bound<'_, PyAny>>,
+        alternatives: Option<&Bound<'_, PyAny>>,
         equilibrium: &str,
         poisson_ratio: Option<f64>,
         rate: &str,
@@ -489,19 +489,19 @@ shown! {
     ) -> PyResult<Calibration> {
         let usual = Calibrate::default();
         let law = files::law(law)?;
-        let rivals = match rivals {
-            Some(rivals) => {
-                let names = rivals.extract::<Vec<String>>().map_err(|_| {
-                    refused_plainly::<OptionError>(format!("rivals: expected a list of laws, found {rivals:?}"))
+        let alternatives = match alternatives {
+            Some(alternatives) => {
+                let names = alternatives.extract::<Vec<String>>().map_err(|_| {
+                    refused_plainly::<OptionError>(format!("alternatives: expected a list of laws, found {alternatives:?}"))
                 })?;
                 all_laws(&names)?
             }
-            None => usual.rivals,
+            None => usual.alternatives,
         };
         let job = Calibrate {
             law,
-            rivals: rivals.into_iter().filter(|rival| *rival != law).collect(),
-            equilibrium: choice("equilibrium", &["even-strain", "hertz", "table"], equilibrium)?,
+            alternatives: alternatives.into_iter().filter(|alternative| *alternative != law).collect(),
+            equilibrium: choice("equilibrium", &["uniform-strain", "hertz", "table"], equilibrium)?,
             poisson_ratio,
             rate: choice("rate", &["constant", "by-strain", "by-direction"], rate)?,
             fit_until_s,

@@ -1,7 +1,7 @@
 //! `palpate.calibration/1`: laws calibrated on a whole record.
 
 use palpate::analysis::HoldoutError;
-use palpate::calibrate::{CalibrateError, Calibration, Candidate, MaterialNumber, NumberProfile};
+use palpate::calibrate::{CalibrateError, Calibration, Candidate, MaterialParameter, NumberProfile};
 use palpate::fit::Interval;
 
 use super::comparison::NumberDocument;
@@ -10,7 +10,7 @@ use crate::result::{CalibratedRecord, Input, material_unit, word};
 
 documents! {
     /// A number of a calibrated law, in the unit at the end of its name.
-    CalibratedNumberDocument(number: &MaterialNumber, profiles: &[NumberProfile]) with {
+    CalibratedNumberDocument(number: &MaterialParameter, profiles: &[NumberProfile]) with {
         let (suffix, ..) = material_unit(number.unit);
         let profile = profiles.iter().find(|profile| profile.name == number.name);
     } {
@@ -31,14 +31,14 @@ documents! {
         high: Option<f64> = interval.high,
     }
 
-    /// How well what was not fitted is foretold.
-    ForetoldDocument(foretold: HoldoutError) {
+    /// The error of the prediction beyond what was fitted.
+    HoldoutDocument(holdout: HoldoutError) {
         /// Root mean square error, N.
-        rmse_n: f64 = foretold.rmse,
+        rmse_n: f64 = holdout.rmse,
         /// The same as a share of the largest force.
-        relative: f64 = foretold.relative,
-        /// Samples foretold.
-        samples: usize = foretold.samples,
+        relative: f64 = holdout.relative,
+        /// Samples held out.
+        samples: usize = holdout.samples,
     }
 
     /// One law on the record.
@@ -63,7 +63,7 @@ documents! {
         /// BIC less the lowest of the laws.
         delta_bic: Option<f64> = good.map(|made| made.criteria.bic - least).filter(|delta| delta.is_finite()),
         /// What was not fitted; `null` where all was.
-        foretold: Option<ForetoldDocument> = good.and_then(|made| made.foretold).map(ForetoldDocument::new),
+        holdout: Option<HoldoutDocument> = good.and_then(|made| made.holdout).map(HoldoutDocument::new),
         /// Its numbers.
         numbers: Vec<CalibratedNumberDocument> =
             numbers.map(|number| CalibratedNumberDocument::new(number, profiles)).collect(),

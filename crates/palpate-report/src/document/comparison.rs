@@ -28,8 +28,8 @@ documents! {
         cut_s: f64 = forecast.cut,
         /// Samples fitted.
         fitted: usize = forecast.fitted,
-        /// Samples foretold.
-        foretold: usize = forecast.foretold,
+        /// Samples held out of the fit.
+        held_out: usize = forecast.held_out,
         /// Root mean square error over those as a share of the change of the signal.
         error: f64 = forecast.rmse / change,
         /// Mean error as such a share; above zero where the law runs above the data.
@@ -123,7 +123,7 @@ documents! {
         signal_unit: String = quantity.unit().to_owned(),
         /// Laws are ranked by `forward` (score) or `information` (BIC).
         ranking: String = word(comparison.ranking),
-        /// Cut points at which something is left to foretell, s after the start of the fit.
+        /// Cut points at which something is left to predict, s after the start of the fit.
         cuts_s: Vec<f64> = comparison.cuts.clone(),
         /// Change of the signal over the hold, in its unit.
         change: f64 = comparison.change,

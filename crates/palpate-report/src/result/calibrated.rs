@@ -7,7 +7,7 @@ use palpate::number::significant;
 use super::input::Input;
 use crate::word::word;
 
-/// Candidates calibrated on one record; the first is the one that is asked for, the others are its rivals.
+/// Candidates calibrated on one record; the first is the one that is asked for, the others are its alternatives.
 #[derive(Debug)]
 pub struct CalibratedRecord {
     /// The record.
@@ -32,10 +32,10 @@ impl CalibratedRecord {
         self.rows.first().and_then(|(_, made)| made.as_ref().ok())
     }
 
-    /// The error by which candidates are ranked: of what was foretold, else by the information criterion; less is better.
+    /// The error by which candidates are ranked: of what was predicted, else by the information criterion; less is better.
     #[must_use]
     pub fn score(&self, calibration: &Calibration) -> f64 {
-        calibration.foretold.map_or(calibration.criteria.bic, |foretold| foretold.rmse)
+        calibration.holdout.map_or(calibration.criteria.bic, |holdout| holdout.rmse)
     }
 
     /// What the table says in a sentence.
@@ -46,15 +46,11 @@ impl CalibratedRecord {
         let sound = |made: &&Calibration| made.termination.is_good() || std::ptr::eq(*made, chosen);
         let best = self.made().filter(sound).min_by(|a, b| self.score(a).total_cmp(&self.score(b)))?;
         let (law, other) = (chosen.material.candidate, best.material.candidate);
-        let by = if chosen.foretold.is_some() {
-            "foretells the rest of the record best"
-        } else {
-            "has the lowest BIC"
-        };
+        let by = if chosen.holdout.is_some() { "predicts the rest of the record best" } else { "has the lowest BIC" };
         Some(if law == other {
             format!("Of the laws tried, {law} {by}.")
         } else {
-            let cost = match (chosen.foretold, best.foretold) {
+            let cost = match (chosen.holdout, best.holdout) {
                 (Some(mine), Some(least)) => format!("{:.2} times its error", mine.rmse / least.rmse),
                 _ => format!("{:.0} more", self.score(chosen) - self.score(best)),
             };
@@ -117,7 +113,7 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
     };
     if correlation > 0.9 && made.relative > 5e-3 {
         remarks.push(format!(
-            "What is left over ({} % of the peak) follows a course of its own: the law does not describe all of the record. The intervals are widened for that, ± is not; how far it foretells, --fit-until shows.",
+            "What is left over ({} % of the peak) follows a course of its own: the law does not describe all of the record. The intervals are widened for that, ± is not; how far it predicts, --fit-until shows.",
             significant(100.0 * made.relative, 2)
         ));
     }

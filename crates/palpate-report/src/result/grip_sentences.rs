@@ -160,12 +160,15 @@ fn of_squeeze(body: &GrippedBody<'_>, found: &Holding, holds: bool) -> String {
             newton(found.needed_force),
             newton(found.start_force)
         ),
-        TimeToSlip::Never if found.relaxed_force >= found.needed_force => {
-            format!("{what} holds always{interval}: the relaxed force of {} is enough.", newton(found.relaxed_force))
+        TimeToSlip::Never if found.equilibrium_force >= found.needed_force => {
+            format!(
+                "{what} holds always{interval}: the equilibrium force of {} is enough.",
+                newton(found.equilibrium_force)
+            )
         }
         TimeToSlip::Never => format!(
             "{what} holds for more than ten years{interval}, and not for good: it relaxes to {}, and {} are needed.",
-            newton(found.relaxed_force),
+            newton(found.equilibrium_force),
             newton(found.needed_force)
         ),
         TimeToSlip::After(time) => {
@@ -243,7 +246,7 @@ fn on_back_off(found: &BackOff) -> String {
         format!("the hold begins relaxed, and {} stay", newton(found.backed.start_force))
     } else {
         format!(
-            "the hold begins with the relaxed force of {}, and drifts, for each term goes its own way",
+            "the hold begins with the equilibrium force of {}, and drifts, for each term goes its own way",
             newton(found.backed.start_force)
         )
     };

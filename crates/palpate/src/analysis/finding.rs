@@ -201,16 +201,16 @@ pub enum Finding {
     },
     /// The modulus was not given.
     ModulusEstimated {
-        /// What the relaxed forces say, Pa.
+        /// What the equilibrium forces say, Pa.
         modulus: f64,
         /// Its standard error, Pa.
         standard_error: Option<f64>,
     },
-    /// The given modulus and the relaxed forces disagree.
+    /// The given modulus and the equilibrium forces disagree.
     ModulusMismatch {
         /// Given, Pa.
         given: f64,
-        /// Implied by the relaxed forces, Pa.
+        /// Implied by the equilibrium forces, Pa.
         implied: f64,
     },
     /// First touch is known less well than the fits.

@@ -17,7 +17,7 @@ pub struct Geometry {
     pub shape: Shape,
     /// From how many sides it is squeezed.
     pub sides: Sides,
-    /// Young's modulus, Pa; estimated from the relaxed forces if it is not known.
+    /// Young's modulus, Pa; estimated from the equilibrium forces if it is not known.
     pub modulus: Option<f64>,
 }
 

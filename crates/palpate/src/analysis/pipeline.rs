@@ -116,7 +116,7 @@ pub fn examine(record: &Record, options: &AnalysisOptions, watch: &mut dyn Watch
     })
 }
 
-/// The specimen with its given modulus, or with the one that the relaxed forces imply.
+/// The specimen with its given modulus, or with the one that the equilibrium forces imply.
 fn specimen(
     record: &Record,
     segmentation: &Segmentation,

@@ -1,4 +1,4 @@
-//! A model with numbers to be found: a law of the layer and one of the relaxed force.
+//! A model with numbers to be found: a law of the layer and one of the equilibrium force.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ use crate::laws::{Law, MOST_TERMS};
 pub enum EquilibriumLaw {
     /// The paper's E ε A, equation (11): one modulus.
     #[default]
-    EvenStrain,
+    UniformStrain,
     /// Hertz's: one modulus, for balls and pads.
     Hertz {
         /// Poisson's ratio ν, from 0 to 0.5; it is not told apart from the modulus.
@@ -74,15 +74,15 @@ impl RateLaw {
     }
 }
 
-/// What is fitted to a record: a law of relaxation and one of the relaxed force.
+/// What is fitted to a record: a law of relaxation and one of the equilibrium force.
 ///
-/// The law is `latency` or `latency:N`, `standard-linear-solid`, `prony:K` (memory of strain) or `fung:K` (memory of the relaxed force,
+/// The law is `latency` or `latency:N`, `standard-linear-solid`, `prony:K` (memory of strain) or `fung:K` (memory of the equilibrium force,
 /// Fung's quasi-linear viscoelasticity).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
     /// The law of the layer.
     pub law: Law,
-    /// The law of the relaxed force.
+    /// The law of the equilibrium force.
     pub equilibrium: EquilibriumLaw,
     /// What the rate coefficient of the latency law depends on; constant of any other.
     pub rate: RateLaw,
@@ -100,7 +100,7 @@ impl std::fmt::Display for Candidate {
 }
 
 impl Candidate {
-    /// A law of the layer, of a rate coefficient that depends on nothing, and one of the relaxed force.
+    /// A law of the layer, of a rate coefficient that depends on nothing, and one of the equilibrium force.
     #[must_use]
     pub fn new(law: Law, equilibrium: EquilibriumLaw) -> Self {
         Self {
@@ -113,7 +113,7 @@ impl Candidate {
     /// The candidate and what it is held against on the same record: other laws of the layer and, if its rate coefficient depends on the
     /// state, the other ways in which it could.
     #[must_use]
-    pub fn with_rivals(self, laws: &[Law]) -> Vec<Self> {
+    pub fn with_alternatives(self, laws: &[Law]) -> Vec<Self> {
         let rates = RateLaw::ALL.into_iter().filter(|rate| self.rate != RateLaw::Constant && *rate != self.rate);
         let others = laws.iter().filter(|law| **law != self.law).map(|law| Self {
             law: *law,

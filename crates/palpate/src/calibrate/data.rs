@@ -14,7 +14,7 @@ pub struct CalibrationData {
     motion: Motion,
     times: Vec<f64>,
     forces: Vec<f64>,
-    /// Samples that are fitted; the rest is foretold.
+    /// Samples that are fitted; the rest is held out.
     fitted: usize,
     /// Samples of the record that these were chosen from.
     samples: usize,
@@ -120,7 +120,7 @@ impl CalibrationData {
         Self::new(geometry, options.separation, motion, times, forces, &held)
     }
 
-    /// The same, fitted up to a time (s) and foretold from there on.
+    /// The same, fitted up to a time (s) and predicted from there on.
     ///
     /// # Errors
     /// [`CalibrateError::Split`] where either part is left with fewer than eight samples.

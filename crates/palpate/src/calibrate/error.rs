@@ -35,7 +35,7 @@ pub enum CalibrateError {
         /// Its end, s.
         until: f64,
     },
-    /// Too little to fit or to foretell.
+    /// Too little to fit or to predict.
     #[error("a calibration up to {at} s has {before} samples before and {after} after it; each part needs 8 at least")]
     Split {
         /// The time, s.
@@ -124,7 +124,7 @@ impl CalibrateError {
             Self::Split { .. } => "choose a time inside the record".to_owned(),
             Self::NoStiffness => "check the signs of force and displacement, and which of them is loading".to_owned(),
             Self::Specimen(_) => "check the geometry in the test description and its units".to_owned(),
-            Self::Equilibrium(_) => "ask for another equilibrium law: even-strain, hertz or table".to_owned(),
+            Self::Equilibrium(_) => "ask for another equilibrium law: uniform-strain, hertz or table".to_owned(),
             Self::Analysis(error) => error.hint(),
             _ => String::new(),
         }

@@ -4,7 +4,9 @@ use super::material::names;
 use super::prepared::Prepared;
 use super::problem::Problem;
 use super::search::search;
-use super::{CalibrateError, CalibrationData, Candidate, Material, MaterialNumber, MaterialUncertainty, Shown};
+use super::{
+    CalibrateError, CalibrationData, CalibrationRange, Candidate, Material, MaterialParameter, MaterialUncertainty,
+};
 use crate::analysis::HoldoutError;
 use crate::fit::{Assessed, Estimate, NoiseModel, Scale, Termination};
 use crate::forecast::{Criteria, criteria};
@@ -20,7 +22,7 @@ pub(super) const FARTHEST: f64 = 14.0;
 pub struct Calibration {
     /// The body with its numbers.
     pub material: Material,
-    /// Simulated force at every sample, fitted or foretold, N.
+    /// Simulated force at every sample, fitted or predicted, N.
     pub simulated: Vec<f64>,
     /// Numbers that were searched.
     pub free_numbers: usize,
@@ -33,7 +35,7 @@ pub struct Calibration {
     /// Information criteria, every sample counted as one; only differences between candidates on the same data mean anything.
     pub criteria: Criteria,
     /// What comes after the fitted part, if it was fitted in part.
-    pub foretold: Option<HoldoutError>,
+    pub holdout: Option<HoldoutError>,
     /// Why it ended.
     pub termination: Termination,
     /// Simulations it took.
@@ -42,9 +44,9 @@ pub struct Calibration {
     pub(super) theta: Vec<f64>,
 }
 
-/// Fits a law of the layer and one of the relaxed force to a whole record: one set of numbers for all ramps and holds.
+/// Fits a law of the layer and one of the equilibrium force to a whole record: one set of numbers for all ramps and holds.
 ///
-/// With the latency law these are n, v, the layer thickness ℓ and the coefficients of the relaxed force (one modulus, or the rows of a
+/// With the latency law these are n, v, the layer thickness ℓ and the coefficients of the equilibrium force (one modulus, or the rows of a
 /// table): the holds carry n and v, the ramps ℓ, since the excess at their end is that of ẋ = u̇₁ (m − 1)/depth − v sgn(x)|x|ⁿ with
 /// m = depth/ℓ, and the relaxed levels the stiffness S(u) of F = S(u)(u/depth + x), equations (10) and (11). No starting values: a grid is
 /// searched first. Intervals are those of the logarithms of the numbers, for residuals that correlate as they do; `confidence` is their
@@ -62,7 +64,7 @@ pub struct Calibration {
 /// let forces = simulate_force(&motion, &model, &times)?;
 /// let ball = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None };
 /// let data = CalibrationData::new(ball, model.separation, motion, times, forces, &[])?;
-/// let found = calibrate(&data, Candidate::new("latency".parse()?, EquilibriumLaw::EvenStrain), 0.95, &mut Unwatched)?;
+/// let found = calibrate(&data, Candidate::new("latency".parse()?, EquilibriumLaw::UniformStrain), 0.95, &mut Unwatched)?;
 /// let value = |name| found.material.estimate(name).unwrap().value;
 /// assert!((value("modulus") - 28e3).abs() < 1e-3);            // Pa
 /// assert!((value("exponent") - 5.0).abs() < 1e-5);
@@ -131,10 +133,10 @@ pub fn calibrate(
         _ => Estimate::fixed(values[index]),
     };
     let names = names(candidate, prepared.body.levels.len());
-    let numbers: Vec<MaterialNumber> = names
+    let numbers: Vec<MaterialParameter> = names
         .into_iter()
         .enumerate()
-        .map(|(index, (name, unit))| MaterialNumber {
+        .map(|(index, (name, unit))| MaterialParameter {
             estimate: estimate(index, &name),
             name,
             unit,
@@ -150,7 +152,7 @@ pub fn calibrate(
     });
     let noise = assessed.as_ref().map_or(NoiseModel::White, |assessed| assessed.noise);
     let largest = data.forces().iter().fold(0.0, |most: f64, force| most.max(force.abs()));
-    let foretold = (data.fitted() < data.times().len()).then(|| {
+    let holdout = (data.fitted() < data.times().len()).then(|| {
         let rest = data.fitted()..;
         let rmse = rms(&data.forces()[rest.clone()], &simulated[rest]);
         HoldoutError {
@@ -176,7 +178,7 @@ pub fn calibrate(
         relative: rmse / largest,
         noise,
         criteria: criteria(found.square, data.fitted() as f64, free as f64),
-        foretold,
+        holdout,
         termination,
         simulations: found.simulations,
         theta: found.theta,
@@ -210,7 +212,7 @@ fn transformed(covariance: &[Vec<f64>], gradients: &[Vec<f64>]) -> Vec<Vec<f64>>
 }
 
 /// What the fitted part of the record has shown.
-fn shown(data: &CalibrationData) -> Shown {
+fn shown(data: &CalibrationData) -> CalibrationRange {
     let largest_force = data.forces()[..data.fitted()].iter().fold(0.0, |most: f64, force| most.max(force.abs()));
     let until = data.times()[data.fitted() - 1];
     let deepest = |motion: &Motion| motion.displacements().iter().copied().fold(0.0, f64::max);
@@ -231,7 +233,7 @@ fn shown(data: &CalibrationData) -> Shown {
             slowest = slowest.min(speed);
         }
     }
-    Shown {
+    CalibrationRange {
         longest_hold: longest,
         deepest: deep,
         fastest,

@@ -18,7 +18,7 @@ pub struct Body {
     pub sides: Sides,
     /// Whether the jaw can pull.
     pub separation: Separation,
-    /// Contact displacements (m) of the rows of a table of relaxed forces; none for other laws of them.
+    /// Contact displacements (m) of the rows of a table of equilibrium forces; none for other laws of them.
     pub levels: Vec<f64>,
 }
 
@@ -42,7 +42,7 @@ pub enum MaterialUnit {
 
 /// A number of a material; all are above zero.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct MaterialNumber {
+pub struct MaterialParameter {
     /// Name without unit: `modulus` or `equilibrium_force_1`, …; `exponent`, `rate_coefficient`, `layer_thickness`,
     /// `strain_factor` or `unloading_factor`; or `overshoot_1`, `time_1`, ….
     pub name: String,
@@ -65,7 +65,7 @@ pub struct MaterialUncertainty {
 
 /// What the test has shown: questions beyond it are extrapolations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Shown {
+pub struct CalibrationRange {
     /// The longest time at one place, s.
     pub longest_hold: f64,
     /// The deepest squeeze (travel of the jaw since first touch), m.
@@ -86,13 +86,13 @@ pub struct Material {
     /// The laws whose numbers these are.
     pub candidate: Candidate,
     /// The numbers.
-    pub numbers: Vec<MaterialNumber>,
+    pub numbers: Vec<MaterialParameter>,
     /// How sure they are; `None` where the test leaves one of them open.
     pub uncertainty: Option<MaterialUncertainty>,
     /// Standard deviation of what the model left of the measured force, N: noise, and what no number could mend.
     pub noise: f64,
     /// What the test has shown.
-    pub shown: Shown,
+    pub shown: CalibrationRange,
 }
 
 impl Body {
@@ -134,7 +134,7 @@ impl Body {
     fn specimen(&self, equilibrium: EquilibriumLaw, stiffness: &[f64]) -> Option<Specimen> {
         let with = |modulus| Specimen::new(self.shape.clone(), modulus, self.sides).ok();
         match equilibrium {
-            EquilibriumLaw::EvenStrain => with(stiffness[0]),
+            EquilibriumLaw::UniformStrain => with(stiffness[0]),
             EquilibriumLaw::Hertz { poisson_ratio } => {
                 with(stiffness[0])?.with_equilibrium(Equilibrium::Hertz { poisson_ratio }).ok()
             }
@@ -157,7 +157,9 @@ impl Body {
 /// Names and units of the numbers of a candidate with a table of this many rows.
 pub(super) fn names(candidate: Candidate, rows: usize) -> Vec<(String, MaterialUnit)> {
     let mut names: Vec<(String, MaterialUnit)> = match candidate.equilibrium {
-        EquilibriumLaw::EvenStrain | EquilibriumLaw::Hertz { .. } => vec![("modulus".to_owned(), MaterialUnit::Pascal)],
+        EquilibriumLaw::UniformStrain | EquilibriumLaw::Hertz { .. } => {
+            vec![("modulus".to_owned(), MaterialUnit::Pascal)]
+        }
         EquilibriumLaw::Table => {
             (1..=rows).map(|row| (format!("equilibrium_force_{row}"), MaterialUnit::Newton)).collect()
         }

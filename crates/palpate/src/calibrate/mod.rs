@@ -5,7 +5,7 @@
 //! | file | what | equations |
 //! |---|---|---|
 //! | `data.rs` | what is fitted: a motion of the jaw and the force it met | |
-//! | `candidate.rs` | a law of the layer and one of the relaxed force | (10), (11) |
+//! | `candidate.rs` | a law of the layer and one of the equilibrium force | (10), (11) |
 //! | `prepared.rs` | the numbers of a candidate that are searched | |
 //! | `search.rs`, `problem.rs` | a grid, then damped steps | |
 //! | `fit.rs` | from there to numbers with intervals | |
@@ -29,6 +29,6 @@ pub use candidate::{Candidate, EquilibriumLaw, RateLaw};
 pub use data::CalibrationData;
 pub use error::CalibrateError;
 pub use fit::{Calibration, calibrate};
-pub use material::{Body, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, Shown};
+pub use material::{Body, CalibrationRange, Material, MaterialParameter, MaterialUncertainty, MaterialUnit};
 pub use predict::{Extrapolation, Prediction};
 pub use profile::{NumberProfile, profile};

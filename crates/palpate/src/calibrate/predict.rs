@@ -56,7 +56,7 @@ impl std::fmt::Display for Extrapolation {
             ),
             Self::DeeperSqueeze { asked, shown } => write!(
                 f,
-                "a squeeze of {} mm is asked for; the test went to {} mm: the relaxed force beyond rests on its law alone",
+                "a squeeze of {} mm is asked for; the test went to {} mm: the equilibrium force beyond rests on its law alone",
                 digits(1e3 * asked),
                 digits(1e3 * shown)
             ),

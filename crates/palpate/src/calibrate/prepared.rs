@@ -58,7 +58,7 @@ impl Prepared {
             EquilibriumLaw::Hertz { poisson_ratio } => {
                 specimen.with_equilibrium(Equilibrium::Hertz { poisson_ratio })?
             }
-            EquilibriumLaw::EvenStrain | EquilibriumLaw::Table => specimen,
+            EquilibriumLaw::UniformStrain | EquilibriumLaw::Table => specimen,
         };
         let scales = Scales::of(data, &specimen);
         let body = Body {
@@ -73,7 +73,7 @@ impl Prepared {
             high: high.ln(),
         };
         let mut searched = match candidate.equilibrium {
-            EquilibriumLaw::EvenStrain | EquilibriumLaw::Hertz { .. } => vec![log("modulus", 1e-3, 1e13)],
+            EquilibriumLaw::UniformStrain | EquilibriumLaw::Hertz { .. } => vec![log("modulus", 1e-3, 1e13)],
             EquilibriumLaw::Table => (0..body.levels.len())
                 .map(|row| match row {
                     0 => log("stiffness_1", 1e-12, 1e12),
@@ -121,10 +121,10 @@ impl Prepared {
         })
     }
 
-    /// How many numbers say what the relaxed force is; they come first.
+    /// How many numbers say what the equilibrium force is; they come first.
     pub(super) fn stiffnesses(&self) -> usize {
         match self.candidate.equilibrium {
-            EquilibriumLaw::EvenStrain | EquilibriumLaw::Hertz { .. } => 1,
+            EquilibriumLaw::UniformStrain | EquilibriumLaw::Hertz { .. } => 1,
             EquilibriumLaw::Table => self.body.levels.len(),
         }
     }
@@ -144,7 +144,7 @@ impl Prepared {
         rate * (self.scales.strain * overshoot).powf(1.0 - exponent)
     }
 
-    /// Searched stiffnesses whose relaxed forces are those of a body with one modulus, E.
+    /// Searched stiffnesses whose equilibrium forces are those of a body with one modulus, E.
     pub(super) fn stiffnesses_like(&self, modulus: f64) -> Vec<f64> {
         if self.candidate.equilibrium != EquilibriumLaw::Table {
             return vec![modulus.ln()];
@@ -161,7 +161,7 @@ impl Prepared {
     pub(super) fn values(&self, theta: &[f64]) -> Vec<f64> {
         let (stiffnesses, law) = theta.split_at(self.stiffnesses());
         let mut values: Vec<f64> = match self.candidate.equilibrium {
-            EquilibriumLaw::EvenStrain | EquilibriumLaw::Hertz { .. } => vec![stiffnesses[0].exp()],
+            EquilibriumLaw::UniformStrain | EquilibriumLaw::Hertz { .. } => vec![stiffnesses[0].exp()],
             EquilibriumLaw::Table => {
                 let mut log = 0.0;
                 let row = |(u, by): (&f64, &f64)| {

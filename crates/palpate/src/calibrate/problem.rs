@@ -169,7 +169,7 @@ impl<'a> Problem<'a> {
                 {
                     let gain = square - trial_square;
                     let taken: Vec<f64> = free.iter().map(|i| next[*i] - theta[*i]).collect();
-                    let foretold: f64 = taken
+                    let predicted: f64 = taken
                         .iter()
                         .zip(normal.chunks(size))
                         .zip(&free)
@@ -178,7 +178,7 @@ impl<'a> Problem<'a> {
                     (theta, residuals) = (next, trial);
                     square = trial_square;
                     // Where much is left over the bottom is steeper than the model says: undamped steps would go from one side to the other.
-                    damping = match gain / foretold {
+                    damping = match gain / predicted {
                         share if share > 0.75 => (damping * 0.1).max(1e-12),
                         share if share > 0.25 => damping,
                         _ => (damping * 8.0).max(1e-6),

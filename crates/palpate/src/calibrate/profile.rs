@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::fit::{Calibration, FARTHEST};
 use super::prepared::Prepared;
 use super::problem::{Held, Problem, sum_of_squares};
-use super::{CalibrateError, CalibrationData, Material, MaterialNumber};
+use super::{CalibrateError, CalibrationData, Material, MaterialParameter};
 use crate::fit::Interval;
 use crate::watch::{Cancelled, Stages, Watch};
 
@@ -51,7 +51,7 @@ const MOST_STEPS: usize = 40;
 /// let forces = simulate_force(&motion, &model, &times)?.iter().map(|force| force + 0.2 * noise.normal()).collect();
 /// let ball = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None };
 /// let data = CalibrationData::new(ball, model.separation, motion, times, forces, &[])?;
-/// let found = calibrate(&data, Candidate::new("latency".parse()?, EquilibriumLaw::EvenStrain), 0.95, &mut Unwatched)?;
+/// let found = calibrate(&data, Candidate::new("latency".parse()?, EquilibriumLaw::UniformStrain), 0.95, &mut Unwatched)?;
 /// let exponent = profile(&data, &found, &mut Unwatched)?.into_iter().find(|number| number.name == "exponent").unwrap();
 /// assert!(exponent.interval.low.unwrap() < 5.0 && 5.0 < exponent.interval.high.unwrap());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -72,7 +72,7 @@ pub fn profile(
     let freedom = (data.fitted() - calibration.free_numbers) as f64;
     let mut stages = Stages::new("following the profiles".to_owned(), watch);
     let ends = 2.0 * material.numbers.len() as f64;
-    let of = |(number, known): (usize, &MaterialNumber)| {
+    let of = |(number, known): (usize, &MaterialParameter)| {
         let (Some(error), Some((_, high))) = (known.estimate.standard_error, known.estimate.interval) else {
             return Ok(None);
         };

@@ -18,7 +18,7 @@ use super::{Curve, CurveError, Shape};
 pub enum Equilibrium {
     /// The paper's: F_e = E (u/depth) A(u), equation (11).
     #[default]
-    EvenStrain,
+    UniformStrain,
     /// Hertz (1881), a ball of modulus E pressed by a rigid flat: F_e = 4/3 E/(1 − ν²) √r u^(3/2).
     ///
     /// For balls and pads, from small contacts up to u ≈ r/10, and a pad much thicker than the contact is wide.
@@ -81,7 +81,7 @@ impl Equilibrium {
                     Shape::Prism { .. } | Shape::Profile { .. } => Err(EquilibriumError::NotRound),
                 }
             }
-            Self::EvenStrain | Self::Measured { .. } => Ok(()),
+            Self::UniformStrain | Self::Measured { .. } => Ok(()),
         }
     }
 
@@ -109,7 +109,7 @@ impl Equilibrium {
     pub(super) fn end(&self) -> f64 {
         match self {
             Self::Measured { force_per_displacement } => force_per_displacement.end(),
-            Self::EvenStrain | Self::Hertz { .. } => f64::INFINITY,
+            Self::UniformStrain | Self::Hertz { .. } => f64::INFINITY,
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A law of the relaxed force from the rows of a table.
+//! A law of the equilibrium force from the rows of a table.
 
 use alloc::vec::Vec;
 

@@ -98,7 +98,7 @@ impl Specimen {
             shape,
             modulus,
             sides,
-            equilibrium: Equilibrium::EvenStrain,
+            equilibrium: Equilibrium::UniformStrain,
         })
     }
 
@@ -181,7 +181,7 @@ impl Specimen {
     #[must_use]
     pub fn force(&self, strain: f64, contact_displacement: f64) -> f64 {
         match self.equilibrium {
-            Equilibrium::EvenStrain => self.modulus * strain * self.contact_area(contact_displacement),
+            Equilibrium::UniformStrain => self.modulus * strain * self.contact_area(contact_displacement),
             _ => self.stiffness(contact_displacement).0 * strain,
         }
     }
@@ -198,7 +198,7 @@ impl Specimen {
         let mut bends: Vec<f64> = match &self.equilibrium {
             Equilibrium::Hertz { .. } => (1..=24).map(|k| reach * 0.25f64.powi(k)).collect(),
             Equilibrium::Measured { force_per_displacement } => force_per_displacement.places().collect(),
-            Equilibrium::EvenStrain => match &self.shape {
+            Equilibrium::UniformStrain => match &self.shape {
                 Shape::Profile { area, .. } => area.places().collect(),
                 _ => Vec::new(),
             },
@@ -209,7 +209,7 @@ impl Specimen {
 
     /// Whether the force per strain is the same at any displacement.
     pub(crate) fn has_constant_section(&self) -> bool {
-        matches!((&self.shape, &self.equilibrium), (Shape::Prism { .. }, Equilibrium::EvenStrain))
+        matches!((&self.shape, &self.equilibrium), (Shape::Prism { .. }, Equilibrium::UniformStrain))
     }
 
     /// How deep the body can be squeezed; a strip in grips can be stretched further.

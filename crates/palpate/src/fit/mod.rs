@@ -18,11 +18,11 @@
 //! | `latency.rs` | the latency law in the time domain; the lowest order that fits best | (4), (5) |
 //! | `rate_domain.rs` | strain rate fitted against strain, as the paper does | (9), (10) |
 //! | `spectrum/` | exponentials of all times at once, none of opposite sign | |
-//! | `foretell.rs` | a law fitted to the first part of a hold, held against the rest | |
+//! | `forecast.rs` | a law fitted to the first part of a hold, held against the rest | |
 //! | `joint/` | several holds at once: one law shared by all, or one each | section IV |
 
 mod error;
-mod foretell;
+mod forecast;
 mod global;
 mod joint;
 mod latency;
@@ -39,7 +39,7 @@ mod spectrum;
 pub use crate::laws::ExponentChoice;
 pub use crate::optimise::{Termination, Work};
 pub use error::FitError;
-pub use foretell::{Forecast, foretell};
+pub use forecast::{Forecast, forecast};
 pub(crate) use global::{combinations, distinct};
 use global::{finalists, search};
 pub use joint::{

@@ -7,7 +7,7 @@ use crate::laws::Law;
 use crate::statistics::{mean, noise_in_time};
 use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 
-/// Fits laws to a hold, lets each foretell the last part from the first, and ranks them.
+/// Fits laws to a hold, lets each predict the last part from the first, and ranks them.
 ///
 /// Laws are ranked by their forward score: the error over the rest of the hold of a fit to its first quarter, third and half, as a share of
 /// the change of the signal. Where the signal changes too little after the first cut to be seen above its noise, or the
@@ -59,20 +59,20 @@ pub fn compare_laws_watched(
     let change = change(values);
     let noise = noise_in_time(times, values);
     let mut cuts = cuts(samples, options, duration, noise);
-    let mut foretell_from = |rows: &mut [Row], cuts: &[f64]| -> Result<(), Cancelled> {
+    let mut forecast_from = |rows: &mut [Row], cuts: &[f64]| -> Result<(), Cancelled> {
         for (done, row) in rows.iter_mut().enumerate() {
             watch.report(Progress::counted("comparing laws", laws.len() + done, 2 * laws.len()))?;
             row.forward = ForwardScore::of(samples, row.law, &options.fit, cuts, change);
         }
         Ok(())
     };
-    foretell_from(&mut rows, &cuts)?;
+    forecast_from(&mut rows, &cuts)?;
     // A first part that no law can be fitted to (a force that has not changed by a digit yet) is no cut.
     let told: Vec<bool> =
         (0..cuts.len()).map(|cut| rows.iter().any(|row| row.forward.forecasts[cut].is_some())).collect();
     if told.contains(&false) {
         cuts = cuts.into_iter().zip(told).filter(|(_, told)| *told).map(|(cut, _)| cut).collect();
-        foretell_from(&mut rows, &cuts)?;
+        forecast_from(&mut rows, &cuts)?;
     }
     let closest = rows
         .iter()
@@ -148,7 +148,7 @@ fn change(values: &[f64]) -> f64 {
     (values[0] - mean(&values[values.len() - tail..])).abs()
 }
 
-/// Cut points at which there is something to foretell: enough samples before, and a change after that shows above the noise.
+/// Cut points at which there is something to predict: enough samples before, and a change after that shows above the noise.
 fn cuts(samples: &Samples<'_>, options: &CompareOptions, duration: f64, noise: f64) -> Vec<f64> {
     /// Least samples in the first part.
     const FEWEST: usize = 30;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::fit::{Forecast, LawOptions, Samples, foretell};
+use crate::fit::{Forecast, LawOptions, Samples, forecast};
 use crate::laws::Law;
 
 /// Information criteria of a least-squares fit; only differences between laws on the same samples mean anything.
@@ -40,7 +40,7 @@ pub fn criteria(residual_square: f64, samples: f64, parameters: f64) -> Criteria
     }
 }
 
-/// How well a law foretells a hold.
+/// How well a law predicts a hold.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ForwardScore {
     /// One forecast a cut point; `None` where the first part could not be fitted.
@@ -55,7 +55,7 @@ impl ForwardScore {
     #[must_use]
     pub fn of(samples: &Samples<'_>, law: Law, options: &LawOptions, cuts: &[f64], change: f64) -> Self {
         let forecasts: Vec<Option<Forecast>> =
-            cuts.iter().map(|cut| foretell(samples, law, options, *cut).ok()).collect();
+            cuts.iter().map(|cut| forecast(samples, law, options, *cut).ok()).collect();
         let squares: Option<f64> = forecasts.iter().map(|forecast| forecast.map(|f| (f.rmse / change).powi(2))).sum();
         let score = squares.filter(|_| !cuts.is_empty()).map(|square| (square / cuts.len() as f64).sqrt());
         Self {

@@ -1,4 +1,4 @@
-//! Which law to use: laws compared by what they foretell, and by what they cost.
+//! Which law to use: laws compared by what they predict, and by what they cost.
 //!
 //! | file | what |
 //! |---|---|

@@ -12,7 +12,7 @@ use crate::laws::Law;
 pub enum Ranking {
     /// By the forward score.
     Forward,
-    /// By BIC at the effective number of samples: the hold is too short, or too noisy, to foretell anything.
+    /// By BIC at the effective number of samples: the hold is too short, or too noisy, to predict anything.
     Information,
 }
 
@@ -33,7 +33,7 @@ pub struct Row {
     pub criteria: Option<Criteria>,
     /// BIC at the effective number of samples, less the lowest.
     pub delta_bic: Option<f64>,
-    /// What it foretells.
+    /// What it predicts.
     pub forward: ForwardScore,
 }
 

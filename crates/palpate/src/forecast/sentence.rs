@@ -32,9 +32,9 @@ impl Comparison {
             Certainty::Open => "that is open, since most laws do as well",
         });
         match self.ranking {
-            Ranking::Forward => text.push_str(&self.foretold(verdict)),
+            Ranking::Forward => text.push_str(&self.predicted(verdict)),
             Ranking::Information => text.push_str(
-                ". The hold is too short, or changes too little, to tell what a law foretells: laws are ranked by how closely they fit for their numbers (BIC)",
+                ". The hold is too short, or changes too little, to tell what a law predicts: laws are ranked by how closely they fit for their numbers (BIC)",
             ),
         }
         let rest: Vec<String> =
@@ -51,8 +51,8 @@ impl Comparison {
         Some(text)
     }
 
-    /// What the chosen law foretells, and where it is best.
-    fn foretold(&self, verdict: &Verdict) -> String {
+    /// What the chosen law predicts, and where it is best.
+    fn predicted(&self, verdict: &Verdict) -> String {
         let row = self.rows.iter().find(|row| row.law == verdict.law);
         let score = row.and_then(|row| row.forward.score).unwrap_or(f64::NAN);
         let parts: Vec<String> = self.cuts.iter().map(|cut| part_in_words(cut / self.duration)).collect();
@@ -63,13 +63,13 @@ impl Comparison {
             _ => format!("best or as good at {won} of {all} cut points"),
         };
         format!(
-            ". Fitted to the first {} of the hold it foretells the rest to {} of the change, {won}",
+            ". Fitted to the first {} of the hold it predicts the rest to {} of the change, {won}",
             listed(&parts),
             percent(score)
         )
     }
 
-    /// Whether what a law costs says anything: what it foretells always, how closely it fits only at an optimum.
+    /// Whether what a law costs says anything: what it predicts always, how closely it fits only at an optimum.
     fn counts(&self, law: Law) -> bool {
         self.ranking == Ranking::Forward || self.rows.iter().any(|row| row.law == law && row.is_good())
     }
@@ -185,7 +185,7 @@ mod tests {
         let text = sentence(800, &["latency", "sls", "prony:2", "spectrum", "diffusion"]);
         for words in [
             "Use the nonlinear latency law (4 numbers)",
-            "Fitted to the first quarter, third and half of the hold it foretells the rest to",
+            "Fitted to the first quarter, third and half of the hold it predicts the rest to",
             "at 3 of 3 cut points",
             "the standard linear solid is",
             "times as far off.",
@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn a_short_hold_is_ranked_by_information_and_says_so() {
         let text = sentence(20, &["latency:5", "sls", "diffusion"]);
-        assert!(text.contains("too short") && text.contains("BIC") && !text.contains("foretells the rest"), "{text}");
+        assert!(text.contains("too short") && text.contains("BIC") && !text.contains("predicts the rest"), "{text}");
     }
 
     #[test]

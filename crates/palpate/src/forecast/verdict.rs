@@ -6,7 +6,7 @@ use crate::laws::Law;
 /// Errors within this factor of the best count as alike.
 const ALIKE: f64 = 1.5;
 
-/// Of the noise: errors that differ by less are alike too, since the noise of the foretold samples is in all of them.
+/// Of the noise: errors that differ by less are alike too, since the noise of the predicted samples is in all of them.
 const SHARE_OF_NOISE: f64 = 0.1;
 
 /// Differences of BIC within which laws are alike ("positive" evidence begins here in the scale of Kass and Raftery).
@@ -56,10 +56,10 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
         Ranking::Information => next - figure >= 10.0,
     });
     // A law that contains the chosen one must do as well; that says nothing against it.
-    let rival = |law: Law| !law.contains(chosen.law);
-    let rivals = usable().filter(|(row, _)| rival(row.law)).count();
-    let alike_rivals = alike.iter().filter(|(row, _)| rival(row.law)).count();
-    let certainty = if 2 * alike_rivals > rivals {
+    let alternative = |law: Law| !law.contains(chosen.law);
+    let alternatives = usable().filter(|(row, _)| alternative(row.law)).count();
+    let alike_alternatives = alike.iter().filter(|(row, _)| alternative(row.law)).count();
+    let certainty = if 2 * alike_alternatives > alternatives {
         Certainty::Open
     } else if apart && cuts_won == comparison.cuts.len() {
         Certainty::Clear

@@ -128,7 +128,7 @@ impl Grip<'_> {
         };
         self.enter(0.1)?;
         let neighbours = squeeze.as_ref().map(around).unwrap_or_default();
-        let same = question.squeeze.filter(|place| self.relaxed_force(*place) >= self.needed_force(*place));
+        let same = question.squeeze.filter(|place| self.equilibrium_force(*place) >= self.needed_force(*place));
         self.enter(0.2)?;
         let back_off = self.back_off(same, shown, question.assured);
         self.enter(0.1)?;

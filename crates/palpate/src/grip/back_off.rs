@@ -40,7 +40,7 @@ pub struct BackOff {
 
 impl Grip<'_> {
     /// Squeezes over and goes back to `displacement` (m) at the speed of the gripper, so that the hold begins with no excess strain: the force at its
-    /// start is the relaxed one and stays. Without a displacement it is the least whose relaxed force is enough; with `assured` the least
+    /// start is the relaxed one and stays. Without a displacement it is the least whose equilibrium force is enough; with `assured` the least
     /// at which the lower edge of the band of the force is, at the start of the hold and after `duration`.
     ///
     /// The turning point is found to the last bits as the one from which the force at the end of the retreat is F_e: farther, and it rises
@@ -48,7 +48,7 @@ impl Grip<'_> {
     /// one excess a term; their sum is zero then, and a small drift is left.
     ///
     /// # Errors
-    /// [`GripError::NoSqueeze`] if no relaxed force within the limits is enough; [`GripError::NoBackOff`] if they end before the turning point;
+    /// [`GripError::NoSqueeze`] if no equilibrium force within the limits is enough; [`GripError::NoBackOff`] if they end before the turning point;
     /// [`GripError::BeyondLimit`] for a displacement beyond them.
     pub fn back_off(&self, displacement: Option<f64>, duration: f64, assured: bool) -> Result<BackOff, GripError> {
         check_duration(duration)?;
@@ -78,11 +78,11 @@ impl Grip<'_> {
         })
     }
 
-    /// The least displacement whose relaxed force is enough, m.
+    /// The least displacement whose equilibrium force is enough, m.
     fn relaxed_squeeze(&self, deepest: f64, by: String) -> Result<f64, GripError> {
-        let is_enough = |d: f64| self.relaxed_force(d) >= self.needed_force(d);
+        let is_enough = |d: f64| self.equilibrium_force(d) >= self.needed_force(d);
         if !is_enough(deepest) {
-            return Err(self.no_squeeze(self.relaxed_force(deepest), f64::INFINITY, by));
+            return Err(self.no_squeeze(self.equilibrium_force(deepest), f64::INFINITY, by));
         }
         // A hair more, for rounding in the force at the end of the retreat.
         Ok((bisected(0.0, deepest, |d| Ok(is_enough(d)))?.1 * (1.0 + 1e-9)).min(deepest))
@@ -164,7 +164,7 @@ impl Grip<'_> {
 
     fn relaxed_with(&self, displacement: f64, factors: Option<&[f64]>) -> Option<f64> {
         let Some(factors) = factors else {
-            return Some(self.relaxed_force(displacement));
+            return Some(self.equilibrium_force(displacement));
         };
         let contact = self.material.contact_off(factors)?;
         let body = contact.specimen();

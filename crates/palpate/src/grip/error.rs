@@ -46,7 +46,7 @@ pub enum GripError {
         needed: f64,
         /// The most there is at the end, N.
         reached: f64,
-        /// How long it should hold, s; infinite for relaxed forces, 0 for forces that are held.
+        /// How long it should hold, s; infinite for equilibrium forces, 0 for forces that are held.
         duration: f64,
         /// Which limit stops it.
         by: String,

@@ -128,7 +128,7 @@ impl Grip<'_> {
             SimulateError::Unreachable { most, .. } => beyond("force", force, most, " N"),
             SimulateError::Force { .. } => {
                 let (deepest, _) = self.limits.deepest(self.contact.specimen());
-                beyond("force", force, self.relaxed_force(deepest), " N")
+                beyond("force", force, self.equilibrium_force(deepest), " N")
             }
             other => other.into(),
         }
@@ -138,8 +138,8 @@ impl Grip<'_> {
         let body = self.contact.specimen();
         let end = body.limit();
         let through = if end.included { end.at } else { end.at * (1.0 - 1e-9) } / body.contact_displacement(1.0);
-        (self.relaxed_force(through) >= force)
-            .then(|| bisected(0.0, through, |d| Ok(self.relaxed_force(d) >= force)).ok())
+        (self.equilibrium_force(through) >= force)
+            .then(|| bisected(0.0, through, |d| Ok(self.equilibrium_force(d) >= force)).ok())
             .flatten()
             .map(|found| found.1)
     }

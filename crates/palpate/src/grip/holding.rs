@@ -10,17 +10,17 @@ use crate::watch::{Cancelled, Progress, Stages};
 /// A calibrated body in a gripper.
 ///
 /// ```
-/// use palpate::calibrate::{Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUnit, Shown};
+/// use palpate::calibrate::{Body, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialUnit, CalibrationRange};
 /// use palpate::contact::{Shape, Sides};
 /// use palpate::grip::{Grasp, Grip, TimeToSlip, Limits, Plan};
 /// use palpate::fit::Estimate;
 /// use palpate::simulate::Separation;
 ///
 /// // The paper's ball, its numbers without errors.
-/// let number = |name: &str, unit, value| MaterialNumber { name: name.to_owned(), unit, estimate: Estimate::fixed(value) };
+/// let number = |name: &str, unit, value| MaterialParameter { name: name.to_owned(), unit, estimate: Estimate::fixed(value) };
 /// let ball = Material {
 ///     body: Body { shape: Shape::Ball { radius: 0.035 }, sides: Sides::Two, separation: Separation::Unilateral, levels: vec![] },
-///     candidate: Candidate::new("latency".parse()?, EquilibriumLaw::EvenStrain),
+///     candidate: Candidate::new("latency".parse()?, EquilibriumLaw::UniformStrain),
 ///     numbers: vec![
 ///         number("modulus", MaterialUnit::Pascal, 28e3),
 ///         number("exponent", MaterialUnit::One, 5.0),
@@ -29,7 +29,7 @@ use crate::watch::{Cancelled, Progress, Stages};
 ///     ],
 ///     uncertainty: None,
 ///     noise: 0.0,
-///     shown: Shown { longest_hold: 20.0, deepest: 0.015, fastest: 0.5 / 60.0, slowest: 0.5 / 60.0, largest_force: 14.3 },
+///     shown: CalibrationRange { longest_hold: 20.0, deepest: 0.015, fastest: 0.5 / 60.0, slowest: 0.5 / 60.0, largest_force: 14.3 },
 /// };
 /// // 0.25 kg with μ = 0.6 need 2.04 N; 5 mm at 500 mm/min start with 3.04 N and relax to 1.06 N.
 /// let grip = Grip::new(&ball, Grasp::new(0.25, 0.6)?, Limits::new(0.5 / 60.0)?, 0.95)?;
@@ -66,7 +66,7 @@ pub struct Holding {
     /// The largest force, N.
     pub peak_force: f64,
     /// The force that the hold tends to, N.
-    pub relaxed_force: f64,
+    pub equilibrium_force: f64,
     /// Work that the jaws do while they close, J; what the body gives back is not counted against it.
     pub work: f64,
     /// From the start of the hold until it slips.
@@ -132,7 +132,7 @@ impl<'a> Grip<'a> {
 
     /// Force (N) of the relaxed body at a displacement (m) of the jaw.
     #[must_use]
-    pub fn relaxed_force(&self, displacement: f64) -> f64 {
+    pub fn equilibrium_force(&self, displacement: f64) -> f64 {
         let body = self.contact.specimen();
         let u = body.contact_displacement(displacement);
         body.force(body.equilibrium_strain(u), u)
@@ -160,7 +160,7 @@ impl<'a> Grip<'a> {
             needed_force,
             start_force: end.force,
             peak_force,
-            relaxed_force: self.relaxed_force(end.displacement),
+            equilibrium_force: self.equilibrium_force(end.displacement),
             work: self.work(&plan.steps)?,
             lasts,
             interval,

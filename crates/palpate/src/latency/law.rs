@@ -196,7 +196,7 @@ pub struct LinearLatency {
 }
 
 impl LinearLatency {
-    /// From Fung's parameters: `relaxed_force` = N₀ c₀ in N and `stiffness` = α_c in N (force per unit strain).
+    /// From Fung's parameters: `equilibrium_force` = N₀ c₀ in N and `stiffness` = α_c in N (force per unit strain).
     ///
     /// # Errors
     /// [`LawError::RateCoefficient`] unless v₁ is a finite number above zero.
@@ -208,11 +208,11 @@ impl LinearLatency {
     /// assert!((law.rate(-0.3) - 0.08).abs() < 1e-15);
     /// # Ok::<(), palpate::latency::LawError>(())
     /// ```
-    pub fn from_fung(rate_coefficient: f64, relaxed_force: f64, stiffness: f64) -> Result<Self, LawError> {
+    pub fn from_fung(rate_coefficient: f64, equilibrium_force: f64, stiffness: f64) -> Result<Self, LawError> {
         LatencyLaw::new(1.0, rate_coefficient)?;
         Ok(Self {
             rate_coefficient,
-            equilibrium_strain: -relaxed_force / stiffness,
+            equilibrium_strain: -equilibrium_force / stiffness,
         })
     }
 

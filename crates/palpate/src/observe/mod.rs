@@ -8,7 +8,7 @@
 //! | `observer.rs`, `saying.rs` | from tick to tick: phase, hold, fit; and what is said of it, warnings too | |
 //! | `signal/` | noise of a signal, the signal without most of it; that a jaw, or a force, stands still | |
 //! | `hold/` | a hold of any length in 64 means, fitted, and the time when its force has fallen to that of slip | (4), (5) |
-//! | `believed.rs` | a calibrated body run beside the record | (10), (11) |
+//! | `filter.rs` | a calibrated body run beside the record | (10), (11) |
 //! | `normal.rs`, `kept.rs` | a value with its deviation; the state as bytes, to send an observer elsewhere | |
 //!
 //! In a hold of the displacement F(t) = F_e + A φ(t; λ, n), [`decay`](crate::latency::decay), equations (4) and (5). Its readings become
@@ -49,8 +49,8 @@
 //! # Ok::<(), palpate::observe::ObserveError>(())
 //! ```
 
-mod believed;
 mod error;
+mod filter;
 mod hold;
 mod kept;
 mod normal;

@@ -1,6 +1,6 @@
 //! From tick to tick: phase, hold, fit, warning.
 
-use super::believed::Believed;
+use super::filter::ModelFilter;
 use super::hold::{Bins, Crossing, FEWEST, HoldFit};
 use super::signal::{Alone, Change, NoiseMeter, Smooth, Stand};
 use super::{Held, Kept, Normal, Observation, ObserveError, ObserverOptions, Slip, kept};
@@ -58,7 +58,7 @@ impl Hold {
 pub struct Observer {
     pub(super) options: ObserverOptions,
     pub(super) seen: Seen,
-    pub(super) believed: Option<Believed>,
+    pub(super) filter: Option<ModelFilter>,
 }
 
 /// All that readings have changed, but for what a material makes of them.
@@ -96,18 +96,14 @@ impl Observer {
     pub fn new(options: ObserverOptions) -> Result<Self, ObserveError> {
         options.check()?;
         let noise = options.noise;
-        let believed = options.material.as_ref().map(|material| Believed::new(material, &options)).transpose()?;
+        let filter = options.material.as_ref().map(|material| ModelFilter::new(material, &options)).transpose()?;
         let seen = Seen {
             displacement_noise: NoiseMeter::new(noise.map(|noise| noise.0)),
             force_noise: NoiseMeter::new(noise.map(|noise| noise.1)),
             reached: [(f64::INFINITY, f64::NEG_INFINITY); 2],
             ..Seen::default()
         };
-        Ok(Self {
-            options,
-            seen,
-            believed,
-        })
+        Ok(Self { options, seen, filter })
     }
 
     /// Takes the readings at `time` (s): the displacement of the jaw (m, growing as it closes; `None` where there is no reading) and the
@@ -148,7 +144,7 @@ impl Observer {
     /// What a material says of readings, but for one that is off the place where the jaw stands: the hold is told of from there until the next
     /// reading says whether it was left.
     fn believe(&mut self, time: f64, displacement: f64, force: f64) {
-        let Some(believed) = &mut self.believed else { return };
+        let Some(filter) = &mut self.filter else { return };
         if self.seen.jaw.is_doubtful() {
             self.seen.doubted = Some((time, (displacement, force)));
             return;
@@ -156,14 +152,14 @@ impl Observer {
         if let Some((time, (displacement, force))) = self.seen.doubted.take()
             && !self.seen.jaw.stands
         {
-            believed.feed(time, displacement, force);
+            filter.feed(time, displacement, force);
         }
-        believed.feed(time, displacement, force);
+        filter.feed(time, displacement, force);
     }
 
     /// The material, once it has seen where the jaw is.
-    pub(super) fn informed(&self) -> Option<&Believed> {
-        self.believed.as_ref().filter(|believed| self.seen.displacement_seen && believed.is_met())
+    pub(super) fn informed(&self) -> Option<&ModelFilter> {
+        self.filter.as_ref().filter(|filter| self.seen.displacement_seen && filter.is_met())
     }
 
     /// What it was told before the first tick.
@@ -177,8 +173,8 @@ impl Observer {
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = FORMAT.to_vec();
         self.seen.keep(&mut bytes);
-        if let Some(believed) = &self.believed {
-            believed.keep(&mut bytes);
+        if let Some(filter) = &self.filter {
+            filter.keep(&mut bytes);
         }
         bytes
     }
@@ -196,7 +192,7 @@ impl Observer {
 
     fn read(&mut self, from: &mut &[u8]) -> Option<()> {
         self.seen = Kept::read(from)?;
-        self.believed.as_mut().map_or(Some(()), |believed| believed.read(from))
+        self.filter.as_mut().map_or(Some(()), |filter| filter.read(from))
     }
 
     fn check(&self, time: f64, displacement: Option<f64>, force: f64) -> Result<(), ObserveError> {
@@ -212,8 +208,8 @@ impl Observer {
             Some(last) if time <= last => return Err(ObserveError::TimeNotRising { last, found: time }),
             _ => {}
         }
-        match (&self.believed, displacement) {
-            (Some(believed), Some(displacement)) => believed.check(time, displacement),
+        match (&self.filter, displacement) {
+            (Some(filter), Some(displacement)) => filter.check(time, displacement),
             _ => Ok(()),
         }
     }
@@ -323,10 +319,10 @@ impl Observer {
             return;
         }
         let slip = self.options.slip_force;
-        let by_material = self.informed().zip(slip).map(|(believed, slip)| {
-            let factor = coverage_factor(self.options.confidence, believed.freedom);
+        let by_material = self.informed().zip(slip).map(|(filter, slip)| {
+            let factor = coverage_factor(self.options.confidence, filter.freedom);
             Crossing::find(elapsed, slip, |time| {
-                let force = believed.force_after(time - elapsed);
+                let force = filter.force_after(time - elapsed);
                 let half = factor * force.deviation;
                 (force.mean - half, force.mean, force.mean + half)
             })
@@ -340,9 +336,9 @@ impl Observer {
         {
             let confidence = self.options.confidence;
             let exponent = self
-                .believed
+                .filter
                 .as_ref()
-                .map_or(Normal::new(self.options.exponent, self.options.exponent_deviation), Believed::exponent);
+                .map_or(Normal::new(self.options.exponent, self.options.exponent_deviation), ModelFilter::exponent);
             hold.fit = HoldFit::new(bins, exponent, noise, |freedom| coverage_factor(confidence, freedom));
         } else {
             // Every tick, until there are enough.

@@ -41,7 +41,7 @@ impl Observer {
                     .map(|equilibrium| Normal::new(said.force - equilibrium.mean, equilibrium.deviation).into());
                 said.relative_rate = fit.relaxes().then(|| fit.relative_rate(elapsed));
             }
-            self.say_believed(&mut said, hold.held);
+            self.say_filtered(&mut said, hold.held);
             if self.options.slip_force.is_some() {
                 said.time_to_slip = Some(match (hold.held, hold.crossing) {
                     (Held::Force, _) => SlipForecast::NEVER,
@@ -55,19 +55,19 @@ impl Observer {
     }
 
     /// What a material tells of a hold, where the forces are its.
-    fn say_believed(&self, said: &mut Observation, held: Held) {
-        let Some(believed) = self.informed() else { return };
-        said.excess_strain = Some(believed.excess_strain().into());
-        let equilibrium = believed.equilibrium();
+    fn say_filtered(&self, said: &mut Observation, held: Held) {
+        let Some(filter) = self.informed() else { return };
+        said.excess_strain = Some(filter.excess_strain().into());
+        let equilibrium = filter.equilibrium();
         let itself = said.equilibrium_force.and_then(|itself| itself.standard_error);
         if itself.is_some_and(|itself| equilibrium.deviation > itself) {
             return;
         }
-        said.excess_force = Some(believed.excess_force().into());
-        said.relative_rate = Some(believed.relative_rate());
+        said.excess_force = Some(filter.excess_force().into());
+        said.relative_rate = Some(filter.relative_rate());
         if held == Held::Displacement {
             said.equilibrium_force = Some(equilibrium.into());
-            said.force = believed.force_after(0.0).mean;
+            said.force = filter.force_after(0.0).mean;
         }
     }
 

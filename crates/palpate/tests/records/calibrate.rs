@@ -35,7 +35,7 @@ fn candidate(law: &str, equilibrium: EquilibriumLaw) -> Candidate {
     Candidate::new(law.parse().unwrap(), equilibrium)
 }
 
-const EVEN: EquilibriumLaw = EquilibriumLaw::EvenStrain;
+const EVEN: EquilibriumLaw = EquilibriumLaw::UniformStrain;
 
 #[test]
 fn without_noise_the_numbers_come_back() {
@@ -52,22 +52,22 @@ fn without_noise_the_numbers_come_back() {
 
 /// Test (a) up to 43 s is all loading; its unloading, and all of test (b), follow from the numbers.
 #[test]
-fn calibrated_on_loading_the_unloading_is_foretold() {
+fn calibrated_on_loading_the_unloading_is_predicted() {
     let a = measured(&paper_test_a(), 7, 0.2).fitted_until(53.0).unwrap();
     let latency = calibrate(&a, candidate("latency", EVEN), 0.95, &mut Unwatched).unwrap();
     let linear = calibrate(&a, candidate("standard-linear-solid", EVEN), 0.95, &mut Unwatched).unwrap();
-    let (good, poor) = (latency.foretold.unwrap(), linear.foretold.unwrap());
+    let (good, poor) = (latency.holdout.unwrap(), linear.holdout.unwrap());
     // What is left is the noise of the readings.
     assert!((0.15..0.25).contains(&good.rmse) && poor.rmse > 1.8 * good.rmse, "{good:?} {poor:?}");
     let b = measured(&paper_test_b(), 8, 0.0);
-    let foretold = latency.material.predict(b.motion(), &Sampling::Times(b.times().to_vec()), 0.95).unwrap();
+    let predicted = latency.material.predict(b.motion(), &Sampling::Times(b.times().to_vec()), 0.95).unwrap();
     let misses = (0..b.times().len()).filter(|i| {
-        let (low, high) = foretold.force_interval(*i);
+        let (low, high) = predicted.force_interval(*i);
         b.forces()[*i] < low - 1e-3 || b.forces()[*i] > high + 1e-3
     });
     let misses = misses.count();
     assert!(misses * 10 < b.times().len(), "{misses} of {}", b.times().len());
-    assert!(foretold.extrapolations.is_empty(), "{:?}", foretold.extrapolations);
+    assert!(predicted.extrapolations.is_empty(), "{:?}", predicted.extrapolations);
 }
 
 /// The record of a ball whose rate coefficient depends on strain or direction.
@@ -107,7 +107,7 @@ fn a_rate_that_depends_on_strain_or_direction_is_found_and_chosen() {
             ..candidate("latency", EVEN)
         };
         let made: Vec<_> = candidates
-            .with_rivals(&[])
+            .with_alternatives(&[])
             .into_iter()
             .map(|one| calibrate(&data, one, 0.95, &mut Unwatched).unwrap())
             .collect();
@@ -120,10 +120,10 @@ fn a_rate_that_depends_on_strain_or_direction_is_found_and_chosen() {
             let behind = other.criteria.bic - made[0].criteria.bic;
             assert!(behind > 50.0, "{} is behind by {behind}", other.material.candidate);
         }
-        // And foretold: fitted on the first three holds, the others follow.
+        // And predicted: fitted on the first three holds, the others follow.
         let part = data.fitted_until(34.0).unwrap();
         let [mine, plain] = [candidates, candidate("latency", EVEN)]
-            .map(|one| calibrate(&part, one, 0.95, &mut Unwatched).unwrap().foretold.unwrap().rmse);
+            .map(|one| calibrate(&part, one, 0.95, &mut Unwatched).unwrap().holdout.unwrap().rmse);
         assert!(mine < 0.5 * plain, "{rate:?}: {mine} {plain}");
     }
 }
@@ -293,8 +293,8 @@ fn questions_beyond_the_test_are_said_to_be() {
         hold: 600.0,
     }])
     .unwrap();
-    let foretold = found.material.predict(&squeeze, &Sampling::Rate(1.0), 0.95).unwrap();
-    let kinds: Vec<&str> = foretold
+    let predicted = found.material.predict(&squeeze, &Sampling::Rate(1.0), 0.95).unwrap();
+    let kinds: Vec<&str> = predicted
         .extrapolations
         .iter()
         .map(|found| match found {
@@ -307,13 +307,13 @@ fn questions_beyond_the_test_are_said_to_be() {
         .collect();
     assert_eq!(kinds, ["longer", "deeper", "faster", "larger"]);
     assert!(
-        foretold.extrapolations[0]
+        predicted.extrapolations[0]
             .to_string()
             .contains("a hold of 600 s is asked for; the test has shown 10.0 s")
     );
-    let last = foretold.trajectory.len() - 1;
-    let ((low, high), (least, most)) = (foretold.force_interval(last), foretold.reading_interval(last));
-    assert!(least < low && low < foretold.trajectory.force[last] && high < most);
+    let last = predicted.trajectory.len() - 1;
+    let ((low, high), (least, most)) = (predicted.force_interval(last), predicted.reading_interval(last));
+    assert!(least < low && low < predicted.trajectory.force[last] && high < most);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot run has failed")]
 
 use palpate::calibrate::{
-    Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, Shown,
+    Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialUncertainty, MaterialUnit,
 };
 use palpate::contact::{Shape, Sides};
 use palpate::fit::Estimate;
@@ -20,7 +20,7 @@ fn ball(errors: Option<[f64; 4]>) -> Material {
         ("rate_coefficient", MaterialUnit::PerSecond, 2e4),
         ("layer_thickness", MaterialUnit::Metre, 0.035 / 8.0),
     ];
-    let number = |(index, (name, unit, value)): (usize, (&str, MaterialUnit, f64))| MaterialNumber {
+    let number = |(index, (name, unit, value)): (usize, (&str, MaterialUnit, f64))| MaterialParameter {
         name: name.to_owned(),
         unit,
         estimate: Estimate {
@@ -40,11 +40,11 @@ fn ball(errors: Option<[f64; 4]>) -> Material {
             separation: Separation::Unilateral,
             levels: vec![],
         },
-        candidate: Candidate::new("latency".parse().unwrap(), EquilibriumLaw::EvenStrain),
+        candidate: Candidate::new("latency".parse().unwrap(), EquilibriumLaw::UniformStrain),
         numbers: names.into_iter().enumerate().map(number).collect(),
         uncertainty,
         noise: 0.05,
-        shown: Shown {
+        shown: CalibrationRange {
             longest_hold: 20.0,
             deepest: 0.015,
             fastest: SPEED,
@@ -65,7 +65,7 @@ fn linear(terms: usize) -> Material {
             ("overshoot", MaterialUnit::One, 0.8),
             ("time", MaterialUnit::Second, 0.5 * 10f64.powi(term as i32 - 1)),
         ] {
-            material.numbers.push(MaterialNumber {
+            material.numbers.push(MaterialParameter {
                 name: format!("{name}_{term}"),
                 unit,
                 estimate: Estimate::fixed(value),
@@ -97,7 +97,7 @@ fn it_slips_when_the_closed_form_of_the_hold_says_so() {
         let time = (slip.powi(-4) - start.powi(-4)) / (4.0 * 2e4);
         assert!((seconds(found.lasts) / time - 1.0).abs() < 1e-9, "{displacement}: {:?} {time}", found.lasts);
         assert_eq!(found.interval, None);
-        assert!(found.relaxed_force < found.needed_force && found.peak_force == found.start_force);
+        assert!(found.equilibrium_force < found.needed_force && found.peak_force == found.start_force);
         let (more, less) = (displacement * (1.0 + 1e-5), displacement * (1.0 - 1e-5));
         let times = grip.neighbours(&[less, more], SPEED);
         let slope = (seconds(times[1].1) / seconds(times[0].1)).ln() / (more - less);
@@ -106,7 +106,7 @@ fn it_slips_when_the_closed_form_of_the_hold_says_so() {
     let shallow = grip.holding(&Plan::squeeze(0.003, SPEED)).unwrap();
     assert_eq!((shallow.lasts, shallow.sharpness), (TimeToSlip::After(0.0), None));
     let deep = grip.holding(&Plan::squeeze(0.008, SPEED)).unwrap();
-    assert!(deep.lasts == TimeToSlip::Never && deep.relaxed_force > deep.needed_force && deep.lasts.covers(1e12));
+    assert!(deep.lasts == TimeToSlip::Never && deep.equilibrium_force > deep.needed_force && deep.lasts.covers(1e12));
 }
 
 #[test]
@@ -199,7 +199,7 @@ fn after_a_retreat_the_force_stays_where_it_is() {
     assert!(one.abs() < 1e-9 && three.abs() > 1e-3, "{one} {three}");
 }
 
-/// Half of the numbers that go with the record slip from the least squeeze whose relaxed force is enough.
+/// Half of the numbers that go with the record slip from the least squeeze whose equilibrium force is enough.
 #[test]
 fn an_assured_retreat_holds_with_the_lower_edge_of_its_band() {
     let material = ball(Some([0.02, 0.01, 0.05, 0.01]));
@@ -209,7 +209,7 @@ fn an_assured_retreat_holds_with_the_lower_edge_of_its_band() {
     assert!(grip.holding(&assured.backed.plan).unwrap().interval.unwrap().0.covers(3600.0), "{assured:?}");
     let less = grip.back_off(Some(assured.backed.displacement * (1.0 - 1e-5)), 3600.0, false).unwrap();
     assert!(!less.backed.interval.unwrap().0.covers(3600.0), "{less:?}");
-    // Not more than a few standard errors of the relaxed force, which rises with the square of the squeeze.
+    // Not more than a few standard errors of the equilibrium force, which rises with the square of the squeeze.
     let more = assured.backed.displacement / best.backed.displacement - 1.0;
     assert!((0.01..0.1).contains(&more), "{more}");
     let limits = Limits {
@@ -229,7 +229,7 @@ fn held_forces_do_not_slip_and_creep() {
     assert!((held.force - 0.25 * 9.806_65 / 1.2).abs() < 1e-12 && held.holds);
     let relaxed = held.displacement_relaxed.unwrap();
     assert!(held.displacement_start < held.displacement_end && held.displacement_end < relaxed, "{held:?}");
-    assert!((grip(&material, 0.25).relaxed_force(relaxed) / held.force - 1.0).abs() < 1e-9);
+    assert!((grip(&material, 0.25).equilibrium_force(relaxed) / held.force - 1.0).abs() < 1e-9);
     // A stroke that ends on the way.
     let limits = Limits {
         stroke: Some(0.5 * (held.displacement_start + held.displacement_end)),

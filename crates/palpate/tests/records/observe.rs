@@ -383,12 +383,13 @@ fn a_million_ticks_and_strange_ones_stay_finite() {
 /// The ball of `model`, with numbers 10 % off on average and errors that say so.
 fn material(stiffer: f64) -> palpate::calibrate::Material {
     use palpate::calibrate::{
-        Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, Shown,
+        Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialUncertainty,
+        MaterialUnit,
     };
     use palpate::laws::{ExponentChoice, Law};
     let model = model();
     let thickness = model.layers.thickness(model.specimen.depth());
-    let number = |name: &str, unit, value: f64, share: f64| MaterialNumber {
+    let number = |name: &str, unit, value: f64, share: f64| MaterialParameter {
         name: name.to_owned(),
         unit,
         estimate: Estimate {
@@ -412,7 +413,7 @@ fn material(stiffer: f64) -> palpate::calibrate::Material {
             Law::Latency {
                 exponent: ExponentChoice::Free,
             },
-            EquilibriumLaw::EvenStrain,
+            EquilibriumLaw::UniformStrain,
         ),
         numbers: vec![
             number("modulus", MaterialUnit::Pascal, stiffer * model.specimen.modulus(), 0.02),
@@ -426,7 +427,7 @@ fn material(stiffer: f64) -> palpate::calibrate::Material {
             covariance,
         }),
         noise: 0.05,
-        shown: Shown {
+        shown: CalibrationRange {
             longest_hold: 60.0,
             deepest: 0.01,
             fastest: 0.01,
@@ -487,11 +488,11 @@ fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
 
 #[test]
 fn a_material_whose_rate_depends_on_the_strain_is_watched_by_that() {
-    use palpate::calibrate::{MaterialNumber, MaterialUnit, RateLaw};
+    use palpate::calibrate::{MaterialParameter, MaterialUnit, RateLaw};
     use palpate::simulate::{Motion, Sampling, simulate};
     let mut varying = material(1.0);
     varying.candidate.rate = RateLaw::ByStrain;
-    varying.numbers.push(MaterialNumber {
+    varying.numbers.push(MaterialParameter {
         name: "strain_factor".to_owned(),
         unit: MaterialUnit::One,
         estimate: Estimate::fixed(0.02),

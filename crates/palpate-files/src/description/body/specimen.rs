@@ -87,7 +87,7 @@ impl SpecimenTable {
             ("specimen.equilibrium", "specimen.poisson_ratio", "specimen.equilibrium_forces");
         match (self.equilibrium, self.poisson_ratio, &self.equilibrium_forces) {
             (Some(_), _, Some(_)) => Err(source.both(measured, named)),
-            (None | Some(EquilibriumName::EvenStrain), Some(_), _) => {
+            (None | Some(EquilibriumName::UniformStrain), Some(_), _) => {
                 let reason = "without equilibrium = \"hertz\", the only law that asks for it";
                 Err(source.unused(ratio, reason, "remove poisson_ratio"))
             }
@@ -105,7 +105,7 @@ impl SpecimenTable {
                 let law = Equilibrium::measured(&rows).map_err(|error| source.value(measured, expected, &error))?;
                 Ok((measured, law))
             }
-            (None | Some(EquilibriumName::EvenStrain), None, None) => Ok((named, Equilibrium::EvenStrain)),
+            (None | Some(EquilibriumName::UniformStrain), None, None) => Ok((named, Equilibrium::UniformStrain)),
         }
     }
 

@@ -33,7 +33,7 @@ pub(crate) struct SpecimenTable {
     pub(crate) areas: Option<Vec<(QuantityText, QuantityText)>>,
     /// Young's modulus.
     pub(crate) modulus: Option<QuantityText>,
-    /// Law of the force once relaxation is over, in a protocol: even strain (the paper's, if nothing is said) or hertz.
+    /// Law of the force once relaxation is over, in a protocol: uniform strain (the paper's, if nothing is said) or hertz.
     pub(crate) equilibrium: Option<EquilibriumName>,
     /// Poisson's ratio of a body with hertz, from 0 to 0.5.
     pub(crate) poisson_ratio: Option<f64>,
@@ -46,8 +46,8 @@ pub(crate) struct SpecimenTable {
 #[schemars(rename = "Equilibrium")]
 pub(crate) enum EquilibriumName {
     /// Force = modulus × displacement/depth × contact area.
-    #[serde(rename = "even strain")]
-    EvenStrain,
+    #[serde(rename = "uniform strain")]
+    UniformStrain,
     /// Force = 4/3 modulus/(1 − ν²) √radius displacement^(3/2).
     #[serde(rename = "hertz")]
     Hertz,
@@ -121,7 +121,7 @@ pub(crate) struct LawTable {
     /// Terms of Fung's reduced relaxation function: g = c0 + sum of share exp(-rate t), all shares and c0 together 1.
     #[schemars(extend("minItems" = 1))]
     pub(crate) shares: Option<Vec<ShareTable>>,
-    /// What a linear law remembers: strain, or the relaxed force (quasi-linear). Strain if nothing is said, but force with fung.
+    /// What a linear law remembers: strain, or the equilibrium force (quasi-linear). Strain if nothing is said, but force with fung.
     pub(crate) memory: Option<MemoryName>,
 }
 
@@ -169,7 +169,7 @@ pub(crate) enum LawName {
 pub(crate) enum MemoryName {
     /// Strain: the area is that of the moment.
     Strain,
-    /// The relaxed force, Fung's quasi-linear viscoelasticity.
+    /// The equilibrium force, Fung's quasi-linear viscoelasticity.
     Force,
 }
 

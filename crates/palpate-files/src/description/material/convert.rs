@@ -6,7 +6,9 @@
 use std::path::Path;
 
 use palpate::{
-    calibrate::{Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, RateLaw, Shown},
+    calibrate::{
+        Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialUncertainty, RateLaw,
+    },
     contact::{Equilibrium, RateDependence},
     fit::Estimate,
     laws::Law,
@@ -115,14 +117,14 @@ fn version(source: &Source<'_>) -> Result<(), DescriptionError> {
     }
 }
 
-/// The law of the relaxed force, and the contact displacements of its table, if it is one, but for first touch.
+/// The law of the equilibrium force, and the contact displacements of its table, if it is one, but for first touch.
 fn equilibrium(
     source: &Source<'_>,
     name: CalibratedEquilibriumName,
     model: &Contact,
 ) -> Result<(EquilibriumLaw, Vec<f64>), DescriptionError> {
     let (law, levels) = match model.specimen().equilibrium() {
-        Equilibrium::EvenStrain => (EquilibriumLaw::EvenStrain, Vec::new()),
+        Equilibrium::UniformStrain => (EquilibriumLaw::UniformStrain, Vec::new()),
         Equilibrium::Hertz { poisson_ratio: ratio } => (EquilibriumLaw::Hertz { poisson_ratio: *ratio }, Vec::new()),
         Equilibrium::Measured { force_per_displacement } => {
             let places = force_per_displacement.points().into_iter().skip(1).map(|(place, _)| place);
@@ -146,7 +148,7 @@ pub(super) fn rate_law(rate: RateDependence) -> (RateLaw, Option<f64>) {
     }
 }
 
-fn numbers(source: &Source<'_>, tables: &[NumberTable]) -> Result<Vec<MaterialNumber>, DescriptionError> {
+fn numbers(source: &Source<'_>, tables: &[NumberTable]) -> Result<Vec<MaterialParameter>, DescriptionError> {
     let number = |(index, table): (usize, &NumberTable)| {
         let key = |name: &str| format!("calibration.number[{}].{name}", index + 1);
         let above = |name: &str, value: f64| source.number(&key(name), value, "a number above 0", |value| value > 0.0);
@@ -169,7 +171,7 @@ fn numbers(source: &Source<'_>, tables: &[NumberTable]) -> Result<Vec<MaterialNu
         if let Some(error) = table.standard_error {
             source.number(&key("standard_error"), error, "a number of 0 or more", |error| error >= 0.0)?;
         }
-        Ok(MaterialNumber {
+        Ok(MaterialParameter {
             name: table.name.clone(),
             unit: *unit,
             estimate: Estimate {
@@ -249,13 +251,13 @@ fn agrees_with(
     Ok(())
 }
 
-fn shown(source: &Source<'_>, table: &ShownTable) -> Result<Shown, DescriptionError> {
+fn shown(source: &Source<'_>, table: &ShownTable) -> Result<CalibrationRange, DescriptionError> {
     let quantity = |name: &str, written: &QuantityText, dimension| {
         let key = format!("calibration.shown.{name}");
         let value = source.si(&key, written, dimension)?;
         source.number(&key, value, "0 or more", |value| value >= 0.0)
     };
-    let shown = Shown {
+    let shown = CalibrationRange {
         longest_hold: quantity("longest_hold", &table.longest_hold, Dimension::Time)?,
         deepest: quantity("deepest", &table.deepest, Dimension::Length)?,
         fastest: quantity("fastest", &table.fastest, Dimension::Speed)?,

@@ -41,7 +41,7 @@ pub(crate) struct CalibrationTable {
     pub(crate) samples: usize,
     /// The law as it was fitted: latency (n found), latency:5 (n given), standard-linear-solid, prony:K or fung:K.
     pub(crate) law: String,
-    /// The law of the relaxed force as it was fitted.
+    /// The law of the equilibrium force as it was fitted.
     pub(crate) equilibrium: CalibratedEquilibriumName,
     /// Standard deviation of what the model left of the measured force.
     pub(crate) residual: QuantityText,
@@ -63,8 +63,8 @@ pub(crate) struct CalibrationTable {
 #[schemars(rename = "CalibratedEquilibrium")]
 pub(crate) enum CalibratedEquilibriumName {
     /// Force = modulus × displacement/depth × contact area.
-    #[serde(rename = "even strain")]
-    EvenStrain,
+    #[serde(rename = "uniform strain")]
+    UniformStrain,
     /// Hertz's law.
     #[serde(rename = "hertz")]
     Hertz,
@@ -111,7 +111,7 @@ pub(crate) struct ShownTable {
 impl From<EquilibriumLaw> for CalibratedEquilibriumName {
     fn from(law: EquilibriumLaw) -> Self {
         match law {
-            EquilibriumLaw::EvenStrain => Self::EvenStrain,
+            EquilibriumLaw::UniformStrain => Self::UniformStrain,
             EquilibriumLaw::Hertz { .. } => Self::Hertz,
             EquilibriumLaw::Table => Self::Table,
         }

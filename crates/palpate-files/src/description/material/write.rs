@@ -66,7 +66,7 @@ impl MaterialFile {
         let modulus =
             || format!("modulus = {}{}\n", si(specimen.modulus(), "Pa"), self.interval("modulus", 1e-3, " kPa"));
         let stiffness = match specimen.equilibrium() {
-            Equilibrium::EvenStrain => modulus(),
+            Equilibrium::UniformStrain => modulus(),
             Equilibrium::Hertz { poisson_ratio } => {
                 format!("{}equilibrium = \"hertz\"\npoisson_ratio = {poisson_ratio:?}\n", modulus())
             }

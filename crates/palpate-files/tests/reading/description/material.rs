@@ -4,7 +4,8 @@
 use std::path::Path;
 
 use palpate::calibrate::{
-    Body, Candidate, EquilibriumLaw, Material, MaterialNumber, MaterialUncertainty, MaterialUnit, RateLaw, Shown,
+    Body, CalibrationRange, Candidate, EquilibriumLaw, Material, MaterialParameter, MaterialUncertainty, MaterialUnit,
+    RateLaw,
 };
 use palpate::contact::{Curve, Shape, Sides};
 use palpate::fit::Estimate;
@@ -14,13 +15,13 @@ use palpate_files::description::{
     self_contained,
 };
 
-fn number(name: &str, unit: MaterialUnit, value: f64) -> MaterialNumber {
+fn number(name: &str, unit: MaterialUnit, value: f64) -> MaterialParameter {
     let estimate = Estimate {
         value,
         standard_error: Some(0.01 * value),
         interval: Some((0.98 * value, 1.02 * value)),
     };
-    MaterialNumber {
+    MaterialParameter {
         name: name.to_owned(),
         unit,
         estimate,
@@ -72,7 +73,7 @@ fn material(law: &str, equilibrium: EquilibriumLaw, shape: Shape) -> MaterialFil
                 covariance: (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect(),
             }),
             noise: 0.05 * third,
-            shown: Shown {
+            shown: CalibrationRange {
                 longest_hold: 60.0 * third,
                 deepest: 0.01 * third,
                 fastest: 0.1 * third,
@@ -95,7 +96,7 @@ fn ball() -> Shape {
 }
 
 fn usual() -> MaterialFile {
-    material("latency", EquilibriumLaw::EvenStrain, ball())
+    material("latency", EquilibriumLaw::UniformStrain, ball())
 }
 
 #[test]
@@ -113,9 +114,9 @@ fn what_is_written_is_read_again_to_the_last_digit() {
     let profile = Shape::Profile { depth: 0.02, area };
     for law in ["latency", "latency:5", "standard-linear-solid", "prony:2", "prony:3", "fung:1", "fung:2"] {
         for (equilibrium, shape) in [
-            (EquilibriumLaw::EvenStrain, ball()),
-            (EquilibriumLaw::EvenStrain, prism.clone()),
-            (EquilibriumLaw::EvenStrain, profile.clone()),
+            (EquilibriumLaw::UniformStrain, ball()),
+            (EquilibriumLaw::UniformStrain, prism.clone()),
+            (EquilibriumLaw::UniformStrain, profile.clone()),
             (EquilibriumLaw::Table, ball()),
             (hertz, ball()),
             (hertz, pad.clone()),
@@ -251,7 +252,12 @@ fn what_is_no_material_is_refused_with_its_place() {
             "calibration.law",
             "a law such as",
         ),
-        ("equilibrium = \"even strain\"", "equilibrium = \"hertz\"", "calibration.equilibrium", "[specimen]"),
+        (
+            "equilibrium = \"uniform strain\"",
+            "equilibrium = \"hertz\"",
+            "calibration.equilibrium",
+            "[specimen]",
+        ),
         ("unit = \"Pa\"", "unit = \"kPa\"", "calibration.number[1].unit", "Pa, N, m, s or /s"),
         ("covariance = [\n  [", "covariance = [\n  [1.0],\n  [", "calibration.covariance", "4 rows of 4"),
         ("covariance = [\n  [3.", "covariance = [\n  [-3.", "calibration.covariance", "4 rows of 4"),

@@ -28,7 +28,7 @@ fn a_short_protocol_has_the_usual_rest() {
 }
 
 #[test]
-fn bodies_by_their_tables_and_laws_of_the_relaxed_force() {
+fn bodies_by_their_tables_and_laws_of_the_equilibrium_force() {
     let rows = "areas = [[\"0 mm\", \"0 mm^2\"], [\"1 mm\", \"40 mm^2\"], [\"5 mm\", \"1 cm^2\"]]";
     let punch = with("\"ball\"\nradius = \"35 mm\"", &format!("\"profile\"\ndepth = \"2 cm\"\n{rows}"));
     let body = protocol(&punch).unwrap().contact.specimen().clone();

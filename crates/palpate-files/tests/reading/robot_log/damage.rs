@@ -104,7 +104,10 @@ fn lengths_that_lie_cost_no_memory() {
         let bytes = [mcap::MAGIC, &[6], &(chunk.len() as u64).to_le_bytes(), &chunk].concat();
         let error = all(&bytes).unwrap_err();
         assert!(
-            matches!(error.problem, FileProblem::Unlike { .. } | FileProblem::TooLarge { .. } | FileProblem::Swells(_)),
+            matches!(
+                error.problem,
+                FileProblem::Unlike { .. } | FileProblem::TooLarge { .. } | FileProblem::DecompressionLimit(_)
+            ),
             "{error}"
         );
     }

@@ -1,7 +1,7 @@
 //! A whole record calibrated: tables, text and figure.
 
 use palpate::analysis::HoldoutError;
-use palpate::calibrate::{CalibrateError, Calibration, Candidate, Material, MaterialNumber, NumberProfile};
+use palpate::calibrate::{CalibrateError, Calibration, Candidate, Material, MaterialParameter, NumberProfile};
 use palpate::fit::Interval;
 
 use crate::figure::{Figure, Layer, Panel, Role};
@@ -17,7 +17,7 @@ use crate::wrap::wrapped;
 fn laws(record: &CalibratedRecord) -> Table {
     let (fitted, all) = (record.data.fitted(), record.data.times().len());
     let until = record.data.times()[fitted - 1] - record.data.times()[0];
-    let rest = if fitted < all { format!("; {} foretold", counted(all - fitted, "sample")) } else { String::new() };
+    let rest = if fitted < all { format!("; {} held out", counted(all - fitted, "sample")) } else { String::new() };
     let caption = format!("Calibrated on {} over {} s{rest}.", counted(fitted, "sample"), significant(until, 4));
     let least = record.made().map(|made| made.criteria.bic).fold(f64::INFINITY, f64::min);
     let mut table = Table::of("laws", caption, &record.rows)
@@ -27,12 +27,12 @@ fn laws(record: &CalibratedRecord) -> Table {
         .column("of peak", "rmse_percent", "%", of_made(|made| Cell::Number(100.0 * made.relative, 3)))
         .column("ΔBIC", "delta_bic", "", of_made(|made| Cell::Number(made.criteria.bic - least, 3)));
     if fitted < all {
-        let foretold = |number: fn(&HoldoutError) -> f64| {
-            of_made(move |made| made.foretold.as_ref().map_or(Cell::text(""), |found| Cell::Number(number(found), 3)))
+        let holdout = |number: fn(&HoldoutError) -> f64| {
+            of_made(move |made| made.holdout.as_ref().map_or(Cell::text(""), |found| Cell::Number(number(found), 3)))
         };
-        let relative = foretold(|found| 100.0 * found.relative);
-        table = table.column("Foretold to", "foretold_rmse_n", "N", foretold(|found| found.rmse));
-        table = table.column("of peak", "foretold_percent", "%", relative);
+        let relative = holdout(|found| 100.0 * found.relative);
+        table = table.column("Held-out error", "holdout_rmse_n", "N", holdout(|found| found.rmse));
+        table = table.column("of peak", "holdout_percent", "%", relative);
     }
     let ended = |made: &Calibration| Cell::text(word(made.termination).replace('_', " "));
     table.column("Ended", "termination", "", of_made(ended)).table()
@@ -54,8 +54,8 @@ fn numbers_table(material: &Material, profiles: &[NumberProfile]) -> Table {
     const LEFT_OPEN: &str = "the record leaves it open";
     const OPEN: &str = "the record leaves it open, or it was given";
     let share = material.uncertainty.as_ref().map_or(0.95, |uncertainty| uncertainty.confidence);
-    let for_people = |number: &MaterialNumber| material_unit(number.unit).2;
-    let interval = |number: &MaterialNumber, pick: fn((f64, f64)) -> f64| {
+    let for_people = |number: &MaterialParameter| material_unit(number.unit).2;
+    let interval = |number: &MaterialParameter, pick: fn((f64, f64)) -> f64| {
         let (factor, _) = for_people(number);
         Cell::number_or(number.estimate.interval.map(|ends| factor * pick(ends)), 4, OPEN)
     };
@@ -72,7 +72,7 @@ fn numbers_table(material: &Material, profiles: &[NumberProfile]) -> Table {
         .column(format!("{} from", percent(share)), "low", "", |number| interval(number, |ends| ends.0))
         .column("to", "high", "", |number| interval(number, |ends| ends.1));
     if !profiles.is_empty() {
-        let profile = |number: &MaterialNumber, pick: fn(Interval) -> Option<f64>| {
+        let profile = |number: &MaterialParameter, pick: fn(Interval) -> Option<f64>| {
             let found = profiles.iter().find(|profile| profile.name == number.name);
             let end = found.and_then(|found| pick(found.interval)).map(|end| for_people(number).0 * end);
             Cell::number_or(end, 4, if found.is_some() { LEFT_OPEN } else { OPEN })
@@ -133,7 +133,7 @@ pub fn calibration_figure(record: &CalibratedRecord, name: &str) -> Figure {
     }
     if record.data.fitted() < times.len() {
         let at = times[record.data.fitted() - 1];
-        force = force.layer(Layer::vertical(at, Role::Reference).label("fitted | foretold"));
+        force = force.layer(Layer::vertical(at, Role::Reference).label("fitted | held out"));
         left = left.layer(Layer::vertical(at, Role::Reference));
     }
     let travel: Vec<f64> = times.iter().map(|time| motion.displacement_at(*time)).collect();

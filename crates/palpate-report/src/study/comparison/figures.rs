@@ -45,7 +45,7 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     by_hold(
         &format!("forward_errors{suffix}"),
         format!(
-            "What each law, fitted to the first part of a hold, foretells of the rest: root mean square error in % of the change of the signal.{left}"
+            "What each law, fitted to the first part of a hold, predicts of the rest: root mean square error in % of the change of the signal.{left}"
         ),
         (1.4 * 78.0, 78.0),
         (&holds, "holds"),

@@ -10,7 +10,7 @@ use crate::table::{Cell, Columns, Table};
 use crate::wrap::wrapped;
 
 const NO_FIT: &str = "could not be fitted";
-const NO_FORECAST: &str = "its first part could not be fitted, or leaves nothing to foretell";
+const NO_FORECAST: &str = "its first part could not be fitted, or leaves nothing to predict";
 
 /// What the columns mean; told once below all tables.
 pub(super) const NOTES: [&str; 3] = [
@@ -122,9 +122,9 @@ pub(in crate::study) fn verdicts(record: &ComparedRecord) -> Option<Table> {
         .column("p", "parameters", "", |(_, found, verdict)| {
             row_of(found, verdict.law).map_or(Cell::missing(NO_FIT), parameters)
         })
-        .column("Foretells to", "forward_score_percent", "%", |(_, found, verdict)| {
+        .column("Held-out error", "forward_score_percent", "%", |(_, found, verdict)| {
             let score = row_of(found, verdict.law).and_then(|row| row.forward.score);
-            percent(score, 2, "too short to foretell: ranked by BIC")
+            percent(score, 2, "too short to predict: ranked by BIC")
         })
         .column("Sure", "certainty", "", |(.., verdict)| Cell::text(word(verdict.certainty)))
         .column("Laws as good", "alike", "", |(.., verdict)| Cell::Integer(verdict.alike.len() as i64 - 1))

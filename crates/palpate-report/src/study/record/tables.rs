@@ -246,7 +246,7 @@ pub(super) fn joint(analysis: &Analysis) -> Option<Table> {
         .unless_empty()
 }
 
-/// How well each law, fitted to the first part of the holds, foretells the rest.
+/// How well each law, fitted to the first part of the holds, predicts the rest.
 pub(super) fn predictions(analysis: &Analysis) -> Option<Table> {
     let until = analysis.options.fit_until?;
     let caption = format!("Laws fitted to the first {until} s of each hold: root mean square error over the rest.");

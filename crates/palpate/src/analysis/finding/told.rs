@@ -271,7 +271,7 @@ impl Finding {
             Self::ModulusEstimated { modulus, standard_error } => info(
                 "modulus_estimated",
                 format!(
-                    "no modulus was given; the relaxed forces imply {} kPa",
+                    "no modulus was given; the equilibrium forces imply {} kPa",
                     with_error(modulus / 1e3, standard_error.map_or(f64::NAN, |error| error / 1e3))
                 ),
                 "strains and v rest on this estimate; n and the relative rate do not",
@@ -280,7 +280,7 @@ impl Finding {
             Self::ModulusMismatch { given, implied } => caution(
                 "modulus_mismatch",
                 format!(
-                    "the given modulus is {} kPa, the relaxed forces imply {} kPa (force over area and relative squeeze)",
+                    "the given modulus is {} kPa, the equilibrium forces imply {} kPa (force over area and relative squeeze)",
                     significant(given / 1e3, 4),
                     significant(implied / 1e3, 4)
                 ),

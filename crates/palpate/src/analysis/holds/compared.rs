@@ -29,8 +29,8 @@ pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
     });
     // A law that contains the chosen one must do as well.
     let alike = comparison.verdict.as_ref().map_or_else(Vec::new, |verdict| {
-        let rivals = verdict.alike.iter().filter(|law| !law.contains(verdict.law));
-        [verdict.law].iter().chain(rivals).copied().collect()
+        let alternatives = verdict.alike.iter().filter(|law| !law.contains(verdict.law));
+        [verdict.law].iter().chain(alternatives).copied().collect()
     });
     let mut findings = Vec::new();
     if !at_bound.is_empty() {

@@ -64,7 +64,7 @@ pub struct HoldAnalysis {
     pub fitted: usize,
     /// Time-domain fits: the listed exponents in order, then the free one.
     pub fits: Vec<LatencyFit>,
-    /// How well each foretells the rest of the hold, where the fit ended early on request.
+    /// How well each predicts the rest of the hold, where the fit ended early on request.
     pub predictions: Vec<Option<HoldoutError>>,
     /// Which exponent the data ask for.
     pub order: Option<OrderSelection>,
@@ -240,7 +240,7 @@ fn fit_all(hold: &mut HoldAnalysis, options: &AnalysisOptions, watch: &mut dyn W
         watch.report(Progress::open("fitting the latency law", hold.fits.len()))?;
         match fit_hold_watched(times, values, choice, &options.fit, watch) {
             Ok(fit) => {
-                hold.predictions.push(foretell(&fit, &hold.times, &hold.values, hold.fitted));
+                hold.predictions.push(forecast(&fit, &hold.times, &hold.values, hold.fitted));
                 hold.fits.push(fit);
                 hold.rate_fits.push(fit_rates(&hold.rates.strain, &hold.rates.rate, choice, &options.fit).ok());
             }
@@ -288,7 +288,7 @@ fn loading(record: &Record, ramp: Option<usize>, segment: &Segment) -> Option<Lo
 }
 
 /// Error of a fit over the samples from index `fitted` on.
-fn foretell(fit: &LatencyFit, times: &[f64], values: &[f64], fitted: usize) -> Option<HoldoutError> {
+fn forecast(fit: &LatencyFit, times: &[f64], values: &[f64], fitted: usize) -> Option<HoldoutError> {
     let beyond = times[fitted..].iter().zip(&values[fitted..]);
     let samples = values.len() - fitted;
     if samples == 0 {

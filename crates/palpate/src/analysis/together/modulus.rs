@@ -1,4 +1,4 @@
-//! The modulus that the relaxed forces imply.
+//! The modulus that the equilibrium forces imply.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,16 +15,16 @@ use crate::statistics::{median, noise};
 pub enum ModulusSource {
     /// Given by the user.
     Given,
-    /// Estimated from the relaxed forces of the holds.
+    /// Estimated from the equilibrium forces of the holds.
     Estimated,
 }
 
-/// A modulus from relaxed forces.
+/// A modulus from equilibrium forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::analysis) struct ImpliedModulus {
     /// E, Pa.
     pub(in crate::analysis) value: f64,
-    /// Its standard error, Pa; `None` where no fit gave the relaxed forces.
+    /// Its standard error, Pa; `None` where no fit gave the equilibrium forces.
     pub(in crate::analysis) standard_error: Option<f64>,
 }
 

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! The times τ_j are a grid, not numbers to find, so the fit is linear least squares with bounds: it has one optimum and
-//! needs no start. Numbers of the law it has none; it is what any sum of relaxing parts can do, and hence the rival
-//! that a law has to match in foretelling a hold. The rule for grid and smoothing and its evidence:
+//! needs no start. Numbers of the law it has none; it is what any sum of relaxing parts can do, and hence the alternative
+//! that a law has to match in predicting a hold. The rule for grid and smoothing and its evidence:
 //! `docs/theory/spectrum.md`.
 
 mod normal;

@@ -5,7 +5,7 @@
 //! | number | unit | range | meaning |
 //! |---|---|---|---|
 //! | elastic response N | of y | any | signal at the start |
-//! | c₀ | 1 | below 1 | share that stays; N c₀ is the relaxed force of equation (1), ε_e = −N₀c₀/α_c |
+//! | c₀ | 1 | below 1 | share that stays; N c₀ is the equilibrium force of equation (1), ε_e = −N₀c₀/α_c |
 //! | cᵢ | 1 | | share of each term |
 //! | νᵢ | 1/s | above 0 | their rates |
 //!

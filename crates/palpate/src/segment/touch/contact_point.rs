@@ -92,7 +92,7 @@ const BASELINE: usize = 5;
 /// Finds first touch in a segmented record.
 ///
 /// The first ramp in which the force rises decides. The curve that a body under the latency law must draw in it, with n, v
-/// and the relaxed force of the hold that follows, is laid over the force by least squares; where it begins is first touch.
+/// and the equilibrium force of the hold that follows, is laid over the force by least squares; where it begins is first touch.
 /// Only if that lies clearly behind the foot of the ramp (3 standard errors and 2 % of the travel), and the force is flat
 /// up to there, has the jaw travelled through air. Otherwise first touch is the foot of the ramp, and the zero of the force
 /// is its median at rest before it, or nothing is subtracted from a force without such a rest.

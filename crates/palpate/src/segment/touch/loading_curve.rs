@@ -141,7 +141,7 @@ impl LoadingCurve {
     /// Standard error of d₀ that the errors of F_e and v bring in: √(gᵀ C g) with the slopes g of d₀ along the numbers of the
     /// hold and their covariance C.
     fn error_by_hold(&self, best: &Curve, law: &HoldLaw) -> f64 {
-        // Of the relaxed force, the amplitude and ln λ.
+        // Of the equilibrium force, the amplitude and ln λ.
         let Some(covariance) = &law.fit.covariance else {
             return 0.0;
         };

@@ -12,7 +12,7 @@ pub enum Memory {
     /// Strain: ε = ∫ G(t − s) dε_e(s), F = S(u) ε, as the latency law has it; the area is that of the moment.
     #[default]
     Strain,
-    /// Force: F = ∫ G(t − s) dF_e(s) with the relaxed force F_e(u) = S(u) u/depth, Fung's quasi-linear viscoelasticity. Of a body of
+    /// Force: F = ∫ G(t − s) dF_e(s) with the equilibrium force F_e(u) = S(u) u/depth, Fung's quasi-linear viscoelasticity. Of a body of
     /// constant section it is the same.
     Force,
 }
@@ -30,9 +30,9 @@ pub struct LinearContact {
     pub separation: Separation,
 }
 
-/// The quantity q that the law remembers, strain u/depth or relaxed force F_e(u), at a contact displacement.
+/// The quantity q that the law remembers, strain u/depth or equilibrium force F_e(u), at a contact displacement.
 impl LinearContact {
-    /// q at contact displacement `u` (m). Beyond first touch, where a body whose contact grows carries nothing, the relaxed force would
+    /// q at contact displacement `u` (m). Beyond first touch, where a body whose contact grows carries nothing, the equilibrium force would
     /// pull as it pushes on this side: a jaw that cannot pull is off.
     pub(super) fn value(&self, u: f64) -> f64 {
         let strain = self.specimen.equilibrium_strain(u);

@@ -1,4 +1,4 @@
-//! Linear laws of relaxation under the same motions, forces and programs, so that laws are compared in what they foretell.
+//! Linear laws of relaxation under the same motions, forces and programs, so that laws are compared in what they predict.
 //!
 //! The contact layer of the latency law is replaced by one with a memory that fades linearly,
 //!
@@ -7,7 +7,7 @@
 //! ```
 //!
 //! or, with an excess x_k for every term, ε = ε_e + Σ x_k and ẋ_k = g_k ε̇_e − λ_k x_k. One term with g = m − 1 and λ = v is the latency
-//! law with n = 1. Fung's quasi-linear law is the same with the relaxed force F_e(u) in the place of ε_e and F in that of ε. Either of them
+//! law with n = 1. Fung's quasi-linear law is the same with the equilibrium force F_e(u) in the place of ε_e and F in that of ε. Either of them
 //! is called q below.
 //!
 //! | file | what |

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::fit::{LawOptions, Samples, foretell};
+use palpate::fit::{LawOptions, Samples, forecast};
 use palpate::forecast::{Certainty, CompareOptions, Comparison, Ranking, compare_laws};
 use palpate::laws::Law;
 use palpate::test_problems::Noise;
@@ -35,7 +35,7 @@ fn the_law_that_made_the_hold_is_chosen() {
         assert!(verdict.alike.contains(&name.parse().unwrap()), "{name}: {verdict:?}");
         let chosen = comparison.rows.iter().find(|row| row.law == verdict.law).unwrap();
         println!("{name}: {} at {:.5}, {:?}", verdict.law, chosen.forward.score.unwrap(), verdict.certainty);
-        // The noise of what is foretold is in every error; a good law adds little to it.
+        // The noise of what is predicted is in every error; a good law adds little to it.
         assert!(chosen.forward.score.unwrap() < 2.0 * 1e-3 / 3.0, "{name}: {:?}", chosen.forward);
     }
 }
@@ -58,18 +58,18 @@ fn a_forecast_is_that_of_the_samples_and_not_only_of_their_nodes() {
     let (times, values) = hold(3000, 60.0, 2e-3, |t| 1.0 + 2.0 * (-t / 9.0).exp());
     let law = Law::StandardLinearSolid;
     let options = LawOptions::default();
-    let forecast = foretell(&Samples::new(&times, &values), law, &options, 20.0).unwrap();
+    let forecast = forecast(&Samples::new(&times, &values), law, &options, 20.0).unwrap();
     let first = forecast.fitted;
     let fit = palpate::fit::fit_law(&Samples::new(&times[..first], &values[..first]), law, &options).unwrap();
     let errors: Vec<f64> = times[first..].iter().zip(&values[first..]).map(|(t, y)| fit.predict(*t) - y).collect();
     let rmse = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
     println!("forecast {:e}, samples {rmse:e}", forecast.rmse);
     assert!((forecast.rmse / rmse - 1.0).abs() < 5e-3, "{} {rmse}", forecast.rmse);
-    assert_eq!(forecast.fitted + forecast.foretold, 3000);
+    assert_eq!(forecast.fitted + forecast.held_out, 3000);
 }
 
 #[test]
-fn holds_that_foretell_nothing_are_ranked_by_information() {
+fn holds_that_predict_nothing_are_ranked_by_information() {
     // Over after a second: nothing changes after the first cut.
     let (times, values) = hold(2000, 100.0, 1e-2, |t| 1.0 + (-t / 0.3).exp());
     let over = compared(&times, &values);
@@ -90,7 +90,7 @@ fn a_noisy_hold_is_given_the_simplest_law_that_does() {
 
 /// The claim that the project rests on, on a record measured by others.
 #[test]
-fn four_numbers_foretell_half_an_hour_of_tape_as_well_as_a_dense_spectrum() {
+fn four_numbers_predict_half_an_hour_of_tape_as_well_as_a_dense_spectrum() {
     let folder = std::env::var("PALPATE_DATA")
         .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data").to_owned());
     let Ok(bytes) = std::fs::read(format!("{folder}/vhb4910/relax_3d0.csv")) else {

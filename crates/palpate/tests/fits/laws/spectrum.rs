@@ -103,7 +103,7 @@ fn smoothing_uses_what_the_residual_allows() {
 type Law<'a> = &'a dyn Fn(f64) -> f64;
 
 #[test]
-fn first_third_foretells_the_rest() {
+fn first_third_predicts_the_rest() {
     let t = times(1200, 300.0);
     let laws: [(&str, f64, Law<'_>); 4] = [
         ("latency", 0.01, &|t| 0.5 + decay(0.5 * t, 5.0)),

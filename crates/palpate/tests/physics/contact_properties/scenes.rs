@@ -204,7 +204,7 @@ impl Scene {
         }
     }
 
-    /// A relaxed force that the body carries well, N.
+    /// A equilibrium force that the body carries well, N.
     pub(crate) fn force(&self) -> f64 {
         let specimen = self.body.specimen();
         let u = specimen.contact_displacement(0.6 * self.body.deepest());

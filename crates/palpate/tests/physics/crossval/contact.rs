@@ -375,7 +375,7 @@ impl BodyCase {
             _ => {
                 let area = Curve::new(&self.rows).unwrap();
                 let depth = self.depth;
-                (Shape::Profile { depth, area }, Equilibrium::EvenStrain)
+                (Shape::Profile { depth, area }, Equilibrium::UniformStrain)
             }
         };
         Specimen::new(shape, self.modulus, sides).unwrap().with_equilibrium(equilibrium).unwrap()

@@ -8,15 +8,15 @@ use super::{
 use crate::laws::{BasisFunction, Law, LawCurve, Term};
 use crate::optimise::{Ending, Work, polished, refine};
 
-/// How well the first part of a hold foretells the rest.
+/// How well the first part of a hold predicts the rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Forecast {
     /// Time since the first sample up to which was fitted, s.
     pub cut: f64,
     /// Samples fitted.
     pub fitted: usize,
-    /// Samples foretold.
-    pub foretold: usize,
+    /// Samples held out of the fit.
+    pub held_out: usize,
     /// Root mean square error over those, in the unit of the signal; it contains their noise.
     pub rmse: f64,
     /// Mean error over those: above zero where the law runs above the data.
@@ -29,8 +29,8 @@ pub struct Forecast {
 /// the error of a given curve by 10⁻⁴ of itself.
 ///
 /// # Errors
-/// [`FitError`] as for [`fit_law`](crate::fit::fit_law) on the first part; [`FitError::TooFewSamples`] if none are left to foretell.
-pub fn foretell(samples: &Samples<'_>, law: Law, options: &LawOptions, cut: f64) -> Result<Forecast, FitError> {
+/// [`FitError`] as for [`fit_law`](crate::fit::fit_law) on the first part; [`FitError::TooFewSamples`] if none are left to predict.
+pub fn forecast(samples: &Samples<'_>, law: Law, options: &LawOptions, cut: f64) -> Result<Forecast, FitError> {
     options.check()?;
     samples.check(1)?;
     let start = samples.times[0];
@@ -68,7 +68,7 @@ pub fn foretell(samples: &Samples<'_>, law: Law, options: &LawOptions, cut: f64)
     Ok(Forecast {
         cut,
         fitted,
-        foretold: times.len(),
+        held_out: times.len(),
         rmse: (square / weight).sqrt(),
         bias: off / weight,
     })

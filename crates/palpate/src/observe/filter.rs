@@ -15,7 +15,7 @@ use crate::simulate::{Contact, ContactModel, ContactState, StepError};
 /// Readings closer than this (s) tell no more than one: what a model leaves over lasts longer.
 const APART: f64 = 0.01;
 /// A mean square of normalised surprises above which the body is not the one that was calibrated.
-const SURPRISED: f64 = 6.0;
+const INNOVATION_LIMIT: f64 = 6.0;
 /// Standard deviations from the calibrated numbers beyond which it is another body.
 const FAR: f64 = 5.0;
 /// Most directions: those that leave open the most.
@@ -81,7 +81,7 @@ impl Member {
 
 /// A calibrated body beside the record.
 #[derive(Debug, Clone)]
-pub(super) struct Believed {
+pub(super) struct ModelFilter {
     best: Member,
     /// The pairs, each with how many standard deviations lie on either side.
     pairs: Vec<(Member, Member, f64)>,
@@ -102,7 +102,7 @@ pub(super) struct Believed {
     pub(super) freedom: f64,
 }
 
-impl Believed {
+impl ModelFilter {
     pub(super) fn new(material: &Material, options: &ObserverOptions) -> Result<Self, ObserveError> {
         let best = Member::new(material.contact(), 0.0).ok_or(ObserveError::LinearMaterial)?;
         let off = |direction: &[f64], by: f64| {
@@ -238,7 +238,7 @@ impl Believed {
 
     /// Whether the forces are those of the calibrated body.
     pub(super) fn is_met(&self) -> bool {
-        self.surprise < SURPRISED && self.standing.iter().all(|standing| standing.abs() < FAR)
+        self.surprise < INNOVATION_LIMIT && self.standing.iter().all(|standing| standing.abs() < FAR)
     }
 
     fn combined(&self, of: impl Fn(&Member) -> f64) -> Normal {
