@@ -11,7 +11,7 @@ use arrow_ipc::writer::StreamWriter;
 use arrow_schema::DataType;
 use numpy::{PyArray1, PyArrayMethods};
 use palpate::number::significant;
-use pyo3::exceptions::{PyKeyError, PyRuntimeError};
+use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyType};
 use pyo3_arrow::PyTable;
@@ -135,10 +135,19 @@ impl Table {
         name.extract::<String>().is_ok_and(|name| self.batch.column_by_name(&name).is_some())
     }
 
-    fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let column = self.batch.column_by_name(name).ok_or_else(|| {
-            PyKeyError::new_err(format!("no column is called {name:?}; columns are {}", self.column_names().join(", ")))
+    fn __getitem__<'py>(&self, py: Python<'py>, name: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let names = || self.column_names().join(", ");
+        let name: String = name.extract().map_err(|_| {
+            PyTypeError::new_err(format!(
+                "a table is indexed by the name of a column, found {name:?}; columns are {}; a row is \
+                 polars.DataFrame(table).row(0, named=True)",
+                names()
+            ))
         })?;
+        let column = self
+            .batch
+            .column_by_name(&name)
+            .ok_or_else(|| PyKeyError::new_err(format!("no column is called {name:?}; columns are {}", names())))?;
         Ok(match column.data_type() {
             DataType::Float64 => {
                 let values = column.as_primitive::<Float64Type>().iter().map(|value| value.unwrap_or(f64::NAN));

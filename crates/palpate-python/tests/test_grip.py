@@ -165,7 +165,7 @@ def test_the_least_squeeze_holds_exactly_as_long_as_is_asked(material: palpate.M
     back_off, schedule, pressed = least.back_off, least.schedule, least.force_held
     assert back_off is not None and schedule is not None and pressed is not None
     assert abs(back_off.drift_n) < 1e-9 < -back_off.plain_drift_n and back_off.plain.course is None
-    assert back_off.backed.start_force_n == pytest.approx(back_off.backed.relaxed_force_n, rel=1e-9)
+    assert back_off.backed.start_force_n == pytest.approx(back_off.backed.equilibrium_force_n, rel=1e-9)
     course = schedule.course.force_n[schedule.course.time_s > schedule.moves["time_s"][0] + 1.0]
     assert course.min() == pytest.approx(2.1, rel=1e-6) and course.max() == pytest.approx(3.0, rel=1e-6)
     assert np.all(np.diff(schedule.moves["time_s"]) > 0) and pressed.holds

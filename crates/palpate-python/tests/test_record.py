@@ -39,6 +39,16 @@ def test_an_analysis_is_that_of_the_command_line_to_the_last_bit(root: Path) -> 
 
 
 @pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
+def test_a_table_says_how_it_is_indexed(root: Path) -> None:
+    table = palpate.read(root / "examples/records/ball.csv", test=root / "examples/records/ball.toml").analyze(compare=False).holds
+    with pytest.raises(TypeError, match=r"by the name of a column, found 0; columns are hold, .*row\(0, named=True\)"):
+        table[0]  # type: ignore[index] # pyright: ignore[reportArgumentType]
+    with pytest.raises(KeyError, match="no column is called"):
+        table["force"]
+    assert polars.DataFrame(table).row(0, named=True)["hold"] == table["hold"][0]
+
+
+@pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
 def test_tables_say_what_the_document_says(root: Path) -> None:
     record = palpate.read(root / "examples/records/ball.csv", test=root / "examples/records/ball.toml")
     analysis = record.analyze(compare=False)

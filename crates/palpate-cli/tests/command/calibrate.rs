@@ -163,7 +163,7 @@ fn what_cannot_be_calibrated_or_predicted_is_said_and_nothing_is_written() {
         ("later.toml", "hold.toml", &[], "calibrate again"),
         ("none.toml", "hold.toml", &[], "no such file"),
         ("ball.toml", "none.toml", &[], "no such file"),
-        ("hold.toml", "hold.toml", &[], "calibration: missing"),
+        ("hold.toml", "hold.toml", &[], "expected a material file, found a protocol"),
         ("ball.toml", "deep.toml", &[], "step[1].to"),
         ("ball.toml", "hold.toml", &["--at", "99 s"], "99"),
         ("ball.toml", "hold.toml", &["--out", "ball.toml"], "another file"),

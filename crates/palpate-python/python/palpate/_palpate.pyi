@@ -286,7 +286,7 @@ class Holding(_Value):
     needed_force_n: Final[float]
     start_force_n: Final[float]
     peak_force_n: Final[float]
-    relaxed_force_n: Final[float]
+    equilibrium_force_n: Final[float]
     work_j: Final[float]
     sharpness_per_m: Final[float | None]
     time_to_slip_s: Final[float]

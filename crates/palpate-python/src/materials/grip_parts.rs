@@ -80,7 +80,7 @@ part! {
         /// The largest force, N.
         peak_force_n: f64,
         /// The force that the hold tends to, N.
-        relaxed_force_n: f64,
+        equilibrium_force_n: f64,
         /// Work of the jaws while they close, J.
         work_j: f64,
         /// How sharply the time depends on the squeeze, d ln(time)/d(displacement), 1/m; None where it slips at once or never.
@@ -104,7 +104,7 @@ part! {
             found.kind,
             significant(1e3 * found.displacement_m, 4),
             significant(found.start_force_n, 4),
-            significant(found.relaxed_force_n, 4),
+            significant(found.equilibrium_force_n, 4),
             significant(found.needed_force_n, 4),
         )
     }

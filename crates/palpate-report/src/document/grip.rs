@@ -84,7 +84,7 @@ documents! {
         /// The largest force, N.
         peak_force_n: f64 = found.peak_force,
         /// The force that the hold tends to, N.
-        relaxed_force_n: f64 = found.equilibrium_force,
+        equilibrium_force_n: f64 = found.equilibrium_force,
         /// Work of the jaws while they close, J.
         work_j: f64 = found.work,
         /// How long it holds.

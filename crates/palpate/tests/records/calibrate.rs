@@ -239,7 +239,7 @@ fn a_direction_that_the_record_does_not_show_is_said() {
 }
 
 #[test]
-fn a_table_of_relaxed_forces_is_that_of_the_body() {
+fn a_table_of_equilibrium_forces_is_that_of_the_body() {
     let data = measured(&paper_test_a(), 3, 0.05);
     let found = calibrate(&data, candidate("latency:5", EquilibriumLaw::Table), 0.95, &mut Unwatched).unwrap();
     let body = paper_ball(Separation::Unilateral).specimen;

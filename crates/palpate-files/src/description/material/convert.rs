@@ -24,6 +24,7 @@ use crate::description::{
     body::model::model,
     text::{
         error::DescriptionError,
+        kind::DescriptionKind,
         quantity::QuantityText,
         source::{self, Source},
     },
@@ -100,7 +101,7 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
 /// Refuses a file of another version before anything else that may have changed with it; what is no version, or no table, is
 /// refused with the other tables.
 fn version(source: &Source<'_>) -> Result<(), DescriptionError> {
-    let tables: toml::Table = source.tables()?;
+    let tables = source.tables_of(DescriptionKind::Material, &[DescriptionKind::Test, DescriptionKind::Protocol])?;
     let Some(calibration) = tables.get("calibration") else {
         let expected = "the table that palpate calibrate writes; a body without it is a protocol's";
         return Err(source.missing("calibration", expected));

@@ -17,6 +17,7 @@ use crate::description::{
     material::MaterialFile,
     text::{
         error::DescriptionError,
+        kind::DescriptionKind,
         quantity::QuantityText,
         source::{self, Source},
     },
@@ -132,6 +133,7 @@ pub fn self_contained(text: &str, path: &Path) -> Result<String, DescriptionErro
 /// As for [`read_protocol`], less those of the file.
 pub fn parse_protocol(text: &str, path: &Path) -> Result<Protocol, DescriptionError> {
     let source = Source { path, text };
+    source.tables_of(DescriptionKind::Protocol, &[DescriptionKind::Material])?;
     check(&source, &protocol_tables(&source)?)
 }
 

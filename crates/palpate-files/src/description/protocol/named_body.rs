@@ -8,13 +8,14 @@ use crate::description::{
     material::parse_material,
     text::{
         error::DescriptionError,
+        kind::DescriptionKind,
         source::{self, Source},
     },
 };
 
 /// The tables of a protocol whose body may be that of a material file: `material = "file"` stands for specimen, law and contact.
 pub(crate) fn protocol_tables<T: DeserializeOwned>(source: &Source<'_>) -> Result<T, DescriptionError> {
-    let tables: toml::Table = source.tables()?;
+    let tables = source.tables_of(DescriptionKind::Protocol, &[DescriptionKind::Test])?;
     let Some(named) = tables.get("material") else {
         return source.tables();
     };

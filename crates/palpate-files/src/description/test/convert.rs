@@ -19,6 +19,7 @@ use crate::description::{
     body::{contact, specimen},
     text::{
         error::DescriptionError,
+        kind::DescriptionKind,
         source::{self, Source},
     },
 };
@@ -51,6 +52,7 @@ pub fn read_test(path: &Path) -> Result<TestDescription, DescriptionError> {
 /// As for [`read_test`], less those of the file.
 pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, DescriptionError> {
     let source = Source { path, text };
+    source.tables_of(DescriptionKind::Test, &[DescriptionKind::Protocol])?;
     let tables = preset::over_preset(&source, source.tables()?)?;
     if tables.law.is_some() && tables.calibration.is_none() {
         let reason = "in a test, whose laws are found from its record";

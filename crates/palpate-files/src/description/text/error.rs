@@ -4,7 +4,7 @@ use std::{fmt, path::PathBuf};
 
 use palpate::units::{Dimension, UnitError};
 
-use super::quantity::usual;
+use super::{kind::DescriptionKind, quantity::usual};
 use crate::error::{FileError, FileProblem, plain, shown};
 
 /// Ends the words for what is accepted where a value is out of all proportion.
@@ -66,6 +66,16 @@ pub enum DescriptionError {
         message: String,
         /// The line.
         text: String,
+    },
+    /// The file is a description of another kind.
+    #[error("{}: expected {expected}, found {found}", path.display())]
+    Kind {
+        /// The file.
+        path: PathBuf,
+        /// The kind that is needed.
+        expected: DescriptionKind,
+        /// The kind that it is.
+        found: DescriptionKind,
     },
     /// Something is wrong with a key or its value.
     #[error("{place}{problem}")]
@@ -147,6 +157,7 @@ impl DescriptionError {
             Self::TooLong { .. } => "give a description in TOML here, not the record itself".to_owned(),
             Self::NotText { .. } => "save the description as UTF-8".to_owned(),
             Self::Syntax { text, message, .. } => syntax(text, message),
+            Self::Kind { expected, found, .. } => expected.instead_of(*found).to_owned(),
             Self::Key { place, problem } => problem.help(place.key.rsplit('.').next().unwrap_or(&place.key)),
         };
         Some(plain(&help))

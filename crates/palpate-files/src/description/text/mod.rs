@@ -6,15 +6,18 @@
 //! | `places.rs` | from a place in the text to the path of a key, and back |
 //! | `quantity.rs` | a quantity as written |
 //! | `words.rs` | what the reader of TOML says, in plain words |
+//! | `kind.rs` | test description, protocol or material ([`DescriptionKind`]) |
 //! | `error.rs` | why a description cannot be used, and what would help ([`DescriptionError`]) |
 
 pub(super) mod error;
+pub(super) mod kind;
 pub(super) mod places;
 pub(super) mod quantity;
 pub(super) mod source;
 pub(super) mod words;
 
 pub use error::{DescriptionError, KeyPlace, KeyProblem};
+pub use kind::DescriptionKind;
 
 /// A text as TOML writes it.
 pub(crate) fn quoted(text: &str) -> String {

@@ -7,6 +7,7 @@ use serde::de::DeserializeOwned;
 
 use super::{
     error::{BELIEVABLE, DescriptionError, KeyPlace, KeyProblem},
+    kind::DescriptionKind,
     places::Places,
     quantity::QuantityText,
     words,
@@ -52,6 +53,23 @@ impl Source<'_> {
     pub(crate) fn tables<T: DeserializeOwned>(&self) -> Result<T, DescriptionError> {
         let deserializer = toml::Deserializer::parse(self.text).map_err(|error| self.syntax(&error))?;
         T::deserialize(deserializer).map_err(|error| self.unfit(&error))
+    }
+
+    /// The tables of the text, which is no description of one of these kinds.
+    pub(crate) fn tables_of(
+        &self,
+        expected: DescriptionKind,
+        refused: &[DescriptionKind],
+    ) -> Result<toml::Table, DescriptionError> {
+        let tables: toml::Table = self.tables()?;
+        match DescriptionKind::of(&tables) {
+            Some(found) if refused.contains(&found) => Err(DescriptionError::Kind {
+                path: self.path.to_owned(),
+                expected,
+                found,
+            }),
+            _ => Ok(tables),
+        }
     }
 
     /// Tables that were put together from several texts, unchecked.

@@ -216,6 +216,35 @@ fn a_material_is_the_body_of_a_protocol_and_of_a_test() {
     assert!(parse_test(text, &path).unwrap_err().to_string().contains("law"));
 }
 
+/// `palpate grip ball.toml` and `palpate simulate ball.toml` said which keys were wrong, and not that the file was another one.
+#[test]
+fn a_description_of_another_kind_is_refused_as_what_it_is() {
+    let test = "[about]\ntitle = \"Ball\"\n[specimen]\nshape = \"ball\"\nradius = \"35 mm\"\n";
+    let protocol = "[specimen]\nshape = \"ball\"\nradius = \"35 mm\"\n[[step]]\nto = \"5 mm\"\nrate = \"1 mm/s\"\n";
+    let material = usual().to_toml();
+    let path = Path::new("x.toml");
+    let errors = [
+        (
+            parse_material(test, path).unwrap_err(),
+            "a material file, found a test description",
+            "palpate calibrate",
+        ),
+        (
+            parse_material(protocol, path).unwrap_err(),
+            "a material file, found a protocol",
+            "palpate calibrate",
+        ),
+        (parse_protocol(test, path).unwrap_err(), "a protocol, found a test description", "palpate analyze"),
+        (parse_protocol(&material, path).unwrap_err(), "a protocol, found a material file", "[[step]]"),
+        (parse_test(protocol, path).unwrap_err(), "a test description, found a protocol", "palpate inspect"),
+    ];
+    for (error, says, helps) in errors {
+        assert_eq!(error.to_string(), format!("x.toml: expected {says}"));
+        assert!(error.hint().unwrap().contains(helps), "{error}: {:?}", error.hint());
+    }
+    assert!(parse_test(&material, path).is_ok());
+}
+
 #[test]
 fn what_is_no_material_is_refused_with_its_place() {
     let text = usual().to_toml();
