@@ -136,18 +136,12 @@ impl Table {
     }
 
     fn __getitem__<'py>(&self, py: Python<'py>, name: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let names = || self.column_names().join(", ");
-        let name: String = name.extract().map_err(|_| {
-            PyTypeError::new_err(format!(
-                "a table is indexed by the name of a column, found {name:?}; columns are {}; a row is \
-                 polars.DataFrame(table).row(0, named=True)",
-                names()
-            ))
-        })?;
-        let column = self
-            .batch
-            .column_by_name(&name)
-            .ok_or_else(|| PyKeyError::new_err(format!("no column is called {name:?}; columns are {}", names())))?;
+        let names = self.column_names().join(", ");
+        let wrong = "a table is indexed by the name of a column; a row is polars.DataFrame(table).row(0, named=True)";
+        let found = |_| PyTypeError::new_err(format!("{wrong}; found {name:?}, columns are {names}"));
+        let name: String = name.extract().map_err(found)?;
+        let missing = || PyKeyError::new_err(format!("no column is called {name:?}; columns are {names}"));
+        let column = self.batch.column_by_name(&name).ok_or_else(missing)?;
         Ok(match column.data_type() {
             DataType::Float64 => {
                 let values = column.as_primitive::<Float64Type>().iter().map(|value| value.unwrap_or(f64::NAN));

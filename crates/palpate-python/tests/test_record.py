@@ -41,7 +41,7 @@ def test_an_analysis_is_that_of_the_command_line_to_the_last_bit(root: Path) -> 
 @pytest.mark.filterwarnings("ignore::palpate.PalpateWarning")
 def test_a_table_says_how_it_is_indexed(root: Path) -> None:
     table = palpate.read(root / "examples/records/ball.csv", test=root / "examples/records/ball.toml").analyze(compare=False).holds
-    with pytest.raises(TypeError, match=r"by the name of a column, found 0; columns are hold, .*row\(0, named=True\)"):
+    with pytest.raises(TypeError, match=r"by the name of a column; .*row\(0, named=True\); found 0, columns are hold, "):
         table[0]  # type: ignore[index] # pyright: ignore[reportArgumentType]
     with pytest.raises(KeyError, match="no column is called"):
         table["force"]

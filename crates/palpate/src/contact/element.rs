@@ -165,9 +165,8 @@ impl Ramps {
 /// A way to near the steady state that no end of a piece cut short, with what it depends on and what it cost.
 #[derive(Debug, Clone)]
 struct Way {
-    exponent: f64,
-    start: f64,
-    reach: f64,
+    /// Exponent, z at its start and reach, to the last bit.
+    asked: [u64; 3],
     steps: Vec<Step>,
     /// Time and z at its end.
     end: (f64, f64),
@@ -183,13 +182,9 @@ thread_local! {
 
 impl Way {
     /// The way that this thread followed last, if a piece that lasts `until` has the same to the last bit.
-    fn followed(exponent: f64, start: f64, reach: f64, until: f64) -> Option<Self> {
-        let asked = [exponent, start, reach].map(f64::to_bits);
-        LAST_WAY.with_borrow(|last| {
-            let way = last.as_ref()?;
-            let is_same = asked == [way.exponent, way.start, way.reach].map(f64::to_bits);
-            (is_same && way.latest < until * (1.0 - 1e-9)).then(|| way.clone())
-        })
+    fn followed(asked: [u64; 3], until: f64) -> Option<Self> {
+        let is_same = |way: &&Self| way.asked == asked && way.latest < until * (1.0 - 1e-9);
+        LAST_WAY.with_borrow(|last| last.as_ref().filter(is_same).cloned())
     }
 }
 
@@ -220,8 +215,8 @@ impl Element {
         let near = if n == 1.0 { f64::INFINITY } else { NEAR / n.max(1.0) };
         // What is not a number is near: nothing is left to follow.
         let is_far = |z: f64| (1.0 - z).abs() > near && !(n == 2.0 && z >= 0.0);
-        let is_first = ramps.steps.is_empty();
-        let followed = if is_first { Way::followed(n, start, reach, until) } else { None };
+        let (is_first, asked) = (ramps.steps.is_empty(), [n, start, reach].map(f64::to_bits));
+        let followed = is_first.then(|| Way::followed(asked, until)).flatten();
         let is_new = followed.is_none();
         let way = followed.unwrap_or_else(|| {
             let first = until.min(0.5 * ((1.0 - start) / speed(start)));
@@ -241,9 +236,7 @@ impl Element {
                 end = (solver.time, solver.state);
             }
             Way {
-                exponent: n,
-                start,
-                reach,
+                asked,
                 steps,
                 end,
                 latest: solver.latest,
@@ -253,12 +246,11 @@ impl Element {
         });
         work.steps += way.taken;
         work.evaluations += way.evaluations;
-        let end = way.end;
-        let is_whole = way.taken > 0 && !is_far(end.1);
+        let is_whole = way.taken > 0 && !is_far(way.end.1);
         if is_first && is_new && is_whole && way.latest < until {
             LAST_WAY.set(Some(way.clone()));
         }
-        let steps = way.steps;
+        let (steps, end) = (way.steps, way.end);
         let is_longer = is_first || ramps.side != side || side * (ramps.steps[0].from - start) > 0.0;
         if is_whole && end.0 <= until && (is_longer || reach < ramps.reach) {
             *ramps = Ramps {
@@ -464,7 +456,7 @@ mod tests {
             let reference = LatencyLaw::new(n, 2e4).unwrap();
             solved(reference, 0.5, 1e3);
             let pace = 0.5 / reference.steady_excess(0.5);
-            let known = |until| Way::followed(n, 0.0, 1.0, until).is_some();
+            let known = |until| Way::followed([n, 0.0, 1.0].map(f64::to_bits), until).is_some();
             assert_eq!(known(1e3 * pace), n != 1.0 && n != 2.0, "n = {n}");
             for i in 1..=60 {
                 let law = LatencyLaw::new(n, 1e3 * f64::from(1 + i % 7)).unwrap();

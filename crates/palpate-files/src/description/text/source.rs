@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 
 use super::{
     error::{BELIEVABLE, DescriptionError, KeyPlace, KeyProblem},
-    kind::DescriptionKind,
+    kind::DescriptionKind as Kind,
     places::Places,
     quantity::QuantityText,
     words,
@@ -55,20 +55,13 @@ impl Source<'_> {
         T::deserialize(deserializer).map_err(|error| self.unfit(&error))
     }
 
-    /// The tables of the text, which is no description of one of these kinds.
-    pub(crate) fn tables_of(
-        &self,
-        expected: DescriptionKind,
-        refused: &[DescriptionKind],
-    ) -> Result<toml::Table, DescriptionError> {
+    /// The tables of the text, which is no description of one of the `refused` kinds.
+    pub(crate) fn tables_of(&self, expected: Kind, refused: &[Kind]) -> Result<toml::Table, DescriptionError> {
         let tables: toml::Table = self.tables()?;
-        match DescriptionKind::of(&tables) {
-            Some(found) if refused.contains(&found) => Err(DescriptionError::Kind {
-                path: self.path.to_owned(),
-                expected,
-                found,
-            }),
-            _ => Ok(tables),
+        let path = self.path.to_owned();
+        match Kind::of(&tables).filter(|found| refused.contains(found)) {
+            Some(found) => Err(DescriptionError::Kind { path, expected, found }),
+            None => Ok(tables),
         }
     }
 
