@@ -101,7 +101,8 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
 /// Refuses a file of another version before anything else that may have changed with it; what is no version, or no table, is
 /// refused with the other tables.
 fn version(source: &Source<'_>) -> Result<(), DescriptionError> {
-    let tables = source.tables_of(DescriptionKind::Material, &[DescriptionKind::Test, DescriptionKind::Protocol])?;
+    source.refuse(&[DescriptionKind::Test, DescriptionKind::Protocol], DescriptionKind::Material)?;
+    let tables: toml::Table = source.tables()?;
     let Some(calibration) = tables.get("calibration") else {
         let expected = "the table that palpate calibrate writes; a body without it is a protocol's";
         return Err(source.missing("calibration", expected));

@@ -133,7 +133,7 @@ pub fn self_contained(text: &str, path: &Path) -> Result<String, DescriptionErro
 /// As for [`read_protocol`], less those of the file.
 pub fn parse_protocol(text: &str, path: &Path) -> Result<Protocol, DescriptionError> {
     let source = Source { path, text };
-    source.tables_of(DescriptionKind::Protocol, &[DescriptionKind::Material])?;
+    source.refuse(&[DescriptionKind::Material], DescriptionKind::Protocol)?;
     check(&source, &protocol_tables(&source)?)
 }
 

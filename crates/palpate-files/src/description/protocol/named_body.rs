@@ -15,7 +15,8 @@ use crate::description::{
 
 /// The tables of a protocol whose body may be that of a material file: `material = "file"` stands for specimen, law and contact.
 pub(crate) fn protocol_tables<T: DeserializeOwned>(source: &Source<'_>) -> Result<T, DescriptionError> {
-    let tables = source.tables_of(DescriptionKind::Protocol, &[DescriptionKind::Test])?;
+    source.refuse(&[DescriptionKind::Test], DescriptionKind::Protocol)?;
+    let tables: toml::Table = source.tables()?;
     let Some(named) = tables.get("material") else {
         return source.tables();
     };

@@ -52,7 +52,7 @@ pub fn read_test(path: &Path) -> Result<TestDescription, DescriptionError> {
 /// As for [`read_test`], less those of the file.
 pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, DescriptionError> {
     let source = Source { path, text };
-    source.tables_of(DescriptionKind::Test, &[DescriptionKind::Protocol])?;
+    source.refuse(&[DescriptionKind::Protocol], DescriptionKind::Test)?;
     let tables = preset::over_preset(&source, source.tables()?)?;
     if tables.law.is_some() && tables.calibration.is_none() {
         let reason = "in a test, whose laws are found from its record";

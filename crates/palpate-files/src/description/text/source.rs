@@ -55,13 +55,13 @@ impl Source<'_> {
         T::deserialize(deserializer).map_err(|error| self.unfit(&error))
     }
 
-    /// The tables of the text, which is no description of one of the `refused` kinds.
-    pub(crate) fn tables_of(&self, expected: Kind, refused: &[Kind]) -> Result<toml::Table, DescriptionError> {
-        let tables: toml::Table = self.tables()?;
+    /// Refuses a description of one of these kinds. What is no TOML, or of no kind, is for those to refuse who know what belongs there.
+    pub(crate) fn refuse(&self, refused: &[Kind], expected: Kind) -> Result<(), DescriptionError> {
+        let kind = self.tables().ok().and_then(|tables| Kind::of(&tables));
         let path = self.path.to_owned();
-        match Kind::of(&tables).filter(|found| refused.contains(found)) {
+        match kind.filter(|found| refused.contains(found)) {
             Some(found) => Err(DescriptionError::Kind { path, expected, found }),
-            None => Ok(tables),
+            None => Ok(()),
         }
     }
 
