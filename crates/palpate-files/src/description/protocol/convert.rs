@@ -79,6 +79,7 @@ pub fn read_protocol_of(path: &Path, material: &MaterialFile) -> Result<Protocol
 /// As for [`parse_protocol`].
 pub fn parse_protocol_of(text: &str, path: &Path, material: &MaterialFile) -> Result<Protocol, DescriptionError> {
     let source = Source { path, text };
+    source.refuse(&[DescriptionKind::Test, DescriptionKind::Material], DescriptionKind::Protocol)?;
     check(&source, &tables_with(&source, &material.to_toml())?)
 }
 

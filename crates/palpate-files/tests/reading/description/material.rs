@@ -11,8 +11,8 @@ use palpate::contact::{Curve, Shape, Sides};
 use palpate::fit::Estimate;
 use palpate::simulate::Separation;
 use palpate_files::description::{
-    MaterialFile, MaterialOrigin, parse_material, parse_protocol, parse_test, read_protocol, read_protocol_of,
-    self_contained,
+    MaterialFile, MaterialOrigin, parse_material, parse_protocol, parse_protocol_of, parse_test, read_protocol,
+    read_protocol_of, self_contained,
 };
 
 fn number(name: &str, unit: MaterialUnit, value: f64) -> MaterialParameter {
@@ -243,6 +243,11 @@ fn a_description_of_another_kind_is_refused_as_what_it_is() {
         assert!(error.hint().unwrap().contains(helps), "{error}: {:?}", error.hint());
     }
     assert!(parse_test(&material, path).is_ok());
+    // With a material given beside it.
+    for (text, found) in [(test, "a test description"), (&material, "a material file")] {
+        let error = parse_protocol_of(text, path, &usual()).unwrap_err();
+        assert_eq!(error.to_string(), format!("x.toml: expected a protocol, found {found}"));
+    }
 }
 
 #[test]
