@@ -1,4 +1,4 @@
-"""Shapes averaged over a loading, from mpmath at 40 digits: int phi(t - s) d gamma(s), with derivatives by the numbers.
+"""Shapes averaged over a loading, from mpmath at 40 digits: int phi(t - s) d gamma(s), with derivatives by the parameters.
 
 A loading is a piecewise linear gamma(s), s <= 0, given as (time, value) from 0 to 1. Inputs are doubles and used as exactly
 those doubles. Every value is computed in two ways that share nothing: from the antiderivative Phi of the shape, piece
@@ -32,51 +32,51 @@ SHAPES = [
 ]
 
 
-def shape(name, numbers, x):
-    """phi(x); the numbers are a rate and a pure number, for Fung's spectrum ln of the ratio of its rates."""
-    s = numbers[0] * x
+def shape(name, parameters, x):
+    """phi(x); the parameters are a rate and a pure number, for Fung's spectrum ln of the ratio of its rates."""
+    s = parameters[0] * x
     if name == "exponential":
         return mp.exp(-s)
     if name == "stretched":
-        return mp.exp(-(s ** numbers[1]))
+        return mp.exp(-(s ** parameters[1]))
     if name == "power_decay":
-        return (1 + s) ** -numbers[1]
+        return (1 + s) ** -parameters[1]
     if name == "power_growth":
-        return s ** numbers[1]
+        return s ** parameters[1]
     if name == "logarithm":
         return mp.log1p(s)
     if name == "mittag_leffler":
-        return mittag_leffler(numbers[1], s) if s else mp.mpf(1)
+        return mittag_leffler(parameters[1], s) if s else mp.mpf(1)
     if name == "fung_continuous":
-        return (mp.e1(s) - mp.e1(s * mp.exp(numbers[1]))) / numbers[1] if s else mp.mpf(1)
+        return (mp.e1(s) - mp.e1(s * mp.exp(parameters[1]))) / parameters[1] if s else mp.mpf(1)
     odd = range(1, 4001, 2) if s < 0.001 else range(1, int(mp.sqrt(110 / s)) + 5, 2)
     if s < 0.001:  # the faces do not feel each other
         return 1 - 4 * mp.sqrt(s / mp.pi**3)
     return 8 / mp.pi**2 * sum(mp.exp(-k * k * s) / k**2 for k in odd)
 
 
-def antiderivative(name, numbers, x):
+def antiderivative(name, parameters, x):
     """int_0^x phi."""
-    rate, s = numbers[0], numbers[0] * x
+    rate, s = parameters[0], parameters[0] * x
     if s == 0:
         return mp.mpf(0)
     if name == "exponential":
         return -mp.expm1(-s) / rate
     if name == "stretched":
-        return mp.gammainc(1 / numbers[1], 0, s ** numbers[1]) / (numbers[1] * rate)
+        return mp.gammainc(1 / parameters[1], 0, s ** parameters[1]) / (parameters[1] * rate)
     if name == "power_decay":
-        return ((1 + s) ** (1 - numbers[1]) - 1) / ((1 - numbers[1]) * rate)
+        return ((1 + s) ** (1 - parameters[1]) - 1) / ((1 - parameters[1]) * rate)
     if name == "power_growth":
-        return s ** (1 + numbers[1]) / ((1 + numbers[1]) * rate)
+        return s ** (1 + parameters[1]) / ((1 + parameters[1]) * rate)
     if name == "logarithm":
         return ((1 + s) * mp.log1p(s) - s) / rate
     if name == "mittag_leffler":  # x E_{alpha,2}(-s^alpha)
-        return x * two_parameter(numbers[1], s)
+        return x * two_parameter(parameters[1], s)
     if name == "fung_continuous":
         def exchanged(s):  # int_0^s E1
             return s * mp.e1(s) - mp.expm1(-s)
-        ratio = mp.exp(numbers[1])
-        return (exchanged(s) - exchanged(ratio * s) / ratio) / (numbers[1] * rate)
+        ratio = mp.exp(parameters[1])
+        return (exchanged(s) - exchanged(ratio * s) / ratio) / (parameters[1] * rate)
     # sum over odd k of 8/pi^2 (1 - exp(-k^2 s))/k^4, with sum 1/k^4 = pi^4/96
     if s < 0.001:
         return (s - mp.mpf(8) / 3 * s * mp.sqrt(s / mp.pi**3)) / rate
@@ -119,27 +119,27 @@ def pieces(loading):
         yield mp.mpf(before), mp.mpf(after), mp.mpf(high) - mp.mpf(low)
 
 
-def average(name, numbers, loading, t):
+def average(name, parameters, loading, t):
     total = mp.mpf(0)
     for before, after, change in pieces(loading):
-        ends = antiderivative(name, numbers, t - before) - antiderivative(name, numbers, t - after)
+        ends = antiderivative(name, parameters, t - before) - antiderivative(name, parameters, t - after)
         total += change * ends / (after - before)
     return total
 
 
-def by_quadrature(name, numbers, loading, t):
+def by_quadrature(name, parameters, loading, t):
     total = mp.mpf(0)
     for before, after, change in pieces(loading):
         if change == 0:
             continue
         short, long = t - after, t - before
         ratio = [short] + [m for m in (short + (long - short) * mp.mpf(2) ** -k for k in range(40, 0, -4)) if m > short] + [long]
-        total += change * mp.quad(lambda x: shape(name, numbers, x), ratio) / (after - before)
+        total += change * mp.quad(lambda x: shape(name, parameters, x), ratio) / (after - before)
     return total
 
 
-def case(name, numbers, loading, t):
-    exact = [mp.mpf(number) for number in numbers]
+def case(name, parameters, loading, t):
+    exact = [mp.mpf(parameter) for parameter in parameters]
     path, at = LOADINGS[loading], mp.mpf(t)
     value = average(name, exact, path, at)
     derivatives = []
@@ -154,24 +154,24 @@ def case(name, numbers, loading, t):
                 derivatives.append((3 * side[0] - 4 * side[1] + side[2]) / (2 * step))
                 continue
             derivatives.append((average(name, moved(step), path, at) - average(name, moved(-step), path, at)) / (2 * step))
-    return {"shape": name, "numbers": list(numbers), "loading": loading, "time": t, "value": float(value),
+    return {"shape": name, "parameters": list(parameters), "loading": loading, "time": t, "value": float(value),
             "derivatives": [float(d) for d in derivatives]}
 
 
 def main():
     mp.mp.dps = DIGITS
     cases = []
-    for name, numbers in SHAPES:
-        cases += [case(name, numbers, loading, t) for loading in LOADINGS for t in TIMES]
-        print(name, *numbers, flush=True)
+    for name, parameters in SHAPES:
+        cases += [case(name, parameters, loading, t) for loading in LOADINGS for t in TIMES]
+        print(name, *parameters, flush=True)
     # The second way, at 20 digits, where it is quick.
     mp.mp.dps = 20
     worst = mp.mpf(0)
     for one in cases:
         if one["time"] not in (0.0, 0.3) or one["shape"] in ("mittag_leffler",) and one["loading"] == "slow then fast":
             continue
-        numbers = [mp.mpf(number) for number in one["numbers"]]
-        other = by_quadrature(one["shape"], numbers, LOADINGS[one["loading"]], mp.mpf(one["time"]))
+        parameters = [mp.mpf(parameter) for parameter in one["parameters"]]
+        other = by_quadrature(one["shape"], parameters, LOADINGS[one["loading"]], mp.mpf(one["time"]))
         error = abs(other - one["value"]) / max(1, abs(one["value"]))
         assert error < AGREE, (one, other)
         worst = max(worst, error)

@@ -39,27 +39,29 @@ def pick(rows, **wanted):
 
 
 def table(rows):
-    lines = ["| law | number | white noise | AR(1) noise of 0.9 | the same, as if white | profile | bootstrap |",
-             "|---|---|---:|---:|---:|---:|---:|"]
+    lines = ["| law | parameter | interval, white noise | interval, AR(1) | ± 1.96 se, white noise | ± 1.96 se, AR(1) "
+             "| ± 1.96 white se, AR(1) | profile, AR(1) | bootstrap, AR(1) |",
+             "|---|---|---:|---:|---:|---:|---:|---:|---:|"]
     for white in pick(rows, method="Curvature", noise=0):
-        key = {"case": white["case"], "number": white["number"]}
+        key = {"case": white["case"], "parameter": white["parameter"]}
         own = pick(rows, method="Curvature", noise=0.9, **key)[0]
         others = [pick(rows, method=method, noise=0.9, **key) for method in ("Profile", "Bootstrap")]
         shown = [f"{100 * share(found[0]):.1f}" if found else "–" for found in others]
-        lines.append(f"| {key['case']} | {key['number']} | {100 * share(white):.1f} | {100 * share(own):.1f} "
-                     f"| {100 * share(own, 'white'):.1f} | {' | '.join(shown)} |")
+        lines.append(f"| {key['case']} | {key['parameter']} | {100 * share(white):.1f} | {100 * share(own):.1f} "
+                     f"| {100 * share(white, 'by_error'):.1f} | {100 * share(own, 'by_error'):.1f} "
+                     f"| {100 * share(own, 'by_white_error'):.1f} | {' | '.join(shown)} |")
     return "\n".join(lines)
 
 
 def figure(rows):
     rows = pick(rows, method="Curvature")
-    labels = [f"{row['case']}: {row['number'].replace('_', ' ')}" for row in pick(rows, noise=0)]
+    labels = [f"{row['case']}: {row['parameter'].replace('_', ' ')}" for row in pick(rows, noise=0)]
     fig, axis = plt.subplots(figsize=(8.0, 5.2), layout="constrained")
     axis.axvspan(100 * WHITE[0], 100 * WHITE[1], color="0.9", lw=0, label="93 to 97 %")
     axis.axvline(95, color="0.6", lw=1)
     for noise, what, name, mark, colour in [(0, "covered", "white noise", "o", "#0072b2"),
                                             (0.9, "covered", "AR(1) noise of 0.9", "s", "#d55e00"),
-                                            (0.9, "white", "AR(1) noise, taken for white", "x", "0.4")]:
+                                            (0.9, "by_white_error", "AR(1) noise, taken for white", "x", "0.4")]:
         chosen = pick(rows, noise=noise)
         x = [100 * share(row, what) for row in chosen]
         error = [196 * math.sqrt(p / 100 * (1 - p / 100) / row["holds"]) for p, row in zip(x, chosen)]
@@ -74,8 +76,8 @@ def figure(rows):
     assert path.stat().st_size < 150_000, path.stat().st_size
 
 
-def extremes(rows, **wanted):
-    shares = [100 * share(row) for row in pick(rows, **wanted)]
+def extremes(rows, what="covered", **wanted):
+    shares = [100 * share(row, what) for row in pick(rows, **wanted)]
     return f"{min(shares):.1f} to {max(shares):.1f} %"
 
 
@@ -84,6 +86,7 @@ def main():
     for row in pick(rows, method="Curvature"):
         low, high = WHITE if row["noise"] == 0 else CORRELATED
         assert row["open"] == 0 and low <= share(row) <= high, row
+        assert WHITE[0] <= share(row, "by_error") <= WHITE[1], row
     few = pick(rows, method="Profile")[0]["holds"]
     many = pick(rows, method="Curvature")[0]["holds"]
     RESULTS.mkdir(exist_ok=True)
@@ -92,14 +95,14 @@ def main():
 
 Simulated holds of 1000 samples over 10 s, drop 1 (two drops of 0.5 for Prony), noise 10⁻³ (SLS: 10⁻²), {many} holds a law and
 noise; a share of 95 % is then known to ±{196 * math.sqrt(0.95 * 0.05 / many):.1f} %. Intervals of the fit itself cover {extremes(rows, method="Curvature", noise=0)} for white noise
-and {extremes(rows, method="Curvature", noise=0.9)} for AR(1) noise of 0.9. Intervals that take the latter for white (value ± 1.96 standard errors)
-would cover a third.
+and {extremes(rows, method="Curvature", noise=0.9)} for AR(1) noise of 0.9; value ± 1.96 standard errors (se) covers {extremes(rows, "by_error", method="Curvature", noise=0)} and
+{extremes(rows, "by_error", method="Curvature", noise=0.9)}. With the standard error for white noise (white se) the latter would be {extremes(rows, "by_white_error", method="Curvature", noise=0.9)}.
 
 ![coverage](coverage.svg)
 
 Share of holds, in %, whose interval contains the truth. Profile and bootstrap: AR(1) noise, {few} holds (±{196 * math.sqrt(0.95 * 0.05 / few):.1f} %); over
-both noises profiles cover {extremes(rows, method="Profile")}, the bootstrap {extremes(rows, method="Bootstrap")}. `rate_coefficient` follows from
-others and has no profile.
+both noises profiles cover {extremes(rows, method="Profile")}, the bootstrap {extremes(rows, method="Bootstrap")}. `rate_coefficient_per_s` follows
+from others and has no profile.
 
 {table(rows)}
 

@@ -29,13 +29,13 @@ def fung_numbers(p, covariance):
     count = (len(p) - 1) // 2
     linear, rates = p[: count + 1], [mp.exp(v) for v in p[count + 1:]]
     total = mp.fsum(linear)
-    out = {"N": delta_method(total, [mp.mpf(1)] * (count + 1) + [mp.mpf(0)] * count, covariance)}
+    out = {"elastic_response": delta_method(total, [mp.mpf(1)] * (count + 1) + [mp.mpf(0)] * count, covariance)}
     for i, a in enumerate(linear):
         gradient = [(mp.mpf(i == k) - a / total) / total for k in range(count + 1)] + [mp.mpf(0)] * count
-        out[f"c{i}"] = delta_method(a / total, gradient, covariance)
+        out[f"c_{i}"] = delta_method(a / total, gradient, covariance)
     for i, rate in enumerate(rates):
         gradient = [rate * (k == count + 1 + i) for k in range(len(p))]
-        out[f"nu{i + 1}"] = delta_method(rate, gradient, covariance)
+        out[f"nu_{i + 1}_per_s"] = delta_method(rate, gradient, covariance)
     return out
 
 
@@ -44,10 +44,10 @@ def continuous_numbers(p, covariance):
     constant, amplitude, fast, slow = p
     span, c = fast - slow, amplitude / constant / (fast - slow)
     one, zero = mp.mpf(1), mp.mpf(0)
-    return {"N": delta_method(constant + amplitude, [one, one, zero, zero], covariance),
-            "C": delta_method(c, [-c / constant, c / amplitude, -c / span, c / span], covariance),
-            "tau_short": delta_method(mp.exp(-fast), [zero, zero, -mp.exp(-fast), zero], covariance),
-            "tau_long": delta_method(mp.exp(-slow), [zero, zero, zero, -mp.exp(-slow)], covariance)}
+    return {"elastic_response": delta_method(constant + amplitude, [one, one, zero, zero], covariance),
+            "strength": delta_method(c, [-c / constant, c / amplitude, -c / span, c / span], covariance),
+            "time_constant_short_s": delta_method(mp.exp(-fast), [zero, zero, -mp.exp(-fast), zero], covariance),
+            "time_constant_long_s": delta_method(mp.exp(-slow), [zero, zero, zero, -mp.exp(-slow)], covariance)}
 
 
 DERIVED = {"fung": fung_numbers, "fung_continuous": continuous_numbers}

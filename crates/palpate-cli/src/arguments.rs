@@ -488,8 +488,8 @@ pub(crate) struct WatchArguments {
     #[arg(long, value_name = "N", default_value_t = jobs::WatchLog::default().exponent, value_parser = exponent, allow_hyphen_values = true)]
     pub(crate) exponent: f64,
     /// Standard deviation to which that exponent is known; intervals are as much wider
-    #[arg(long, value_name = "NUMBER", default_value_t = jobs::WatchLog::default().exponent_deviation, value_parser = deviation, conflicts_with = "material", allow_hyphen_values = true)]
-    pub(crate) exponent_deviation: f64,
+    #[arg(long, value_name = "NUMBER", default_value_t = jobs::WatchLog::default().exponent_standard_error, value_parser = deviation, conflicts_with = "material", allow_hyphen_values = true)]
+    pub(crate) exponent_standard_error: f64,
     /// Normal force at which what is held slips
     #[arg(long, value_name = "FORCE", value_parser = force, allow_hyphen_values = true)]
     pub(crate) slip_force: Option<f64>,
@@ -514,7 +514,7 @@ impl WatchArguments {
     pub(crate) fn job(&self) -> jobs::WatchLog {
         jobs::WatchLog {
             exponent: self.exponent,
-            exponent_deviation: self.exponent_deviation,
+            exponent_standard_error: self.exponent_standard_error,
             slip_force_n: self.slip_force,
             warn_before_s: self.warn_before,
             confidence: self.confidence,

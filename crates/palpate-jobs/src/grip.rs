@@ -283,7 +283,7 @@ impl PlanGrip {
         grasp.acceleration_closing = self.acceleration_closing_m_per_s2;
         grasp.torque = self.torque_n_m;
         grasp.off_centre = self.off_centre_m;
-        let mut limits = Limits::new(self.speed_m_per_s.unwrap_or(material.shown.fastest))?;
+        let mut limits = Limits::new(self.speed_m_per_s.unwrap_or(material.range.fastest))?;
         limits.stroke = self.stroke_m;
         limits.force = self.most_force_n;
         limits.closing = self.close_within_s;

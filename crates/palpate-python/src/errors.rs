@@ -49,8 +49,8 @@ pub(crate) fn unfitted(error: palpate::fit::FitError) -> PyErr {
     use palpate::fit::FitError as Refused;
     match error {
         Refused::NoForm { .. }
-        | Refused::UnknownNumber { .. }
-        | Refused::FixedNumber { .. }
+        | Refused::UnknownParameter { .. }
+        | Refused::FixedParameter { .. }
         | Refused::HeldAmplitude { .. }
         | Refused::Bounds { .. }
         | Refused::Exponent { .. }

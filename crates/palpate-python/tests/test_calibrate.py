@@ -89,8 +89,8 @@ def test_its_text_is_that_of_the_command_line(calibration: palpate.Calibration) 
 
 
 def test_numbers_have_intervals_and_units(material: palpate.Material) -> None:
-    truth = {"modulus": 28e3, "exponent": 5.0, "rate_coefficient": 2e4, "layer_thickness": 0.035 / 8}
-    units = {"modulus": "Pa", "exponent": "1", "rate_coefficient": "1/s", "layer_thickness": "m"}
+    truth = {"modulus_pa": 28e3, "exponent": 5.0, "rate_coefficient_per_s": 2e4, "layer_thickness_m": 0.035 / 8}
+    units = {"modulus_pa": "Pa", "exponent": "1", "rate_coefficient_per_s": "1/s", "layer_thickness_m": "m"}
     estimates, numbers = material.estimates, polars.DataFrame(material.numbers)
     assert list(estimates) == list(material.values) == numbers["name"].to_list() == list(truth)
     assert numbers.columns == ["name", "unit", "value", "standard_error", "low", "high"]
@@ -156,7 +156,7 @@ def test_intervals_lie_in_each_other(material: palpate.Material) -> None:
     assert np.array_equal(prediction.displacement_low_m, prediction.displacement_m)
     narrow = material.predict(SQUEEZE, at_s=[0.6, 5.0], confidence=0.5)
     assert np.all(narrow.force_high_n < prediction.force_high_n)
-    np.testing.assert_allclose(prediction.force_error_n, (narrow.force_high_n - narrow.force_n) / 0.6745, rtol=1e-3)
+    np.testing.assert_allclose(prediction.force_standard_error_n, (narrow.force_high_n - narrow.force_n) / 0.6745, rtol=1e-3)
     # Under a force it is the place that is open.
     with pytest.warns(palpate.PalpateWarning, match="a force is held; the test held displacements"):
         pressed = material.predict([{"to_force": "2 N", "force_rate": "1 N/s", "hold_force": "5 s"}], at_s=[7.0])
@@ -169,7 +169,7 @@ def test_a_material_is_the_body_wherever_one_is_taken(material: palpate.Material
     material.write(path)
     inside = material.predict({"step": SQUEEZE, "output": {"times": ["0.6 s", "5 s"]}})
     # A body in the protocol is left aside.
-    other = {"specimen": {"shape": "ball", "radius": "1 m", "modulus": "1 Pa"}, "law": {"name": "latency", "exponent": 1, "rate_coefficient": "1 /s"}}
+    other = {"specimen": {"shape": "ball", "radius": "1 m", "modulus": "1 Pa"}, "law": {"name": "latency", "exponent": 1, "rate_coefficient_per_s": "1 /s"}}
     assert material.predict({**other, "step": SQUEEZE}, at_s=[0.6, 5.0]) == inside
     protocol = {"step": SQUEEZE, "output": {"times": ["0.6 s", "5 s"]}}
     trajectory = palpate.simulate({"material": material, **protocol})
@@ -267,7 +267,7 @@ def test_a_number_that_is_left_open_is_a_warning(material: palpate.Material, tmp
     (tmp_path / "open.toml").write_text("".join(line for line in lines if not line.startswith(left_out)))
     bare = palpate.Material.read(tmp_path / "open.toml")
     assert bare.log_covariance is None and bare.confidence is None
-    assert bare.estimates["modulus"].interval is None and np.isnan(bare.numbers["low"]).all()
+    assert bare.estimates["modulus_pa"].interval is None and np.isnan(bare.numbers["low"]).all()
     with pytest.warns(palpate.PalpateWarning, match="left a number open: the intervals hold noise alone"):
         prediction = bare.predict(SQUEEZE, at_s=[5.0])
     assert prediction.force_low_n == prediction.force_n == prediction.force_high_n > prediction.reading_low_n

@@ -22,8 +22,8 @@ def test_known_numbers_are_found() -> None:
     fit = palpate.fit_hold(t, y)
     assert fit.law == "latency" and fit.is_good and fit.termination == "converged"
     assert fit.values["exponent"] == pytest.approx(5.0, rel=1e-6)
-    assert fit.values["relative_rate"] == pytest.approx(0.5, rel=1e-6)
-    assert fit.values["rate_coefficient"] == pytest.approx(0.5 / 0.1**4, rel=1e-4)
+    assert fit.values["relative_rate_per_s"] == pytest.approx(0.5, rel=1e-6)
+    assert fit.values["rate_coefficient_per_s"] == pytest.approx(0.5 / 0.1**4, rel=1e-4)
     assert fit.samples == 400 and fit.duration_s == 40.0
 
 
@@ -32,7 +32,7 @@ def test_scipy_finds_the_same_numbers_and_errors() -> None:
     fit = palpate.fit_hold(t, y, noise="white")
     start = [0.15, 0.12, 1.0, 4.0]
     best, covariance = curve_fit(palpate.laws.latency, t, y, p0=start, bounds=([-1, 0, 1e-3, 1.01], [1, 1, 1e3, 20]))
-    for place, name in enumerate(["equilibrium", "amplitude", "relative_rate", "exponent"]):
+    for place, name in enumerate(["equilibrium", "amplitude", "relative_rate_per_s", "exponent"]):
         estimate = fit.estimates[name]
         assert estimate.value == pytest.approx(best[place], rel=1e-4)
         assert estimate.standard_error == pytest.approx(np.sqrt(covariance[place, place]), rel=1e-2)
@@ -74,7 +74,7 @@ def test_a_prediction_is_the_law_with_the_numbers_found() -> None:
     at = np.array([0.0, 3.0, 400.0])
     values = fit.values
     law = palpate.laws.latency(
-        at, values["equilibrium"], values["amplitude"], values["relative_rate"], values["exponent"]
+        at, values["equilibrium"], values["amplitude"], values["relative_rate_per_s"], values["exponent"]
     )
     np.testing.assert_allclose(fit.predict(at), law, rtol=1e-14)
     value, low, high = fit.predict(at, interval=0.95)

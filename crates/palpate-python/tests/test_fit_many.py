@@ -21,7 +21,7 @@ def test_each_curve_has_the_fit_that_it_has_alone() -> None:
     assert len(table) == 4 and list(table["curve"]) == [0, 1, 2, 3]
     for row, (t, y) in enumerate(CURVES):
         fit = palpate.fit_hold(t, y)
-        for name, suffix in [("equilibrium", ""), ("relative_rate", "_per_s"), ("exponent", "")]:
+        for name, suffix in [("equilibrium", ""), ("relative_rate_per_s", "_per_s"), ("exponent", "")]:
             estimate = fit.estimates[name]
             assert table[name + suffix][row] == estimate.value
             assert table[f"{name}_standard_error{suffix}"][row] == estimate.standard_error

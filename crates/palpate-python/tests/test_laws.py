@@ -12,7 +12,7 @@ from palpate import laws
 from scipy.optimize import curve_fit
 
 #: Names of the numbers of a fit, where a function says the unit as well.
-UNITS = {"relative_rate": "relative_rate_per_s"}
+UNITS = {"relative_rate_per_s": "relative_rate_per_s"}
 
 
 @pytest.mark.parametrize(
@@ -34,7 +34,7 @@ def test_a_function_is_the_curve_of_the_fit(law: str) -> None:
 def test_scipy_takes_them() -> None:
     t, y = relaxation(300, 1e-4)
     fit = palpate.fit_hold(t, y, law="prony:2")
-    order = ["equilibrium", "amplitude_1", "amplitude_2", "time_1", "time_2"]
+    order = ["equilibrium", "amplitude_1", "amplitude_2", "time_constant_1_s", "time_constant_2_s"]
     start = [0.2, 0.05, 0.05, 1.0, 8.0]
     found, _ = curve_fit(laws.function("prony:2"), t, y, p0=start)
     assert found == pytest.approx([fit.values[name] for name in order], rel=1e-3)

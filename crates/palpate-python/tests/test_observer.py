@@ -56,7 +56,7 @@ def watched(*flags: str) -> list[dict[str, Any]]:
     [
         ([], {}),
         (["--slip-force", "3 N", "--warn-before", "0.5 s", "--exponent", "4"], {"slip_force_n": 3.0, "warn_before_s": 0.5, "exponent": 4.0}),
-        (["--slip-force", "3 N", "--exponent-deviation", "0.5"], {"slip_force_n": 3.0, "exponent_deviation": 0.5}),
+        (["--slip-force", "3 N", "--exponent-standard-error", "0.5"], {"slip_force_n": 3.0, "exponent_standard_error": 0.5}),
         (["--slip-force", "3 N", "--material", str(PATH), "--confidence", "0.8"], {"slip_force_n": 3.0, "material": PATH, "confidence": 0.8}),
     ],
     ids=["usual", "slip", "exponent", "material"],
@@ -114,8 +114,8 @@ def test_a_material_tells_the_excess_strain(material: palpate.Material) -> None:
     seen = palpate.Observer(material).feed_many(t[rises], (trajectory.force_n + noise)[rises], place[rises])
     off = np.abs(seen["excess_strain"] - trajectory.excess_strain[rises])
     late = t[rises] > 1.0
-    assert np.all(off[late] < 5 * seen["excess_strain_deviation"][late]) and late.sum() > 50
-    assert seen["excess_strain_deviation"][-1] < 0.1 * trajectory.excess_strain.max()
+    assert np.all(off[late] < 5 * seen["excess_strain_standard_error"][late]) and late.sum() > 50
+    assert seen["excess_strain_standard_error"][-1] < 0.1 * trajectory.excess_strain.max()
     assert np.isnan(palpate.Observer().feed_many(t[rises], trajectory.force_n[rises], place[rises])["excess_strain"]).all()
 
 
@@ -183,14 +183,14 @@ def test_columns_that_do_not_fit_are_refused() -> None:
     ("keywords", "told"),
     [
         ({"exponent": 0.5}, "the exponent must be from 1 to 30, found 0.5"),
-        ({"exponent_deviation": -1.0}, "the deviation of the exponent must be from 0 to 10, found -1"),
+        ({"exponent_standard_error": -1.0}, "the deviation of the exponent must be from 0 to 10, found -1"),
         ({"slip_force_n": 0.0}, "the slip force must be above 0 N, found 0"),
         ({"warn_before_s": -1.0}, "the time to warn before slip must be 0 s or more, found -1"),
         ({"confidence": 95.0}, "the confidence must be between 0 and 1, found 95"),
         ({"force_noise_n": 0.1}, "displacement_noise_m: expected the noise of both readings or of none, found force_noise_n alone\nhint: "),
         ({"displacement_noise_m": 1e-6}, "force_noise_n: expected the noise of both readings or of none"),
-        ({"stiffness_deviation": 2.0}, "the deviation of the stiffness must be from 0 to 1, found 2"),
-        ({"touch_deviation_m": math.nan}, "the deviation of first touch must be 0 m or more, found NaN"),
+        ({"stiffness_standard_error": 2.0}, "the deviation of the stiffness must be from 0 to 1, found 2"),
+        ({"touch_standard_error_m": math.nan}, "the deviation of first touch must be 0 m or more, found NaN"),
     ],
 )
 def test_a_wrong_option_is_named(keywords: dict[str, Any], told: str) -> None:
@@ -200,7 +200,7 @@ def test_a_wrong_option_is_named(keywords: dict[str, Any], told: str) -> None:
 
 
 def test_a_material_says_the_exponent_itself_and_obeys_the_latency_law(material: palpate.Material) -> None:
-    for name in ("exponent", "exponent_deviation"):
+    for name in ("exponent", "exponent_standard_error"):
         with pytest.raises(palpate.OptionError, match=f"{name}: expected either this or material, found both\nhint: leave {name} out"):
             palpate.Observer(material, **{name: 1.0})
     linear = palpate.read(RECORD, test=TEST).calibrate(law="standard-linear-solid", alternatives=[]).material

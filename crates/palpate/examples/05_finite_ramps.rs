@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The numbers from every ramp, and how far each set is from the holds after all four.
+/// The parameters from every ramp, and how far each set is from the holds after all four.
 fn print_law(law: &str, (name, loadings): &Way, records: &[Record]) -> Result<(), Box<dyn std::error::Error>> {
     println!("{law}, loading {name}");
     for (record, loading) in records.iter().zip(loadings) {
@@ -38,8 +38,8 @@ fn print_law(law: &str, (name, loadings): &Way, records: &[Record]) -> Result<()
         };
         let fit = fit_law(&record.samples(), law.parse()?, &options)?;
         print!("{:>7} s", record.ramp);
-        for number in &fit.parameters {
-            print!("  {} {:.3}", number.name, number.estimate.value);
+        for parameter in &fit.parameters {
+            print!("  {} {:.3}", parameter.name, parameter.estimate.value);
         }
         print!("  0.01 s after a step {:.2}  off", fit.curve.at(0.01));
         for (other, loading) in records.iter().zip(loadings) {

@@ -27,8 +27,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let candidate = Candidate::new(law.parse()?, EquilibriumLaw::UniformStrain);
         let found = calibrate(&data, candidate, 0.95, &mut Unwatched)?;
         println!("{law}: leaves {:.3} N, BIC {:.0}", found.rmse, found.criteria.bic);
-        for number in &found.material.numbers {
-            println!("  {} {:.4e} {:?}", number.name, number.estimate.value, number.estimate.interval);
+        for parameter in &found.material.parameters {
+            println!("  {} {:.4e} {:?}", parameter.name, parameter.estimate.value, parameter.estimate.interval);
         }
         // Squeezed by 22 mm, six times as long as any hold of the test.
         let squeeze = protocol(&[ProtocolStep {

@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
     }
 
-    // A minute: with the best numbers, and with the lower edge of the interval.
+    // A minute: with the best parameters, and with the lower edge of the interval.
     for assured in [false, true] {
         let least = grip.least(Objective::Squeeze, 60.0, assured)?;
         println!("holds a minute, assured {assured}: {:.3} mm", 1e3 * least.displacement);

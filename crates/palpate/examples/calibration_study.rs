@@ -16,13 +16,13 @@ const RATE: f64 = 20.0;
 const FORCE_NOISE: f64 = 0.2;
 const DISPLACEMENT_NOISE: f64 = 1e-6;
 const TRUTH: [(&str, &str, f64); 4] = [
-    ("modulus", "E", 28e3),
+    ("modulus_pa", "E", 28e3),
     ("exponent", "n", 5.0),
-    ("rate_coefficient", "v", 2e4),
-    ("layer_thickness", "ℓ", 0.035 / 8.0),
+    ("rate_coefficient_per_s", "v", 2e4),
+    ("layer_thickness_m", "ℓ", 0.035 / 8.0),
 ];
 
-/// What was counted of one number.
+/// What was counted of one parameter.
 #[derive(Default, Clone, Copy)]
 struct Count {
     covered: u32,
@@ -36,7 +36,7 @@ struct Count {
 
 fn main() {
     let records: u64 = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(1000);
-    println!("| test | fitted | number | covered | truth below | truth above | mean half width | mean error |");
+    println!("| test | fitted | parameter | covered | truth below | truth above | mean half width | mean error |");
     println!("|---|---|---|---:|---:|---:|---:|---:|");
     for (name, motion) in [("(a)", paper_test_a()), ("(b)", paper_test_b())] {
         for (law, fitted) in [("latency", "n found"), ("latency:5", "n = 5")] {
@@ -73,7 +73,7 @@ fn counts(motion: &Motion, law: &str, seeds: std::ops::Range<u64>) -> BTreeMap<&
     for seed in seeds {
         let found = calibrate(&data(motion, seed), candidate, 0.95, &mut Unwatched).expect("a calibration");
         for (name, _, truth) in TRUTH {
-            let estimate = found.material.estimate(name).expect("a number");
+            let estimate = found.material.estimate(name).expect("a parameter");
             if estimate.standard_error.is_none() && law != "latency" && name == "exponent" {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! How often the 95 % intervals of fits contain the truth; prints one JSON object a number (read by `validation/interval_coverage.py`).
+//! How often the 95 % intervals of fits contain the truth; prints one JSON object a parameter (read by `validation/interval_coverage.py`).
 //!
 //! Run it with `cargo run --release -p palpate --example coverage_study [repetitions] [repetitions of the slow methods]`.
 
@@ -31,7 +31,7 @@ fn report(case: &Case, method: Method, holds: u64) {
     let each = 2.0 * start.elapsed().as_secs_f64() / holds as f64;
     for (((name, _), a), b) in case.truth.iter().zip(first).zip(second) {
         let sum = |part: fn(&Tally) -> usize| part(&a) + part(&b);
-        // Numbers that follow from others have no profile.
+        // Parameters that follow from others have no profile.
         if sum(|tally| tally.open) as u64 == holds {
             continue;
         }
@@ -39,12 +39,13 @@ fn report(case: &Case, method: Method, holds: u64) {
             ("covered", sum(|tally| tally.covered)),
             ("below", sum(|tally| tally.below)),
             ("above", sum(|tally| tally.above)),
-            ("white", sum(|tally| tally.naive)),
+            ("by_error", sum(|tally| tally.by_error)),
+            ("by_white_error", sum(|tally| tally.by_white_error)),
             ("open", sum(|tally| tally.open)),
         ];
         let counts = counts.map(|(what, count)| format!("\"{what}\":{count}")).join(",");
         println!(
-            "{{\"method\":\"{method:?}\",\"case\":\"{}\",\"noise\":{},\"number\":\"{name}\",\"holds\":{holds},{counts},\
+            "{{\"method\":\"{method:?}\",\"case\":\"{}\",\"noise\":{},\"parameter\":\"{name}\",\"holds\":{holds},{counts},\
              \"relative_width\":{:.3e},\"seconds_a_hold\":{each:.2e}}}",
             case.name,
             case.correlation,

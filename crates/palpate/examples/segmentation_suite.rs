@@ -37,24 +37,24 @@ fn one(labelled: &suite::Labelled) {
 }
 
 fn main() {
-    let number = |place: usize, usual: u64| -> u64 {
+    let parameter = |place: usize, usual: u64| -> u64 {
         std::env::args().nth(place).and_then(|text| text.parse().ok()).unwrap_or(usual)
     };
-    let (count, first) = (number(1, 1000), number(2, 0));
+    let (count, first) = (parameter(1, 1000), parameter(2, 0));
     let each = std::env::args().nth(3).is_some();
     if count == 1 {
         return one(&suite::labelled(first));
     }
     for (force_only, title) in [(false, "Displacement and force"), (true, "Force alone")] {
         let mut all: Vec<Scored> = Vec::new();
-        for number in first..first + count {
-            let labelled = suite::labelled(number);
+        for parameter in first..first + count {
+            let labelled = suite::labelled(parameter);
             let scored = scored(&labelled, force_only);
             let (score, worst) = (&scored.score, |errors: &[f64]| score::quantile(errors, 1.0).unwrap_or(0.0));
             let off = worst(&score.sharp[0]).max(worst(&score.sharp[1]));
             if each && (score.found < score.holds || score.extra > 0 || score.turned > 0 || off > 4.0) {
                 println!(
-                    "{number}: {} noise {} samples {}: {} of {}, {} extra, {} turned, off {off}",
+                    "{parameter}: {} noise {} samples {}: {} of {}, {} extra, {} turned, off {off}",
                     scored.kind.name(),
                     scored.noise,
                     labelled.record.len(),

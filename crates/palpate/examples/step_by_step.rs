@@ -1,4 +1,4 @@
-//! Steps contacts at 1 kHz as a controller does, and prints every force and displacement to the last bit. Told a file of such numbers,
+//! Steps contacts at 1 kHz as a controller does, and prints every force and displacement to the last bit. Told a file of such parameters,
 //! it says how far they are from its own.
 //!
 //! `controller/` builds it as well, without std and therefore with other elementary functions: `./test bare` compares the two.
@@ -10,7 +10,7 @@ use palpate::contact::{Equilibrium, Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
 use palpate::simulate::{ContactModel, ContactState, Separation};
 
-/// How far two builds may be apart, in units in the last place of the largest number of a contact.
+/// How far two builds may be apart, in units in the last place of the largest parameter of a contact.
 const MOST_UNITS: f64 = 8.0;
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
@@ -23,7 +23,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     for (name, model) in contacts()? {
         for (quantity, own) in [("forces", forces(&model)?), ("displacements", displacements(&model)?)] {
             if is_alone {
-                own.iter().for_each(|number| println!("{number}"));
+                own.iter().for_each(|parameter| println!("{parameter}"));
                 continue;
             }
             let rest: Vec<&str> = other.splitn(own.len() + 1, '\n').collect();
@@ -89,9 +89,9 @@ fn displacements(model: &ContactModel) -> Result<Vec<f64>, Box<dyn Error>> {
         .collect()
 }
 
-/// Largest difference between two series, in units in the last place of the largest number in them.
+/// Largest difference between two series, in units in the last place of the largest parameter in them.
 fn units_apart(own: &[f64], theirs: &[f64]) -> f64 {
-    let largest = own.iter().fold(0.0, |most: f64, number| most.max(number.abs()));
+    let largest = own.iter().fold(0.0, |most: f64, parameter| most.max(parameter.abs()));
     let apart = own.iter().zip(theirs).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
     apart / (largest.next_up() - largest)
 }

@@ -67,7 +67,7 @@ fn cascades() {
     }
 }
 
-/// 10,000 balls, each with its own numbers, squeezed by 5 mm within 0.6 s and held for 10 s; prints the forces of the first four.
+/// 10,000 balls, each with its own parameters, squeezed by 5 mm within 0.6 s and held for 10 s; prints the forces of the first four.
 fn batches() {
     let motion = Motion::new(vec![0.0, 0.6, 10.6], vec![0.0, 0.005, 0.005]).expect("time rises");
     for (name, spread) in [("", 0.0), ("_own_exponents", 2.0)] {

@@ -78,12 +78,63 @@ pub fn with_error(value: f64, error: f64) -> String {
     without_negative_zero(&text).replace('-', "−")
 }
 
+/// `value [low, high]`, rounded to two significant digits of the nearer half of the interval, for people.
+///
+/// An end that is open reads `∞` and stands behind a round bracket. An interval that is open on both sides, as is (0, ∞) for a
+/// parameter above 0, leaves the value no digits to be known to: only the interval is written.
+///
+/// ```
+/// use palpate::number::with_interval;
+/// assert_eq!(with_interval(12.3456, (12.28, 12.41)), "12.346 [12.280, 12.410]");
+/// assert_eq!(with_interval(2.93, (0.81, 10.7)), "2.9 [0.8, 10.7]");
+/// assert_eq!(with_interval(2.93, (0.81, f64::INFINITY)), "2.9 [0.8, ∞)");
+/// assert_eq!(with_interval(1.2345e-5, (1.2e-5, 1.27e-5)), "(1.234 [1.200, 1.270])×10⁻⁵");
+/// ```
+#[must_use]
+pub fn with_interval(value: f64, (low, high): (f64, f64)) -> String {
+    if low == 0.0 && high.is_infinite() {
+        return "(0, ∞)".to_owned();
+    }
+    let halves = [value - low, high - value].into_iter().filter(|half| half.is_finite() && *half > 0.0);
+    let nearer = halves.fold(f64::INFINITY, f64::min);
+    if !value.is_finite() || nearer.is_infinite() {
+        let same = low == value && high == value;
+        return if same {
+            significant(value, 4)
+        } else {
+            brackets(&significant(low, 3), &significant(high, 3), (low, high))
+        };
+    }
+    let (_, nearer_exponent) = rounded_parts(nearer, 2);
+    let (_, exponent) = rounded_parts(rounded_to(value, nearer_exponent - 1), MOST_DIGITS);
+    let largest = exponent.max(nearer_exponent);
+    // No more digits than the value can have: an interval of rounding alone.
+    let last = (nearer_exponent - 1).max(largest - 8);
+    let plain = (-3..4).contains(&largest) || (largest == 4 && last <= 2);
+    let scale = if plain { 1.0 } else { 10f64.powi(largest) };
+    let places = usize::try_from(if plain { -last } else { largest - last }).unwrap_or(0);
+    let text = |end: f64| match end.is_infinite() {
+        true => significant(end, 1),
+        false => without_negative_zero(&format!("{:.places$}", rounded_to(end, last) / scale)).replace('-', "−"),
+    };
+    let shown = format!("{} {}", text(value), brackets(&text(low), &text(high), (low, high)));
+    if plain { shown } else { format!("({shown})×10{}", superscript(largest)) }
+}
+
+/// An interval; an end that is not reached has a round bracket.
+fn brackets(low: &str, high: &str, ends: (f64, f64)) -> String {
+    let open = if ends.0.is_infinite() { '(' } else { '[' };
+    let close = if ends.1.is_infinite() { ')' } else { ']' };
+    format!("{open}{low}, {high}{close}")
+}
+
 /// The shortest decimal text that reads back as exactly `value`; empty when it is not a number.
 ///
 /// ```
 /// use palpate::number::exact;
 /// assert_eq!(exact(0.1 + 0.2), "0.30000000000000004");
 /// assert_eq!(exact(5.0), "5");
+/// assert_eq!(exact(0.000_012), "1.2e-05");
 /// ```
 #[must_use]
 pub fn exact(value: f64) -> String {
@@ -91,9 +142,14 @@ pub fn exact(value: f64) -> String {
         return String::new();
     }
     let text = format!("{value:?}");
-    match text.strip_suffix(".0") {
-        Some(whole) => whole.to_owned(),
-        None => text,
+    match (text.strip_suffix(".0"), text.split_once('e')) {
+        (Some(whole), _) => whole.to_owned(),
+        // Two digits of the exponent, as C, Python and R write it.
+        (None, Some((mantissa, exponent))) => {
+            let (sign, digits) = exponent.strip_prefix('-').map_or(('+', exponent), |digits| ('-', digits));
+            format!("{mantissa}e{sign}{digits:0>2}")
+        }
+        (None, None) => text,
     }
 }
 
@@ -185,6 +241,19 @@ mod tests {
         assert_eq!(with_error(12_346.0, 20.0), "(1.235 ± 0.002)×10⁴");
         assert_eq!(with_error(1.5, f64::NAN), "1.500");
         assert_eq!(with_error(1.5, 0.0), "1.500");
+    }
+
+    #[test]
+    fn intervals_decide_the_digits() {
+        assert_eq!(with_interval(0.0728, (0.071_42, 0.0742)), "0.0728 [0.0714, 0.0742]");
+        assert_eq!(with_interval(22_480.0, (19_200.0, 25_800.0)), "22500 [19200, 25800]");
+        assert_eq!(with_interval(5.4321e6, (5.39e6, 5.47e6)), "(5.432 [5.390, 5.470])×10⁶");
+        assert_eq!(with_interval(-0.001, (-0.6, 0.6)), "0.00 [−0.60, 0.60]");
+        assert_eq!(with_interval(2.0, (f64::NEG_INFINITY, 3.0)), "2.0 (−∞, 3.0]");
+        assert_eq!(with_interval(2.0, (0.0, f64::INFINITY)), "(0, ∞)");
+        assert_eq!(with_interval(2.0, (f64::NEG_INFINITY, f64::INFINITY)), "(−∞, ∞)");
+        assert_eq!(with_interval(2.0, (2.0, 2.0)), "2.000");
+        assert_eq!(with_interval(1.0, (1.0 - 1e-14, 1.0 + 1e-14)), "1.00000000 [1.00000000, 1.00000000]");
     }
 
     #[test]

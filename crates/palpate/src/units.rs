@@ -285,6 +285,87 @@ pub fn scale(value: f64, factor: f64) -> f64 {
     }
 }
 
+/// Units of a quantity from small to large: symbol, size in SI, and from which size in SI values are read in it.
+type Ladder = [(&'static str, f64, f64)];
+
+/// The ladders, by their units in SI and those that reports were laid out in.
+const LADDERS: [(&[(&str, f64)], &Ladder); 6] = [
+    (
+        &[("N", 1.0), ("mN", 1e-3)],
+        &[("nN", 1e-9, 0.0), ("µN", 1e-6, 1e-6), ("mN", 1e-3, 1e-3), ("N", 1.0, 0.1), ("kN", 1e3, 1e4)],
+    ),
+    (
+        &[("m", 1.0), ("mm", 1e-3), ("µm", 1e-6)],
+        &[("nm", 1e-9, 0.0), ("µm", 1e-6, 1e-6), ("mm", 1e-3, 1e-4), ("m", 1.0, 1.0)],
+    ),
+    (
+        &[("m/s", 1.0), ("mm/s", 1e-3), ("µm/s", 1e-6)],
+        &[("nm/s", 1e-9, 0.0), ("µm/s", 1e-6, 1e-6), ("mm/s", 1e-3, 1e-4), ("m/s", 1.0, 1.0)],
+    ),
+    (
+        &[("Pa", 1.0), ("kPa", 1e3)],
+        &[("Pa", 1.0, 0.0), ("kPa", 1e3, 1e3), ("MPa", 1e6, 1e6), ("GPa", 1e9, 1e9)],
+    ),
+    (
+        &[("s", 1.0)],
+        &[
+            ("µs", 1e-6, 0.0),
+            ("ms", 1e-3, 1e-3),
+            ("s", 1.0, 0.1),
+            ("min", 60.0, 600.0),
+            ("h", 3600.0, 36_000.0),
+            ("d", 86_400.0, 864_000.0),
+        ],
+    ),
+    (
+        &[("J", 1.0), ("mJ", 1e-3)],
+        &[("nJ", 1e-9, 0.0), ("µJ", 1e-6, 1e-6), ("mJ", 1e-3, 1e-3), ("J", 1.0, 0.1), ("kJ", 1e3, 1e4)],
+    ),
+];
+
+/// The unit in which people read values of `unit` up to this size, and the factor to it: nN to kN, nm to m, Pa to GPa, µs to days.
+/// Any other unit stays.
+///
+/// ```
+/// use palpate::units::suited;
+/// assert_eq!(suited("N", 4e-9), ("nN", 1e9));
+/// assert_eq!(suited("m", 0.015), ("mm", 1e3));
+/// assert_eq!(suited("s", 1800.0), ("min", 1.0 / 60.0));
+/// assert_eq!(suited("1/s", 1e9), ("1/s", 1.0));
+/// ```
+#[must_use]
+pub fn suited(unit: &str, largest: f64) -> (&str, f64) {
+    let known = |(units, ladder): &(&[(&str, f64)], &'static Ladder)| {
+        let (_, size) = units.iter().find(|(symbol, _)| *symbol == unit)?;
+        Some((*size, *ladder))
+    };
+    let Some((own, ladder)) = LADDERS.iter().find_map(known) else {
+        return (unit, 1.0);
+    };
+    let si = largest.abs() * own * (1.0 + 1e-9);
+    let found = ladder.iter().rev().find(|(.., from)| si >= *from && si > 0.0 && si.is_finite());
+    let Some((symbol, size, _)) = found else {
+        return (unit, 1.0);
+    };
+    // 1e3 and not 1/0.001 = 1000.0000000000001 where that would be no whole number.
+    let factor = own / size;
+    (symbol, if factor > 1.0 { factor.round() } else { factor })
+}
+
+/// A value of this unit in words, in the unit that suits its size: `284 mN`.
+///
+/// ```
+/// use palpate::units::quantity;
+/// assert_eq!(quantity(0.0284, "N", 3), "28.4 mN");
+/// assert_eq!(quantity(0.0, "N", 3), "0 N");
+/// ```
+#[cfg(feature = "std")]
+#[must_use]
+pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
+    let (symbol, factor) = suited(unit, value);
+    format!("{} {symbol}", crate::number::significant(value * factor, digits)).trim_end().to_owned()
+}
+
 /// Splits `"2e4 /s"` into the longest leading text that reads as a number and the rest.
 #[must_use]
 pub fn split_number(text: &str) -> (&str, &str) {

@@ -47,7 +47,7 @@ fn one_record_gives_numbers_with_intervals_and_alternatives_beside_them() {
         .into_iter()
         .enumerate()
     {
-        let number = &laws[0]["numbers"][if index < 2 { index } else { 3 }];
+        let number = &laws[0]["parameters"][if index < 2 { index } else { 3 }];
         assert_eq!(number["name"], name);
         let (value, error) = (number["value"].as_f64().unwrap(), number["standard_error"].as_f64().unwrap());
         assert!((value - truth).abs() < 4.5 * error && error < 0.01 * truth, "{name} {value} ± {error}");
@@ -94,7 +94,7 @@ fn a_material_predicts_and_every_command_takes_it() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).unwrap();
     let told = String::from_utf8(output.stderr).unwrap();
-    assert!(told.contains("beyond the test: a hold of 60.0 s is asked for; the test has shown 20.0 s"), "{told}");
+    assert!(told.contains("beyond the test: the longest hold lasts 60.0 s, that of the test 20.0 s"), "{told}");
     assert!(std::fs::read_to_string(folder.join("p.csv")).unwrap().lines().count() == 3);
     assert!(folder.join("p.svg").exists());
     // The truth, by the protocol that the record was simulated with.
@@ -221,10 +221,13 @@ fn a_record_that_the_law_does_not_describe_ends_at_an_optimum_with_its_numbers_l
     let law = &document["laws"][0];
     assert_eq!(law["termination"], "converged");
     assert!(law["holdout"]["relative"].as_f64().unwrap() < 0.003, "{law}");
-    for number in law["numbers"].as_array().unwrap() {
-        if let Some(ends) = number["interval"].as_array() {
-            assert!(ends[1].as_f64().unwrap() / ends[0].as_f64().unwrap() < 1e13, "{number}");
+    for parameter in law["parameters"].as_array().unwrap() {
+        if let Some(ends) = parameter["interval"].as_array() {
+            assert!(ends[1].as_f64().unwrap() / ends[0].as_f64().unwrap() < 1e13, "{parameter}");
         }
     }
-    assert!(law["numbers"][0]["interval"].is_null() && !law["numbers"][0]["standard_error"].is_null(), "{law}");
+    assert!(
+        law["parameters"][0]["interval"].is_null() && !law["parameters"][0]["standard_error"].is_null(),
+        "{law}"
+    );
 }

@@ -37,10 +37,13 @@ fn the_law_that_made_the_record_is_chosen_and_the_sentence_says_so() {
         assert_eq!((&comparison["ranking"], &comparison["signal"]), (&"forward".into(), &"strain".into()));
         assert_eq!(comparison["verdict"]["law"], "latency:5", "hold {}", hold["index"]);
         let sentence = comparison["verdict"]["sentence"].as_str().unwrap();
-        assert!(sentence.starts_with("Use the nonlinear latency law with n = 5 (3 numbers); that is"), "{sentence}");
+        assert!(
+            sentence.starts_with("Use the nonlinear latency law with n = 5 (3 parameters); that is"),
+            "{sentence}"
+        );
         let laws = comparison["laws"].as_array().unwrap();
         let made = laws.iter().find(|law| law["law"] == "latency:5").unwrap();
-        let rate = &made["numbers"]["rate_coefficient_per_s"];
+        let rate = &made["parameters"]["rate_coefficient_per_s"];
         let (value, error) = (rate["value"].as_f64().unwrap(), rate["standard_error"].as_f64().unwrap());
         assert!((value - 2e4).abs() < 4.0 * error, "v = {value} ± {error}");
         // Its error beyond the first half is the noise of what is predicted.
@@ -156,8 +159,8 @@ fn creep_at_constant_force() {
     );
     let laws = comparison["laws"].as_array().unwrap();
     let sls = laws.iter().find(|law| law["law"] == "standard-linear-solid").unwrap();
-    assert!((sls["numbers"]["time_s"]["value"].as_f64().unwrap() - 5.0).abs() < 1e-3);
-    assert!((sls["numbers"]["amplitude_m"]["value"].as_f64().unwrap() - 3e-4).abs() < 1e-6);
+    assert!((sls["parameters"]["time_constant_s"]["value"].as_f64().unwrap() - 5.0).abs() < 1e-3);
+    assert!((sls["parameters"]["amplitude"]["value"].as_f64().unwrap() - 3e-4).abs() < 1e-6);
     // A hold whose limits are given is that one; one in which the displacement is said to be held does not creep.
     let given = |mode: &str| format!("[[phases.hold]]\nfrom = \"3 s\"\nto = \"13 s\"\n{mode}");
     file(folder.path(), "given.toml", given(""));

@@ -52,7 +52,7 @@ fn the_steps_of_the_example_are_holds_with_their_equilibrium() {
         let truth = 28e3 * (u / 0.035) * std::f64::consts::PI * (0.07 * u - u * u);
         let (found, deviation) = (
             hold["equilibrium_force_n"].as_f64().unwrap(),
-            hold["equilibrium_force_deviation_n"].as_f64().unwrap(),
+            hold["equilibrium_force_standard_error_n"].as_f64().unwrap(),
         );
         assert!((found - truth).abs() < 4.0 * deviation && deviation < 0.05, "{hold} {truth}");
         assert_eq!(hold["held"], "displacement");
@@ -73,7 +73,7 @@ fn wrong_options_are_refused() {
         (&["--speed", "slow"], "max"),
         (&["--every", "0 s"], "above 0"),
         (&["--exponent", "0.5"], "from 1 to 30"),
-        (&["--exponent-deviation", "-1"], "from 0 to 10"),
+        (&["--exponent-standard-error", "-1"], "from 0 to 10"),
         (&["--confidence", "2"], "between 0 and 1"),
         (&["--warn-before", "1 s"], "--slip-force"),
         (&["--material", "none.toml"], "no such file"),

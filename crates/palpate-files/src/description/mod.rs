@@ -30,7 +30,7 @@ pub use protocol::{
     self_contained,
 };
 pub use schema::{schema_material, schema_protocol, schema_test};
-pub use sweep::{Plan, Spacing, Sweep, SweptNumber, parse_runs, parse_sweep, read_sweep};
+pub use sweep::{Plan, Spacing, Sweep, SweptParameter, parse_runs, parse_sweep, read_sweep};
 pub(crate) use test::contradicts;
 pub use test::{
     About, ChoiceError, ClockChoice, ColumnChoice, ColumnChoices, Machine, TestDescription, machines, machines_of,

@@ -31,7 +31,7 @@ pub(crate) fn read_description(kind: DescriptionKind, name: &str, bytes: &[u8]) 
             assert!(sweep.runs > 0);
             for run in [0, sweep.runs / 2, sweep.runs - 1] {
                 let (numbers, protocol) = sweep.run(run);
-                assert_eq!(numbers.len(), sweep.numbers.len());
+                assert_eq!(numbers.len(), sweep.parameters.len());
                 assert!(numbers.iter().all(|number| number.is_finite()), "{numbers:?}");
                 let _either = protocol;
             }

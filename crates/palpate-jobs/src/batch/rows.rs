@@ -58,16 +58,16 @@ const LAW: [Column; 7] = [
     (Number, "relative_rmse", |line| line.of_law(|fit| relative(fit).into(), |law| law.rmse.into())),
     (Number, "delta_bic", |line| line.of_law(|fit| fit.delta_bic.into(), |law| law.delta_bic.into())),
     (Text, "termination", |line| line.of_law(|fit| fit.termination.clone().into(), ending)),
-    (Text, "numbers", |line| {
-        line.of_law(|_| Value::Null, |law| serde_json::to_string(&law.numbers).ok().into())
+    (Text, "parameters", |line| {
+        line.of_law(|_| Value::Null, |law| serde_json::to_string(&law.parameters).ok().into())
     }),
 ];
 
 /// A number of the latency law, by its name.
-type LatencyNumber = (&'static str, fn(&FitDocument) -> Value);
+type LatencyParameter = (&'static str, fn(&FitDocument) -> Value);
 
 /// Columns of the latency law alone, each with its uncertainty.
-const LATENCY: [LatencyNumber; 7] = [
+const LATENCY: [LatencyParameter; 7] = [
     ("exponent", |fit| fit.exponent.into()),
     ("equilibrium_force_n", |fit| fit.equilibrium_force_n.into()),
     ("equilibrium_strain", |fit| fit.equilibrium_strain.into()),

@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use palpate_files::description::{Plan, Spacing, Sweep, SweptNumber};
+use palpate_files::description::{Plan, Spacing, Sweep, SweptParameter};
 use palpate_files::parquet_table::{TableError, TableReader, Values};
 use palpate_report::figure::{Axis, MOST_PANELS};
 use palpate_report::study::{Swept, sweep_grid_figure, sweep_points_figure};
@@ -40,7 +40,7 @@ impl Chart {
                 [_] | [_, _] => {}
                 [_, _, panels] if *panels <= MOST_PANELS => {}
                 [_, _, panels] => {
-                    let third = &sweep.numbers[2].path;
+                    let third = &sweep.parameters[2].path;
                     return refused(format!(
                         "expected at most {MOST_PANELS} values of {third}, each of which takes a panel, found {panels}"
                     ));
@@ -71,7 +71,7 @@ impl Chart {
         };
         let name = stem(&self.path);
         let caption = caption(sweep, &self.result, stride);
-        let axes = sweep.numbers.iter().map(|number| {
+        let axes = sweep.parameters.iter().map(|number| {
             let values = match number.grid() {
                 Some(values) if is_grid => values,
                 _ => read(&number.column)?,
@@ -91,7 +91,7 @@ impl Chart {
     }
 }
 
-fn axis(number: &SweptNumber, values: Vec<f64>) -> Swept {
+fn axis(number: &SweptParameter, values: Vec<f64>) -> Swept {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
     let logarithmic = match number.spacing {
@@ -107,7 +107,7 @@ fn axis(number: &SweptNumber, values: Vec<f64>) -> Swept {
 
 fn caption(sweep: &Sweep, result: &ResultColumn, stride: u64) -> String {
     let title = sweep.base.title.as_ref().map_or(String::new(), |title| format!("{title}. "));
-    let over: Vec<&str> = sweep.numbers.iter().map(|number| number.path.as_str()).collect();
+    let over: Vec<&str> = sweep.parameters.iter().map(|number| number.path.as_str()).collect();
     let drawn = if stride == 1 { String::new() } else { format!(", one in {stride} drawn") };
     let is_map = matches!(&sweep.plan, Plan::Grid { counts } if counts.len() > 1);
     let grey = if is_map { " Grey: refused." } else { "" };

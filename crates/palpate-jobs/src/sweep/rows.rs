@@ -67,7 +67,7 @@ pub(super) fn results(sweep: &Sweep) -> Vec<ResultColumn> {
 /// All columns of the table: the number of the run, the swept numbers, the results, and why there are none.
 #[must_use]
 pub fn fields(sweep: &Sweep) -> Vec<Field> {
-    let swept = sweep.numbers.iter().map(|number| Field::new(&number.column, Kind::Number));
+    let swept = sweep.parameters.iter().map(|number| Field::new(&number.column, Kind::Number));
     let results = results(sweep).into_iter().map(|column| Field::new(column.name, Kind::Number));
     [Field::new("run", Kind::Count)]
         .into_iter()
@@ -94,7 +94,7 @@ pub fn simulated(
 ) -> Result<(Rows, Vec<Forces>), Cancelled> {
     let (first, total) = (runs.start, runs.end - runs.start);
     let results = results(sweep).len();
-    let mut numbers: Vec<Vec<Option<f64>>> = vec![Vec::new(); sweep.numbers.len() + results];
+    let mut numbers: Vec<Vec<Option<f64>>> = vec![Vec::new(); sweep.parameters.len() + results];
     let (mut counts, mut reasons, mut forces) = (Vec::new(), Vec::new(), Vec::new());
     for run in runs {
         let (values, protocol) = sweep.run(run);

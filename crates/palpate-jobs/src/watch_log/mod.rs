@@ -26,7 +26,7 @@ pub struct WatchLog {
     /// Exponent of the law where no material says it, from 1 to 30.
     pub exponent: f64,
     /// Standard error of that exponent; intervals are as much wider.
-    pub exponent_deviation: f64,
+    pub exponent_standard_error: f64,
     /// Normal force at which what is held slips.
     pub slip_force_n: Option<f64>,
     /// How long before slip to warn.
@@ -41,7 +41,7 @@ impl Default for WatchLog {
     fn default() -> Self {
         Self {
             exponent: 5.0,
-            exponent_deviation: 0.0,
+            exponent_standard_error: 0.0,
             slip_force_n: None,
             warn_before_s: 1.0,
             confidence: 0.95,
@@ -96,7 +96,7 @@ impl WatchLog {
         let options = ObserverOptions {
             material: material.map(|file| file.material),
             exponent: self.exponent,
-            exponent_deviation: self.exponent_deviation,
+            exponent_standard_error: self.exponent_standard_error,
             slip_force: self.slip_force_n,
             warn_before: self.warn_before_s,
             confidence: self.confidence,

@@ -409,7 +409,7 @@ def simulate(
     >>> import palpate
     >>> trajectory = palpate.simulate({
     ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
-    ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+    ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient_per_s": "2e4 /s"},
     ...     "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "10 s"}],
     ... })
     >>> round(float(trajectory.force_n[-1]), 2)
@@ -465,7 +465,7 @@ def simulate_many(
     >>> import palpate
     >>> protocol = {
     ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
-    ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+    ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient_per_s": "2e4 /s"},
     ...     "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "10 s"}],
     ... }
     >>> runs = palpate.simulate_many(protocol, {"specimen.radius": [0.03, 0.035]}, times_s=[0.6, 10.6])

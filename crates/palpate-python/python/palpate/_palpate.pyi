@@ -336,14 +336,14 @@ class Observation(_Value):
     began: Final[bool]
     force_n: Final[float]
     equilibrium_force_n: Final[float | None]
-    equilibrium_force_deviation_n: Final[float | None]
+    equilibrium_force_standard_error_n: Final[float | None]
     excess_force_n: Final[float | None]
-    excess_force_deviation_n: Final[float | None]
+    excess_force_standard_error_n: Final[float | None]
     excess_strain: Final[float | None]
-    excess_strain_deviation: Final[float | None]
+    excess_strain_standard_error: Final[float | None]
     relative_rate_per_s: Final[float | None]
     creep_rate_m_per_s: Final[float | None]
-    creep_rate_deviation_m_per_s: Final[float | None]
+    creep_rate_standard_error_m_per_s: Final[float | None]
     slips: Final[Literal["not_known_yet", "never", "perhaps_never", "after"] | None]
     time_to_slip_s: Final[float | None]
     time_to_slip_low_s: Final[float | None]
@@ -357,14 +357,14 @@ class Observer(_Moved):
         material: Material | None = None,
         *,
         exponent: float | None = None,
-        exponent_deviation: float | None = None,
+        exponent_standard_error: float | None = None,
         slip_force_n: float | None = None,
         warn_before_s: float = 1.0,
         confidence: float = 0.95,
         displacement_noise_m: float | None = None,
         force_noise_n: float | None = None,
-        stiffness_deviation: float = 0.05,
-        touch_deviation_m: float = 1e-4,
+        stiffness_standard_error: float = 0.05,
+        touch_standard_error_m: float = 1e-4,
     ) -> Self: ...
     def feed(self, time_s: float, force_n: float, displacement_m: float | None = None) -> Observation: ...
     def feed_many(self, time_s: ArrayLike, force_n: ArrayLike, displacement_m: ArrayLike | None = None) -> Table: ...
@@ -384,7 +384,7 @@ class Prediction(_Series):
     force_high_n: Final[_Doubles]
     reading_low_n: Final[_Doubles]
     reading_high_n: Final[_Doubles]
-    force_error_n: Final[_Doubles]
+    force_standard_error_n: Final[_Doubles]
     noise_n: Final[float]
     confidence: Final[float]
     extrapolations: Final[list[str]]

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use numpy::{PyArray1, PyArray2};
 use palpate::fit::{
-    BootstrapOptions, Estimate, Fit, IntervalMethod, LawOptions, NoiseChoice, NumberUnit, Parameter, SampleChoice,
+    BootstrapOptions, Estimate, Fit, IntervalMethod, LawOptions, NoiseChoice, Parameter, ParameterUnit, SampleChoice,
     Samples, fit_law,
 };
 use palpate::laws::Law;
@@ -19,7 +19,7 @@ use crate::errors::{FitError, OptionError, choice, one_of, refused_plainly, unfi
 use crate::shown::shown;
 use crate::work::{briefly, plain};
 
-/// A number that was found or given.
+/// A parameter that was found or given.
 #[pyclass(name = "Estimate", module = "palpate", frozen, eq)]
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PyEstimate {
@@ -39,8 +39,10 @@ shown! {
     values {
         /// The best value.
         value: f64 = self.estimate.value,
-        /// Standard error for white noise; None for a number that was given, or that the data leave open.
+        /// Standard error for residuals that correlate as they do; None for a parameter that was given, or that the data leave open.
         standard_error: Option<f64> = self.estimate.standard_error,
+        /// Standard error as if the residuals were white noise: what most other software states.
+        white_standard_error: Option<f64> = self.estimate.white_standard_error,
         /// Confidence interval for noise as the residuals show it.
         interval: Option<(f64, f64)> = self.estimate.interval,
         /// Unit in words: "signal", "s", "1/s", "signal/s", "1", "signal^(1-n)/s", "signal/s^alpha"; "m", "N" or "Pa" of a material.
@@ -56,21 +58,21 @@ shown! {
     }
 }
 
-/// A number with its standard error, or to so many digits where it has none.
+/// A parameter with its standard error, or to so many digits where it has none.
 pub(crate) fn told(estimate: &Estimate, digits: usize) -> String {
     let plain = || significant(estimate.value, digits);
     estimate.standard_error.map_or_else(plain, |error| with_error(estimate.value, error))
 }
 
-fn unit_word(unit: NumberUnit) -> &'static str {
+fn unit_word(unit: ParameterUnit) -> &'static str {
     match unit {
-        NumberUnit::Signal => "signal",
-        NumberUnit::Second => "s",
-        NumberUnit::PerSecond => "1/s",
-        NumberUnit::SignalPerSecond => "signal/s",
-        NumberUnit::One => "1",
-        NumberUnit::RateCoefficient => "signal^(1-n)/s",
-        NumberUnit::SignalPerPower => "signal/s^alpha",
+        ParameterUnit::Signal => "signal",
+        ParameterUnit::Second => "s",
+        ParameterUnit::PerSecond => "1/s",
+        ParameterUnit::SignalPerSecond => "signal/s",
+        ParameterUnit::One => "1",
+        ParameterUnit::RateCoefficient => "signal^(1-n)/s",
+        ParameterUnit::SignalPerPower => "signal/s^alpha",
     }
 }
 
@@ -104,7 +106,7 @@ impl PyFit {
     }
 }
 
-/// A square of numbers as an array.
+/// A square of parameters as an array.
 pub(crate) fn square<'py>(py: Python<'py>, rows: &[Vec<f64>]) -> PyResult<Bound<'py, PyArray2<f64>>> {
     Ok(PyArray2::from_vec2(py, rows)?)
 }
@@ -114,8 +116,8 @@ shown! {
     values {
         /// Name of the law, such as "latency" or "prony:2".
         law: String = self.fit.law.to_string(),
-        /// Names of the numbers that were searched, in the order of `covariance`.
-        parameters: Vec<String> = self.fit.searched.clone(),
+        /// What was searched, in the order of `covariance`, with its scale: "equilibrium", "ln relative_rate_per_s", "-ln time_constant_s".
+        searched: Vec<String> = self.fit.searched.clone(),
         /// Sum of squared residuals, weighted as the samples were.
         residual_square: f64 = self.fit.residual_square,
         /// Root mean square residual, in the unit of the signal.
@@ -130,23 +132,27 @@ shown! {
         termination: String = word(self.fit.termination),
         /// Whether it ended at an optimum inside the range that was searched.
         is_good: bool = self.fit.termination.is_good(),
-        /// Every number of the law by its name.
+        /// Every parameter of the law by its name.
         estimates<'py>(py): PyResult<Bound<'py, PyDict>> = {
-            let estimate = |number: &Parameter| PyEstimate::of(number.estimate, unit_word(number.unit));
-            self.fit.parameters.iter().map(|number| (number.name.to_string(), estimate(number))).into_py_dict(py)
+            let estimate = |parameter: &Parameter| PyEstimate::of(parameter.estimate, unit_word(parameter.unit));
+            self.fit.parameters.iter().map(|parameter| (parameter.name.to_string(), estimate(parameter))).into_py_dict(py)
         },
-        /// Values of all numbers by name.
-        values<'py>(py): PyResult<Bound<'py, PyDict>> = self.fit.parameters.iter()
-            .map(|number| (number.name.to_string(), number.estimate.value))
+        /// The parameters of the law by name, those that were held included: what its function in `palpate.laws` takes.
+        parameters<'py>(py): PyResult<Bound<'py, PyDict>> = self.fit.parameters.iter()
+            .filter(|parameter| !parameter.derived)
+            .map(|parameter| (parameter.name.to_string(), parameter.estimate.value))
             .into_py_dict(py),
         /// Intervals by profiles, where these were asked for, by name; None for an end that the data leave open.
         profiles<'py>(py): PyResult<Bound<'py, PyDict>> = self.fit.profiles.iter()
             .map(|(name, interval)| (name.to_string(), (interval.low, interval.high)))
             .into_py_dict(py),
-        /// Covariance of the searched numbers; None where the data leave one open.
+        /// Covariance of `searched` for residuals that correlate as they do; None where the data leave a parameter open.
         covariance<'py>(py): PyResult<Option<Bound<'py, PyArray2<f64>>>> =
-            self.fit.covariance.as_ref().map(|rows| square(py, rows)).transpose(),
-        /// Correlations of the searched numbers.
+            self.fit.covariance().map(|rows| square(py, rows)).transpose(),
+        /// The same as if the residuals were white noise: what most other software states.
+        white_covariance<'py>(py): PyResult<Option<Bound<'py, PyArray2<f64>>>> =
+            self.fit.white_covariance.as_ref().map(|rows| square(py, rows)).transpose(),
+        /// Correlations of the searched parameters.
         correlation<'py>(py): PyResult<Option<Bound<'py, PyArray2<f64>>>> =
             self.fit.correlation().as_ref().map(|rows| square(py, rows)).transpose(),
     }
@@ -218,9 +224,9 @@ shown! {
     }
 
     fn __repr__(&self) -> String {
-        let number = |number: &Parameter| format!("{}={}", number.name, told(&number.estimate, 4));
-        let numbers: Vec<String> = self.fit.parameters.iter().map(number).collect();
-        format!("<palpate.Fit {}: {}; {}>", self.fit.law, numbers.join(", "), word(self.fit.termination))
+        let parameter = |parameter: &Parameter| format!("{}={}", parameter.name, told(&parameter.estimate, 4));
+        let parameters: Vec<String> = self.fit.parameters.iter().map(parameter).collect();
+        format!("<palpate.Fit {}: {}; {}>", self.fit.law, parameters.join(", "), word(self.fit.termination))
     }
 }
 
@@ -229,14 +235,14 @@ fn report(fit: &Fit) -> String {
         "[[Model]]\n    {}\n[[Fit Statistics]]\n    # data points      = {}\n    # variables        = {}\n    chi-square         = {}\n    root mean square   = {}\n    ended              = {}\n[[Variables]]\n",
         fit.law,
         fit.samples,
-        fit.free_numbers(),
+        fit.free_parameters(),
         significant(fit.residual_square, 6),
         significant(fit.rmse, 6),
         word(fit.termination),
     );
-    let width = fit.parameters.iter().map(|number| number.name.to_string().len()).max().unwrap_or(0) + 1;
-    for number in &fit.parameters {
-        let (name, estimate) = (format!("{}:", number.name), &number.estimate);
+    let width = fit.parameters.iter().map(|parameter| parameter.name.to_string().len()).max().unwrap_or(0) + 1;
+    for parameter in &fit.parameters {
+        let (name, estimate) = (format!("{}:", parameter.name), &parameter.estimate);
         let value = significant(estimate.value, 8);
         let error = match estimate.standard_error {
             Some(error) if estimate.value != 0.0 => {
@@ -306,7 +312,7 @@ impl Keywords {
     pub(crate) fn asked(self) -> PyResult<Asked> {
         let law = self.law.parse().map_err(refused_plainly::<OptionError>)?;
         if law == Law::Spectrum {
-            let message = "the spectrum has no few numbers to estimate: palpate.compare fits and judges it";
+            let message = "the spectrum has no few parameters to estimate: palpate.compare fits and judges it";
             return Err(refused_plainly::<OptionError>(message));
         }
         let noises = [("residuals", NoiseChoice::FromResiduals), ("white", NoiseChoice::White)];

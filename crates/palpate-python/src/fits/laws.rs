@@ -38,7 +38,7 @@ pub(crate) fn latency<'py>(
     Ok(PyArray1::from_vec(py, values))
 }
 
-/// Names of laws as `law=` takes them; N and K stand for numbers.
+/// Names of laws as `law=` takes them; N and K stand for parameters.
 #[pyfunction]
 pub(crate) fn law_names() -> Vec<&'static str> {
     Law::NAMES.to_vec()

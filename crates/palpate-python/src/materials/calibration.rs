@@ -1,4 +1,4 @@
-//! One set of numbers for a whole record.
+//! One set of parameters for a whole record.
 
 use palpate_jobs::input::Measurement;
 use palpate_jobs::{Calibrate, Results};
@@ -14,7 +14,7 @@ use crate::shown::shown;
 use crate::table::{Column, Table, columns};
 use crate::work::{job, plain, printed};
 
-/// One set of numbers for a whole record, ramps and holds alike: a material, what its law leaves over, and its alternatives.
+/// One set of parameters for a whole record, ramps and holds alike: a material, what its law leaves over, and its alternatives.
 ///
 /// Made by `Record.calibrate`. ``print(calibration)`` shows what ``palpate calibrate`` does; series are tables for polars, pandas and
 /// pyarrow, and a notebook shows tables and figure.
@@ -40,7 +40,7 @@ struct Sample {
 }
 
 impl Calibration {
-    /// Calibrates laws on a record, and warns where the one that is asked for leaves a number open.
+    /// Calibrates laws on a record, and warns where the one that is asked for leaves a parameter open.
     pub(crate) fn of(py: Python<'_>, measured: Measurement, options: Calibrate) -> PyResult<Self> {
         let done = job(py, move |watch| options.run(measured, watch))?.result;
         let (record, file) = (&done.record, done.material());
@@ -90,11 +90,11 @@ shown! {
         residual_n: self.series(|sample| sample.force - sample.simulated),
     }
     values {
-        /// The body with the numbers of the law that was asked for.
+        /// The body with the parameters of the law that was asked for.
         material: Material = self.material.clone(),
         /// Which law predicts best, or has the lowest BIC, in a sentence; None without alternatives.
         sentence: Option<&str> = self.sentence.as_deref(),
-        /// What the numbers alone do not tell, in sentences.
+        /// What the parameters alone do not tell, in sentences.
         remarks: Vec<String> = self.document.remarks.clone(),
         /// Why the search ended: "converged", or what kept it from that.
         termination: &str = self.asked().termination.as_deref().unwrap_or_default(),
@@ -104,12 +104,12 @@ shown! {
         rmse_n: f64 = self.asked().rmse_n.unwrap_or(f64::NAN),
         /// How many samples, from the first on, were fitted; the rest was held out.
         fitted: usize = self.document.fitted,
-        /// The laws, a row each, the one that was asked for first: ``parameters`` searched, root mean square residual ``rmse_n``, the same as a
+        /// The laws, a row each, the one that was asked for first: ``free_parameters``, root mean square residual ``rmse_n``, the same as a
         /// share of the largest force (``relative``), BIC less the lowest (``delta_bic``), with ``fit_until_s`` the errors of what was
         /// predicted, ``termination``, and why there is no calibration (``error``).
         laws: PyResult<Table> = {
             let laws = &self.document.laws;
-            let mut columns = columns!(laws, law => law, parameters, rmse_n, relative, delta_bic);
+            let mut columns = columns!(laws, law => law, free_parameters, rmse_n, relative, delta_bic);
             if laws.iter().any(|law| law.holdout.is_some()) {
                 columns.extend(columns!(laws, law =>
                     holdout_rmse_n = law.holdout.as_ref().map(|holdout| holdout.rmse_n),
@@ -120,19 +120,19 @@ shown! {
             columns.extend(columns!(laws, law => termination, error));
             Table::of(columns)
         },
-        /// The numbers of the law that was asked for, by name and unit as in `to_dict`: ``value``, ``standard_error``, ``low`` and ``high`` of
+        /// The parameters of the law that was asked for, by name and unit as in `to_dict`: ``value``, ``standard_error``, ``low`` and ``high`` of
         /// the interval and, where profiles were asked for, ``profile_low`` and ``profile_high``, NaN where the record leaves them open.
-        numbers: PyResult<Table> = {
-            let numbers = &self.asked().numbers;
-            let mut columns = columns!(numbers, number =>
-                name, value = number.estimate.value, standard_error = number.estimate.standard_error,
-                low = number.estimate.interval.map(|interval| interval[0]),
-                high = number.estimate.interval.map(|interval| interval[1])
+        parameter_table: PyResult<Table> = {
+            let parameters = &self.asked().parameters;
+            let mut columns = columns!(parameters, parameter =>
+                name, value = parameter.estimate.value, standard_error = parameter.estimate.standard_error,
+                low = parameter.estimate.interval.map(|interval| interval[0]),
+                high = parameter.estimate.interval.map(|interval| interval[1])
             );
-            if numbers.iter().any(|number| number.profile.is_some()) {
-                columns.extend(columns!(numbers, number =>
-                    profile_low = number.profile.as_ref().and_then(|profile| profile.low),
-                    profile_high = number.profile.as_ref().and_then(|profile| profile.high)
+            if parameters.iter().any(|parameter| parameter.profile.is_some()) {
+                columns.extend(columns!(parameters, parameter =>
+                    profile_low = parameter.profile.as_ref().and_then(|profile| profile.low),
+                    profile_high = parameter.profile.as_ref().and_then(|profile| profile.high)
                 ));
             }
             Table::of(columns)
@@ -160,7 +160,7 @@ shown! {
         printed(&self.document)
     }
 
-    /// Tables of the laws and of the numbers, and remarks, as text.
+    /// Tables of the laws and of the parameters, and remarks, as text.
     fn report(&self) -> &str {
         &self.text
     }

@@ -78,7 +78,7 @@ shown! {
         verdict: &str = &self.document.verdict,
         /// The question in a sentence.
         question: &str = &self.question,
-        /// What the numbers mean, a sentence each.
+        /// What the parameters mean, a sentence each.
         remarks: Vec<String> = self.document.remarks.clone(),
         /// How the question goes beyond what the test has shown, a sentence each.
         extrapolations: Vec<String> = self.document.extrapolations.clone(),

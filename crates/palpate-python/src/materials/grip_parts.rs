@@ -123,10 +123,10 @@ part! {
         backed: Holding = Holding::new(self.found.backed.clone(), Some(self.course.clone())),
         /// The plain squeeze.
         plain: Holding = Holding::new(self.found.plain.clone(), None),
-        /// What 1 % more of a number of the material does to it: ``number``, its ``relative_error``, by how much the force at the start of the
+        /// What 1 % more of a parameter of the material does to it: ``parameter``, its ``relative_error``, by how much the force at the start of the
         /// hold misses the relaxed one (``missed_n``), by how much farther the jaws would have to go (``over_m``).
         sensitivities: PyResult<Table> =
-            Table::of(columns!(self.found.sensitivities, row => number, relative_error, missed_n, over_m)),
+            Table::of(columns!(self.found.sensitivities, row => parameter, relative_error, missed_n, over_m)),
     }
 
     fn __repr__(&self) -> String {

@@ -23,10 +23,10 @@ use crate::shown::shown;
 use crate::table::{Table, columns};
 use crate::work::{Made, job};
 
-/// Said where intervals know nothing of the numbers.
-const OPEN: &str = "the calibration left a number open: the intervals hold noise alone";
+/// Said where intervals know nothing of the parameters.
+const OPEN: &str = "the calibration left a parameter open: the intervals hold noise alone";
 
-/// A calibrated body: shape, law and numbers with their covariance, what its test has shown, and where they come from.
+/// A calibrated body: shape, law and parameters with their covariance, what its test has shown, and where they come from.
 ///
 /// Made by `Record.calibrate` or `Material.read`. Wherever a protocol, a model or a test description is taken, its ``material`` may be
 /// one, and a description may be one: ``palpate.simulate({"material": material, "step": [...]})``, ``palpate.ContactState(material)``,
@@ -44,7 +44,7 @@ impl PartialEq for Material {
 }
 
 impl Material {
-    /// Of a calibration; warns where it leaves a number open.
+    /// Of a calibration; warns where it leaves a parameter open.
     pub(crate) fn of(py: Python<'_>, file: MaterialFile) -> PyResult<Self> {
         let material = Self {
             source: MaterialSource::of(file),
@@ -69,8 +69,8 @@ impl Material {
         if self.source.file.material.uncertainty.is_none() { warn(py, OPEN) } else { Ok(()) }
     }
 
-    fn numbers_found(&self) -> &[MaterialParameter] {
-        &self.source.file.material.numbers
+    fn estimated(&self) -> &[MaterialParameter] {
+        &self.source.file.material.parameters
     }
 }
 
@@ -98,29 +98,29 @@ shown! {
             EquilibriumLaw::Hertz { .. } => "hertz",
             EquilibriumLaw::Table => "table",
         },
-        /// The numbers, a row each: ``name``, ``unit``, ``value``, ``standard_error``, ``low`` and ``high``, in SI; the latter three are missing
-        /// for a number that was given, or that the record leaves open.
-        numbers: PyResult<Table> = Table::of(columns!(self.numbers_found(), number =>
-            name, unit = material_unit(number.unit).1, value = number.estimate.value,
-            standard_error = number.estimate.standard_error,
-            low = number.estimate.interval.map(|interval| interval.0),
-            high = number.estimate.interval.map(|interval| interval.1)
+        /// The parameters, a row each: ``name``, ``unit``, ``value``, ``standard_error``, ``low`` and ``high``, in SI; the latter three are missing
+        /// for a parameter that was given, or that the record leaves open.
+        parameter_table: PyResult<Table> = Table::of(columns!(self.estimated(), parameter =>
+            name, unit = material_unit(parameter.unit).1, value = parameter.estimate.value,
+            standard_error = parameter.estimate.standard_error,
+            low = parameter.estimate.interval.map(|interval| interval.0),
+            high = parameter.estimate.interval.map(|interval| interval.1)
         )),
-        /// Every number by its name: "modulus" (or "equilibrium_force_1", ...), and "exponent", "rate_coefficient" and "layer_thickness" of the
-        /// latency law, "overshoot_1", "time_1", ... of a linear one.
+        /// Every parameter by its name: "modulus_pa" (or "equilibrium_force_1_n", ...), and "exponent", "rate_coefficient_per_s" and "layer_thickness" of the
+        /// latency law, "overshoot_1", "time_constant_1_s", ... of a linear one.
         estimates<'py>(py): PyResult<Bound<'py, PyDict>> = {
-            let estimate = |number: &MaterialParameter| PyEstimate::of(number.estimate, material_unit(number.unit).1);
-            self.numbers_found().iter().map(|number| (&number.name, estimate(number))).into_py_dict(py)
+            let estimate = |parameter: &MaterialParameter| PyEstimate::of(parameter.estimate, material_unit(parameter.unit).1);
+            self.estimated().iter().map(|parameter| (&parameter.name, estimate(parameter))).into_py_dict(py)
         },
-        /// Values of all numbers by name, in SI.
-        values<'py>(py): PyResult<Bound<'py, PyDict>> =
-            self.numbers_found().iter().map(|number| (&number.name, number.estimate.value)).into_py_dict(py),
-        /// Covariance of the natural logarithms of the numbers, in their order; None where the record leaves one open.
+        /// Values of all parameters by name, in SI.
+        parameters<'py>(py): PyResult<Bound<'py, PyDict>> =
+            self.estimated().iter().map(|parameter| (&parameter.name, parameter.estimate.value)).into_py_dict(py),
+        /// Covariance of the natural logarithms of the parameters, in their order; None where the record leaves one open.
         log_covariance<'py>(py): PyResult<Option<Bound<'py, PyArray2<f64>>>> = {
             let uncertainty = self.source.file.material.uncertainty.as_ref();
             uncertainty.map(|found| square(py, &found.covariance)).transpose()
         },
-        /// Coverage of the intervals of the numbers; None where they have none.
+        /// Coverage of the intervals of the parameters; None where they have none.
         confidence: Option<f64> =
             self.source.file.material.uncertainty.as_ref().map(|uncertainty| uncertainty.confidence),
         /// Standard deviation of what the law left of the measured force, N: noise of one reading.
@@ -128,7 +128,7 @@ shown! {
         /// What the test has shown, beyond which predictions are extrapolations: ``longest_hold_s``, ``deepest_m``, ``fastest_m_per_s``,
         /// ``slowest_m_per_s``, ``largest_force_n``.
         shown<'py>(py): PyResult<Bound<'py, PyDict>> = {
-            let shown = &self.source.file.material.shown;
+            let shown = &self.source.file.material.range;
             let named = [
                 ("longest_hold_s", shown.longest_hold),
                 ("deepest_m", shown.deepest),
@@ -138,7 +138,7 @@ shown! {
             ];
             named.into_py_dict(py)
         },
-        /// Where the numbers come from: ``record``, ``sha256`` of its file, ``test`` description, version of ``palpate``, ``samples`` fitted.
+        /// Where the parameters come from: ``record``, ``sha256`` of its file, ``test`` description, version of ``palpate``, ``samples`` fitted.
         origin<'py>(py): PyResult<Bound<'py, PyDict>> = {
             let origin = &self.source.file.origin;
             let dict = PyDict::new(py);
@@ -161,7 +161,7 @@ shown! {
     /// Raises
     /// ------
     /// OptionError
-    ///     No material, one of another version, or one whose numbers were changed by hand; the message names line and key.
+    ///     No material, one of another version, or one whose parameters were changed by hand; the message names line and key.
     /// OSError
     ///     The operating system does not hand the file out.
     #[classmethod]
@@ -221,7 +221,7 @@ shown! {
     /// -----
     /// PalpateWarning
     ///     A longer hold, a deeper squeeze, a faster ramp, a larger force than the test has shown, or a force that is held: answered all
-    ///     the same. A material of which a number was left open.
+    ///     the same. A material of which a parameter was left open.
     #[pyo3(signature = (protocol, *, at_s=None, confidence=0.95))]
     fn predict(
         &self,
@@ -309,7 +309,7 @@ shown! {
     /// Raises
     /// ------
     /// OptionError
-    ///     Numbers that describe no load, no gripper or no question; options that exclude each other.
+    ///     Parameters that describe no load, no gripper or no question; options that exclude each other.
     /// ModelError
     ///     A body that was tested bonded to its grips.
     ///
@@ -317,7 +317,7 @@ shown! {
     /// -----
     /// PalpateWarning
     ///     A longer hold, a deeper squeeze, a faster ramp, a larger force than the test has shown, or a force that is held: answered all
-    ///     the same. A material of which a number was left open.
+    ///     the same. A material of which a parameter was left open.
     ///
     /// Examples
     /// --------
@@ -326,7 +326,7 @@ shown! {
     /// >>> import palpate
     /// >>> made = palpate.simulate({
     /// ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
-    /// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+    /// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient_per_s": "2e4 /s"},
     /// ...     "step": [
     /// ...         {"to": "5 mm", "rate": "500 mm/min", "hold": "20 s"},
     /// ...         {"to": "9 mm", "rate": "500 mm/min", "hold": "20 s"},
@@ -422,17 +422,17 @@ shown! {
     }
 
     fn __repr__(&self) -> String {
-        let number = |number: &MaterialParameter| {
-            let (value, unit) = (told(&number.estimate, 4), material_unit(number.unit).1);
+        let parameter = |parameter: &MaterialParameter| {
+            let (value, unit) = (told(&parameter.estimate, 4), material_unit(parameter.unit).1);
             let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
-            format!("{}={value}{unit}", number.name)
+            format!("{}={value}{unit}", parameter.name)
         };
-        let numbers: Vec<String> = self.numbers_found().iter().map(number).collect();
-        format!("<palpate.Material {}: {}>", self.law(), numbers.join(", "))
+        let parameters: Vec<String> = self.estimated().iter().map(parameter).collect();
+        format!("<palpate.Material {}: {}>", self.law(), parameters.join(", "))
     }
 
-    /// The numbers with their intervals, for notebooks.
+    /// The parameters with their intervals, for notebooks.
     fn _repr_html_(&self) -> PyResult<String> {
-        Ok(format!("<p>Numbers of the law {}.</p>{}", self.law(), self.numbers()?._repr_html_()))
+        Ok(format!("<p>Parameters of the law {}.</p>{}", self.law(), self.parameters()?._repr_html_()))
     }
 }

@@ -53,18 +53,18 @@ shown! {
         displacement_low_m: self.ends(Predicted::displacement_interval).0,
         /// Its upper end, m.
         displacement_high_m: self.ends(Predicted::displacement_interval).1,
-        /// Contact force with the best numbers, N.
+        /// Contact force with the best parameters, N.
         force_n: self.predicted.trajectory.force.clone(),
-        /// Lower end of the interval of the mean force, N: what the numbers leave open.
+        /// Lower end of the interval of the mean force, N: what the parameters leave open.
         force_low_n: self.ends(Predicted::force_interval).0,
         /// Its upper end, N.
         force_high_n: self.ends(Predicted::force_interval).1,
-        /// Lower end of the interval of one reading of the force, N: numbers and noise.
+        /// Lower end of the interval of one reading of the force, N: parameters and noise.
         reading_low_n: self.ends(Predicted::reading_interval).0,
         /// Its upper end, N.
         reading_high_n: self.ends(Predicted::reading_interval).1,
         /// Standard error of the mean force by what the calibration leaves open, N.
-        force_error_n: self.predicted.force_deviation.clone(),
+        force_standard_error_n: self.predicted.force_standard_error.clone(),
     }
     values {
         /// Standard deviation of the noise of one reading, N.
@@ -73,7 +73,7 @@ shown! {
         confidence: f64 = self.predicted.confidence,
         /// What was asked beyond the test, a sentence each.
         extrapolations: Vec<String> = self.predicted.extrapolations.iter().map(ToString::to_string).collect(),
-        /// The course with the best numbers, with strains and contacts lost and regained.
+        /// The course with the best parameters, with strains and contacts lost and regained.
         trajectory: Trajectory = Trajectory { series: self.predicted.trajectory.clone() },
     }
 

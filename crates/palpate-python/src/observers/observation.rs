@@ -78,21 +78,21 @@ attributes! {
         /// The force that a hold of the displacement tends to, N; None until its interval is narrower than the force itself.
         equilibrium_force_n: Option<f64> = value(seen.equilibrium_force),
         /// Its standard deviation, N.
-        equilibrium_force_deviation_n: Option<f64> = deviation(seen.equilibrium_force),
+        equilibrium_force_standard_error_n: Option<f64> = deviation(seen.equilibrium_force),
         /// Force in excess of equilibrium, N.
         excess_force_n: Option<f64> = value(seen.excess_force),
         /// Its standard deviation, N.
-        excess_force_deviation_n: Option<f64> = deviation(seen.excess_force),
+        excess_force_standard_error_n: Option<f64> = deviation(seen.excess_force),
         /// Strain in excess of equilibrium; only a material tells it.
         excess_strain: Option<f64> = value(seen.excess_strain),
         /// Its standard deviation.
-        excess_strain_deviation: Option<f64> = deviation(seen.excess_strain),
+        excess_strain_standard_error: Option<f64> = deviation(seen.excess_strain),
         /// Rate at which the excess falls now, in shares of itself, 1/s.
         relative_rate_per_s: Option<f64> = seen.relative_rate,
         /// Speed of the creep while the force is held, m/s.
         creep_rate_m_per_s: Option<f64> = value(seen.creep_rate),
         /// Its standard deviation, m/s.
-        creep_rate_deviation_m_per_s: Option<f64> = deviation(seen.creep_rate),
+        creep_rate_standard_error_m_per_s: Option<f64> = deviation(seen.creep_rate),
         /// Whether it slips: "not_known_yet", "never" (by relaxation), "perhaps_never" or "after"; None where no force of slip was given.
         slips: Option<&'static str> = seen.time_to_slip.map(slips_word),
         /// How long until the force has fallen to that of slip, s; infinite for never, None where that is not known.

@@ -23,7 +23,7 @@ use crate::work::{Made, at_length, unpickled};
 ///     The calibrated body, of the latency law: its excess strain is then known from first touch on. Displacements count from there.
 /// exponent : float, optional
 ///     Exponent of the law where no material says it, from 1 to 30; 5 if left out.
-/// exponent_deviation : float, optional
+/// exponent_standard_error : float, optional
 ///     Standard deviation to which that exponent is known, from 0 to 10; 0 if left out.
 /// slip_force_n : float, optional
 ///     Normal force at and below which what is held slips, N; without it nobody asks for slip.
@@ -33,9 +33,9 @@ use crate::work::{Made, at_length, unpickled};
 ///     Coverage of the intervals, between 0 and 1.
 /// displacement_noise_m, force_noise_n : float, optional
 ///     Standard deviation of one reading, m and N, both or none; found out from the readings if left out.
-/// stiffness_deviation : float
+/// stiffness_standard_error : float
 ///     With a material: by how much the stiffness of this body may differ, as a standard deviation of its logarithm, from 0 to 1.
-/// touch_deviation_m : float
+/// touch_standard_error_m : float
 ///     With a material: standard deviation to which first touch is known, m.
 ///
 /// Raises
@@ -113,24 +113,24 @@ shown! {
 
     #[new]
     #[pyo3(signature = (
-        material=None, *, exponent=None, exponent_deviation=None, slip_force_n=None, warn_before_s=1.0, confidence=0.95,
-        displacement_noise_m=None, force_noise_n=None, stiffness_deviation=0.05, touch_deviation_m=1e-4,
+        material=None, *, exponent=None, exponent_standard_error=None, slip_force_n=None, warn_before_s=1.0, confidence=0.95,
+        displacement_noise_m=None, force_noise_n=None, stiffness_standard_error=0.05, touch_standard_error_m=1e-4,
     ))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn new(
         material: Option<PyRef<'_, Material>>,
         exponent: Option<f64>,
-        exponent_deviation: Option<f64>,
+        exponent_standard_error: Option<f64>,
         slip_force_n: Option<f64>,
         warn_before_s: f64,
         confidence: f64,
         displacement_noise_m: Option<f64>,
         force_noise_n: Option<f64>,
-        stiffness_deviation: f64,
-        touch_deviation_m: f64,
+        stiffness_standard_error: f64,
+        touch_standard_error_m: f64,
     ) -> PyResult<Self> {
         let material = material.map(|material| material.clone());
-        for (name, given) in [("exponent", exponent), ("exponent_deviation", exponent_deviation)] {
+        for (name, given) in [("exponent", exponent), ("exponent_standard_error", exponent_standard_error)] {
             if material.is_some() && given.is_some() {
                 let message = format!("{name}: expected either this or material, found both");
                 return Err(refused::<OptionError>(
@@ -153,13 +153,13 @@ shown! {
         let options = ObserverOptions {
             material: material.as_ref().map(Material::body),
             exponent: exponent.unwrap_or(5.0),
-            exponent_deviation: exponent_deviation.unwrap_or(0.0),
+            exponent_standard_error: exponent_standard_error.unwrap_or(0.0),
             slip_force: slip_force_n,
             warn_before: warn_before_s,
             confidence,
             noise: displacement_noise_m.zip(force_noise_n),
-            stiffness_deviation,
-            touch_deviation: touch_deviation_m,
+            stiffness_standard_error,
+            touch_standard_error: touch_standard_error_m,
         };
         let watcher = Watcher::new(options).map_err(|error| refused_at("", &error))?;
         Ok(Self { watcher, material })

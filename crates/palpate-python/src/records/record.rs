@@ -459,7 +459,7 @@ shown! {
     /// >>> ball = {"shape": "ball", "radius": "35 mm"}
     /// >>> squeezed = palpate.simulate({
     /// ...     "specimen": {**ball, "modulus": "28 kPa"},
-    /// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
+    /// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient_per_s": "2e4 /s"},
     /// ...     "step": [{"to": to, "rate": "500 mm/min", "hold": "20 s"} for to in ("5 mm", "10 mm")],
     /// ...     "output": {"sample_rate": "10 Hz"},
     /// ... })

@@ -134,7 +134,7 @@ documents! {
         let estimate = |name: &str, otherwise: f64| {
             joint.fit.shared(name).map_or(Estimate::fixed(otherwise), |number| number.estimate)
         };
-        let (rate, exponent) = (estimate("rate_coefficient", f64::NAN), estimate("exponent", fixed));
+        let (rate, exponent) = (estimate("rate_coefficient_per_s", f64::NAN), estimate("exponent", fixed));
         let trend = joint.comparison.trend.as_ref();
     } {
         /// Holds after `loading`, or `all`.

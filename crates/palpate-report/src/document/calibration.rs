@@ -1,24 +1,24 @@
 //! `palpate.calibration/1`: laws calibrated on a whole record.
 
 use palpate::analysis::HoldoutError;
-use palpate::calibrate::{CalibrateError, Calibration, Candidate, MaterialParameter, NumberProfile};
+use palpate::calibrate::{CalibrateError, Calibration, Candidate, MaterialParameter, ParameterProfile};
 use palpate::fit::Interval;
 
-use super::comparison::NumberDocument;
+use super::comparison::EstimateDocument;
 use super::software::Software;
 use crate::result::{CalibratedRecord, Input, material_unit, word};
 
 documents! {
-    /// A number of a calibrated law, in the unit at the end of its name.
-    CalibratedNumberDocument(number: &MaterialParameter, profiles: &[NumberProfile]) with {
-        let (suffix, ..) = material_unit(number.unit);
-        let profile = profiles.iter().find(|profile| profile.name == number.name);
+    /// A parameter of a calibrated law, in the unit at the end of its name.
+    CalibratedParameterDocument(parameter: &MaterialParameter, profiles: &[ParameterProfile]) with {
+        let (suffix, ..) = material_unit(parameter.unit);
+        let profile = profiles.iter().find(|profile| profile.name == parameter.name);
     } {
         /// Name with its unit, such as `modulus_pa`, `exponent`, `rate_coefficient_per_s`, `layer_thickness_m`.
-        name: String = format!("{}{suffix}", number.name),
+        name: String = format!("{}{suffix}", parameter.name),
         /// Its value; no standard error where the record leaves it open, or where it was given.
         #[serde(flatten)]
-        estimate: NumberDocument = NumberDocument::new(&number.estimate),
+        estimate: EstimateDocument = EstimateDocument::new(&parameter.estimate),
         /// Profile interval; left out where none was asked for.
         profile?: Option<ProfileDocument> = profile.map(|found| ProfileDocument::new(found.interval)),
     }
@@ -46,16 +46,16 @@ documents! {
         candidate: &Candidate,
         made: &Result<Calibration, CalibrateError>,
         least: f64,
-        profiles: &[NumberProfile]
+        profiles: &[ParameterProfile]
     ) with {
         let good = made.as_ref().ok();
-        let numbers = good.iter().flat_map(|made| &made.material.numbers);
+        let parameters = good.iter().flat_map(|made| &made.material.parameters);
         let uncertainty = good.and_then(|made| made.material.uncertainty.as_ref());
     } {
         /// Name of the law.
         law: String = candidate.to_string(),
-        /// Numbers that were searched.
-        parameters: Option<usize> = good.map(|made| made.free_numbers),
+        /// Parameters that were searched.
+        free_parameters: Option<usize> = good.map(|made| made.free_parameters),
         /// Root mean square residual over the fitted samples, N.
         rmse_n: Option<f64> = good.map(|made| made.rmse),
         /// The same as a share of the largest force.
@@ -64,10 +64,10 @@ documents! {
         delta_bic: Option<f64> = good.map(|made| made.criteria.bic - least).filter(|delta| delta.is_finite()),
         /// What was not fitted; `null` where all was.
         holdout: Option<HoldoutDocument> = good.and_then(|made| made.holdout).map(HoldoutDocument::new),
-        /// Its numbers.
-        numbers: Vec<CalibratedNumberDocument> =
-            numbers.map(|number| CalibratedNumberDocument::new(number, profiles)).collect(),
-        /// Covariance of the logarithms of the numbers; `null` where the record leaves one open.
+        /// Its parameters.
+        parameters: Vec<CalibratedParameterDocument> =
+            parameters.map(|parameter| CalibratedParameterDocument::new(parameter, profiles)).collect(),
+        /// Covariance of the logarithms of the parameters; `null` where the record leaves one open.
         log_covariance: Option<Vec<Vec<f64>>> = uncertainty.map(|uncertainty| uncertainty.covariance.clone()),
         /// Why the search ended; `null` where none began.
         termination: Option<String> = good.map(|made| word(made.termination)),

@@ -12,11 +12,11 @@ use crate::page::Finding;
 use crate::result::{ComparedHold, ComparedRecord, Input, LeftOut, Quantity, hold_start_word, word};
 
 documents! {
-    /// A number of a law.
-    NumberDocument(estimate: &Estimate) {
+    /// A parameter of a law.
+    EstimateDocument(estimate: &Estimate) {
         /// The best value.
         value: f64 = estimate.value,
-        /// Standard error for white noise; `null` where the data do not determine the number.
+        /// Standard error for white noise; `null` where the data do not determine the parameter.
         standard_error: Option<f64> = estimate.standard_error,
         /// Confidence interval, widened for correlated residuals.
         interval: Option<[f64; 2]> = estimate.interval.map(Into::into),
@@ -64,18 +64,18 @@ documents! {
     LawDocument(row: &Row, change: f64, lowest_aicc: f64, quantity: Quantity) with {
         let fit = row.fit.as_ref().ok();
         let without = row.spectrum.is_none().then(|| row.fit.as_ref().err()).flatten();
-        let named = |number: &Parameter| {
-            let suffix = quantity.suffix(number.unit).filter(|_| number.estimate.value.is_finite())?;
-            Some((format!("{}{suffix}", number.name), NumberDocument::new(&number.estimate)))
+        let named = |parameter: &Parameter| {
+            let suffix = quantity.suffix(parameter.unit).filter(|_| parameter.estimate.value.is_finite())?;
+            Some((format!("{}{suffix}", parameter.name), EstimateDocument::new(&parameter.estimate)))
         };
         let forecast = |found: &Option<Forecast>| found.as_ref().map(|found| ForecastDocument::new(found, change));
     } {
         /// Name of the law, as `--laws` takes it.
         law: String = row.law.to_string(),
-        /// Numbers that the data determine; not a whole one for a smoothed spectrum.
-        parameters: f64 = row.numbers,
-        /// Numbers of the law by name, with the unit at the end of the name.
-        numbers: BTreeMap<String, NumberDocument> =
+        /// Parameters that the data determine; not a whole one for a smoothed spectrum.
+        effective_parameters: f64 = row.effective_parameters,
+        /// Parameters of the law by name, with the unit at the end of the name.
+        parameters: BTreeMap<String, EstimateDocument> =
             fit.iter().flat_map(|fit| &fit.parameters).filter_map(named).collect(),
         /// The spectrum, if that is the law.
         spectrum: Option<SpectrumDocument> = row.spectrum.as_ref().map(SpectrumDocument::new),
@@ -97,7 +97,7 @@ documents! {
 
     /// Which law to use.
     VerdictDocument(comparison: &Comparison, verdict: &Verdict) {
-        /// The law with the fewest numbers among those that do best.
+        /// The law with the fewest parameters among those that do best.
         law: String = verdict.law.to_string(),
         /// `clear`, `likely` or `open`.
         certainty: String = word(verdict.certainty),

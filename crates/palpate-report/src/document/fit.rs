@@ -22,9 +22,9 @@ documents! {
             ("excess_strain", fit.amplitude(), 1.0),
             ("rate_coefficient_per_s", fit.rate_coefficient(), 1.0),
         ];
-        let numbers = || of_any.iter().chain(of_strain.iter().filter(|_| is_strain));
-        let errors = numbers().filter_map(|(name, of, unit)| Some(((*name).to_owned(), of.standard_error? * unit)));
-        let intervals = numbers().filter_map(|(name, of, unit)| {
+        let parameters = || of_any.iter().chain(of_strain.iter().filter(|_| is_strain));
+        let errors = parameters().filter_map(|(name, of, unit)| Some(((*name).to_owned(), of.standard_error? * unit)));
+        let intervals = parameters().filter_map(|(name, of, unit)| {
             let (low, high) = of.interval?;
             Some(((*name).to_owned(), [low * unit, high * unit]))
         });
@@ -49,7 +49,7 @@ documents! {
         relative_rate_per_s: f64 = fit.relative_rate().value,
         /// v, 1/s; only where the signal is strain.
         rate_coefficient_per_s: Option<f64> = is_strain.then_some(fit.rate_coefficient().value),
-        /// Standard errors by the names above (white noise); a number without one is missing.
+        /// Standard errors by the names above (white noise); a parameter without one is missing.
         standard_error: BTreeMap<String, f64> = errors.collect(),
         /// Confidence intervals by the names above, widened for correlated residuals.
         confidence_interval: BTreeMap<String, [f64; 2]> = intervals.collect(),

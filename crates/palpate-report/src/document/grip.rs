@@ -103,10 +103,10 @@ documents! {
         lasts: LastsDocument = LastsDocument::new(lasts),
     }
 
-    /// What 1 % more of a number of the material does to squeeze and back off.
+    /// What 1 % more of a parameter of the material does to squeeze and back off.
     SensitivityDocument(found: &Sensitivity) {
-        /// Name of the number.
-        number: String = found.name.clone(),
+        /// Name of the parameter.
+        parameter: String = found.name.clone(),
         /// Its relative standard error.
         relative_error: Option<f64> = found.error,
         /// By how much the force at the start of the hold misses the relaxed one, N.
@@ -127,7 +127,7 @@ documents! {
         drift_n: f64 = found.drift,
         /// The same after the plain squeeze, N.
         plain_drift_n: f64 = found.plain_drift,
-        /// What the numbers of the material do to it.
+        /// What the parameters of the material do to it.
         sensitivities: Vec<SensitivityDocument> = found.sensitivities.iter().map(SensitivityDocument::new).collect(),
     }
 

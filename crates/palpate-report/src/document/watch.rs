@@ -32,17 +32,17 @@ documents! {
         creep_rate: Option<Estimate>
     ) with {
         let ((start, end), (force_start, force_end)) = (times, forces);
-        let (equilibrium, equilibrium_deviation) = parted(equilibrium_force);
-        let (creep, creep_deviation) = parted(creep_rate);
+        let (equilibrium, equilibrium_standard_error) = parted(equilibrium_force);
+        let (creep, creep_standard_error) = parted(creep_rate);
     } {
         /// Standard deviation of the speed of creep, m/s.
-        creep_rate_deviation_m_per_s?: Option<f64> = creep_deviation,
+        creep_rate_standard_error_m_per_s?: Option<f64> = creep_standard_error,
         /// The last speed of creep, m/s.
         creep_rate_m_per_s?: Option<f64> = creep,
         /// When it was last seen, s.
         end_s: f64 = end,
         /// Standard deviation of the equilibrium force, N.
-        equilibrium_force_deviation_n?: Option<f64> = equilibrium_deviation,
+        equilibrium_force_standard_error_n?: Option<f64> = equilibrium_standard_error,
         /// The last equilibrium force, N.
         equilibrium_force_n?: Option<f64> = equilibrium,
         /// `hold_ends`; left out in the summary.
@@ -74,10 +74,10 @@ documents! {
 
     /// What an observer says after a tick.
     ObservationDocument(event: &str, seen: &Observation) with {
-        let (creep, creep_deviation) = parted(seen.creep_rate);
-        let (equilibrium, equilibrium_deviation) = parted(seen.equilibrium_force);
-        let (excess, excess_deviation) = parted(seen.excess_force);
-        let (strain, strain_deviation) = parted(seen.excess_strain);
+        let (creep, creep_standard_error) = parted(seen.creep_rate);
+        let (equilibrium, equilibrium_standard_error) = parted(seen.equilibrium_force);
+        let (excess, excess_standard_error) = parted(seen.excess_force);
+        let (strain, strain_standard_error) = parted(seen.excess_strain);
         let hold = seen.held.zip(seen.held_since);
         let times = match seen.time_to_slip {
             Some(SlipForecast::Known { best, low: TimeToSlip::After(low), high }) => {
@@ -88,23 +88,23 @@ documents! {
         let warns = seen.time_to_slip.is_some() || seen.slip != Slip::None;
     } {
         /// Standard deviation of the speed of creep, m/s.
-        creep_rate_deviation_m_per_s?: Option<f64> = creep_deviation,
+        creep_rate_standard_error_m_per_s?: Option<f64> = creep_standard_error,
         /// Speed of the creep while the force is held, m/s.
         creep_rate_m_per_s?: Option<f64> = creep,
         /// Standard deviation of the equilibrium force, N.
-        equilibrium_force_deviation_n?: Option<f64> = equilibrium_deviation,
+        equilibrium_force_standard_error_n?: Option<f64> = equilibrium_standard_error,
         /// The force that a hold of the displacement tends to, N.
         equilibrium_force_n?: Option<f64> = equilibrium,
         /// `tick`, `hold_begins`, `hold_changes` or `warning`.
         event: String = event.to_owned(),
         /// Standard deviation of the excess force, N.
-        excess_force_deviation_n?: Option<f64> = excess_deviation,
+        excess_force_standard_error_n?: Option<f64> = excess_standard_error,
         /// Force in excess of equilibrium, N.
         excess_force_n?: Option<f64> = excess,
         /// Strain in excess of equilibrium.
         excess_strain?: Option<f64> = strain,
         /// Standard deviation of the excess strain.
-        excess_strain_deviation?: Option<f64> = strain_deviation,
+        excess_strain_standard_error?: Option<f64> = strain_standard_error,
         /// The force without its noise, N.
         force_n: f64 = seen.force,
         /// What is held: `displacement` or `force`.

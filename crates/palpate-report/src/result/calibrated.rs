@@ -1,6 +1,6 @@
 //! What a calibration of a record is shown with.
 
-use palpate::calibrate::{CalibrateError, Calibration, CalibrationData, Candidate, NumberProfile, RateLaw};
+use palpate::calibrate::{CalibrateError, Calibration, CalibrationData, Candidate, ParameterProfile, RateLaw};
 use palpate::fit::{NoiseModel, Termination};
 use palpate::number::significant;
 
@@ -17,7 +17,7 @@ pub struct CalibratedRecord {
     /// Each candidate with what was found, or why nothing was.
     pub rows: Vec<(Candidate, Result<Calibration, CalibrateError>)>,
     /// Profile intervals of what is asked for; none if they were not.
-    pub profiles: Vec<NumberProfile>,
+    pub profiles: Vec<ParameterProfile>,
 }
 
 impl CalibratedRecord {
@@ -58,7 +58,7 @@ impl CalibratedRecord {
         })
     }
 
-    /// What a calibration shows that its numbers alone do not tell.
+    /// What a calibration shows that its parameters alone do not tell.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         let mut remarks: Vec<String> = self.sentence().into_iter().collect();
@@ -81,20 +81,20 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
                     .to_owned()
             }
             Termination::Singular => {
-                "The record does not tell the numbers apart; holds of different excess strain would.".to_owned()
+                "The record does not tell the parameters apart; holds of different excess strain would.".to_owned()
             }
             Termination::IterationLimit => "The search used up its steps on the way to an optimum.".to_owned(),
             at_bound => format!(
-                "The search ended at the edge of what is sought ({}): the record leaves a number open.",
+                "The search ended at the edge of what is sought ({}): the record leaves a parameter open.",
                 word(at_bound).replace('_', " ")
             ),
         };
-        remarks.push(format!("{how} The numbers have no intervals."));
+        remarks.push(format!("{how} The parameters have no intervals."));
     } else if let Some(open) = made
         .material
-        .numbers
+        .parameters
         .iter()
-        .find(|number| number.estimate.interval.is_none_or(|(low, high)| high > 100.0 * low))
+        .find(|parameter| parameter.estimate.interval.is_none_or(|(low, high)| high > 100.0 * low))
         && made.material.uncertainty.is_some()
         && open.estimate.standard_error.is_some()
     {
@@ -117,7 +117,7 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
             significant(100.0 * made.relative, 2)
         ));
     }
-    let shown = &made.material.shown;
+    let shown = &made.material.range;
     remarks.push(format!(
         "Shown: holds of up to {} s, {} mm deep, ramps of {} to {} mm/s, forces of up to {} N. Predictions beyond are extrapolations, and say so.",
         significant(shown.longest_hold, 3),

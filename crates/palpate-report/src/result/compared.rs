@@ -1,7 +1,7 @@
 //! Laws compared on the holds of a record, of relaxation and of creep alike.
 
 use palpate::analysis::{Analysis, CreepHold, Finding, Signal};
-use palpate::fit::NumberUnit;
+use palpate::fit::ParameterUnit;
 use palpate::forecast::Comparison;
 use palpate::segment::After;
 
@@ -94,18 +94,18 @@ impl Quantity {
     }
 
     /// What a name in JSON ends in for a number of this unit; `None` for one that has no unit of its own.
-    pub(crate) fn suffix(self, unit: NumberUnit) -> Option<String> {
+    pub(crate) fn suffix(self, unit: ParameterUnit) -> Option<String> {
         let (_, own, _) = self.units();
         let (own, over_time) = match unit {
-            NumberUnit::One => ("", ""),
-            NumberUnit::Second => ("", "_s"),
-            NumberUnit::PerSecond => ("", "_per_s"),
-            NumberUnit::Signal => (own, ""),
-            NumberUnit::SignalPerSecond => (own, "_per_s"),
+            ParameterUnit::One => ("", ""),
+            ParameterUnit::Second => ("", "_s"),
+            ParameterUnit::PerSecond => ("", "_per_s"),
+            ParameterUnit::Signal => (own, ""),
+            ParameterUnit::SignalPerSecond => (own, "_per_s"),
             // A power of time in s: what it is after one second.
-            NumberUnit::SignalPerPower => (own, "_at_1_s"),
-            NumberUnit::RateCoefficient if self == Self::Strain => ("", "_per_s"),
-            NumberUnit::RateCoefficient => return None,
+            ParameterUnit::SignalPerPower => (own, "_at_1_s"),
+            ParameterUnit::RateCoefficient if self == Self::Strain => ("", "_per_s"),
+            ParameterUnit::RateCoefficient => return None,
         };
         Some(format!("{own}{over_time}"))
     }

@@ -1,4 +1,4 @@
-//! A model with numbers to be found: a law of the layer and one of the equilibrium force.
+//! A model with parameters to be found: a law of the layer and one of the equilibrium force.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,14 +22,14 @@ pub enum EquilibriumLaw {
     Table,
 }
 
-/// Whether the rate coefficient of the latency law is one number, or depends on where the layer stands.
+/// Whether the rate coefficient of the latency law is one parameter, or depends on where the layer stands.
 ///
 /// Fitted hold by hold it has a trend with the equilibrium strain (the paper's Table I) and another level after unloading (Table II);
-/// whether that is the body's, or the fits', a calibration with one more number tells.
+/// whether that is the body's, or the fits', a calibration with one more parameter tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RateLaw {
-    /// One number.
+    /// One parameter.
     #[default]
     Constant,
     /// v(ε_e) = v f^(ε_e/0.1), with f to be found: [`RateDependence::Strain`].
@@ -42,7 +42,7 @@ impl RateLaw {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Constant, Self::ByStrain, Self::ByDirection];
 
-    /// Name of its factor among the numbers of a material.
+    /// Name of its factor among the parameters of a material.
     #[must_use]
     pub fn factor_name(self) -> Option<&'static str> {
         match self {

@@ -50,7 +50,7 @@ impl CalibrationData {
     /// ```
     ///
     /// # Errors
-    /// [`CalibrateError`] for columns of different lengths, numbers that are not finite, times that do not rise or lie outside the motion,
+    /// [`CalibrateError`] for columns of different lengths, parameters that are not finite, times that do not rise or lie outside the motion,
     /// and a geometry that is none or that the jaw goes through.
     pub fn new(
         geometry: Geometry,

@@ -75,13 +75,13 @@ pub enum CalibrateError {
         /// What was given.
         found: f64,
     },
-    /// Fewer samples than numbers to find.
-    #[error("{numbers} numbers are to be found, which needs more samples than the {samples} there are")]
+    /// Fewer samples than parameters to find.
+    #[error("{parameters} parameters are to be found, which needs more samples than the {samples} there are")]
     TooFewSamples {
         /// Samples to fit.
         samples: usize,
-        /// Numbers.
-        numbers: usize,
+        /// Parameters.
+        parameters: usize,
     },
     /// A body that never pushes back.
     #[error("the force does not rise with the squeeze: no stiffness above 0 N fits the record")]

@@ -20,12 +20,12 @@ pub(super) const FARTHEST: f64 = 14.0;
 /// A candidate fitted to the whole of a record, ramps and holds alike.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
-    /// The body with its numbers.
+    /// The body with its parameters.
     pub material: Material,
     /// Simulated force at every sample, fitted or predicted, N.
     pub simulated: Vec<f64>,
-    /// Numbers that were searched.
-    pub free_numbers: usize,
+    /// Parameters that were searched.
+    pub free_parameters: usize,
     /// Root mean square residual over the fitted samples, N.
     pub rmse: f64,
     /// The same as a share of the largest force of the record.
@@ -40,17 +40,17 @@ pub struct Calibration {
     pub termination: Termination,
     /// Simulations it took.
     pub simulations: u64,
-    /// The searched numbers.
+    /// The searched parameters.
     pub(super) theta: Vec<f64>,
 }
 
-/// Fits a law of the layer and one of the equilibrium force to a whole record: one set of numbers for all ramps and holds.
+/// Fits a law of the layer and one of the equilibrium force to a whole record: one set of parameters for all ramps and holds.
 ///
 /// With the latency law these are n, v, the layer thickness ℓ and the coefficients of the equilibrium force (one modulus, or the rows of a
 /// table): the holds carry n and v, the ramps ℓ, since the excess at their end is that of ẋ = u̇₁ (m − 1)/depth − v sgn(x)|x|ⁿ with
 /// m = depth/ℓ, and the relaxed levels the stiffness S(u) of F = S(u)(u/depth + x), equations (10) and (11). No starting values: a grid is
-/// searched first. Intervals are those of the logarithms of the numbers, for residuals that correlate as they do; `confidence` is their
-/// coverage. A number that the record leaves open over more than a factor of a million either way has none.
+/// searched first. Intervals are those of the logarithms of the parameters, for residuals that correlate as they do; `confidence` is their
+/// coverage. A parameter that the record leaves open over more than a factor of a million either way has none.
 ///
 /// ```
 /// use palpate::analysis::Geometry;
@@ -66,15 +66,15 @@ pub struct Calibration {
 /// let data = CalibrationData::new(ball, model.separation, motion, times, forces, &[])?;
 /// let found = calibrate(&data, Candidate::new("latency".parse()?, EquilibriumLaw::UniformStrain), 0.95, &mut Unwatched)?;
 /// let value = |name| found.material.estimate(name).unwrap().value;
-/// assert!((value("modulus") - 28e3).abs() < 1e-3);            // Pa
+/// assert!((value("modulus_pa") - 28e3).abs() < 1e-3);            // Pa
 /// assert!((value("exponent") - 5.0).abs() < 1e-5);
-/// assert!((value("layer_thickness") - 0.035 / 8.0).abs() < 1e-8); // m
+/// assert!((value("layer_thickness_m") - 0.035 / 8.0).abs() < 1e-8); // m
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
 /// [`CalibrateError`] for a law that no contact is simulated with, an equilibrium law that does not go with the body, fewer samples than
-/// numbers, and a force that does not rise with the squeeze; [`CalibrateError::Cancelled`] once `watch` ends it, which hears of every
+/// parameters, and a force that does not rise with the squeeze; [`CalibrateError::Cancelled`] once `watch` ends it, which hears of every
 /// simulation or two.
 pub fn calibrate(
     data: &CalibrationData,
@@ -87,7 +87,7 @@ pub fn calibrate(
     if data.fitted() <= free {
         return Err(CalibrateError::TooFewSamples {
             samples: data.fitted(),
-            numbers: free,
+            parameters: free,
         });
     }
     let mut stages = Stages::new(format!("calibrating {candidate}"), watch);
@@ -95,7 +95,7 @@ pub fn calibrate(
     let problem = Problem::of(&prepared, data);
     let contact = prepared.contact(&found.theta).ok_or(CalibrateError::NoStiffness)?;
     let simulated = simulate_force(data.motion(), &contact, data.times())?;
-    // A number at its bound has no error, the others have theirs beside it.
+    // A parameter at its bound has no error, the others have theirs beside it.
     let open: Vec<usize> = (0..free)
         .filter(|i| found.theta[*i] > prepared.searched[*i].low && found.theta[*i] < prepared.searched[*i].high)
         .collect();
@@ -124,16 +124,15 @@ pub fn calibrate(
     let estimate = |index: usize, name: &str| match &assessed {
         Some(assessed) if is_found && !Material::is_given(candidate, name) => {
             let estimate = assessed.estimate(values[index], &gradients[index], Scale::Log);
-            let told = |(_, high): &(f64, f64)| (high / values[index]).ln() < FARTHEST;
-            Estimate {
-                interval: estimate.interval.filter(told),
-                ..estimate
+            match estimate.interval {
+                Some((_, high)) if (high / values[index]).ln() < FARTHEST => estimate,
+                _ => Estimate::fixed(values[index]),
             }
         }
         _ => Estimate::fixed(values[index]),
     };
     let names = names(candidate, prepared.body.levels.len());
-    let numbers: Vec<MaterialParameter> = names
+    let parameters: Vec<MaterialParameter> = names
         .into_iter()
         .enumerate()
         .map(|(index, (name, unit))| MaterialParameter {
@@ -167,13 +166,13 @@ pub fn calibrate(
         material: Material {
             body: prepared.body.clone(),
             candidate,
-            numbers,
+            parameters,
             uncertainty,
             noise: (found.square / (data.fitted() - free) as f64).sqrt(),
-            shown: shown(data),
+            range: range(data),
         },
         simulated,
-        free_numbers: free,
+        free_parameters: free,
         rmse,
         relative: rmse / largest,
         noise,
@@ -185,7 +184,7 @@ pub fn calibrate(
     })
 }
 
-/// Derivatives of the logarithms of the numbers by the open searched ones: rows of numbers.
+/// Derivatives of the logarithms of the parameters by the open searched ones: rows of parameters.
 fn gradients(prepared: &Prepared, theta: &[f64], open: &[usize]) -> Vec<Vec<f64>> {
     /// Both are logarithms: all but the layer thickness are straight.
     const STEP: f64 = 1e-5;
@@ -212,7 +211,7 @@ fn transformed(covariance: &[Vec<f64>], gradients: &[Vec<f64>]) -> Vec<Vec<f64>>
 }
 
 /// What the fitted part of the record has shown.
-fn shown(data: &CalibrationData) -> CalibrationRange {
+fn range(data: &CalibrationData) -> CalibrationRange {
     let largest_force = data.forces()[..data.fitted()].iter().fold(0.0, |most: f64, force| most.max(force.abs()));
     let until = data.times()[data.fitted() - 1];
     let deepest = |motion: &Motion| motion.displacements().iter().copied().fold(0.0, f64::max);

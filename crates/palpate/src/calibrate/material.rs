@@ -1,4 +1,4 @@
-//! A body with calibrated numbers: what a calibration leaves, and what predictions and grips are made from.
+//! A body with calibrated parameters: what a calibration leaves, and what predictions and grips are made from.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,11 +22,11 @@ pub struct Body {
     pub levels: Vec<f64>,
 }
 
-/// Unit of a number of a material.
+/// Unit of a parameter of a material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MaterialUnit {
-    /// A pure number.
+    /// A dimensionless parameter.
     One,
     /// s.
     Second,
@@ -40,7 +40,7 @@ pub enum MaterialUnit {
     Pascal,
 }
 
-/// A number of a material; all are above zero.
+/// A parameter of a material; all are above zero.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MaterialParameter {
     /// Name without unit: `modulus` or `equilibrium_force_1`, …; `exponent`, `rate_coefficient`, `layer_thickness`,
@@ -48,18 +48,18 @@ pub struct MaterialParameter {
     pub name: String,
     /// Its unit.
     pub unit: MaterialUnit,
-    /// Value, standard error, interval; a number that was given has neither of the latter.
+    /// Value, standard error, interval; a parameter that was given has neither of the latter.
     pub estimate: Estimate,
 }
 
-/// How sure the numbers of a material are together.
+/// How sure the parameters of a material are together.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MaterialUncertainty {
     /// Coverage of the intervals.
     pub confidence: f64,
     /// Degrees of freedom of the residual variance.
     pub freedom: f64,
-    /// Covariance of the logarithms of the numbers, in their order; 0 for those that were given.
+    /// Covariance of the logarithms of the parameters, in their order; 0 for those that were given.
     pub covariance: Vec<Vec<f64>>,
 }
 
@@ -78,25 +78,25 @@ pub struct CalibrationRange {
     pub largest_force: f64,
 }
 
-/// A body with calibrated numbers.
+/// A body with calibrated parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// What is known of it without a test.
     pub body: Body,
-    /// The laws whose numbers these are.
+    /// The laws whose parameters these are.
     pub candidate: Candidate,
-    /// The numbers.
-    pub numbers: Vec<MaterialParameter>,
+    /// The parameters.
+    pub parameters: Vec<MaterialParameter>,
     /// How sure they are; `None` where the test leaves one of them open.
     pub uncertainty: Option<MaterialUncertainty>,
-    /// Standard deviation of what the model left of the measured force, N: noise, and what no number could mend.
+    /// Standard deviation of what the model left of the measured force, N: noise, and what no parameter could mend.
     pub noise: f64,
     /// What the test has shown.
-    pub shown: CalibrationRange,
+    pub range: CalibrationRange,
 }
 
 impl Body {
-    /// The contact whose numbers are `values`, in the order of [`names`]; `None` where they make none.
+    /// The contact whose parameters are `values`, in the order of [`names`]; `None` where they make none.
     pub(super) fn contact(&self, candidate: Candidate, values: &[f64]) -> Option<Contact> {
         let (stiffness, law) = values.split_at(self.levels.len().max(1));
         let specimen = self.specimen(candidate.equilibrium, stiffness)?;
@@ -154,29 +154,29 @@ impl Body {
     }
 }
 
-/// Names and units of the numbers of a candidate with a table of this many rows.
+/// Names and units of the parameters of a candidate with a table of this many rows.
 pub(super) fn names(candidate: Candidate, rows: usize) -> Vec<(String, MaterialUnit)> {
     let mut names: Vec<(String, MaterialUnit)> = match candidate.equilibrium {
         EquilibriumLaw::UniformStrain | EquilibriumLaw::Hertz { .. } => {
-            vec![("modulus".to_owned(), MaterialUnit::Pascal)]
+            vec![("modulus_pa".to_owned(), MaterialUnit::Pascal)]
         }
         EquilibriumLaw::Table => {
-            (1..=rows).map(|row| (format!("equilibrium_force_{row}"), MaterialUnit::Newton)).collect()
+            (1..=rows).map(|row| (format!("equilibrium_force_{row}_n"), MaterialUnit::Newton)).collect()
         }
     };
     match candidate.law {
         Law::Latency { .. } => {
             names.extend([
                 ("exponent".to_owned(), MaterialUnit::One),
-                ("rate_coefficient".to_owned(), MaterialUnit::PerSecond),
-                ("layer_thickness".to_owned(), MaterialUnit::Metre),
+                ("rate_coefficient_per_s".to_owned(), MaterialUnit::PerSecond),
+                ("layer_thickness_m".to_owned(), MaterialUnit::Metre),
             ]);
             names.extend(candidate.rate.factor_name().map(|name| (name.to_owned(), MaterialUnit::One)));
         }
         _ => {
             for term in 1..=candidate.terms().unwrap_or(0) {
                 names.push((format!("overshoot_{term}"), MaterialUnit::One));
-                names.push((format!("time_{term}"), MaterialUnit::Second));
+                names.push((format!("time_constant_{term}_s"), MaterialUnit::Second));
             }
         }
     }
@@ -184,12 +184,12 @@ pub(super) fn names(candidate: Candidate, rows: usize) -> Vec<(String, MaterialU
 }
 
 impl Material {
-    /// Checks that the numbers make a contact; needed of what was read from a file.
+    /// Checks that the parameters make a contact; needed of what was read from a file.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         let names = names(self.candidate, self.body.levels.len());
-        let named = names.len() == self.numbers.len()
-            && names.iter().zip(&self.numbers).all(|((name, _), number)| *name == number.name);
+        let named = names.len() == self.parameters.len()
+            && names.iter().zip(&self.parameters).all(|((name, _), parameter)| *name == parameter.name);
         let covered = self.uncertainty.as_ref().is_none_or(|uncertainty| {
             uncertainty.covariance.len() == names.len()
                 && uncertainty.covariance.iter().all(|row| row.len() == names.len())
@@ -197,36 +197,38 @@ impl Material {
         named && covered && self.body.contact(self.candidate, &self.values()).is_some()
     }
 
-    /// The contact with the best numbers.
+    /// The contact with the best parameters.
     ///
     /// # Panics
-    /// If the numbers make no contact, which [`is_whole`](Self::is_whole) would have said.
+    /// If the parameters make no contact, which [`is_whole`](Self::is_whole) would have said.
     #[must_use]
     #[expect(clippy::expect_used, reason = "a material that exists is whole")]
     pub fn contact(&self) -> Contact {
-        self.body.contact(self.candidate, &self.values()).expect("the numbers of a material make a contact")
+        self.body
+            .contact(self.candidate, &self.values())
+            .expect("the parameters of a material make a contact")
     }
 
-    /// The contact with each number times a factor; `None` where that makes none.
+    /// The contact with each parameter times a factor; `None` where that makes none.
     #[must_use]
     pub fn contact_off(&self, factors: &[f64]) -> Option<Contact> {
         let values: Vec<f64> = self.values().iter().zip(factors).map(|(value, factor)| value * factor).collect();
         self.body.contact(self.candidate, &values)
     }
 
-    /// The values of the numbers.
+    /// The values of the parameters.
     #[must_use]
     pub fn values(&self) -> Vec<f64> {
-        self.numbers.iter().map(|number| number.estimate.value).collect()
+        self.parameters.iter().map(|parameter| parameter.estimate.value).collect()
     }
 
-    /// A number by its name.
+    /// A parameter by its name.
     #[must_use]
     pub fn estimate(&self, name: &str) -> Option<&Estimate> {
-        self.numbers.iter().find(|number| number.name == name).map(|number| &number.estimate)
+        self.parameters.iter().find(|parameter| parameter.name == name).map(|parameter| &parameter.estimate)
     }
 
-    /// Whether a number was given, not found.
+    /// Whether a parameter was given, not found.
     pub(super) fn is_given(candidate: Candidate, name: &str) -> bool {
         name == "exponent"
             && !matches!(

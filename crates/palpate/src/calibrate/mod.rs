@@ -1,4 +1,4 @@
-//! One set of numbers for a whole record: what a hold describes, a calibration predicts.
+//! One set of parameters for a whole record: what a hold describes, a calibration predicts.
 //!
 //! A [`CalibrationData`] and a [`Candidate`] come in, a [`Calibration`] goes out, with the [`Material`] that grips and observers take.
 //!
@@ -6,11 +6,11 @@
 //! |---|---|---|
 //! | `data.rs` | what is fitted: a motion of the jaw and the force it met | |
 //! | `candidate.rs` | a law of the layer and one of the equilibrium force | (10), (11) |
-//! | `prepared.rs` | the numbers of a candidate that are searched | |
+//! | `prepared.rs` | the parameters of a candidate that are searched | |
 //! | `search.rs`, `problem.rs` | a grid, then damped steps | |
-//! | `fit.rs` | from there to numbers with intervals | |
+//! | `fit.rs` | from there to parameters with intervals | |
 //! | `profile.rs` | intervals by the profile of what is left over | |
-//! | `material.rs` | the body with its numbers | |
+//! | `material.rs` | the body with its parameters | |
 //! | `predict.rs` | what it does under any drive, with intervals | |
 //! | `error.rs` | why one could not be made | |
 
@@ -31,4 +31,4 @@ pub use error::CalibrateError;
 pub use fit::{Calibration, calibrate};
 pub use material::{Body, CalibrationRange, Material, MaterialParameter, MaterialUncertainty, MaterialUnit};
 pub use predict::{Extrapolation, Prediction};
-pub use profile::{NumberProfile, profile};
+pub use profile::{ParameterProfile, profile};

@@ -8,37 +8,37 @@ use crate::simulate::{Contact, Drive, ProgramStep, Sampling, SimulateError, Traj
 use crate::statistics::coverage_factor;
 use crate::watch::{Cancelled, Stages, Unwatched, Watch};
 
-/// A question beyond what the test has shown.
+/// A question beyond what the test has tested.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum Extrapolation {
     /// A longer hold than any of the test.
     LongerHold {
-        /// What was asked, s.
-        asked: f64,
-        /// What was shown, s.
-        shown: f64,
+        /// What was requested, s.
+        requested: f64,
+        /// What was tested, s.
+        tested: f64,
     },
     /// A deeper squeeze.
     DeeperSqueeze {
-        /// What was asked, m.
-        asked: f64,
-        /// What was shown, m.
-        shown: f64,
+        /// What was requested, m.
+        requested: f64,
+        /// What was tested, m.
+        tested: f64,
     },
     /// A faster ramp.
     FasterRamp {
-        /// What was asked, m/s.
-        asked: f64,
-        /// What was shown, m/s.
-        shown: f64,
+        /// What was requested, m/s.
+        requested: f64,
+        /// What was tested, m/s.
+        tested: f64,
     },
     /// A larger force.
     LargerForce {
-        /// What was asked, N.
-        asked: f64,
-        /// What was shown, N.
-        shown: f64,
+        /// What was requested, N.
+        requested: f64,
+        /// What was tested, N.
+        tested: f64,
     },
     /// A force that is held, which no test in displacement shows.
     ForceHeld,
@@ -48,29 +48,37 @@ impl std::fmt::Display for Extrapolation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let digits = |value: f64| significant(value, 3);
         match *self {
-            Self::LongerHold { asked, shown } => write!(
+            Self::LongerHold { requested, tested } => write!(
                 f,
-                "a hold of {} s is asked for; the test has shown {} s: what comes later rests on the law alone",
-                digits(asked),
-                digits(shown)
+                "the longest hold lasts {} s, that of the test {} s: forces after that rest on the law alone",
+                digits(requested),
+                digits(tested)
             ),
-            Self::DeeperSqueeze { asked, shown } => write!(
+            Self::DeeperSqueeze { requested, tested } => write!(
                 f,
-                "a squeeze of {} mm is asked for; the test went to {} mm: the equilibrium force beyond rests on its law alone",
-                digits(1e3 * asked),
-                digits(1e3 * shown)
+                "the deepest squeeze is {} mm, that of the test {} mm: the equilibrium force beyond rests on its law alone",
+                digits(1e3 * requested),
+                digits(1e3 * tested)
             ),
-            Self::FasterRamp { asked, shown } => write!(
+            Self::FasterRamp { requested, tested } => write!(
                 f,
-                "a ramp of {} mm/s is asked for; the fastest of the test was {} mm/s: peaks may differ",
-                digits(1e3 * asked),
-                digits(1e3 * shown)
+                "the fastest ramp is {} mm/s, that of the test {} mm/s: the peak force may differ",
+                digits(1e3 * requested),
+                digits(1e3 * tested)
             ),
-            Self::LargerForce { asked, shown } => {
-                write!(f, "a force of {} N is met; the largest of the test was {} N", digits(asked), digits(shown))
+            Self::LargerForce { requested, tested } => {
+                write!(
+                    f,
+                    "the largest force is {} N, that of the test {} N: the equilibrium force beyond rests on its law alone",
+                    digits(requested),
+                    digits(tested)
+                )
             }
             Self::ForceHeld => {
-                write!(f, "a force is held; the test held displacements: creep follows by the law, and was not seen")
+                write!(
+                    f,
+                    "the force is held, while the test held the displacement: creep is predicted by the law and was not observed"
+                )
             }
         }
     }
@@ -79,41 +87,42 @@ impl std::fmt::Display for Extrapolation {
 /// A predicted course with its uncertainty; SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Prediction {
-    /// The course with the best numbers.
+    /// The course with the best parameters.
     pub trajectory: Trajectory,
     /// Standard deviation of the force (N) by what the calibration leaves open; 0 everywhere where it says nothing of it.
-    pub force_deviation: Vec<f64>,
-    /// The same of the displacement of the jaw (m); 0 where the displacement is asked for.
-    pub displacement_deviation: Vec<f64>,
+    pub force_standard_error: Vec<f64>,
+    /// The same of the displacement of the jaw (m); 0 where the displacement is requested for.
+    pub displacement_standard_error: Vec<f64>,
     /// Standard deviation of what the calibration left of the measured force, N: noise of one reading.
     pub noise: f64,
     /// Coverage of the intervals.
     pub confidence: f64,
     /// How many standard deviations they are wide, on either side.
     pub factor: f64,
-    /// What was asked beyond the test.
+    /// What was requested beyond the test.
     pub extrapolations: Vec<Extrapolation>,
 }
 
 impl Prediction {
-    /// Ends of the interval of the mean force at sample `index`, N: what the numbers leave open.
+    /// Ends of the interval of the mean force at sample `index`, N: what the parameters leave open.
     #[must_use]
     pub fn force_interval(&self, index: usize) -> (f64, f64) {
-        let (force, half) = (self.trajectory.force[index], self.factor * self.force_deviation[index]);
+        let (force, half) = (self.trajectory.force[index], self.factor * self.force_standard_error[index]);
         (force - half, force + half)
     }
 
-    /// Ends of the interval of the displacement of the jaw at sample `index`, m: one place where the displacement is asked for.
+    /// Ends of the interval of the displacement of the jaw at sample `index`, m: one place where the displacement is requested for.
     #[must_use]
     pub fn displacement_interval(&self, index: usize) -> (f64, f64) {
-        let (place, half) = (self.trajectory.displacement[index], self.factor * self.displacement_deviation[index]);
+        let (place, half) =
+            (self.trajectory.displacement[index], self.factor * self.displacement_standard_error[index]);
         (place - half, place + half)
     }
 
-    /// Ends of the interval of one reading of the force at sample `index`, N: numbers and noise.
+    /// Ends of the interval of one reading of the force at sample `index`, N: parameters and noise.
     #[must_use]
     pub fn reading_interval(&self, index: usize) -> (f64, f64) {
-        let half = self.factor * self.force_deviation[index].hypot(self.noise);
+        let half = self.factor * self.force_standard_error[index].hypot(self.noise);
         let force = self.trajectory.force[index];
         (force - half, force + half)
     }
@@ -122,7 +131,7 @@ impl Prediction {
 impl Material {
     /// Simulates the body under a drive, with intervals from its calibration.
     ///
-    /// The variance by the numbers is that of differences of simulations along the columns of a root L of their covariance C = L Lᵀ, one
+    /// The variance by the parameters is that of differences of simulations along the columns of a root L of their covariance C = L Lᵀ, one
     /// standard deviation to either side: Σ_k ((f(+L_k) − f(−L_k))/2)².
     ///
     /// # Errors
@@ -192,24 +201,24 @@ impl Material {
         Ok(Prediction {
             extrapolations: self.extrapolations(drive, &trajectory),
             trajectory,
-            force_deviation: force.into_iter().map(f64::sqrt).collect(),
-            displacement_deviation: displacement.into_iter().map(f64::sqrt).collect(),
+            force_standard_error: force.into_iter().map(f64::sqrt).collect(),
+            displacement_standard_error: displacement.into_iter().map(f64::sqrt).collect(),
             noise: self.noise,
             confidence,
             factor: coverage_factor(confidence, freedom),
         })
     }
 
-    /// Columns of a root of the covariance of the logarithms of the numbers: independent directions, each one standard deviation long.
+    /// Columns of a root of the covariance of the logarithms of the parameters: independent directions, each one standard deviation long.
     #[must_use]
     pub fn directions(&self) -> Vec<Vec<f64>> {
         self.uncertainty.as_ref().map_or_else(Vec::new, |uncertainty| root(&uncertainty.covariance))
     }
 
     fn extrapolations(&self, drive: Drive<'_>, course: &Trajectory) -> Vec<Extrapolation> {
-        /// By how much more than was shown a question may ask.
+        /// By how much more than was tested a question may ask.
         const MORE: f64 = 1.05;
-        let shown = self.shown;
+        let tested = self.range;
         let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
         let (mut longest, mut fastest, mut held) = (0.0f64, 0.0f64, false);
         match drive {
@@ -240,21 +249,24 @@ impl Material {
         }
         type Asked = (f64, f64, fn(f64, f64) -> Extrapolation);
         let kinds: [Asked; 4] = [
-            (longest, shown.longest_hold, |asked, shown| Extrapolation::LongerHold { asked, shown }),
-            (most(&course.displacement), shown.deepest, |asked, shown| Extrapolation::DeeperSqueeze {
-                asked,
-                shown,
+            (longest, tested.longest_hold, |requested, tested| Extrapolation::LongerHold { requested, tested }),
+            (most(&course.displacement), tested.deepest, |requested, tested| Extrapolation::DeeperSqueeze {
+                requested,
+                tested,
             }),
-            (fastest, shown.fastest, |asked, shown| Extrapolation::FasterRamp { asked, shown }),
-            (most(&course.force), shown.largest_force, |asked, shown| Extrapolation::LargerForce { asked, shown }),
+            (fastest, tested.fastest, |requested, tested| Extrapolation::FasterRamp { requested, tested }),
+            (most(&course.force), tested.largest_force, |requested, tested| Extrapolation::LargerForce {
+                requested,
+                tested,
+            }),
         ];
-        let beyond = kinds.into_iter().filter(|(asked, shown, _)| *asked > MORE * shown);
-        let found = beyond.map(|(asked, shown, kind)| kind(asked, shown));
+        let beyond = kinds.into_iter().filter(|(requested, tested, _)| *requested > MORE * tested);
+        let found = beyond.map(|(requested, tested, kind)| kind(requested, tested));
         found.chain(held.then_some(Extrapolation::ForceHeld)).collect()
     }
 }
 
-/// A program with its last hold going on: steps that end at a force end earlier with other numbers, and samples must not lie behind.
+/// A program with its last hold going on: steps that end at a force end earlier with other parameters, and samples must not lie behind.
 fn continued(drive: Drive<'_>, course: &Trajectory) -> Option<Vec<ProgramStep>> {
     let Drive::Program(steps) = drive else {
         return None;
@@ -267,7 +279,7 @@ fn continued(drive: Drive<'_>, course: &Trajectory) -> Option<Vec<ProgramStep>> 
     Some(steps.iter().copied().chain([last]).collect())
 }
 
-/// What comes out on either side of the best numbers along a direction, and how many standard deviations lie between; closer by where
+/// What comes out on either side of the best parameters along a direction, and how many standard deviations lie between; closer by where
 /// the full way cannot be simulated.
 fn both_sides<T>(
     material: &Material,

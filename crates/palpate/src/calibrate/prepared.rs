@@ -1,11 +1,11 @@
-//! A candidate made ready for its data: the numbers that are searched, and the contact that they make.
+//! A candidate made ready for its data: the parameters that are searched, and the contact that they make.
 
 use super::{Body, CalibrateError, CalibrationData, Candidate, EquilibriumLaw, RateLaw};
 use crate::contact::{Equilibrium, Specimen};
 use crate::laws::{ExponentChoice, Law};
 use crate::simulate::Contact;
 
-/// A number that is searched, with the bounds it is sought in.
+/// A parameter that is searched, with the bounds it is sought in.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Searched {
     pub(super) name: String,
@@ -15,7 +15,7 @@ pub(super) struct Searched {
 
 /// A candidate made ready for its data.
 ///
-/// The searched numbers θ are logarithms, so that each may be as small as it likes and steps are relative. The rate of the latency law is
+/// The searched parameters θ are logarithms, so that each may be as small as it likes and steps are relative. The rate of the latency law is
 /// searched as κ = v x_ref^(n−1), the relative rate at the excess that a sudden squeeze of the usual size would leave: v alone moves by
 /// decades with n.
 #[derive(Debug, Clone)]
@@ -73,7 +73,7 @@ impl Prepared {
             high: high.ln(),
         };
         let mut searched = match candidate.equilibrium {
-            EquilibriumLaw::UniformStrain | EquilibriumLaw::Hertz { .. } => vec![log("modulus", 1e-3, 1e13)],
+            EquilibriumLaw::UniformStrain | EquilibriumLaw::Hertz { .. } => vec![log("modulus_pa", 1e-3, 1e13)],
             EquilibriumLaw::Table => (0..body.levels.len())
                 .map(|row| match row {
                     0 => log("stiffness_1", 1e-12, 1e12),
@@ -121,7 +121,7 @@ impl Prepared {
         })
     }
 
-    /// How many numbers say what the equilibrium force is; they come first.
+    /// How many parameters say what the equilibrium force is; they come first.
     pub(super) fn stiffnesses(&self) -> usize {
         match self.candidate.equilibrium {
             EquilibriumLaw::UniformStrain | EquilibriumLaw::Hertz { .. } => 1,
@@ -129,7 +129,7 @@ impl Prepared {
         }
     }
 
-    /// The contact with these numbers; `None` where they make none.
+    /// The contact with these parameters; `None` where they make none.
     pub(super) fn contact(&self, theta: &[f64]) -> Option<Contact> {
         self.body.contact(self.candidate, &self.values(theta))
     }
@@ -157,7 +157,7 @@ impl Prepared {
         rises
     }
 
-    /// The numbers of the material, in the order of [`names`].
+    /// The parameters of the material, in the order of [`names`].
     pub(super) fn values(&self, theta: &[f64]) -> Vec<f64> {
         let (stiffnesses, law) = theta.split_at(self.stiffnesses());
         let mut values: Vec<f64> = match self.candidate.equilibrium {

@@ -13,7 +13,7 @@ pub(super) struct Problem<'a> {
     pub(super) motion: &'a Motion,
     pub(super) times: &'a [f64],
     pub(super) forces: &'a [f64],
-    /// A number that is held, which one of the searched follows.
+    /// A parameter that is held, which one of the searched follows.
     pub(super) held: Option<Held>,
 }
 
@@ -40,7 +40,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Forces with these numbers; `None` where they cannot be simulated.
+    /// Forces with these parameters; `None` where they cannot be simulated.
     pub(super) fn forces_with(&self, theta: &[f64]) -> Option<Vec<f64>> {
         let contact = match self.held {
             Some(held) => self.prepared.contact(&held.completed(self.prepared, theta)?),
@@ -59,7 +59,7 @@ impl<'a> Problem<'a> {
         Some(forces)
     }
 
-    /// Derivatives of the simulated forces by every number, column by column, from differences on both sides.
+    /// Derivatives of the simulated forces by every parameter, column by column, from differences on both sides.
     pub(super) fn jacobian(&self, theta: &[f64], stages: &mut Stages<'_>) -> Result<Option<Vec<Vec<f64>>>, Cancelled> {
         let mut columns = Vec::with_capacity(theta.len());
         for index in 0..theta.len() {
@@ -72,7 +72,7 @@ impl<'a> Problem<'a> {
         Ok(Some(columns))
     }
 
-    /// Derivatives of the simulated forces by one number.
+    /// Derivatives of the simulated forces by one parameter.
     fn slope(&self, theta: &[f64], index: usize) -> Option<Vec<f64>> {
         /// Of the logarithm; the error of the difference is some 10⁻⁸ of the derivative.
         const STEP: f64 = 1e-4;
@@ -90,7 +90,7 @@ impl<'a> Problem<'a> {
         Some(above.iter().zip(&below).map(|(a, b)| (a - b) * per_step).collect())
     }
 
-    /// Whether a searched number follows one that is held.
+    /// Whether a searched parameter follows one that is held.
     fn follows(&self, searched: usize) -> bool {
         self.held.is_some_and(|held| held.searched == searched)
     }
@@ -135,7 +135,7 @@ impl<'a> Problem<'a> {
                 let mut damped = normal.clone();
                 for a in 0..size {
                     let diagonal = &mut damped[a * (size + 1)];
-                    // A floor for a number that the data do not feel at all.
+                    // A floor for a parameter that the data do not feel at all.
                     *diagonal = diagonal.max(1e-14 * square) * (1.0 + damping);
                 }
                 let mut step: Vec<f64> = free.iter().map(|i| gradient[*i]).collect();
@@ -218,23 +218,23 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// A number that is held while the others are sought.
+/// A parameter that is held while the others are sought.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Held {
-    /// Place of the searched number that follows.
+    /// Place of the searched parameter that follows.
     pub(super) searched: usize,
-    /// Place among the numbers of the material.
-    pub(super) number: usize,
+    /// Place among the parameters of the material.
+    pub(super) parameter: usize,
     /// Natural logarithm of the value it is held at.
     pub(super) log: f64,
 }
 
 impl Held {
-    /// The searched numbers with the one that follows put in; `None` where none does.
+    /// The searched parameters with the one that follows put in; `None` where none does.
     pub(super) fn completed(&self, prepared: &Prepared, theta: &[f64]) -> Option<Vec<f64>> {
         const STEP: f64 = 1e-6;
         let mut theta = theta.to_vec();
-        let off = |theta: &[f64]| prepared.values(theta)[self.number].ln() - self.log;
+        let off = |theta: &[f64]| prepared.values(theta)[self.parameter].ln() - self.log;
         for _ in 0..50 {
             let now = off(&theta);
             if now.abs() < 1e-12 {

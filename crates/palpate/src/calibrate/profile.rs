@@ -1,14 +1,14 @@
-//! Intervals from the profile of the residual square: one number is held, all others are fitted again.
+//! Intervals from the profile of the residual square: one parameter is held, all others are fitted again.
 //!
-//! With χ²(v) what is left over when a number is held at v, the interval is where
+//! With χ²(v) what is left over when a parameter is held at v, the interval is where
 //!
 //! ```text
 //! z(v) = √((χ²(v)/χ²_min − 1)(N − p)) ≤ t √w
 //! ```
 //!
-//! as for single holds ([`profile_interval`](crate::fit::profile_interval)): t is Student's quantile, w the variance of the number for
+//! as for single holds ([`profile_interval`](crate::fit::profile_interval)): t is Student's quantile, w the variance of the parameter for
 //! residuals that correlate as they do over that for white ones. Where χ² is a parabola of the logarithm this is the interval that stands
-//! beside the number; where it is not, the profile is the one to believe.
+//! beside the parameter; where it is not, the profile is the one to believe.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,10 +19,10 @@ use super::{CalibrateError, CalibrationData, Material, MaterialParameter};
 use crate::fit::Interval;
 use crate::watch::{Cancelled, Stages, Watch};
 
-/// The profile interval of a number of a material.
+/// The profile interval of a parameter of a material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct NumberProfile {
-    /// Name of the number.
+pub struct ParameterProfile {
+    /// Name of the parameter.
     pub name: String,
     /// Its interval, whose ends the record may leave open.
     pub interval: Interval,
@@ -31,13 +31,13 @@ pub struct NumberProfile {
 /// Accuracy of an end in shares of its distance.
 const CLOSE: f64 = 1e-3;
 
-/// Steps of a search with a number held.
+/// Steps of a search with a parameter held.
 const MOST_STEPS: usize = 40;
 
-/// Profile intervals of the numbers of a calibration, in their order; those that were given have none.
+/// Profile intervals of the parameters of a calibration, in their order; those that were given have none.
 ///
 /// Ends are searched to a thousandth of their distance. An end is open (`None`) if the profile stays below its bound as far as a factor
-/// of a million, or as far as numbers are sought.
+/// of a million, or as far as parameters are sought.
 ///
 /// ```
 /// use palpate::analysis::Geometry;
@@ -52,7 +52,7 @@ const MOST_STEPS: usize = 40;
 /// let ball = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None };
 /// let data = CalibrationData::new(ball, model.separation, motion, times, forces, &[])?;
 /// let found = calibrate(&data, Candidate::new("latency".parse()?, EquilibriumLaw::UniformStrain), 0.95, &mut Unwatched)?;
-/// let exponent = profile(&data, &found, &mut Unwatched)?.into_iter().find(|number| number.name == "exponent").unwrap();
+/// let exponent = profile(&data, &found, &mut Unwatched)?.into_iter().find(|parameter| parameter.name == "exponent").unwrap();
 /// assert!(exponent.interval.low.unwrap() < 5.0 && 5.0 < exponent.interval.high.unwrap());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -63,20 +63,20 @@ pub fn profile(
     data: &CalibrationData,
     calibration: &Calibration,
     watch: &mut dyn Watch,
-) -> Result<Vec<NumberProfile>, CalibrateError> {
+) -> Result<Vec<ParameterProfile>, CalibrateError> {
     let material = &calibration.material;
     let prepared = Prepared::new(material.candidate, data)?;
     let best = &calibration.theta;
     let problem = Problem::of(&prepared, data);
     let least = sum_of_squares(&problem.residuals(best).ok_or(CalibrateError::NoStiffness)?);
-    let freedom = (data.fitted() - calibration.free_numbers) as f64;
+    let freedom = (data.fitted() - calibration.free_parameters) as f64;
     let mut stages = Stages::new("following the profiles".to_owned(), watch);
-    let ends = 2.0 * material.numbers.len() as f64;
-    let of = |(number, known): (usize, &MaterialParameter)| {
-        let (Some(error), Some((_, high))) = (known.estimate.standard_error, known.estimate.interval) else {
+    let ends = 2.0 * material.parameters.len() as f64;
+    let of = |(parameter, known): (usize, &MaterialParameter)| {
+        let (Some(error), Some((_, high))) = (known.estimate.white_standard_error, known.estimate.interval) else {
             return Ok(None);
         };
-        let Some(searched) = follower(&prepared, material, best, number) else {
+        let Some(searched) = follower(&prepared, material, best, parameter) else {
             return Ok(None);
         };
         let half = (high / known.estimate.value).ln();
@@ -86,7 +86,7 @@ pub fn profile(
             least,
             freedom,
             searched,
-            number,
+            parameter,
             log: known.estimate.value.ln(),
             half,
             target: half / (error / known.estimate.value),
@@ -96,13 +96,13 @@ pub fn profile(
             if half > 0.0 && profile.target.is_finite() { profile.end(side, &mut stages) } else { Ok(None) }
         };
         let (low, high) = (end(-1.0)?, end(1.0)?);
-        Ok::<_, Cancelled>(Some(NumberProfile {
+        Ok::<_, Cancelled>(Some(ParameterProfile {
             name: known.name.clone(),
             interval: Interval { low, high },
         }))
     };
-    let found: Vec<NumberProfile> = material
-        .numbers
+    let found: Vec<ParameterProfile> = material
+        .parameters
         .iter()
         .enumerate()
         .map(of)
@@ -112,18 +112,18 @@ pub fn profile(
     Ok(found)
 }
 
-/// The searched number that follows when a number of the material is held.
-fn follower(prepared: &Prepared, material: &Material, theta: &[f64], number: usize) -> Option<usize> {
-    let name = material.numbers[number].name.as_str();
+/// The searched parameter that follows when a parameter of the material is held.
+fn follower(prepared: &Prepared, material: &Material, theta: &[f64], parameter: usize) -> Option<usize> {
+    let name = material.parameters[parameter].name.as_str();
     let named = |wanted: &str| prepared.searched.iter().position(|searched| searched.name == wanted);
     match name {
-        "rate_coefficient" => named("reference_rate"),
-        "layer_thickness" => named("overshoot"),
+        "rate_coefficient_per_s" => named("reference_rate"),
+        "layer_thickness_m" => named("overshoot"),
         _ if name.starts_with("equilibrium_force") => Some(0),
-        _ if name.starts_with("time_") || name.starts_with("overshoot_") => {
+        _ if name.starts_with("time_constant_") || name.starts_with("overshoot_") => {
             // Terms stand in the order of their times; those that are searched in any.
-            let value = material.numbers[number].estimate.value;
-            let is_time = name.starts_with("time_");
+            let value = material.parameters[parameter].estimate.value;
+            let is_time = name.starts_with("time_constant_");
             let log = if is_time { -value.ln() } else { value.ln() };
             let kind = if is_time { "rate_" } else { "overshoot_" };
             let terms = prepared.searched.iter().enumerate().filter(|(_, searched)| searched.name.starts_with(kind));
@@ -135,14 +135,14 @@ fn follower(prepared: &Prepared, material: &Material, theta: &[f64], number: usi
     }
 }
 
-/// χ² over one number.
+/// χ² over one parameter.
 struct Profile<'a> {
     problem: &'a Problem<'a>,
     best: &'a [f64],
     least: f64,
     freedom: f64,
     searched: usize,
-    number: usize,
+    parameter: usize,
     /// ln of the best value.
     log: f64,
     /// Half width of the usual interval, in logarithms.
@@ -152,11 +152,11 @@ struct Profile<'a> {
 }
 
 impl Profile<'_> {
-    /// z with the number held at a distance, and the other numbers then; `None` beyond where numbers are sought.
+    /// z with the parameter held at a distance, and the other parameters then; `None` beyond where parameters are sought.
     fn at(&self, distance: f64, near: &[f64], stages: &mut Stages<'_>) -> Result<Option<(f64, Vec<f64>)>, Cancelled> {
         let held = Held {
             searched: self.searched,
-            number: self.number,
+            parameter: self.parameter,
             log: self.log + distance,
         };
         let problem = Problem {

@@ -1,6 +1,6 @@
-//! From a candidate and its data to the numbers with the least squared residual.
+//! From a candidate and its data to the parameters with the least squared residual.
 //!
-//! A coarse grid over the law's numbers on few samples, the stiffness being linear there; then damped steps (Levenberg 1944, Marquardt
+//! A coarse grid over the law's parameters on few samples, the stiffness being linear there; then damped steps (Levenberg 1944, Marquardt
 //! 1963) from the best few, and from the best of these on all samples. Derivatives are differences of simulations, which are good to
 //! 10⁻¹².
 
@@ -31,7 +31,7 @@ const MOST_LAST_STEPS: usize = 300;
 /// Shares of the whole work that the grid, the coarse descents, those on the motion as measured, and the last one are.
 const SHARES: [f64; 4] = [0.15, 0.25, 0.2, 0.38];
 
-/// The best numbers of a candidate for the fitted part of its data.
+/// The best parameters of a candidate for the fitted part of its data.
 pub(super) fn search(
     prepared: &Prepared,
     data: &CalibrationData,
@@ -157,7 +157,7 @@ pub(super) fn refusal(prepared: &Prepared, problem: &Problem<'_>) -> CalibrateEr
     }
 }
 
-/// The best modulus with these numbers of the law, and the squared residual it leaves.
+/// The best modulus with these parameters of the law, and the squared residual it leaves.
 fn scaled(prepared: &Prepared, problem: &Problem<'_>, law: &[f64]) -> Option<(f64, f64)> {
     let theta = [prepared.stiffnesses_like(1.0).as_slice(), law].concat();
     let forces = problem.forces_with(&theta)?;
@@ -167,7 +167,7 @@ fn scaled(prepared: &Prepared, problem: &Problem<'_>, law: &[f64]) -> Option<(f6
     (modulus > 0.0 && square.is_finite()).then_some((square, modulus))
 }
 
-/// The grid, in the searched numbers of the law.
+/// The grid, in the searched parameters of the law.
 fn laws(prepared: &Prepared) -> Vec<Vec<f64>> {
     let scales = prepared.scales;
     // From what is over within a ramp to what a record hardly sees.
@@ -210,7 +210,7 @@ fn laws(prepared: &Prepared) -> Vec<Vec<f64>> {
     }
 }
 
-/// Evenly spaced numbers from low to high.
+/// Evenly spaced parameters from low to high.
 fn spread(low: f64, high: f64, count: usize) -> Vec<f64> {
     (0..count).map(|i| low + (high - low) * i as f64 / (count - 1) as f64).collect()
 }

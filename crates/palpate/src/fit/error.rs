@@ -14,10 +14,10 @@ pub enum FitError {
         /// Number of values.
         values: usize,
     },
-    /// Fewer samples than numbers to find, and one over.
-    #[error("a fit of {parameters} numbers needs {needed} samples or more, found {found}")]
+    /// Fewer samples than parameters to find, and one over.
+    #[error("a fit of {parameters} parameters needs {needed} samples or more, found {found}")]
     TooFewSamples {
-        /// Numbers to find.
+        /// Parameters to find.
         parameters: usize,
         /// Least number of samples.
         needed: usize,
@@ -40,17 +40,17 @@ pub enum FitError {
         /// What was measured.
         response: Response,
     },
-    /// An option for a number that the law does not have.
-    #[error("the law has no number {name:?}; it has {known}")]
-    UnknownNumber {
+    /// An option for a parameter that the law does not have.
+    #[error("the law has no parameter {name:?}; it has {known}")]
+    UnknownParameter {
         /// What was given.
         name: String,
-        /// Its numbers.
+        /// Its parameters.
         known: String,
     },
-    /// A number held at a value it cannot have.
+    /// A parameter held at a value it cannot have.
     #[error("{name} cannot be held at {found}")]
-    FixedNumber {
+    FixedParameter {
         /// Which.
         name: String,
         /// What was given.
@@ -61,13 +61,13 @@ pub enum FitError {
     HeldAmplitude {
         /// Which.
         name: String,
-        /// The numbers of the law that can be held.
+        /// The parameters of the law that can be held.
         held: String,
     },
     /// Bounds that leave nothing between them.
     #[error("the bounds of {name} must rise and leave room for what a hold can show, found {low} to {high}")]
     Bounds {
-        /// Which number.
+        /// Which parameter.
         name: String,
         /// Lower bound.
         low: f64,
@@ -79,7 +79,7 @@ pub enum FitError {
     NotFinite {
         /// Which sample.
         index: usize,
-        /// Which of its numbers, such as "time".
+        /// Which of its parameters, such as "time_constant_s".
         what: &'static str,
         /// What was found.
         found: f64,
@@ -149,8 +149,8 @@ pub enum FitError {
         /// Holds found.
         found: usize,
     },
-    /// A joint fit of holds that share no number.
-    #[error("the law {law} has no number that holds could share")]
+    /// A joint fit of holds that share no parameter.
+    #[error("the law {law} has no parameter that holds could share")]
     NothingShared {
         /// The law.
         law: Law,
@@ -161,7 +161,7 @@ pub enum FitError {
         /// Number of the first hold without, from 1.
         hold: usize,
     },
-    /// No number of the law brings the rates nearer than zero does: they point away from every equilibrium.
+    /// No parameter of the law brings the rates nearer than zero does: they point away from every equilibrium.
     #[error("the strain rates do not point towards any equilibrium strain")]
     NoDecay,
     /// The watch ended it.
@@ -180,7 +180,7 @@ impl FitError {
         if low == high { Err(Self::Constant { value: low, samples }) } else { Ok(()) }
     }
 
-    /// Refuses samples that leave fewer than two beside the numbers that are to be found.
+    /// Refuses samples that leave fewer than two beside the parameters that are to be found.
     pub(crate) fn check_samples(parameters: usize, found: usize) -> Result<(), Self> {
         let needed = parameters + 2;
         if found >= needed {

@@ -106,7 +106,7 @@ fn spectrum_curve(samples: &Samples<'_>, options: &LawOptions) -> Result<LawCurv
     let term = |(time, height): (&f64, &f64)| Term {
         amplitude: fit.sign * height,
         shape: BasisFunction::Exponential,
-        numbers: vec![-time.ln()],
+        parameters: vec![-time.ln()],
     };
     let terms: Vec<Term> =
         fit.times.iter().zip(&fit.amplitudes).filter(|(_, height)| **height > 0.0).map(term).collect();

@@ -35,7 +35,7 @@ use crate::watch::{Unwatched, Watch};
 /// ```
 ///
 /// # Errors
-/// [`FitError`] for unequal lengths, fewer samples than numbers plus one, values that are not finite, times that do not
+/// [`FitError`] for unequal lengths, fewer samples than parameters plus one, values that are not finite, times that do not
 /// rise, an exponent that is no number above zero, or values that are all the same.
 pub fn fit_hold(
     times: &[f64],
@@ -72,7 +72,7 @@ pub struct LatencyFit {
     fit: Fit,
     choice: ExponentChoice,
     /// y_e, Δ, λ, v and n.
-    numbers: [Estimate; 5],
+    parameters: [Estimate; 5],
 }
 
 impl LatencyFit {
@@ -82,18 +82,22 @@ impl LatencyFit {
         let Law::Latency { exponent: choice } = fit.law else {
             return None;
         };
-        let number = |kind: ParameterKind| fit.parameter(kind).map(|parameter| parameter.estimate);
-        let numbers = [
-            number(ParameterKind::Equilibrium)?,
-            number(ParameterKind::Amplitude)?,
-            number(ParameterKind::RelativeRate)?,
-            number(ParameterKind::RateCoefficient)?,
+        let parameter = |kind: ParameterKind| fit.parameter(kind).map(|parameter| parameter.estimate);
+        let parameters = [
+            parameter(ParameterKind::Equilibrium)?,
+            parameter(ParameterKind::Amplitude)?,
+            parameter(ParameterKind::RelativeRate)?,
+            parameter(ParameterKind::RateCoefficient)?,
             match choice {
                 ExponentChoice::Fixed(n) => Estimate::fixed(n),
-                ExponentChoice::Free => number(ParameterKind::Exponent)?,
+                ExponentChoice::Free => parameter(ParameterKind::Exponent)?,
             },
         ];
-        Some(Self { fit, choice, numbers })
+        Some(Self {
+            fit,
+            choice,
+            parameters,
+        })
     }
 
     /// Whether n was given.
@@ -105,31 +109,31 @@ impl LatencyFit {
     /// n.
     #[must_use]
     pub fn exponent(&self) -> Estimate {
-        self.numbers[4]
+        self.parameters[4]
     }
 
     /// y_e, the value that the signal tends to.
     #[must_use]
     pub fn equilibrium(&self) -> Estimate {
-        self.numbers[0]
+        self.parameters[0]
     }
 
     /// Δ = y(0) − y_e, the excess at the start of the fit.
     #[must_use]
     pub fn amplitude(&self) -> Estimate {
-        self.numbers[1]
+        self.parameters[1]
     }
 
     /// λ = v |Δ|ⁿ⁻¹ in 1/s, the relative rate at the start.
     #[must_use]
     pub fn relative_rate(&self) -> Estimate {
-        self.numbers[2]
+        self.parameters[2]
     }
 
     /// v in 1/s (in units of signal^(1−n)/s if the signal is not strain).
     #[must_use]
     pub fn rate_coefficient(&self) -> Estimate {
-        self.numbers[3]
+        self.parameters[3]
     }
 
     /// The signal a time `elapsed` (s) after the start of the fit.
@@ -183,7 +187,7 @@ const EVIDENCE: f64 = 2.0;
 ///
 /// BIC = N_e ln(RSS/N) + p ln N_e, with N_e the number of independent samples that the best fit's residuals allow. A listed
 /// exponent is as good as the best listed one if its criterion is within 2 of it; the lowest such is `lowest_order`. The
-/// preferred candidate has the lowest criterion of all, a free exponent included, which pays for its extra number.
+/// preferred candidate has the lowest criterion of all, a free exponent included, which pays for its extra parameter.
 #[must_use]
 pub fn select_order(fits: &[LatencyFit]) -> OrderSelection {
     let best = fits.iter().min_by(|a, b| a.residual_square.total_cmp(&b.residual_square));
@@ -195,7 +199,7 @@ pub fn select_order(fits: &[LatencyFit]) -> OrderSelection {
     };
     let criterion = |fit: &LatencyFit| {
         let square = fit.residual_square.max(floor(fit));
-        effective * (square / fit.samples as f64).ln() + fit.free_numbers() as f64 * effective.ln()
+        effective * (square / fit.samples as f64).ln() + fit.free_parameters() as f64 * effective.ln()
     };
     let listed = |fit: &LatencyFit| matches!(fit.choice(), ExponentChoice::Fixed(_));
     let lowest = fits.iter().map(criterion).fold(f64::INFINITY, f64::min);
@@ -212,7 +216,7 @@ pub fn select_order(fits: &[LatencyFit]) -> OrderSelection {
         .collect();
     let order = |a: &usize, b: &usize| candidates[*a].exponent.total_cmp(&candidates[*b].exponent);
     let lowest_order = (0..fits.len()).filter(|&i| listed(&fits[i]) && candidates[i].as_good_as_best).min_by(order);
-    // A fit that ended at the edge of its range has no errors to go with its numbers.
+    // A fit that ended at the edge of its range has no errors to go with its parameters.
     let any_good = fits.iter().any(|fit| fit.termination.is_good());
     let preferred = (0..fits.len())
         .filter(|&i| fits[i].termination.is_good() || !any_good)

@@ -1,7 +1,7 @@
 //! A hold and a law in, the parameters of the law out, with how sure they are and why the search ended.
 //!
-//! Every law of relaxation is "constant + amplitude × shape(t; few numbers)": linear in most of its numbers. For given
-//! shape numbers the best linear ones follow from two normal equations, so the search is left with ln λ alone, or
+//! Every law of relaxation is "constant + amplitude × shape(t; few parameters)": linear in most of its parameters. For given
+//! shape parameters the best linear ones follow from two normal equations, so the search is left with ln λ alone, or
 //! with ln λ and n (variable projection). That search is small enough to be exhaustive on a coarse grid, hence no
 //! starting values are asked for, and none can be wrong.
 //!
@@ -56,9 +56,9 @@ pub use options::{
 };
 pub use parameter::{Estimate, Interval, ParameterKind, ParameterName};
 pub use problem::Ghost;
-use problem::{Condensed, Model, Number, Sampled, build, condense, condense_to, ghosts, searched_name};
+use problem::{Condensed, Model, ModelParameter, Sampled, build, condense, condense_to, ghosts, searched_name};
 pub use rate_domain::fit_rates;
-pub use result::{Domain, Fit, NumberUnit, Parameter};
+pub use result::{Domain, Fit, Parameter, ParameterRole, ParameterUnit};
 pub use samples::Samples;
 use samples::{Scaled, check_finite};
 pub use spectrum::{Smoothing, SpectrumFit, SpectrumOptions, SpectrumPeak, fit_spectrum};

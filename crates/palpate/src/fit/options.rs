@@ -55,8 +55,8 @@ pub enum NoiseChoice {
 
 /// What may be asked of intervals by resampling.
 ///
-/// Draws are fitted from the best numbers downhill, on condensed samples: a thousand take some hundredths of a second.
-/// Intervals run between percentiles of the draws, so they follow the number through any change of scale; the standard error
+/// Draws are fitted from the best parameters downhill, on condensed samples: a thousand take some hundredths of a second.
+/// Intervals run between percentiles of the draws, so they follow the parameter through any change of scale; the standard error
 /// is the deviation of the draws.
 ///
 /// ```
@@ -67,7 +67,7 @@ pub enum NoiseChoice {
 /// let error = |intervals: IntervalMethod| {
 ///     let options = LawOptions { intervals, ..LawOptions::default() };
 ///     let fit = fit_law(&Samples::new(&times, &values), Law::StandardLinearSolid, &options)?;
-///     Ok::<_, palpate::fit::FitError>(fit.estimate("time").unwrap().standard_error.unwrap())
+///     Ok::<_, palpate::fit::FitError>(fit.estimate("time_constant_s").unwrap().standard_error.unwrap())
 /// };
 /// let drawn = error(IntervalMethod::Bootstrap(BootstrapOptions::default()))?;
 /// assert!((drawn / error(IntervalMethod::Curvature)? - 1.0).abs() < 0.1);
@@ -103,7 +103,7 @@ impl Default for BootstrapOptions {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum IntervalMethod {
-    /// The curvature at the optimum: symmetric, in ln for numbers that cannot change sign.
+    /// The curvature at the optimum: symmetric, in ln for parameters that cannot change sign.
     #[default]
     Curvature,
     /// The profile of the residual square: asymmetric, and open where the data do not close it.
@@ -138,10 +138,10 @@ pub struct LawOptions {
     pub response: Response,
     /// The constant: equilibrium, start or instantaneous part.
     pub constant: ConstantChoice,
-    /// Numbers held at a value, by name as in the result: nonlinear ones in s, 1/s or 1, the constant in the unit of the signal.
+    /// Parameters held at a value, by name as in the result: nonlinear ones in s, 1/s or 1, the constant in the unit of the signal.
     /// Amplitudes cannot be held, but bounded.
     pub fixed: Vec<(String, f64)>,
-    /// Bounds of numbers, by name as in the result: nonlinear ones in s, 1/s or 1, the constant and amplitudes in the unit of the signal.
+    /// Bounds of parameters, by name as in the result: nonlinear ones in s, 1/s or 1, the constant and amplitudes in the unit of the signal.
     pub bounds: Vec<(String, (f64, f64))>,
     /// Whether all amplitudes have the sign of the change, as those of a passive material must.
     pub one_sign: bool,
@@ -149,7 +149,7 @@ pub struct LawOptions {
     pub loss: Loss,
     /// Which samples are fitted.
     pub samples: SampleChoice,
-    /// What was imposed until the first sample, if that is not to count as a step. The numbers found are then those of a true step.
+    /// What was imposed until the first sample, if that is not to count as a step. The parameters found are then those of a true step.
     /// Laws are taken as linear in it; the latency law, which is not, is fitted to the hold alone, whose start says all
     /// that it needs to know.
     pub loading: Option<Loading>,
@@ -206,7 +206,7 @@ impl LawOptions {
         law.form(response).ok_or(FitError::NoForm { law, response })
     }
 
-    /// What a number is held at.
+    /// What a parameter is held at.
     pub(crate) fn held(&self, name: &str) -> Option<f64> {
         self.fixed.iter().find(|(held, _)| held == name).map(|(_, value)| *value)
     }
@@ -219,7 +219,7 @@ impl LawOptions {
         if let ConstantChoice::Fixed(value) = self.constant
             && !value.is_finite()
         {
-            return Err(FitError::FixedNumber {
+            return Err(FitError::FixedParameter {
                 name: "the constant".to_owned(),
                 found: value,
             });

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use super::error::FitError;
+use crate::laws::{name_of_term, term_of_name};
 
 /// What a parameter of a law is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -63,20 +64,20 @@ impl ParameterKind {
         (Self::Final, "final"),
         (Self::Amplitude, "amplitude"),
         (Self::Flow, "flow"),
-        (Self::Time, "time"),
-        (Self::TimeLong, "time_long"),
-        (Self::TimeShort, "time_short"),
+        (Self::Time, "time_constant_s"),
+        (Self::TimeLong, "time_constant_long_s"),
+        (Self::TimeShort, "time_constant_short_s"),
         (Self::LogRatio, "log_ratio"),
-        (Self::RelativeRate, "relative_rate"),
-        (Self::RateCoefficient, "rate_coefficient"),
+        (Self::RelativeRate, "relative_rate_per_s"),
+        (Self::RateCoefficient, "rate_coefficient_per_s"),
         (Self::Exponent, "exponent"),
         (Self::Order, "order"),
         (Self::Stretching, "stretching"),
         (Self::ElasticResponse, "elastic_response"),
         (Self::Share, "c"),
-        (Self::TermRate, "nu"),
+        (Self::TermRate, "nu_per_s"),
         (Self::Strength, "strength"),
-        (Self::FlowRate, "flow_rate"),
+        (Self::FlowRate, "flow_rate_per_s"),
         (Self::Coefficient, "coefficient"),
     ];
 
@@ -89,9 +90,9 @@ impl ParameterKind {
 ///
 /// ```
 /// use palpate::fit::{ParameterKind, ParameterName};
-/// let name: ParameterName = "time_2".parse()?;
+/// let name: ParameterName = "time_constant_2_s".parse()?;
 /// assert_eq!((name.kind, name.term), (ParameterKind::Time, Some(2)));
-/// assert_eq!(name.to_string(), "time_2");
+/// assert_eq!(name.to_string(), "time_constant_2_s");
 /// # Ok::<(), palpate::fit::FitError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -121,7 +122,7 @@ impl fmt::Display for ParameterName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.term {
             None => f.write_str(self.kind.word()),
-            Some(term) => write!(f, "{}_{term}", self.kind.word()),
+            Some(term) => f.write_str(&name_of_term(self.kind.word(), term)),
         }
     }
 }
@@ -130,11 +131,14 @@ impl FromStr for ParameterName {
     type Err = FitError;
 
     fn from_str(name: &str) -> Result<Self, FitError> {
-        let numbered = name.rsplit_once('_').and_then(|(word, term)| Some((word, Some(term.parse().ok()?))));
-        let (word, term) = numbered.unwrap_or((name, None));
-        match ParameterKind::WORDS.iter().find(|(_, known)| *known == word) {
-            Some((kind, _)) => Ok(Self { kind: *kind, term }),
-            None => Err(FitError::UnknownNumber {
+        let kinds = ParameterKind::WORDS.iter();
+        let named = |(kind, word): &(ParameterKind, &str)| {
+            let term = term_of_name(word, name);
+            (*word == name || term.is_some()).then_some(Self { kind: *kind, term })
+        };
+        match kinds.filter_map(named).next() {
+            Some(found) => Ok(found),
+            None => Err(FitError::UnknownParameter {
                 name: name.to_owned(),
                 known: ParameterKind::WORDS.map(|(_, word)| word).join(", "),
             }),
@@ -162,25 +166,47 @@ impl PartialEq<str> for ParameterName {
     }
 }
 
-/// A number with its uncertainty.
+/// A parameter with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The best value.
     pub value: f64,
-    /// Standard error from the curvature at the optimum, s² (JᵀJ)⁻¹ with s² = RSS/(N − p): white noise is assumed.
-    /// `None` for a fixed number, or where the data do not determine it.
+    /// Standard error for residuals that correlate as they do ([`NoiseModel`](crate::fit::NoiseModel)). `None` for a parameter that
+    /// was given, and where the data do not determine it.
     pub standard_error: Option<f64>,
-    /// Confidence interval for residuals that correlate as they do ([`NoiseModel`](crate::fit::NoiseModel)); in ln for numbers that cannot change sign.
+    /// Standard error as if the residuals were white noise, s² (JᵀJ)⁻¹ with s² = RSS/(N − p): what most other software states.
+    #[serde(default)]
+    pub white_standard_error: Option<f64>,
+    /// Confidence interval for residuals that correlate as they do ([`NoiseModel`](crate::fit::NoiseModel)); in ln for parameters that
+    /// cannot change sign. An end that the data leave open is infinite, or 0 below a parameter that is above 0; in JSON `null`.
+    #[serde(with = "open_ends")]
     pub interval: Option<(f64, f64)>,
 }
 
+/// An interval in JSON, which has no word for infinity.
+mod open_ends {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[expect(clippy::ref_option, reason = "the signature that serde asks for")]
+    pub(super) fn serialize<S: Serializer>(interval: &Option<(f64, f64)>, to: S) -> Result<S::Ok, S::Error> {
+        let finite = |end: f64| Some(end).filter(|end| end.is_finite());
+        interval.map(|(low, high)| (finite(low), finite(high))).serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<(f64, f64)>, D::Error> {
+        let ends = Option::<(Option<f64>, Option<f64>)>::deserialize(from)?;
+        Ok(ends.map(|(low, high)| (low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY))))
+    }
+}
+
 impl Estimate {
-    /// A number that was given, not found.
+    /// A parameter that was given, not found.
     #[must_use]
     pub fn fixed(value: f64) -> Self {
         Self {
             value,
             standard_error: None,
+            white_standard_error: None,
             interval: None,
         }
     }
@@ -203,7 +229,7 @@ impl Interval {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::laws::{ExponentChoice, Law, NumberKind, Response};
+    use crate::laws::{ExponentChoice, Law, Response, ShapeParameterKind};
 
     #[test]
     fn every_parameter_of_every_law_has_a_kind() {
@@ -225,8 +251,9 @@ mod tests {
         ];
         let mut seen = 0;
         for form in laws.iter().flat_map(|law| [Response::Relaxation, Response::Creep].map(|r| law.form(r))).flatten() {
-            let numbers = form.numbers().into_iter().filter(|(_, _, kind)| *kind != NumberKind::Reference);
-            let names = numbers.map(|(_, name, _)| name).chain(form.amplitude_names());
+            let parameters =
+                form.parameters().into_iter().filter(|(_, _, kind)| *kind != ShapeParameterKind::Reference);
+            let names = parameters.map(|(_, name, _)| name).chain(form.amplitude_names());
             for name in names.chain([form.constant_name().to_owned()]) {
                 assert_eq!(name.parse::<ParameterName>().unwrap().to_string(), name);
                 seen += 1;

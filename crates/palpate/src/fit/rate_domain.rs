@@ -1,8 +1,8 @@
 //! Strain rate fitted against strain, equation (10): the paper's way.
 
 use super::{
-    Assessed, Domain, Estimate, Fit, FitError, FitOptions, LatencyFit, NoiseChoice, NumberUnit, Parameter,
-    ParameterKind, Scale, check_finite,
+    Assessed, Domain, Estimate, Fit, FitError, FitOptions, LatencyFit, NoiseChoice, Parameter, ParameterKind,
+    ParameterRole, ParameterUnit, Scale, check_finite,
 };
 use crate::laws::{ExponentChoice, Law, LawCurve, Response, Term};
 use crate::optimise::{Ending, Refined, Shapes, Solution, Target, Termination, Work, polished, refine};
@@ -126,27 +126,33 @@ impl Scaled {
         let covariance = covariance.filter(|rows: &Vec<Vec<f64>>| rows.iter().flatten().all(|entry| entry.is_finite()));
         let residual_square = solution.residual_square * self.fastest * self.fastest;
         let log_rate_value = coefficient.ln() + (n - 1.0) * log_amplitude;
-        let parameter = |kind: ParameterKind, unit: NumberUnit, estimate: Estimate| Parameter {
+        let parameter = |kind: ParameterKind, unit: ParameterUnit, estimate: Estimate| Parameter {
             name: kind.into(),
             unit,
             estimate,
+            role: match kind {
+                ParameterKind::Exponent if choice != ExponentChoice::Free => ParameterRole::Given,
+                ParameterKind::Amplitude | ParameterKind::RelativeRate => ParameterRole::Derived,
+                _ => ParameterRole::Estimated,
+            },
         };
         let level = |value: f64| estimate(value, &[0.0, 1.0, 0.0], Scale::Linear, self.range);
         let log = |value: f64, weights: &[f64]| estimate(value, weights, Scale::Log, 1.0);
         let mut parameters = vec![
-            parameter(ParameterKind::Equilibrium, NumberUnit::Signal, level(equilibrium)),
-            parameter(ParameterKind::Amplitude, NumberUnit::Signal, level(amplitude)),
-            parameter(ParameterKind::RelativeRate, NumberUnit::PerSecond, log(log_rate_value.exp(), &log_rate)),
-            parameter(ParameterKind::RateCoefficient, NumberUnit::RateCoefficient, log(coefficient, &log_v)),
+            parameter(ParameterKind::Equilibrium, ParameterUnit::Signal, level(equilibrium)),
+            parameter(ParameterKind::Amplitude, ParameterUnit::Signal, level(amplitude)),
+            parameter(ParameterKind::RelativeRate, ParameterUnit::PerSecond, log(log_rate_value.exp(), &log_rate)),
+            parameter(ParameterKind::RateCoefficient, ParameterUnit::RateCoefficient, log(coefficient, &log_v)),
         ];
-        if choice == ExponentChoice::Free {
-            let exponent = log(n, &[0.0, 0.0, 1.0 / n]);
-            parameters.insert(3, parameter(ParameterKind::Exponent, NumberUnit::One, exponent));
-        }
+        let exponent = match choice {
+            ExponentChoice::Free => log(n, &[0.0, 0.0, 1.0 / n]),
+            ExponentChoice::Fixed(n) => Estimate::fixed(n),
+        };
+        parameters.insert(3, parameter(ParameterKind::Exponent, ParameterUnit::One, exponent));
         let terms = vec![Term {
             amplitude,
             shape: choice.shape(),
-            numbers: [log_rate_value].into_iter().chain(choice.given().is_none().then_some(n)).collect(),
+            parameters: [log_rate_value].into_iter().chain(choice.given().is_none().then_some(n)).collect(),
         }];
         Fit {
             law: Law::Latency { exponent: choice },
@@ -155,13 +161,12 @@ impl Scaled {
             curve: LawCurve::relaxing(Response::Relaxation, equilibrium, terms),
             loading: None,
             parameters,
-            profiles: Vec::new(),
-            searched: ["equilibrium", "log_rate_coefficient", "exponent"][..size]
+            searched: ["equilibrium", "ln rate_coefficient_per_s", "exponent"][..size]
                 .iter()
                 .map(ToString::to_string)
                 .collect(),
             values: [equilibrium, coefficient.ln(), n][..size].to_vec(),
-            covariance,
+            white_covariance: covariance,
             residual_square,
             rmse: (residual_square / strains.len() as f64).sqrt(),
             residual_correlation: assessed.correlation,
@@ -179,7 +184,7 @@ impl Scaled {
 /// Farthest equilibrium that is looked for, in ranges of strain from the middle of the data.
 const FARTHEST: f64 = 10.0;
 
-/// One column, −sgn(x) |x|ⁿ; nonlinear numbers ε_e and, if free, n.
+/// One column, −sgn(x) |x|ⁿ; nonlinear parameters ε_e and, if free, n.
 struct RateShapes<'a> {
     strains: &'a [f64],
     choice: ExponentChoice,

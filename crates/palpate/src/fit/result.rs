@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Estimate, Ghost, Interval, NoiseModel, ParameterName, Uncertainty};
+use super::{Estimate, Ghost, NoiseModel, ParameterName, Uncertainty};
 use crate::laws::{Law, LawCurve, Loading, Response};
 use crate::optimise::{Termination, Work};
 
-/// Unit of a number of a law.
+/// Unit of a parameter of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum NumberUnit {
+pub enum ParameterUnit {
     /// That of the signal.
     Signal,
     /// s.
@@ -18,7 +18,7 @@ pub enum NumberUnit {
     PerSecond,
     /// Unit of the signal per s.
     SignalPerSecond,
-    /// A pure number.
+    /// A dimensionless parameter.
     One,
     /// (Unit of the signal)^(1 − n)/s, of the rate coefficient v; 1/s if the signal is strain.
     RateCoefficient,
@@ -43,15 +43,29 @@ impl Domain {
     }
 }
 
+/// Where a parameter of a fit comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ParameterRole {
+    /// Estimated from the data.
+    Estimated,
+    /// Given: held at a value, or part of the name of the law.
+    Given,
+    /// Follows from the other parameters, as v follows from λ, Δ and n.
+    Derived,
+}
+
 /// One parameter of a law.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
     /// Which it is, such as `equilibrium`, `time_1`, `exponent`.
     pub name: ParameterName,
     /// Its unit.
-    pub unit: NumberUnit,
-    /// Value, standard error, interval.
+    pub unit: ParameterUnit,
+    /// Value, standard errors, interval.
     pub estimate: Estimate,
+    /// Where it comes from.
+    pub role: ParameterRole,
 }
 
 /// A law fitted: its parameters, how sure they are, and why the search ended.
@@ -64,26 +78,22 @@ pub struct Fit {
     pub domain: Domain,
     /// Relaxation or creep.
     pub response: Response,
-    /// The law with the numbers found: a function of the time since the first sample, in s, or since the step that would have stood
+    /// The law with the parameters found: a function of the time since the first sample, in s, or since the step that would have stood
     /// for the loading.
     pub curve: LawCurve,
     /// The loading that led to the hold; none if it counted as a step, as it must for the latency law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub loading: Option<Loading>,
-    /// Its parameters: constant, amplitudes, times or rates, pure numbers; then those that follow from them.
-    #[serde(rename = "numbers")]
+    /// Its parameters: constant, amplitudes, times or rates, dimensionless parameters; then those that follow from them.
     pub parameters: Vec<Parameter>,
-    /// Intervals of the searched parameters by their profiles, where these were asked for: an end may be open.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub profiles: Vec<(ParameterName, Interval)>,
     /// Names of the parameters that were searched, in the order of `values` and `covariance`: constant, amplitudes, ln of rates
-    /// (1/s), pure numbers.
-    #[serde(rename = "parameters")]
+    /// (1/s), dimensionless parameters.
     pub searched: Vec<String>,
     /// Their values.
     pub values: Vec<f64>,
-    /// Their covariance s² (JᵀJ)⁻¹ with s² = RSS/(N − p), for white noise; `None` where the data leave a number open.
-    pub covariance: Option<Vec<Vec<f64>>>,
+    /// Their covariance s² (JᵀJ)⁻¹ with s² = RSS/(N − p), as if the residuals were white noise; `None` where the data leave a
+    /// parameter open.
+    pub white_covariance: Option<Vec<Vec<f64>>>,
     /// χ² = Σ (r/σ)² over the samples fitted, σ = 1 for samples without deviations; under a robust loss too.
     pub residual_square: f64,
     /// Root mean square residual √(Σ r²/N) in the unit of the signal, all samples alike.
@@ -92,7 +102,7 @@ pub struct Fit {
     pub residual_correlation: f64,
     /// How residuals correlate; intervals rest on it.
     pub noise: NoiseModel,
-    /// What intervals are made of; `None` where the data leave a number open.
+    /// What intervals are made of; `None` where the data leave a parameter open.
     pub uncertainty: Option<Uncertainty>,
     /// Samples fitted.
     pub samples: usize,
@@ -104,6 +114,16 @@ pub struct Fit {
     pub ghosts: Vec<Ghost>,
     /// What it cost.
     pub work: Work,
+}
+
+impl Parameter {
+    /// The value and interval, unless the fit ended short of an optimum inside its range: a parameter at a bound, or found beside one,
+    /// is no estimate of anything.
+    #[must_use]
+    pub fn determined(&self, termination: Termination) -> Option<&Estimate> {
+        (termination.is_good() || self.estimate.standard_error.is_some() || self.role == ParameterRole::Given)
+            .then_some(&self.estimate)
+    }
 }
 
 impl Fit {
@@ -127,9 +147,9 @@ impl Fit {
         self.parameter(name).map(|parameter| &parameter.estimate)
     }
 
-    /// Numbers found from the data.
+    /// Parameters found from the data.
     #[must_use]
-    pub fn free_numbers(&self) -> usize {
+    pub fn free_parameters(&self) -> usize {
         self.searched.len()
     }
 
@@ -148,10 +168,17 @@ impl Fit {
         }
     }
 
-    /// Correlations of the numbers in the order of `searched`.
+    /// Covariance in the order of `searched` for residuals that correlate as they do: what the standard errors come from. `None` where
+    /// the data leave a parameter open.
+    #[must_use]
+    pub fn covariance(&self) -> Option<&[Vec<f64>]> {
+        self.uncertainty.as_ref().map(|uncertainty| uncertainty.covariance.as_slice())
+    }
+
+    /// Correlations of the parameters in the order of `searched`.
     #[must_use]
     pub fn correlation(&self) -> Option<Vec<Vec<f64>>> {
-        let covariance = self.covariance.as_ref()?;
+        let covariance = self.covariance()?;
         let deviation = |i: usize| covariance[i][i].sqrt();
         let entry = |i: usize, j: usize| match deviation(i) * deviation(j) {
             0.0 => 0.0,

@@ -15,7 +15,7 @@ use crate::vector::{all_finite, extremes, multiply, rises, shifted};
 /// let times: Vec<f64> = (0..50).map(f64::from).collect();
 /// let values: Vec<f64> = times.iter().map(|t| 2.0 + 3.0 * (-t / 8.0).exp()).collect();
 /// let fit = fit_law(&Samples::new(&times, &values), Law::StandardLinearSolid, &LawOptions::default())?;
-/// assert!((fit.value("time").unwrap() - 8.0).abs() < 1e-9);
+/// assert!((fit.value("time_constant_s").unwrap() - 8.0).abs() < 1e-9);
 /// # Ok::<(), palpate::fit::FitError>(())
 /// ```
 #[derive(Debug, Clone, Copy)]
@@ -48,7 +48,7 @@ impl<'a> Samples<'a> {
         }
     }
 
-    /// Whether a law with so many numbers can be fitted to these samples at all.
+    /// Whether a law with so many parameters can be fitted to these samples at all.
     pub(crate) fn check(&self, parameters: usize) -> Result<(), FitError> {
         FitError::check_lengths(self.times.len(), self.values.len())?;
         FitError::check_lengths(self.times.len(), self.deviations.map_or(self.times.len(), <[f64]>::len))?;
@@ -148,7 +148,7 @@ impl Scaled {
     }
 }
 
-/// Refuses the first sample of which a number is none.
+/// Refuses the first sample of which a parameter is none.
 pub(crate) fn check_finite(columns: [(&'static str, &[f64]); 2]) -> Result<(), FitError> {
     let first = |(what, column): (&'static str, &[f64])| {
         let index = column.iter().position(|value| !value.is_finite())?;

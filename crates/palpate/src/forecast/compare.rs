@@ -112,7 +112,7 @@ fn row(
         law,
         fit: Err(FitError::NoDecay),
         spectrum: None,
-        numbers: 0.0,
+        effective_parameters: 0.0,
         rmse: f64::NAN,
         criteria: None,
         delta_bic: None,
@@ -120,7 +120,7 @@ fn row(
     };
     if law == Law::Spectrum {
         let fit = fit_spectrum(samples.times, samples.values, None, &SpectrumOptions::default())?;
-        row.numbers = fit.effective_parameters;
+        row.effective_parameters = fit.effective_parameters;
         row.rmse = fit.rmse();
         row.spectrum = Some(fit);
         return Ok(row);
@@ -132,7 +132,7 @@ fn row(
     };
     match &row.fit {
         Ok(fit) => {
-            row.numbers = fit.free_numbers() as f64;
+            row.effective_parameters = fit.free_parameters() as f64;
             row.rmse = fit.rmse;
         }
         // A law may ask for more samples than there are; what no law can be fitted to is an error of the whole.
@@ -185,8 +185,9 @@ fn weigh(rows: &mut [Row], effective: f64, samples: usize, change: f64) {
     };
     let count = samples as f64;
     for row in rows.iter_mut() {
-        row.criteria = square(row).map(|square| criteria(square, count, row.numbers));
-        row.delta_bic = square(row).map(|square| criteria(square * effective / count, effective, row.numbers).bic);
+        row.criteria = square(row).map(|square| criteria(square, count, row.effective_parameters));
+        row.delta_bic =
+            square(row).map(|square| criteria(square * effective / count, effective, row.effective_parameters).bic);
     }
     let lowest = rows.iter().filter_map(|row| row.delta_bic).fold(f64::INFINITY, f64::min);
     for row in rows {

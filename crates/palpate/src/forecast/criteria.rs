@@ -16,10 +16,10 @@ pub struct Criteria {
     pub bic: f64,
 }
 
-/// The criteria of a fit of `parameters` numbers to `samples` samples with a residual square of `residual_square`.
+/// The criteria of a fit of `parameters` parameters to `samples` samples with a residual square of `residual_square`.
 ///
-/// For Gaussian noise of unknown size, up to a constant that all laws share. `parameters` counts the numbers of the law, not
-/// the noise: the convention of lmfit, to whose values these are equal. `samples` may be an effective number, where neighbours
+/// For Gaussian noise of unknown size, up to a constant that all laws share. `parameters` counts the parameters of the law, not
+/// the noise: the convention of lmfit, to whose values these are equal. `samples` may be an effective parameter, where neighbours
 /// repeat each other.
 ///
 /// ```

@@ -25,8 +25,8 @@ pub struct Row {
     pub fit: Result<Fit, FitError>,
     /// The spectrum, if that is the law.
     pub spectrum: Option<SpectrumFit>,
-    /// Numbers that the data determine; not a whole one for a smoothed spectrum.
-    pub numbers: f64,
+    /// Parameters that the data determine; not a whole one for a smoothed spectrum.
+    pub effective_parameters: f64,
     /// Root mean square residual, in the unit of the signal.
     pub rmse: f64,
     /// Criteria as textbooks define them, at the number of samples.
@@ -83,7 +83,7 @@ pub enum Certainty {
 /// Which law to use.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The law with the fewest numbers among those that do best; the spectrum only if nothing else does as well.
+    /// The law with the fewest parameters among those that do best; the spectrum only if nothing else does as well.
     pub law: Law,
     /// All laws that do as well, this one included, best first.
     pub alike: Vec<Law>,

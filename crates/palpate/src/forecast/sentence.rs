@@ -18,14 +18,14 @@ impl Comparison {
     /// let laws = vec![Law::Latency { exponent: ExponentChoice::Fixed(2.0) }, Law::StandardLinearSolid];
     /// let options = CompareOptions { laws, ..CompareOptions::default() };
     /// let sentence = compare_laws(&Samples::new(&times, &values), &options)?.sentence().unwrap();
-    /// assert!(sentence.starts_with("Use the nonlinear latency law with n = 2 (3 numbers); that is clear."));
+    /// assert!(sentence.starts_with("Use the nonlinear latency law with n = 2 (3 parameters); that is clear."));
     /// # Ok::<(), palpate::fit::FitError>(())
     /// ```
     #[must_use]
     pub fn sentence(&self) -> Option<String> {
         let verdict = self.verdict.as_ref()?;
         let row = self.rows.iter().find(|row| row.law == verdict.law)?;
-        let mut text = format!("Use {} ({} numbers); ", name_in_words(row.law), rounded(row.numbers));
+        let mut text = format!("Use {} ({} parameters); ", name_in_words(row.law), rounded(row.effective_parameters));
         text.push_str(match verdict.certainty {
             Certainty::Clear => "that is clear",
             Certainty::Likely => "that is likely",
@@ -34,7 +34,7 @@ impl Comparison {
         match self.ranking {
             Ranking::Forward => text.push_str(&self.predicted(verdict)),
             Ranking::Information => text.push_str(
-                ". The hold is too short, or changes too little, to tell what a law predicts: laws are ranked by how closely they fit for their numbers (BIC)",
+                ". The hold is too short, or changes too little, to tell what a law predicts: laws are ranked by how closely they fit for their parameters (BIC)",
             ),
         }
         let rest: Vec<String> =
@@ -45,7 +45,7 @@ impl Comparison {
         }
         text.push_str(&self.cost_of_others(verdict));
         if !row.is_good() {
-            text.push_str("; no law found an optimum inside its range, so its numbers mean little");
+            text.push_str("; no law found an optimum inside its range, so its parameters mean little");
         }
         text.push('.');
         Some(text)
@@ -184,7 +184,7 @@ mod tests {
     fn a_clear_verdict_says_what_others_cost() {
         let text = sentence(800, &["latency", "sls", "prony:2", "spectrum", "diffusion"]);
         for words in [
-            "Use the nonlinear latency law (4 numbers)",
+            "Use the nonlinear latency law (4 parameters)",
             "Fitted to the first quarter, third and half of the hold it predicts the rest to",
             "at 3 of 3 cut points",
             "the standard linear solid is",

@@ -38,10 +38,10 @@ pub(super) fn judge(comparison: &Comparison) -> Option<Verdict> {
     let usable = || figures().filter(move |(row, _)| row.is_good() || !any_good);
     let best = usable().next()?.1;
     let alike: Vec<(&Row, f64)> = usable().filter(|(_, figure)| comparison.as_good(*figure, best)).collect();
-    // A spectrum has no numbers to carry to another test, so a law that does as well goes first.
+    // A spectrum has no parameters to carry to another test, so a law that does as well goes first.
     let (chosen, figure) = *alike.iter().min_by(|(a, one), (b, other)| {
         let spectrum = |row: &Row| row.law == Law::Spectrum;
-        let simpler = spectrum(a).cmp(&spectrum(b)).then(a.numbers.total_cmp(&b.numbers));
+        let simpler = spectrum(a).cmp(&spectrum(b)).then(a.effective_parameters.total_cmp(&b.effective_parameters));
         simpler.then(one.total_cmp(other))
     })?;
     let others = figures().filter(|(row, _)| row.law != chosen.law);

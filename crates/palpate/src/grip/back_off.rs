@@ -6,16 +6,16 @@ use super::{ALWAYS, Grip, GripError, Holding, Plan, bisected, check_duration};
 use crate::number::significant;
 use crate::simulate::step_ends;
 
-/// What a number of the material does to a squeeze that is to begin relaxed.
+/// What a parameter of the material does to a squeeze that is to begin relaxed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sensitivity {
-    /// Name of the number.
+    /// Name of the parameter.
     pub name: String,
     /// Its relative standard deviation, for residuals that correlate as they do; `None` where it has none.
     pub error: Option<f64>,
-    /// By how much the force at the start of the hold misses the relaxed one (N) if the number is 1 % larger and the jaw moves as planned.
+    /// By how much the force at the start of the hold misses the relaxed one (N) if the parameter is 1 % larger and the jaw moves as planned.
     pub missed: f64,
-    /// By how much farther (m) the jaw would have to go if the number were 1 % larger.
+    /// By how much farther (m) the jaw would have to go if the parameter were 1 % larger.
     pub over: f64,
 }
 
@@ -34,7 +34,7 @@ pub struct BackOff {
     pub drift: f64,
     /// The same after the plain squeeze, N.
     pub plain_drift: f64,
-    /// What the numbers of the material do to it.
+    /// What the parameters of the material do to it.
     pub sensitivities: Vec<Sensitivity>,
 }
 
@@ -94,7 +94,7 @@ impl Grip<'_> {
         const MORE: f64 = 1.02;
         /// To which the least is found, as a share.
         const CLOSE: f64 = 1e-6;
-        // What the numbers leave of an excess fades, and the band with it: between its ends it is no lower than there.
+        // What the parameters leave of an excess fades, and the band with it: between its ends it is no lower than there.
         let is_assured = |displacement: f64| -> Result<bool, GripError> {
             let plan = Plan::back_off(self.turning_point(displacement)?, displacement, self.limits.speed);
             let start = self.ends(&plan.steps)?.last().map_or(0.0, |end| end.time);
@@ -141,7 +141,7 @@ impl Grip<'_> {
         })
     }
 
-    /// The same with other factors of the numbers.
+    /// The same with other factors of the parameters.
     fn turned(&self, displacement: f64, farthest: f64, factors: Option<&[f64]>) -> Option<f64> {
         let relaxed = self.relaxed_with(displacement, factors)?;
         let is_low = |over: f64| Ok(self.force_of(over, displacement, factors) <= relaxed);
@@ -176,10 +176,11 @@ impl Grip<'_> {
     fn sensitivities(&self, displacement: f64, over: f64) -> Vec<Sensitivity> {
         const STEP: f64 = 1e-3;
         let (deepest, _) = self.limits.deepest(self.contact.specimen());
-        let numbers = &self.material.numbers;
+        let parameters = &self.material.parameters;
         let of = |index: usize| -> Option<Sensitivity> {
-            let factors =
-                |by: f64| -> Vec<f64> { (0..numbers.len()).map(|i| if i == index { 1.0 + by } else { 1.0 }).collect() };
+            let factors = |by: f64| -> Vec<f64> {
+                (0..parameters.len()).map(|i| if i == index { 1.0 + by } else { 1.0 }).collect()
+            };
             let missed = |by: f64| -> Option<f64> {
                 let factors = factors(by);
                 Some(
@@ -189,17 +190,17 @@ impl Grip<'_> {
             };
             let turned = |by: f64| self.turned(displacement, deepest, Some(&factors(by)));
             let per_cent = |high: f64, low: f64| (high - low) / (2.0 * STEP) / 100.0;
-            let number = &numbers[index];
+            let parameter = &parameters[index];
             let variance = self.material.uncertainty.as_ref().map(|uncertainty| uncertainty.covariance[index][index]);
-            let error = variance.map(f64::sqrt).filter(|_| number.estimate.standard_error.is_some());
+            let error = variance.map(f64::sqrt).filter(|_| parameter.estimate.standard_error.is_some());
             Some(Sensitivity {
-                name: number.name.clone(),
+                name: parameter.name.clone(),
                 error,
                 missed: per_cent(missed(STEP)?, missed(-STEP)?),
                 over: per_cent(turned(STEP)?, turned(-STEP)?),
             })
         };
-        (0..numbers.len())
+        (0..parameters.len())
             .filter_map(of)
             .filter(|found| found.missed.is_finite() && found.over.is_finite())
             .collect()

@@ -16,20 +16,20 @@ use crate::watch::{Cancelled, Progress, Stages};
 /// use palpate::fit::Estimate;
 /// use palpate::simulate::Separation;
 ///
-/// // The paper's ball, its numbers without errors.
-/// let number = |name: &str, unit, value| MaterialParameter { name: name.to_owned(), unit, estimate: Estimate::fixed(value) };
+/// // The paper's ball, its parameters without errors.
+/// let parameter = |name: &str, unit, value| MaterialParameter { name: name.to_owned(), unit, estimate: Estimate::fixed(value) };
 /// let ball = Material {
 ///     body: Body { shape: Shape::Ball { radius: 0.035 }, sides: Sides::Two, separation: Separation::Unilateral, levels: vec![] },
 ///     candidate: Candidate::new("latency".parse()?, EquilibriumLaw::UniformStrain),
-///     numbers: vec![
-///         number("modulus", MaterialUnit::Pascal, 28e3),
-///         number("exponent", MaterialUnit::One, 5.0),
-///         number("rate_coefficient", MaterialUnit::PerSecond, 2e4),
-///         number("layer_thickness", MaterialUnit::Metre, 0.035 / 8.0),
+///     parameters: vec![
+///         parameter("modulus_pa", MaterialUnit::Pascal, 28e3),
+///         parameter("exponent", MaterialUnit::One, 5.0),
+///         parameter("rate_coefficient_per_s", MaterialUnit::PerSecond, 2e4),
+///         parameter("layer_thickness_m", MaterialUnit::Metre, 0.035 / 8.0),
 ///     ],
 ///     uncertainty: None,
 ///     noise: 0.0,
-///     shown: CalibrationRange { longest_hold: 20.0, deepest: 0.015, fastest: 0.5 / 60.0, slowest: 0.5 / 60.0, largest_force: 14.3 },
+///     range: CalibrationRange { longest_hold: 20.0, deepest: 0.015, fastest: 0.5 / 60.0, slowest: 0.5 / 60.0, largest_force: 14.3 },
 /// };
 /// // 0.25 kg with μ = 0.6 need 2.04 N; 5 mm at 500 mm/min start with 3.04 N and relax to 1.06 N.
 /// let grip = Grip::new(&ball, Grasp::new(0.25, 0.6)?, Limits::new(0.5 / 60.0)?, 0.95)?;
@@ -81,7 +81,7 @@ impl<'a> Grip<'a> {
     /// A body, its load and the gripper.
     ///
     /// # Errors
-    /// [`GripError::Number`] for numbers that describe none, a confidence outside 0…1 among them; [`GripError::Bonded`].
+    /// [`GripError::Parameter`] for parameters that describe none, a confidence outside 0…1 among them; [`GripError::Bonded`].
     pub fn new(material: &'a Material, grasp: Grasp, limits: Limits, confidence: f64) -> Result<Self, GripError> {
         grasp.check()?;
         limits.check()?;
@@ -242,7 +242,7 @@ impl<'a> Grip<'a> {
         }
     }
 
-    /// From the start of the hold until a plan slips, with the best numbers.
+    /// From the start of the hold until a plan slips, with the best parameters.
     fn lasts(&self, plan: &Plan) -> Result<TimeToSlip, GripError> {
         let ends = self.ends(&plan.steps)?;
         let end = ends.last().ok_or(SimulateError::EmptyProgram)?;

@@ -43,7 +43,7 @@ impl BasisFunction {
 pub enum ExponentChoice {
     /// Held at this value.
     Fixed(f64),
-    /// Found with the other numbers.
+    /// Found with the other parameters.
     Free,
 }
 

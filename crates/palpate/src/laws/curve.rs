@@ -1,4 +1,4 @@
-//! A law with its numbers put in.
+//! A law with its parameters put in.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,11 +11,11 @@ pub struct Term {
     pub amplitude: f64,
     /// The shape.
     pub shape: BasisFunction,
-    /// Its numbers: ln of rates in 1/s, pure numbers as they are.
-    pub numbers: Vec<f64>,
+    /// Its parameters: ln of rates in 1/s, dimensionless parameters as they are.
+    pub parameters: Vec<f64>,
 }
 
-/// A law of relaxation or creep with its numbers put in: a function of time, the answer to a step.
+/// A law of relaxation or creep with its parameters put in: a function of time, the answer to a step.
 ///
 /// y(t) = constant + Σ amplitude · shape(t) in relaxation. In creep a shape that decays counts as 1 − shape; in relaxation one that
 /// grows counts negative.
@@ -23,7 +23,7 @@ pub struct Term {
 /// ```
 /// use palpate::laws::{LawCurve, Response, BasisFunction, Term};
 /// // 2 N + 3 N exp(−t/4 s)
-/// let term = Term { amplitude: 3.0, shape: BasisFunction::Exponential, numbers: vec![0.25f64.ln()] };
+/// let term = Term { amplitude: 3.0, shape: BasisFunction::Exponential, parameters: vec![0.25f64.ln()] };
 /// let curve = LawCurve { response: Response::Relaxation, constant: 2.0, terms: vec![term] };
 /// assert!((curve.at(4.0) - (2.0 + 3.0 * (-1.0f64).exp())).abs() < 1e-14);
 /// ```
@@ -78,7 +78,7 @@ impl LawCurve {
     /// ```
     /// use palpate::laws::{LawCurve, Loading, Response, BasisFunction, Term};
     /// // After a ramp of one relaxation time 1 − 1/e of the amplitude is left.
-    /// let term = Term { amplitude: 3.0, shape: BasisFunction::Exponential, numbers: vec![0.25f64.ln()] };
+    /// let term = Term { amplitude: 3.0, shape: BasisFunction::Exponential, parameters: vec![0.25f64.ln()] };
     /// let curve = LawCurve { response: Response::Relaxation, constant: 2.0, terms: vec![term] };
     /// let start = curve.after(&Loading::ramp(4.0)?, &[0.0])[0];
     /// assert!((start - (2.0 + 3.0 * (1.0 - (-1.0f64).exp()))).abs() < 1e-14);
@@ -98,8 +98,8 @@ impl LawCurve {
         for term in &self.terms {
             let column = Column::of(&term.shape, self.response);
             match loading {
-                None => term.shape.value(&times, &term.numbers, &mut shape),
-                Some(loading) => loading.value(&term.shape, &times, &term.numbers, &mut shape),
+                None => term.shape.value(&times, &term.parameters, &mut shape),
+                Some(loading) => loading.value(&term.shape, &times, &term.parameters, &mut shape),
             }
             for (out, value) in out.iter_mut().zip(&shape) {
                 *out += term.amplitude * (column.offset + column.sign * value);

@@ -1,7 +1,7 @@
 //! What a law is made of: a constant or none, and shapes.
 
-/// Columns of a law, in the order of its linear numbers: the constant if it has one, then the shapes.
-use super::{BasisFunction, Kernel, NumberKind, Response};
+/// Columns of a law, in the order of its linear parameters: the constant if it has one, then the shapes.
+use super::{BasisFunction, Kernel, Response, ShapeParameterKind, name_of_term};
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Form {
     /// Relaxation or creep.
@@ -35,10 +35,10 @@ impl Form {
         self.numbered(|shape| [name(shape)]).into_iter().map(|(_, name)| name).collect()
     }
 
-    /// Name, kind and shape of every nonlinear number.
-    pub(crate) fn numbers(&self) -> Vec<(usize, String, NumberKind)> {
-        let names = self.numbered(|shape| shape.numbers().iter().map(|number| number.name));
-        let kinds = self.shapes.iter().flat_map(|shape| shape.numbers().iter().map(|number| number.kind));
+    /// Name, kind and shape of every nonlinear parameter.
+    pub(crate) fn parameters(&self) -> Vec<(usize, String, ShapeParameterKind)> {
+        let names = self.numbered(|shape| shape.parameters().iter().map(|parameter| parameter.name));
+        let kinds = self.shapes.iter().flat_map(|shape| shape.parameters().iter().map(|parameter| parameter.kind));
         names.into_iter().zip(kinds).map(|((shape, name), kind)| (shape, name, kind)).collect()
     }
 
@@ -52,7 +52,7 @@ impl Form {
         for (index, shape) in self.shapes.iter().enumerate() {
             let place = self.shapes[..=index].iter().filter(|other| *other == shape).count();
             for name in names(shape) {
-                let name = if like(shape) > 1 { format!("{name}_{place}") } else { name.to_owned() };
+                let name = if like(shape) > 1 { name_of_term(name, place) } else { name.to_owned() };
                 all.push((index, name));
             }
         }

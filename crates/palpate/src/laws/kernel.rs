@@ -1,13 +1,13 @@
 //! What a shape must be able to do.
 
-/// What a nonlinear number of a shape is, and between which bounds it is sought.
+/// What a nonlinear parameter of a shape is, and between which bounds it is sought.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum NumberKind {
+pub(crate) enum ShapeParameterKind {
     /// ln λ, reported as a rate λ in 1/s. Sought from the slowest to the fastest that a hold can show.
     Rate,
     /// ln λ, reported as a time τ = 1/λ in s.
     Time,
-    /// A pure number between two bounds, with the values that a coarse search tries.
+    /// A dimensionless parameter between two bounds, with the values that a coarse search tries.
     Pure {
         low: f64,
         high: f64,
@@ -17,31 +17,49 @@ pub(crate) enum NumberKind {
     Reference,
 }
 
-/// A nonlinear number of a shape.
+/// A nonlinear parameter of a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ShapeNumber {
-    /// Name in results, without unit: `relative_rate`, `time`, `exponent`.
+pub(crate) struct ShapeParameter {
+    /// Name in results, with its unit: `relative_rate_per_s`, `time_constant_s`, `exponent`.
     pub(crate) name: &'static str,
     /// Kind and range.
-    pub(crate) kind: NumberKind,
+    pub(crate) kind: ShapeParameterKind,
 }
 
-impl ShapeNumber {
-    pub(in crate::laws) const fn new(name: &'static str, kind: NumberKind) -> Self {
+impl ShapeParameter {
+    pub(in crate::laws) const fn new(name: &'static str, kind: ShapeParameterKind) -> Self {
         Self { name, kind }
     }
 
-    /// A pure number.
+    /// A dimensionless parameter.
     pub(in crate::laws) const fn pure(name: &'static str, low: f64, high: f64, coarse: &'static [f64]) -> Self {
-        Self::new(name, NumberKind::Pure { low, high, coarse })
+        Self::new(name, ShapeParameterKind::Pure { low, high, coarse })
     }
 }
 
+/// The unit at the end of a name.
+fn unit_of_name(name: &str) -> &'static str {
+    ["_per_s", "_s"].into_iter().find(|unit| name.ends_with(unit)).unwrap_or("")
+}
+
+/// The name of a parameter of one term of several: the number of the term stands before the unit, as in `time_constant_2_s`.
+pub(crate) fn name_of_term(name: &str, term: usize) -> String {
+    let unit = unit_of_name(name);
+    format!("{}_{term}{unit}", &name[..name.len() - unit.len()])
+}
+
+/// The term that a name written by [`name_of_term`] belongs to.
+pub(crate) fn term_of_name(name: &str, written: &str) -> Option<usize> {
+    let unit = unit_of_name(name);
+    let stem = &name[..name.len() - unit.len()];
+    written.strip_prefix(stem)?.strip_prefix('_')?.strip_suffix(unit)?.parse().ok()
+}
+
 /// The time of a shape.
-pub(in crate::laws) const TIME: ShapeNumber = ShapeNumber::new("time", NumberKind::Time);
+pub(in crate::laws) const TIME: ShapeParameter = ShapeParameter::new("time_constant_s", ShapeParameterKind::Time);
 
 /// What sets the unit of a shape that grows.
-pub(in crate::laws) const REFERENCE: ShapeNumber = ShapeNumber::new("reference", NumberKind::Reference);
+pub(in crate::laws) const REFERENCE: ShapeParameter = ShapeParameter::new("reference", ShapeParameterKind::Reference);
 
 /// The derivatives of a shape of two numbers.
 pub(in crate::laws) fn two(derivatives: &mut [Vec<f64>]) -> [&mut Vec<f64>; 2] {
@@ -55,8 +73,8 @@ pub(in crate::laws) fn two(derivatives: &mut [Vec<f64>]) -> [&mut Vec<f64>; 2] {
 ///
 /// Rates enter as ln λ, so that a change of the unit of time adds a constant to them and no more.
 pub(crate) trait Kernel {
-    /// The numbers θ of the shape, a rate first.
-    fn numbers(&self) -> &'static [ShapeNumber];
+    /// The parameters θ of the shape, a rate first.
+    fn parameters(&self) -> &'static [ShapeParameter];
 
     /// Whether the shape falls from 1 to 0 (and creeps as 1 − shape) rather than growing from 0 without end.
     fn decays(&self) -> bool {
@@ -66,6 +84,6 @@ pub(crate) trait Kernel {
     /// The shape at every time ≥ 0.
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]);
 
-    /// The shape and its derivatives by every number.
+    /// The shape and its derivatives by every parameter.
     fn gradient(&self, times: &[f64], theta: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]);
 }

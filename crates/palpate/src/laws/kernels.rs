@@ -9,7 +9,7 @@ use super::continuous::power::{PowerDecay, PowerGrowth};
 use super::continuous::stretched::Stretched;
 use super::discrete::exponential::Exponential;
 use super::discrete::maxwell::Straight;
-use super::{BasisFunction, Kernel, ShapeNumber};
+use super::{BasisFunction, Kernel, ShapeParameter};
 
 fn with<R>(basis: &BasisFunction, act: impl FnOnce(&dyn Kernel) -> R) -> R {
     match *basis {
@@ -28,8 +28,8 @@ fn with<R>(basis: &BasisFunction, act: impl FnOnce(&dyn Kernel) -> R) -> R {
 }
 
 impl Kernel for BasisFunction {
-    fn numbers(&self) -> &'static [ShapeNumber] {
-        with(self, |kernel| kernel.numbers())
+    fn parameters(&self) -> &'static [ShapeParameter] {
+        with(self, |kernel| kernel.parameters())
     }
 
     fn decays(&self) -> bool {

@@ -9,7 +9,7 @@ use super::continuous::{diffusion, fractional_zener, fung_continuous, latency, l
 use super::discrete::{burgers, fung, kelvin_voigt, maxwell, prony, spectrum, standard_linear_solid};
 use super::{BasisFunction, Description, ExponentChoice, Form, Response};
 
-/// A law of relaxation or creep whose numbers are to be found; see the [table of laws](crate::laws).
+/// A law of relaxation or creep whose parameters are to be found; see the [table of laws](crate::laws).
 ///
 /// In text and JSON a law is its name: `latency` (n found), `latency:5`, `prony:2`, `standard-linear-solid`, …
 ///
@@ -43,7 +43,7 @@ pub enum Law {
     },
     /// Many exponentials on a fixed grid of times, of one sign.
     Spectrum,
-    /// Prony in Fung's numbers (relaxation only).
+    /// Prony in Fung's parameters (relaxation only).
     Fung {
         /// How many, from 1 to [`MOST_TERMS`].
         terms: usize,
@@ -74,7 +74,7 @@ pub struct UnknownLaw {
 }
 
 impl Law {
-    /// Names as they are written; N, K stand for numbers.
+    /// Names as they are written; N, K stand for parameters.
     pub const NAMES: [&'static str; 15] = [
         "latency",
         "latency:N",
@@ -139,7 +139,7 @@ impl Law {
     }
 
     /// Whether the law can take the form of another, so that it must fit as well: a free exponent any exponent, more terms
-    /// fewer, the spectrum everything that relaxes one way, and any shape with a number that makes it exponential the standard
+    /// fewer, the spectrum everything that relaxes one way, and any shape with a parameter that makes it exponential the standard
     /// linear solid.
     ///
     /// ```
@@ -225,11 +225,11 @@ impl FromStr for Law {
     /// Reads a name; `linear-latency` (n = 1), `peleg` (n = 2), `sls` and `kww` are understood too.
     fn from_str(text: &str) -> Result<Self, UnknownLaw> {
         let unknown = || UnknownLaw { found: text.to_owned() };
-        let terms = |number: &str| match number.parse() {
+        let terms = |parameter: &str| match parameter.parse() {
             Ok(terms) if (1..=MOST_TERMS).contains(&terms) => Ok(terms),
             _ => Err(unknown()),
         };
-        let exponent = |number: &str| match number.parse::<f64>() {
+        let exponent = |parameter: &str| match parameter.parse::<f64>() {
             Ok(n) if n.is_finite() && n > 0.0 => Ok(ExponentChoice::Fixed(n)),
             _ => Err(unknown()),
         };

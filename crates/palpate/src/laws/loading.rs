@@ -94,7 +94,7 @@ impl Loading {
     /// any unit start at rest and end at what is held.
     ///
     /// # Errors
-    /// [`LoadingError`] for fewer than two samples, numbers that are not finite, times that do not rise, and values that end
+    /// [`LoadingError`] for fewer than two samples, parameters that are not finite, times that do not rise, and values that end
     /// where they began.
     pub fn new(times: &[f64], values: &[f64]) -> Result<Self, LoadingError> {
         if times.len() != values.len() {

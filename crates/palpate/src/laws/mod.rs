@@ -1,4 +1,4 @@
-//! Laws of relaxation and creep: every one of them "constant + amplitudes × shapes(t; few numbers)".
+//! Laws of relaxation and creep: every one of them "constant + amplitudes × shapes(t; few parameters)".
 //!
 //! | law | relaxation y(t) | creep y(t) | file |
 //! |---|---|---|---|
@@ -18,9 +18,9 @@
 //! | `fractional-zener` | y_e + Δ E_α(−(λt)^α) | y₀ + Δ (1 − same) | `continuous/fractional_zener.rs` |
 //! | `diffusion` | y_e + Δ (8/π²) Σ_odd exp(−k²λt)/k² | y₀ + Δ (1 − same) | `continuous/diffusion.rs` |
 //!
-//! A [`Law`] has its numbers free; a [`LawCurve`] has numbers put in. `law.rs` holds the list, the names and what each law is made
+//! A [`Law`] has its parameters free; a [`LawCurve`] has parameters put in. `law.rs` holds the list, the names and what each law is made
 //! of, `form.rs` how that stands in a signal, `basis.rs` the list of basis functions, `kernel.rs` what one of them must be able to do, `kernels.rs` that they can,
-//! `curve.rs` a law with numbers. Two rooms hold the laws themselves: `discrete/` those with single relaxation times, `continuous/` all
+//! `curve.rs` a law with parameters. Two rooms hold the laws themselves: `discrete/` those with single relaxation times, `continuous/` all
 //! others. A hold that follows a ramp is no step: `loading.rs` holds what came before it, `superposition.rs` averages basis functions
 //! over that. `fit` fits them all; nothing here looks at data.
 
@@ -38,8 +38,8 @@ mod superposition;
 pub use basis::{BasisFunction, Description, ExponentChoice, Response};
 pub use curve::{LawCurve, Term};
 pub(crate) use form::{Column, Form};
-pub(crate) use kernel::{Kernel, NumberKind};
-use kernel::{REFERENCE, ShapeNumber, TIME, two};
+pub(crate) use kernel::{Kernel, ShapeParameterKind, name_of_term, term_of_name};
+use kernel::{REFERENCE, ShapeParameter, TIME, two};
 pub use law::{Law, MOST_TERMS, UnknownLaw};
 pub use loading::{Loading, LoadingError};
 pub(crate) use superposition::Superposition;

@@ -75,7 +75,7 @@ impl Superposition {
         }
     }
 
-    /// ⟨φ⟩ and its derivatives by every number.
+    /// ⟨φ⟩ and its derivatives by every parameter.
     pub(crate) fn gradient(
         &self,
         shape: &BasisFunction,
@@ -217,7 +217,7 @@ mod tests {
     #[derive(Deserialize)]
     struct Case {
         shape: BasisFunction,
-        numbers: Vec<f64>,
+        parameters: Vec<f64>,
         loading: String,
         time: f64,
         value: f64,
@@ -228,10 +228,10 @@ mod tests {
         /// ⟨φ⟩ and its derivatives, as they are found and as they should be.
         fn run(&self, superposition: &Superposition) -> Vec<(f64, f64)> {
             let theta: Vec<f64> = self
-                .numbers
+                .parameters
                 .iter()
                 .enumerate()
-                .map(|(i, number)| if i == 0 { number.ln() } else { *number })
+                .map(|(i, parameter)| if i == 0 { parameter.ln() } else { *parameter })
                 .collect();
             let (mut value, mut alone) = ([f64::NAN], [f64::NAN]);
             let mut derivatives = vec![vec![f64::NAN]; theta.len()];
@@ -243,7 +243,7 @@ mod tests {
         }
     }
 
-    /// Numbers of `validation/finite_ramps.py`.
+    /// Parameters of `validation/finite_ramps.py`.
     #[test]
     fn every_shape_follows_every_loading() {
         let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation/reference/finite_ramps.json"));
@@ -260,8 +260,8 @@ mod tests {
                 let Tolerance { value, derivative } = reference.tolerance;
                 let allowed = if i == 0 { value } else { derivative };
                 let error = (found - expected).abs() / expected.abs().max(1.0);
-                let Case { shape, numbers, .. } = case;
-                assert!(error < allowed, "{shape:?} {numbers:?} {} t = {} {i}: {error:e}", case.loading, case.time);
+                let Case { shape, parameters, .. } = case;
+                assert!(error < allowed, "{shape:?} {parameters:?} {} t = {} {i}: {error:e}", case.loading, case.time);
             }
         }
     }

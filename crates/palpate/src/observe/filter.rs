@@ -1,6 +1,6 @@
 //! A calibrated body run beside the record, and corrected by it.
 //!
-//! The model with its best numbers is stepped with every reading of the displacement, and beside it one pair of models a direction that the
+//! The model with its best parameters is stepped with every reading of the displacement, and beside it one pair of models a direction that the
 //! calibration leaves open: each column of a root of its covariance, the stiffness of this body as against the one that was calibrated, and
 //! first touch. Halves of the differences of a pair are the derivatives of all that is asked by one standard deviation of its direction, so
 //! that the standings z of the directions, N(0, 1) before the first reading, follow from the forces by a Kalman filter of a state that does
@@ -16,7 +16,7 @@ use crate::simulate::{Contact, ContactModel, ContactState, StepError};
 const APART: f64 = 0.01;
 /// A mean square of normalised surprises above which the body is not the one that was calibrated.
 const INNOVATION_LIMIT: f64 = 6.0;
-/// Standard deviations from the calibrated numbers beyond which it is another body.
+/// Standard deviations from the calibrated parameters beyond which it is another body.
 const FAR: f64 = 5.0;
 /// Most directions: those that leave open the most.
 const MOST: usize = 16;
@@ -97,7 +97,7 @@ pub(super) struct ModelFilter {
     /// The last reading of the displacement: when (s), and what (m).
     last: Option<f64>,
     displacement: f64,
-    exponent_deviation: f64,
+    exponent_standard_error: f64,
     /// Degrees of freedom of the calibration.
     pub(super) freedom: f64,
 }
@@ -109,11 +109,11 @@ impl ModelFilter {
             let factors: Vec<f64> = direction.iter().map(|log| (by * log).exp()).collect();
             Member::new(material.contact_off(&factors)?, 0.0)
         };
-        let is_stiffness = |name: &str| name == "modulus" || name.starts_with("equilibrium_force");
-        let stiffer = |name: &str| if is_stiffness(name) { options.stiffness_deviation } else { 0.0 };
+        let is_stiffness = |name: &str| name == "modulus_pa" || name.starts_with("equilibrium_force");
+        let stiffer = |name: &str| if is_stiffness(name) { options.stiffness_standard_error } else { 0.0 };
         let mut directions = material.directions();
         directions.truncate(MOST - 2);
-        directions.push(material.numbers.iter().map(|number| stiffer(&number.name)).collect());
+        directions.push(material.parameters.iter().map(|parameter| stiffer(&parameter.name)).collect());
         let mut pairs = Vec::new();
         for direction in &directions {
             // Closer by where a full deviation makes no body.
@@ -121,15 +121,15 @@ impl ModelFilter {
                 [1.0, 0.25, 0.0625].map(|by| off(direction, by).zip(off(direction, -by)).map(|pair| (pair, by)));
             pairs.extend(sides.into_iter().flatten().next().map(|((high, low), by)| (high, low, by)));
         }
-        if options.touch_deviation > 0.0 {
-            let touch = options.touch_deviation;
+        if options.touch_standard_error > 0.0 {
+            let touch = options.touch_standard_error;
             let at = |offset: f64| Member { offset, ..best.clone() };
             pairs.push((at(touch), at(-touch), 1.0));
         }
         let count = pairs.len();
         let mut covariance = vec![0.0; count * count];
         covariance.iter_mut().step_by(count + 1).for_each(|variance| *variance = 1.0);
-        let exponent = material.numbers.iter().find(|number| number.name == "exponent");
+        let exponent = material.parameters.iter().find(|parameter| parameter.name == "exponent");
         let noise = options.noise.map_or(material.noise, |noise| noise.1.max(material.noise));
         Ok(Self {
             best,
@@ -142,7 +142,7 @@ impl ModelFilter {
             surprise: 1.0,
             last: None,
             displacement: 0.0,
-            exponent_deviation: exponent.and_then(|number| number.estimate.standard_error).unwrap_or(0.0),
+            exponent_standard_error: exponent.and_then(|parameter| parameter.estimate.standard_error).unwrap_or(0.0),
             freedom: material.uncertainty.as_ref().map_or(f64::INFINITY, |uncertainty| uncertainty.freedom),
         })
     }
@@ -233,7 +233,7 @@ impl ModelFilter {
 
     /// Exponent of the law of a hold, and what the calibration leaves open of it.
     pub(super) fn exponent(&self) -> Normal {
-        Normal::new(self.best.model.law.exponent().max(1.0), self.exponent_deviation)
+        Normal::new(self.best.model.law.exponent().max(1.0), self.exponent_standard_error)
     }
 
     /// Whether the forces are those of the calibrated body.

@@ -22,6 +22,7 @@ impl From<Normal> for Estimate {
         Self {
             value: normal.mean,
             standard_error: Some(normal.deviation),
+            white_standard_error: None,
             interval: None,
         }
     }

@@ -335,10 +335,10 @@ impl Observer {
             && readings >= f64::from(READINGS)
         {
             let confidence = self.options.confidence;
-            let exponent = self
-                .filter
-                .as_ref()
-                .map_or(Normal::new(self.options.exponent, self.options.exponent_deviation), ModelFilter::exponent);
+            let exponent = self.filter.as_ref().map_or(
+                Normal::new(self.options.exponent, self.options.exponent_standard_error),
+                ModelFilter::exponent,
+            );
             hold.fit = HoldFit::new(bins, exponent, noise, |freedom| coverage_factor(confidence, freedom));
         } else {
             // Every tick, until there are enough.

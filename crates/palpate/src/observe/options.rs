@@ -14,7 +14,7 @@ pub struct ObserverOptions {
     /// Exponent n of the law where no material says it: a pure number from 1 to 30.
     pub exponent: f64,
     /// Standard deviation to which that exponent is known, from 0 to 10; intervals are as much wider. 0 takes it for given.
-    pub exponent_deviation: f64,
+    pub exponent_standard_error: f64,
     /// Normal force (N) at and below which what is held slips; `None` asks for no time to slip.
     pub slip_force: Option<f64>,
     /// How long before slip to warn, s.
@@ -24,9 +24,9 @@ pub struct ObserverOptions {
     /// Standard deviation of one reading, of displacement (m) and force (N); found out from the readings where not given.
     pub noise: Option<(f64, f64)>,
     /// With a material: how much the stiffness of this body may differ from that of the calibrated one, as a standard deviation of its logarithm.
-    pub stiffness_deviation: f64,
+    pub stiffness_standard_error: f64,
     /// With a material: how well first touch is known, as a standard deviation of the displacement (m).
-    pub touch_deviation: f64,
+    pub touch_standard_error: f64,
 }
 
 impl Default for ObserverOptions {
@@ -34,13 +34,13 @@ impl Default for ObserverOptions {
         Self {
             material: None,
             exponent: 5.0,
-            exponent_deviation: 0.0,
+            exponent_standard_error: 0.0,
             slip_force: None,
             warn_before: 1.0,
             confidence: 0.95,
             noise: None,
-            stiffness_deviation: 0.05,
-            touch_deviation: 1e-4,
+            stiffness_standard_error: 0.05,
+            touch_standard_error: 1e-4,
         }
     }
 }
@@ -59,7 +59,7 @@ impl ObserverOptions {
             }
         };
         within("the exponent", "from 1 to 30", self.exponent, (1.0..=30.0).contains(&self.exponent))?;
-        let deviation = self.exponent_deviation;
+        let deviation = self.exponent_standard_error;
         within("the deviation of the exponent", "from 0 to 10", deviation, (0.0..=10.0).contains(&deviation))?;
         if let Some(force) = self.slip_force {
             within("the slip force", "above 0 N", force, force > 0.0)?;
@@ -71,8 +71,13 @@ impl ObserverOptions {
             within("the noise of the displacement", "0 m or more", displacement, displacement >= 0.0)?;
             within("the noise of the force", "above 0 N", force, force > 0.0)?;
         }
-        let stiffness = self.stiffness_deviation;
+        let stiffness = self.stiffness_standard_error;
         within("the deviation of the stiffness", "from 0 to 1", stiffness, (0.0..=1.0).contains(&stiffness))?;
-        within("the deviation of first touch", "0 m or more", self.touch_deviation, self.touch_deviation >= 0.0)
+        within(
+            "the deviation of first touch",
+            "0 m or more",
+            self.touch_standard_error,
+            self.touch_standard_error >= 0.0,
+        )
     }
 }

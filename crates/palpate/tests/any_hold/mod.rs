@@ -29,10 +29,10 @@ const MOST: usize = 60;
 
 /// Whether nothing in a fit is NaN.
 pub(crate) fn is_whole(fit: &Fit) -> bool {
-    let errors = fit.covariance.iter().flatten().flatten().copied();
+    let errors = fit.white_covariance.iter().flatten().flatten().copied();
     let numbers = fit.parameters.iter().flat_map(|number| {
         let (low, high) = number.estimate.interval.unwrap_or((0.0, 0.0));
-        [number.estimate.value, number.estimate.standard_error.unwrap_or(0.0), low, high]
+        [number.estimate.value, number.estimate.white_standard_error.unwrap_or(0.0), low, high]
     });
     let totals = [fit.residual_square, fit.rmse, fit.residual_correlation];
     errors.chain(numbers).chain(totals).chain(fit.values.iter().copied()).all(|number| !number.is_nan())

@@ -4,7 +4,7 @@ use palpate::fit::{BootstrapOptions, IntervalMethod, LawOptions, Samples, fit_la
 use palpate::laws::{BasisFunction, ExponentChoice, Law, LawCurve, Response, Term};
 use palpate::test_problems::Noise;
 
-/// A law whose numbers are known, and how noisy its holds are.
+/// A law whose parameters are known, and how noisy its holds are.
 pub(crate) struct Case {
     pub(crate) name: &'static str,
     pub(crate) law: Law,
@@ -20,11 +20,11 @@ pub(crate) struct Case {
 /// Samples of a hold, evenly over 10 s.
 pub(crate) const SAMPLES: usize = 1000;
 
-fn term(amplitude: f64, shape: BasisFunction, numbers: &[f64]) -> Term {
+fn term(amplitude: f64, shape: BasisFunction, parameters: &[f64]) -> Term {
     Term {
         amplitude,
         shape,
-        numbers: numbers.to_vec(),
+        parameters: parameters.to_vec(),
     }
 }
 
@@ -43,13 +43,25 @@ pub(crate) fn cases() -> Vec<Case> {
         term(0.5, BasisFunction::Exponential, &[-(3f64.ln())]),
     ];
     let common = [("equilibrium", 1.0), ("amplitude", 1.0)];
-    let rates = [("relative_rate", 2.0), ("rate_coefficient", 2.0)];
+    let rates = [("relative_rate_per_s", 2.0), ("rate_coefficient_per_s", 2.0)];
     let named = |more: &[(&'static str, f64)]| [&common[..], more].concat();
-    let pairs = [("equilibrium", 1.0), ("amplitude_1", 0.5), ("amplitude_2", 0.5), ("time_1", 0.3), ("time_2", 3.0)];
+    let pairs = [
+        ("equilibrium", 1.0),
+        ("amplitude_1", 0.5),
+        ("amplitude_2", 0.5),
+        ("time_constant_1_s", 0.3),
+        ("time_constant_2_s", 3.0),
+    ];
     let laws = [
         ("latency, n = 5", fixed, vec![power(5.0)], named(&rates), 1e-3),
         ("latency, n free", free, vec![power(3.0)], named(&[rates[0], ("exponent", 3.0), rates[1]]), 1e-3),
-        ("standard linear solid", Law::StandardLinearSolid, vec![single], named(&[("time", 2.0)]), 1e-2),
+        (
+            "standard linear solid",
+            Law::StandardLinearSolid,
+            vec![single],
+            named(&[("time_constant_s", 2.0)]),
+            1e-2,
+        ),
         ("Prony, two times", Law::Prony { terms: 2 }, double, pairs.to_vec(), 1e-3),
     ];
     let with = |correlation: f64| {
@@ -91,7 +103,7 @@ impl Case {
         (times, values)
     }
 
-    /// Intervals of all numbers of a hold, with value and standard error.
+    /// Intervals of all parameters of a hold, with value and standard error.
     fn intervals(&self, index: u64, method: Method) -> Vec<Found> {
         let (times, values) = self.hold(index);
         let (samples, options) = (Samples::new(&times, &values), LawOptions::default());
@@ -113,7 +125,7 @@ impl Case {
             .expect("a bootstrap")
         });
         let found = |(name, _): &(&str, f64)| {
-            let estimate = *fit.estimate(name).expect("a number");
+            let estimate = *fit.estimate(name).expect("a parameter");
             let profile = || profile_interval(&samples, self.law, &options, name).ok();
             let interval = match (method, &drawn) {
                 (Method::Profile, _) => profile().and_then(|interval| Some((interval.low?, interval.high?))),
@@ -123,6 +135,7 @@ impl Case {
             Found {
                 value: estimate.value,
                 error: estimate.standard_error.unwrap_or(f64::NAN),
+                white_error: estimate.white_standard_error.unwrap_or(f64::NAN),
                 interval,
             }
         };
@@ -130,10 +143,11 @@ impl Case {
     }
 }
 
-/// One number of one hold.
+/// One parameter of one hold.
 struct Found {
     value: f64,
     error: f64,
+    white_error: f64,
     interval: Option<(f64, f64)>,
 }
 
@@ -147,7 +161,7 @@ pub(crate) enum Method {
     Bootstrap,
 }
 
-/// What became of one number in many holds.
+/// What became of one parameter in many holds.
 #[derive(Default, Clone, Copy)]
 pub(crate) struct Tally {
     /// Holds whose interval contains the truth.
@@ -155,15 +169,17 @@ pub(crate) struct Tally {
     /// Holds whose truth lies below, and above.
     pub(crate) below: usize,
     pub(crate) above: usize,
-    /// Holds whose interval for white noise contains it: value ± 1.96 standard errors.
-    pub(crate) naive: usize,
+    /// Holds whose value ± 1.96 standard errors contains it.
+    pub(crate) by_error: usize,
+    /// The same with the standard error for white noise.
+    pub(crate) by_white_error: usize,
     /// Holds without an interval.
     pub(crate) open: usize,
     /// Sum of widths over values.
     pub(crate) width: f64,
 }
 
-/// Counts over holds `from..to`, number by number.
+/// Counts over holds `from..to`, parameter by parameter.
 pub(crate) fn tally(case: &Case, method: Method, holds: std::ops::Range<u64>) -> Vec<Tally> {
     let mut tallies = vec![Tally::default(); case.truth.len()];
     for index in holds {
@@ -175,7 +191,8 @@ pub(crate) fn tally(case: &Case, method: Method, holds: std::ops::Range<u64>) ->
             tally.covered += usize::from(low <= *truth && *truth <= high);
             tally.below += usize::from(*truth < low);
             tally.above += usize::from(*truth > high);
-            tally.naive += usize::from((found.value - truth).abs() <= 1.96 * found.error);
+            tally.by_error += usize::from((found.value - truth).abs() <= 1.96 * found.error);
+            tally.by_white_error += usize::from((found.value - truth).abs() <= 1.96 * found.white_error);
             tally.width += (high - low) / found.value;
         }
     }

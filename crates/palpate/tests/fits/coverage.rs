@@ -18,19 +18,32 @@ fn lowest(least: f64) -> f64 {
 #[test]
 fn intervals_contain_the_truth() {
     for correlated in [false, true] {
-        let (mut covered, mut naive, mut all) = (0, 0, 0);
+        let (mut covered, mut by_error, mut by_white_error, mut all) = (0, 0, 0, 0);
         let least = lowest(if correlated { 0.90 } else { 0.93 });
         for case in cases().iter().filter(|case| (case.correlation > 0.0) == correlated) {
             for ((name, _), tally) in case.truth.iter().zip(tally(case, Method::Curvature, 0..HOLDS as u64)) {
                 assert_eq!(tally.open, 0, "{}: {name}", case.name);
                 let share = tally.covered as f64 / HOLDS as f64;
                 assert!(share > least, "{} with noise of {}: {name} {share}", case.name, case.correlation);
-                (covered, naive, all) = (covered + tally.covered, naive + tally.naive, all + HOLDS);
+                let by_errors = tally.by_error as f64 / HOLDS as f64;
+                assert!(
+                    by_errors > lowest(0.93),
+                    "{} with noise of {}: {name} {by_errors}",
+                    case.name,
+                    case.correlation
+                );
+                covered += tally.covered;
+                by_error += tally.by_error;
+                by_white_error += tally.by_white_error;
+                all += HOLDS;
             }
         }
-        // Numbers of one hold go together: four laws of 150 holds make 600 draws, with an error of 0.009.
-        let (share, naive) = (covered as f64 / all as f64, naive as f64 / all as f64);
-        assert!((0.925..0.975).contains(&share), "{share}");
-        assert_eq!(naive < 0.5, correlated, "intervals for white noise cover {naive}");
+        // Parameters of one hold go together: four laws of 150 holds make 600 draws, with an error of 0.009.
+        let share = |count: usize| count as f64 / all as f64;
+        for found in [share(covered), share(by_error)] {
+            assert!((0.925..0.975).contains(&found), "{found}");
+        }
+        let white = share(by_white_error);
+        assert_eq!(white < 0.5, correlated, "value ± 1.96 standard errors for white noise cover {white}");
     }
 }

@@ -52,9 +52,13 @@ impl Case {
         }
     }
 
-    /// Place of a number of the reference file in a fit.
+    /// Place of a parameter of the reference file in a fit.
     fn place(&self, name: &str, fit: &JointFit) -> usize {
-        let ours = name.replace("constant", "equilibrium").replace("ln_rate", "log_rate");
+        let ours = match name.strip_prefix("ln_rate") {
+            Some("_coefficient") => "ln rate_coefficient_per_s".to_owned(),
+            Some(term) => format!("-ln time_constant{term}_s"),
+            None => name.replace("constant", "equilibrium"),
+        };
         fit.parameters
             .iter()
             .position(|parameter| *parameter == ours)
@@ -81,7 +85,7 @@ fn agrees_with_optima_of_forty_digits() {
     for case in &cases {
         let fit = fit_joint(&case.samples(), case.law(), &JointOptions::default()).unwrap();
         assert_eq!(fit.termination, Termination::Converged, "{}", case.name);
-        let covariance = fit.covariance.as_ref().unwrap();
+        let covariance = fit.white_covariance.as_ref().unwrap();
         let places: Vec<usize> = case.parameters.iter().map(|name| case.place(name, &fit)).collect();
         let mut worst = [0.0f64; 3];
         for (i, &a) in places.iter().enumerate() {
@@ -103,11 +107,16 @@ fn agrees_with_optima_of_forty_digits() {
         assert!(worst[2] <= tolerance.standard_errors_relative, "{}: {worst:?}", case.name);
         assert!(rss <= tolerance.rss_relative, "{}: {rss:e}", case.name);
         for hold in &fit.holds {
-            for number in &fit.shared {
-                let own = &hold.parameter(number.name).unwrap().estimate;
-                let error = number.estimate.standard_error.unwrap();
-                assert!((own.value - number.estimate.value).abs() < 1e-9 * error, "{}: {}", case.name, number.name);
-                assert!((own.standard_error.unwrap() / error - 1.0).abs() < 1e-6, "{}: {}", case.name, number.name);
+            for parameter in &fit.shared {
+                let own = &hold.parameter(parameter.name).unwrap().estimate;
+                let error = parameter.estimate.white_standard_error.unwrap();
+                assert!(
+                    (own.value - parameter.estimate.value).abs() < 1e-9 * error,
+                    "{}: {}",
+                    case.name,
+                    parameter.name
+                );
+                assert!((own.standard_error.unwrap() / error - 1.0).abs() < 1e-6, "{}: {}", case.name, parameter.name);
             }
         }
     }
@@ -157,7 +166,7 @@ fn holds_that_cannot_be_fitted_are_named() {
     let short = Samples::new(&times[..3], &values[..3]);
     let error = fit_joint(&[good, short], sls, &options).unwrap_err();
     assert!(matches!(error, FitError::Hold { hold: 2, .. }), "{error}");
-    assert!(error.to_string().starts_with("hold 2: a fit of 3 numbers needs 5 samples"), "{error}");
+    assert!(error.to_string().starts_with("hold 2: a fit of 3 parameters needs 5 samples"), "{error}");
     let flat = vec![1.0; 40];
     let error = fit_joint(&[Samples::new(&times, &flat), good], sls, &options).unwrap_err();
     assert!(matches!(error, FitError::Hold { hold: 1, .. }), "{error}");
@@ -183,10 +192,10 @@ fn deviations_and_noisy_holds_count_less() {
         case.samples().into_iter().zip(&deviations).map(|(s, d)| s.with_deviations(d)).collect();
     let plain = fit_joint(&case.samples(), case.law(), &JointOptions::default()).unwrap();
     let weighed = fit_joint(&same, case.law(), &JointOptions::default()).unwrap();
-    let error = plain.shared[0].estimate.standard_error.unwrap();
+    let error = plain.shared[0].estimate.white_standard_error.unwrap();
     assert!((plain.shared[0].estimate.value - weighed.shared[0].estimate.value).abs() < 1e-6 * error);
     assert!((weighed.residual_square / plain.residual_square - 1.0).abs() < 1e-9);
-    // A hold that is left out by its deviations leaves the number to the others.
+    // A hold that is left out by its deviations leaves the parameter to the others.
     let few: Vec<Vec<f64>> = case
         .holds
         .iter()
@@ -208,7 +217,7 @@ fn deviations_and_noisy_holds_count_less() {
     noisy[0] = Samples::new(&case.holds[0].t, &loud);
     let equal = fit_joint(&noisy, case.law(), &JointOptions::default()).unwrap();
     let by_variance = fit_joint(&noisy, case.law(), &options).unwrap();
-    let error = |fit: &JointFit| fit.shared[0].estimate.standard_error.unwrap();
+    let error = |fit: &JointFit| fit.shared[0].estimate.white_standard_error.unwrap();
     assert!(error(&by_variance) < 0.3 * error(&equal), "{} {}", error(&by_variance), error(&equal));
 }
 
@@ -238,7 +247,7 @@ fn the_verdict_is_that_of_the_body() {
     for law in [LATENCY, QUINTIC] {
         let (joint, constant) = judged(law, 0.0, 11);
         println!("{law}: {:?} {:?}", joint.shared, constant);
-        let v = joint.shared("rate_coefficient").unwrap().estimate;
+        let v = joint.shared("rate_coefficient_per_s").unwrap().estimate;
         assert!((v.value.ln() - 2e4f64.ln()).abs() < 3.0 * v.standard_error.unwrap() / v.value);
         assert_eq!(constant.verdict, TrendVerdict::Constant, "{law}");
         assert!(constant.delta_bic < -10.0 && constant.p.unwrap() > 0.05, "{law}: {constant:?}");

@@ -34,13 +34,13 @@ fn fit(seed: u64, spoilt: bool, loss: Loss) -> Fit {
     fit
 }
 
-/// Mean and root mean square of (estimate − truth)/standard error for each number over many holds.
+/// Mean and root mean square of (estimate − truth)/standard error for each parameter over many holds.
 fn pulls(spoilt: bool, loss: Loss) -> [(f64, f64); 3] {
     const HOLDS: u64 = 400;
     let mut sums = [(0.0, 0.0); 3];
     for seed in 0..HOLDS {
         let fit = fit(1000 + seed, spoilt, loss);
-        let covariance = fit.covariance.as_ref().unwrap();
+        let covariance = fit.white_covariance.as_ref().unwrap();
         for (i, sum) in sums.iter_mut().enumerate() {
             let pull = (fit.values[i] - TRUTH[i]) / covariance[i][i].sqrt();
             *sum = (sum.0 + pull, sum.1 + pull * pull);

@@ -132,7 +132,7 @@ fn noisy_contacts_give_back_their_law_within_the_errors() {
         }
     }
     let rms: f64 = f64::sqrt(squares / count);
-    println!("{count} numbers, rms distance {rms:.3} standard errors, worst {worst:.2}");
+    println!("{count} parameters, rms distance {rms:.3} standard errors, worst {worst:.2}");
     assert!((0.85..1.15).contains(&rms), "{rms}");
 }
 

@@ -427,9 +427,9 @@ fn is_whole(fit: &LatencyFit) -> bool {
     let sound = |number: f64| !number.is_nan();
     let whole = estimates.iter().all(|estimate| {
         let (low, high) = estimate.interval.unwrap_or((0.0, 0.0));
-        sound(estimate.value) && sound(estimate.standard_error.unwrap_or(0.0)) && sound(low) && sound(high)
+        sound(estimate.value) && sound(estimate.white_standard_error.unwrap_or(0.0)) && sound(low) && sound(high)
     });
-    let numbers = fit.covariance.iter().flatten().flatten().copied();
+    let numbers = fit.white_covariance.iter().flatten().flatten().copied();
     whole && numbers.chain([fit.residual_square, fit.rmse, fit.residual_correlation]).all(sound)
 }
 
@@ -488,7 +488,7 @@ proptest! {
         let choice = if free { ExponentChoice::Free } else { ExponentChoice::Fixed(n) };
         if let Ok(fit) = fit_hold(&times, &values, choice, &FitOptions::default()) {
             prop_assert!(is_whole(&fit) || !fit.termination.is_good(), "{fit:?}");
-            let errors = [fit.equilibrium(), fit.amplitude(), fit.relative_rate()].map(|estimate| estimate.standard_error);
+            let errors = [fit.equilibrium(), fit.amplitude(), fit.relative_rate()].map(|estimate| estimate.white_standard_error);
             if !fit.termination.is_good() {
                 prop_assert_eq!(errors, [None; 3], "errors on numbers that are not determined");
             }

@@ -41,7 +41,12 @@ const EVEN: EquilibriumLaw = EquilibriumLaw::UniformStrain;
 fn without_noise_the_numbers_come_back() {
     for motion in [paper_test_a(), paper_test_b()] {
         let found = calibrate(&measured(&motion, 1, 0.0), candidate("latency", EVEN), 0.95, &mut Unwatched).unwrap();
-        let truth = [("modulus", 28e3), ("exponent", 5.0), ("rate_coefficient", 2e4), ("layer_thickness", 0.035 / 8.0)];
+        let truth = [
+            ("modulus_pa", 28e3),
+            ("exponent", 5.0),
+            ("rate_coefficient_per_s", 2e4),
+            ("layer_thickness_m", 0.035 / 8.0),
+        ];
         for (name, truth) in truth {
             let value = found.material.estimate(name).unwrap().value;
             assert!((value / truth - 1.0).abs() < 1e-4, "{name}: {value}");
@@ -50,7 +55,7 @@ fn without_noise_the_numbers_come_back() {
     }
 }
 
-/// Test (a) up to 43 s is all loading; its unloading, and all of test (b), follow from the numbers.
+/// Test (a) up to 43 s is all loading; its unloading, and all of test (b), follow from the parameters.
 #[test]
 fn calibrated_on_loading_the_unloading_is_predicted() {
     let a = measured(&paper_test_a(), 7, 0.2).fitted_until(53.0).unwrap();
@@ -142,7 +147,7 @@ fn what_was_not_fitted_is_not_said_to_be_shown() {
     let a = measured(&paper_test_a(), 1, 0.0).fitted_until(10.0).unwrap();
     let first = a.forces()[..a.fitted()].iter().copied().fold(0.0, f64::max);
     let found = calibrate(&a, candidate("latency:5", EVEN), 0.95, &mut Unwatched).unwrap();
-    assert_eq!(found.material.shown.largest_force, first);
+    assert_eq!(found.material.range.largest_force, first);
     assert!(first < 0.5 * a.forces().iter().copied().fold(0.0, f64::max));
 }
 
@@ -162,14 +167,14 @@ fn a_constant_rate_is_not_said_to_vary() {
     }
 }
 
-/// z² is the rise of the squared residual by its own definition: with the number held by another way, a law of a given exponent.
+/// z² is the rise of the squared residual by its own definition: with the parameter held by another way, a law of a given exponent.
 #[test]
 fn the_profile_of_the_exponent_is_that_of_fits_with_it_given() {
     let data = measured(&paper_test_a(), 2, 0.2);
     let found = calibrate(&data, candidate("latency", EVEN), 0.95, &mut Unwatched).unwrap();
     let profiles = profile(&data, &found, &mut Unwatched).unwrap();
-    let names: Vec<&str> = profiles.iter().map(|number| number.name.as_str()).collect();
-    assert_eq!(names, ["modulus", "exponent", "rate_coefficient", "layer_thickness"]);
+    let names: Vec<&str> = profiles.iter().map(|parameter| parameter.name.as_str()).collect();
+    assert_eq!(names, ["modulus_pa", "exponent", "rate_coefficient_per_s", "layer_thickness_m"]);
     let square = |made: &Calibration| made.rmse.powi(2) * data.fitted() as f64;
     let estimate = found.material.estimate("exponent").unwrap();
     let half = (estimate.interval.unwrap().1 / estimate.value).ln();
@@ -181,14 +186,14 @@ fn the_profile_of_the_exponent_is_that_of_fits_with_it_given() {
         assert!((z / target - 1.0).abs() < 5e-3, "{end}: {z} {target}");
     }
     // Where the residual square is nearly a parabola both intervals are the same, but for its bend.
-    for (number, profile) in found.material.numbers.iter().zip(&profiles) {
-        let (low, high) = number.estimate.interval.unwrap();
+    for (parameter, profile) in found.material.parameters.iter().zip(&profiles) {
+        let (low, high) = parameter.estimate.interval.unwrap();
         let (below, above) = (profile.interval.low.unwrap(), profile.interval.high.unwrap());
         let width = (high / low).ln();
         assert!(
             (below / low).ln().abs() < 0.1 * width && (above / high).ln().abs() < 0.1 * width,
             "{}: {low} to {high}, {below} to {above}",
-            number.name
+            parameter.name
         );
     }
 }
@@ -205,11 +210,13 @@ fn a_profile_is_open_where_the_record_leaves_a_number_open() {
     let found = calibrate(&data, candidate("latency", EVEN), 0.95, &mut Unwatched).unwrap();
     let profiles = profile(&data, &found, &mut Unwatched).unwrap();
     assert!(
-        profiles.iter().any(|number| number.interval.low.is_none() || number.interval.high.is_none()),
+        profiles
+            .iter()
+            .any(|parameter| parameter.interval.low.is_none() || parameter.interval.high.is_none()),
         "{profiles:?}"
     );
-    for (number, profile) in found.material.numbers.iter().zip(&profiles) {
-        let value = number.estimate.value;
+    for (parameter, profile) in found.material.parameters.iter().zip(&profiles) {
+        let value = parameter.estimate.value;
         assert!(
             profile.interval.low.is_none_or(|low| low < value) && profile.interval.high.is_none_or(|high| high > value)
         );
@@ -245,7 +252,7 @@ fn a_table_of_equilibrium_forces_is_that_of_the_body() {
     let body = paper_ball(Separation::Unilateral).specimen;
     for (index, u) in data.levels().iter().take(4).enumerate() {
         let truth = body.force(body.equilibrium_strain(*u), *u);
-        let estimate = found.material.estimate(&format!("equilibrium_force_{}", index + 1)).unwrap();
+        let estimate = found.material.estimate(&format!("equilibrium_force_{}_n", index + 1)).unwrap();
         let error = estimate.standard_error.unwrap();
         assert!(
             (estimate.value - truth).abs() < 4.0 * error && error < 0.02 * truth + 0.02,
@@ -255,7 +262,7 @@ fn a_table_of_equilibrium_forces_is_that_of_the_body() {
     assert!(found.material.is_whole());
 }
 
-/// The linear laws are in the same machine: a body of one exponential gives back its own numbers.
+/// The linear laws are in the same machine: a body of one exponential gives back its own parameters.
 #[test]
 fn competitors_find_their_own_numbers() {
     use palpate::contact::Specimen;
@@ -276,7 +283,7 @@ fn competitors_find_their_own_numbers() {
         let forces = simulate_force(&motion, &contact, &times).unwrap();
         let data = CalibrationData::new(ball(), Separation::Unilateral, motion.clone(), times.clone(), forces, &[]);
         let found = calibrate(&data.unwrap(), candidate(law, EVEN), 0.95, &mut Unwatched).unwrap();
-        for (name, truth) in [("modulus", 20e3), ("overshoot_1", 0.8), ("time_1", 3.0)] {
+        for (name, truth) in [("modulus_pa", 20e3), ("overshoot_1", 0.8), ("time_constant_1_s", 3.0)] {
             let value = found.material.estimate(name).unwrap().value;
             assert!((value / truth - 1.0).abs() < 1e-4, "{law} {name}: {value}");
         }
@@ -309,7 +316,7 @@ fn questions_beyond_the_test_are_said_to_be() {
     assert!(
         predicted.extrapolations[0]
             .to_string()
-            .contains("a hold of 600 s is asked for; the test has shown 10.0 s")
+            .contains("the longest hold lasts 600 s, that of the test 10.0 s")
     );
     let last = predicted.trajectory.len() - 1;
     let ((low, high), (least, most)) = (predicted.force_interval(last), predicted.reading_interval(last));

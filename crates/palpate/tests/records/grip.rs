@@ -15,10 +15,10 @@ const SPEED: f64 = 0.5 / 60.0;
 /// The paper's ball; its numbers with these relative errors, or without.
 fn ball(errors: Option<[f64; 4]>) -> Material {
     let names = [
-        ("modulus", MaterialUnit::Pascal, 28e3),
+        ("modulus_pa", MaterialUnit::Pascal, 28e3),
         ("exponent", MaterialUnit::One, 5.0),
-        ("rate_coefficient", MaterialUnit::PerSecond, 2e4),
-        ("layer_thickness", MaterialUnit::Metre, 0.035 / 8.0),
+        ("rate_coefficient_per_s", MaterialUnit::PerSecond, 2e4),
+        ("layer_thickness_m", MaterialUnit::Metre, 0.035 / 8.0),
     ];
     let number = |(index, (name, unit, value)): (usize, (&str, MaterialUnit, f64))| MaterialParameter {
         name: name.to_owned(),
@@ -41,10 +41,10 @@ fn ball(errors: Option<[f64; 4]>) -> Material {
             levels: vec![],
         },
         candidate: Candidate::new("latency".parse().unwrap(), EquilibriumLaw::UniformStrain),
-        numbers: names.into_iter().enumerate().map(number).collect(),
+        parameters: names.into_iter().enumerate().map(number).collect(),
         uncertainty,
         noise: 0.05,
-        shown: CalibrationRange {
+        range: CalibrationRange {
             longest_hold: 20.0,
             deepest: 0.015,
             fastest: SPEED,
@@ -59,14 +59,14 @@ fn ball(errors: Option<[f64; 4]>) -> Material {
 fn linear(terms: usize) -> Material {
     let mut material = ball(None);
     material.candidate.law = format!("prony:{terms}").parse().unwrap();
-    material.numbers.truncate(1);
+    material.parameters.truncate(1);
     for term in 1..=terms {
         for (name, unit, value) in [
-            ("overshoot", MaterialUnit::One, 0.8),
-            ("time", MaterialUnit::Second, 0.5 * 10f64.powi(term as i32 - 1)),
+            (format!("overshoot_{term}"), MaterialUnit::One, 0.8),
+            (format!("time_constant_{term}_s"), MaterialUnit::Second, 0.5 * 10f64.powi(term as i32 - 1)),
         ] {
-            material.numbers.push(MaterialParameter {
-                name: format!("{name}_{term}"),
+            material.parameters.push(MaterialParameter {
+                name,
                 unit,
                 estimate: Estimate::fixed(value),
             });
@@ -330,14 +330,16 @@ fn bands_behind_steps_to_a_force_hold_every_number() {
         0.5 * (end(1.0) - end(-1.0))
     };
     let deviation = (0..4).map(|index| by_hand(index).powi(2)).sum::<f64>().sqrt();
-    assert!((found.displacement_deviation[last] / deviation - 1.0).abs() < 1e-6, "{deviation} {found:?}");
+    assert!((found.displacement_standard_error[last] / deviation - 1.0).abs() < 1e-6, "{deviation} {found:?}");
 }
 
 /// The inverse of Student's distribution never ended for endless degrees of freedom.
 #[test]
 fn a_material_without_errors_predicts_with_the_noise_alone() {
     let found = ball(None).predict(&Plan::squeeze(0.005, SPEED).held(1.0)[..], &Sampling::Rate(4.0), 0.95).unwrap();
-    assert!((found.factor - 1.959_963_984_540_054).abs() < 1e-12 && found.force_deviation.iter().all(|d| *d == 0.0));
+    assert!(
+        (found.factor - 1.959_963_984_540_054).abs() < 1e-12 && found.force_standard_error.iter().all(|d| *d == 0.0)
+    );
     let (low, high) = found.reading_interval(1);
     assert!((high - low - 2.0 * 0.05 * found.factor).abs() < 1e-12);
 }

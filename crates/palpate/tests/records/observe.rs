@@ -295,7 +295,7 @@ fn bad_ticks_are_refused_and_change_nothing() {
         slipping_at(0.0),
         slipping_at(f64::NAN),
         ObserverOptions {
-            exponent_deviation: f64::NAN,
+            exponent_standard_error: f64::NAN,
             ..ObserverOptions::default()
         },
         ObserverOptions {
@@ -395,6 +395,7 @@ fn material(stiffer: f64) -> palpate::calibrate::Material {
         estimate: Estimate {
             value,
             standard_error: Some(share * value),
+            white_standard_error: None,
             interval: Some((value * (1.0 - 2.0 * share), value * (1.0 + 2.0 * share))),
         },
     };
@@ -415,11 +416,11 @@ fn material(stiffer: f64) -> palpate::calibrate::Material {
             },
             EquilibriumLaw::UniformStrain,
         ),
-        numbers: vec![
-            number("modulus", MaterialUnit::Pascal, stiffer * model.specimen.modulus(), 0.02),
+        parameters: vec![
+            number("modulus_pa", MaterialUnit::Pascal, stiffer * model.specimen.modulus(), 0.02),
             number("exponent", MaterialUnit::One, 5.03, 0.01),
-            number("rate_coefficient", MaterialUnit::PerSecond, 2.1e4, 0.1),
-            number("layer_thickness", MaterialUnit::Metre, 1.01 * thickness, 0.02),
+            number("rate_coefficient_per_s", MaterialUnit::PerSecond, 2.1e4, 0.1),
+            number("layer_thickness_m", MaterialUnit::Metre, 1.01 * thickness, 0.02),
         ],
         uncertainty: Some(MaterialUncertainty {
             confidence: 0.95,
@@ -427,7 +428,7 @@ fn material(stiffer: f64) -> palpate::calibrate::Material {
             covariance,
         }),
         noise: 0.05,
-        shown: CalibrationRange {
+        range: CalibrationRange {
             longest_hold: 60.0,
             deepest: 0.01,
             fastest: 0.01,
@@ -443,7 +444,7 @@ fn a_material_tells_the_excess_at_once_and_the_time_to_slip_early() {
     let course = squeeze(slip_after);
     // The exponent known as well as the material knows it.
     let plain = ObserverOptions {
-        exponent_deviation: 0.05,
+        exponent_standard_error: 0.05,
         ..slipping_at(force_after(slip_after))
     };
     let informed = ObserverOptions {
@@ -492,7 +493,7 @@ fn a_material_whose_rate_depends_on_the_strain_is_watched_by_that() {
     use palpate::simulate::{Motion, Sampling, simulate};
     let mut varying = material(1.0);
     varying.candidate.rate = RateLaw::ByStrain;
-    varying.numbers.push(MaterialParameter {
+    varying.parameters.push(MaterialParameter {
         name: "strain_factor".to_owned(),
         unit: MaterialUnit::One,
         estimate: Estimate::fixed(0.02),

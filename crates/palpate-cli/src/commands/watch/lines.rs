@@ -75,9 +75,8 @@ pub(super) fn warning(seen: &Observation) -> String {
 /// A speed in µm/s.
 pub(super) fn scaled(speed: palpate::fit::Estimate) -> palpate::fit::Estimate {
     palpate::fit::Estimate {
-        value: 1e6 * speed.value,
         standard_error: speed.standard_error.map(|error| 1e6 * error),
-        interval: None,
+        ..palpate::fit::Estimate::fixed(1e6 * speed.value)
     }
 }
 
@@ -96,7 +95,7 @@ pub(super) fn summary(holds: &[HoldSeen], slip_force: Option<f64>) -> String {
         .column("Tends to", "equilibrium_force_n", "N", |hold| {
             Cell::number_or(hold.equilibrium.map(|force| force.value), 4, unknown(hold))
         })
-        .column("±", "equilibrium_force_deviation_n", "N", |hold| {
+        .column("±", "equilibrium_force_standard_error_n", "N", |hold| {
             Cell::number_or(hold.equilibrium.and_then(|force| force.standard_error), 2, unknown(hold))
         })
         .column("Creeps at", "creep_rate_um_per_s", "µm/s", |hold| {

@@ -1,7 +1,7 @@
-//! A material file: a calibrated body as a protocol has it, with how sure its numbers are.
+//! A material file: a calibrated body as a protocol has it, with how sure its parameters are.
 //!
 //! Its tables `[specimen]`, `[law]` and `[contact]` are those of a protocol, so that whatever takes a body takes a material; the table
-//! `[calibration]` holds the same numbers with their errors, and where they come from.
+//! `[calibration]` holds the same parameters with their errors, and where they come from.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ use palpate::{
 
 use super::{
     file::{MATERIAL_VERSION, MaterialFile, MaterialOrigin},
-    tables::{CalibratedEquilibriumName, CalibrationTable, MaterialTables, NumberTable, ShownTable, UNITS},
+    tables::{CalibratedEquilibriumName, CalibrationTable, MaterialTables, ParameterTable, RangeTable, UNITS},
 };
 use crate::description::{
     body::model::model,
@@ -33,7 +33,7 @@ use crate::description::{
 /// Reads and checks the material in the file at `path`.
 ///
 /// # Errors
-/// [`DescriptionError`] where the file cannot be read, is no TOML, has another version, or holds numbers that make no body or that are not
+/// [`DescriptionError`] where the file cannot be read, is no TOML, has another version, or holds parameters that make no body or that are not
 /// the same in `[calibration]` as in the other tables.
 pub fn read_material(path: &Path) -> Result<MaterialFile, DescriptionError> {
     parse_material(&source::read(path, source::LONGEST)?, path)
@@ -61,7 +61,7 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
             Contact::Linear(_) => RateLaw::Constant,
         },
     };
-    let numbers = numbers(source, &table.number)?;
+    let parameters = parameters(source, &table.parameter)?;
     let uncertainty = uncertainty(source, table)?;
     let residual = source.si("calibration.residual", &table.residual, Dimension::Force)?;
     let material = Material {
@@ -72,18 +72,19 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
             levels,
         },
         candidate,
-        numbers,
+        parameters,
         uncertainty,
         noise: source.number("calibration.residual", residual, "0 N or more", |noise| noise >= 0.0)?,
-        shown: shown(source, &table.shown)?,
+        range: range(source, &table.range)?,
     };
     if !material.is_whole() {
-        let expected = format!("the numbers of the law {law}, each above 0, and a covariance with a row for each");
-        let names: Vec<&str> = table.number.iter().map(|number| number.name.as_str()).collect();
-        return Err(source.value("calibration.number", expected, &names.join(", ")));
+        let expected = format!("the parameters of the law {law}, each above 0, and a covariance with a row for each");
+        let names: Vec<&str> = table.parameter.iter().map(|parameter| parameter.name.as_str()).collect();
+        return Err(source.value("calibration.parameter", expected, &names.join(", ")));
     }
     if let Some((key, there, here)) = disagreement(&model, &material.contact()) {
-        let expected = format!("{here}, the number of [calibration]; what was changed by hand is calibrated no more");
+        let expected =
+            format!("{here}, the parameter of [calibration]; what was changed by hand is calibrated no more");
         return Err(source.value(key, expected, &there));
     }
     Ok(MaterialFile {
@@ -150,9 +151,9 @@ pub(super) fn rate_law(rate: RateDependence) -> (RateLaw, Option<f64>) {
     }
 }
 
-fn numbers(source: &Source<'_>, tables: &[NumberTable]) -> Result<Vec<MaterialParameter>, DescriptionError> {
-    let number = |(index, table): (usize, &NumberTable)| {
-        let key = |name: &str| format!("calibration.number[{}].{name}", index + 1);
+fn parameters(source: &Source<'_>, tables: &[ParameterTable]) -> Result<Vec<MaterialParameter>, DescriptionError> {
+    let parameter = |(index, table): (usize, &ParameterTable)| {
+        let key = |name: &str| format!("calibration.parameter[{}].{name}", index + 1);
         let above = |name: &str, value: f64| source.number(&key(name), value, "a number above 0", |value| value > 0.0);
         let written = table.unit.as_deref();
         let Some((unit, _)) = UNITS.iter().find(|(_, symbol)| *symbol == written) else {
@@ -170,8 +171,11 @@ fn numbers(source: &Source<'_>, tables: &[NumberTable]) -> Result<Vec<MaterialPa
             let within = format!("a value within its interval, {low} to {high}");
             source.number(&key("value"), value, &within, |value| (low..=high).contains(&value))?;
         }
-        if let Some(error) = table.standard_error {
-            source.number(&key("standard_error"), error, "a number of 0 or more", |error| error >= 0.0)?;
+        let errors = [("standard_error", table.standard_error), ("white_standard_error", table.white_standard_error)];
+        for (name, error) in errors {
+            if let Some(error) = error {
+                source.number(&key(name), error, "a number of 0 or more", |error| error >= 0.0)?;
+            }
         }
         Ok(MaterialParameter {
             name: table.name.clone(),
@@ -179,11 +183,12 @@ fn numbers(source: &Source<'_>, tables: &[NumberTable]) -> Result<Vec<MaterialPa
             estimate: Estimate {
                 value,
                 standard_error: table.standard_error,
+                white_standard_error: table.white_standard_error,
                 interval,
             },
         })
     };
-    tables.iter().enumerate().map(number).collect()
+    tables.iter().enumerate().map(parameter).collect()
 }
 
 fn uncertainty(source: &Source<'_>, table: &CalibrationTable) -> Result<Option<MaterialUncertainty>, DescriptionError> {
@@ -191,7 +196,7 @@ fn uncertainty(source: &Source<'_>, table: &CalibrationTable) -> Result<Option<M
         return Ok(None);
     };
     let key = "calibration.covariance";
-    let size = table.number.len();
+    let size = table.parameter.len();
     let square = covariance.len() == size && covariance.iter().all(|row| row.len() == size);
     let entry = |i: usize, j: usize| covariance[i][j];
     let pairs = || (0..size).flat_map(|i| (0..size).map(move |j| (i, j)));
@@ -209,9 +214,9 @@ fn uncertainty(source: &Source<'_>, table: &CalibrationTable) -> Result<Option<M
     let within = |share: f64| share > 0.0 && share < 1.0;
     let confidence = table.confidence.ok_or_else(|| source.missing("calibration.confidence", "the coverage, 0.95"))?;
     let confidence = source.number("calibration.confidence", confidence, "a number between 0 and 1", within)?;
-    for (index, number) in table.number.iter().enumerate() {
+    for (index, parameter) in table.parameter.iter().enumerate() {
         let deviation = entry(index, index).sqrt();
-        agrees_with(source, number, index, deviation, confidence)?;
+        agrees_with(source, parameter, index, deviation, confidence)?;
     }
     let freedom = table.freedom.unwrap_or(f64::INFINITY);
     if freedom.is_nan() || freedom <= 0.0 {
@@ -224,26 +229,24 @@ fn uncertainty(source: &Source<'_>, table: &CalibrationTable) -> Result<Option<M
     }))
 }
 
-/// Whether standard error and interval of a number are such as the deviation of its logarithm has.
-///
-/// The deviation is that for residuals that correlate, so the standard error for white ones is no larger; and an interval of half the coverage or more is
-/// wider than the deviation.
+/// Whether standard error and interval of a parameter agree with the standard deviation of its logarithm by the covariance: the error
+/// is that times the value, and an interval of half the coverage or more is wider.
 fn agrees_with(
     source: &Source<'_>,
-    number: &NumberTable,
+    parameter: &ParameterTable,
     index: usize,
     deviation: f64,
     confidence: f64,
 ) -> Result<(), DescriptionError> {
-    /// Room for residuals that alternate, and for rounding.
+    /// Room for rounding, and for a degree of freedom or few.
     const ROOM: f64 = 0.5;
     const HAND: &str = "what was changed by hand is calibrated no more";
-    let key = |name: &str| format!("calibration.number[{}].{name}", index + 1);
-    if let Some(error) = number.standard_error.filter(|error| ROOM * error / number.value > deviation) {
-        let expected = format!("an error of {} at most by the covariance, {HAND}", deviation * number.value);
+    let key = |name: &str| format!("calibration.parameter[{}].{name}", index + 1);
+    if let Some(error) = parameter.standard_error.filter(|error| ROOM * error / parameter.value > deviation) {
+        let expected = format!("an error of {} at most by the covariance, {HAND}", deviation * parameter.value);
         return Err(source.value(key("standard_error"), expected, &error));
     }
-    if let Some(&[low, high]) = number.interval.as_deref()
+    if let Some(&[low, high]) = parameter.interval.as_deref()
         && confidence >= 0.5
         && (high / low).ln() < ROOM * deviation
     {
@@ -253,27 +256,27 @@ fn agrees_with(
     Ok(())
 }
 
-fn shown(source: &Source<'_>, table: &ShownTable) -> Result<CalibrationRange, DescriptionError> {
+fn range(source: &Source<'_>, table: &RangeTable) -> Result<CalibrationRange, DescriptionError> {
     let quantity = |name: &str, written: &QuantityText, dimension| {
-        let key = format!("calibration.shown.{name}");
+        let key = format!("calibration.range.{name}");
         let value = source.si(&key, written, dimension)?;
         source.number(&key, value, "0 or more", |value| value >= 0.0)
     };
-    let shown = CalibrationRange {
+    let range = CalibrationRange {
         longest_hold: quantity("longest_hold", &table.longest_hold, Dimension::Time)?,
         deepest: quantity("deepest", &table.deepest, Dimension::Length)?,
         fastest: quantity("fastest", &table.fastest, Dimension::Speed)?,
         slowest: quantity("slowest", &table.slowest, Dimension::Speed)?,
         largest_force: quantity("largest_force", &table.largest_force, Dimension::Force)?,
     };
-    if shown.slowest > shown.fastest {
-        let expected = format!("no more than the fastest, {} m/s", shown.fastest);
-        return Err(source.value("calibration.shown.slowest", expected, &format!("{} m/s", shown.slowest)));
+    if range.slowest > range.fastest {
+        let expected = format!("no more than the fastest, {} m/s", range.fastest);
+        return Err(source.value("calibration.range.slowest", expected, &format!("{} m/s", range.slowest)));
     }
-    Ok(shown)
+    Ok(range)
 }
 
-/// Keys of the numbers of a body in the tables of a protocol, with their units behind a blank.
+/// Keys of the parameters of a body in the tables of a protocol, with their units behind a blank.
 fn keys(contact: &Contact) -> Vec<(String, f64, &'static str)> {
     let mut keys = Vec::new();
     let mut is = |key: String, value: f64, unit| keys.push((key, value, unit));
@@ -307,7 +310,7 @@ fn keys(contact: &Contact) -> Vec<(String, f64, &'static str)> {
     keys
 }
 
-/// A key whose number differs between the two, with both.
+/// A key whose parameter differs between the two, with both.
 fn disagreement(there: &Contact, here: &Contact) -> Option<(String, String, String)> {
     let of = |key: &str, there: usize, here: usize| Some((key.to_owned(), there.to_string(), here.to_string()));
     match (there, here) {

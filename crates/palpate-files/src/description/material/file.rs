@@ -10,11 +10,11 @@ pub const MATERIAL_VERSION: u64 = 1;
 pub struct MaterialFile {
     /// The body.
     pub material: Material,
-    /// Where its numbers come from.
+    /// Where its parameters come from.
     pub origin: MaterialOrigin,
 }
 
-/// Where the numbers of a material come from.
+/// Where the parameters of a material come from.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct MaterialOrigin {
     /// The record.

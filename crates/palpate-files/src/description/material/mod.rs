@@ -1,7 +1,7 @@
-//! A material file: a calibrated body as a protocol has it, with how sure its numbers are.
+//! A material file: a calibrated body as a protocol has it, with how sure its parameters are.
 //!
 //! Its tables `[specimen]`, `[law]` and `[contact]` are those of a protocol, so that whatever takes a body takes a material; the table
-//! `[calibration]` holds the same numbers with their errors, and where they come from.
+//! `[calibration]` holds the same parameters with their errors, and where they come from.
 //!
 //! | file | what |
 //! |---|---|

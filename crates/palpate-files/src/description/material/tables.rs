@@ -9,7 +9,7 @@ use crate::description::{
     text::quantity::QuantityText,
 };
 
-/// A calibrated body: a protocol's specimen, law and contact, and the same numbers with their errors.
+/// A calibrated body: a protocol's specimen, law and contact, and the same parameters with their errors.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "palpate material", rename = "Material")]
@@ -50,13 +50,13 @@ pub(crate) struct CalibrationTable {
     pub(crate) confidence: Option<f64>,
     /// Degrees of freedom of the residual variance.
     pub(crate) freedom: Option<f64>,
-    /// The numbers in order.
+    /// The parameters in order.
     #[schemars(extend("minItems" = 1))]
-    pub(crate) number: Vec<NumberTable>,
-    /// Covariance of the natural logarithms of the numbers, row by row in their order.
+    pub(crate) parameter: Vec<ParameterTable>,
+    /// Covariance of the natural logarithms of the parameters, row by row in their order.
     pub(crate) covariance: Option<Vec<Vec<f64>>>,
-    /// What the test has shown: questions beyond it are extrapolations.
-    pub(crate) shown: ShownTable,
+    /// The range of the test: questions beyond it are extrapolations.
+    pub(crate) range: RangeTable,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
@@ -73,29 +73,31 @@ pub(crate) enum CalibratedEquilibriumName {
     Table,
 }
 
-/// One number with its errors; a number that was given has none.
+/// One parameter with its errors; a parameter that was given has none.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "CalibratedNumber")]
-pub(crate) struct NumberTable {
-    /// Its name, such as modulus, exponent, rate_coefficient, layer_thickness or time_1.
+#[schemars(rename = "CalibratedParameter")]
+pub(crate) struct ParameterTable {
+    /// Its name, such as modulus_pa, exponent, rate_coefficient_per_s, layer_thickness_m or time_constant_1_s.
     pub(crate) name: String,
-    /// Its unit; none of a pure number.
+    /// Its unit; none of a dimensionless parameter.
     pub(crate) unit: Option<String>,
     /// The best value, in its unit.
     pub(crate) value: f64,
-    /// Standard error, in its unit.
+    /// Standard error for residuals that correlate as they do, in its unit.
     pub(crate) standard_error: Option<f64>,
+    /// Standard error as if the residuals were white noise, in its unit.
+    pub(crate) white_standard_error: Option<f64>,
     /// Lower and upper end of the confidence interval, in its unit.
     #[schemars(extend("minItems" = 2, "maxItems" = 2))]
     pub(crate) interval: Option<Vec<f64>>,
 }
 
-/// What the test has shown.
+/// The range of the test.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Shown")]
-pub(crate) struct ShownTable {
+#[schemars(rename = "CalibrationRange")]
+pub(crate) struct RangeTable {
     /// The longest hold.
     pub(crate) longest_hold: QuantityText,
     /// The deepest squeeze, as travel of the jaw since first touch.
@@ -120,7 +122,7 @@ impl From<EquilibriumLaw> for CalibratedEquilibriumName {
 
 shown_as_written!(CalibratedEquilibriumName);
 
-/// Units of numbers as they are written.
+/// Units of parameters as they are written.
 pub(crate) const UNITS: [(MaterialUnit, Option<&str>); 6] = [
     (MaterialUnit::One, None),
     (MaterialUnit::Second, Some("s")),

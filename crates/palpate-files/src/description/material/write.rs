@@ -33,7 +33,7 @@ impl MaterialFile {
         )
     }
 
-    /// The interval of a number as a comment, in `factor` of its SI unit.
+    /// The interval of a parameter as a comment, in `factor` of its SI unit.
     fn interval(&self, name: &str, factor: f64, unit: &str) -> String {
         let interval = self.material.estimate(name).and_then(|estimate| estimate.interval);
         let (Some((low, high)), Some(uncertainty)) = (interval, &self.material.uncertainty) else {
@@ -64,7 +64,7 @@ impl MaterialFile {
         let contact = self.material.contact();
         let specimen = contact.specimen();
         let modulus =
-            || format!("modulus = {}{}\n", si(specimen.modulus(), "Pa"), self.interval("modulus", 1e-3, " kPa"));
+            || format!("modulus = {}{}\n", si(specimen.modulus(), "Pa"), self.interval("modulus_pa", 1e-3, " kPa"));
         let stiffness = match specimen.equilibrium() {
             Equilibrium::UniformStrain => modulus(),
             Equilibrium::Hertz { poisson_ratio } => {
@@ -84,8 +84,8 @@ impl MaterialFile {
             Sides::Two => "two sides",
         };
         let separation = body.separation == Separation::Unilateral;
-        let layers = self.material.estimate("layer_thickness").map_or_else(String::new, |thickness| {
-            let interval = self.interval("layer_thickness", 1e3, " mm");
+        let layers = self.material.estimate("layer_thickness_m").map_or_else(String::new, |thickness| {
+            let interval = self.interval("layer_thickness_m", 1e3, " mm");
             format!("layer_thickness = {}{interval}\n", si(thickness.value, "m"))
         });
         format!(
@@ -105,7 +105,7 @@ impl MaterialFile {
                     model.law.exponent(),
                     self.interval("exponent", 1.0, ""),
                     si(model.law.rate_coefficient(), "/s"),
-                    self.interval("rate_coefficient", 1.0, " /s"),
+                    self.interval("rate_coefficient_per_s", 1.0, " /s"),
                 )
             }
             Contact::Linear(LinearContact { law, memory, .. }) => match law.terms() {
@@ -114,7 +114,7 @@ impl MaterialFile {
                     only.overshoot,
                     self.interval("overshoot_1", 1.0, ""),
                     si(1.0 / only.rate, "s"),
-                    self.interval("time_1", 1.0, " s"),
+                    self.interval("time_constant_1_s", 1.0, " s"),
                 ),
                 terms => {
                     let row = |(index, term): (usize, &palpate::simulate::LinearTerm)| {
@@ -136,7 +136,7 @@ impl MaterialFile {
         let equilibrium = CalibratedEquilibriumName::from(material.candidate.equilibrium);
         let test = origin.test.as_ref().map_or_else(String::new, |test| format!("test = {}\n", quoted(test)));
         let mut out = format!(
-            "\n# What follows is not for editing: the numbers above with their errors, and where they come from.\n[calibration]\nversion = {MATERIAL_VERSION}\nrecord = {}\nsha256 = {}\n{test}palpate = {}\nsamples = {}\nlaw = {}\nequilibrium = \"{equilibrium}\"\nresidual = {}\n",
+            "\n# What follows is not for editing: the parameters above with their errors, and where they come from.\n[calibration]\nversion = {MATERIAL_VERSION}\nrecord = {}\nsha256 = {}\n{test}palpate = {}\nsamples = {}\nlaw = {}\nequilibrium = \"{equilibrium}\"\nresidual = {}\n",
             quoted(&origin.record),
             quoted(&origin.sha256),
             quoted(&origin.palpate),
@@ -147,30 +147,33 @@ impl MaterialFile {
         if let Some(uncertainty) = &material.uncertainty {
             let rows: String = uncertainty.covariance.iter().map(|row| format!("  {row:?},\n")).collect();
             out += &format!(
-                "confidence = {:?}\nfreedom = {:?}\n# of the natural logarithms of the numbers, in their order\ncovariance = [\n{rows}]\n",
+                "confidence = {:?}\nfreedom = {:?}\n# of the natural logarithms of the parameters, in their order\ncovariance = [\n{rows}]\n",
                 uncertainty.confidence, uncertainty.freedom
             );
         }
-        let shown = &material.shown;
-        out += "\n[calibration.shown]\n";
+        let range = &material.range;
+        out += "\n[calibration.range]\n";
         for (name, value, unit) in [
-            ("longest_hold", shown.longest_hold, "s"),
-            ("deepest", shown.deepest, "m"),
-            ("fastest", shown.fastest, "m/s"),
-            ("slowest", shown.slowest, "m/s"),
-            ("largest_force", shown.largest_force, "N"),
+            ("longest_hold", range.longest_hold, "s"),
+            ("deepest", range.deepest, "m"),
+            ("fastest", range.fastest, "m/s"),
+            ("slowest", range.slowest, "m/s"),
+            ("largest_force", range.largest_force, "N"),
         ] {
             out += &format!("{name} = {}\n", si(value, unit));
         }
-        for number in &material.numbers {
-            let estimate = &number.estimate;
-            out += &format!("\n[[calibration.number]]\nname = {}\n", quoted(&number.name));
-            if let Some((_, Some(unit))) = UNITS.iter().find(|(unit, _)| *unit == number.unit) {
+        for parameter in &material.parameters {
+            let estimate = &parameter.estimate;
+            out += &format!("\n[[calibration.parameter]]\nname = {}\n", quoted(&parameter.name));
+            if let Some((_, Some(unit))) = UNITS.iter().find(|(unit, _)| *unit == parameter.unit) {
                 out += &format!("unit = \"{unit}\"\n");
             }
             out += &format!("value = {:?}\n", estimate.value);
             if let Some(error) = estimate.standard_error {
                 out += &format!("standard_error = {error:?}\n");
+            }
+            if let Some(error) = estimate.white_standard_error {
+                out += &format!("white_standard_error = {error:?}\n");
             }
             if let Some((low, high)) = estimate.interval {
                 out += &format!("interval = [{low:?}, {high:?}]\n");
@@ -180,7 +183,7 @@ impl MaterialFile {
     }
 }
 
-/// A number with its unit, as text of TOML.
+/// A parameter with its unit, as text of TOML.
 fn si(value: f64, unit: &str) -> String {
     format!("\"{} {unit}\"", exact(value))
 }

@@ -38,7 +38,7 @@ pub struct Sweep {
     /// The protocol without its sweep.
     pub base: Protocol,
     /// The swept numbers in the order of the file.
-    pub numbers: Vec<SweptNumber>,
+    pub parameters: Vec<SweptParameter>,
     /// How runs are put together.
     pub plan: Plan,
     /// How many runs there are.
@@ -49,7 +49,7 @@ pub struct Sweep {
 
 /// A number that takes many values.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SweptNumber {
+pub struct SweptParameter {
     /// Its path, such as `specimen.radius` or `step[2].rate`.
     pub path: String,
     /// Its name in tables, such as `specimen_radius_m`.
@@ -72,7 +72,7 @@ pub enum Spacing {
     Logarithmic,
 }
 
-impl SweptNumber {
+impl SweptParameter {
     /// All its values in a grid, SI, in the order of the runs; `None` of a range that is drawn from.
     #[must_use]
     pub fn grid(&self) -> Option<Vec<f64>> {
@@ -135,11 +135,11 @@ impl Sweep {
     /// # Errors
     /// Beside the values: as for [`parse_protocol`](crate::description::protocol::convert::parse_protocol), where they make no protocol.
     pub fn run(&self, run: u64) -> (Vec<f64>, Result<Protocol, DescriptionError>) {
-        let places = self.plan.of(run, self.numbers.len());
+        let places = self.plan.of(run, self.parameters.len());
         let mut tables = self.tables.clone();
         let mut found = Vec::with_capacity(places.len());
         let mut slots = slots(&mut tables);
-        for (number, at) in self.numbers.iter().zip(&places) {
+        for (number, at) in self.parameters.iter().zip(&places) {
             let (si, text) = number.value(at);
             found.push(si);
             match slots.iter_mut().find(|(path, _)| *path == number.path) {
@@ -183,7 +183,7 @@ pub fn read_sweep(path: &Path) -> Result<Sweep, DescriptionError> {
 /// let (values, protocol) = sweep.run(3);
 /// assert_eq!(values, [1e4, 0.035]);
 /// assert_eq!(protocol?.contact.latency().map(|model| model.law.rate_coefficient()), Some(1e4));
-/// assert_eq!(sweep.numbers[0].column, "law_rate_coefficient_per_s");
+/// assert_eq!(sweep.parameters[0].column, "law_rate_coefficient_per_s");
 /// # Ok::<(), palpate_files::description::DescriptionError>(())
 /// ```
 ///
@@ -195,9 +195,9 @@ pub fn parse_sweep(text: &str, path: &Path) -> Result<Sweep, DescriptionError> {
         if table.entries.is_empty() {
             return Err(source.missing("sweep", "a number and its values, such as law.exponent = \"1, 2, 5\""));
         }
-        let mut swept: Vec<SweptNumber> = Vec::with_capacity(table.entries.len());
+        let mut swept: Vec<SweptParameter> = Vec::with_capacity(table.entries.len());
         for entry in &table.entries {
-            let number = swept_number(source, entry, known, table.method)?;
+            let number = swept_parameter(source, entry, known, table.method)?;
             if let Some(before) = swept.iter().position(|before| before.path == number.path) {
                 return Err(source.both(&entry.key, &table.entries[before].key));
             }
@@ -242,7 +242,7 @@ pub fn parse_runs(text: &str, path: &Path, columns: &[(&str, Vec<f64>)]) -> Resu
             }
             let value = |si: &f64| Value::of(*si, format!("{si} {}", si_unit(*dimension)));
             let values = Values::List(values.iter().map(value).collect());
-            Ok(SweptNumber::new((*path).to_owned(), *dimension, values))
+            Ok(SweptParameter::new((*path).to_owned(), *dimension, values))
         };
         let numbers = columns.iter().map(number).collect::<Result<_, _>>()?;
         Ok((numbers, Plan::Together { runs: runs as u64 }))
@@ -257,7 +257,7 @@ fn sweep(
     text: &str,
     path: &Path,
     key: &str,
-    numbers: impl FnOnce(&Source<'_>, &Known) -> Result<(Vec<SweptNumber>, Plan), DescriptionError>,
+    numbers: impl FnOnce(&Source<'_>, &Known) -> Result<(Vec<SweptParameter>, Plan), DescriptionError>,
 ) -> Result<Sweep, DescriptionError> {
     let source = Source { path, text };
     let mut tables: ProtocolTables = protocol_tables(&source)?;
@@ -276,7 +276,7 @@ fn sweep(
         text: text.to_owned(),
         tables,
         base,
-        numbers,
+        parameters: numbers,
         plan,
         runs,
     })
@@ -285,15 +285,15 @@ fn sweep(
 /// No number of the protocol has this path.
 fn unknown(source: &Source<'_>, key: &str, path: &str, known: &Known) -> DescriptionError {
     let (number, accepted) = (path.to_owned(), known.iter().map(|(path, _)| path.clone()).collect());
-    source.wrong(key, KeyProblem::UnknownNumber { number, accepted })
+    source.wrong(key, KeyProblem::UnknownParameter { number, accepted })
 }
 
-fn swept_number(
+fn swept_parameter(
     source: &Source<'_>,
     entry: &Entry,
     known: &Known,
     method: Method,
-) -> Result<SweptNumber, DescriptionError> {
+) -> Result<SweptParameter, DescriptionError> {
     let Some((_, dimension)) = known.iter().find(|(path, _)| *path == entry.path) else {
         if Places::of(source.text).start_exactly(&entry.path).is_none() {
             return Err(unknown(source, &entry.key, &entry.path, known));
@@ -322,10 +322,10 @@ fn swept_number(
         };
         return Err(source.value(&entry.key, expected, &found));
     }
-    Ok(SweptNumber::new(entry.path.clone(), *dimension, values))
+    Ok(SweptParameter::new(entry.path.clone(), *dimension, values))
 }
 
-fn plan(source: &Source<'_>, table: &Table, numbers: &[SweptNumber]) -> Result<Plan, DescriptionError> {
+fn plan(source: &Source<'_>, table: &Table, numbers: &[SweptParameter]) -> Result<Plan, DescriptionError> {
     match table.method {
         Method::Grid => {
             for (key, given) in [("samples", table.samples), ("seed", table.seed)] {
@@ -335,7 +335,7 @@ fn plan(source: &Source<'_>, table: &Table, numbers: &[SweptNumber]) -> Result<P
                     return Err(source.unused(format!("sweep.{key}"), &reason, &remedy));
                 }
             }
-            let count = |number: &SweptNumber| match &number.values {
+            let count = |number: &SweptParameter| match &number.values {
                 Values::List(list) => list.len(),
                 Values::Range(range) => range.count.unwrap_or(1),
             };

@@ -12,5 +12,5 @@ mod plan;
 mod table;
 mod values;
 
-pub use convert::{Spacing, Sweep, SweptNumber, parse_runs, parse_sweep, read_sweep};
+pub use convert::{Spacing, Sweep, SweptParameter, parse_runs, parse_sweep, read_sweep};
 pub use plan::Plan;

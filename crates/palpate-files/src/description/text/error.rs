@@ -95,7 +95,7 @@ pub enum KeyProblem {
     Unknown(Vec<String>),
     /// A sweep over a number that does not stand in the protocol.
     #[error(": no such number in this protocol (its numbers: {})", accepted.join(", "))]
-    UnknownNumber {
+    UnknownParameter {
         /// The path of the number that it names.
         number: String,
         /// The numbers that stand in the protocol.
@@ -169,7 +169,7 @@ impl KeyProblem {
     fn help(&self, key: &str) -> String {
         match self {
             Self::Unknown(accepted) => meant(key, accepted, "remove the key, or write one of those that are accepted"),
-            Self::UnknownNumber { number, accepted } => {
+            Self::UnknownParameter { number, accepted } => {
                 let otherwise = "a sweep replaces numbers that stand in the file: write it where it belongs first";
                 meant(number, accepted, otherwise)
             }

@@ -19,6 +19,7 @@ fn number(name: &str, unit: MaterialUnit, value: f64) -> MaterialParameter {
     let estimate = Estimate {
         value,
         standard_error: Some(0.01 * value),
+        white_standard_error: None,
         interval: Some((0.98 * value, 1.02 * value)),
     };
     MaterialParameter {
@@ -34,17 +35,17 @@ fn material(law: &str, equilibrium: EquilibriumLaw, shape: Shape) -> MaterialFil
     let third = 1.0 / 3.0;
     let mut numbers = match equilibrium {
         EquilibriumLaw::Table => vec![
-            number("equilibrium_force_1", Newton, third),
-            number("equilibrium_force_2", Newton, 1.0),
-            number("equilibrium_force_3", Newton, 2.0 + third),
+            number("equilibrium_force_1_n", Newton, third),
+            number("equilibrium_force_2_n", Newton, 1.0),
+            number("equilibrium_force_3_n", Newton, 2.0 + third),
         ],
-        _ => vec![number("modulus", Pascal, 1e5 * third)],
+        _ => vec![number("modulus_pa", Pascal, 1e5 * third)],
     };
     match law {
         "latency" | "latency:5" => numbers.extend([
             number("exponent", One, 5.0),
-            number("rate_coefficient", PerSecond, 1e5 * third),
-            number("layer_thickness", Metre, 0.01 * third),
+            number("rate_coefficient_per_s", PerSecond, 1e5 * third),
+            number("layer_thickness_m", Metre, 0.01 * third),
         ]),
         _ => {
             let terms = law.split(':').nth(1).map_or(1, |count| count.parse().unwrap());
@@ -66,14 +67,14 @@ fn material(law: &str, equilibrium: EquilibriumLaw, shape: Shape) -> MaterialFil
                 levels,
             },
             candidate: Candidate::new(law.parse().unwrap(), equilibrium),
-            numbers,
+            parameters: numbers,
             uncertainty: Some(MaterialUncertainty {
                 confidence: 0.95,
                 freedom: 2057.0,
                 covariance: (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect(),
             }),
             noise: 0.05 * third,
-            shown: CalibrationRange {
+            range: CalibrationRange {
                 longest_hold: 60.0 * third,
                 deepest: 0.01 * third,
                 fastest: 0.1 * third,
@@ -136,7 +137,7 @@ fn a_rate_coefficient_that_depends_on_the_state_is_written_and_read() {
         let name = rate.factor_name().unwrap();
         let factor = 0.1 + 0.2;
         file.material.candidate.rate = rate;
-        file.material.numbers.push(number(name, MaterialUnit::One, factor));
+        file.material.parameters.push(number(name, MaterialUnit::One, factor));
         let covariance = &mut file.material.uncertainty.as_mut().unwrap().covariance;
         covariance.iter_mut().for_each(|row| row.push(0.0));
         covariance.push(vec![0.0, 0.0, 0.0, 0.0, 1e-3]);
@@ -169,7 +170,7 @@ fn a_rate_coefficient_that_depends_on_the_state_is_written_and_read() {
 fn a_material_without_intervals_is_one_too() {
     let mut file = usual();
     file.material.uncertainty = None;
-    for number in &mut file.material.numbers {
+    for number in &mut file.material.parameters {
         number.estimate = Estimate::fixed(number.estimate.value);
     }
     file.origin.test = None;
@@ -261,20 +262,20 @@ fn what_is_no_material_is_refused_with_its_place() {
         (
             "interval = [4.9, 5.1]",
             "interval = [5.1, 4.9]",
-            "calibration.number[2].interval",
+            "calibration.parameter[2].interval",
             "not below the lower",
         ),
         (
             "interval = [4.9, 5.1]",
             "interval = [7.0, 9.0]",
-            "calibration.number[2].value",
+            "calibration.parameter[2].value",
             "within its interval, 7 to 9",
         ),
-        ("interval = [4.9, 5.1]", "interval = [nan, 5.1]", "calibration.number[2].interval", "above 0"),
+        ("interval = [4.9, 5.1]", "interval = [nan, 5.1]", "calibration.parameter[2].interval", "above 0"),
         (
             "standard_error = 0.05\n",
             "standard_error = -0.05\n",
-            "calibration.number[2].standard_error",
+            "calibration.parameter[2].standard_error",
             "0 or more",
         ),
         ("name = \"exponent\"", "name = \"order\"", "calibration.number", "numbers of the law latency"),
@@ -292,7 +293,7 @@ fn what_is_no_material_is_refused_with_its_place() {
             "calibration.equilibrium",
             "[specimen]",
         ),
-        ("unit = \"Pa\"", "unit = \"kPa\"", "calibration.number[1].unit", "Pa, N, m, s or /s"),
+        ("unit = \"Pa\"", "unit = \"kPa\"", "calibration.parameter[1].unit", "Pa, N, m, s or /s"),
         ("covariance = [\n  [", "covariance = [\n  [1.0],\n  [", "calibration.covariance", "4 rows of 4"),
         ("covariance = [\n  [3.", "covariance = [\n  [-3.", "calibration.covariance", "4 rows of 4"),
         ("residual = \"", "residual = \"x", "calibration.residual", "a force such as"),
@@ -300,22 +301,22 @@ fn what_is_no_material_is_refused_with_its_place() {
         (
             "interval = [4.9, 5.1]",
             "interval = [4.9, 5.1, 5.3]",
-            "calibration.number[2].interval",
+            "calibration.parameter[2].interval",
             "two numbers",
         ),
         (
             "standard_error = 0.05\n",
             "standard_error = 50.0\n",
-            "calibration.number[2].standard_error",
+            "calibration.parameter[2].standard_error",
             "calibrated no more",
         ),
         (
             "covariance = [\n  [",
             "covariance = [\n  [100",
-            "calibration.number[1].interval",
+            "calibration.parameter[1].interval",
             "calibrated no more",
         ),
-        ("slowest = \"", "slowest = \"900", "calibration.shown.slowest", "no more than the fastest"),
+        ("slowest = \"", "slowest = \"900", "calibration.range.slowest", "no more than the fastest"),
         ("sha256 = \"ab12\"\n", "", "calibration.sha256", "missing"),
     ];
     for (from, to, key, told) in cases {

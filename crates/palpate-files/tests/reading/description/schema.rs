@@ -11,7 +11,7 @@ fn schemas_have_titles_words_and_strict_keys() {
     assert_eq!(protocol["anyOf"], bodies);
     let material = schema_material();
     assert_eq!(material["required"], serde_json::json!(["specimen", "law", "calibration"]));
-    assert!(material["$defs"]["CalibratedNumber"]["properties"]["interval"].is_object());
+    assert!(material["$defs"]["CalibratedParameter"]["properties"]["interval"].is_object());
     let text = protocol.to_string();
     for word in ["two sides", "layer_thickness", "such as \\\"35 mm\\\"", "Radius of a ball; outer radius of a pad."] {
         assert!(text.contains(word), "{word}");

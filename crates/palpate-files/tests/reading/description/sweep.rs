@@ -31,10 +31,10 @@ fn a_grid_meets_every_value_with_every_other() {
     assert_eq!(runs, expected);
     let model = sweep.run(3).1.unwrap().contact;
     assert_eq!((model.latency().unwrap().law.exponent(), model.specimen().depth()), (3.0, 0.04));
-    let names: Vec<_> = sweep.numbers.iter().map(|number| (number.column.as_str(), number.unit)).collect();
+    let names: Vec<_> = sweep.parameters.iter().map(|number| (number.column.as_str(), number.unit)).collect();
     assert_eq!(names, [("law_exponent", ""), ("specimen_radius_m", "m")]);
-    assert_eq!(sweep.numbers[1].spacing, Spacing::Linear);
-    assert_eq!(sweep.numbers[0].grid(), Some(vec![1.0, 3.0, 5.0]));
+    assert_eq!(sweep.parameters[1].spacing, Spacing::Linear);
+    assert_eq!(sweep.parameters[0].grid(), Some(vec![1.0, 3.0, 5.0]));
 }
 
 #[test]
@@ -44,7 +44,7 @@ fn the_order_of_the_file_is_kept() {
     // There is no [contact] with layers in the file.
     assert!(sweep.is_err());
     let sweep = self::sweep("step.1.rate = \"1, 2 mm/s\"\nlaw.exponent = \"1, 2\"").unwrap();
-    let paths: Vec<_> = sweep.numbers.iter().map(|number| number.path.as_str()).collect();
+    let paths: Vec<_> = sweep.parameters.iter().map(|number| number.path.as_str()).collect();
     assert_eq!(paths, ["step[1].rate", "law.exponent"]);
 }
 
@@ -58,7 +58,7 @@ fn paths_and_lists_in_every_form() {
         "[sweep.step.1]\nhold = \"linear 1..10 s, 2\"",
     ] {
         let sweep = sweep(table).unwrap_or_else(|error| panic!("{table}: {error}"));
-        assert_eq!(sweep.numbers[0].column, "step_1_hold_s", "{table}");
+        assert_eq!(sweep.parameters[0].column, "step_1_hold_s", "{table}");
         assert_eq!((sweep.run(0).0, sweep.run(1).0), (vec![1.0], vec![10.0]), "{table}");
         assert!((sweep.run(1).1.unwrap().motion.unwrap().end() - 10.6).abs() < 1e-9);
     }

@@ -1,7 +1,7 @@
 //! A whole record calibrated: tables, text and figure.
 
 use palpate::analysis::HoldoutError;
-use palpate::calibrate::{CalibrateError, Calibration, Candidate, Material, MaterialParameter, NumberProfile};
+use palpate::calibrate::{CalibrateError, Calibration, Candidate, Material, MaterialParameter, ParameterProfile};
 use palpate::fit::Interval;
 
 use crate::figure::{Figure, Layer, Panel, Role};
@@ -22,13 +22,13 @@ fn laws(record: &CalibratedRecord) -> Table {
     let least = record.made().map(|made| made.criteria.bic).fold(f64::INFINITY, f64::min);
     let mut table = Table::of("laws", caption, &record.rows)
         .column("Law", "law", "", |(candidate, _)| Cell::text(candidate.to_string()))
-        .column("p", "parameters", "", of_made(|made| Cell::Integer(made.free_numbers as i64)))
+        .column("p", "parameters", "", of_made(|made| Cell::Integer(made.free_parameters as i64)))
         .column("RMSE", "rmse_n", "N", of_made(|made| Cell::Number(made.rmse, 3)))
         .column("of peak", "rmse_percent", "%", of_made(|made| Cell::Number(100.0 * made.relative, 3)))
         .column("ΔBIC", "delta_bic", "", of_made(|made| Cell::Number(made.criteria.bic - least, 3)));
     if fitted < all {
-        let holdout = |number: fn(&HoldoutError) -> f64| {
-            of_made(move |made| made.holdout.as_ref().map_or(Cell::text(""), |found| Cell::Number(number(found), 3)))
+        let holdout = |parameter: fn(&HoldoutError) -> f64| {
+            of_made(move |made| made.holdout.as_ref().map_or(Cell::text(""), |found| Cell::Number(parameter(found), 3)))
         };
         let relative = holdout(|found| 100.0 * found.relative);
         table = table.column("Held-out error", "holdout_rmse_n", "N", holdout(|found| found.rmse));
@@ -43,43 +43,44 @@ fn of_made(cell: impl Fn(&Calibration) -> Cell) -> impl Fn(&(Candidate, Result<C
     move |(_, made)| made.as_ref().map_or_else(|error| Cell::missing(error.to_string()), &cell)
 }
 
-/// The numbers of a material with their intervals.
+/// The parameters of a material with their intervals.
 #[must_use]
 pub fn material_table(material: &Material) -> Table {
     numbers_table(material, &[])
 }
 
 /// The same with profile intervals, where there are any.
-fn numbers_table(material: &Material, profiles: &[NumberProfile]) -> Table {
+fn numbers_table(material: &Material, profiles: &[ParameterProfile]) -> Table {
     const LEFT_OPEN: &str = "the record leaves it open";
     const OPEN: &str = "the record leaves it open, or it was given";
     let share = material.uncertainty.as_ref().map_or(0.95, |uncertainty| uncertainty.confidence);
-    let for_people = |number: &MaterialParameter| material_unit(number.unit).2;
-    let interval = |number: &MaterialParameter, pick: fn((f64, f64)) -> f64| {
-        let (factor, _) = for_people(number);
-        Cell::number_or(number.estimate.interval.map(|ends| factor * pick(ends)), 4, OPEN)
+    let for_people = |parameter: &MaterialParameter| material_unit(parameter.unit).2;
+    let interval = |parameter: &MaterialParameter, pick: fn((f64, f64)) -> f64| {
+        let (factor, _) = for_people(parameter);
+        Cell::number_or(parameter.estimate.interval.map(|ends| factor * pick(ends)), 4, OPEN)
     };
-    let mut table = Table::of("numbers", format!("Numbers of the law {}.", material.candidate), &material.numbers)
-        .column("Number", "number", "", |number| Cell::text(number.name.replace('_', " ")))
-        .column("Unit", "unit", "", |number| Cell::text(for_people(number).1))
-        .column("Value", "value", "", |number| {
-            let (factor, estimate) = (for_people(number).0, number.estimate);
-            match estimate.standard_error {
-                Some(error) => Cell::Uncertain(factor * estimate.value, factor * error),
-                None => Cell::Number(factor * estimate.value, 4),
-            }
-        })
-        .column(format!("{} from", percent(share)), "low", "", |number| interval(number, |ends| ends.0))
-        .column("to", "high", "", |number| interval(number, |ends| ends.1));
+    let mut table =
+        Table::of("parameters", format!("Parameters of the law {}.", material.candidate), &material.parameters)
+            .column("Parameter", "parameter", "", |parameter| Cell::text(parameter.name.replace('_', " ")))
+            .column("Unit", "unit", "", |parameter| Cell::text(for_people(parameter).1))
+            .column("Value", "value", "", |parameter| {
+                let (factor, estimate) = (for_people(parameter).0, parameter.estimate);
+                match estimate.standard_error {
+                    Some(error) => Cell::Uncertain(factor * estimate.value, factor * error),
+                    None => Cell::Number(factor * estimate.value, 4),
+                }
+            })
+            .column(format!("{} from", percent(share)), "low", "", |parameter| interval(parameter, |ends| ends.0))
+            .column("to", "high", "", |parameter| interval(parameter, |ends| ends.1));
     if !profiles.is_empty() {
-        let profile = |number: &MaterialParameter, pick: fn(Interval) -> Option<f64>| {
-            let found = profiles.iter().find(|profile| profile.name == number.name);
-            let end = found.and_then(|found| pick(found.interval)).map(|end| for_people(number).0 * end);
+        let profile = |parameter: &MaterialParameter, pick: fn(Interval) -> Option<f64>| {
+            let found = profiles.iter().find(|profile| profile.name == parameter.name);
+            let end = found.and_then(|found| pick(found.interval)).map(|end| for_people(parameter).0 * end);
             Cell::number_or(end, 4, if found.is_some() { LEFT_OPEN } else { OPEN })
         };
         table = table
-            .column("profile from", "profile_low", "", |number| profile(number, |interval| interval.low))
-            .column("to", "profile_high", "", |number| profile(number, |interval| interval.high));
+            .column("profile from", "profile_low", "", |parameter| profile(parameter, |interval| interval.low))
+            .column("to", "profile_high", "", |parameter| profile(parameter, |interval| interval.high));
     }
     table.table()
 }
@@ -108,7 +109,7 @@ pub fn calibration_page(record: &CalibratedRecord) -> Result<Page, StudyError> {
     section = section
         .block(Block::List(record.remarks()))
         .block(Block::figure(&calibration_figure(record, "calibration"))?);
-    let page = Page::new("Calibration", "One set of numbers for a whole record, ramps and holds alike");
+    let page = Page::new("Calibration", "One set of parameters for a whole record, ramps and holds alike");
     Ok(page
         .section(section)
         .provenance("Record", record.input.called())

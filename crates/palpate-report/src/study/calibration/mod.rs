@@ -2,7 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `material.rs` | the laws on the record, the numbers of the material: tables, text, figure, page |
+//! | `material.rs` | the laws on the record, the parameters of the material: tables, text, figure, page |
 //! | `prediction.rs` | what the body does, with intervals: series, table, figure |
 
 mod material;

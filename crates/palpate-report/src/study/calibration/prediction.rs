@@ -27,7 +27,7 @@ pub fn write_prediction(out: &mut dyn Write, prediction: &Prediction) -> io::Res
         ("force_high_n", &|i| prediction.force_interval(i).1),
         ("reading_low_n", &|i| prediction.reading_interval(i).0),
         ("reading_high_n", &|i| prediction.reading_interval(i).1),
-        ("force_error_n", &|i| prediction.force_deviation[i]),
+        ("force_standard_error_n", &|i| prediction.force_standard_error[i]),
         ("noise_n", &|_| prediction.noise),
     ];
     write_series(out, course.len(), &columns)
@@ -43,15 +43,15 @@ pub fn prediction_table(prediction: &Prediction) -> Table {
         significant(prediction.noise, 2)
     );
     let samples: Vec<usize> = (0..course.len()).collect();
-    let number = |value: f64| Cell::Number(value, 4);
+    let parameter = |value: f64| Cell::Number(value, 4);
     Table::of("prediction", caption, &samples)
-        .column("Time", "time_s", "s", |i| number(course.time[*i]))
-        .column("Displacement", "displacement_mm", "mm", |i| number(1e3 * course.displacement[*i]))
-        .column("Force", "force_n", "N", |i| number(course.force[*i]))
-        .column("mean from", "force_low_n", "N", |i| number(prediction.force_interval(*i).0))
-        .column("to", "force_high_n", "N", |i| number(prediction.force_interval(*i).1))
-        .column("reading from", "reading_low_n", "N", |i| number(prediction.reading_interval(*i).0))
-        .column("to", "reading_high_n", "N", |i| number(prediction.reading_interval(*i).1))
+        .column("Time", "time_s", "s", |i| parameter(course.time[*i]))
+        .column("Displacement", "displacement_mm", "mm", |i| parameter(1e3 * course.displacement[*i]))
+        .column("Force", "force_n", "N", |i| parameter(course.force[*i]))
+        .column("mean from", "force_low_n", "N", |i| parameter(prediction.force_interval(*i).0))
+        .column("to", "force_high_n", "N", |i| parameter(prediction.force_interval(*i).1))
+        .column("reading from", "reading_low_n", "N", |i| parameter(prediction.reading_interval(*i).0))
+        .column("to", "reading_high_n", "N", |i| parameter(prediction.reading_interval(*i).1))
         .table()
 }
 
@@ -77,7 +77,7 @@ pub fn prediction_figure(prediction: &Prediction, name: &str, caption: &str) -> 
         (1e3 * near, 1e3 * far)
     });
     let mut jaw = displacement_panel(&course.time, &course.displacement, Role::Fitted);
-    if prediction.displacement_deviation.iter().any(|deviation| *deviation > 0.0) {
+    if prediction.displacement_standard_error.iter().any(|deviation| *deviation > 0.0) {
         jaw = jaw.layer(Layer::band(time(), near, far, Role::Fitted));
     }
     Figure::new(name, caption).panel(force).panel(jaw).height_mm(120.0)

@@ -43,9 +43,9 @@ fn row_of(comparison: &Comparison, law: Law) -> Option<&Row> {
 /// Numbers of a law: a whole one, but for a smoothed spectrum.
 fn parameters(row: &Row) -> Cell {
     if row.spectrum.is_some() {
-        Cell::Number(row.numbers, 2)
+        Cell::Number(row.effective_parameters, 2)
     } else {
-        Cell::Integer(row.numbers as i64)
+        Cell::Integer(row.effective_parameters as i64)
     }
 }
 

@@ -236,7 +236,7 @@ pub(super) fn joint(analysis: &Analysis) -> Option<Table> {
             ExponentChoice::Fixed(n) => order(n),
             ExponentChoice::Free => shared(one, "exponent"),
         })
-        .column("v", "rate_coefficient_per_s", "s⁻¹", |one| shared(one, "rate_coefficient"))
+        .column("v", "rate_coefficient_per_s", "s⁻¹", |one| shared(one, "rate_coefficient_per_s"))
         .column("p", "p_value", "", |one| Cell::number_or(one.comparison.p, 2, "too few independent samples"))
         .column("ΔBIC", "delta_bic", "", |one| Cell::Number(one.comparison.delta_bic, 4))
         .column("d ln v/dεₑ", "trend", "", |one| trend(one, |trend| trend.slope))
@@ -263,7 +263,7 @@ pub(super) fn predictions(analysis: &Analysis) -> Option<Table> {
                 ExponentChoice::Free => format!("{:.3} (free)", fit.exponent().value),
             })
         })
-        .column("Numbers", "parameters", "", |(_, fit, _)| Cell::Integer(fit.free_numbers() as i64))
+        .column("Parameters", "parameters", "", |(_, fit, _)| Cell::Integer(fit.free_parameters() as i64))
         .column("Inside, over the drop", "relative_rmse_inside", "%", |(_, fit, beyond)| {
             Cell::Number(100.0 * fit.rmse * beyond.relative / beyond.rmse, 3)
         })

@@ -367,7 +367,7 @@ fn confounded(fit: &LatencyFit) -> Option<f64> {
     if high - low < WIDE * fit.exponent().value {
         return None;
     }
-    let covariance = fit.covariance.as_ref()?;
+    let covariance = fit.covariance()?;
     let correlation = covariance[0][3] / (covariance[0][0] * covariance[3][3]).sqrt();
     (correlation.abs() > CLOSE).then_some(correlation)
 }

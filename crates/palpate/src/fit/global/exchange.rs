@@ -78,7 +78,7 @@ pub(crate) fn paired(model: &Model, nodes: &Condensed, kept: &[f64], work: &mut 
         nodes,
         shape: 0,
         plane: Plane::new(model, kept.iter().map(|rate| nodes.column(model, 0, &[*rate])), nodes),
-        grid: rates(model.numbers[0].bounds, None, Grid::Dense),
+        grid: rates(model.parameters[0].bounds, None, Grid::Dense),
         terms: REPLACED,
     };
     lattice.valleys(FOLLOWED, work).into_iter().map(|others| [kept, &others].concat()).collect()

@@ -1,9 +1,9 @@
-//! The grids of a coarse search: rates evenly spaced in ln λ, a few values of a pure number, and the ends of laws that have one.
+//! The grids of a coarse search: rates evenly spaced in ln λ, a few values of a dimensionless parameter, and the ends of laws that have one.
 
 use std::iter;
 
 use crate::fit::{Condensed, Model};
-use crate::laws::{BasisFunction, NumberKind};
+use crate::laws::{BasisFunction, ShapeParameterKind};
 
 /// How fine a grid is.
 #[derive(Clone, Copy, PartialEq)]
@@ -14,7 +14,7 @@ pub(crate) enum Grid {
     Fine,
     /// For two rates beside others.
     Dense,
-    /// For one number alone on all samples.
+    /// For one parameter alone on all samples.
     Finest,
 }
 
@@ -83,11 +83,11 @@ pub(crate) fn rates_with_end((low, high): (f64, f64), end: f64, nodes: &Condense
     all
 }
 
-/// Values of a pure number that a coarse search tries.
-pub(crate) fn coarse(kind: NumberKind, (low, high): (f64, f64), fixed: Option<f64>) -> Vec<f64> {
+/// Values of a dimensionless parameter that a coarse search tries.
+pub(crate) fn coarse(kind: ShapeParameterKind, (low, high): (f64, f64), fixed: Option<f64>) -> Vec<f64> {
     match (fixed, kind) {
         (Some(value), _) => vec![value],
-        (None, NumberKind::Pure { coarse, .. }) => {
+        (None, ShapeParameterKind::Pure { coarse, .. }) => {
             let inside = coarse.iter().copied().filter(|value| low < *value && *value < high);
             [low].into_iter().chain(inside).chain((high > low).then_some(high)).collect()
         }
@@ -95,30 +95,32 @@ pub(crate) fn coarse(kind: NumberKind, (low, high): (f64, f64), fixed: Option<f6
     }
 }
 
-/// Whether the law ends in finite time at these free numbers, which makes its residual one with kinks.
+/// Whether the law ends in finite time at these free parameters, which makes its residual one with kinks.
 pub(crate) fn ends(model: &Model, theta: &[f64]) -> bool {
-    let numbers = model.complete(theta);
+    let parameters = model.complete(theta);
     (0..model.form.shapes.len()).any(|shape| {
-        let own = &numbers[model.numbers_of(shape)];
+        let own = &parameters[model.parameters_of(shape)];
         finite_end(model.form.shapes[shape], own.last().copied().unwrap_or(1.0)).is_some()
     })
 }
 
-/// Of a law of one shape that may end in finite time: λt at its end, and its other free number, for those that a coarse search tries
+/// Of a law of one shape that may end in finite time: λt at its end, and its other free parameter, for those that a coarse search tries
 /// and those halfway between.
 pub(crate) fn ends_of(model: &Model) -> Vec<(f64, Vec<f64>)> {
     let [shape] = *model.moving().0.as_slice() else {
         return Vec::new();
     };
-    let numbers = &model.numbers[model.numbers_of(shape)];
-    if numbers[0].fixed.is_some() {
+    let parameters = &model.parameters[model.parameters_of(shape)];
+    if parameters[0].fixed.is_some() {
         return Vec::new();
     }
-    let others = numbers.get(1).map_or_else(|| vec![1.0], |number| coarse(number.kind, number.bounds, number.fixed));
-    // Valleys between samples are narrow in the other number too.
+    let others = parameters
+        .get(1)
+        .map_or_else(|| vec![1.0], |parameter| coarse(parameter.kind, parameter.bounds, parameter.fixed));
+    // Valleys between samples are narrow in the other parameter too.
     let between = others.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
     let others: Vec<f64> = others.iter().copied().chain(between).collect();
-    let free = numbers.get(1).is_some_and(|number| number.fixed.is_none());
+    let free = parameters.get(1).is_some_and(|parameter| parameter.fixed.is_none());
     let end = |other: f64| {
         finite_end(model.form.shapes[shape], other).map(|end| (end, if free { vec![other] } else { vec![] }))
     };

@@ -34,7 +34,7 @@ pub(crate) fn near_kinks(model: &Model, scaled: &Scaled, solution: &Solution) ->
     kinks(model, scaled, &|other| (other - rate).abs() <= ERRORS * error)
 }
 
-/// The deepest valleys over the free numbers with the end at each of some places between samples.
+/// The deepest valleys over the free parameters with the end at each of some places between samples.
 fn kinks(model: &Model, scaled: &Scaled, open: &dyn Fn(f64) -> bool) -> Vec<Vec<f64>> {
     let shapes = model.at(&scaled.times);
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();

@@ -3,7 +3,7 @@
 use crate::fit::{Condensed, Model};
 use crate::statistics::dot;
 
-/// The nodes with all that needs no search, the constant and shapes without free numbers, projected out.
+/// The nodes with all that needs no search, the constant and shapes without free parameters, projected out.
 pub(crate) struct Plane {
     /// Orthonormal columns that need no search.
     pub(crate) basis: Vec<Vec<f64>>,

@@ -13,7 +13,7 @@ const VALLEYS: usize = 6;
 /// Valleys that are refined on all samples, at most.
 const FINALISTS: usize = 3;
 
-/// Finds the best numbers of a model: a coarse grid and local searches on condensed samples, then the best of them on all.
+/// Finds the best parameters of a model: a coarse grid and local searches on condensed samples, then the best of them on all.
 pub(crate) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, work: &mut Work) -> Option<Solution> {
     let nodes = condense(scaled);
     let valleys = valleys(model, &nodes, most_iterations, work);
@@ -43,7 +43,7 @@ pub(crate) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
     Some(solution)
 }
 
-/// The largest standard error of a nonlinear number.
+/// The largest standard error of a nonlinear parameter.
 fn widest(solution: &Solution) -> f64 {
     let Some(inverse) = &solution.inverse_normal else {
         return f64::INFINITY;
@@ -61,8 +61,8 @@ fn is_hasty(model: &Model, scaled: &Scaled, solution: &Solution) -> bool {
     let last = scaled.times.len() - 1;
     let times = [scaled.times[0], scaled.times[HASTY.min(last)], scaled.times[last]];
     let mut values = [0.0; 3];
-    let numbers = &model.complete(&solution.nonlinear)[model.numbers_of(shape)];
-    model.shape_value(shape, &times, numbers, &mut values);
+    let parameters = &model.complete(&solution.nonlinear)[model.parameters_of(shape)];
+    model.shape_value(shape, &times, parameters, &mut values);
     let [start, early, end] = values;
     (early - end).abs() < OVER * (start - end).abs()
 }
@@ -127,7 +127,7 @@ fn settle(
         .unwrap_or_else(|| refine(shapes, target, &valley.theta, Ending::tight(most_iterations), work))
 }
 
-/// The nonlinear numbers at the deepest valleys of the condensed problem, deepest first.
+/// The nonlinear parameters at the deepest valleys of the condensed problem, deepest first.
 pub(crate) fn finalists(model: &Model, nodes: &Condensed, most_iterations: usize, work: &mut Work) -> Vec<Vec<f64>> {
     valleys(model, nodes, most_iterations, work).into_iter().map(|valley| valley.theta).collect()
 }

@@ -6,9 +6,9 @@ use crate::optimise::{Cholesky, Few, Work};
 use crate::statistics::dot;
 use crate::vector::{LANES, lane_sums, multiply};
 
-/// Points from which to refine the free numbers of a model, best first: the valleys that a coarse grid shows.
+/// Points from which to refine the free parameters of a model, best first: the valleys that a coarse grid shows.
 ///
-/// One shape that moves is scanned over its rate, for a list of values of its other number; several exponentials are tried in
+/// One shape that moves is scanned over its rate, for a list of values of its other parameter; several exponentials are tried in
 /// all combinations of a grid of rates.
 pub(crate) fn starts(model: &Model, nodes: &Condensed, most: usize, work: &mut Work) -> Vec<Vec<f64>> {
     fine_starts(model, &nodes.coarser(), Grid::Coarse, most, work)
@@ -18,13 +18,13 @@ pub(crate) fn starts(model: &Model, nodes: &Condensed, most: usize, work: &mut W
 pub(crate) fn fine_starts(model: &Model, nodes: &Condensed, grid: Grid, most: usize, work: &mut Work) -> Vec<Vec<f64>> {
     let (moving, still) = model.moving();
     let all = model.complete(&vec![0.0; model.free().len()]);
-    let column = |shape: &usize| nodes.column(model, *shape, &all[model.numbers_of(*shape)]);
+    let column = |shape: &usize| nodes.column(model, *shape, &all[model.parameters_of(*shape)]);
     let plane = Plane::new(model, still.iter().map(column), nodes);
     match *moving.as_slice() {
         [] => vec![Vec::new()],
         [shape] => plane.scan(model, shape, nodes, grid, most, work),
         [shape, ..] if grid != Grid::Coarse && moving.len() <= DEEPEST => {
-            let bounds = model.numbers[model.numbers_of(shape).start].bounds;
+            let bounds = model.parameters[model.parameters_of(shape).start].bounds;
             let grid = rates(bounds, None, Grid::Fine);
             Lattice {
                 model,
@@ -44,7 +44,7 @@ pub(crate) fn fine_starts(model: &Model, nodes: &Condensed, grid: Grid, most: us
 const DEEPEST: usize = 3;
 
 impl Plane {
-    /// One shape over a grid of its rate, for each value of its other number.
+    /// One shape over a grid of its rate, for each value of its other parameter.
     fn scan(
         &self,
         model: &Model,
@@ -54,8 +54,8 @@ impl Plane {
         most: usize,
         work: &mut Work,
     ) -> Vec<Vec<f64>> {
-        let range = model.numbers_of(shape);
-        let numbers = &model.numbers[range.clone()];
+        let range = model.parameters_of(shape);
+        let parameters = &model.parameters[range.clone()];
         let mut column = vec![0.0; nodes.times.len()];
         let mut table = Table::new(self, nodes);
         let mut along = |rates: &[f64], other: f64| -> Few {
@@ -63,20 +63,23 @@ impl Plane {
                 return table.residuals(model, shape, rates, other);
             }
             let mut residual = |rate: &f64| {
-                model.shape_value(shape, &nodes.times, &[*rate, other][..numbers.len()], &mut column);
+                model.shape_value(shape, &nodes.times, &[*rate, other][..parameters.len()], &mut column);
                 multiply(&mut column, &nodes.roots);
                 if fineness != Grid::Coarse { self.exact_residual(&mut column) } else { self.residual(&column) }
             };
             rates.iter().map(&mut residual).collect()
         };
-        let others =
-            numbers.get(1).map_or_else(|| vec![0.0], |number| coarse(number.kind, number.bounds, number.fixed));
+        let others = parameters
+            .get(1)
+            .map_or_else(|| vec![0.0], |parameter| coarse(parameter.kind, parameter.bounds, parameter.fixed));
         let mut found: Vec<Valley> = Vec::new();
         for (place, other) in others.into_iter().enumerate() {
             let end = finite_end(model.form.shapes[shape], other);
             let grid = match end {
-                Some(end) if numbers[0].fixed.is_none() => rates_with_end(numbers[0].bounds, end, nodes, fineness),
-                _ => rates(numbers[0].bounds, numbers[0].fixed, fineness),
+                Some(end) if parameters[0].fixed.is_none() => {
+                    rates_with_end(parameters[0].bounds, end, nodes, fineness)
+                }
+                _ => rates(parameters[0].bounds, parameters[0].fixed, fineness),
             };
             let residuals = along(&grid, other);
             work.grid_points += residuals.len() as u64;
@@ -105,18 +108,18 @@ impl Plane {
                 (valley.rate, valley.square) = bottom(valley.rate, valley.square, 0.2 * valley.step, along);
             }
         }
-        let inside = |rate: f64| rate.clamp(numbers[0].bounds.0, numbers[0].bounds.1);
+        let inside = |rate: f64| rate.clamp(parameters[0].bounds.0, parameters[0].bounds.1);
         let mut starts: Vec<[f64; 2]> = found.iter().map(|valley| [inside(valley.rate), valley.other]).collect();
         if starts.is_empty() {
             // Nothing but plateaus: any point will do, and the refinement will say so.
-            let rate = numbers[0].fixed.unwrap_or(0.0).clamp(numbers[0].bounds.0, numbers[0].bounds.1);
-            let other = numbers
+            let rate = parameters[0].fixed.unwrap_or(0.0).clamp(parameters[0].bounds.0, parameters[0].bounds.1);
+            let other = parameters
                 .get(1)
-                .map_or(0.0, |number| number.fixed.unwrap_or(0.5 * (number.bounds.0 + number.bounds.1)));
+                .map_or(0.0, |parameter| parameter.fixed.unwrap_or(0.5 * (parameter.bounds.0 + parameter.bounds.1)));
             starts.push([rate, other]);
         }
         let free = |both: [f64; 2]| {
-            let kept = numbers.iter().zip(both).filter(|(number, _)| number.fixed.is_none());
+            let kept = parameters.iter().zip(both).filter(|(parameter, _)| parameter.fixed.is_none());
             kept.map(|(_, value)| value).collect()
         };
         starts.into_iter().map(free).collect()
@@ -131,7 +134,7 @@ impl Plane {
         most: usize,
         work: &mut Work,
     ) -> Vec<Vec<f64>> {
-        let bounds = model.numbers[model.numbers_of(moving[0]).start].bounds;
+        let bounds = model.parameters[model.parameters_of(moving[0]).start].bounds;
         let grid = rates(bounds, None, Grid::Coarse);
         let columns: Vec<Vec<f64>> = grid
             .iter()
@@ -244,8 +247,8 @@ impl<'a> Table<'a> {
             self.times.extend(self.nodes.times.iter().flat_map(|time| scales.map(|scale| time * scale)));
         }
         self.shapes.resize(self.times.len(), 0.0);
-        let numbers = model.numbers_of(shape).len();
-        model.shape_value(shape, &self.times, &[rates[0], other][..numbers], &mut self.shapes);
+        let parameters = model.parameters_of(shape).len();
+        model.shape_value(shape, &self.times, &[rates[0], other][..parameters], &mut self.shapes);
         let mut residuals = Few::new();
         for (rates, rows) in rates.chunks(LANES).zip(self.shapes.as_chunks::<LANES>().0.chunks(nodes)) {
             lane_sums(rows, &self.weights, &self.factors, &mut self.sums);
@@ -293,10 +296,10 @@ struct Valley {
     ends: bool,
 }
 
-/// Valleys that do not go on, deeper, at the next value of the other number; kinks break such a chain, so none is left out where the
+/// Valleys that do not go on, deeper, at the next value of the other parameter; kinks break such a chain, so none is left out where the
 /// shape ends.
 fn deepest_along(valleys: &[Valley]) -> Vec<Valley> {
-    /// Change of ln λ from one value of the other number to the next within which a valley is the same.
+    /// Change of ln λ from one value of the other parameter to the next within which a valley is the same.
     const SAME: f64 = 3.0;
     let deeper = |valley: &Valley, other: &Valley| {
         other.place.abs_diff(valley.place) == 1

@@ -1,4 +1,4 @@
-//! The search for hard cases: where the quick one ends at a bound, at merged terms or where numbers cannot be told apart.
+//! The search for hard cases: where the quick one ends at a bound, at merged terms or where parameters cannot be told apart.
 //!
 //! A finer grid, more valleys, and local searches that make columns orthogonal instead of forming normal equations, which lose
 //! half the digits just where shapes imitate each other. The result may still be one that no data determine; but no other is
@@ -6,7 +6,7 @@
 
 use super::{Grid, Valley, distinct, exchanged, fine_starts, first_kinks, grown, local, paired, rising, rounding};
 use crate::fit::{Condensed, Model, Scaled, condense_to};
-use crate::laws::NumberKind;
+use crate::laws::ShapeParameterKind;
 use crate::optimise::{Ending, Solution, Termination, Work, distance, polished, refine, standing};
 
 /// Valleys that are searched on condensed samples.
@@ -29,7 +29,7 @@ pub(crate) fn thorough(
     ends.extend(if model.is_series() {
         series(model, scaled, &quick, work)
     } else {
-        // One number is cheap to search on all samples, and nodes miss what the noise of a single one does.
+        // One parameter is cheap to search on all samples, and nodes miss what the noise of a single one does.
         let whole = if model.free().len() == 1 { condense_to(scaled, 0.0) } else { nodes.clone() };
         deepest(valleys(model, &whole, work), FINALISTS)
     });
@@ -108,7 +108,7 @@ fn series(model: &Model, scaled: &Scaled, quick: &Solution, work: &mut Work) -> 
     deepest(found, FINALISTS)
 }
 
-/// The numbers of the deepest valleys that are not the same, deepest first.
+/// The parameters of the deepest valleys that are not the same, deepest first.
 fn deepest(mut valleys: Vec<Valley>, most: usize) -> Vec<Vec<f64>> {
     valleys.sort_by(|a, b| a.square.total_cmp(&b.square));
     distinct_of(&valleys, most)
@@ -116,7 +116,7 @@ fn deepest(mut valleys: Vec<Valley>, most: usize) -> Vec<Vec<f64>> {
 
 /// The same of valleys in their order.
 fn distinct_of(valleys: &[Valley], most: usize) -> Vec<Vec<f64>> {
-    // Numbers that are not felt differ, and the residual square does not.
+    // Parameters that are not felt differ, and the residual square does not.
     let same = |other: &&Valley, valley: &&Valley| {
         (other.square - valley.square).abs() <= ALIKE * valley.square
             || distance(&rising(&other.theta), &rising(&valley.theta)) <= 1e-3
@@ -141,7 +141,8 @@ fn first_felt(model: &Model, times: &[f64], theta: &[f64]) -> Vec<Vec<f64>> {
     let Some(second) = times.iter().find(|time| **time > 0.0) else {
         return Vec::new();
     };
-    let is_rate: Vec<bool> = model.free().map(|number| !matches!(number.kind, NumberKind::Pure { .. })).collect();
+    let is_rate: Vec<bool> =
+        model.free().map(|parameter| !matches!(parameter.kind, ShapeParameterKind::Pure { .. })).collect();
     let over = (0..theta.len()).filter(|&i| is_rate[i] && theta[i].exp() * second > OVER);
     let felt = |i: usize| {
         FELT.map(|felt| {
@@ -186,7 +187,7 @@ fn among_the_first(times: &[f64], theta: &[f64]) -> Vec<Vec<f64>> {
     all.into_iter().map(|rates| [rates.as_slice(), &slow].concat()).collect()
 }
 
-/// The numbers with rates that are near each other brought together, each pair of neighbours and all of them: searches creep
+/// The parameters with rates that are near each other brought together, each pair of neighbours and all of them: searches creep
 /// towards such an end.
 fn together(model: &Model, theta: &[f64]) -> Vec<Vec<f64>> {
     /// Difference of ln λ that counts as near.

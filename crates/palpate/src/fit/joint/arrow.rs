@@ -1,8 +1,8 @@
-//! The search for all numbers of several holds: few are shared, the others belong to one hold each.
+//! The search for all parameters of several holds: few are shared, the others belong to one hold each.
 //!
-//! The normal equations are a block arrow: a small block for each hold, one for the shared numbers, and borders between.
-//! Eliminating the holds leaves a small system in the shared numbers, whose right-hand side is the slope of the residual
-//! square with every hold's own numbers at their best. For a law that is linear in these it is variable projection.
+//! The normal equations are a block arrow: a small block for each hold, one for the shared parameters, and borders between.
+//! Eliminating the holds leaves a small system in the shared parameters, whose right-hand side is the slope of the residual
+//! square with every hold's own parameters at their best. For a law that is linear in these it is variable projection.
 
 use super::hold::{Part, View, moved};
 use crate::optimise::{Ending, Termination, Work, stepped_within};
@@ -25,7 +25,7 @@ impl Point {
         point
     }
 
-    /// Moves to these shared numbers and finds the holds' own ones, from those given.
+    /// Moves to these shared parameters and finds the holds' own ones, from those given.
     pub(crate) fn settle(&mut self, views: &[View<'_>], shared: &[f64], own: &[Vec<f64>], work: &mut Work) {
         self.shared.copy_from_slice(shared);
         self.square = 0.0;
@@ -42,7 +42,7 @@ impl Point {
         self.parts.iter().map(|part| part.own.clone()).collect()
     }
 
-    /// Gauss–Newton matrix and gradient in the shared numbers, every hold's own ones eliminated.
+    /// Gauss–Newton matrix and gradient in the shared parameters, every hold's own ones eliminated.
     fn reduced(&self, views: &[View<'_>]) -> Option<(Vec<f64>, Vec<f64>)> {
         let q = self.shared.len();
         let (mut hessian, mut gradient) = (vec![0.0; q * q], vec![0.0; q]);
@@ -65,7 +65,7 @@ impl Point {
         Some((hessian, gradient))
     }
 
-    /// Own numbers of every hold after a step of the shared ones.
+    /// Own parameters of every hold after a step of the shared ones.
     fn following(&self, views: &[View<'_>], step: &[f64]) -> Vec<Vec<f64>> {
         let follow = |(part, view): (&Part, &View<'_>)| {
             let (l, size) = (part.own.len(), part.gradient.len());
@@ -87,7 +87,7 @@ impl Point {
 /// Share of the residual square below which steps are taken undamped, for as long as they promise ever less.
 const NEAR: f64 = 1e-9;
 
-/// Refines a point to the nearest optimum inside the bounds of the shared numbers (Levenberg–Marquardt on the eliminated system).
+/// Refines a point to the nearest optimum inside the bounds of the shared parameters (Levenberg–Marquardt on the eliminated system).
 pub(crate) fn refine(
     views: &[View<'_>],
     bounds: &[(f64, f64)],
@@ -145,7 +145,7 @@ pub(crate) fn refine(
     (here, Termination::IterationLimit)
 }
 
-/// A damped step that stays inside the bounds; a number pushed out of them stays where it is.
+/// A damped step that stays inside the bounds; a parameter pushed out of them stays where it is.
 fn stepped(at: &[f64], hessian: &[f64], gradient: &[f64], damping: f64, bounds: &[(f64, f64)]) -> Vec<f64> {
     let next = stepped_within(at, hessian, gradient, damping, |i| bounds[i]);
     next.iter().zip(at).map(|(next, at)| next - at).collect()

@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use super::result::law_options;
-use crate::fit::{Fit, FitError, JointFit, NumberUnit, Samples, SharedTrend, TrendPoint, fit_law};
+use crate::fit::{Fit, FitError, JointFit, ParameterUnit, Samples, SharedTrend, TrendPoint, fit_law};
 
-/// What a number does from hold to hold.
+/// What a parameter does from hold to hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TrendVerdict {
@@ -23,7 +23,7 @@ pub enum TrendVerdict {
 /// A joint fit against the holds fitted alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JointComparison {
-    /// F = [(RSS_joint − RSS_separate)/(difference of numbers)]/[RSS_separate/(N_e − numbers of the separate fits)].
+    /// F = [(RSS_joint − RSS_separate)/(difference of parameters)]/[RSS_separate/(N_e − parameters of the separate fits)].
     pub statistic: f64,
     /// Its degrees of freedom; the second one counts independent samples.
     pub freedom: (f64, f64),
@@ -35,22 +35,22 @@ pub struct JointComparison {
     pub delta_aicc: Option<f64>,
     /// Independent samples N_e, from the residuals of the separate fits.
     pub effective_samples: f64,
-    /// The first shared number over the strain; `None` if the holds lie at one strain or have no errors.
+    /// The first shared parameter over the strain; `None` if the holds lie at one strain or have no errors.
     pub trend: Option<SharedTrend>,
     /// What it does.
     pub verdict: TrendVerdict,
 }
 
-/// Change over the range of strains, in ln, below which a number is constant however sure the change is.
+/// Change over the range of strains, in ln, below which a parameter is constant however sure the change is.
 const NEGLIGIBLE: f64 = 0.02;
 
-/// Change over the range of strains, in ln, that a constant number must not be compatible with.
+/// Change over the range of strains, in ln, that a constant parameter must not be compatible with.
 const NOTABLE: f64 = std::f64::consts::LN_2;
 
-/// Compares a joint fit with the holds fitted alone, and asks whether the first shared number goes with the strain.
+/// Compares a joint fit with the holds fitted alone, and asks whether the first shared parameter goes with the strain.
 ///
 /// `holds` are those of the joint fit. `strains` gives the abscissa of each; without it, it is the constant that each hold
-/// tends to. For the trend a pure number beside (n of the latency law) is held alike in all holds, at the mean of the separate
+/// tends to. For the trend a dimensionless parameter beside (n of the latency law) is held alike in all holds, at the mean of the separate
 /// fits by their errors, since v changes its unit with n; what the error of that mean does to the slope is part of its error.
 ///
 /// ```
@@ -87,8 +87,8 @@ pub fn compare_joint(
     FitError::check_lengths(holds.len(), count)?;
     FitError::check_lengths(strains.map_or(count, <[f64]>::len), count)?;
     let effective: f64 = joint.separate.iter().map(Fit::effective_samples).sum();
-    let few = joint.free_numbers() as f64;
-    let many: f64 = joint.separate.iter().map(|fit| fit.free_numbers() as f64).sum();
+    let few = joint.free_parameters() as f64;
+    let many: f64 = joint.separate.iter().map(|fit| fit.free_parameters() as f64).sum();
     // Noise-free records leave rounding only.
     let scale = joint.holds.iter().flat_map(|fit| &fit.values[..1]).map(|value| value.abs()).sum::<f64>();
     let floor = (1e-9 * scale / count as f64).powi(2) * joint.samples as f64;
@@ -99,7 +99,7 @@ pub fn compare_joint(
     let law = FisherSnedecor::new(freedom.0, freedom.1).ok().filter(|_| tested);
     let p = law.map(|law| law.sf(statistic));
     let likelihood = effective * (one / each).ln();
-    let small = |numbers: f64| 2.0 * numbers * effective / (effective - numbers - 1.0);
+    let small = |parameters: f64| 2.0 * parameters * effective / (effective - parameters - 1.0);
     let trend = trend(holds, joint, strains)?;
     Ok(JointComparison {
         statistic,
@@ -123,15 +123,15 @@ fn verdict(trend: Option<&SharedTrend>, p: Option<f64>, level: f64) -> TrendVerd
     }
 }
 
-/// ln of the first shared number over the strain.
+/// ln of the first shared parameter over the strain.
 fn trend(holds: &[Samples<'_>], joint: &JointFit, strains: Option<&[f64]>) -> Result<Option<SharedTrend>, FitError> {
-    let Some(name) = joint.shared.first().map(|number| number.name.to_string()) else {
+    let Some(name) = joint.shared.first().map(|parameter| parameter.name.to_string()) else {
         return Ok(None);
     };
     let held = joint.shared[1..]
         .iter()
-        .find(|number| number.unit == NumberUnit::One)
-        .map(|number| number.name.to_string());
+        .find(|parameter| parameter.unit == ParameterUnit::One)
+        .map(|parameter| parameter.name.to_string());
     let (fits, beside) = match held.and_then(|held| Some((common(&joint.separate, &held)?, held))) {
         None => (joint.separate.clone(), None),
         Some(((value, error), held)) => {
@@ -149,32 +149,30 @@ fn trend(holds: &[Samples<'_>], joint: &JointFit, strains: Option<&[f64]>) -> Re
     for (index, fit) in fits.iter().enumerate() {
         let error = fit.estimate(&name).and_then(|estimate| Some(estimate.standard_error? / estimate.value));
         // A constant that was not found has no error.
-        let level = fit.parameters.first().filter(|number| number.estimate.standard_error.is_some());
-        let strain = strains.map(|strains| strains[index]).or(level.map(|number| number.estimate.value));
+        let level = fit.parameters.first().filter(|parameter| parameter.estimate.standard_error.is_some());
+        let strain = strains.map(|strains| strains[index]).or(level.map(|parameter| parameter.estimate.value));
         let (Some(error), Some(abscissa)) = (error, strain) else {
             continue;
         };
-        let widening = (fit.samples as f64 / fit.effective_samples()).sqrt();
         points.push(TrendPoint {
             hold: index + 1,
             abscissa,
             log_value: log(fit),
-            standard_error: error * widening,
+            standard_error: error,
             by_held: beside.as_ref().map_or(0.0, |beside| log(&beside[index]) - log(fit)),
         });
     }
     Ok(SharedTrend::of(name, points, joint.options.fit.confidence))
 }
 
-/// The mean of a number over separate fits, by their errors, in ln; and its standard error.
+/// The mean of a parameter over separate fits, by their errors, in ln; and its standard error.
 fn common(separate: &[Fit], name: &str) -> Option<(f64, f64)> {
     let (mut total, mut sum) = (0.0, 0.0);
     for fit in separate {
         if let Some(estimate) = fit.estimate(name)
             && let Some(error) = estimate.standard_error
         {
-            let widening = fit.samples as f64 / fit.effective_samples();
-            let weight = 1.0 / ((error / estimate.value).powi(2) * widening).max(1e-24);
+            let weight = 1.0 / ((error / estimate.value).powi(2)).max(1e-24);
             total += weight;
             sum += weight * estimate.value.ln();
         }

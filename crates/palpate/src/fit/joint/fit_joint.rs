@@ -6,15 +6,15 @@ use super::report::Joint;
 use super::result::law_options;
 use super::starts::{Start, finalists};
 use crate::fit::{FitError, Fitted, HoldWeights, JointFit, JointOptions, LawOptions, Samples};
-use crate::laws::{ExponentChoice, Law, NumberKind};
+use crate::laws::{ExponentChoice, Law, ShapeParameterKind};
 use crate::optimise::{Ending, Shapes, Termination, Work};
 use crate::statistics::mean;
 use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 
-/// Fits one law to several holds: the numbers of the material shared, constant and amplitudes for each hold.
+/// Fits one law to several holds: the parameters of the material shared, constant and amplitudes for each hold.
 ///
-/// Laws other than latency share their times and pure numbers. The latency law shares v and n: the rate of a hold follows
-/// from its own drop, λ = v |Δ|ⁿ⁻¹, so that holds of different drops tell n by their rates too. v is a number of the material
+/// Laws other than latency share their times and dimensionless parameters. The latency law shares v and n: the rate of a hold follows
+/// from its own drop, λ = v |Δ|ⁿ⁻¹, so that holds of different drops tell n by their rates too. v is a parameter of the material
 /// if the signal is strain; else its unit is signal^(1−n)/s.
 ///
 /// No starting values: the search starts from each hold's own fit, from their mean, and from a coarse grid over all holds
@@ -29,7 +29,7 @@ use crate::watch::{Cancelled, Progress, Unwatched, Watch};
 /// let (first, second) = (hold(1.0, 0.5), hold(2.0, 0.7));
 /// let holds = [Samples::new(&times, &first), Samples::new(&times, &second)];
 /// let fit = fit_joint(&holds, Law::StandardLinearSolid, &JointOptions::default())?;
-/// assert!((fit.shared("time").unwrap().estimate.value - 4.0).abs() < 1e-8);
+/// assert!((fit.shared("time_constant_s").unwrap().estimate.value - 4.0).abs() < 1e-8);
 /// assert!((fit.holds[1].value("amplitude").unwrap() - 0.7).abs() < 1e-8);
 /// # Ok::<(), palpate::fit::FitError>(())
 /// ```
@@ -150,24 +150,25 @@ fn log_weights(samples: &[Samples<'_>], alone: &[Fitted], weights: HoldWeights) 
     logs.into_iter().map(|log| log - middle).collect()
 }
 
-/// Bounds of the shared numbers: as wide as any hold allows.
+/// Bounds of the shared parameters: as wide as any hold allows.
 fn bounds(holds: &[Hold]) -> Vec<(f64, f64)> {
     /// What a drop may do to the rate of a coupled law, in ln.
     const ROOM: f64 = 40.0;
-    let number = |p: usize| {
-        let of = |hold: &Hold| hold.model.free().nth(p).map(|number| (number.kind, number.bounds));
+    let parameter = |p: usize| {
+        let of = |hold: &Hold| hold.model.free().nth(p).map(|parameter| (parameter.kind, parameter.bounds));
         let each = holds.iter().filter_map(|hold| Some((of(hold)?, hold.log_duration)));
         let room = if holds[0].coupling.is_some() { ROOM } else { 0.0 };
         each.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), ((kind, bounds), log_duration)| {
-            let (shift, room) = if matches!(kind, NumberKind::Pure { .. }) { (0.0, 0.0) } else { (log_duration, room) };
+            let (shift, room) =
+                if matches!(kind, ShapeParameterKind::Pure { .. }) { (0.0, 0.0) } else { (log_duration, room) };
             (low.min(bounds.0 - shift - room), high.max(bounds.1 - shift + room))
         })
     };
-    (0..holds[0].model.free().len()).map(number).collect()
+    (0..holds[0].model.free().len()).map(parameter).collect()
 }
 
 impl Joint {
-    /// The best point, with every hold's own numbers.
+    /// The best point, with every hold's own parameters.
     fn solve(
         &self,
         most_iterations: usize,
@@ -205,13 +206,13 @@ impl Joint {
     /// Exponentials in the order of their times, fastest first.
     fn arranged(&self, mut start: Start) -> Start {
         if self.holds[0].model.moving().0.len() > 1 {
-            // The own numbers follow: the law is linear in them.
+            // The own parameters follow: the law is linear in them.
             start.shared.sort_by(|a, b| b.total_cmp(a));
         }
         start
     }
 
-    /// Why it ended, if a number lies at the edge of what holds can show.
+    /// Why it ended, if a parameter lies at the edge of what holds can show.
     fn ended(&self, point: &Point, termination: Termination) -> Termination {
         if termination != Termination::Converged {
             return termination;

@@ -1,7 +1,7 @@
-//! One hold among several: how the shared numbers come to it, and what it says about them.
+//! One hold among several: how the shared parameters come to it, and what it says about them.
 
 use crate::fit::{Model, Scaled};
-use crate::laws::NumberKind;
+use crate::laws::ShapeParameterKind;
 use crate::optimise::{Cholesky, Shapes, Target, Work};
 use crate::vector::{dot, form_residuals, multiply, normal_equations};
 
@@ -28,10 +28,10 @@ impl Hold {
         own[own.len() - 1].abs().ln() + self.log_range
     }
 
-    /// The nonlinear numbers of the hold, in its units.
+    /// The nonlinear parameters of the hold, in its units.
     pub(crate) fn theta(&self, shared: &[f64], own: &[f64]) -> Vec<f64> {
-        let shift = |(number, value): (&crate::fit::problem::model::Number, &f64)| match number.kind {
-            NumberKind::Pure { .. } => *value,
+        let shift = |(parameter, value): (&crate::fit::problem::model::ModelParameter, &f64)| match parameter.kind {
+            ShapeParameterKind::Pure { .. } => *value,
             _ => value + self.log_duration,
         };
         let mut theta: Vec<f64> = self.model.free().zip(shared).map(shift).collect();
@@ -41,9 +41,9 @@ impl Hold {
         theta
     }
 
-    /// The shared numbers at which this hold has these.
+    /// The shared parameters at which this hold has these.
     pub(crate) fn shared(&self, theta: &[f64], own: &[f64]) -> Vec<f64> {
-        // θ is the shared numbers plus what the duration adds, and what the amplitude adds at the exponent found.
+        // θ is the shared parameters plus what the duration adds, and what the amplitude adds at the exponent found.
         let mut at = vec![0.0; theta.len()];
         if self.coupling == Some(None) {
             at[1] = theta[1];
@@ -56,7 +56,7 @@ impl Hold {
         shared
     }
 
-    /// Derivatives of own, then nonlinear numbers by own, then shared ones, row by row.
+    /// Derivatives of own, then nonlinear parameters by own, then shared ones, row by row.
     pub(crate) fn sensitivity(&self, shared: &[f64], own: &[f64]) -> Vec<Vec<f64>> {
         let size = own.len() + shared.len();
         let mut rows: Vec<Vec<f64>> =
@@ -91,14 +91,14 @@ impl<'a> View<'a> {
     }
 }
 
-/// A hold at one point: its own numbers and the normal equations there.
+/// A hold at one point: its own parameters and the normal equations there.
 #[derive(Clone)]
 pub(crate) struct Part {
     pub(crate) own: Vec<f64>,
     pub(crate) residuals: Vec<f64>,
-    /// Derivatives of the signal by own, then shared numbers.
+    /// Derivatives of the signal by own, then shared parameters.
     jacobian: Vec<Vec<f64>>,
-    /// JᵀJ, row-major, own numbers first.
+    /// JᵀJ, row-major, own parameters first.
     pub(crate) normal: Vec<f64>,
     /// Jᵀr.
     pub(crate) gradient: Vec<f64>,
@@ -119,7 +119,7 @@ impl Part {
         }
     }
 
-    /// Residuals and normal equations at these shared and own numbers.
+    /// Residuals and normal equations at these shared and own parameters.
     fn evaluate(&mut self, view: View<'_>, shared: &[f64], own: &[f64], work: &mut Work) {
         let (hold, l) = (view.hold, own.len());
         self.own.copy_from_slice(own);
@@ -154,14 +154,14 @@ impl Part {
         }
     }
 
-    /// The factored normal equations of the own numbers.
+    /// The factored normal equations of the own parameters.
     pub(crate) fn own_block(&self) -> Option<Cholesky> {
         let (l, size) = (self.own.len(), self.gradient.len());
         let block: Vec<f64> = (0..l * l).map(|i| self.normal[i / l * size + i % l]).collect();
         Cholesky::new(&block, l)
     }
 
-    /// The best own numbers at given shared ones, from those at hand: one step where the law is linear in them.
+    /// The best own parameters at given shared ones, from those at hand: one step where the law is linear in them.
     pub(crate) fn settle(&mut self, view: View<'_>, shared: &[f64], own: &[f64], work: &mut Work) {
         self.evaluate(view, shared, own, work);
         let floor = dot(view.target.values, view.target.values) * 1e-31;
@@ -195,7 +195,7 @@ impl Part {
     }
 }
 
-/// Own numbers after a share of a step; an amplitude that sets the rate keeps its sign and its order of magnitude.
+/// Own parameters after a share of a step; an amplitude that sets the rate keeps its sign and its order of magnitude.
 pub(crate) fn moved(hold: &Hold, own: &[f64], step: &[f64], share: f64) -> Vec<f64> {
     let mut next: Vec<f64> = own.iter().zip(step).map(|(value, change)| value + share * change).collect();
     if hold.coupling.is_some() {

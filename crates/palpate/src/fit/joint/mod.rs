@@ -6,12 +6,12 @@
 //! | file | what |
 //! |---|---|
 //! | `result.rs` | what is asked and returned |
-//! | `hold.rs` | how the shared numbers come to a hold, and its normal equations |
+//! | `hold.rs` | how the shared parameters come to a hold, and its normal equations |
 //! | `arrow.rs` | the search: a block-arrow system, the holds eliminated |
 //! | `starts.rs` | where it starts |
-//! | `report.rs` | numbers with their errors |
+//! | `report.rs` | parameters with their errors |
 //! | `fit_joint.rs` | the whole way |
-//! | `trend.rs`, `comparison.rs` | whether a number goes with the strain; one law against one each |
+//! | `trend.rs`, `comparison.rs` | whether a parameter goes with the strain; one law against one each |
 
 mod arrow;
 mod comparison;

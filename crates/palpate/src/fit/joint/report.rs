@@ -1,9 +1,9 @@
-//! From the best point to numbers with their errors.
+//! From the best point to parameters with their errors.
 
 use super::arrow::Point;
 use super::hold::Hold;
 use crate::fit::{Assessed, Fit, Fitted, JointFit, JointOptions, ParameterName};
-use crate::laws::{Law, NumberKind};
+use crate::laws::{Law, ShapeParameterKind};
 use crate::optimise::{Cholesky, Few, Solution, Termination, Work};
 use crate::statistics::{effective_count, lag_one_correlation};
 
@@ -13,7 +13,7 @@ pub(crate) struct Joint {
     pub(crate) options: JointOptions,
     pub(crate) holds: Vec<Hold>,
     pub(crate) solutions: Vec<Solution>,
-    /// Bounds of the shared numbers.
+    /// Bounds of the shared parameters.
     pub(crate) bounds: Vec<(f64, f64)>,
     /// ln of the shared unit of time.
     pub(crate) log_time: f64,
@@ -46,8 +46,8 @@ impl Joint {
             fitted.report_with(self.law, assessed, work)
         };
         let holds: Vec<Fit> = correlations.iter().enumerate().map(hold).collect();
-        let number = |name: String| holds[0].parameter(name.parse::<ParameterName>().ok()?).cloned();
-        let shared = self.shared_names().into_iter().filter_map(number).collect();
+        let parameter = |name: String| holds[0].parameter(name.parse::<ParameterName>().ok()?).cloned();
+        let shared = self.shared_names().into_iter().filter_map(parameter).collect();
         let signal = (2.0 * self.log_signal).exp();
         let alone = self.solutions.iter().zip(&self.holds);
         JointFit {
@@ -59,7 +59,7 @@ impl Joint {
             separate,
             parameters: self.names(&holds),
             values: self.values(point, &holds),
-            covariance: inverse.map(|inverse| self.covariance(point, &inverse, variance)),
+            white_covariance: inverse.map(|inverse| self.covariance(point, &inverse, variance)),
             holds,
             residual_square: point.square * signal,
             samples,
@@ -70,17 +70,17 @@ impl Joint {
         }
     }
 
-    /// All numbers.
+    /// All parameters.
     fn size(&self, point: &Point) -> usize {
         point.shared.len() + self.first(self.holds.len())
     }
 
-    /// Place of the first own number of a hold among all.
+    /// Place of the first own parameter of a hold among all.
     fn first(&self, index: usize) -> usize {
         self.holds[..index].iter().map(|hold| hold.model.linear()).sum()
     }
 
-    /// (JᵀJ)⁻¹ over the own numbers of every hold, then the shared ones.
+    /// (JᵀJ)⁻¹ over the own parameters of every hold, then the shared ones.
     fn inverse_normal(&self, point: &Point) -> Option<Vec<f64>> {
         let (size, q) = (self.size(point), point.shared.len());
         let mut normal = vec![0.0; size * size];
@@ -96,7 +96,7 @@ impl Joint {
         Some(Cholesky::new(&normal, size)?.inverse())
     }
 
-    /// Where the numbers of a hold, own and shared, stand among all.
+    /// Where the parameters of a hold, own and shared, stand among all.
     fn places(&self, index: usize, shared: usize) -> Vec<usize> {
         let (first, after) = (self.first(index), self.first(self.holds.len()));
         (first..first + self.holds[index].model.linear()).chain(after..after + shared).collect()
@@ -138,11 +138,11 @@ impl Joint {
         }
     }
 
-    /// Names of the shared numbers in the caller's units.
+    /// Names of the shared parameters in the caller's units.
     fn shared_names(&self) -> Vec<String> {
-        let rate = self.holds[0].coupling.map(|_| "rate_coefficient".to_owned());
+        let rate = self.holds[0].coupling.map(|_| "rate_coefficient_per_s".to_owned());
         let skipped = usize::from(rate.is_some());
-        let others = self.holds[0].model.free().skip(skipped).map(|number| number.name.clone());
+        let others = self.holds[0].model.free().skip(skipped).map(|parameter| parameter.name.clone());
         rate.into_iter().chain(others).collect()
     }
 
@@ -154,7 +154,7 @@ impl Joint {
         }
         names.extend(holds[0].searched[own..].iter().cloned());
         if self.holds[0].coupling.is_some() {
-            names[holds.len() * own] = "log_rate_coefficient".to_owned();
+            names[holds.len() * own] = "ln rate_coefficient_per_s".to_owned();
         }
         names
     }
@@ -163,14 +163,14 @@ impl Joint {
         let own = self.holds[0].model.linear();
         let constants = holds.iter().flat_map(|fit| fit.values[..own].iter().copied());
         let exponent = self.holds[0].coupling.map_or(1.0, |held| held.unwrap_or_else(|| point.shared[1]));
-        let natural = |(number, value): (&crate::fit::problem::model::Number, &f64)| match number.kind {
-            NumberKind::Pure { .. } => *value,
+        let natural = |(parameter, value): (&crate::fit::problem::model::ModelParameter, &f64)| match parameter.kind {
+            ShapeParameterKind::Pure { .. } => *value,
             _ => value - self.log_time - (exponent - 1.0) * self.log_signal,
         };
         constants.chain(self.holds[0].model.free().zip(&point.shared).map(natural)).collect()
     }
 
-    /// The covariance of all numbers in the caller's units.
+    /// The covariance of all parameters in the caller's units.
     fn covariance(&self, point: &Point, inverse: &[f64], variance: f64) -> Vec<Vec<f64>> {
         let (size, q) = (self.size(point), point.shared.len());
         let units: Vec<f64> = self

@@ -36,19 +36,19 @@ pub struct JointFit {
     pub law: Law,
     /// Relaxation or creep.
     pub response: Response,
-    /// The numbers that all holds share: v and n of the latency law, times, rates and pure numbers of others.
+    /// The parameters that all holds share: v and n of the latency law, times, rates and dimensionless parameters of others.
     pub shared: Vec<Parameter>,
-    /// Every hold with the shared numbers and its own constant and amplitudes; errors are those of the joint fit.
+    /// Every hold with the shared parameters and its own constant and amplitudes; errors are those of the joint fit.
     pub holds: Vec<Fit>,
     /// Every hold fitted alone.
     pub separate: Vec<Fit>,
-    /// Names of the searched numbers, in the order of `values` and `covariance`: `equilibrium_hold_1`, `amplitude_hold_1`, …, then
-    /// the shared ones, ln of rates (1/s) and pure numbers.
+    /// Names of the searched parameters, in the order of `values` and `covariance`: `equilibrium_hold_1`, `amplitude_hold_1`, …, then
+    /// the shared ones, ln of rates (1/s) and dimensionless parameters.
     pub parameters: Vec<String>,
     /// Their values.
     pub values: Vec<f64>,
-    /// Their covariance s² (JᵀJ)⁻¹, s² = RSS/(N − p); `None` where the data leave a number open.
-    pub covariance: Option<Vec<Vec<f64>>>,
+    /// Their covariance s² (JᵀJ)⁻¹, s² = RSS/(N − p); `None` where the data leave a parameter open.
+    pub white_covariance: Option<Vec<Vec<f64>>>,
     /// Sum of squared residuals over all holds, with weights whose mean over the samples is one.
     pub residual_square: f64,
     /// The same sum, with the same weights, for the holds fitted alone.
@@ -66,13 +66,13 @@ pub struct JointFit {
 }
 
 impl JointFit {
-    /// Numbers found from the data.
+    /// Parameters found from the data.
     #[must_use]
-    pub fn free_numbers(&self) -> usize {
+    pub fn free_parameters(&self) -> usize {
         self.parameters.len()
     }
 
-    /// A shared number by its name, such as `rate_coefficient`.
+    /// A shared parameter by its name, such as `rate_coefficient`.
     #[must_use]
     pub fn shared(&self, name: &str) -> Option<&Parameter> {
         self.shared.iter().find(|parameter| parameter.name == *name)

@@ -78,7 +78,7 @@ fn view<'a>(hold: &'a Hold, nodes: &'a Condensed) -> View<'a> {
     }
 }
 
-/// Whether starts differ by less than `apart` in all shared numbers.
+/// Whether starts differ by less than `apart` in all shared parameters.
 fn near(apart: f64) -> impl Fn(&Start, &Start) -> bool {
     move |a, b| a.shared.iter().zip(&b.shared).all(|(a, b)| (a - b).abs() < apart)
 }
@@ -95,14 +95,15 @@ fn with_mean(separate: Vec<Start>) -> Vec<Start> {
 
 /// For each exponent of a coarse list: every hold fitted alone at it, and the mean of what they have in common.
 fn by_exponent(holds: &[Hold], nodes: &[Condensed], work: &mut Work) -> Vec<Start> {
-    let number = holds[0].model.numbers.get(1);
-    let exponents = number.map_or_else(Vec::new, |number| coarse(number.kind, number.bounds, number.fixed));
+    let parameter = holds[0].model.parameters.get(1);
+    let exponents =
+        parameter.map_or_else(Vec::new, |parameter| coarse(parameter.kind, parameter.bounds, parameter.fixed));
     let alone = |exponent: f64, work: &mut Work| -> Option<Start> {
         let mut start = Start::new(vec![0.0, exponent], Vec::new());
         for (hold, nodes) in holds.iter().zip(nodes) {
-            let mut numbers = hold.model.numbers.clone();
-            numbers[1].fixed = Some(exponent);
-            let model = Model::new(hold.model.form.clone(), hold.model.constant, numbers, Vec::new());
+            let mut parameters = hold.model.parameters.clone();
+            parameters[1].fixed = Some(exponent);
+            let model = Model::new(hold.model.form.clone(), hold.model.constant, parameters, Vec::new());
             let valley = valleys(&model, nodes, 1, work).into_iter().next()?;
             let ending = Ending::new(1e-5, 50);
             let mut aside = Work::default();
@@ -117,7 +118,7 @@ fn by_exponent(holds: &[Hold], nodes: &[Condensed], work: &mut Work) -> Vec<Star
     exponents.into_iter().filter_map(|exponent| alone(exponent, work)).collect()
 }
 
-/// The best points of a grid over the shared numbers, the residuals of all holds summed.
+/// The best points of a grid over the shared parameters, the residuals of all holds summed.
 fn grid(holds: &[Hold], nodes: &[Condensed], bounds: &[(f64, f64)], work: &mut Work) -> Vec<Start> {
     let nodes: Vec<Condensed> = nodes.iter().map(Condensed::coarser).collect();
     let views: Vec<View<'_>> = holds.iter().zip(&nodes).map(|(hold, nodes)| view(hold, nodes)).collect();
@@ -136,7 +137,7 @@ fn grid(holds: &[Hold], nodes: &[Condensed], bounds: &[(f64, f64)], work: &mut W
     distinct(found.into_iter().map(|(_, start)| start), KEPT, near(1.6))
 }
 
-/// The points of the grid: a rate and a pure number, or rates in all combinations, fastest first.
+/// The points of the grid: a rate and a dimensionless parameter, or rates in all combinations, fastest first.
 fn places(model: &Model, bounds: &[(f64, f64)]) -> Vec<Vec<f64>> {
     let (moving, _) = model.moving();
     if moving.len() > 1 {
@@ -150,8 +151,8 @@ fn places(model: &Model, bounds: &[(f64, f64)]) -> Vec<Vec<f64>> {
         let chosen = combinations(grid.len(), moving.len());
         return chosen.map(|chosen| chosen.iter().rev().map(|&i| grid[i]).collect()).collect();
     }
-    let axis = |(number, bounds): (&crate::fit::problem::model::Number, &(f64, f64))| match number.kind {
-        crate::laws::NumberKind::Pure { .. } => coarse(number.kind, *bounds, None),
+    let axis = |(parameter, bounds): (&crate::fit::problem::model::ModelParameter, &(f64, f64))| match parameter.kind {
+        crate::laws::ShapeParameterKind::Pure { .. } => coarse(parameter.kind, *bounds, None),
         _ => rates(*bounds, None, Grid::Coarse),
     };
     let axes: Vec<Vec<f64>> = model.free().zip(bounds).map(axis).collect();

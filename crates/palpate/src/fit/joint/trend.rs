@@ -1,19 +1,19 @@
-//! Whether a number goes with the strain over several holds: regression of estimates that have errors of their own.
+//! Whether a parameter goes with the strain over several holds: regression of estimates that have errors of their own.
 
 use serde::{Deserialize, Serialize};
 
 use crate::statistics::{coverage_factor, normal_factor, range};
 
-/// ln of a number against an abscissa over the holds: ln v_h = a + b x_h + u_h + e_h.
+/// ln of a parameter against an abscissa over the holds: ln v_h = a + b x_h + u_h + e_h.
 ///
 /// e_h is the error of the hold's own fit, u_h what holds differ by beyond it, of variance τ² (DerSimonian and Laird's moment
 /// estimate). The slope's error follows from the scatter about the line (Hartung and Knapp), but is never below what the fits' own errors make it; its interval from Student's t
 /// with H − 2 degrees of freedom; errors of x are not counted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SharedTrend {
-    /// Which number.
-    pub number: String,
-    /// d ln(number)/dx.
+    /// Which parameter.
+    pub parameter: String,
+    /// d ln(parameter)/dx.
     pub slope: f64,
     /// Its standard error.
     pub standard_error: f64,
@@ -32,17 +32,17 @@ pub struct TrendPoint {
     pub hold: usize,
     /// x, such as the equilibrium strain.
     pub abscissa: f64,
-    /// ln of the number, all holds at the same pure numbers.
+    /// ln of the parameter, all holds at the same dimensionless parameters.
     pub log_value: f64,
     /// Its standard error, for correlated residuals.
     pub standard_error: f64,
-    /// What ln of the number gains per standard error of the pure number that was held alike.
+    /// What ln of the parameter gains per standard error of the dimensionless parameter that was held alike.
     pub by_held: f64,
 }
 
 impl SharedTrend {
     /// The slope through these points; `None` for fewer than two, or if all lie at one x.
-    pub(crate) fn of(number: String, points: Vec<TrendPoint>, confidence: f64) -> Option<Self> {
+    pub(crate) fn of(parameter: String, points: Vec<TrendPoint>, confidence: f64) -> Option<Self> {
         let count = points.len() as f64;
         let mean = points.iter().map(|point| point.abscissa).sum::<f64>() / count;
         let spread: f64 = points.iter().map(|point| (point.abscissa - mean).powi(2)).sum();
@@ -60,7 +60,7 @@ impl SharedTrend {
         };
         let standard_error = (scatter * line.variance + line.by_held.powi(2)).sqrt();
         Some(Self {
-            number,
+            parameter,
             slope: line.slope,
             standard_error,
             interval: (line.slope - factor * standard_error, line.slope + factor * standard_error),
@@ -69,7 +69,7 @@ impl SharedTrend {
         })
     }
 
-    /// By how much ln of the number can still change over the range of x: the largest size of slope in the interval, times it.
+    /// By how much ln of the parameter can still change over the range of x: the largest size of slope in the interval, times it.
     #[must_use]
     pub fn most_change(&self) -> f64 {
         let abscissas: Vec<f64> = self.points.iter().map(|point| point.abscissa).collect();
@@ -86,7 +86,7 @@ struct Line {
     scatter: f64,
     /// What `scatter` gains per variance between holds.
     trace: f64,
-    /// What the slope gains per standard error of the number held alike.
+    /// What the slope gains per standard error of the parameter held alike.
     by_held: f64,
 }
 

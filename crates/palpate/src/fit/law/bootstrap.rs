@@ -13,6 +13,7 @@
 //! the variance of the noise ([`NoiseModel`]) times that of its long sums over that of sums of independent blocks.
 
 use super::derived::derived;
+use super::report::given_exponent;
 use crate::fit::{
     BootstrapOptions, Estimate, Fit, FitError, Fitted, LawOptions, NoiseModel, Parameter, Scale, condense,
 };
@@ -22,8 +23,8 @@ use crate::random::Noise as Random;
 use crate::watch::{Progress, Watch};
 
 impl Fitted {
-    /// All numbers of this fit by draws: the standard error is their deviation, the interval runs between percentiles; neither
-    /// where a number was held.
+    /// All parameters of this fit by draws: the standard error is their deviation, the interval runs between percentiles; neither
+    /// where a parameter was held.
     pub(crate) fn resample(
         &mut self,
         fit: &Fit,
@@ -46,15 +47,22 @@ impl Fitted {
             for done in 0..how.repetitions {
                 watch.report(Progress::counted("resampling residuals", done, how.repetitions))?;
                 let values = urn.draw(&mut random);
-                if let Some(numbers) = self.refitted(fit.law, options, values) {
-                    draws.iter_mut().zip(numbers).for_each(|(all, number)| all.push(number));
+                if let Some(parameters) = self.refitted(fit.law, options, values) {
+                    draws.iter_mut().zip(parameters).for_each(|(all, parameter)| all.push(parameter));
                 }
             }
         }
-        let summary = |(number, mut all): (&Parameter, Vec<f64>)| {
-            let free = number.estimate.standard_error.is_some() && all.len() > 1;
-            let value = number.estimate.value;
-            if free { summarized(value, &mut all, options.confidence) } else { Estimate::fixed(value) }
+        let summary = |(parameter, mut all): (&Parameter, Vec<f64>)| {
+            let free = parameter.estimate.standard_error.is_some() && all.len() > 1;
+            let value = parameter.estimate.value;
+            let white_standard_error = parameter.estimate.white_standard_error;
+            match free {
+                true => Estimate {
+                    white_standard_error,
+                    ..summarized(value, &mut all, options.confidence)
+                },
+                false => Estimate::fixed(value),
+            }
         };
         Ok(fit.parameters.iter().zip(draws).map(summary).collect())
     }
@@ -75,6 +83,7 @@ fn summarized(value: f64, draws: &mut [f64], confidence: f64) -> Estimate {
     Estimate {
         value,
         standard_error: Some((square / (count - 1.0)).sqrt()),
+        white_standard_error: None,
         interval: Some((percentile(0.5 - 0.5 * confidence), percentile(0.5 + 0.5 * confidence))),
     }
 }
@@ -100,7 +109,7 @@ impl Urn {
 }
 
 impl Fitted {
-    /// All reported numbers for other values, by a search downhill from the present ones; `None` if it leads nowhere.
+    /// All reported parameters for other values, by a search downhill from the present ones; `None` if it leads nowhere.
     fn refitted(&mut self, law: Law, options: &LawOptions, values: Vec<f64>) -> Option<Vec<f64>> {
         let best = (self.solution.linear.clone(), self.solution.nonlinear.clone());
         let measured = std::mem::replace(&mut self.scaled.values, values);
@@ -111,18 +120,22 @@ impl Fitted {
         self.solution.nonlinear = refined.point.theta.to_vec();
         let searched = self.values();
         let plain = |value: f64, _: &[f64], _: Scale| Estimate::fixed(value);
-        let numbers = self.direct(&searched, &plain).into_iter().chain(derived(law, self, &searched, &plain));
-        let all: Vec<f64> = numbers.map(|number| number.estimate.value).collect();
+        let parameters = self
+            .direct(&searched, &plain)
+            .into_iter()
+            .chain(given_exponent(law))
+            .chain(derived(law, self, &searched, &plain));
+        let all: Vec<f64> = parameters.map(|parameter| parameter.estimate.value).collect();
         (self.solution.linear, self.solution.nonlinear) = best;
         self.scaled.values = measured;
-        all.iter().all(|number| number.is_finite()).then_some(all)
+        all.iter().all(|parameter| parameter.is_finite()).then_some(all)
     }
 }
 
 impl NoiseModel {
     /// Samples a block of the bootstrap, by the rule above.
     fn block(self, samples: usize) -> usize {
-        let (correlation, share) = self.numbers();
+        let (correlation, share) = self.parameters();
         let spread =
             share * correlation / (1.0 - correlation).powi(2) * self.effective_samples(samples) / samples as f64;
         ((6.0 * spread * spread * samples as f64).cbrt().round() as usize).clamp(1, samples.div_ceil(4))
@@ -130,7 +143,7 @@ impl NoiseModel {
 
     /// Variance of long sums of this noise over that of sums of independent blocks of it: what blocks cut off.
     fn cut_by_blocks(self, block: usize) -> f64 {
-        let (correlation, share) = self.numbers();
+        let (correlation, share) = self.parameters();
         let within: f64 = (1..block)
             .map(|lag| 2.0 * (1.0 - lag as f64 / block as f64) * share * correlation.powi(lag as i32))
             .sum();
@@ -172,7 +185,7 @@ mod tests {
             fit_law(&samples, Law::StandardLinearSolid, &options).unwrap()
         };
         assert_eq!(run(7), run(7));
-        assert_ne!(run(7).estimate("time"), run(8).estimate("time"));
+        assert_ne!(run(7).estimate("time_constant_s"), run(8).estimate("time_constant_s"));
     }
 
     #[test]

@@ -1,12 +1,12 @@
-//! Numbers that follow from those that were searched, with their gradients.
+//! Parameters that follow from those that were searched, with their gradients.
 
-use crate::fit::{Estimate, Fitted, NumberUnit, Parameter, ParameterKind, ParameterName, Scale};
+use crate::fit::{Estimate, Fitted, Parameter, ParameterKind, ParameterName, ParameterRole, ParameterUnit, Scale};
 use crate::laws::{BasisFunction, Kernel, Law, Response};
 
-/// What makes an estimate of a value, its derivatives by the searched numbers (of ln value on the logarithmic scale) and that scale.
+/// What makes an estimate of a value, its derivatives by the searched parameters (of ln value on the logarithmic scale) and that scale.
 pub(crate) type Estimating<'a> = &'a dyn Fn(f64, &[f64], Scale) -> Estimate;
 
-/// The derived numbers of a law.
+/// The derived parameters of a law.
 pub(crate) fn derived(law: Law, fitted: &Fitted, values: &[f64], estimate: Estimating<'_>) -> Vec<Parameter> {
     let view = View::new(fitted, values, estimate);
     match law {
@@ -19,14 +19,14 @@ pub(crate) fn derived(law: Law, fitted: &Fitted, values: &[f64], estimate: Estim
     }
 }
 
-/// The searched numbers by what they are.
+/// The searched parameters by what they are.
 struct View<'a> {
     fitted: &'a Fitted,
     values: &'a [f64],
     constant: f64,
     /// Place of the first amplitude.
     first: usize,
-    numbers: Vec<f64>,
+    parameters: Vec<f64>,
     estimate: Estimating<'a>,
 }
 
@@ -37,7 +37,7 @@ impl<'a> View<'a> {
             values,
             constant: if fitted.model.constant { values[0] } else { fitted.scaled.center },
             first: usize::from(fitted.model.constant),
-            numbers: fitted.natural_numbers(),
+            parameters: fitted.natural_parameters(),
             estimate,
         }
     }
@@ -46,11 +46,11 @@ impl<'a> View<'a> {
         &self.values[self.first..self.fitted.model.linear()]
     }
 
-    /// Place of nonlinear number `index` among the searched ones, if it was not held.
+    /// Place of nonlinear parameter `index` among the searched ones, if it was not held.
     fn place(&self, index: usize) -> Option<usize> {
-        let numbers = &self.fitted.model.numbers;
-        let before = numbers[..index].iter().filter(|number| number.fixed.is_none()).count();
-        numbers[index].fixed.is_none().then(|| self.fitted.model.linear() + before)
+        let parameters = &self.fitted.model.parameters;
+        let before = parameters[..index].iter().filter(|parameter| parameter.fixed.is_none()).count();
+        parameters[index].fixed.is_none().then(|| self.fitted.model.linear() + before)
     }
 
     fn gradient(&self, entries: &[(Option<usize>, f64)]) -> Vec<f64> {
@@ -72,20 +72,30 @@ impl<'a> View<'a> {
         self.constant + self.amplitudes().iter().sum::<f64>()
     }
 
-    /// A number that is known on a straight scale: its value and ∂/∂ the searched ones.
-    fn linear(&self, name: impl Into<ParameterName>, unit: NumberUnit, value: f64, gradient: &[f64]) -> Parameter {
+    /// A parameter that is known on a straight scale: its value and ∂/∂ the searched ones.
+    fn linear(&self, name: impl Into<ParameterName>, unit: ParameterUnit, value: f64, gradient: &[f64]) -> Parameter {
         let (name, estimate) = (name.into(), (self.estimate)(value, gradient, Scale::Linear));
-        Parameter { name, unit, estimate }
+        Parameter {
+            name,
+            unit,
+            estimate,
+            role: ParameterRole::Derived,
+        }
     }
 
     /// The same for a number above 0, with ∂/∂ of its logarithm.
-    fn log(&self, name: impl Into<ParameterName>, unit: NumberUnit, value: f64, gradient: &[f64]) -> Parameter {
+    fn log(&self, name: impl Into<ParameterName>, unit: ParameterUnit, value: f64, gradient: &[f64]) -> Parameter {
         let (name, estimate) = (name.into(), (self.estimate)(value, gradient, Scale::Log));
-        Parameter { name, unit, estimate }
+        Parameter {
+            name,
+            unit,
+            estimate,
+            role: ParameterRole::Derived,
+        }
     }
 
     fn total(&self, name: ParameterKind) -> Parameter {
-        self.linear(name, NumberUnit::Signal, self.sum(), &self.sum_gradient())
+        self.linear(name, ParameterUnit::Signal, self.sum(), &self.sum_gradient())
     }
 
     /// Signal at the start of relaxation; signal at the end of creep.
@@ -100,11 +110,11 @@ impl<'a> View<'a> {
         let log_amplitude = amplitude.abs().ln();
         let (n, exponent) = match self.fitted.model.form.shapes[0] {
             BasisFunction::LatencyWith(n) => (n, None),
-            _ => (self.numbers[1], self.place(1)),
+            _ => (self.parameters[1], self.place(1)),
         };
         let entries = [(Some(self.first), -(n - 1.0) / amplitude), (self.place(0), 1.0), (exponent, -log_amplitude)];
-        let value = (self.numbers[0] - (n - 1.0) * log_amplitude).exp();
-        self.log(ParameterKind::RateCoefficient, NumberUnit::RateCoefficient, value, &self.gradient(&entries))
+        let value = (self.parameters[0] - (n - 1.0) * log_amplitude).exp();
+        self.log(ParameterKind::RateCoefficient, ParameterUnit::RateCoefficient, value, &self.gradient(&entries))
     }
 
     /// N, c₀, cᵢ and νᵢ.
@@ -117,23 +127,28 @@ impl<'a> View<'a> {
                 gradient[place] += 1.0 / total;
             }
             let name = ParameterName::of_term(ParameterKind::Share, term);
-            self.linear(name, NumberUnit::One, part / total, &gradient)
+            self.linear(name, ParameterUnit::One, part / total, &gradient)
         };
         let rest = share(0, self.constant, self.fitted.model.constant.then_some(0));
         let mut all = vec![self.total(ParameterKind::ElasticResponse), rest];
         for (i, amplitude) in self.amplitudes().iter().enumerate() {
             all.push(share(i + 1, *amplitude, Some(self.first + i)));
         }
-        for (i, number) in self.numbers.iter().enumerate() {
+        for (i, parameter) in self.parameters.iter().enumerate() {
             let name = ParameterName::of_term(ParameterKind::TermRate, i + 1);
-            all.push(self.log(name, NumberUnit::PerSecond, number.exp(), &self.gradient(&[(self.place(i), 1.0)])));
+            all.push(self.log(
+                name,
+                ParameterUnit::PerSecond,
+                parameter.exp(),
+                &self.gradient(&[(self.place(i), 1.0)]),
+            ));
         }
         all
     }
 
     /// N, C and τ_short.
     fn fung_continuous(&self) -> Vec<Parameter> {
-        let (amplitude, log_ratio) = (self.amplitudes()[0], self.numbers[1]);
+        let (amplitude, log_ratio) = (self.amplitudes()[0], self.parameters[1]);
         let constant = self.fitted.model.constant.then_some(0);
         let strength = amplitude / (self.constant * log_ratio);
         // C = Δ/(y_e ln ϱ).
@@ -145,8 +160,8 @@ impl<'a> View<'a> {
         let short = self.gradient(&[(self.place(0), -1.0), (self.place(1), -1.0)]);
         vec![
             self.total(ParameterKind::ElasticResponse),
-            self.linear(ParameterKind::Strength, NumberUnit::One, strength, &self.gradient(&entries)),
-            self.log(ParameterKind::TimeShort, NumberUnit::Second, (-self.numbers[0] - log_ratio).exp(), &short),
+            self.linear(ParameterKind::Strength, ParameterUnit::One, strength, &self.gradient(&entries)),
+            self.log(ParameterKind::TimeShort, ParameterUnit::Second, (-self.parameters[0] - log_ratio).exp(), &short),
         ]
     }
 
@@ -154,19 +169,24 @@ impl<'a> View<'a> {
     fn growth(&self) -> Vec<Parameter> {
         let mut all = Vec::new();
         for (i, shape) in self.fitted.model.form.shapes.iter().enumerate() {
-            let numbers = self.fitted.model.numbers_of(i);
-            let (amplitude, log_rate) = (self.amplitudes()[i], self.numbers[numbers.start]);
+            let parameters = self.fitted.model.parameters_of(i);
+            let (amplitude, log_rate) = (self.amplitudes()[i], self.parameters[parameters.start]);
             let place = Some(self.first + i);
             if *shape == BasisFunction::Straight {
                 let gradient = self.gradient(&[(place, log_rate.exp())]);
                 let rate = amplitude * log_rate.exp();
-                all.push(self.linear(ParameterKind::FlowRate, NumberUnit::SignalPerSecond, rate, &gradient));
+                all.push(self.linear(ParameterKind::FlowRate, ParameterUnit::SignalPerSecond, rate, &gradient));
             } else if *shape == BasisFunction::PowerGrowth {
-                let factor = (log_rate * self.numbers[numbers.start + 1]).exp();
-                let entries = [(place, factor), (self.place(numbers.start + 1), amplitude * factor * log_rate)];
+                let factor = (log_rate * self.parameters[parameters.start + 1]).exp();
+                let entries = [(place, factor), (self.place(parameters.start + 1), amplitude * factor * log_rate)];
                 let gradient = self.gradient(&entries);
                 let coefficient = amplitude * factor;
-                all.push(self.linear(ParameterKind::Coefficient, NumberUnit::SignalPerPower, coefficient, &gradient));
+                all.push(self.linear(
+                    ParameterKind::Coefficient,
+                    ParameterUnit::SignalPerPower,
+                    coefficient,
+                    &gradient,
+                ));
             }
         }
         all

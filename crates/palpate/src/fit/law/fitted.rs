@@ -1,7 +1,7 @@
 //! A law fitted, in the units of the fit and in those of the caller.
 
 use crate::fit::{Model, Scaled, searched_name};
-use crate::laws::{LawCurve, NumberKind, Term};
+use crate::laws::{LawCurve, ShapeParameterKind, Term};
 use crate::optimise::Solution;
 
 /// A model with its samples and its solution, in the units of the fit.
@@ -12,27 +12,31 @@ pub(crate) struct Fitted {
 }
 
 impl Fitted {
-    /// Values of the free numbers in the caller's units: constant, amplitudes, ln of rates in 1/s, pure numbers.
+    /// Values of the free parameters in the caller's units: constant, amplitudes, ln of rates in 1/s, dimensionless parameters.
     pub(crate) fn values(&self) -> Vec<f64> {
         let (model, scaled) = (&self.model, &self.scaled);
         let linear = self.solution.linear.iter().enumerate().map(|(i, value)| {
             let constant = model.constant && i == 0;
             value * scaled.range + if constant { scaled.center } else { 0.0 }
         });
-        let nonlinear = model.numbers.iter().zip(self.natural_numbers()).filter(|(number, _)| number.fixed.is_none());
+        let nonlinear = model
+            .parameters
+            .iter()
+            .zip(self.natural_parameters())
+            .filter(|(parameter, _)| parameter.fixed.is_none());
         linear.chain(nonlinear.map(|(_, value)| value)).collect()
     }
 
-    /// The law with the numbers found.
+    /// The law with the parameters found.
     pub(crate) fn curve(&self) -> LawCurve {
         let (model, values) = (&self.model, self.values());
-        let numbers = self.natural_numbers();
+        let parameters = self.natural_parameters();
         let constants = usize::from(model.constant);
         let constant = if model.constant { values[0] } else { self.scaled.center };
         let terms = model.form.shapes.iter().enumerate().map(|(shape, kind)| Term {
             amplitude: values[constants + shape],
             shape: *kind,
-            numbers: numbers[model.numbers_of(shape)].to_vec(),
+            parameters: parameters[model.parameters_of(shape)].to_vec(),
         });
         LawCurve {
             response: model.form.response,
@@ -41,19 +45,19 @@ impl Fitted {
         }
     }
 
-    /// All nonlinear numbers, fixed ones too, in the caller's units.
-    pub(crate) fn natural_numbers(&self) -> Vec<f64> {
+    /// All nonlinear parameters, fixed ones too, in the caller's units.
+    pub(crate) fn natural_parameters(&self) -> Vec<f64> {
         let complete = self.model.complete(&self.solution.nonlinear);
-        let natural = |(number, value): (&crate::fit::problem::model::Number, f64)| match number.kind {
-            NumberKind::Pure { .. } => value,
+        let natural = |(parameter, value): (&crate::fit::problem::model::ModelParameter, f64)| match parameter.kind {
+            ShapeParameterKind::Pure { .. } => value,
             _ => value - self.scaled.duration.ln(),
         };
-        self.model.numbers.iter().zip(complete).map(natural).collect()
+        self.model.parameters.iter().zip(complete).map(natural).collect()
     }
 
-    /// Names of the free numbers.
+    /// Names of the free parameters.
     pub(crate) fn names(&self) -> Vec<String> {
-        self.model.names(|number| searched_name(&number.name, number.kind))
+        self.model.names(|parameter| searched_name(&parameter.name, parameter.kind))
     }
 
     /// Puts exponentials whose times were searched in the order of their times, fastest first.

@@ -3,7 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `fitted.rs` | a problem with its solution |
-//! | `derived.rs` | numbers that follow from those that were searched |
+//! | `derived.rs` | parameters that follow from those that were searched |
 //! | `report.rs` | from both to the result |
 //! | `robust.rs` | outliers made to count less |
 //! | `profile.rs`, `bootstrap.rs` | intervals that may be asymmetric or open, and those from resampled residuals |

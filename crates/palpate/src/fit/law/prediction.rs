@@ -8,7 +8,7 @@ impl Fit {
     /// The curve a time `elapsed` (s) after the first sample, also beyond the last, with its confidence interval.
     ///
     /// The interval is that of the curve, not of a sample: g ± t √(gᵀ C g) with g the derivatives of the curve by the searched
-    /// numbers and C their covariance for noise that correlates as the residuals do. It knows of no other law: far beyond the
+    /// parameters and C their covariance for noise that correlates as the residuals do. It knows of no other law: far beyond the
     /// hold it is as good as the law is.
     ///
     /// ```
@@ -36,7 +36,8 @@ impl Fit {
 
     fn prediction(&self, elapsed: f64, deviation: f64) -> Estimate {
         let value = self.predict(elapsed);
-        let (Some(uncertainty), Some(white), false) = (&self.uncertainty, &self.covariance, elapsed.is_nan()) else {
+        let (Some(uncertainty), Some(white), false) = (&self.uncertainty, &self.white_covariance, elapsed.is_nan())
+        else {
             return Estimate::fixed(value);
         };
         let gradient = self.gradient(elapsed);
@@ -53,7 +54,7 @@ impl Fit {
         uncertainty.interval(value, error, of_curve + deviation * deviation, freedom, Scale::Linear)
     }
 
-    /// Derivatives of the curve by the searched numbers, in the order of `searched`.
+    /// Derivatives of the curve by the searched parameters, in the order of `searched`.
     fn gradient(&self, elapsed: f64) -> Vec<f64> {
         let mut gradient = vec![0.0; self.searched.len()];
         let Some(form) = self.law.form(self.response) else {
@@ -65,13 +66,13 @@ impl Fit {
             }
         };
         add(form.constant_name(), 1.0);
-        let numbers = form.numbers();
+        let parameters = form.parameters();
         for (shape, (term, amplitude)) in self.curve.terms.iter().zip(form.amplitude_names()).enumerate() {
             let column = Column::of(&term.shape, self.response);
-            let (mut value, mut slopes) = ([0.0], vec![vec![0.0]; term.numbers.len()]);
-            term.shape.gradient(&[elapsed.max(0.0)], &term.numbers, &mut value, &mut slopes);
+            let (mut value, mut slopes) = ([0.0], vec![vec![0.0]; term.parameters.len()]);
+            term.shape.gradient(&[elapsed.max(0.0)], &term.parameters, &mut value, &mut slopes);
             add(&amplitude, column.offset + column.sign * value[0]);
-            let own = numbers.iter().filter(|(of, _, _)| *of == shape);
+            let own = parameters.iter().filter(|(of, _, _)| *of == shape);
             for ((_, name, kind), slope) in own.zip(slopes) {
                 add(&searched_name(name, *kind), term.amplitude * column.sign * slope[0]);
             }
@@ -125,12 +126,12 @@ mod tests {
                         curve.terms[term].amplitude += by;
                     } else {
                         let at = form
-                            .numbers()
+                            .parameters()
                             .iter()
                             .position(|(_, of, kind)| &crate::fit::problem::model::searched_name(of, *kind) == name);
-                        let shape = form.numbers()[at.unwrap()].0;
-                        let first = form.numbers().iter().position(|(of, _, _)| *of == shape).unwrap();
-                        curve.terms[shape].numbers[at.unwrap() - first] += by;
+                        let shape = form.parameters()[at.unwrap()].0;
+                        let first = form.parameters().iter().position(|(of, _, _)| *of == shape).unwrap();
+                        curve.terms[shape].parameters[at.unwrap() - first] += by;
                     }
                     curve.at(elapsed)
                 };

@@ -1,18 +1,18 @@
 //! Intervals from the profile of the residual square: asymmetric, and open where the data do not close them.
 //!
-//! One number is held at v and the others are fitted again, which leaves χ²(v). The interval is where
+//! One parameter is held at v and the others are fitted again, which leaves χ²(v). The interval is where
 //!
 //! ```text
 //! z(v) = √((χ²(v)/χ²_min − 1)(N − p)) ≤ t √w
 //! ```
 //!
 //! with t the quantile of Student's distribution at N − p degrees of freedom: for white noise (w = 1) the F-test of
-//! `lmfit.conf_interval`. Where residuals correlate, w is the variance of the number for noise of their kind over that for
+//! `lmfit.conf_interval`. Where residuals correlate, w is the variance of the parameter for noise of their kind over that for
 //! white noise, and t has the degrees of freedom of that variance ([`Uncertainty`](super::Uncertainty)).
 
 use crate::fit::noise::uncertainty::variance_of;
-use crate::fit::{Fit, FitError, Fitted, Interval, LawOptions, Model, Samples, condense};
-use crate::laws::{Law, NumberKind};
+use crate::fit::{Estimate, Fit, FitError, Fitted, Interval, LawOptions, Model, Samples, condense};
+use crate::laws::{Law, ShapeParameterKind};
 use crate::optimise::{Ending, Shapes, Target, Work, refine};
 use crate::statistics::coverage_factor;
 use crate::watch::{Cancelled, Progress, Unwatched, Watch};
@@ -26,10 +26,10 @@ const CLOSE: f64 = 1e-9;
 /// The same on condensed samples, which only show where to look.
 const ROUGH: f64 = 1e-3;
 
-/// The profile-likelihood interval of a number of a law, by its name as in the result of [`fit_law`](crate::fit::fit_law).
+/// The profile-likelihood interval of a parameter of a law, by its name as in the result of [`fit_law`](crate::fit::fit_law).
 ///
-/// Numbers that follow from others (`start`, `rate_coefficient`) have none. An end is open (`None`) if the profile stays below
-/// its bound up to the edge of the range in which numbers are sought, or 2000 standard errors away. Both are where the
+/// Parameters that follow from others (`start`, `rate_coefficient`) have none. An end is open (`None`) if the profile stays below
+/// its bound up to the edge of the range in which parameters are sought, or 2000 standard errors away. Both are where the
 /// fit did not converge.
 ///
 /// ```
@@ -38,14 +38,14 @@ const ROUGH: f64 = 1e-3;
 /// use palpate::test_problems::noisy_hold;
 /// let (times, values) = noisy_hold(200, 1.0, 2e-2);
 /// let samples = Samples::new(&times, &values);
-/// let interval = profile_interval(&samples, Law::StandardLinearSolid, &LawOptions::default(), "time")?;
+/// let interval = profile_interval(&samples, Law::StandardLinearSolid, &LawOptions::default(), "time_constant_s")?;
 /// // 1/(2·10⁴ · 0.13⁴ 1/s) = 0.17506 s
 /// assert!(interval.low.unwrap() < 0.17506 && 0.17506 < interval.high.unwrap());
 /// # Ok::<(), palpate::fit::FitError>(())
 /// ```
 ///
 /// # Errors
-/// As [`fit_law`](crate::fit::fit_law), and [`FitError::UnknownNumber`] for a number that the law does not have, or that is held.
+/// As [`fit_law`](crate::fit::fit_law), and [`FitError::UnknownParameter`] for a parameter that the law does not have, or that is held.
 pub fn profile_interval(
     samples: &Samples<'_>,
     law: Law,
@@ -53,30 +53,37 @@ pub fn profile_interval(
     name: &str,
 ) -> Result<Interval, FitError> {
     let fitted = Fitted::new(samples, law, options, &mut Work::default())?;
-    let number = Searched::named(&fitted.model, name)?;
+    let parameter = Searched::named(&fitted.model, name)?;
     let fit = fitted.report(law, options, Work::default());
-    fitted.profile_of(number, &fit, options, &mut Unwatched)
+    fitted.profile_of(parameter, &fit, options, &mut Unwatched)
 }
 
 impl Fitted {
-    /// Intervals of all searched parameters of this fit by their profiles; a parameter whose profile is open has none, and what is
-    /// known of it stands in [`Fit::profiles`].
+    /// Intervals of all searched parameters of this fit by their profiles, whose ends may be open; where the whole profile is, there is
+    /// no standard error.
     pub(crate) fn profile(&self, fit: &mut Fit, options: &LawOptions, watch: &mut dyn Watch) -> Result<(), FitError> {
         let known = fit.clone();
         for parameter in &mut fit.parameters {
-            let Ok(number) = Searched::named(&self.model, &parameter.name.to_string()) else {
+            let Ok(searched) = Searched::named(&self.model, &parameter.name.to_string()) else {
                 continue;
             };
-            let interval = self.profile_of(number, &known, options, watch)?;
-            parameter.estimate.interval = interval.low.zip(interval.high);
-            fit.profiles.push((parameter.name, interval));
+            let interval = self.profile_of(searched, &known, options, watch)?;
+            let lowest = if searched.is_above_zero() { 0.0 } else { f64::NEG_INFINITY };
+            let ends = (interval.low.unwrap_or(lowest), interval.high.unwrap_or(f64::INFINITY));
+            parameter.estimate = match known.termination.is_good() {
+                true => Estimate {
+                    interval: Some(ends),
+                    ..parameter.estimate
+                },
+                false => parameter.estimate,
+            };
         }
         Ok(())
     }
 
     fn profile_of(
         &self,
-        number: Searched,
+        parameter: Searched,
         fit: &Fit,
         options: &LawOptions,
         watch: &mut dyn Watch,
@@ -84,13 +91,13 @@ impl Fitted {
         let (Some(uncertainty), Some(inverse)) = (&fit.uncertainty, &self.solution.inverse_normal) else {
             return Ok(Interval::OPEN);
         };
-        let (size, place) = (fit.values.len(), number.place(&self.model));
+        let (size, place) = (fit.values.len(), parameter.place(&self.model));
         let gradient: Vec<f64> = (0..size).map(|i| if i == place { 1.0 } else { 0.0 }).collect();
-        let white = fit.covariance.as_ref().map_or(f64::NAN, |covariance| covariance[place][place]);
+        let white = fit.white_covariance.as_ref().map_or(f64::NAN, |covariance| covariance[place][place]);
         let widening = (variance_of(&gradient, &uncertainty.covariance) / white).sqrt();
         let profile = Profile {
             fitted: self,
-            number,
+            parameter,
             error: (inverse[place * size + place] * self.solution.residual_square / uncertainty.freedom).sqrt(),
             target: coverage_factor(options.confidence, uncertainty.freedom_of(&gradient)) * widening,
             freedom: uncertainty.freedom,
@@ -99,11 +106,11 @@ impl Fitted {
         if !(fit.termination.is_good() && profile.error > 0.0 && profile.target.is_finite()) {
             return Ok(Interval::OPEN);
         }
-        Ok(number.in_natural_units(self, profile.end(-1.0, watch)?, profile.end(1.0, watch)?))
+        Ok(parameter.in_natural_units(self, profile.end(-1.0, watch)?, profile.end(1.0, watch)?))
     }
 }
 
-/// Which of the searched numbers.
+/// Which of the searched parameters.
 #[derive(Clone, Copy)]
 enum Searched {
     /// Place among the linear ones.
@@ -114,15 +121,20 @@ enum Searched {
 
 impl Searched {
     fn named(model: &Model, name: &str) -> Result<Self, FitError> {
-        let names = model.names(|number| number.name.clone());
+        let names = model.names(|parameter| parameter.name.clone());
         match names.iter().position(|known| known == name) {
             Some(place) if place < model.linear() => Ok(Self::Linear(place)),
             Some(place) => Ok(Self::Nonlinear(model.free[place - model.linear()], place - model.linear())),
-            None => Err(FitError::UnknownNumber {
+            None => Err(FitError::UnknownParameter {
                 name: name.to_owned(),
                 known: names.join(", "),
             }),
         }
+    }
+
+    /// Whether it is a rate, a time or an exponent.
+    fn is_above_zero(self) -> bool {
+        matches!(self, Self::Nonlinear(..))
     }
 
     /// Place in the covariance.
@@ -139,15 +151,15 @@ impl Searched {
         let natural = |value: f64| match self {
             Self::Linear(0) if model.constant => value * scaled.range + scaled.center,
             Self::Linear(_) => value * scaled.range,
-            Self::Nonlinear(place, _) => match model.numbers[place].kind {
-                NumberKind::Pure { .. } => value,
-                NumberKind::Time => scaled.duration * (-value).exp(),
-                NumberKind::Rate | NumberKind::Reference => value.exp() / scaled.duration,
+            Self::Nonlinear(place, _) => match model.parameters[place].kind {
+                ShapeParameterKind::Pure { .. } => value,
+                ShapeParameterKind::Time => scaled.duration * (-value).exp(),
+                ShapeParameterKind::Rate | ShapeParameterKind::Reference => value.exp() / scaled.duration,
             },
         };
         let (low, high) = (low.map(natural), high.map(natural));
         match self {
-            Self::Nonlinear(place, _) if model.numbers[place].kind == NumberKind::Time => {
+            Self::Nonlinear(place, _) if model.parameters[place].kind == ShapeParameterKind::Time => {
                 Interval { low: high, high: low }
             }
             _ => Interval { low, high },
@@ -155,10 +167,10 @@ impl Searched {
     }
 }
 
-/// The profile of one number.
+/// The profile of one parameter.
 struct Profile<'a> {
     fitted: &'a Fitted,
-    number: Searched,
+    parameter: Searched,
     /// Standard error for white noise, in the units of the fit.
     error: f64,
     /// z at the ends.
@@ -167,13 +179,13 @@ struct Profile<'a> {
     most_iterations: usize,
 }
 
-/// A point of a profile: z, and the free nonlinear numbers there.
+/// A point of a profile: z, and the free nonlinear parameters there.
 #[derive(Clone)]
 struct Reached {
     distance: f64,
     z: f64,
     theta: Vec<f64>,
-    /// A free number lies at the edge of its range.
+    /// A free parameter lies at the edge of its range.
     at_edge: bool,
 }
 
@@ -206,10 +218,10 @@ impl Profile<'_> {
         Ok(met.filter(|met| !met.at_edge).map(|met| self.value(side, met.distance)))
     }
 
-    /// The best value and the other nonlinear numbers there.
+    /// The best value and the other nonlinear parameters there.
     fn start(&self) -> Reached {
         let mut theta = self.fitted.solution.nonlinear.clone();
-        if let Searched::Nonlinear(_, free) = self.number {
+        if let Searched::Nonlinear(_, free) = self.parameter {
             theta.remove(free);
         }
         Reached {
@@ -221,7 +233,7 @@ impl Profile<'_> {
     }
 
     fn value(&self, side: f64, distance: f64) -> f64 {
-        let best = match self.number {
+        let best = match self.parameter {
             Searched::Linear(place) => self.fitted.solution.linear[place],
             Searched::Nonlinear(_, free) => self.fitted.solution.nonlinear[free],
         };
@@ -230,15 +242,15 @@ impl Profile<'_> {
 
     /// The farthest distance to look at, in standard errors.
     fn farthest(&self, side: f64) -> f64 {
-        let Searched::Nonlinear(place, _) = self.number else {
+        let Searched::Nonlinear(place, _) = self.parameter else {
             return FARTHEST;
         };
-        let (low, high) = self.fitted.model.numbers[place].bounds;
+        let (low, high) = self.fitted.model.parameters[place].bounds;
         let room = if side < 0.0 { self.value(side, 0.0) - low } else { high - self.value(side, 0.0) };
         (room / self.error).min(FARTHEST)
     }
 
-    /// Widens until z exceeds its bound, then closes in by regula falsi (Illinois): z is nearly straight in the number.
+    /// Widens until z exceeds its bound, then closes in by regula falsi (Illinois): z is nearly straight in the parameter.
     fn meet(
         &self,
         field: &Field<'_>,
@@ -302,18 +314,18 @@ impl Profile<'_> {
         }
     }
 
-    /// The model with the number held: a nonlinear one fixed, a linear one between equal bounds.
+    /// The model with the parameter held: a nonlinear one fixed, a linear one between equal bounds.
     fn held(&self, value: f64) -> Model {
         let model = &self.fitted.model;
-        let (mut numbers, mut bounds) = (model.numbers.clone(), model.linear_bounds.clone());
-        match self.number {
+        let (mut parameters, mut bounds) = (model.parameters.clone(), model.linear_bounds.clone());
+        match self.parameter {
             Searched::Linear(place) => {
                 bounds.resize(model.linear(), (f64::NEG_INFINITY, f64::INFINITY));
                 bounds[place] = (value, value);
             }
-            Searched::Nonlinear(place, _) => numbers[place].fixed = Some(value),
+            Searched::Nonlinear(place, _) => parameters[place].fixed = Some(value),
         }
-        Model::new(model.form.clone(), model.constant, numbers, bounds)
+        Model::new(model.form.clone(), model.constant, parameters, bounds)
     }
 }
 
@@ -341,7 +353,7 @@ mod tests {
         let best = fit_law(&samples, FREE, &options).unwrap();
         let freedom = 1500.0 - 4.0;
         let bound = 1.0 + coverage_factor(0.95, freedom).powi(2) / freedom;
-        for name in ["equilibrium", "relative_rate", "exponent"] {
+        for name in ["equilibrium", "relative_rate_per_s", "exponent"] {
             let interval = profile_interval(&samples, FREE, &options, name).unwrap();
             for end in [interval.low.unwrap(), interval.high.unwrap()] {
                 let mut held = options.clone();
@@ -368,7 +380,7 @@ mod tests {
         let options = LawOptions::default();
         let fit = fit_law(&samples, Law::StandardLinearSolid, &options).unwrap();
         assert!(fit.effective_samples() < 200.0, "{:?}", fit.noise);
-        for name in ["equilibrium", "time"] {
+        for name in ["equilibrium", "time_constant_s"] {
             let (low, high) = fit.estimate(name).unwrap().interval.unwrap();
             let interval = profile_interval(&samples, Law::StandardLinearSolid, &options, name).unwrap();
             // So many samples make the profile a parabola, nearly.
@@ -380,10 +392,10 @@ mod tests {
     fn numbers_that_are_not_searched_have_no_profile() {
         let (times, values) = noisy_hold(100, 4.0, 1e-2);
         let samples = Samples::new(&times, &values);
-        let known = match profile_interval(&samples, FREE, &LawOptions::default(), "rate_coefficient") {
-            Err(FitError::UnknownNumber { known, .. }) => known,
+        let known = match profile_interval(&samples, FREE, &LawOptions::default(), "rate_coefficient_per_s") {
+            Err(FitError::UnknownParameter { known, .. }) => known,
             other => panic!("{other:?}"),
         };
-        assert_eq!(known, "equilibrium, amplitude, relative_rate, exponent");
+        assert_eq!(known, "equilibrium, amplitude, relative_rate_per_s, exponent");
     }
 }

@@ -1,8 +1,11 @@
 //! From a solution to the result: parameters with errors and intervals.
 
 use super::derived::{Estimating, derived};
-use crate::fit::{Assessed, Domain, Estimate, Fit, Fitted, LawOptions, Loss, NumberUnit, Parameter, Scale, ghosts};
-use crate::laws::{Law, NumberKind};
+use crate::fit::{
+    Assessed, Domain, Estimate, Fit, Fitted, LawOptions, Loss, Parameter, ParameterKind, ParameterRole, ParameterUnit,
+    Scale, ghosts,
+};
+use crate::laws::{ExponentChoice, Law, ShapeParameterKind};
 use crate::optimise::{Few, Shapes, Termination, Work};
 
 impl Fitted {
@@ -25,7 +28,7 @@ impl Fitted {
         fit
     }
 
-    /// χ² of a curve as it is returned: where large amplitudes cancel, rounding of its own numbers adds to it.
+    /// χ² of a curve as it is returned: where large amplitudes cancel, rounding of its own parameters adds to it.
     fn left_by(&self, fit: &Fit) -> f64 {
         let scaled = &self.scaled;
         let elapsed: Vec<f64> = scaled.times.iter().map(|t| t * scaled.duration).collect();
@@ -40,8 +43,9 @@ impl Fitted {
     pub(crate) fn report_with(&self, law: Law, assessed: Assessed, work: Work) -> Fit {
         let (solution, values, scale) = (&self.solution, self.values(), self.scaled.range);
         let estimate = |value: f64, gradient: &[f64], scale: Scale| assessed.estimate(value, gradient, scale);
-        let mut numbers = self.direct(&values, &estimate);
-        numbers.extend(derived(law, self, &values, &estimate));
+        let mut parameters = self.direct(&values, &estimate);
+        parameters.extend(given_exponent(law));
+        parameters.extend(derived(law, self, &values, &estimate));
         let residual_square = (solution.residual_square.sqrt() * scale * self.scaled.precision).powi(2);
         let samples = self.scaled.times.len();
         let mean_square = match &self.scaled.roots {
@@ -54,11 +58,10 @@ impl Fitted {
             curve: self.curve(),
             loading: None,
             domain: Domain::Time,
-            parameters: numbers,
-            profiles: Vec::new(),
+            parameters: parameters,
             searched: self.names(),
             values,
-            covariance: assessed.white,
+            white_covariance: assessed.white,
             residual_square,
             rmse: mean_square.sqrt() * scale,
             residual_correlation: assessed.correlation,
@@ -83,45 +86,68 @@ impl Fitted {
         rows.iter().flatten().all(|entry| entry.is_finite()).then_some(rows)
     }
 
-    /// The amplitude beside each free nonlinear number.
+    /// The amplitude beside each free nonlinear parameter.
     fn amplitudes(&self) -> Vec<f64> {
         let shapes = self.model.at(&self.scaled.times);
         (0..self.solution.nonlinear.len()).map(|i| self.solution.linear[shapes.column_of(i)]).collect()
     }
 
-    /// The numbers that were searched, and those held, as they are reported: times for ln of rates.
+    /// The parameters that were searched, and those held, as they are reported: times for ln of rates.
     pub(crate) fn direct(&self, values: &[f64], estimate: Estimating<'_>) -> Vec<Parameter> {
         let model = &self.model;
         let row =
             |i: usize, entry: f64| -> Few { (0..values.len()).map(|j| if i == j { entry } else { 0.0 }).collect() };
-        let mut numbers = Vec::with_capacity(1 + model.form.shapes.len() + model.numbers.len());
-        let mut add = |name: &str, unit: NumberUnit, estimate: Estimate| {
-            numbers.extend(name.parse().ok().map(|name| Parameter { name, unit, estimate }));
+        let mut parameters = Vec::with_capacity(1 + model.form.shapes.len() + model.parameters.len());
+        let mut add = |name: &str, unit: ParameterUnit, estimate: Estimate, role: ParameterRole| {
+            parameters.extend(name.parse().ok().map(|name| Parameter {
+                name,
+                unit,
+                estimate,
+                role,
+            }));
         };
         let level = |at: usize| estimate(values[at], &row(at, 1.0), Scale::Linear);
         let constants = usize::from(model.constant);
-        let constant = if model.constant { level(0) } else { Estimate::fixed(self.scaled.center) };
-        add(model.form.constant_name(), NumberUnit::Signal, constant);
+        let (constant, role) = match model.constant {
+            true => (level(0), ParameterRole::Estimated),
+            false => (Estimate::fixed(self.scaled.center), ParameterRole::Given),
+        };
+        add(model.form.constant_name(), ParameterUnit::Signal, constant, role);
         for (i, name) in model.form.amplitude_names().iter().enumerate() {
-            add(name, NumberUnit::Signal, level(i + constants));
+            add(name, ParameterUnit::Signal, level(i + constants), ParameterRole::Estimated);
         }
         let mut at = model.linear();
-        for (number, value) in model.numbers.iter().zip(self.natural_numbers()) {
-            let (unit, shown, slope) = match number.kind {
-                NumberKind::Pure { .. } => (NumberUnit::One, value, 1.0 / value),
-                NumberKind::Time => (NumberUnit::Second, (-value).exp(), -1.0),
-                NumberKind::Rate => (NumberUnit::PerSecond, value.exp(), 1.0),
-                NumberKind::Reference => continue,
+        for (parameter, value) in model.parameters.iter().zip(self.natural_parameters()) {
+            let (unit, value, slope) = match parameter.kind {
+                ShapeParameterKind::Pure { .. } => (ParameterUnit::One, value, 1.0 / value),
+                ShapeParameterKind::Time => (ParameterUnit::Second, (-value).exp(), -1.0),
+                ShapeParameterKind::Rate => (ParameterUnit::PerSecond, value.exp(), 1.0),
+                ShapeParameterKind::Reference => continue,
             };
-            let shown = match number.fixed {
-                Some(_) => Estimate::fixed(shown),
+            let (found, role) = match parameter.fixed {
+                Some(_) => (Estimate::fixed(value), ParameterRole::Given),
                 None => {
                     at += 1;
-                    estimate(shown, &row(at - 1, slope), Scale::Log)
+                    (estimate(value, &row(at - 1, slope), Scale::Log), ParameterRole::Estimated)
                 }
             };
-            add(&number.name, unit, shown);
+            add(&parameter.name, unit, found, role);
         }
-        numbers
+        parameters
+    }
+}
+
+/// The exponent of a latency law that has it in its name.
+pub(crate) fn given_exponent(law: Law) -> Option<Parameter> {
+    match law {
+        Law::Latency {
+            exponent: ExponentChoice::Fixed(n),
+        } => Some(Parameter {
+            name: ParameterKind::Exponent.into(),
+            unit: ParameterUnit::One,
+            estimate: Estimate::fixed(n),
+            role: ParameterRole::Given,
+        }),
+        _ => None,
     }
 }

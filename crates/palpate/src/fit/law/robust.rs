@@ -1,6 +1,6 @@
 //! Outliers made to count less: M-estimates by reweighting.
 //!
-//! With u = r/(σ · scale) the numbers solve Σ ψ(u) ∂f/∂p = 0 together with scale = median |r/σ|/0.6745. Their covariance is the
+//! With u = r/(σ · scale) the parameters solve Σ ψ(u) ∂f/∂p = 0 together with scale = median |r/σ|/0.6745. Their covariance is the
 //! asymptotic one of M-estimates (Huber, Robust Statistics, 1981, section 7.6), with the outliers' own weights left out of JᵀJ:
 //!
 //! ```text
@@ -24,9 +24,9 @@ const MEDIAN_SHARE: f64 = 0.6745;
 const ROUNDS: usize = 200;
 
 impl Fitted {
-    /// Reweights residuals until weights, scale and numbers agree: first by Huber, then, if asked for, by Tukey.
+    /// Reweights residuals until weights, scale and parameters agree: first by Huber, then, if asked for, by Tukey.
     ///
-    /// The scale is found anew in every round. After the first rounds the whole range of the nonlinear numbers is searched again,
+    /// The scale is found anew in every round. After the first rounds the whole range of the nonlinear parameters is searched again,
     /// since outliers may have led the first search into the wrong valley. In the end the solution stands among all samples at
     /// their own weights.
     pub(crate) fn resist(&mut self, options: &LawOptions, work: &mut Work) -> Result<(), FitError> {
@@ -91,10 +91,10 @@ impl Fitted {
         let constants = usize::from(self.model.constant);
         let start = if self.model.constant { self.solution.linear[0] } else { 0.0 };
         let mut values = vec![start; times.len()];
-        let numbers = self.model.complete(&self.solution.nonlinear);
+        let parameters = self.model.complete(&self.solution.nonlinear);
         let mut column = vec![0.0; times.len()];
         for shape in 0..self.model.form.shapes.len() {
-            self.model.shape_value(shape, times, &numbers[self.model.numbers_of(shape)], &mut column);
+            self.model.shape_value(shape, times, &parameters[self.model.parameters_of(shape)], &mut column);
             let amplitude = self.solution.linear[constants + shape];
             for (value, entry) in values.iter_mut().zip(&column) {
                 *value += amplitude * entry;

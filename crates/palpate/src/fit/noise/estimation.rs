@@ -3,7 +3,7 @@
 use super::likelihood::{Mixture, Neighbours};
 use super::model::{Lags, Noise, NoiseModel};
 
-/// Fall of −2 ln L that one more number of the noise has to bring.
+/// Fall of −2 ln L that one more parameter of the noise has to bring.
 const EVIDENCE: f64 = 4.0;
 
 impl Noise {
@@ -75,7 +75,7 @@ struct Signs {
 }
 
 impl Signs {
-    /// Two standard deviations of white noise; fitted numbers pull correlations down by some p/N a lag.
+    /// Two standard deviations of white noise; fitted parameters pull correlations down by some p/N a lag.
     fn of(residuals: &[f64], lags: &Lags, parameters: usize) -> Self {
         let count = residuals.len() as f64;
         let Lags { square, first, second } = *lags;
@@ -112,7 +112,7 @@ mod tests {
 
     /// Noise of this model from a fixed sequence.
     fn simulated(model: NoiseModel, samples: usize, seed: u64) -> Vec<f64> {
-        let (rho, share) = model.numbers();
+        let (rho, share) = model.parameters();
         let mut random = crate::test_problems::Noise::new(seed);
         let mut state = random.normal();
         let mut next = || {
@@ -147,7 +147,7 @@ mod tests {
 
     /// All correlations, row by row.
     fn dense(model: NoiseModel, samples: usize) -> Vec<f64> {
-        let (rho, share) = model.numbers();
+        let (rho, share) = model.parameters();
         let entry = |lag: usize| if lag == 0 { 1.0 } else { share * rho.powi(lag as i32) };
         (0..samples * samples).map(|at| entry((at / samples).abs_diff(at % samples))).collect()
     }

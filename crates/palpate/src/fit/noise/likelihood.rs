@@ -24,14 +24,15 @@ impl Likelihood {
     /// −2 ln L = (N − p) ln σ² + ln |R| + ln |JᵀR⁻¹J|, σ² = (rᵀR⁻¹r − what J takes up)/(N − p).
     pub(crate) fn of(product: &[f64], log_determinant: f64, samples: usize) -> Option<Self> {
         let size = product.len().isqrt();
-        let numbers = size - 1;
-        let block: Square = (0..numbers * numbers).map(|i| product[i / numbers * size + i % numbers]).collect();
-        let factor = Cholesky::new(&block, numbers)?;
-        let right = &product[numbers * size..numbers * size + numbers];
+        let parameters = size - 1;
+        let block: Square =
+            (0..parameters * parameters).map(|i| product[i / parameters * size + i % parameters]).collect();
+        let factor = Cholesky::new(&block, parameters)?;
+        let right = &product[parameters * size..parameters * size + parameters];
         let mut taken = Few::from_slice(right);
         factor.solve(&mut taken);
         let left = product[size * size - 1] - dot(right, &taken);
-        let freedom = (samples - numbers) as f64;
+        let freedom = (samples - parameters) as f64;
         let variance = left / freedom;
         let deviance = freedom * variance.ln() + log_determinant + factor.log_determinant();
         deviance.is_finite().then_some(Self { deviance, variance })
@@ -153,7 +154,7 @@ impl<'a> Mixture<'a> {
     }
 
     fn filter(&self, x: &[f64]) -> Filter {
-        let (rho, share) = Self::model(x).numbers();
+        let (rho, share) = Self::model(x).parameters();
         Filter::new(rho, share, self.rows.samples)
     }
 

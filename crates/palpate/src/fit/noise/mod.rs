@@ -8,7 +8,7 @@
 //!
 //! by sample, not by time: an instrument's filter acts that way, and for samples spaced unevenly it is an approximation.
 //! ρ and s are those of the largest *restricted* likelihood (Patterson and Thompson 1971): residuals are flatter than
-//! noise by what the fitted numbers took up, and a plain estimate of ρ from them is too small by some p (1 + ρ)/N.
+//! noise by what the fitted parameters took up, and a plain estimate of ρ from them is too small by some p (1 + ρ)/N.
 //!
 //! | file | what |
 //! |---|---|

@@ -27,7 +27,7 @@ pub enum NoiseModel {
 
 impl NoiseModel {
     /// ρ and s.
-    pub(crate) fn numbers(self) -> (f64, f64) {
+    pub(crate) fn parameters(self) -> (f64, f64) {
         match self {
             Self::White => (0.0, 0.0),
             Self::Autoregressive { correlation } => (correlation, 1.0),
@@ -44,7 +44,7 @@ impl NoiseModel {
     /// ```
     #[must_use]
     pub fn effective_samples(self, samples: usize) -> f64 {
-        let (correlation, share) = self.numbers();
+        let (correlation, share) = self.parameters();
         (samples as f64 / (1.0 + 2.0 * share * correlation / (1.0 - correlation))).max(2.0)
     }
 }

@@ -57,7 +57,7 @@ impl Rows {
             dispatch!(level(), simd => {
                 let mut expected = [f64x8::splat(simd, 0.0); 2];
                 products(simd, left, right, #[inline(always)] |index, left, right| {
-                    let [kept, taken, root] = filter.steps[index.min(last)].map(|number| f64x8::splat(simd, number));
+                    let [kept, taken, root] = filter.steps[index.min(last)].map(|parameter| f64x8::splat(simd, parameter));
                     let [of_left, of_right] = expected;
                     expected = [kept * of_left + taken * left, kept * of_right + taken * right];
                     [(left - of_left) * root, (right - of_right) * root]
@@ -189,7 +189,7 @@ impl Columns {
     ///
     /// F_i = ρ (F_{i−1} + J_{i−1}) sums all that came before, so that JᵀRJ = JᵀJ + s (JᵀF + FᵀJ).
     pub(crate) fn quadratic(&self, model: NoiseModel) -> Vec<f64> {
-        let (correlation, share) = model.numbers();
+        let (correlation, share) = model.parameters();
         let mut product = self.product.clone();
         let across = self.rows.with_sums_before(correlation);
         for i in 0..self.size {

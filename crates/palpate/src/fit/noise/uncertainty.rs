@@ -1,4 +1,4 @@
-//! From the noise of a fit to the covariance of its numbers, their errors and intervals.
+//! From the noise of a fit to the covariance of its parameters, their errors and intervals.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::optimise::{Cholesky, Few, Solution, Termination};
 use crate::statistics::{coverage_factor, dot};
 use crate::vector::cross_products;
 
-/// How a number is brought to its interval.
+/// How a parameter is brought to its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Scale {
     /// Symmetric about the value.
@@ -18,23 +18,26 @@ pub(crate) enum Scale {
     Log,
 }
 
+/// Half an interval in ln beyond which the data leave a parameter open: its curvature then says nothing of where it ends.
+const OPEN: f64 = 6.907_755_278_982_137; // ln 1000
+
 /// The variance of Σ gᵢ pᵢ where p has this covariance: gᵀ C g.
 pub(crate) fn variance_of(gradient: &[f64], covariance: &[Vec<f64>]) -> f64 {
     let row = |row: &Vec<f64>| row.iter().zip(gradient).map(|(entry, g)| entry * g).sum::<f64>();
     covariance.iter().zip(gradient).map(|(entries, g)| g * row(entries)).sum()
 }
 
-/// What intervals are made of: covariances of the searched numbers for noise that correlates.
+/// What intervals are made of: covariances of the searched parameters for noise that correlates.
 ///
 /// The fit is by least squares whatever the noise, so with J the Jacobian and V = σ² R the covariance of the noise that of
-/// the numbers is the sandwich (JᵀJ)⁻¹ JᵀVJ (JᵀJ)⁻¹. V is itself an estimate: half the relative variance of a number's
+/// the parameters is the sandwich (JᵀJ)⁻¹ JᵀVJ (JᵀJ)⁻¹. V is itself an estimate: half the relative variance of a parameter's
 /// variance gives the degrees of freedom of its t-quantile (Satterthwaite 1946),
 ///
 /// ```text
 /// ν = 2/[2/(N − p) + Σ_d (ln v_d − ln v)²]
 /// ```
 ///
-/// where v_d is the number's variance for a noise model one standard error off in direction d.
+/// where v_d is the parameter's variance for a noise model one standard error off in direction d.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Uncertainty {
     /// Coverage of the intervals.
@@ -61,22 +64,31 @@ impl Uncertainty {
         self.interval(value, white.sqrt(), variance, self.freedom_of(gradient), scale)
     }
 
-    /// The same from a variance and its degrees of freedom.
-    pub(crate) fn interval(&self, value: f64, error: f64, variance: f64, freedom: f64, scale: Scale) -> Estimate {
-        let half = variance.sqrt() * coverage_factor(self.confidence, freedom);
-        let (standard_error, interval) = match scale {
-            Scale::Linear => (error, (value - half, value + half)),
-            Scale::Log => (value.abs() * error, (value * (-half).exp(), value * half.exp())),
+    /// The same from the standard error for white noise, a variance and its degrees of freedom.
+    pub(crate) fn interval(&self, value: f64, white: f64, variance: f64, freedom: f64, scale: Scale) -> Estimate {
+        let error = variance.sqrt();
+        let half = error * coverage_factor(self.confidence, freedom);
+        if scale == Scale::Log && half > OPEN {
+            return Estimate {
+                interval: Some((0.0, f64::INFINITY)),
+                ..Estimate::fixed(value)
+            };
+        }
+        let (unit, interval) = match scale {
+            Scale::Linear => (1.0, (value - half, value + half)),
+            Scale::Log => (value.abs(), (value * (-half).exp(), value * half.exp())),
         };
-        let good = standard_error.is_finite() && interval.0.is_finite() && interval.1.is_finite();
+        let (error, white) = (unit * error, unit * white);
+        let good = [error, white, interval.0, interval.1].iter().all(|found| found.is_finite());
         Estimate {
             value,
-            standard_error: good.then_some(standard_error),
+            standard_error: good.then_some(error),
+            white_standard_error: good.then_some(white),
             interval: good.then_some(interval),
         }
     }
 
-    /// Degrees of freedom of the variance of a number with this gradient.
+    /// Degrees of freedom of the variance of a parameter with this gradient.
     pub(crate) fn freedom_of(&self, gradient: &[f64]) -> f64 {
         if self.beside.is_empty() {
             return self.freedom;
@@ -98,7 +110,7 @@ pub(crate) struct Assessed {
 
 impl Assessed {
     /// Assesses a solution. `amplitudes` multiply the derivatives in its Jacobian, `units` bring linear, then nonlinear
-    /// numbers to the caller's, `unit` the signal; without `known` its numbers have no errors.
+    /// parameters to the caller's, `unit` the signal; without `known` its parameters have no errors.
     pub(crate) fn new(
         solution: &Solution,
         amplitudes: &[f64],

@@ -2,8 +2,8 @@
 
 use std::iter;
 
-use crate::fit::{ConstantChoice, FitError, LawOptions, Model, Number, Samples, Scaled};
-use crate::laws::{Form, Law, NumberKind};
+use crate::fit::{ConstantChoice, FitError, LawOptions, Model, ModelParameter, Samples, Scaled};
+use crate::laws::{Form, Law, ShapeParameterKind};
 
 impl LawOptions {
     /// Refuses options that no fit of a law can follow, whatever the samples: what [`fit_law`](crate::fit::fit_law) looks at first.
@@ -13,11 +13,11 @@ impl LawOptions {
     /// use palpate::laws::Law;
     /// let held = |name: &str| LawOptions { fixed: vec![(name.to_owned(), 2.0)], ..LawOptions::default() };
     /// assert_eq!(held("equilibrium").suit(Law::StandardLinearSolid), Ok(()));
-    /// assert!(matches!(held("exponent").suit(Law::StandardLinearSolid), Err(FitError::UnknownNumber { .. })));
+    /// assert!(matches!(held("exponent").suit(Law::StandardLinearSolid), Err(FitError::UnknownParameter { .. })));
     /// ```
     ///
     /// # Errors
-    /// [`FitError`] for a law without a form for the response, for numbers that the law does not have or that cannot be held,
+    /// [`FitError`] for a law without a form for the response, for parameters that the law does not have or that cannot be held,
     /// values that they cannot have, bounds that do not rise, and a confidence that is none.
     pub fn suit(&self, law: Law) -> Result<(), FitError> {
         suits(&self.form(law)?, self)
@@ -35,13 +35,13 @@ pub(crate) fn build(form: Form, samples: &Samples<'_>, options: &LawOptions) -> 
         (None, ConstantChoice::Free) => None,
         (None, ConstantChoice::AsLaw) => (!form.constant).then_some(0.0),
     };
-    let named = form.numbers();
+    let named = form.parameters();
     let free = named.iter().filter(|(_, name, kind)| is_free(name, *kind, options)).count();
     samples.check(free + form.shapes.len() + usize::from(constant.is_none()))?;
     let scaled = Scaled::new(samples, constant)?;
-    let numbers = numbers(named, &scaled, options)?;
+    let parameters = parameters(named, &scaled, options)?;
     let linear = linear_bounds(&form, constant.is_none(), samples, &scaled, options);
-    let model = Model::new(form, constant.is_none(), numbers, linear);
+    let model = Model::new(form, constant.is_none(), parameters, linear);
     let model = match &options.loading {
         None => model,
         Some(loading) => model.after(&loading.in_units_of(scaled.duration)),
@@ -49,22 +49,22 @@ pub(crate) fn build(form: Form, samples: &Samples<'_>, options: &LawOptions) -> 
     Ok((model, scaled))
 }
 
-fn is_free(name: &str, kind: NumberKind, options: &LawOptions) -> bool {
-    kind != NumberKind::Reference && options.held(name).is_none()
+fn is_free(name: &str, kind: ShapeParameterKind, options: &LawOptions) -> bool {
+    kind != ShapeParameterKind::Reference && options.held(name).is_none()
 }
 
 /// Refuses options that no fit of this form can follow, whatever the samples.
 pub(crate) fn suits(form: &Form, options: &LawOptions) -> Result<(), FitError> {
     options.check()?;
     let constant = form.constant_name();
-    let numbers = form.numbers().into_iter().filter(|(_, _, kind)| *kind != NumberKind::Reference);
-    let numbers: Vec<String> = numbers.map(|(_, name, _)| name).collect();
+    let parameters = form.parameters().into_iter().filter(|(_, _, kind)| *kind != ShapeParameterKind::Reference);
+    let parameters: Vec<String> = parameters.map(|(_, name, _)| name).collect();
     let amplitudes = form.amplitude_names();
-    let all = || iter::once(constant).chain(amplitudes.iter().chain(&numbers).map(String::as_str));
+    let all = || iter::once(constant).chain(amplitudes.iter().chain(&parameters).map(String::as_str));
     let named = options.bounds.iter().map(|(name, _)| name).chain(options.fixed.iter().map(|(name, _)| name));
     for name in named {
         if !all().any(|known| known == name) {
-            return Err(FitError::UnknownNumber {
+            return Err(FitError::UnknownParameter {
                 name: name.clone(),
                 known: all().collect::<Vec<_>>().join(", "),
             });
@@ -74,11 +74,11 @@ pub(crate) fn suits(form: &Form, options: &LawOptions) -> Result<(), FitError> {
         if amplitudes.contains(name) {
             return Err(FitError::HeldAmplitude {
                 name: name.clone(),
-                held: iter::once(constant).chain(numbers.iter().map(String::as_str)).collect::<Vec<_>>().join(", "),
+                held: iter::once(constant).chain(parameters.iter().map(String::as_str)).collect::<Vec<_>>().join(", "),
             });
         }
         if !(value.is_finite() && (*value > 0.0 || name == constant)) {
-            return Err(FitError::FixedNumber {
+            return Err(FitError::FixedParameter {
                 name: name.clone(),
                 found: *value,
             });
@@ -87,28 +87,28 @@ pub(crate) fn suits(form: &Form, options: &LawOptions) -> Result<(), FitError> {
     Ok(())
 }
 
-fn numbers(
-    named: Vec<(usize, String, NumberKind)>,
+fn parameters(
+    named: Vec<(usize, String, ShapeParameterKind)>,
     scaled: &Scaled,
     options: &LawOptions,
-) -> Result<Vec<Number>, FitError> {
+) -> Result<Vec<ModelParameter>, FitError> {
     let log_duration = scaled.duration.ln();
     // A value as the caller writes it, in the units of the fit.
-    let inner = |kind: NumberKind, value: f64| match kind {
-        NumberKind::Pure { .. } => value,
-        NumberKind::Time => log_duration - value.ln(),
-        NumberKind::Rate | NumberKind::Reference => value.ln() + log_duration,
+    let inner = |kind: ShapeParameterKind, value: f64| match kind {
+        ShapeParameterKind::Pure { .. } => value,
+        ShapeParameterKind::Time => log_duration - value.ln(),
+        ShapeParameterKind::Rate | ShapeParameterKind::Reference => value.ln() + log_duration,
     };
-    let mut numbers = Vec::with_capacity(named.len());
+    let mut parameters = Vec::with_capacity(named.len());
     for (shape, name, kind) in named {
         let widest = match kind {
-            NumberKind::Pure { low, high, .. } => (low, high),
+            ShapeParameterKind::Pure { low, high, .. } => (low, high),
             _ => scaled.log_rates(),
         };
         let mut bounds = widest;
         if let Some((_, (low, high))) = options.bounds.iter().find(|(bounded, _)| *bounded == name) {
             let ends = [inner(kind, low.max(0.0)), inner(kind, high.max(0.0))];
-            let pure = matches!(kind, NumberKind::Pure { .. });
+            let pure = matches!(kind, ShapeParameterKind::Pure { .. });
             bounds = (ends[0].min(ends[1]).max(widest.0), ends[0].max(ends[1]).min(widest.1));
             // An exponent may be sought wherever the caller wants it; an end left open is that of the law.
             if pure {
@@ -123,11 +123,11 @@ fn numbers(
                 });
             }
         }
-        let mut fixed = (kind == NumberKind::Reference).then_some(0.0);
+        let mut fixed = (kind == ShapeParameterKind::Reference).then_some(0.0);
         if let Some(value) = options.held(&name) {
             fixed = Some(inner(kind, value));
         }
-        numbers.push(Number {
+        parameters.push(ModelParameter {
             shape,
             name,
             kind,
@@ -135,7 +135,7 @@ fn numbers(
             fixed,
         });
     }
-    Ok(numbers)
+    Ok(parameters)
 }
 
 /// Bounds of constant and amplitudes; empty if nothing binds.

@@ -106,9 +106,9 @@ impl Condensed {
     }
 
     /// One shape at the nodes, times their roots.
-    pub(crate) fn column(&self, model: &Model, shape: usize, numbers: &[f64]) -> Vec<f64> {
+    pub(crate) fn column(&self, model: &Model, shape: usize, parameters: &[f64]) -> Vec<f64> {
         let mut column = vec![0.0; self.times.len()];
-        model.shape_value(shape, &self.times, numbers, &mut column);
+        model.shape_value(shape, &self.times, parameters, &mut column);
         multiply(&mut column, &self.roots);
         column
     }
@@ -219,12 +219,12 @@ struct Nodes {
     inside: [f64; LANES],
 }
 
-/// How many of rising numbers lie below `end`: one look at eight of them.
+/// How many of rising parameters lie below `end`: one look at eight of them.
 fn count_below(rising: &[f64], end: f64) -> usize {
     let (blocks, rest) = rising.as_chunks::<8>();
     let whole = blocks.iter().take_while(|block| block[7] < end).count();
     let last = blocks.get(whole).map_or(rest, |block| block);
-    8 * whole + last.iter().filter(|number| **number < end).count()
+    8 * whole + last.iter().filter(|parameter| **parameter < end).count()
 }
 
 #[cfg(test)]

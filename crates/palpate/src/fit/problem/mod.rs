@@ -2,7 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `model.rs` | a law with its free numbers and their bounds, as columns of a separable model |
+//! | `model.rs` | a law with its free parameters and their bounds, as columns of a separable model |
 //! | `build.rs` | options checked against a law, and the model that they ask for |
 //! | `condensed.rs` | a hold condensed to a few dozen nodes |
 //! | `ghosts.rs` | terms that a fit lists and the data do not have |
@@ -16,4 +16,4 @@ pub(super) use build::build;
 pub(super) use condensed::{Condensed, condense, condense_to};
 pub use ghosts::Ghost;
 pub(super) use ghosts::ghosts;
-pub(super) use model::{Model, Number, Sampled, searched_name};
+pub(super) use model::{Model, ModelParameter, Sampled, searched_name};

@@ -1,33 +1,33 @@
-//! A law made ready for a fit: which numbers are free, and within which bounds.
+//! A law made ready for a fit: which parameters are free, and within which bounds.
 
-use crate::laws::{BasisFunction, Column, Form, Kernel, Loading, NumberKind, Superposition};
+use crate::laws::{BasisFunction, Column, Form, Kernel, Loading, ShapeParameterKind, Superposition};
 use crate::optimise::{Few, Shapes, Spare, Termination};
 
-/// A nonlinear number of the law.
+/// A nonlinear parameter of the law.
 #[derive(Debug, Clone)]
-pub(crate) struct Number {
+pub(crate) struct ModelParameter {
     /// Which shape has it.
     pub(crate) shape: usize,
     /// Its name in results.
     pub(crate) name: String,
-    pub(crate) kind: NumberKind,
+    pub(crate) kind: ShapeParameterKind,
     /// Bounds in the units of the fit.
     pub(crate) bounds: (f64, f64),
     /// Held at this value, in the units of the fit.
     pub(crate) fixed: Option<f64>,
 }
 
-/// A law with some numbers held, some bounded, in the units of the fit (times over the hold's duration).
+/// A law with some parameters held, some bounded, in the units of the fit (times over the hold's duration).
 #[derive(Debug, Clone)]
 pub(crate) struct Model {
     pub(crate) form: Form,
-    /// Whether the constant is one of the linear numbers.
+    /// Whether the constant is one of the linear parameters.
     pub(crate) constant: bool,
-    /// All nonlinear numbers, shape by shape.
-    pub(crate) numbers: Vec<Number>,
-    /// Bounds of every linear number.
+    /// All nonlinear parameters, shape by shape.
+    pub(crate) parameters: Vec<ModelParameter>,
+    /// Bounds of every linear parameter.
     pub(crate) linear_bounds: Vec<(f64, f64)>,
-    /// Which of `numbers` are free.
+    /// Which of `parameters` are free.
     pub(crate) free: Vec<usize>,
     columns: Vec<Column>,
     /// What shapes are averaged over; none for a step.
@@ -35,13 +35,18 @@ pub(crate) struct Model {
 }
 
 impl Model {
-    pub(crate) fn new(form: Form, constant: bool, numbers: Vec<Number>, linear_bounds: Vec<(f64, f64)>) -> Self {
-        let free = (0..numbers.len()).filter(|&i| numbers[i].fixed.is_none()).collect();
+    pub(crate) fn new(
+        form: Form,
+        constant: bool,
+        parameters: Vec<ModelParameter>,
+        linear_bounds: Vec<(f64, f64)>,
+    ) -> Self {
+        let free = (0..parameters.len()).filter(|&i| parameters[i].fixed.is_none()).collect();
         let columns = form.shapes.iter().map(|shape| Column::of(shape, form.response)).collect();
         Self {
             form,
             constant,
-            numbers,
+            parameters,
             linear_bounds,
             free,
             columns,
@@ -58,58 +63,69 @@ impl Model {
         }
     }
 
-    /// Linear numbers.
+    /// Linear parameters.
     pub(crate) fn linear(&self) -> usize {
         usize::from(self.constant) + self.form.shapes.len()
     }
 
-    /// Names of the numbers that are sought, the nonlinear ones as asked for.
-    pub(crate) fn names(&self, of: impl Fn(&Number) -> String) -> Vec<String> {
+    /// Names of the parameters that are sought, the nonlinear ones as asked for.
+    pub(crate) fn names(&self, of: impl Fn(&ModelParameter) -> String) -> Vec<String> {
         let constant = self.constant.then(|| self.form.constant_name().to_owned());
         let nonlinear = self.free().map(of);
         constant.into_iter().chain(self.form.amplitude_names()).chain(nonlinear).collect()
     }
 
-    /// Free nonlinear numbers.
-    pub(crate) fn free(&self) -> impl ExactSizeIterator<Item = &Number> {
-        self.free.iter().map(|&i| &self.numbers[i])
+    /// Free nonlinear parameters.
+    pub(crate) fn free(&self) -> impl ExactSizeIterator<Item = &ModelParameter> {
+        self.free.iter().map(|&i| &self.parameters[i])
     }
 
-    /// All nonlinear numbers where the free ones have these values.
+    /// All nonlinear parameters where the free ones have these values.
     pub(crate) fn complete(&self, theta: &[f64]) -> Few {
-        let mut all: Few = self.numbers.iter().map(|number| number.fixed.unwrap_or(0.0)).collect();
+        let mut all: Few = self.parameters.iter().map(|parameter| parameter.fixed.unwrap_or(0.0)).collect();
         for (&i, value) in self.free.iter().zip(theta) {
             all[i] = *value;
         }
         all
     }
 
-    /// Range of the numbers of a shape among all.
-    pub(crate) fn numbers_of(&self, shape: usize) -> std::ops::Range<usize> {
-        let from = self.numbers.iter().position(|number| number.shape == shape).unwrap_or(self.numbers.len());
-        from..from + self.form.shapes[shape].numbers().len()
+    /// Range of the parameters of a shape among all.
+    pub(crate) fn parameters_of(&self, shape: usize) -> std::ops::Range<usize> {
+        let from = self
+            .parameters
+            .iter()
+            .position(|parameter| parameter.shape == shape)
+            .unwrap_or(self.parameters.len());
+        from..from + self.form.shapes[shape].parameters().len()
     }
 
-    /// One shape as it stands in the signal, at all its numbers.
-    pub(crate) fn shape_value(&self, shape: usize, times: &[f64], numbers: &[f64], value: &mut [f64]) {
+    /// One shape as it stands in the signal, at all its parameters.
+    pub(crate) fn shape_value(&self, shape: usize, times: &[f64], parameters: &[f64], value: &mut [f64]) {
         match &self.loading {
-            None => self.form.shapes[shape].value(times, numbers, value),
-            Some(loading) => loading.value(&self.form.shapes[shape], times, numbers, value),
+            None => self.form.shapes[shape].value(times, parameters, value),
+            Some(loading) => loading.value(&self.form.shapes[shape], times, parameters, value),
         }
         orient(value, self.columns[shape]);
     }
 
     /// One shape and its derivatives, as they stand in the signal but for offset and sign.
-    fn gradient(&self, shape: usize, times: &[f64], numbers: &[f64], value: &mut [f64], derivatives: &mut [Vec<f64>]) {
+    fn gradient(
+        &self,
+        shape: usize,
+        times: &[f64],
+        parameters: &[f64],
+        value: &mut [f64],
+        derivatives: &mut [Vec<f64>],
+    ) {
         match &self.loading {
-            None => self.form.shapes[shape].gradient(times, numbers, value, derivatives),
-            Some(loading) => loading.gradient(&self.form.shapes[shape], times, numbers, value, derivatives),
+            None => self.form.shapes[shape].gradient(times, parameters, value, derivatives),
+            Some(loading) => loading.gradient(&self.form.shapes[shape], times, parameters, value, derivatives),
         }
     }
 
-    /// Shapes that have a free number, and those that have none.
+    /// Shapes that have a free parameter, and those that have none.
     pub(crate) fn moving(&self) -> (Vec<usize>, Vec<usize>) {
-        (0..self.form.shapes.len()).partition(|&shape| self.free().any(|number| number.shape == shape))
+        (0..self.form.shapes.len()).partition(|&shape| self.free().any(|parameter| parameter.shape == shape))
     }
 
     /// The model at these times.
@@ -121,20 +137,20 @@ impl Model {
         }
     }
 
-    /// The same with only its first shapes, whose linear numbers nothing bounds.
+    /// The same with only its first shapes, whose linear parameters nothing bounds.
     pub(crate) fn first_shapes(&self, count: usize) -> Self {
         let form = Form {
             shapes: self.form.shapes[..count].to_vec(),
             ..self.form.clone()
         };
-        let numbers = self.numbers.iter().filter(|number| number.shape < count).cloned().collect();
-        Self::new(form, self.constant, numbers, Vec::new())
+        let parameters = self.parameters.iter().filter(|parameter| parameter.shape < count).cloned().collect();
+        Self::new(form, self.constant, parameters, Vec::new())
     }
 
     /// Whether this is a series of exponentials with all their rates free.
     pub(crate) fn is_series(&self) -> bool {
         let alike = self.form.shapes.iter().all(|shape| *shape == BasisFunction::Exponential);
-        alike && self.form.shapes.len() > 1 && self.free.len() == self.numbers.len()
+        alike && self.form.shapes.len() > 1 && self.free.len() == self.parameters.len()
     }
 }
 
@@ -169,11 +185,11 @@ impl Shapes for Sampled<'_> {
     }
 
     fn column_of(&self, index: usize) -> usize {
-        usize::from(self.model.constant) + self.model.numbers[self.model.free[index]].shape
+        usize::from(self.model.constant) + self.model.parameters[self.model.free[index]].shape
     }
 
     fn bounds(&self, index: usize) -> (f64, f64) {
-        self.model.numbers[self.model.free[index]].bounds
+        self.model.parameters[self.model.free[index]].bounds
     }
 
     fn linear_bounds(&self) -> &[(f64, f64)] {
@@ -185,9 +201,11 @@ impl Shapes for Sampled<'_> {
     }
 
     fn at_bound(&self, index: usize) -> Termination {
-        match self.model.numbers[self.model.free[index]].kind {
-            NumberKind::Rate | NumberKind::Time | NumberKind::Reference => Termination::RateAtBound,
-            NumberKind::Pure { .. } => Termination::ExponentAtBound,
+        match self.model.parameters[self.model.free[index]].kind {
+            ShapeParameterKind::Rate | ShapeParameterKind::Time | ShapeParameterKind::Reference => {
+                Termination::RateAtBound
+            }
+            ShapeParameterKind::Pure { .. } => Termination::ExponentAtBound,
         }
     }
 
@@ -199,26 +217,26 @@ impl Shapes for Sampled<'_> {
         }
         let mut next = 0;
         for (index, column) in shapes.iter_mut().enumerate() {
-            let range = model.numbers_of(index);
-            let mut numbers = [0.0; 2];
-            let numbers = &mut numbers[..range.len()];
+            let range = model.parameters_of(index);
+            let mut parameters = [0.0; 2];
+            let parameters = &mut parameters[..range.len()];
             let mut free = 0;
-            for (number, place) in model.numbers[range.clone()].iter().zip(numbers.iter_mut()) {
-                *place = number.fixed.unwrap_or_else(|| {
+            for (parameter, place) in model.parameters[range.clone()].iter().zip(parameters.iter_mut()) {
+                *place = parameter.fixed.unwrap_or_else(|| {
                     free += 1;
                     theta[next + free - 1]
                 });
             }
             if free == 0 {
-                model.shape_value(index, self.times, numbers, column);
+                model.shape_value(index, self.times, parameters, column);
                 continue;
             } else if free == range.len() {
-                model.gradient(index, self.times, numbers, column, &mut derivatives[next..next + free]);
+                model.gradient(index, self.times, parameters, column, &mut derivatives[next..next + free]);
             } else {
                 // One of two is held: its derivative goes nowhere.
                 let mut all = vec![vec![0.0; self.times.len()]; range.len()];
-                model.gradient(index, self.times, numbers, column, &mut all);
-                let kept = model.numbers[range].iter().position(|number| number.fixed.is_none());
+                model.gradient(index, self.times, parameters, column, &mut all);
+                let kept = model.parameters[range].iter().position(|parameter| parameter.fixed.is_none());
                 std::mem::swap(&mut derivatives[next], &mut all[kept.unwrap_or(0)]);
             }
             for derivative in &mut derivatives[next..next + free] {
@@ -233,11 +251,11 @@ impl Shapes for Sampled<'_> {
     }
 }
 
-/// What the searched form of a nonlinear number is called: rates and times are searched as ln of a rate.
-pub(crate) fn searched_name(name: &str, kind: NumberKind) -> String {
+/// What the searched form of a nonlinear parameter is called: rates and times are searched as ln of a rate.
+pub(crate) fn searched_name(name: &str, kind: ShapeParameterKind) -> String {
     match kind {
-        NumberKind::Pure { .. } => name.to_owned(),
-        NumberKind::Time => format!("log_rate{}", name.trim_start_matches(|c: char| c != '_')),
-        _ => format!("log_{name}"),
+        ShapeParameterKind::Pure { .. } => name.to_owned(),
+        ShapeParameterKind::Time => format!("-ln {name}"),
+        _ => format!("ln {name}"),
     }
 }

@@ -4,8 +4,8 @@
 //! y(t) = y_e + s Σ_j h_j exp(−t/τ_j),   h_j ≥ 0,   s = ±1
 //! ```
 //!
-//! The times τ_j are a grid, not numbers to find, so the fit is linear least squares with bounds: it has one optimum and
-//! needs no start. Numbers of the law it has none; it is what any sum of relaxing parts can do, and hence the alternative
+//! The times τ_j are a grid, not parameters to find, so the fit is linear least squares with bounds: it has one optimum and
+//! needs no start. Parameters of the law it has none; it is what any sum of relaxing parts can do, and hence the alternative
 //! that a law has to match in predicting a hold. The rule for grid and smoothing and its evidence:
 //! `docs/theory/spectrum.md`.
 
@@ -104,7 +104,7 @@ impl SpectrumOptions {
 /// ```
 ///
 /// # Errors
-/// [`FitError`] for unequal lengths, fewer than five samples of weight, numbers that are not finite, times that do not
+/// [`FitError`] for unequal lengths, fewer than five samples of weight, parameters that are not finite, times that do not
 /// rise, weights that are none, options out of range, or values that are all the same.
 pub fn fit_spectrum(
     times: &[f64],
@@ -196,7 +196,7 @@ impl Scaled {
             Smoothing::Automatic => smoother.strongest(&decades, limit)?,
             Smoothing::Given(strength) => smoother.solve(strength)?,
         };
-        let (amplitudes, constant) = smoothed.numbers.split_at(grid.len());
+        let (amplitudes, constant) = smoothed.parameters.split_at(grid.len());
         let unit = self.weight * self.range * self.range;
         Some(SpectrumFit {
             equilibrium: self.center + constant[0] * self.range,
@@ -206,7 +206,7 @@ impl Scaled {
             duration: self.duration,
             strength: smoothed.strength,
             effective_parameters: smoother.effective_parameters(&smoothed),
-            residual_square: self.residual_square(grid, &smoothed.numbers) * self.range * self.range,
+            residual_square: self.residual_square(grid, &smoothed.parameters) * self.range * self.range,
             least_residual_square: least * unit,
             residual_limit: limit * unit,
             samples: self.times.len(),
@@ -214,11 +214,11 @@ impl Scaled {
         })
     }
 
-    /// Weighted sum of squares that `numbers` leave, from the samples themselves.
-    fn residual_square(&self, grid: &[f64], numbers: &[f64]) -> f64 {
-        let mut left: Vec<f64> = self.values.iter().map(|value| value - numbers[grid.len()]).collect();
+    /// Weighted sum of squares that `parameters` leave, from the samples themselves.
+    fn residual_square(&self, grid: &[f64], parameters: &[f64]) -> f64 {
+        let mut left: Vec<f64> = self.values.iter().map(|value| value - parameters[grid.len()]).collect();
         let mut term = vec![0.0; left.len()];
-        for (time, height) in grid.iter().zip(numbers).filter(|(_, height)| **height != 0.0) {
+        for (time, height) in grid.iter().zip(parameters).filter(|(_, height)| **height != 0.0) {
             let until = self.times.partition_point(|t| *t <= GONE * time);
             decay_many(&self.times[..until], 1.0 / time, 1.0, &mut term[..until]);
             left.iter_mut().zip(&term[..until]).for_each(|(left, term)| *left -= height * term);

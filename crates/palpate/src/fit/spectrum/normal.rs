@@ -60,12 +60,12 @@ impl Normal {
         }
     }
 
-    /// Mean square that `numbers` leave, down to the rounding of these products.
-    pub(crate) fn residual(&self, numbers: &[f64]) -> f64 {
+    /// Mean square that `parameters` leave, down to the rounding of these products.
+    pub(crate) fn residual(&self, parameters: &[f64]) -> f64 {
         let size = self.right.len();
         let explained: f64 = (0..size)
-            .filter(|i| numbers[*i] != 0.0)
-            .map(|i| numbers[i] * (2.0 * self.right[i] - dot(&self.gram[i * size..(i + 1) * size], numbers)))
+            .filter(|i| parameters[*i] != 0.0)
+            .map(|i| parameters[i] * (2.0 * self.right[i] - dot(&self.gram[i * size..(i + 1) * size], parameters)))
             .sum();
         (self.square - explained).max(size as f64 * f64::EPSILON * self.square)
     }
@@ -81,7 +81,7 @@ mod tests {
         let values: Vec<f64> = times.iter().map(|t| (3.0 * t).cos()).collect();
         let roots: Vec<f64> = times.iter().map(|t| 1.0 + t).collect();
         let normal = Normal::new(&times, &values, &roots, &[0.1, 2.0]);
-        let numbers = [0.4, -0.3, 0.2];
+        let parameters = [0.4, -0.3, 0.2];
         let columns = |t: f64| [(-t / 0.1).exp(), (-t / 2.0).exp(), 1.0];
         let weight: f64 = roots.iter().map(|r| r * r).sum();
         let mean = |f: &dyn Fn(usize) -> f64| (0..300).map(|k| roots[k] * roots[k] * f(k)).sum::<f64>() / weight;
@@ -92,7 +92,7 @@ mod tests {
                 assert!((normal.gram[3 * i + j] - product).abs() < 1e-14);
             }
         }
-        let left = mean(&|k| (values[k] - dot(&columns(times[k]), &numbers)).powi(2));
-        assert!((normal.residual(&numbers) - left).abs() < 1e-14);
+        let left = mean(&|k| (values[k] - dot(&columns(times[k]), &parameters)).powi(2));
+        assert!((normal.residual(&parameters) - left).abs() < 1e-14);
     }
 }

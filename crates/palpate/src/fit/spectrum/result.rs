@@ -18,9 +18,9 @@ pub struct SpectrumFit {
     pub amplitudes: Vec<f64>,
     /// Length of the hold, s.
     pub duration: f64,
-    /// μ, the strength of smoothing; a pure number.
+    /// μ, the strength of smoothing; a dimensionless parameter.
     pub strength: f64,
-    /// Numbers that the samples, not the smoothing, determine: the trace of the hat matrix, the constant included.
+    /// Parameters that the samples, not the smoothing, determine: the trace of the hat matrix, the constant included.
     pub effective_parameters: f64,
     /// Weighted sum of squared residuals.
     pub residual_square: f64,

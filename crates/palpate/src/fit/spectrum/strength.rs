@@ -14,7 +14,7 @@ const STEPS: i32 = 8;
 pub(crate) struct Smoothed {
     pub(crate) strength: f64,
     /// Amplitudes, then the constant; amplitudes have the sign of the relaxation.
-    pub(crate) numbers: Vec<f64>,
+    pub(crate) parameters: Vec<f64>,
     held: Vec<Held>,
     /// Mean square left.
     pub(crate) residual: f64,
@@ -60,11 +60,11 @@ impl<'a> Smoother<'a> {
         let solved = if self.begun { self.solver.solve_from_last(&problem) } else { None };
         solved.or_else(|| self.solver.solve(&problem))?;
         self.begun = true;
-        let numbers = self.solver.solution.clone();
-        let residual = self.normal.residual(&numbers);
+        let parameters = self.solver.solution.clone();
+        let residual = self.normal.residual(&parameters);
         Some(Smoothed {
             strength,
-            numbers,
+            parameters,
             held: self.solver.held.clone(),
             residual,
         })
@@ -97,7 +97,7 @@ impl<'a> Smoother<'a> {
         Some(best)
     }
 
-    /// Numbers that the samples, not the smoothing, determine: the trace of the hat matrix, (G + μL)⁻¹ G over the free numbers.
+    /// Parameters that the samples, not the smoothing, determine: the trace of the hat matrix, (G + μL)⁻¹ G over the free parameters.
     pub(crate) fn effective_parameters(&mut self, smoothed: &Smoothed) -> f64 {
         let size = self.normal.right.len();
         self.smooth(smoothed.strength);

@@ -3,7 +3,7 @@
 //! What is left in a sheet of thickness L that exchanges through both faces: φ(t) = (8/π²) Σ_{k = 1, 3, 5, …} exp(−k²λt)/k²,
 //! λ = π²D/L² with the diffusivity D. y(t) = y_e + Δ φ(t); in creep y₀ + Δ (1 − φ(t)).
 //!
-//! | number | unit | range | meaning |
+//! | parameter | unit | range | meaning |
 //! |---|---|---|---|
 //! | equilibrium y_e, or instantaneous y₀ | of y | any | end, or start in creep |
 //! | amplitude Δ | of y | any | what relaxes |
@@ -11,7 +11,7 @@
 //!
 //! Early, 1 − φ grows as the square root of time; late, φ falls as (8/π²) exp(−t/τ).
 
-use crate::laws::{Description, Kernel, ShapeNumber, TIME};
+use crate::laws::{Description, Kernel, ShapeParameter, TIME};
 use crate::special::diffusion_decay_many;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
@@ -24,7 +24,7 @@ pub(in crate::laws) const DESCRIPTION: Description = Description {
 pub(in crate::laws) struct Diffusion;
 
 impl Kernel for Diffusion {
-    fn numbers(&self) -> &'static [ShapeNumber] {
+    fn parameters(&self) -> &'static [ShapeParameter] {
         &[TIME]
     }
 

@@ -2,14 +2,14 @@
 //!
 //! y(t) = y_e + Δ E_α(−(t/τ)^α), E_α the Mittag-Leffler function; in creep y₀ + Δ (1 − E_α(−(t/τ)^α)).
 //!
-//! | number | unit | range | meaning |
+//! | parameter | unit | range | meaning |
 //! |---|---|---|---|
 //! | equilibrium y_e, or instantaneous y₀ | of y | any | end, or start in creep |
 //! | amplitude Δ | of y | any | what relaxes |
 //! | time τ | s | above 0 | between the two powers, t^α before and t^(−α) after |
 //! | order α | 1 | 0.05 to 1 | 1: standard linear solid |
 
-use crate::laws::{Description, Kernel, ShapeNumber, TIME, two};
+use crate::laws::{Description, Kernel, ShapeParameter, TIME, two};
 use crate::special::{mittag_leffler_decay_many, mittag_leffler_decay_value_many};
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
@@ -22,9 +22,9 @@ pub(in crate::laws) const DESCRIPTION: Description = Description {
 pub(in crate::laws) struct MittagLeffler;
 
 impl Kernel for MittagLeffler {
-    fn numbers(&self) -> &'static [ShapeNumber] {
+    fn parameters(&self) -> &'static [ShapeParameter] {
         const COARSE: [f64; 10] = [0.05, 0.1, 0.18, 0.27, 0.38, 0.5, 0.63, 0.77, 0.9, 1.0];
-        const { &[TIME, ShapeNumber::pure("order", 0.05, 1.0, &COARSE)] }
+        const { &[TIME, ShapeParameter::pure("order", 0.05, 1.0, &COARSE)] }
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {

@@ -3,7 +3,7 @@
 //! y(t) = N [1 + C (E₁(t/τ_long) − E₁(t/τ_short))]/[1 + C ln(τ_long/τ_short)], E₁ the exponential integral: relaxation times spread
 //! evenly in ln τ between τ_short and τ_long. As a shape: φ = [E₁(λt) − E₁(ϱλt)]/ln ϱ with λ = 1/τ_long and ϱ = τ_long/τ_short.
 //!
-//! | number | unit | range | meaning |
+//! | parameter | unit | range | meaning |
 //! |---|---|---|---|
 //! | elastic response N | of y | any | signal at the start |
 //! | strength C | 1 | above 0 for relaxation | height of the spectrum |
@@ -11,7 +11,7 @@
 //!
 //! Limit: ϱ → 1 is the standard linear solid.
 
-use crate::laws::{Description, Kernel, NumberKind, ShapeNumber, two};
+use crate::laws::{Description, Kernel, ShapeParameter, ShapeParameterKind, two};
 use crate::special::fung_continuous_many;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
@@ -24,10 +24,10 @@ pub(in crate::laws) const DESCRIPTION: Description = Description {
 pub(in crate::laws) struct FungContinuous;
 
 impl Kernel for FungContinuous {
-    fn numbers(&self) -> &'static [ShapeNumber] {
+    fn parameters(&self) -> &'static [ShapeParameter] {
         const COARSE: [f64; 10] = [0.05, 1.5, 3.0, 4.5, 6.0, 8.0, 10.0, 13.0, 17.0, 25.0];
-        const TIME_LONG: ShapeNumber = ShapeNumber::new("time_long", NumberKind::Time);
-        const { &[TIME_LONG, ShapeNumber::pure("log_ratio", 0.05, 25.0, &COARSE)] }
+        const TIME_LONG: ShapeParameter = ShapeParameter::new("time_constant_long_s", ShapeParameterKind::Time);
+        const { &[TIME_LONG, ShapeParameter::pure("log_ratio", 0.05, 25.0, &COARSE)] }
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {

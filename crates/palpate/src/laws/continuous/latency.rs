@@ -2,7 +2,7 @@
 //!
 //! y(t) = y_e + Δ φ(t; λ, n),  φ = [1 + (n−1) λt]^(−1/(n−1)): equations (4) and (5) of Tsai, Kao et al.
 //!
-//! | number | unit | range | meaning |
+//! | parameter | unit | range | meaning |
 //! |---|---|---|---|
 //! | equilibrium y_e | of y | any | what the signal tends to |
 //! | amplitude Δ | of y | any, falls if positive | excess at the start |
@@ -13,7 +13,7 @@
 //! t/(k₁ + k₂t) (Peleg 1980), with Δ = 1/k₂ and λ = k₂/k₁; large n the logarithm; without equilibrium a power law.
 
 use crate::latency::{decay_columns, decay_many};
-use crate::laws::{BasisFunction, Description, ExponentChoice, Kernel, NumberKind, ShapeNumber, two};
+use crate::laws::{BasisFunction, Description, ExponentChoice, Kernel, ShapeParameter, ShapeParameterKind, two};
 
 /// In words; two exponents have names of their own.
 pub(in crate::laws) fn description(exponent: ExponentChoice) -> Description {
@@ -43,7 +43,7 @@ impl ExponentChoice {
     }
 }
 
-const RATE: ShapeNumber = ShapeNumber::new("relative_rate", NumberKind::Rate);
+const RATE: ShapeParameter = ShapeParameter::new("relative_rate_per_s", ShapeParameterKind::Rate);
 
 /// Exponents of a coarse search.
 const COARSE: [f64; 15] = [0.2, 0.3, 0.6, 1.0, 1.4, 2.0, 2.7, 3.6, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0, 30.0];
@@ -52,8 +52,8 @@ const COARSE: [f64; 15] = [0.2, 0.3, 0.6, 1.0, 1.4, 2.0, 2.7, 3.6, 5.0, 7.0, 10.
 pub(in crate::laws) struct FreeLatency;
 
 impl Kernel for FreeLatency {
-    fn numbers(&self) -> &'static [ShapeNumber] {
-        const EXPONENT: ShapeNumber = ShapeNumber::pure("exponent", 0.2, 30.0, &COARSE);
+    fn parameters(&self) -> &'static [ShapeParameter] {
+        const EXPONENT: ShapeParameter = ShapeParameter::pure("exponent", 0.2, 30.0, &COARSE);
         &[RATE, EXPONENT]
     }
 
@@ -73,7 +73,7 @@ pub(in crate::laws) struct FixedLatency {
 }
 
 impl Kernel for FixedLatency {
-    fn numbers(&self) -> &'static [ShapeNumber] {
+    fn parameters(&self) -> &'static [ShapeParameter] {
         &[RATE]
     }
 

@@ -2,13 +2,13 @@
 //!
 //! y(t) = y₀ − Δ ln(1 + λt), in creep y₀ + Δ ln(1 + λt): the limit of the latency law for large n, where (n−1) λ and Δ/(n−1) stay.
 //!
-//! | number | unit | range | meaning |
+//! | parameter | unit | range | meaning |
 //! |---|---|---|---|
 //! | start y₀, or instantaneous y₀ in creep | of y | any | signal at the start |
 //! | amplitude Δ | of y | any | change per e-fold of time |
 //! | time 1/λ | s | above 0 | where the logarithm begins |
 
-use crate::laws::{Description, Kernel, ShapeNumber, TIME};
+use crate::laws::{Description, Kernel, ShapeParameter, TIME};
 use crate::vector::logarithm_columns;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
@@ -21,7 +21,7 @@ pub(in crate::laws) const DESCRIPTION: Description = Description {
 pub(in crate::laws) struct Logarithm;
 
 impl Kernel for Logarithm {
-    fn numbers(&self) -> &'static [ShapeNumber] {
+    fn parameters(&self) -> &'static [ShapeParameter] {
         &[TIME]
     }
 

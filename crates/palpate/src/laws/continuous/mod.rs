@@ -1,4 +1,4 @@
-//! Laws of a continuous spectrum of relaxation times: each file states its law, its numbers and where it comes from, and holds its
+//! Laws of a continuous spectrum of relaxation times: each file states its law, its parameters and where it comes from, and holds its
 //! basis function.
 
 pub(super) mod diffusion;

@@ -4,14 +4,14 @@
 //! the latency law with n = 1 + 1/α, λ = α/t₀ and no equilibrium. Creep y(t) = y₀ + Δ (t/T)^α, T the duration of the fit; the
 //! coefficient of t^α with t in seconds is derived from it.
 //!
-//! | number | unit | range | meaning |
+//! | parameter | unit | range | meaning |
 //! |---|---|---|---|
 //! | amplitude Δ | of y | any | signal at the start; in creep its growth over the fit |
 //! | time t₀ (relaxation) | s | above 0 | where the power begins |
 //! | exponent α | 1 | 0.005 to 5; in creep 0.01 to 2 | 0: elastic, 1: viscous |
 
 use crate::latency::{decay_columns, decay_many};
-use crate::laws::{Description, Kernel, REFERENCE, ShapeNumber, TIME, two};
+use crate::laws::{Description, Kernel, REFERENCE, ShapeParameter, TIME, two};
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "power law",
@@ -23,9 +23,9 @@ pub(in crate::laws) const DESCRIPTION: Description = Description {
 pub(in crate::laws) struct PowerDecay;
 
 impl Kernel for PowerDecay {
-    fn numbers(&self) -> &'static [ShapeNumber] {
+    fn parameters(&self) -> &'static [ShapeParameter] {
         const COARSE: [f64; 14] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.35, 0.6, 1.0, 1.6, 2.5, 4.0, 5.0];
-        const { &[TIME, ShapeNumber::pure("exponent", 0.005, 5.0, &COARSE)] }
+        const { &[TIME, ShapeParameter::pure("exponent", 0.005, 5.0, &COARSE)] }
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {
@@ -47,9 +47,9 @@ impl Kernel for PowerDecay {
 pub(in crate::laws) struct PowerGrowth;
 
 impl Kernel for PowerGrowth {
-    fn numbers(&self) -> &'static [ShapeNumber] {
+    fn parameters(&self) -> &'static [ShapeParameter] {
         const COARSE: [f64; 14] = [0.01, 0.03, 0.06, 0.1, 0.15, 0.22, 0.32, 0.45, 0.6, 0.8, 1.0, 1.3, 1.6, 2.0];
-        const { &[REFERENCE, ShapeNumber::pure("exponent", 0.01, 2.0, &COARSE)] }
+        const { &[REFERENCE, ShapeParameter::pure("exponent", 0.01, 2.0, &COARSE)] }
     }
 
     fn decays(&self) -> bool {

@@ -2,14 +2,14 @@
 //!
 //! y(t) = y_e + Δ exp(−(λt)^β), in creep y₀ + Δ (1 − exp(−(λt)^β)).
 //!
-//! | number | unit | range | meaning |
+//! | parameter | unit | range | meaning |
 //! |---|---|---|---|
 //! | equilibrium y_e, or instantaneous y₀ | of y | any | end, or start in creep |
 //! | amplitude Δ | of y | any | what relaxes |
 //! | time τ = 1/λ | s | above 0 | where e⁻¹ of it is left |
 //! | stretching β | 1 | 0.05 to 2 | 1: exponential; smaller: wider |
 
-use crate::laws::{Description, Kernel, ShapeNumber, TIME, two};
+use crate::laws::{Description, Kernel, ShapeParameter, TIME, two};
 use crate::vector::stretched_columns;
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
@@ -22,9 +22,9 @@ pub(in crate::laws) const DESCRIPTION: Description = Description {
 pub(in crate::laws) struct Stretched;
 
 impl Kernel for Stretched {
-    fn numbers(&self) -> &'static [ShapeNumber] {
+    fn parameters(&self) -> &'static [ShapeParameter] {
         const COARSE: [f64; 12] = [0.05, 0.1, 0.15, 0.22, 0.3, 0.4, 0.53, 0.7, 0.9, 1.2, 1.6, 2.0];
-        const { &[TIME, ShapeNumber::pure("stretching", 0.05, 2.0, &COARSE)] }
+        const { &[TIME, ShapeParameter::pure("stretching", 0.05, 2.0, &COARSE)] }
     }
 
     fn value(&self, times: &[f64], theta: &[f64], value: &mut [f64]) {

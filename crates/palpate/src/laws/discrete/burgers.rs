@@ -2,7 +2,7 @@
 //!
 //! Creep y(t) = y₀ + Δ (1 − exp(−t/τ)) + rate · t; relaxation y(t) = Δ₁ exp(−t/τ₁) + Δ₂ exp(−t/τ₂), to nothing.
 //!
-//! | number | unit | range | meaning |
+//! | parameter | unit | range | meaning |
 //! |---|---|---|---|
 //! | instantaneous y₀ | of y | any | elastic part |
 //! | amplitude Δ | of y | any | delayed part |

@@ -1,13 +1,13 @@
 //! The shape exp(−λt) that Maxwell, Kelvin–Voigt, standard linear solid, Burgers, Prony and Fung share.
 
-use crate::laws::kernel::{Kernel, ShapeNumber, TIME};
+use crate::laws::kernel::{Kernel, ShapeParameter, TIME};
 use crate::vector::exponential_columns;
 
 /// exp(−t/τ).
 pub(in crate::laws) struct Exponential;
 
 impl Kernel for Exponential {
-    fn numbers(&self) -> &'static [ShapeNumber] {
+    fn parameters(&self) -> &'static [ShapeParameter] {
         &[TIME]
     }
 

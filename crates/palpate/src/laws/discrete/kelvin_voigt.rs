@@ -2,7 +2,7 @@
 //!
 //! Creep y(t) = Δ (1 − exp(−t/τ)), with no jump at the start. Under a held deformation it does not relax: there is no such form.
 //!
-//! | number | unit | range | meaning |
+//! | parameter | unit | range | meaning |
 //! |---|---|---|---|
 //! | amplitude Δ | of y | any | what the creep tends to |
 //! | time τ | s | above 0 | retardation time, viscosity over stiffness |

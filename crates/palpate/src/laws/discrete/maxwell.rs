@@ -2,14 +2,14 @@
 //!
 //! Relaxation y(t) = Δ exp(−t/τ): everything relaxes. Creep y(t) = y₀ + rate · t: it flows without end.
 //!
-//! | number | unit | range | meaning |
+//! | parameter | unit | range | meaning |
 //! |---|---|---|---|
 //! | amplitude Δ | of y | any | signal at the start |
 //! | time τ | s | above 0 | relaxation time, viscosity over stiffness |
 //! | instantaneous y₀ (creep) | of y | any | elastic part |
 //! | flow rate (creep) | of y per s | any | slope of the flow |
 
-use crate::laws::{Description, Kernel, REFERENCE, ShapeNumber};
+use crate::laws::{Description, Kernel, REFERENCE, ShapeParameter};
 
 pub(in crate::laws) const DESCRIPTION: Description = Description {
     title: "Maxwell",
@@ -21,7 +21,7 @@ pub(in crate::laws) const DESCRIPTION: Description = Description {
 pub(in crate::laws) struct Straight;
 
 impl Kernel for Straight {
-    fn numbers(&self) -> &'static [ShapeNumber] {
+    fn parameters(&self) -> &'static [ShapeParameter] {
         &[REFERENCE]
     }
 

@@ -2,7 +2,7 @@
 //!
 //! y(t) = y_e + Σ Δᵢ exp(−t/τᵢ), τ₁ < τ₂ < …; creep y(t) = y₀ + Σ Δᵢ (1 − exp(−t/τᵢ)).
 //!
-//! | number | unit | range | meaning |
+//! | parameter | unit | range | meaning |
 //! |---|---|---|---|
 //! | equilibrium y_e, or instantaneous y₀ | of y | any | end, or start in creep |
 //! | amplitudes Δᵢ | of y | any, or of one sign on request | share of each term |

@@ -3,7 +3,7 @@
 //! y(t) = y_e ± Σ hⱼ exp(−t/τⱼ) with hⱼ ≥ 0 and τⱼ equally spaced in ln τ. Grid and smoothing follow a stated rule
 //! (`fit/spectrum/`); nothing but the signal's sign is left to choose. It has no standard errors.
 //!
-//! | number | unit | range | meaning |
+//! | parameter | unit | range | meaning |
 //! |---|---|---|---|
 //! | equilibrium y_e | of y | any | what the signal tends to |
 //! | amplitudes hⱼ | of y | 0 or more | relaxation strength at τⱼ |

@@ -3,7 +3,7 @@
 //! Relaxation y(t) = y_e + Δ exp(−t/τ); creep y(t) = y₀ + Δ (1 − exp(−t/τ)). For one material the retardation time exceeds the
 //! relaxation time by the ratio of instantaneous to relaxed stiffness.
 //!
-//! | number | unit | range | meaning |
+//! | parameter | unit | range | meaning |
 //! |---|---|---|---|
 //! | equilibrium y_e, or instantaneous y₀ in creep | of y | any | end, or start |
 //! | amplitude Δ | of y | any | what relaxes, or creeps |

@@ -142,7 +142,7 @@ impl LoadingCurve {
     /// hold and their covariance C.
     fn error_by_hold(&self, best: &Curve, law: &HoldLaw) -> f64 {
         // Of the equilibrium force, the amplitude and ln λ.
-        let Some(covariance) = &law.fit.covariance else {
+        let Some(covariance) = law.fit.covariance() else {
             return 0.0;
         };
         let moved = |relaxed: f64, log_coefficient: f64| {

@@ -28,7 +28,7 @@ fn choice(fixed_n: Option<f64>) -> ExponentChoice {
     fixed_n.map_or(ExponentChoice::Free, ExponentChoice::Fixed)
 }
 
-/// The numbers of a fit in the order of a reference file, and its covariance.
+/// The parameters of a fit in the order of a reference file, and its covariance.
 struct Found {
     parameters: Vec<f64>,
     standard_errors: Vec<f64>,
@@ -99,20 +99,20 @@ struct HoldAnswer {
 
 fn hold_numbers(fit: &LatencyFit) -> Found {
     let mut parameters = vec![fit.equilibrium().value, fit.amplitude().value, fit.relative_rate().value.ln()];
-    let relative_rate_error = fit.relative_rate().standard_error.unwrap() / fit.relative_rate().value;
+    let relative_rate_error = fit.relative_rate().white_standard_error.unwrap() / fit.relative_rate().value;
     let mut standard_errors = vec![
-        fit.equilibrium().standard_error.unwrap(),
-        fit.amplitude().standard_error.unwrap(),
+        fit.equilibrium().white_standard_error.unwrap(),
+        fit.amplitude().white_standard_error.unwrap(),
         relative_rate_error,
     ];
     if fit.choice() == ExponentChoice::Free {
         parameters.push(fit.exponent().value);
-        standard_errors.push(fit.exponent().standard_error.unwrap());
+        standard_errors.push(fit.exponent().white_standard_error.unwrap());
     }
     Found {
         parameters,
         standard_errors,
-        covariance: fit.covariance.clone().unwrap(),
+        covariance: fit.white_covariance.clone().unwrap(),
         rss: fit.residual_square,
     }
 }
@@ -143,16 +143,16 @@ fn holds_in_the_time_domain() {
         let pairs = (0..c.len()).flat_map(|i| (0..c.len()).map(move |j| (i, j)));
         let error = v * pairs.map(|(i, j)| gradient[i] * c[i][j] * gradient[j]).sum::<f64>().sqrt();
         assert!((fit.rate_coefficient().value - v).abs() <= 1e-4 * error, "{}: v", case.name);
-        let found = fit.rate_coefficient().standard_error.unwrap();
+        let found = fit.rate_coefficient().white_standard_error.unwrap();
         assert!((found / error - 1.0).abs() <= 2e-4, "{}: error of v {found} {error}", case.name);
     }
 }
 
-/// Says that a number is not determined: no error, no interval.
+/// Says that a parameter is not determined: no error, no interval.
 fn assert_open(name: &str, fit: &LatencyFit) {
-    assert!(fit.covariance.is_none(), "{name}");
+    assert!(fit.white_covariance.is_none(), "{name}");
     for estimate in [fit.exponent(), fit.equilibrium(), fit.amplitude(), fit.relative_rate(), fit.rate_coefficient()] {
-        assert!(estimate.standard_error.is_none() && estimate.interval.is_none(), "{name}: {estimate:?}");
+        assert!(estimate.white_standard_error.is_none() && estimate.interval.is_none(), "{name}: {estimate:?}");
     }
 }
 
@@ -205,14 +205,17 @@ fn holds_in_the_plane_of_strain_and_rate() {
         let v = fit.rate_coefficient();
         let mut found = Found {
             parameters: vec![fit.equilibrium().value, v.value.ln()],
-            standard_errors: vec![fit.equilibrium().standard_error.unwrap(), v.standard_error.unwrap() / v.value],
-            covariance: fit.covariance.clone().unwrap(),
+            standard_errors: vec![
+                fit.equilibrium().white_standard_error.unwrap(),
+                v.white_standard_error.unwrap() / v.value,
+            ],
+            covariance: fit.white_covariance.clone().unwrap(),
             rss: fit.residual_square,
         };
         let mut parameters = vec![case.equilibrium_strain, case.ln_rate_coefficient];
         if case.fixed_n.is_none() {
             found.parameters.push(fit.exponent().value);
-            found.standard_errors.push(fit.exponent().standard_error.unwrap());
+            found.standard_errors.push(fit.exponent().white_standard_error.unwrap());
             parameters.push(case.exponent);
         }
         let expected = Expected {
@@ -269,7 +272,7 @@ fn nist_problems() {
         let delta = fit.amplitude().value / phi;
         // ∂(y_e, Δ, ln λ)/∂(the same at the first sample); ∂ln φ/∂ln λ = −λ x₀ φⁿ⁻¹ = −λ' x₀.
         let jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0 / phi, delta * later * start * stretch], [0.0, 0.0, stretch]];
-        let covariance = fit.covariance.as_ref().unwrap();
+        let covariance = fit.white_covariance.as_ref().unwrap();
         let parameters = [fit.equilibrium().value, delta, lambda.ln()];
         let wanted = [expected.y_e, expected.delta, expected.ln_lambda];
         let (mut value, mut deviation) = (0.0f64, 0.0f64);

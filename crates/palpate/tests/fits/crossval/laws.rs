@@ -11,7 +11,7 @@ use palpate::forecast::criteria;
 use palpate::laws::{ExponentChoice, Law, Response};
 use serde::Deserialize;
 
-/// The law that a reference file names, with the number of its terms and the exponent it holds.
+/// The law that a reference file names, with the parameter of its terms and the exponent it holds.
 fn law(name: &str, parameters: &[String], fixed: &BTreeMap<String, f64>) -> Law {
     let terms = parameters.iter().filter(|name| name.starts_with("ln_rate")).count();
     match name {
@@ -33,13 +33,13 @@ fn options(kind: &str, fixed: &BTreeMap<String, f64>) -> LawOptions {
     }
 }
 
-/// Numbers of a fit as the reference writes them, with their covariance.
+/// Parameters of a fit as the reference writes them, with their covariance.
 struct Found {
     values: Vec<f64>,
     covariance: Vec<Vec<f64>>,
 }
 
-/// The searched numbers of a fit turned into those of the reference: the same but for fast and slow rates, flow per s
+/// The searched parameters of a fit turned into those of the reference: the same but for fast and slow rates, flow per s
 /// and power per s^α.
 fn found(fit: &Fit, parameters: &[String]) -> Found {
     let inner = &fit.values;
@@ -64,7 +64,7 @@ fn found(fit: &Fit, parameters: &[String]) -> Found {
         }
         _ => {}
     }
-    let covariance = fit.covariance.as_ref().unwrap();
+    let covariance = fit.white_covariance.as_ref().unwrap();
     let entry = |i: usize, j: usize| {
         let terms = (0..count).flat_map(|k| (0..count).map(move |l| (k, l)));
         terms.map(|(k, l)| jacobian[i][k] * covariance[k][l] * jacobian[j][l]).sum()
@@ -101,19 +101,8 @@ struct LawCase {
     derived: BTreeMap<String, [f64; 2]>,
 }
 
-fn shown(numbers: &[f64]) -> String {
-    numbers.iter().map(|number| format!("{number:.1e} ")).collect()
-}
-
-/// Name of a derived number of the reference in results.
-fn derived_name(name: &str) -> String {
-    match name {
-        "N" => "elastic_response".to_owned(),
-        "C" => "strength".to_owned(),
-        "tau_short" => "time_short".to_owned(),
-        "tau_long" => "time_long".to_owned(),
-        _ => format!("{}_{}", name.trim_end_matches(char::is_numeric), name.trim_start_matches(char::is_alphabetic)),
-    }
+fn shown(parameters: &[f64]) -> String {
+    parameters.iter().map(|parameter| format!("{parameter:.1e} ")).collect()
 }
 
 #[test]
@@ -140,13 +129,13 @@ fn every_law_reaches_the_optima_of_the_reference() {
         }
         far[3] = (fit.residual_square / case.chi_square - 1.0).abs();
         for (name, [value, error]) in &case.derived {
-            let estimate = fit.estimate(&derived_name(name)).unwrap_or_else(|| panic!("{}: {name}", case.name));
+            let estimate = fit.estimate(&name).unwrap_or_else(|| panic!("{}: {name}", case.name));
             far[4] = far[4].max((estimate.value - value).abs() / error);
-            far[4] = far[4].max((estimate.standard_error.unwrap() / error - 1.0).abs());
+            far[4] = far[4].max((estimate.white_standard_error.unwrap() / error - 1.0).abs());
         }
         println!("{}: {}", case.name, shown(&far));
         // lmfit's, on the same residuals.
-        let own = criteria(fit.residual_square, fit.samples as f64, fit.free_numbers() as f64);
+        let own = criteria(fit.residual_square, fit.samples as f64, fit.free_parameters() as f64);
         for (own, reference) in [(own.aic, case.aic), (own.aicc, case.aicc), (own.bic, case.bic)] {
             assert!((own - reference).abs() <= tolerance.criteria_absolute, "{}: {own} {reference}", case.name);
         }
@@ -190,7 +179,7 @@ struct NistLaw {
 /// Digits in which two numbers agree.
 fn digits(found: f64, expected: f64) -> f64 {
     let share = ((found - expected) / expected).abs();
-    // No number has no digit.
+    // No parameter has no digit.
     if share.is_nan() { 0.0 } else { -share.log10().clamp(-16.0, 0.0) }
 }
 

@@ -1,4 +1,4 @@
-//! Fits against numbers from other software.
+//! Fits against parameters from other software.
 
 mod fits;
 mod laws;

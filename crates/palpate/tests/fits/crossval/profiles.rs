@@ -39,10 +39,10 @@ impl Case {
         }
     }
 
-    /// What a number of the reference is called here, and whether its ends are those of ln(1/number), of ln, or its own.
-    fn number(&self, parameter: &str, names: &[String]) -> (String, fn(f64) -> f64, bool) {
+    /// What a parameter of the reference is called here, and whether its ends are those of ln(1/parameter), of ln, or its own.
+    fn parameter(&self, parameter: &str, names: &[String]) -> (String, fn(f64) -> f64, bool) {
         if let Some(rest) = parameter.strip_prefix("ln_rate") {
-            let time = format!("time{rest}");
+            let time = format!("time_constant{rest}_s");
             if names.contains(&time) {
                 return (time, |value| -value.ln(), true);
             }
@@ -68,9 +68,9 @@ fn ends_of_intervals() {
             ..LawOptions::default()
         };
         let fit = fit_law(&samples, case.law(), &options).unwrap();
-        let names: Vec<String> = fit.parameters.iter().map(|number| number.name.to_string()).collect();
+        let names: Vec<String> = fit.parameters.iter().map(|parameter| parameter.name.to_string()).collect();
         for (k, parameter) in case.parameters.iter().enumerate() {
-            let (name, transformed, reversed) = case.number(parameter, &names);
+            let (name, transformed, reversed) = case.parameter(parameter, &names);
             let found = profile_interval(&samples, case.law(), &options, &name).unwrap();
             let ends = if reversed { [found.high, found.low] } else { [found.low, found.high] };
             for (end, expected) in ends.into_iter().zip([case.lower[k], case.upper[k]]) {

@@ -1,4 +1,4 @@
-//! A search by brute force, written apart from the library's: a dense grid of the nonlinear numbers with the linear ones solved,
+//! A search by brute force, written apart from the library's: a dense grid of the nonlinear parameters with the linear ones solved,
 //! Levenberg's method from its ten best points and from the truth, and Nelder and Mead's from the best of those.
 
 use super::double_double::exact_square;
@@ -10,17 +10,17 @@ pub(crate) struct Subject {
     pub(crate) response: Response,
     pub(crate) shapes: Vec<BasisFunction>,
     pub(crate) constant: bool,
-    /// Bounds of each free number, shape by shape, ln of rates per duration.
+    /// Bounds of each free parameter, shape by shape, ln of rates per duration.
     pub(crate) bounds: Vec<(f64, f64)>,
 }
 
-/// Whether the first number of a shape is a rate that only sets a unit.
+/// Whether the first parameter of a shape is a rate that only sets a unit.
 pub(crate) fn has_reference(shape: BasisFunction) -> bool {
     matches!(shape, BasisFunction::Straight | BasisFunction::PowerGrowth)
 }
 
-/// Numbers of a shape that are searched.
-pub(crate) fn free_numbers(shape: BasisFunction) -> usize {
+/// Parameters of a shape that are searched.
+pub(crate) fn free_parameters(shape: BasisFunction) -> usize {
     match shape {
         BasisFunction::Straight => 0,
         BasisFunction::Latency
@@ -41,13 +41,13 @@ impl Subject {
         }
         let mut rest = theta;
         for &shape in &self.shapes {
-            let (own, others) = rest.split_at(free_numbers(shape));
+            let (own, others) = rest.split_at(free_parameters(shape));
             rest = others;
-            let numbers = if has_reference(shape) { [&[0.0], own].concat() } else { own.to_vec() };
+            let parameters = if has_reference(shape) { [&[0.0], own].concat() } else { own.to_vec() };
             let term = Term {
                 amplitude: 1.0,
                 shape,
-                numbers,
+                parameters,
             };
             let curve = LawCurve {
                 response: self.response,
@@ -59,7 +59,7 @@ impl Subject {
         columns
     }
 
-    /// What the best linear numbers leave over at `theta`: columns made orthogonal one after the other, twice.
+    /// What the best linear parameters leave over at `theta`: columns made orthogonal one after the other, twice.
     fn residual(&self, times: &[f64], values: &[f64], theta: &[f64]) -> Vec<f64> {
         let mut basis: Vec<Vec<f64>> = Vec::new();
         for mut column in self.columns(times, theta) {
@@ -97,7 +97,7 @@ impl Subject {
         }
     }
 
-    /// The dense grid: every number at many places, several rates in falling order.
+    /// The dense grid: every parameter at many places, several rates in falling order.
     fn grid(&self) -> Vec<Vec<f64>> {
         let rates = self.shapes.iter().filter(|shape| **shape == BasisFunction::Exponential).count();
         let several = rates > 1;
@@ -118,7 +118,7 @@ impl Subject {
             let steps = count(i);
             let place = |k: usize| {
                 let share = k as f64 / (steps - 1) as f64;
-                // A pure number above zero is spread in its logarithm.
+                // A dimensionless parameter above zero is spread in its logarithm.
                 if low > 0.0 { low * (high / low).powf(share) } else { low + (high - low) * share }
             };
             let extended = points.iter().flat_map(|point: &Vec<f64>| {

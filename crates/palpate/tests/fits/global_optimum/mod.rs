@@ -1,6 +1,6 @@
 //! No search finds a better fit: every law against brute force on random problems drawn from the law itself.
 //!
-//! 40 problems a law by default; `PALPATE_PROBLEMS=10000 cargo test --release --test fits global_optimum` for more, from number
+//! 40 problems a law by default; `PALPATE_PROBLEMS=10000 cargo test --release --test fits global_optimum` for more, from parameter
 //! `PALPATE_FROM` on.
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
@@ -8,19 +8,19 @@
 mod brute;
 mod double_double;
 
-use brute::{Subject, free_numbers, has_reference};
+use brute::{Subject, free_parameters, has_reference};
 use palpate::fit::{Fit, LawOptions, Samples, Termination, fit_law};
 use palpate::laws::{BasisFunction, Law, LawCurve, Response, Term};
 use palpate::test_problems::Noise;
 
-/// Shapes, whether there is a constant, and the range of the pure number, of a law in a response.
+/// Shapes, whether there is a constant, and the range of the dimensionless parameter, of a law in a response.
 fn parts(law: Law, response: Response) -> (Vec<BasisFunction>, bool, Option<(f64, f64)>) {
     let creep = response == Response::Creep;
     let exponential = |count: usize| vec![BasisFunction::Exponential; count];
     match law
         .to_string()
         .split_once(':')
-        .map_or_else(|| (law.to_string(), 0.0), |(name, number)| (name.to_owned(), number.parse().unwrap()))
+        .map_or_else(|| (law.to_string(), 0.0), |(name, parameter)| (name.to_owned(), parameter.parse().unwrap()))
     {
         (name, 0.0) => match name.as_str() {
             "latency" => (vec![BasisFunction::Latency], true, Some((0.2, 30.0))),
@@ -49,7 +49,7 @@ struct Problem {
     /// Times over the duration.
     times: Vec<f64>,
     values: Vec<f64>,
-    /// True nonlinear numbers, ln of rates per duration.
+    /// True nonlinear parameters, ln of rates per duration.
     truth: Vec<f64>,
 }
 
@@ -86,15 +86,15 @@ fn problem(law: Law, response: Response, random: &mut Noise) -> Problem {
     let mut log_rate = between(random, 1e-2f64.ln(), 1e4f64.ln());
     let side = if random.uniform() < 0.5 { 1.0 } else { -1.0 };
     for &shape in &shapes {
-        let mut numbers = vec![if has_reference(shape) { 0.0 } else { log_rate }];
+        let mut parameters = vec![if has_reference(shape) { 0.0 } else { log_rate }];
         if let Some((low, high)) = pure {
-            numbers.push(low * (high / low).powf(random.uniform()));
+            parameters.push(low * (high / low).powf(random.uniform()));
         }
-        truth.extend_from_slice(&numbers[usize::from(has_reference(shape))..]);
+        truth.extend_from_slice(&parameters[usize::from(has_reference(shape))..]);
         terms.push(Term {
             amplitude: side * 10f64.powf(between(random, -0.7, 0.7)),
             shape,
-            numbers,
+            parameters,
         });
         // The next time is from 1.05 to 1000 times as long.
         log_rate -= between(random, 0.05, 7.0);
@@ -122,9 +122,9 @@ fn bounds(law: Law, response: Response, times: &[f64]) -> Vec<(f64, f64)> {
     let rate = (1e-3f64.ln(), (1e3 / times[1]).ln());
     let of = |shape: &BasisFunction| {
         let rate = (!has_reference(*shape)).then_some(rate);
-        let numbers: Vec<(f64, f64)> = rate.into_iter().chain(pure).collect();
-        assert_eq!(numbers.len(), free_numbers(*shape));
-        numbers
+        let parameters: Vec<(f64, f64)> = rate.into_iter().chain(pure).collect();
+        assert_eq!(parameters.len(), free_parameters(*shape));
+        parameters
     };
     shapes.iter().flat_map(of).collect()
 }
@@ -145,7 +145,7 @@ fn challenge(name: &str, response: Response) {
     challenge_with(name, response, from..from + problems);
 }
 
-/// The same of the problems of these numbers.
+/// The same of the problems of these parameters.
 fn challenge_with(name: &str, response: Response, indices: impl IntoIterator<Item = u64>) {
     let law: Law = name.parse().unwrap();
     let (shapes, constant, _) = parts(law, response);
@@ -184,9 +184,9 @@ fn challenge_with(name: &str, response: Response, indices: impl IntoIterator<Ite
         worst = f64::max(worst, excess);
         converged += u32::from(fit.termination == Termination::Converged);
         if excess > BEATEN {
-            let numbers = &fit.values[fit.values.len() - problem.truth.len()..];
+            let parameters = &fit.values[fit.values.len() - problem.truth.len()..];
             beaten.push(format!(
-                "{index}: by {excess:.1e}, {}: ended at {numbers:.3?} ({:?}), better at {at:.3?}",
+                "{index}: by {excess:.1e}, {}: ended at {parameters:.3?} ({:?}), better at {at:.3?}",
                 problem.text, fit.termination
             ));
         }

@@ -97,7 +97,7 @@ fn four_numbers_predict_half_an_hour_of_tape_as_well_as_a_dense_spectrum() {
         println!("skipped: no measured records in {folder} (set PALPATE_DATA)");
         return;
     };
-    // One header in another encoding; the numbers are plain.
+    // One header in another encoding; the parameters are plain.
     let rows: Vec<[f64; 3]> = bytes
         .split(|byte| *byte == b'\n')
         .filter_map(|line| {
@@ -121,9 +121,9 @@ fn four_numbers_predict_half_an_hour_of_tape_as_well_as_a_dense_spectrum() {
     };
     for row in &comparison.rows {
         println!(
-            "{:22} {:5.1} numbers, forward error {:.5}",
+            "{:22} {:5.1} parameters, forward error {:.5}",
             row.law.to_string(),
-            row.numbers,
+            row.effective_parameters,
             row.forward.score.unwrap()
         );
     }

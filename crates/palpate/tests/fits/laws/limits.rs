@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::fit::{ConstantChoice, Fit, LawOptions, NumberUnit, Samples, Termination, fit_law};
+use palpate::fit::{ConstantChoice, Fit, LawOptions, ParameterUnit, Samples, Termination, fit_law};
 use palpate::laws::{Law, Response};
 use palpate::test_problems::Noise;
 
@@ -68,8 +68,8 @@ fn several_laws_have_one_exponential_as_a_limit() {
     same(&nearly, &solid, 1e-5);
     // ln ϱ = 0.05 is a spectrum 5 % wide.
     same(&fit("fung-continuous", &fixed("log_ratio", 1e-4)), &solid, 1e-6);
-    let time = solid.value("time").unwrap();
-    for (law, name) in [("latency:1", "relative_rate"), ("fung:1", "nu_1")] {
+    let time = solid.value("time_constant_s").unwrap();
+    for (law, name) in [("latency:1", "relative_rate_per_s"), ("fung:1", "nu_1_per_s")] {
         assert!((fit(law, &plain).value(name).unwrap() * time - 1.0).abs() < 1e-9, "{law}");
     }
 }
@@ -77,7 +77,7 @@ fn several_laws_have_one_exponential_as_a_limit() {
 #[test]
 fn n_of_two_is_pelegs_law() {
     let peleg = fit("latency:2", &LawOptions::default());
-    let [start, drop, rate] = ["start", "amplitude", "relative_rate"].map(|name| peleg.value(name).unwrap());
+    let [start, drop, rate] = ["start", "amplitude", "relative_rate_per_s"].map(|name| peleg.value(name).unwrap());
     // y₀ − y = t/(k₁ + k₂t) with Δ = 1/k₂ and λ = k₂/k₁.
     let (k_2, k_1) = (1.0 / drop, 1.0 / (drop * rate));
     for t in [0.0, 0.3, 2.0, 25.0] {
@@ -97,8 +97,8 @@ fn a_power_is_latency_without_equilibrium() {
     same(&power, &latency, 1e-8);
     let (alpha, n) = (power.value("exponent").unwrap(), latency.value("exponent").unwrap());
     assert!((1.0 + 1.0 / alpha - n).abs() < 1e-5 * n, "{alpha} {n}");
-    let rate = alpha / power.value("time").unwrap();
-    assert!((latency.value("relative_rate").unwrap() / rate - 1.0).abs() < 1e-6);
+    let rate = alpha / power.value("time_constant_s").unwrap();
+    assert!((latency.value("relative_rate_per_s").unwrap() / rate - 1.0).abs() < 1e-6);
 }
 
 #[test]
@@ -112,19 +112,20 @@ fn a_large_exponent_is_nearly_a_logarithm() {
 }
 
 #[test]
-fn fung_is_prony_in_other_numbers() {
+fn fung_is_prony_in_other_parameters() {
     for terms in [1, 2] {
         let prony = fit(&format!("prony:{terms}"), &LawOptions::default());
         let fung = fit(&format!("fung:{terms}"), &LawOptions::default());
         same(&prony, &fung, 1e-12);
-        let names: Vec<String> = (1..=terms).flat_map(|i| [format!("amplitude_{i}"), format!("time_{i}")]).collect();
+        let names: Vec<String> =
+            (1..=terms).flat_map(|i| [format!("amplitude_{i}"), format!("time_constant_{i}_s")]).collect();
         let start = prony.value("start").unwrap();
         assert!((fung.value("elastic_response").unwrap() / start - 1.0).abs() < 1e-12);
         if terms == 2 {
             for (i, pair) in names.chunks(2).enumerate() {
                 let [amplitude, time] = [0, 1].map(|k| prony.value(&pair[k]).unwrap());
                 assert!((fung.value(&format!("c_{}", i + 1)).unwrap() * start / amplitude - 1.0).abs() < 1e-9);
-                assert!((fung.value(&format!("nu_{}", i + 1)).unwrap() * time - 1.0).abs() < 1e-9);
+                assert!((fung.value(&format!("nu_{}_per_s", i + 1)).unwrap() * time - 1.0).abs() < 1e-9);
             }
         }
     }
@@ -136,14 +137,14 @@ fn burgers_without_flow_is_the_standard_linear_solid_in_creep() {
     let values: Vec<f64> = times.iter().map(|t| 1.0 + 0.5 * (1.0 - (-t / 3.0).exp())).collect();
     let burgers = fit_to(&times, &values, "burgers", &creep());
     let solid = fit_to(&times, &values, "standard-linear-solid", &creep());
-    assert!(burgers.value("flow_rate").unwrap().abs() < 1e-9);
-    assert!((burgers.value("time").unwrap() / solid.value("time").unwrap() - 1.0).abs() < 1e-7);
+    assert!(burgers.value("flow_rate_per_s").unwrap().abs() < 1e-9);
+    assert!((burgers.value("time_constant_s").unwrap() / solid.value("time_constant_s").unwrap() - 1.0).abs() < 1e-7);
     let held = LawOptions {
         bounds: vec![("flow".to_owned(), (-1e-300, 1e-300))],
         ..creep()
     };
     let held = fit_to(&times, &values, "burgers", &held);
-    assert!((held.value("time").unwrap() / solid.value("time").unwrap() - 1.0).abs() < 1e-7);
+    assert!((held.value("time_constant_s").unwrap() / solid.value("time_constant_s").unwrap() - 1.0).abs() < 1e-7);
 }
 
 /// Every law in the responses it has a form for.
@@ -159,23 +160,23 @@ fn all_laws() -> impl Iterator<Item = (Law, Response)> {
 
 /// Relative change of a fit in other units, beyond that of the units.
 fn change(fit: &Fit, plain: &Fit, y_unit: f64, t_unit: f64) -> f64 {
-    let unit = |unit: NumberUnit| match unit {
-        NumberUnit::Signal => Some(y_unit),
-        NumberUnit::Second => Some(t_unit),
-        NumberUnit::PerSecond => Some(1.0 / t_unit),
-        NumberUnit::SignalPerSecond => Some(y_unit / t_unit),
-        NumberUnit::One => Some(1.0),
+    let unit = |unit: ParameterUnit| match unit {
+        ParameterUnit::Signal => Some(y_unit),
+        ParameterUnit::Second => Some(t_unit),
+        ParameterUnit::PerSecond => Some(1.0 / t_unit),
+        ParameterUnit::SignalPerSecond => Some(y_unit / t_unit),
+        ParameterUnit::One => Some(1.0),
         // Their units have powers that are found from the data.
-        NumberUnit::RateCoefficient | NumberUnit::SignalPerPower => None,
+        ParameterUnit::RateCoefficient | ParameterUnit::SignalPerPower => None,
     };
     let mut worst = (fit.residual_square / plain.residual_square / y_unit / y_unit - 1.0).abs();
     for (a, b) in fit.parameters.iter().zip(&plain.parameters) {
         if let Some(unit) = unit(a.unit) {
-            let size = b.estimate.standard_error.unwrap_or(0.0).max(b.estimate.value.abs());
+            let size = b.estimate.white_standard_error.unwrap_or(0.0).max(b.estimate.value.abs());
             if size > 0.0 {
                 worst = worst.max((a.estimate.value / unit - b.estimate.value).abs() / size);
             }
-            if let (Some(a), Some(b)) = (a.estimate.standard_error, b.estimate.standard_error) {
+            if let (Some(a), Some(b)) = (a.estimate.white_standard_error, b.estimate.white_standard_error) {
                 worst = worst.max(0.1 * (a / b / unit - 1.0).abs());
             }
         }

@@ -1,4 +1,4 @@
-//! What may be asked of a fit does what it says: bounds, fixed numbers, constants, signs, samples.
+//! What may be asked of a fit does what it says: bounds, fixed parameters, constants, signs, samples.
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
@@ -29,17 +29,17 @@ fn bounded(name: &str, low: f64, high: f64) -> LawOptions {
 #[test]
 fn a_bound_that_binds_is_kept_and_said() {
     let free = fit("sls", &LawOptions::default(), 1e-3).unwrap();
-    let within = fit("sls", &bounded("time", 1.0, 10.0), 1e-3).unwrap();
-    assert!((within.value("time").unwrap() / free.value("time").unwrap() - 1.0).abs() < 1e-9);
-    let at = fit("sls", &bounded("time", 5.0, 10.0), 1e-3).unwrap();
-    assert!((at.value("time").unwrap() - 5.0).abs() < 1e-6);
+    let within = fit("sls", &bounded("time_constant_s", 1.0, 10.0), 1e-3).unwrap();
+    assert!((within.value("time_constant_s").unwrap() / free.value("time_constant_s").unwrap() - 1.0).abs() < 1e-9);
+    let at = fit("sls", &bounded("time_constant_s", 5.0, 10.0), 1e-3).unwrap();
+    assert!((at.value("time_constant_s").unwrap() - 5.0).abs() < 1e-6);
     assert_eq!(at.termination, Termination::RateAtBound);
-    assert!(at.covariance.is_none());
+    assert!(at.white_covariance.is_none());
     let level = fit("sls", &bounded("equilibrium", 2.5, 9.0), 1e-3).unwrap();
     assert!((level.value("equilibrium").unwrap() - 2.5).abs() < 1e-9);
     assert_eq!(level.termination, Termination::AmplitudeAtBound);
-    assert!(level.estimate("equilibrium").unwrap().standard_error.is_none());
-    assert!(level.estimate("time").unwrap().standard_error.is_some());
+    assert!(level.estimate("equilibrium").unwrap().white_standard_error.is_none());
+    assert!(level.estimate("time_constant_s").unwrap().white_standard_error.is_some());
     assert!(level.residual_square > free.residual_square);
 }
 
@@ -76,9 +76,9 @@ fn what_cannot_be_held_is_refused_and_never_passed_over() {
         assert_eq!(held(name, 3.0).suit(law.parse().unwrap()), Err(error));
     }
     for value in [f64::NAN, f64::INFINITY] {
-        for name in ["equilibrium", "time"] {
+        for name in ["equilibrium", "time_constant_s"] {
             let error = fit("sls", &held(name, value), 1e-3).unwrap_err();
-            assert!(matches!(error, FitError::FixedNumber { .. }), "{error}");
+            assert!(matches!(error, FitError::FixedParameter { .. }), "{error}");
         }
     }
     assert!(fit("sls", &held("equilibrium", -1.0), 1e-3).is_ok());
@@ -107,26 +107,26 @@ fn there_is_no_signal_at_a_time_that_is_none() {
 #[test]
 fn a_number_may_be_held() {
     let held = LawOptions {
-        fixed: vec![("time".to_owned(), 4.0)],
+        fixed: vec![("time_constant_s".to_owned(), 4.0)],
         ..LawOptions::default()
     };
     let fit_held = fit("sls", &held, 1e-3).unwrap();
-    assert_eq!(fit_held.free_numbers(), 2);
-    assert!((fit_held.value("time").unwrap() - 4.0).abs() < 1e-12);
+    assert_eq!(fit_held.free_parameters(), 2);
+    assert!((fit_held.value("time_constant_s").unwrap() - 4.0).abs() < 1e-12);
     assert!((fit_held.value("amplitude").unwrap() - 3.0).abs() < 1e-3);
     let stretching = LawOptions {
         fixed: vec![("stretching".to_owned(), 1.0)],
         ..LawOptions::default()
     };
     let (kww, sls) = (fit("stretched", &stretching, 1e-3).unwrap(), fit("sls", &LawOptions::default(), 1e-3).unwrap());
-    assert!((kww.value("time").unwrap() / sls.value("time").unwrap() - 1.0).abs() < 1e-8);
+    assert!((kww.value("time_constant_s").unwrap() / sls.value("time_constant_s").unwrap() - 1.0).abs() < 1e-8);
     let constant = LawOptions {
         constant: ConstantChoice::Fixed(2.0),
         ..LawOptions::default()
     };
     let given = fit("sls", &constant, 0.0).unwrap();
     assert_eq!(given.value("equilibrium"), Some(2.0));
-    assert!((given.value("time").unwrap() - 4.0).abs() < 1e-9);
+    assert!((given.value("time_constant_s").unwrap() - 4.0).abs() < 1e-9);
     let without = LawOptions {
         constant: ConstantChoice::Fixed(0.0),
         ..LawOptions::default()
@@ -159,7 +159,7 @@ fn log_spaced_samples_are_few_and_give_the_same_law() {
     };
     let fit = fit_law(&Samples::new(&times, &values), Law::StandardLinearSolid, &options).unwrap();
     assert!((30..=61).contains(&fit.samples), "{}", fit.samples);
-    assert!((fit.value("time").unwrap() / 4.0 - 1.0).abs() < 1e-3);
+    assert!((fit.value("time_constant_s").unwrap() / 4.0 - 1.0).abs() < 1e-3);
 }
 
 #[test]
@@ -170,11 +170,11 @@ fn deviations_weigh_by_their_inverse_square() {
     values.iter_mut().step_by(4).for_each(|y| *y += 1.0);
     let samples = Samples::new(&times, &values).with_deviations(&deviations);
     let fit = fit_law(&samples, Law::StandardLinearSolid, &LawOptions::default()).unwrap();
-    assert!((fit.value("time").unwrap() - 4.0).abs() < 1e-6);
+    assert!((fit.value("time_constant_s").unwrap() - 4.0).abs() < 1e-6);
     let left_out: Vec<f64> = deviations.iter().map(|d| if *d > 1.0 { f64::INFINITY } else { 1.0 }).collect();
     let samples = Samples::new(&times, &values).with_deviations(&left_out);
     let fit = fit_law(&samples, Law::StandardLinearSolid, &LawOptions::default()).unwrap();
-    assert!((fit.value("time").unwrap() - 4.0).abs() < 1e-9);
+    assert!((fit.value("time_constant_s").unwrap() - 4.0).abs() < 1e-9);
 }
 
 #[test]
@@ -200,13 +200,16 @@ fn creep_and_relaxation_are_one_fit_in_other_words() {
 #[test]
 fn what_no_fit_can_follow_is_refused() {
     let unknown = fit("sls", &bounded("tau", 1.0, 2.0), 1e-3).unwrap_err();
-    assert_eq!(unknown.to_string(), "the law has no number \"tau\"; it has equilibrium, amplitude, time");
-    assert!(matches!(fit("sls", &bounded("time", 2.0, 1.0), 1e-3), Err(FitError::Bounds { .. })));
+    assert_eq!(
+        unknown.to_string(),
+        "the law has no parameter \"tau\"; it has equilibrium, amplitude, time_constant_s"
+    );
+    assert!(matches!(fit("sls", &bounded("time_constant_s", 2.0, 1.0), 1e-3), Err(FitError::Bounds { .. })));
     let held = LawOptions {
-        fixed: vec![("time".to_owned(), -1.0)],
+        fixed: vec![("time_constant_s".to_owned(), -1.0)],
         ..LawOptions::default()
     };
-    assert!(matches!(fit("sls", &held, 1e-3), Err(FitError::FixedNumber { .. })));
+    assert!(matches!(fit("sls", &held, 1e-3), Err(FitError::FixedParameter { .. })));
     let form = fit("kelvin-voigt", &LawOptions::default(), 1e-3).unwrap_err();
     assert_eq!(form.to_string(), "the law kelvin-voigt has no form for relaxation");
     assert!("prony:9".parse::<Law>().is_err() && "latency:-1".parse::<Law>().is_err());
@@ -215,13 +218,13 @@ fn what_no_fit_can_follow_is_refused() {
 #[test]
 fn a_series_with_one_time_held_does_not_lose_its_order() {
     let (times, values) = hold(1e-3);
-    for held in ["time_1", "time_2", "time_3"] {
+    for held in ["time_constant_1_s", "time_constant_2_s", "time_constant_3_s"] {
         let options = LawOptions {
             fixed: vec![(held.to_owned(), 4.0)],
             ..LawOptions::default()
         };
         let fit = fit_law(&Samples::new(&times, &values), Law::Prony { terms: 3 }, &options).unwrap();
-        assert_eq!(fit.free_numbers(), 6);
+        assert_eq!(fit.free_parameters(), 6);
         assert!((fit.value(held).unwrap() - 4.0).abs() < 1e-12);
         let square: f64 = times.iter().zip(&values).map(|(t, y)| (y - fit.predict(*t)).powi(2)).sum();
         assert!((square / fit.residual_square - 1.0).abs() < 1e-9, "{held}: {square} {}", fit.residual_square);

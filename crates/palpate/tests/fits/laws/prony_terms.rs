@@ -1,4 +1,4 @@
-//! The number of exponentials found from the data, and the ghosts of series that are too long.
+//! The parameter of exponentials found from the data, and the ghosts of series that are too long.
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
@@ -61,7 +61,7 @@ fn a_term_too_many_is_a_ghost_or_no_answer() {
         // Whatever is called good and free of ghosts has amplitudes of the size of the signal.
         let sound = fit.termination == Termination::Converged && fit.ghosts.is_empty();
         assert!(!sound || amplitudes.iter().all(|amplitude| *amplitude < 10.0), "{fit:?}");
-        assert!(fit.termination != Termination::TermsMerged || fit.covariance.is_none());
+        assert!(fit.termination != Termination::TermsMerged || fit.white_covariance.is_none());
         merged += usize::from(fit.ghosts.iter().any(|ghost| matches!(ghost, Ghost::Merged { a: 1, b: 2 })));
     }
     println!("{merged} of 40 merged");

@@ -171,7 +171,7 @@ fn units_change_nothing_but_units() {
     }
 }
 
-/// Means over bins with the numbers of their samples for weights give what all samples give.
+/// Means over bins with the parameters of their samples for weights give what all samples give.
 #[test]
 fn weights_are_multiplicities() {
     let t = times(4000, 50.0);
@@ -213,8 +213,8 @@ fn noise_alone_gives_no_nonsense() {
         let count = 5 + 7 * seed as u32;
         let t = times(count, 1.0);
         let found = fit(&t, &noisy(&t, 1.0, seed, |_| 5.0));
-        let numbers = [found.equilibrium, found.predict(0.0), found.predict(1e9), found.rmse(), found.strength];
-        assert!(numbers.iter().all(|number| number.is_finite()), "{found:?}");
+        let parameters = [found.equilibrium, found.predict(0.0), found.predict(1e9), found.rmse(), found.strength];
+        assert!(parameters.iter().all(|parameter| parameter.is_finite()), "{found:?}");
         assert!(found.effective_parameters <= f64::from(count) + 1e-6);
         assert!(found.peaks().iter().all(|peak| peak.time.is_finite() && peak.amplitude > 0.0));
     }

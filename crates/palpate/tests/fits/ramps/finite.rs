@@ -14,11 +14,11 @@ fn relaxation(constant: f64, terms: Vec<Term>) -> LawCurve {
     }
 }
 
-fn term(amplitude: f64, shape: BasisFunction, numbers: &[f64]) -> Term {
+fn term(amplitude: f64, shape: BasisFunction, parameters: &[f64]) -> Term {
     Term {
         amplitude,
         shape,
-        numbers: numbers.to_vec(),
+        parameters: parameters.to_vec(),
     }
 }
 
@@ -49,7 +49,7 @@ fn a_ramp_takes_a_known_factor_off_an_exponential() {
     }
 }
 
-/// Laws, shapes with numbers, and what the fit calls them.
+/// Laws, shapes with parameters, and what the fit calls them.
 fn laws() -> Vec<(&'static str, LawCurve)> {
     let exponential = |amplitude: f64, time: f64| term(amplitude, BasisFunction::Exponential, &[-time.ln()]);
     vec![
@@ -72,7 +72,7 @@ fn laws() -> Vec<(&'static str, LawCurve)> {
     ]
 }
 
-/// Without noise every law comes back with the numbers of its step response, after a ramp and after an irregular loading.
+/// Without noise every law comes back with the parameters of its step response, after a ramp and after an irregular loading.
 #[test]
 fn every_linear_law_is_found_through_its_loading() {
     let times: Vec<f64> = (0..400).map(|i| 0.1 * f64::from(i)).collect();
@@ -81,9 +81,9 @@ fn every_linear_law_is_found_through_its_loading() {
             let values = curve.after(&loading, &times);
             let fit = fit(&times, &values, name.parse().unwrap(), Some(&loading));
             let found: Vec<f64> =
-                fit.curve.terms.iter().flat_map(|term| [&[term.amplitude], &*term.numbers].concat()).collect();
+                fit.curve.terms.iter().flat_map(|term| [&[term.amplitude], &*term.parameters].concat()).collect();
             let truth: Vec<f64> =
-                curve.terms.iter().flat_map(|term| [&[term.amplitude], &*term.numbers].concat()).collect();
+                curve.terms.iter().flat_map(|term| [&[term.amplitude], &*term.parameters].concat()).collect();
             assert!((fit.curve.constant - curve.constant).abs() < 1e-6, "{name}: {fit:?}");
             for (found, truth) in found.iter().zip(&truth) {
                 assert!((found - truth).abs() < 1e-6, "{name}: {found} {truth}");
@@ -108,7 +108,7 @@ fn amplitudes_are_wrong_only_where_the_ramp_is_ignored() {
         let amplitude = if curve.terms.len() > 1 { "amplitude_1" } else { "amplitude" };
         let truth = curve.terms[0].amplitude;
         let estimate = known.estimate(amplitude).unwrap();
-        let off = (estimate.value - truth).abs() / estimate.standard_error.unwrap();
+        let off = (estimate.value - truth).abs() / estimate.white_standard_error.unwrap();
         assert!(off < 3.5, "{name}: {estimate:?}");
         let wrong = ignored.value(amplitude).unwrap();
         assert!((wrong / truth - 1.0).abs() > 0.1, "{name}: {wrong}");
@@ -139,7 +139,7 @@ fn units_do_not_matter() {
     let grams: Vec<f64> = values.iter().map(|y| 1e3 * y).collect();
     let fit = fit(&minutes, &grams, name.parse().unwrap(), Some(&loading));
     assert!((fit.value("amplitude").unwrap() / 4e3 - 1.0).abs() < 1e-6);
-    assert!((fit.value("time").unwrap() / 120.0 - 1.0).abs() < 1e-6);
+    assert!((fit.value("time_constant_s").unwrap() / 120.0 - 1.0).abs() < 1e-6);
 }
 
 /// The latency law needs to know where the hold starts, not how it got there: its fit is the same.
@@ -169,7 +169,7 @@ fn creep_after_a_ramp_of_force() {
     };
     let fit = fit_law(&Samples::new(&times, &values), Law::KelvinVoigt, &options).unwrap();
     assert!((fit.value("amplitude").unwrap() - 3.0).abs() < 1e-9);
-    assert!((fit.value("time").unwrap() - 4.0).abs() < 1e-9);
+    assert!((fit.value("time_constant_s").unwrap() - 4.0).abs() < 1e-9);
 }
 
 #[test]

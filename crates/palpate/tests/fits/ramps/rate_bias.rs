@@ -47,7 +47,7 @@ fn smoothing_and_noise_bias_the_rate_domain_and_not_the_time_domain() {
 
 #[test]
 fn an_analysis_says_how_far_its_rate_domain_is_off() {
-    // A strip stretched in 0.1 s and held: force is strain here, so that the numbers are those of the hold above.
+    // A strip stretched in 0.1 s and held: force is strain here, so that the parameters are those of the hold above.
     let (times, strains) = hold(100.0, 1e-3, 5);
     let ramp = 10_usize;
     let time: Vec<f64> = (0..ramp + times.len()).map(|i| 0.01 * i as f64).collect();

@@ -11,7 +11,7 @@ pub(crate) struct Valley {
     pub(crate) square: f64,
 }
 
-/// The numbers of a place.
+/// The parameters of a place.
 pub(crate) fn valley(here: Orthogonal) -> Valley {
     Valley {
         linear: here.linear(),
@@ -20,7 +20,7 @@ pub(crate) fn valley(here: Orthogonal) -> Valley {
     }
 }
 
-/// The series with rates as far apart as its amplitudes need to be numbers: of some distances the one that leaves the least.
+/// The series with rates as far apart as its amplitudes need to be parameters: of some distances the one that leaves the least.
 pub(crate) fn apart(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], work: &mut Work) -> Valley {
     /// Distances of ln λ.
     const DISTANCES: [f64; 11] = [0.0, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 0.7, 1.3, 2.0];
@@ -36,7 +36,7 @@ pub(crate) fn apart(shapes: &Sampled<'_>, target: Target<'_>, theta: &[f64], wor
         let here = Orthogonal::new(shapes, &spread(&sorted, least, shapes.bounds(0)), target);
         work.evaluations += 1;
         let mut valley = valley(here);
-        // As the curve of these numbers leaves it once they are rounded: where amplitudes are large orthogonal columns leave less.
+        // As the curve of these parameters leaves it once they are rounded: where amplitudes are large orthogonal columns leave less.
         let square = standing_square(shapes, target, &valley);
         valley.square = square + rounding(target, square, &valley.linear);
         if best.as_ref().is_none_or(|best| valley.square < best.square) {

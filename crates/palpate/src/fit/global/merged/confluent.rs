@@ -5,18 +5,18 @@
 //! f\[z₀ … z_j\] = (−t)ʲ e^(−zt) Σ_q h_q(d₀ … d_j) (−t)^q / (j + q)!, with d_i = z_i − z,
 //!
 //! where z is the mean of the rates and h_q the sum of all products of q of the d. These stay apart, and are there still, when rates are
-//! equal. The constant is the exponential of rate 0. With b_j the linear numbers of a group,
+//! equal. The constant is the exponential of rate 0. With b_j the linear parameters of a group,
 //!
 //! ∂/∂z_i Σ_j b_j f\[z₀ … z_j\] = B_i f\[z₀ … z_k, z_i\] + what the group itself spans, B_i = Σ_j b_j Π_{l>j} (z_i − z_l).
 
 use crate::optimise::{Orthogonal, Target};
 use crate::vector::{accelerated, exponential_columns};
 
-/// A rate of a group, and which nonlinear number it belongs to; none for the constant.
+/// A rate of a group, and which nonlinear parameter it belongs to; none for the constant.
 #[derive(Clone, Copy)]
 struct Node {
     rate: f64,
-    number: Option<usize>,
+    parameter: Option<usize>,
 }
 
 /// Exponentials of these ln λ at one place, and what the derivatives of their columns count by.
@@ -35,8 +35,8 @@ pub(crate) fn confluent(times: &[f64], constant: bool, theta: &[f64], target: Ta
             columns.push(divided_difference(times, &decay, &apart[..=j]));
         }
         for (node, own) in group.iter().zip(&apart) {
-            if let Some(number) = node.number {
-                derivatives[number] = divided_difference(times, &decay, &[apart.as_slice(), &[*own]].concat());
+            if let Some(parameter) = node.parameter {
+                derivatives[parameter] = divided_difference(times, &decay, &[apart.as_slice(), &[*own]].concat());
             }
         }
     }
@@ -47,10 +47,10 @@ pub(crate) fn confluent(times: &[f64], constant: bool, theta: &[f64], target: Ta
     for group in &groups {
         let own = &linear[from..from + group.len()];
         for node in group {
-            if let Some(number) = node.number {
+            if let Some(parameter) = node.parameter {
                 // Horner's scheme of Newton's polynomial from its end.
                 let sum = own.iter().zip(group).fold(0.0, |sum, (b, other)| sum * (node.rate - other.rate) + b);
-                factors[number] = node.rate * sum;
+                factors[parameter] = node.rate * sum;
             }
         }
         from += group.len();
@@ -62,11 +62,11 @@ pub(crate) fn confluent(times: &[f64], constant: bool, theta: &[f64], target: Ta
 fn groups(theta: &[f64], constant: bool) -> Vec<Vec<Node>> {
     let rates = theta.iter().enumerate().map(|(i, log)| Node {
         rate: log.exp(),
-        number: Some(i),
+        parameter: Some(i),
     });
     let still = constant.then_some(Node {
         rate: 0.0,
-        number: None,
+        parameter: None,
     });
     let mut nodes: Vec<Node> = still.into_iter().chain(rates).collect();
     nodes.sort_by(|a, b| a.rate.total_cmp(&b.rate));

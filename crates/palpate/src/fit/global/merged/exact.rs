@@ -8,7 +8,7 @@ use crate::optimise::{
 };
 use crate::vector::dot;
 
-/// The solution carried on to what doubles allow, where normal equations do not reach it: where numbers nearly imitate each other, and
+/// The solution carried on to what doubles allow, where normal equations do not reach it: where parameters nearly imitate each other, and
 /// where next to nothing is left over. `inflation` as of the function of that name.
 pub(crate) fn exact(
     shapes: &Sampled<'_>,
@@ -64,7 +64,7 @@ const ROUNDING: f64 = 1e-30;
 /// Variance inflation from which the gradient of normal equations is no guide to the last step.
 const IMITATED: f64 = 1e7;
 
-/// The largest factor by which the other numbers widen the variance of one.
+/// The largest factor by which the other parameters widen the variance of one.
 pub(crate) fn inflation(solution: &Solution) -> f64 {
     let Some(inverse) = &solution.inverse_normal else {
         return f64::INFINITY;
@@ -77,7 +77,7 @@ pub(crate) fn inflation(solution: &Solution) -> f64 {
 /// Steps of a local search.
 const STEPS: usize = 60;
 
-/// Levenberg's method, until the residual square falls by no more than `enough` of itself, with the linear numbers projected out by
+/// Levenberg's method, until the residual square falls by no more than `enough` of itself, with the linear parameters projected out by
 /// orthogonal columns; by normal equations where these are bounded.
 pub(crate) fn local(shapes: &Sampled<'_>, target: Target<'_>, start: &[f64], enough: f64, work: &mut Work) -> Valley {
     if !shapes.linear_bounds().is_empty() {
@@ -154,16 +154,16 @@ fn descended(
 ) -> Vec<f64> {
     work.evaluations += 1;
     let mut here = lowered(at(start), &at, None, shapes, enough, work);
-    // Steps that would cross a cliff are refused, however much the other numbers would gain: one after the other is held.
-    for number in 0..start.len() {
+    // Steps that would cross a cliff are refused, however much the other parameters would gain: one after the other is held.
+    for parameter in 0..start.len() {
         if here.point.beside_cliff {
-            here = lowered(here, &at, Some(number), shapes, enough, work);
+            here = lowered(here, &at, Some(parameter), shapes, enough, work);
         }
     }
     here.point.theta
 }
 
-/// The place where Levenberg's method ends, with one number held where it is if asked for.
+/// The place where Levenberg's method ends, with one parameter held where it is if asked for.
 fn lowered(
     mut here: Place,
     at: &impl Fn(&[f64]) -> Place,
@@ -206,9 +206,9 @@ fn lowered(
     here
 }
 
-/// θ after a damped step inside the bounds: numbers that would leave them stay at the bound, and the others take the best step beside
+/// θ after a damped step inside the bounds: parameters that would leave them stay at the bound, and the others take the best step beside
 /// those, as beside one that is `held`. Curvatures below `unfelt` are damped as if they were that: rounding alone makes up the steps of
-/// such numbers.
+/// such parameters.
 fn inside(
     theta: &[f64],
     (hessian, gradient): (&[f64], &[f64]),
@@ -264,7 +264,7 @@ const TRIALS: usize = 16;
 /// Damping of the first step, strong: valleys may be narrow, and a long step leaves them for others.
 const FIRST: f64 = 1.0;
 
-/// Longest step of a number: the model is trusted only so far.
+/// Longest step of a parameter: the model is trusted only so far.
 const LONGEST: f64 = 2.0;
 
 /// Damping below which a step is all but free, and the least.
