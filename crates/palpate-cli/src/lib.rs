@@ -38,6 +38,7 @@ where
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }
     };
+    terminal::measure();
     let result = match arguments.command {
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Simulate(arguments) => commands::simulate::run(&arguments),

@@ -6,6 +6,13 @@ use std::path::Path;
 use palpate_jobs::{ErrorKind, JobError};
 use palpate_report::spelling::with_flags;
 
+/// Lays texts out for the terminal that standard output is, if it is one.
+pub(crate) fn measure() {
+    if let Some((width, _)) = terminal_size::terminal_size_of(io::stdout()) {
+        palpate_report::set_width(usize::from(width.0));
+    }
+}
+
 /// Writes `text` to standard output; a reader that has seen enough (`| head`) is no error.
 pub(crate) fn print(text: &str) -> Result<(), JobError> {
     print_with(|out| out.write_all(text.as_bytes()))

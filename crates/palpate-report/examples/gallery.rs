@@ -4,6 +4,7 @@
 
 use std::path::Path;
 
+use palpate::fit::Estimate;
 use palpate_report::figure::{Arrangement, Axis, Figure, Layer, Map, Panel, Role};
 use palpate_report::page::{Block, Check, Finding, Page, Section, Severity};
 use palpate_report::table::{Cell, Table};
@@ -226,11 +227,11 @@ fn degenerate() -> Figure {
 }
 
 fn law_table() -> Table {
-    let mut table = Table::new("law", "Fitted law of each hold; ± is one standard error.")
+    let mut table = Table::new("law", "Fitted law of each hold with 95 % intervals.")
         .column("Specimen", "specimen", "")
         .column("Hold", "hold", "")
-        .column("Equilibrium strain", "equilibrium_strain", "")
-        .column("Rate coefficient", "rate_coefficient_per_s", "s⁻¹")
+        .estimates("Equilibrium strain", "equilibrium_strain", "")
+        .estimates("Rate coefficient", "rate_coefficient_per_s", "s⁻¹")
         .column("Root mean square", "rms_n", "N")
         .note("Strains are positive in compression.");
     for hold in 1..=4i64 {
@@ -238,12 +239,12 @@ fn law_table() -> Table {
         let rate = if hold == 3 {
             Cell::missing("hold shorter than two relaxation times")
         } else {
-            Cell::Uncertain(0.021_34 / hold as f64, 0.000_43)
+            estimate(0.021_34 / hold as f64, 0.000_43)
         };
         table = table.row(vec![
             Cell::text("pad A"),
             Cell::Integer(hold),
-            Cell::Uncertain(strain, 0.0012),
+            estimate(strain, 0.0012),
             rate,
             Cell::Number(2.345_6e-4 * hold as f64, 3),
         ]);
@@ -295,4 +296,13 @@ fn page(table: Table, figures: Section) -> Page {
         )
         .provenance("Software", concat!("palpate-report ", env!("CARGO_PKG_VERSION")))
         .provenance("Data", "made up by the example itself")
+}
+
+/// A value with this standard error and its 95 % interval.
+fn estimate(value: f64, error: f64) -> Cell {
+    Cell::Estimate(Estimate {
+        standard_error: Some(error),
+        interval: Some((value - 1.96 * error, value + 1.96 * error)),
+        ..Estimate::fixed(value)
+    })
 }

@@ -30,3 +30,4 @@ mod word;
 mod wrap;
 
 pub use palpate::number;
+pub use wrap::set_width;

@@ -1,11 +1,31 @@
 //! Sentences in lines of a terminal.
 
-/// Width of a terminal.
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Width of a terminal that nobody measured.
 pub(crate) const WIDTH: usize = 100;
+
+/// The width that texts are laid out for.
+static MEASURED: AtomicUsize = AtomicUsize::new(WIDTH);
+
+/// Narrower than this nothing can be read.
+const NARROWEST: usize = 60;
+
+/// Lays out all texts made from now on for a terminal of this many columns.
+///
+/// The width is one of the process, as its terminal is; texts that go elsewhere than to a terminal keep 100 columns.
+pub fn set_width(columns: usize) {
+    MEASURED.store(columns.max(NARROWEST), Ordering::Relaxed);
+}
+
+/// The width that texts are laid out for.
+pub(crate) fn width() -> usize {
+    MEASURED.load(Ordering::Relaxed)
+}
 
 /// A sentence in lines of a terminal.
 pub(crate) fn wrapped(sentence: &str) -> String {
-    indented("", 0, WIDTH, sentence)
+    indented("", 0, width(), sentence)
 }
 
 /// A text behind `head` in lines of this width, its further lines set in.

@@ -25,8 +25,10 @@ fn lines(folder: &Path, name: &str) -> Vec<String> {
 
 /// The cells of one column, by its name.
 fn column(table: &[String], name: &str) -> Vec<String> {
-    let index = table[0].split(',').position(|column| column == name).unwrap();
-    table[1..].iter().map(|line| line.split(',').nth(index).unwrap().to_owned()).collect()
+    let text = table.join("\n");
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let index = reader.headers().unwrap().iter().position(|column| column == name).unwrap();
+    reader.records().map(|row| row.unwrap()[index].to_owned()).collect()
 }
 
 #[test]

@@ -24,9 +24,10 @@ fn intervals_rest_on_what_is_asked_for() {
     );
     let free = |document: &Value| document["holds"][0]["fits"].as_array().unwrap()[5].clone();
     let (plain, profile) = (free(&plain), free(&profile));
-    assert_eq!((&plain["exponent_fixed"], &plain["domain"]), (&false.into(), &"time".into()), "{plain}");
-    assert_eq!(plain["exponent"], profile["exponent"]);
-    let ends = |fit: &Value| [0, 1].map(|i| fit["confidence_interval"]["exponent"][i].as_f64().unwrap());
+    assert_eq!((&plain["law"], &plain["domain"]), (&"latency".into(), &"time".into()), "{plain}");
+    let exponent = |fit: &Value| fit["parameters"]["exponent"].clone();
+    assert_eq!(exponent(&plain)["value"], exponent(&profile)["value"]);
+    let ends = |fit: &Value| [0, 1].map(|i| exponent(fit)["interval"][i].as_f64().unwrap());
     let (plain, profile) = (ends(&plain), ends(&profile));
     assert!(
         plain != profile && (plain[0] - profile[0]).abs() < 0.5 * (plain[1] - plain[0]),
@@ -368,7 +369,7 @@ fn foam_hold_lies_within_a_sample_of_its_labels() {
 }
 
 #[test]
-fn vhb_four_numbers_from_ten_minutes_predict_the_next_twenty() {
+fn vhb_four_parameters_from_ten_minutes_predict_the_next_twenty() {
     for name in ["relax_3d0", "relax_2d5"] {
         let Some(record) = data(&format!("vhb4910/{name}.csv")) else {
             return;
@@ -376,8 +377,8 @@ fn vhb_four_numbers_from_ten_minutes_predict_the_next_twenty() {
         let arguments = ["analyze", record.to_str().unwrap(), "--fit-until", "600 s", "--format", "json"];
         let document = json(Path::new("."), &arguments);
         let fits = document["holds"][0]["fits"].as_array().unwrap();
-        let free = fits.iter().find(|fit| fit["domain"] == "time" && fit["exponent_fixed"] == false).unwrap();
-        let error = number(&free["prediction_error"]);
+        let free = fits.iter().find(|fit| fit["domain"] == "time" && fit["law"] == "latency").unwrap();
+        let error = number(&free["holdout_error"]);
         assert!(error < 0.006, "{name}: {error}");
     }
 }

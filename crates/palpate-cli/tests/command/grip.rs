@@ -55,7 +55,7 @@ fn both_ways_of_control_give_opposite_advice() {
     let (held, squeeze) = (&found["force_held"], &found["squeeze"]);
     assert!(number(held, "force_n") < 0.6 * number(squeeze, "start_force_n"));
     assert!(number(held, "displacement_end_m") > 1.5 * number(held, "displacement_start_m"));
-    assert!(found["extrapolations"].to_string().contains("a force is held"));
+    assert!(found["extrapolations"].to_string().contains("the force is held"));
     let (code, short) = json(&["--control", "force", "--hold", "100 s", "--stroke", "5 mm"]);
     assert_eq!(code, Some(1));
     assert!(short["verdict"].as_str().unwrap().contains("come to the end of their stroke"), "{short}");

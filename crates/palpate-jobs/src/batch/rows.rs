@@ -3,6 +3,7 @@
 use palpate_files::parquet_table::Kind::{self, Count, Number, Text};
 use palpate_files::parquet_table::{Field, Rows, Values};
 use palpate_report::document::{AnalysisDocument, FitDocument, HoldDocument, LawDocument};
+use palpate_report::result::Parameters;
 use serde_json::Value;
 
 /// What a row is made of.
@@ -51,34 +52,31 @@ const HOLD: [Column; 19] = [
 ];
 
 /// Columns of the law, whichever it is.
-const LAW: [Column; 7] = [
+const LAW: [Column; 8] = [
     (Text, "law", |line| line.name().into()),
     (Count, "preferred", |line| i64::from(line.preferred).into()),
     (Number, "rmse", |line| line.of_law(|fit| fit.rmse.into(), |_| Value::Null)),
-    (Number, "relative_rmse", |line| line.of_law(|fit| relative(fit).into(), |law| law.rmse.into())),
+    (Number, "relative_rmse", |line| line.of_law(|fit| fit.relative_rmse.into(), |law| law.rmse.into())),
     (Number, "delta_bic", |line| line.of_law(|fit| fit.delta_bic.into(), |law| law.delta_bic.into())),
     (Text, "termination", |line| line.of_law(|fit| fit.termination.clone().into(), ending)),
     (Text, "parameters", |line| {
-        line.of_law(|_| Value::Null, |law| serde_json::to_string(&law.parameters).ok().into())
+        let written = |parameters: &Parameters| serde_json::to_string(parameters).ok().into();
+        line.parameters().map_or(Value::Null, written)
+    }),
+    (Text, "formula", |line| {
+        line.of_law(|fit| fit.formula.clone().into(), |law| law.formula.clone().into())
     }),
 ];
 
-/// A number of the latency law, by its name.
-type LatencyParameter = (&'static str, fn(&FitDocument) -> Value);
-
-/// Columns of the latency law alone, each with its uncertainty.
-const LATENCY: [LatencyParameter; 7] = [
-    ("exponent", |fit| fit.exponent.into()),
-    ("equilibrium_force_n", |fit| fit.equilibrium_force_n.into()),
-    ("equilibrium_strain", |fit| fit.equilibrium_strain.into()),
-    ("excess_force_n", |fit| fit.excess_force_n.into()),
-    ("excess_strain", |fit| fit.excess_strain.into()),
-    ("relative_rate_per_s", |fit| fit.relative_rate_per_s.into()),
-    ("rate_coefficient_per_s", |fit| fit.rate_coefficient_per_s.into()),
-];
+/// Parameters of the latency law, each with its uncertainty, in the unit of the signal where they have one.
+const LATENCY: [&str; 5] = ["exponent", "equilibrium", "amplitude", "relative_rate_per_s", "rate_coefficient_per_s"];
 
 /// Columns behind those: of the latency law without an uncertainty, and what the rows depend on besides the record.
-const LAST: [Column; 3] = [
+const LAST: [Column; 5] = [
+    (Number, "equilibrium_force_n", |line| {
+        line.of_law(|fit| fit.equilibrium_force_n.into(), |_| Value::Null)
+    }),
+    (Number, "excess_force_n", |line| line.of_law(|fit| fit.excess_force_n.into(), |_| Value::Null)),
     (Number, "samples", |line| line.of_law(|fit| fit.samples.into(), |_| Value::Null)),
     (Number, "residual_correlation", |line| {
         line.of_law(|fit| fit.residual_correlation.into(), |_| Value::Null)
@@ -92,7 +90,7 @@ const LAST: [Column; 3] = [
 /// The columns of the table, in order.
 pub(super) fn fields() -> Vec<Field> {
     let plain = |columns: &'static [Column]| columns.iter().map(|(kind, name, _)| Field::new(*name, *kind));
-    let uncertain = LATENCY.iter().flat_map(|(name, _)| {
+    let uncertain = LATENCY.iter().flat_map(|name| {
         ["", "_standard_error", "_low", "_high"].map(|end| Field::new(format!("{name}{end}"), Kind::Number))
     });
     plain(&HOLD).chain(plain(&LAW)).chain(uncertain).chain(plain(&LAST)).collect()
@@ -124,14 +122,13 @@ fn of_hold<'a>(document: &'a AnalysisDocument, hold: &'a HoldDocument) -> impl I
 
 fn row(line: &Line<'_>) -> Vec<Value> {
     let plain = |columns: &'static [Column]| columns.iter().map(|(.., value)| value(line));
-    let uncertain = LATENCY.iter().flat_map(|(name, value)| match &line.law {
-        LawRow::Latency(fit) => {
-            let interval = fit.confidence_interval.get(*name);
-            let error = fit.standard_error.get(*name).copied();
-            let [low, high] = [0, 1].map(|end| interval.map(|interval| interval[end]));
-            [value(fit), error.into(), low.into(), high.into()]
-        }
-        LawRow::Other(_) | LawRow::None => [const { Value::Null }; 4],
+    let of_latency = if let LawRow::Latency(fit) = &line.law { Some(&fit.parameters) } else { None };
+    let uncertain = LATENCY.iter().flat_map(|name| {
+        let found = of_latency.and_then(|parameters| parameters.get(*name));
+        let value = found.and_then(|parameter| parameter.value);
+        let error = found.and_then(|parameter| parameter.standard_error);
+        let [low, high] = [0, 1].map(|end| found.and_then(|parameter| parameter.interval?[end]));
+        [value.into(), error.into(), low.into(), high.into()]
     });
     plain(&HOLD).chain(plain(&LAW)).chain(uncertain).chain(plain(&LAST)).collect()
 }
@@ -146,11 +143,19 @@ impl Line<'_> {
         }
     }
 
+    /// The parameters of the law.
+    fn parameters(&self) -> Option<&Parameters> {
+        match &self.law {
+            LawRow::Latency(fit) => Some(&fit.parameters),
+            LawRow::Other(law) => Some(&law.parameters),
+            LawRow::None => None,
+        }
+    }
+
     /// The name of the law as `--laws` takes it.
     fn name(&self) -> Option<String> {
         match &self.law {
-            LawRow::Latency(fit) if fit.exponent_fixed => Some(format!("latency:{}", fit.exponent)),
-            LawRow::Latency(_) => Some("latency".to_owned()),
+            LawRow::Latency(fit) => Some(fit.law.clone()),
             LawRow::Other(law) => Some(law.law.clone()),
             LawRow::None => None,
         }
@@ -173,12 +178,6 @@ fn codes(line: &Line<'_>) -> String {
 /// Why the fit of a law ended, or why there is none.
 fn ending(law: &LawDocument) -> Value {
     law.termination.clone().or_else(|| law.error.clone()).into()
-}
-
-/// The residual as a share of the change of the signal.
-fn relative(fit: &FitDocument) -> Option<f64> {
-    let amplitude = fit.excess_strain.unwrap_or(fit.excess_force_n).abs();
-    (amplitude > 0.0).then(|| fit.rmse / amplitude)
 }
 
 /// Rows as columns of a table with these fields; `None` where they belong to another one.

@@ -125,9 +125,9 @@ shown! {
         parameter_table: PyResult<Table> = {
             let parameters = &self.asked().parameters;
             let mut columns = columns!(parameters, parameter =>
-                name, value = parameter.estimate.value, standard_error = parameter.estimate.standard_error,
-                low = parameter.estimate.interval.map(|interval| interval[0]),
-                high = parameter.estimate.interval.map(|interval| interval[1])
+                name, value = parameter.parameter.value, standard_error = parameter.parameter.standard_error,
+                low = parameter.parameter.interval.and_then(|interval| interval[0]),
+                high = parameter.parameter.interval.and_then(|interval| interval[1])
             );
             if parameters.iter().any(|parameter| parameter.profile.is_some()) {
                 columns.extend(columns!(parameters, parameter =>

@@ -7,7 +7,7 @@ use palpate::calibrate::{EquilibriumLaw, Material as Body, MaterialParameter};
 use palpate_files::description::{MaterialFile, parse_material, parse_protocol_of, read_protocol_of};
 use palpate_jobs::output::write_file;
 use palpate_jobs::{MaterialSource, PlanGrip, Predict};
-use palpate_report::result::material_unit;
+use palpate_report::result::si_unit;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict, PyType};
 use serde::de::Error;
@@ -101,7 +101,7 @@ shown! {
         /// The parameters, a row each: ``name``, ``unit``, ``value``, ``standard_error``, ``low`` and ``high``, in SI; the latter three are missing
         /// for a parameter that was given, or that the record leaves open.
         parameter_table: PyResult<Table> = Table::of(columns!(self.estimated(), parameter =>
-            name, unit = material_unit(parameter.unit).1, value = parameter.estimate.value,
+            name, unit = si_unit(parameter.unit), value = parameter.estimate.value,
             standard_error = parameter.estimate.standard_error,
             low = parameter.estimate.interval.map(|interval| interval.0),
             high = parameter.estimate.interval.map(|interval| interval.1)
@@ -109,7 +109,7 @@ shown! {
         /// Every parameter by its name: "modulus_pa" (or "equilibrium_force_1_n", ...), and "exponent", "rate_coefficient_per_s" and "layer_thickness" of the
         /// latency law, "overshoot_1", "time_constant_1_s", ... of a linear one.
         estimates<'py>(py): PyResult<Bound<'py, PyDict>> = {
-            let estimate = |parameter: &MaterialParameter| PyEstimate::of(parameter.estimate, material_unit(parameter.unit).1);
+            let estimate = |parameter: &MaterialParameter| PyEstimate::of(parameter.estimate, si_unit(parameter.unit));
             self.estimated().iter().map(|parameter| (&parameter.name, estimate(parameter))).into_py_dict(py)
         },
         /// Values of all parameters by name, in SI.
@@ -423,7 +423,7 @@ shown! {
 
     fn __repr__(&self) -> String {
         let parameter = |parameter: &MaterialParameter| {
-            let (value, unit) = (told(&parameter.estimate, 4), material_unit(parameter.unit).1);
+            let (value, unit) = (told(&parameter.estimate, 4), si_unit(parameter.unit));
             let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
             format!("{}={value}{unit}", parameter.name)
         };

@@ -11,6 +11,7 @@ use palpate_jobs::output::write_bundle;
 use palpate_jobs::{Analyze, Analyzed, Outcome, Results};
 use palpate_report::document::{AnalysisDocument, FitDocument};
 use palpate_report::result::{Input, word};
+use palpate_report::result::{ParameterDocument, ParameterRow};
 use palpate_report::spelling::{spelled, with_flags};
 use palpate_report::study::Pictures;
 use pyo3::prelude::*;
@@ -135,21 +136,33 @@ fn run(py: Python<'_>, asked: &Arc<Asked>) -> PyResult<Outcome<Analyzed>> {
     job(py, move |watch| asked.job.run(asked.measured.clone(), None, watch))
 }
 
-/// What a number of a fit is known to, by the names of the numbers that any of the fits has.
-fn known(fits: &[&FitDocument]) -> Vec<(String, ArrayRef)> {
-    let errors: BTreeSet<&String> = fits.iter().flat_map(|fit| fit.standard_error.keys()).collect();
-    let error = |name: &&String| {
-        let errors = fits.iter().map(|fit| fit.standard_error.get(*name).copied());
-        (format!("{name}_standard_error"), Column::column(errors))
+/// Parameters as a tidy table.
+pub(crate) fn parameter_table(rows: &[ParameterRow]) -> PyResult<Table> {
+    Table::of(columns!(rows, row =>
+        record, hold, law, parameter = row.name.clone(), unit = row.parameter.unit.clone(), value = row.parameter.value,
+        standard_error = row.parameter.standard_error, low = row.parameter.interval.and_then(|interval| interval[0]),
+        high = row.parameter.interval.and_then(|interval| interval[1]), termination,
+        white_standard_error = row.parameter.white_standard_error, role = row.parameter.role.clone(), domain,
+        recommended = row.is_recommended
+    ))
+}
+
+/// The parameters of fits, a column each with its uncertainty, by the names that any of the fits has.
+fn estimated(fits: &[&FitDocument]) -> Vec<(String, ArrayRef)> {
+    let names: BTreeSet<&String> = fits.iter().flat_map(|fit| fit.parameters.keys()).collect();
+    let column = |name: &String, end: &str, of: fn(&ParameterDocument) -> Option<f64>| {
+        let values = fits.iter().map(|fit| fit.parameters.get(name).and_then(of));
+        (format!("{name}{end}"), Column::column(values))
     };
-    let intervals: BTreeSet<&String> = fits.iter().flat_map(|fit| fit.confidence_interval.keys()).collect();
-    let ends = |name: &&String| {
-        [("low", 0), ("high", 1)].map(|(end, index)| {
-            let ends = fits.iter().map(|fit| Some(fit.confidence_interval.get(*name)?[index]));
-            (format!("{name}_{end}"), Column::column(ends))
-        })
+    let columns = |name: &&String| {
+        [
+            column(name, "", |parameter| parameter.value),
+            column(name, "_standard_error", |parameter| parameter.standard_error),
+            column(name, "_low", |parameter| parameter.interval?[0]),
+            column(name, "_high", |parameter| parameter.interval?[1]),
+        ]
     };
-    errors.iter().map(error).chain(intervals.iter().flat_map(ends)).collect()
+    names.iter().flat_map(columns).collect()
 }
 
 shown! {
@@ -163,25 +176,30 @@ shown! {
             index, start_s, end_s, fit_start_s, displacement_m, after, mode, relaxation, force_change_n,
             force_change_standard_error_n, p_value, force_start_n, force_end_n, signal, preferred, lowest_order
         )),
-        /// The laws fitted to every hold, a row each: ``hold``, ``domain``, ``exponent``, ``equilibrium_force_n``,
-        /// ``rate_coefficient_per_s``, ..., each with its standard error and interval.
+        /// The latency law fitted to every hold, a row each: ``hold``, ``law``, ``domain``, ``exponent``, ``equilibrium``, ...,
+        /// each parameter with its standard error and interval.
         fits: PyResult<Table> = {
             let holds = self.document.holds.iter();
             let (holds, fits): (Vec<usize>, Vec<&FitDocument>) =
                 holds.flat_map(|hold| hold.fits.iter().map(|fit| (hold.index, fit))).unzip();
-            let known = known(&fits);
+            let estimated = estimated(&fits);
             let mut columns = columns!(holds, hold => hold = *hold);
+            columns.extend(columns!(fits, fit => law, domain));
+            columns.extend(estimated.iter().map(|(name, column)| (name.as_str(), Arc::clone(column))));
             columns.extend(columns!(fits, fit =>
-                law, domain, exponent, exponent_fixed, equilibrium_strain, equilibrium_force_n, excess_strain, excess_force_n,
-                relative_rate_per_s, rate_coefficient_per_s
-            ));
-            columns.extend(known.iter().map(|(name, column)| (name.as_str(), Arc::clone(column))));
-            columns.extend(columns!(fits, fit =>
-                rmse, residual_correlation, samples, delta_bic, prediction_error, termination
+                equilibrium_force_n, excess_force_n, rmse, residual_correlation, samples, delta_bic, holdout_error, termination,
+                formula
             ));
             Table::of(columns)
         },
-        /// What to know besides the numbers.
+        /// Every parameter of every law on every hold, a row each: ``record``, ``hold``, ``law``, ``parameter``, ``unit``, ``value``,
+        /// ``standard_error``, ``low``, ``high``, ``termination``, ``white_standard_error``, ``role``, ``domain``, ``recommended``.
+        parameter_table: PyResult<Table> = parameter_table(&self.document.parameter_rows()),
+        /// The law to use for the record as a whole, as ``law=`` takes it; None where none can be recommended.
+        law: Option<String> = self.document.answer.law.clone(),
+        /// Which law to use, in a sentence.
+        sentence: String = self.document.answer.sentence.clone(),
+        /// What to know besides the estimates.
         findings: Vec<Finding> = {
             let whole = self.document.findings.iter().map(|found| Finding::of(found, None));
             let of_holds = self

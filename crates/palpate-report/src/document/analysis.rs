@@ -10,7 +10,7 @@ use super::settings::SettingsDocument;
 use super::signals::{CorrectionDocument, SignalsDocument, TouchDocument};
 use super::software::Software;
 use crate::page::Finding;
-use crate::result::{Input, mode_word, word};
+use crate::result::{Answer, ComparedRecord, Input, ParameterDocument, ParameterRow, mode_word, word};
 
 documents! {
     /// A stretch of the record in one phase.
@@ -186,6 +186,8 @@ documents! {
     } {
         /// `palpate.analysis/1`.
         schema: String = "palpate.analysis/1".to_owned(),
+        /// Which law to use for the record and for each hold, with its formula and its parameters.
+        answer: Answer = Answer::new(&ComparedRecord::of_analysis(analysis, input.clone())),
         /// The record.
         input: Input = input,
         /// What the analysis ran with.
@@ -219,4 +221,35 @@ documents! {
 pub(super) fn tables(analysis: &Analysis) -> Option<TablesDocument> {
     let n = analysis.across.common_exponent.filter(|_| analysis.specimen.is_some())?;
     Some(TablesDocument::new(analysis, n))
+}
+
+impl AnalysisDocument {
+    /// Every parameter of every law on every hold, a row each: the latency law in both domains, then the laws compared.
+    #[must_use]
+    pub fn parameter_rows(&self) -> Vec<ParameterRow> {
+        self.holds.iter().flat_map(|hold| self.parameters_on(hold)).collect()
+    }
+
+    fn parameters_on(&self, hold: &HoldDocument) -> Vec<ParameterRow> {
+        let record = self.input.called();
+        let comparison = hold.comparison.as_ref();
+        let chosen = comparison.and_then(|found| found.verdict.as_ref()).map(|verdict| &verdict.law);
+        let row = |fit: &FitDocument, name: &String, parameter: &ParameterDocument| ParameterRow {
+            record: record.clone(),
+            hold: Some(hold.index),
+            law: fit.law.clone(),
+            name: name.clone(),
+            parameter: parameter.clone(),
+            termination: fit.termination.clone(),
+            domain: fit.domain.clone(),
+            is_recommended: fit.domain == "time" && chosen == Some(&fit.law),
+        };
+        let of_fit = |fit: &FitDocument| -> Vec<ParameterRow> {
+            fit.parameters.iter().map(|(name, parameter)| row(fit, name, parameter)).collect()
+        };
+        let mut rows: Vec<ParameterRow> = hold.fits.iter().flat_map(of_fit).collect();
+        let known = |law: &str| hold.fits.iter().any(|fit| fit.domain == "time" && fit.law == law);
+        rows.extend(comparison.iter().flat_map(|found| found.parameter_rows(&record, hold.index, |law| !known(law))));
+        rows
+    }
 }

@@ -1,25 +1,23 @@
 //! `palpate.calibration/1`: laws calibrated on a whole record.
 
 use palpate::analysis::HoldoutError;
-use palpate::calibrate::{CalibrateError, Calibration, Candidate, MaterialParameter, ParameterProfile};
+use palpate::calibrate::{CalibrateError, Calibration, Candidate, ParameterProfile};
 use palpate::fit::Interval;
 
-use super::comparison::EstimateDocument;
 use super::software::Software;
-use crate::result::{CalibratedRecord, Input, material_unit, word};
+use crate::result::{CalibratedRecord, Input, ParameterDocument, ParameterRow, parameters_of_material, word};
 
 documents! {
-    /// A parameter of a calibrated law, in the unit at the end of its name.
-    CalibratedParameterDocument(parameter: &MaterialParameter, profiles: &[ParameterProfile]) with {
-        let (suffix, ..) = material_unit(parameter.unit);
-        let profile = profiles.iter().find(|profile| profile.name == parameter.name);
+    /// A parameter of a calibrated law.
+    CalibratedParameterDocument(named: (String, ParameterDocument), profiles: &[ParameterProfile]) with {
+        let profile = profiles.iter().find(|profile| profile.name == named.0);
     } {
         /// Name with its unit, such as `modulus_pa`, `exponent`, `rate_coefficient_per_s`, `layer_thickness_m`.
-        name: String = format!("{}{suffix}", parameter.name),
-        /// Its value; no standard error where the record leaves it open, or where it was given.
+        name: String = named.0,
+        /// Its value with its uncertainty.
         #[serde(flatten)]
-        estimate: EstimateDocument = EstimateDocument::new(&parameter.estimate),
-        /// Profile interval; left out where none was asked for.
+        parameter: ParameterDocument = named.1,
+        /// Profile interval; left out where none was requested.
         profile?: Option<ProfileDocument> = profile.map(|found| ProfileDocument::new(found.interval)),
     }
 
@@ -49,7 +47,8 @@ documents! {
         profiles: &[ParameterProfile]
     ) with {
         let good = made.as_ref().ok();
-        let parameters = good.iter().flat_map(|made| &made.material.parameters);
+        let parameters =
+            good.iter().flat_map(|made| parameters_of_material(&made.material, made.termination.is_good()));
         let uncertainty = good.and_then(|made| made.material.uncertainty.as_ref());
     } {
         /// Name of the law.
@@ -97,5 +96,26 @@ documents! {
         laws: Vec<CalibratedLawDocument> = record.rows.iter().enumerate().map(law).collect(),
         /// What that means, in sentences.
         remarks: Vec<String> = record.remarks(),
+    }
+}
+
+impl CalibrationDocument {
+    /// Every parameter of every law, a row each; the first law is the one calibrated.
+    #[must_use]
+    pub fn parameter_rows(&self) -> Vec<ParameterRow> {
+        let of_law = |(index, law): (usize, &CalibratedLawDocument)| {
+            let row = |parameter: &CalibratedParameterDocument| ParameterRow {
+                record: self.input.called(),
+                hold: None,
+                law: law.law.clone(),
+                name: parameter.name.clone(),
+                parameter: parameter.parameter.clone(),
+                termination: law.termination.clone().unwrap_or_default(),
+                domain: "time".to_owned(),
+                is_recommended: index == 0,
+            };
+            law.parameters.iter().map(row).collect::<Vec<_>>()
+        };
+        self.laws.iter().enumerate().flat_map(of_law).collect()
     }
 }

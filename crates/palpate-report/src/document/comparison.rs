@@ -2,26 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use palpate::fit::{Estimate, Forecast, Parameter, SampleChoice, SpectrumFit, SpectrumPeak};
+use palpate::fit::{Forecast, SampleChoice, SpectrumFit, SpectrumPeak};
 use palpate::forecast::{CompareOptions, Comparison, Row, Verdict};
 use palpate::segment::HoldStart;
 
 use super::settings::unusual;
 use super::software::Software;
 use crate::page::Finding;
-use crate::result::{ComparedHold, ComparedRecord, Input, LeftOut, Quantity, hold_start_word, word};
+use crate::result::{
+    Answer, ComparedHold, ComparedRecord, Input, LeftOut, ParameterDocument, ParameterRow, Parameters, Quantity,
+    formula, hold_start_word, parameters_of, word,
+};
 
 documents! {
-    /// A parameter of a law.
-    EstimateDocument(estimate: &Estimate) {
-        /// The best value.
-        value: f64 = estimate.value,
-        /// Standard error for white noise; `null` where the data do not determine the parameter.
-        standard_error: Option<f64> = estimate.standard_error,
-        /// Confidence interval, widened for correlated residuals.
-        interval: Option<[f64; 2]> = estimate.interval.map(Into::into),
-    }
-
     /// What a law fitted to the first part of the hold says of the rest.
     ForecastDocument(forecast: &Forecast, change: f64) {
         /// Time up to which was fitted, s after the start of the fit.
@@ -64,19 +57,16 @@ documents! {
     LawDocument(row: &Row, change: f64, lowest_aicc: f64, quantity: Quantity) with {
         let fit = row.fit.as_ref().ok();
         let without = row.spectrum.is_none().then(|| row.fit.as_ref().err()).flatten();
-        let named = |parameter: &Parameter| {
-            let suffix = quantity.suffix(parameter.unit).filter(|_| parameter.estimate.value.is_finite())?;
-            Some((format!("{}{suffix}", parameter.name), EstimateDocument::new(&parameter.estimate)))
-        };
         let forecast = |found: &Option<Forecast>| found.as_ref().map(|found| ForecastDocument::new(found, change));
     } {
         /// Name of the law, as `--laws` takes it.
         law: String = row.law.to_string(),
         /// Parameters that the data determine; not a whole one for a smoothed spectrum.
         effective_parameters: f64 = row.effective_parameters,
-        /// Parameters of the law by name, with the unit at the end of the name.
-        parameters: BTreeMap<String, EstimateDocument> =
-            fit.iter().flat_map(|fit| &fit.parameters).filter_map(named).collect(),
+        /// The law with its values put in, t counting from the start of the fit; `null` where there is none.
+        formula: Option<String> = fit.map(|fit| formula(fit, quantity)),
+        /// Parameters of the law by name.
+        parameters: Parameters = fit.map(|fit| parameters_of(fit, quantity)).unwrap_or_default(),
         /// The spectrum, if that is the law.
         spectrum: Option<SpectrumDocument> = row.spectrum.as_ref().map(SpectrumDocument::new),
         /// Root mean square residual over the whole hold as a share of the change of the signal; `null` where there is no fit.
@@ -167,6 +157,8 @@ documents! {
 
     /// One compared record.
     ComparedRecordDocument(record: &ComparedRecord) {
+        /// Which law to use, with its formula and its parameters.
+        answer: Answer = Answer::new(record),
         /// The record.
         input: Input = record.input.clone(),
         /// Its holds.
@@ -220,4 +212,41 @@ documents! {
 
 fn finite(value: f64) -> Option<f64> {
     Some(value).filter(|value| value.is_finite())
+}
+
+impl HoldComparisonDocument {
+    /// Every parameter of the laws that this holds for, a row each.
+    pub(super) fn parameter_rows(&self, record: &str, hold: usize, of: impl Fn(&str) -> bool) -> Vec<ParameterRow> {
+        let chosen = self.verdict.as_ref().map(|verdict| &verdict.law);
+        let row = |law: &LawDocument, name: &String, parameter: &ParameterDocument| ParameterRow {
+            record: record.to_owned(),
+            hold: Some(hold),
+            law: law.law.clone(),
+            name: name.clone(),
+            parameter: parameter.clone(),
+            termination: law.termination.clone().unwrap_or_default(),
+            domain: "time".to_owned(),
+            is_recommended: chosen == Some(&law.law),
+        };
+        let laws = self.laws.iter().filter(|law| of(&law.law));
+        laws.flat_map(|law| {
+            law.parameters.iter().map(|(name, parameter)| row(law, name, parameter)).collect::<Vec<_>>()
+        })
+        .collect()
+    }
+}
+
+impl ComparisonDocument {
+    /// Every parameter of every law on every hold, a row each.
+    #[must_use]
+    pub fn parameter_rows(&self) -> Vec<ParameterRow> {
+        let of_hold = |record: &ComparedRecordDocument, hold: &ComparedHoldDocument| {
+            let found = hold.comparison.as_ref();
+            found
+                .map(|found| found.parameter_rows(&record.input.called(), hold.index, |_| true))
+                .unwrap_or_default()
+        };
+        let holds = self.records.iter().flat_map(|record| record.holds.iter().map(move |hold| (record, hold)));
+        holds.flat_map(|(record, hold)| of_hold(record, hold)).collect()
+    }
 }

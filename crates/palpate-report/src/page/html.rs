@@ -100,14 +100,18 @@ fn table_written(table: &Table, number: usize) -> String {
     let reasons = table.reasons();
     let class = |column: usize| if table.is_numeric(column) { " class=\"n\"" } else { "" };
     let classes: Vec<&str> = (0..table.columns.len()).map(class).collect();
-    let heads = each(table.columns.iter().zip(&classes), |(column, class)| {
-        let unit = format!(" <span class=\"unit\">({})</span>", rich(&column.unit));
-        let unit = if column.unit.is_empty() { "" } else { &unit };
+    let units = table.units();
+    let heads = each(table.columns.iter().zip(&classes).zip(&units), |((column, class), (unit, _))| {
+        let unit = if unit.is_empty() {
+            String::new()
+        } else {
+            format!(" <span class=\"unit\">({})</span>", rich(unit))
+        };
         format!("<th scope=\"col\"{class}>{}{unit}</th>", rich(&column.heading))
     });
     let rows = each(0..table.rows.len(), |row| {
         let cells = each(classes.iter().enumerate(), |(column, class)| {
-            format!("<td{class}>{}</td>", cell(table.cell(row, column), &reasons))
+            format!("<td{class}>{}</td>", cell(table.cell(row, column), units[column].1, &reasons))
         });
         format!("<tr>{cells}</tr>\n")
     });
@@ -124,8 +128,8 @@ fn table_written(table: &Table, number: usize) -> String {
     )
 }
 
-fn cell(cell: &Cell, reasons: &[&str]) -> String {
-    let text = rich(&cell.shown());
+fn cell(cell: &Cell, factor: f64, reasons: &[&str]) -> String {
+    let text = rich(&cell.shown(factor));
     match cell.reason_in(reasons) {
         Some(i) => format!("{text}<sup>{}</sup>", mark(i)),
         None => text,

@@ -1,8 +1,11 @@
 //! What a calibration of a record is shown with.
 
-use palpate::calibrate::{CalibrateError, Calibration, CalibrationData, Candidate, ParameterProfile, RateLaw};
+use palpate::calibrate::{
+    CalibrateError, Calibration, CalibrationData, Candidate, Material, ParameterProfile, RateLaw,
+};
 use palpate::fit::{NoiseModel, Termination};
 use palpate::number::significant;
+use palpate::units::quantity;
 
 use super::input::Input;
 use crate::word::word;
@@ -64,7 +67,7 @@ impl CalibratedRecord {
         let mut remarks: Vec<String> = self.sentence().into_iter().collect();
         if let Some(chosen) = self.chosen() {
             if chosen.material.candidate.rate == RateLaw::ByStrain && self.data.depths_held() < 2 {
-                remarks.push("One depth was held: how v differs with strain rests on the ramps alone, and any fault of the law in them is taken for it. Holds at several depths would tell it.".to_owned());
+                remarks.push("One depth was held: the dependence of v on strain rests on the ramps alone, and any error of the law in them is taken for it. Holds at several depths would determine it.".to_owned());
             }
             remarks.extend(remarks_of(chosen));
         }
@@ -77,15 +80,16 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
     if made.termination != Termination::Converged {
         let how = match made.termination {
             Termination::TermsMerged => {
-                "Terms of the series came together: their times cannot be told apart, and fewer terms say as much."
+                "Terms of the series merged: their time constants are not distinguishable, and fewer terms suffice."
                     .to_owned()
             }
             Termination::Singular => {
-                "The record does not tell the parameters apart; holds of different excess strain would.".to_owned()
+                "The record does not determine the parameters separately; holds of different excess strain would."
+                    .to_owned()
             }
             Termination::IterationLimit => "The search used up its steps on the way to an optimum.".to_owned(),
             at_bound => format!(
-                "The search ended at the edge of what is sought ({}): the record leaves a parameter open.",
+                "The search ended at a bound ({}): the record leaves a parameter open.",
                 word(at_bound).replace('_', " ")
             ),
         };
@@ -94,17 +98,17 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
         .material
         .parameters
         .iter()
+        .filter(|parameter| !Material::is_given(made.material.candidate, &parameter.name))
         .find(|parameter| parameter.estimate.interval.is_none_or(|(low, high)| high > 100.0 * low))
         && made.material.uncertainty.is_some()
-        && open.estimate.standard_error.is_some()
     {
-        let name = open.name.replace('_', " ");
+        let name = &open.name;
         let how = match open.estimate.interval {
-            Some(_) => "says little about the {}: its interval spans more than two decades",
-            None => "leaves the {} open",
+            Some(_) => "says little about {}: its interval spans more than two decades",
+            None => "leaves {} open",
         };
-        let how = how.replace("{}", &name);
-        remarks.push(format!("The record {how}. Holds of different excess strain would tell it."));
+        let how = how.replace("{}", name);
+        remarks.push(format!("The record {how}. Holds of different excess strain would determine it."));
     }
     let correlation = match made.noise {
         NoiseModel::White => 0.0,
@@ -113,18 +117,18 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
     };
     if correlation > 0.9 && made.relative > 5e-3 {
         remarks.push(format!(
-            "What is left over ({} % of the peak) follows a course of its own: the law does not describe all of the record. The intervals are widened for that, ± is not; how far it predicts, --fit-until shows.",
+            "The residuals ({} % of the peak) are systematic: the law does not describe all of the record. Standard errors and intervals account for their correlation, not for a law of another form; --fit-until tests what it predicts.",
             significant(100.0 * made.relative, 2)
         ));
     }
-    let shown = &made.material.range;
+    let range = &made.material.range;
     remarks.push(format!(
-        "Shown: holds of up to {} s, {} mm deep, ramps of {} to {} mm/s, forces of up to {} N. Predictions beyond are extrapolations, and say so.",
-        significant(shown.longest_hold, 3),
-        significant(1e3 * shown.deepest, 3),
-        significant(1e3 * shown.slowest, 3),
-        significant(1e3 * shown.fastest, 3),
-        significant(shown.largest_force, 3)
+        "Calibration range: holds of up to {}, displacements of up to {}, ramps of {} to {}, forces of up to {}. A prediction beyond is an extrapolation and is marked as one.",
+        quantity(range.longest_hold, "s", 3),
+        quantity(range.deepest, "m", 3),
+        quantity(range.slowest, "m/s", 3),
+        quantity(range.fastest, "m/s", 3),
+        quantity(range.largest_force, "N", 3)
     ));
     remarks
 }

@@ -1,15 +1,14 @@
 //! Laws compared on the holds of a record, of relaxation and of creep alike.
 
 use palpate::analysis::{Analysis, CreepHold, Finding, Signal};
-use palpate::fit::ParameterUnit;
 use palpate::forecast::Comparison;
 use palpate::segment::After;
+use palpate::units::{quantity, suited};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::input::Input;
-use crate::number::significant;
 use crate::word::word;
 
 /// What the laws were fitted to.
@@ -74,40 +73,22 @@ pub struct LeftOut {
 }
 
 impl Quantity {
-    /// Its unit, what a name in JSON ends in for it, and unit for people with what turns SI into it.
-    fn units(self) -> (&'static str, &'static str, (&'static str, f64)) {
+    /// Its SI unit.
+    pub(crate) fn unit(self) -> &'static str {
         match self {
-            Self::Strain => ("1", "", ("", 1.0)),
-            Self::Force => ("N", "_n", ("N", 1.0)),
-            Self::Displacement => ("m", "_m", ("mm", 1e3)),
+            Self::Strain => "1",
+            Self::Force => "N",
+            Self::Displacement => "m",
         }
     }
 
-    /// Its unit.
-    pub(crate) fn unit(self) -> &'static str {
-        self.units().0
-    }
-
-    /// Unit for people, and what turns SI into it.
-    pub(crate) fn for_people(self) -> (&'static str, f64) {
-        self.units().2
-    }
-
-    /// What a name in JSON ends in for a number of this unit; `None` for one that has no unit of its own.
-    pub(crate) fn suffix(self, unit: ParameterUnit) -> Option<String> {
-        let (_, own, _) = self.units();
-        let (own, over_time) = match unit {
-            ParameterUnit::One => ("", ""),
-            ParameterUnit::Second => ("", "_s"),
-            ParameterUnit::PerSecond => ("", "_per_s"),
-            ParameterUnit::Signal => (own, ""),
-            ParameterUnit::SignalPerSecond => (own, "_per_s"),
-            // A power of time in s: what it is after one second.
-            ParameterUnit::SignalPerPower => (own, "_at_1_s"),
-            ParameterUnit::RateCoefficient if self == Self::Strain => ("", "_per_s"),
-            ParameterUnit::RateCoefficient => return None,
-        };
-        Some(format!("{own}{over_time}"))
+    /// The unit for people of values up to this size, and the factor to it.
+    pub(crate) fn for_people(self, largest: f64) -> (&'static str, f64) {
+        match self {
+            Self::Strain => ("", 1.0),
+            Self::Force => suited("N", largest),
+            Self::Displacement => suited("m", largest),
+        }
     }
 }
 
@@ -135,8 +116,8 @@ impl ComparedHold {
     /// What was held, behind a comma.
     fn held(&self) -> String {
         self.level.map_or(String::new(), |level| match self.quantity {
-            Quantity::Displacement => format!(", {} N", significant(level, 3)),
-            _ => format!(", {} mm", significant(1e3 * level, 4)),
+            Quantity::Displacement => format!(", {}", quantity(level, "N", 3)),
+            _ => format!(", {}", quantity(level, "m", 4)),
         })
     }
 }

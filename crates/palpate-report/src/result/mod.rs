@@ -6,27 +6,35 @@
 //! | file | what |
 //! |---|---|
 //! | `input.rs` | where a record came from |
+//! | `parameters.rs` | parameters of laws with units and uncertainty, and their tidy table |
+//! | `answer.rs` | which law for a record and its holds |
 //! | `compared.rs` | laws compared on the holds of a record |
 //! | `calibrated.rs` | laws calibrated on a record, with remarks |
 //! | `gripped.rs`, `grip_sentences.rs` | a body in a gripper with an answer; the answer in sentences |
 //! | `reproduced.rs` | the paper's study |
 //! | `words.rs` | the words for what the library says |
 
+mod answer;
 mod calibrated;
 mod compared;
 mod grip_sentences;
 mod gripped;
 mod input;
+mod parameters;
 mod reproduced;
 mod words;
 
 pub use crate::page::Check;
 pub use crate::word::word;
+pub use answer::{Answer, HoldAnswer, formula};
 pub use calibrated::CalibratedRecord;
 pub use compared::{ComparedHold, ComparedRecord, LeftOut, Quantity};
 pub(crate) use grip_sentences::lasted;
 pub use gripped::GrippedBody;
 pub use input::Input;
+pub use parameters::{
+    ParameterDocument, ParameterRow, Parameters, parameters_of, parameters_of_material, parameters_table, si_unit,
+};
 pub use reproduced::{ReproducedTest, Reproduction};
 pub(crate) use words::{hold_start_word, percent};
-pub use words::{material_unit, mode_word, slips_word};
+pub use words::{mode_word, slips_word};

@@ -5,7 +5,7 @@ use palpate::analysis::{Analysis, Finding as RecordFinding, HoldAnalysis, Severi
 use crate::page::Finding;
 use crate::result::{ComparedRecord, word};
 use crate::spelling::with_flags;
-use crate::wrap::{WIDTH, indented};
+use crate::wrap::{indented, width};
 
 /// Different words for one code that are written out; more are counted.
 pub(super) const MOST_LINES: usize = 6;
@@ -29,6 +29,14 @@ pub(super) struct Gathered {
 }
 
 impl Gathered {
+    /// In a sentence, with the first place where it was observed.
+    pub(super) fn briefly(&self) -> String {
+        let (place, seen) = self.lines.first().map_or(("", ""), |(place, seen)| (place.as_str(), seen.as_str()));
+        let severity = word(self.severity);
+        let place = if place.is_empty() { String::new() } else { format!(", {place}") };
+        format!("{}{}{place}: {seen}.", severity[..1].to_uppercase(), &severity[1..])
+    }
+
     /// As a page shows it.
     pub(super) fn told(&self) -> Finding {
         let line = |(place, seen): &(String, String)| {
@@ -192,7 +200,7 @@ pub(super) fn plain(findings: &[Gathered]) -> String {
         for (place, seen) in &finding.lines {
             let place = place.replacen("Hold", "hold", 1);
             let told = if place.is_empty() { seen.clone() } else { format!("{place}: {seen}") };
-            text.push_str(&indented(&head, INDENT, WIDTH, &told));
+            text.push_str(&indented(&head, INDENT, width(), &told));
             head = " ".repeat(INDENT);
         }
     }

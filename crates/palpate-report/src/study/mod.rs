@@ -6,12 +6,14 @@
 //! |---|---|
 //! | `bundle.rs`, `grid.rs`, `findings.rs` | the files of a study, in memory until all exist; figures of many panels, panels of many figures; what was found, gathered over the holds |
 //! | `simulate/` | simulated contacts, waves, sweeps |
+//! | `answer.rs` | which law to use, before everything else |
 //! | `calibration/` | a whole record calibrated, and what the material predicts |
 //! | `grip/` | a planned grip |
 //! | `comparison/` | laws compared on the holds of records |
 //! | `record/` | an analysed record |
 //! | `reproduction/` | the paper's study |
 
+mod answer;
 mod bundle;
 mod calibration;
 mod comparison;

@@ -1,6 +1,8 @@
 //! What stands in one place of a table.
 
-use crate::number::{exact, significant, with_error};
+use palpate::fit::Estimate;
+
+use crate::number::{exact, significant, with_interval};
 
 /// One value of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -8,8 +10,8 @@ use crate::number::{exact, significant, with_error};
 pub enum Cell {
     /// A number and the significant digits that people see.
     Number(f64, usize),
-    /// A number and its standard error, which decides how far people see it; machines get the number alone.
-    Uncertain(f64, f64),
+    /// A value with its interval, which decides how many digits people see; machines get the standard error too.
+    Estimate(Estimate),
     /// A count.
     Integer(i64),
     /// Words.
@@ -37,12 +39,15 @@ impl Cell {
         value.map_or_else(|| Self::missing(reason), |value| Self::Number(value, digits))
     }
 
-    /// What a person reads; a missing value is a dash.
+    /// What a person reads of a value `factor` times as large; a missing value is a dash.
     #[must_use]
-    pub fn shown(&self) -> String {
+    pub fn shown(&self, factor: f64) -> String {
         match self {
-            Self::Number(value, digits) => significant(*value, *digits),
-            Self::Uncertain(value, error) => with_error(*value, *error),
+            Self::Number(value, digits) => significant(value * factor, *digits),
+            Self::Estimate(estimate) => match estimate.interval {
+                Some((low, high)) => with_interval(estimate.value * factor, (low * factor, high * factor)),
+                None => significant(estimate.value * factor, 4),
+            },
             Self::Integer(value) => value.to_string().replace('-', "−"),
             Self::Text(text) => text.clone(),
             Self::Missing(_) => "–".to_owned(),
@@ -54,10 +59,32 @@ impl Cell {
     pub fn stored(&self) -> String {
         match self {
             // Adding zero turns −0 into 0.
-            Self::Number(value, _) | Self::Uncertain(value, _) => exact(*value + 0.0),
+            Self::Number(value, _) | Self::Estimate(Estimate { value, .. }) => exact(*value + 0.0),
             Self::Integer(value) => value.to_string(),
             Self::Text(text) => text.clone(),
             Self::Missing(_) => String::new(),
+        }
+    }
+
+    /// Standard error, lower and upper end, as a machine reads them; an end that is open is empty.
+    pub(crate) fn stored_errors(&self) -> [String; 3] {
+        let stored = |value: Option<f64>| value.filter(|value| value.is_finite()).map(exact).unwrap_or_default();
+        match self {
+            Self::Estimate(estimate) => {
+                let (low, high) = estimate.interval.unzip();
+                [estimate.standard_error, low, high].map(stored)
+            }
+            _ => [const { String::new() }; 3],
+        }
+    }
+
+    /// The size of its value, if it has one.
+    pub(crate) fn size(&self) -> Option<f64> {
+        match self {
+            Self::Number(value, _) | Self::Estimate(Estimate { value, .. }) => {
+                Some(value.abs()).filter(|v| v.is_finite())
+            }
+            _ => None,
         }
     }
 

@@ -5,9 +5,15 @@ use super::Table;
 pub(crate) fn write(table: &Table) -> String {
     let mut writer = csv::WriterBuilder::new().terminator(csv::Terminator::CRLF).from_writer(Vec::new());
     // Nothing refuses to be written to memory.
-    let _ = writer.write_record(table.columns.iter().map(|column| &column.key));
+    let _ = writer.write_record(table.columns.iter().flat_map(|column| {
+        let errors = ["standard_error", "low", "high"].map(|what| format!("{}_{what}", column.key));
+        [column.key.clone()].into_iter().chain(errors.into_iter().filter(|_| column.is_estimate))
+    }));
     for row in 0..table.rows.len() {
-        let _ = writer.write_record((0..table.columns.len()).map(|column| table.cell(row, column).stored()));
+        let _ = writer.write_record(table.columns.iter().enumerate().flat_map(|(index, column)| {
+            let cell = table.cell(row, index);
+            [cell.stored()].into_iter().chain(cell.stored_errors().into_iter().filter(|_| column.is_estimate))
+        }));
     }
     let bytes = writer.into_inner().unwrap_or_default();
     String::from_utf8(bytes).unwrap_or_default()

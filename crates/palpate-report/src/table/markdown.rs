@@ -3,12 +3,13 @@
 use super::Table;
 
 pub(crate) fn write(table: &Table) -> String {
-    let heads: Vec<String> = table.columns.iter().map(super::TableColumn::title).collect();
+    let units = table.units();
+    let heads: Vec<String> = table.columns.iter().zip(&units).map(|(column, (unit, _))| column.title(unit)).collect();
     let rules = (0..table.columns.len()).map(|c| if table.is_numeric(c) { "--:" } else { "---" }.to_owned());
     let mut out = line(heads.into_iter());
     out.push_str(&line(rules));
     for row in 0..table.rows.len() {
-        out.push_str(&line((0..table.columns.len()).map(|column| table.cell(row, column).shown())));
+        out.push_str(&line((0..table.columns.len()).map(|column| table.cell(row, column).shown(units[column].1))));
     }
     out
 }

@@ -17,6 +17,7 @@ mod markdown;
 mod plain;
 
 pub use cell::Cell;
+use palpate::units::suited;
 
 /// One column of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -25,19 +26,16 @@ pub struct TableColumn {
     pub heading: String,
     /// What a machine reads, with a suffix for the unit, as in `rate_coefficient_per_s`.
     pub key: String,
-    /// Unit as a person reads it; empty for a pure number or for text.
+    /// Unit of the values; empty for a dimensionless number or for text. People read the values in the unit that suits their size.
     pub unit: String,
+    /// Whether values carry their uncertainty: machines then read three more columns, `_standard_error`, `_low` and `_high`.
+    pub is_estimate: bool,
 }
 
 impl TableColumn {
-    /// Heading with its unit, as in `Force (N)`.
-    #[must_use]
-    pub fn title(&self) -> String {
-        if self.unit.is_empty() {
-            self.heading.clone()
-        } else {
-            format!("{} ({})", self.heading, self.unit)
-        }
+    /// Heading with this unit, as in `Force (N)`.
+    pub(crate) fn title(&self, unit: &str) -> String {
+        if unit.is_empty() { self.heading.clone() } else { format!("{} ({unit})", self.heading) }
     }
 }
 
@@ -89,7 +87,16 @@ impl Table {
             heading: heading.into(),
             key: key.into(),
             unit: unit.into(),
+            is_estimate: false,
         });
+        self
+    }
+
+    /// Adds a column on the right whose values carry their uncertainty.
+    #[must_use]
+    pub fn estimates(mut self, heading: impl Into<String>, key: impl Into<String>, unit: impl Into<String>) -> Self {
+        self = self.column(heading, key, unit);
+        self.columns.iter_mut().next_back().into_iter().for_each(|column| column.is_estimate = true);
         self
     }
 
@@ -113,10 +120,10 @@ impl Table {
         csv::write(self)
     }
 
-    /// The table as aligned text for a terminal.
+    /// The table as aligned text for a terminal, no wider than that is where words can be broken and columns set below each other.
     #[must_use]
     pub fn to_plain_text(&self) -> String {
-        plain::write(self)
+        plain::write(self, crate::wrap::width())
     }
 
     /// The table as Markdown, without its caption and remarks; cells may hold Markdown of their own.
@@ -129,6 +136,16 @@ impl Table {
     pub(crate) fn cell(&self, row: usize, column: usize) -> &Cell {
         const EMPTY: &Cell = &Cell::Text(String::new());
         self.rows.get(row).and_then(|row| row.get(column)).unwrap_or(EMPTY)
+    }
+
+    /// The unit in which people read each column, and the factor to it: columns of one unit share it.
+    pub(crate) fn units(&self) -> Vec<(&str, f64)> {
+        let sizes = |column: usize| (0..self.rows.len()).filter_map(move |row| self.cell(row, column).size());
+        let like = |unit: &str| {
+            let columns = (0..self.columns.len()).filter(|column| self.columns[*column].unit == unit);
+            columns.flat_map(sizes).fold(0.0, f64::max)
+        };
+        self.columns.iter().map(|column| suited(&column.unit, like(&column.unit))).collect()
     }
 
     /// Whether a column holds numbers and is set flush right.
@@ -171,6 +188,26 @@ impl<T> Columns<'_, T> {
         self
     }
 
+    /// Adds a column on the right whose values carry their uncertainty.
+    #[must_use]
+    pub fn estimates(
+        self,
+        heading: impl Into<String>,
+        key: impl Into<String>,
+        unit: &str,
+        cell: impl Fn(&T) -> Cell,
+    ) -> Self {
+        let mut columns = self.column(heading, key, unit, cell);
+        columns
+            .table
+            .columns
+            .iter_mut()
+            .next_back()
+            .into_iter()
+            .for_each(|column| column.is_estimate = true);
+        columns
+    }
+
     /// The table with its columns.
     #[must_use]
     pub fn table(self) -> Table {
@@ -192,7 +229,31 @@ pub(crate) fn mark(index: usize) -> String {
 
 #[cfg(test)]
 mod tests {
+    use palpate::fit::Estimate;
+
     use super::*;
+
+    #[test]
+    fn values_are_read_in_the_unit_of_their_size_and_stored_in_their_own() {
+        let estimate = Estimate {
+            standard_error: Some(1e-10),
+            interval: Some((1.8e-9, 2.2e-9)),
+            ..Estimate::fixed(2e-9)
+        };
+        let table = Table::new("t", "")
+            .estimates("Force", "force_n", "N")
+            .column("Noise", "noise_n", "N")
+            .row(vec![Cell::Estimate(estimate), Cell::Number(1.5e-11, 2)])
+            .row(vec![Cell::missing("none"), Cell::Number(0.0, 2)]);
+        let text = table.to_plain_text();
+        assert!(
+            text.contains("Force (nN)") && text.contains("2.00 [1.80, 2.20]") && text.contains("0.015"),
+            "{text}"
+        );
+        let csv = table.to_csv();
+        assert!(csv.starts_with("force_n,force_n_standard_error,force_n_low,force_n_high,noise_n\r\n"), "{csv}");
+        assert!(csv.contains("2e-09,1e-10,1.8e-09,2.2e-09,1.5e-11\r\n,,,,0\r\n"), "{csv}");
+    }
 
     #[test]
     fn marks_go_on_after_z() {
@@ -209,6 +270,6 @@ mod tests {
             .row(vec![]);
         assert!(table.is_numeric(0) && !table.is_numeric(1) && !table.is_numeric(7));
         assert_eq!(table.reasons(), ["none"]);
-        assert_eq!(table.columns[0].title(), "A (s)");
+        assert_eq!(table.columns[0].title("s"), "A (s)");
     }
 }

@@ -1,4 +1,7 @@
 //! Tables as aligned text for a terminal.
+//!
+//! A table that is wider than the terminal breaks its headings over several lines; where that is not enough it goes on below itself
+//! with its first column again.
 
 use super::{Cell, Table, mark};
 use crate::wrap::{extent, indented};
@@ -6,28 +9,38 @@ use crate::wrap::{extent, indented};
 /// Room between columns.
 const GUTTER: &str = "  ";
 
-pub(crate) fn write(table: &Table) -> String {
-    let columns = table.columns.len();
+/// One column of text.
+struct Column {
+    heading: String,
+    cells: Vec<String>,
+    is_numeric: bool,
+    /// Width of its cells, and of its heading or the longest word of that.
+    width: usize,
+}
+
+pub(crate) fn write(table: &Table, width: usize) -> String {
     let reasons = table.reasons();
-    let heads: Vec<String> = table.columns.iter().map(super::TableColumn::title).collect();
-    let row = |row: usize| -> Vec<String> { (0..columns).map(|c| shown(table.cell(row, c), &reasons)).collect() };
-    let body: Vec<Vec<String>> = (0..table.rows.len()).map(row).collect();
-    let widest = |c: usize| body.iter().map(|row| extent(&row[c])).fold(extent(&heads[c]), usize::max);
-    let widths: Vec<usize> = (0..columns).map(widest).collect();
-    let right: Vec<bool> = (0..columns).map(|c| table.is_numeric(c)).collect();
-    let total = widths.iter().sum::<usize>() + GUTTER.len() * columns.saturating_sub(1);
+    let columns = columns(table, &reasons, width);
+    let blocks = blocks(&columns, width);
+    let widest = blocks.iter().map(|block| extent_of(&columns, block)).max().unwrap_or(0);
     // Sentences are as wide as the table, but never narrower than they are read.
-    let sentence = |text: &str| indented("", 0, total.clamp(72, 100), text);
+    let sentence = |text: &str| indented("", 0, widest.clamp(72, 100).min(width), text);
 
     let mut out = if table.caption.is_empty() { String::new() } else { sentence(&table.caption) };
-    let rule = format!("{}\n", "─".repeat(total));
-    out.push_str(&rule);
-    line(&mut out, &heads, &widths, &right);
-    out.push_str(&rule);
-    for row in &body {
-        line(&mut out, row, &widths, &right);
+    for (index, block) in blocks.iter().enumerate() {
+        if index > 0 {
+            out.push('\n');
+        }
+        let rule = format!("{}\n", "─".repeat(extent_of(&columns, block)));
+        let columns: Vec<&Column> = block.iter().map(|column| &columns[*column]).collect();
+        out.push_str(&rule);
+        head(&mut out, &columns);
+        out.push_str(&rule);
+        for row in 0..table.rows.len() {
+            line(&mut out, &columns, |column| &column.cells[row]);
+        }
+        out.push_str(&rule);
     }
-    out.push_str(&rule);
     for (i, reason) in reasons.iter().enumerate() {
         out.push_str(&format!("[{}] {reason}\n", mark(i)));
     }
@@ -37,32 +50,100 @@ pub(crate) fn write(table: &Table) -> String {
     out
 }
 
-/// A cell in one line, with the mark of its reason when it is missing.
-fn shown(cell: &Cell, reasons: &[&str]) -> String {
-    let text = cell.shown().split_whitespace().collect::<Vec<_>>().join(" ");
-    match cell.reason_in(reasons) {
-        Some(i) => format!("{text} [{}]", mark(i)),
-        None => text,
+/// The columns of a table; their headings are broken where the whole would not fit.
+fn columns(table: &Table, reasons: &[&str], width: usize) -> Vec<Column> {
+    let units = table.units();
+    let of = |(index, (unit, factor)): (usize, &(&str, f64))| {
+        let heading = table.columns[index].title(unit);
+        let cells: Vec<String> =
+            (0..table.rows.len()).map(|row| shown(table.cell(row, index), *factor, reasons)).collect();
+        let widest = cells.iter().map(|cell| extent(cell)).max().unwrap_or(0);
+        Column {
+            width: widest.max(extent(&heading)),
+            is_numeric: table.is_numeric(index),
+            heading,
+            cells,
+        }
+    };
+    let mut columns: Vec<Column> = units.iter().enumerate().map(of).collect();
+    let all: Vec<usize> = (0..columns.len()).collect();
+    if extent_of(&columns, &all) > width {
+        for column in &mut columns {
+            let words = column.heading.split_whitespace().map(extent).max().unwrap_or(0);
+            column.width = column.cells.iter().map(|cell| extent(cell)).fold(words, usize::max);
+        }
+    }
+    columns
+}
+
+/// Which columns stand beside each other: all of them where they fit, otherwise the first one with as many as fit, again and again.
+fn blocks(columns: &[Column], width: usize) -> Vec<Vec<usize>> {
+    let mut blocks: Vec<Vec<usize>> = vec![Vec::new()];
+    for index in 0..columns.len() {
+        let fits = |block: &[usize]| {
+            let with: Vec<usize> = block.iter().copied().chain([index]).collect();
+            extent_of(columns, &with) <= width
+        };
+        match blocks.last_mut() {
+            Some(block) if block.len() < 2 || fits(block) => block.push(index),
+            _ => blocks.push(vec![0, index]),
+        }
+    }
+    blocks
+}
+
+fn extent_of(columns: &[Column], block: &[usize]) -> usize {
+    let widths: usize = block.iter().map(|column| columns[*column].width).sum();
+    widths + GUTTER.len() * block.len().saturating_sub(1)
+}
+
+/// The headings, in as many lines as the longest needs, flush with the cells below.
+fn head(out: &mut String, columns: &[&Column]) {
+    let broken: Vec<Vec<String>> = columns
+        .iter()
+        .map(|column| indented("", 0, column.width, &column.heading).lines().map(str::to_owned).collect())
+        .collect();
+    let deepest = broken.iter().map(Vec::len).max().unwrap_or(0);
+    for row in 0..deepest {
+        let texts: Vec<&str> = broken
+            .iter()
+            .map(|lines| (row + lines.len()).checked_sub(deepest).map_or("", |at| lines[at].as_str()))
+            .collect();
+        aligned(out, columns, &texts);
     }
 }
 
-fn line(out: &mut String, cells: &[String], widths: &[usize], right: &[bool]) {
-    let padded: Vec<String> = cells
+fn line<'a>(out: &mut String, columns: &[&'a Column], cell: impl Fn(&'a Column) -> &'a String) {
+    let texts: Vec<&str> = columns.iter().map(|column| cell(column).as_str()).collect();
+    aligned(out, columns, &texts);
+}
+
+fn aligned(out: &mut String, columns: &[&Column], texts: &[&str]) {
+    let padded: Vec<String> = columns
         .iter()
-        .zip(widths)
-        .zip(right)
-        .map(|((cell, width), right)| {
-            let fill = " ".repeat(width - extent(cell).min(*width));
-            if *right { format!("{fill}{cell}") } else { format!("{cell}{fill}") }
+        .zip(texts)
+        .map(|(column, text)| {
+            let fill = " ".repeat(column.width - extent(text).min(column.width));
+            if column.is_numeric { format!("{fill}{text}") } else { format!("{text}{fill}") }
         })
         .collect();
     out.push_str(padded.join(GUTTER).trim_end());
     out.push('\n');
 }
 
+/// A cell in one line, with the mark of its reason when it is missing.
+fn shown(cell: &Cell, factor: f64, reasons: &[&str]) -> String {
+    let text = cell.shown(factor).split_whitespace().collect::<Vec<_>>().join(" ");
+    match cell.reason_in(reasons) {
+        Some(i) => format!("{text} [{}]", mark(i)),
+        None => text,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::{Cell, Table};
+    use super::write;
 
     #[test]
     fn columns_line_up_and_reasons_follow() {
@@ -83,6 +164,21 @@ mod tests {
             [a] no contact\n\
             Room temperature.\n";
         assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn a_wide_table_breaks_its_headings_and_then_goes_on_below() {
+        let table = Table::new("t", "")
+            .column("Hold", "hold", "")
+            .column("Force at the start of the fit", "start_n", "N")
+            .column("Force at the end", "end_n", "N")
+            .row(vec![Cell::Integer(1), Cell::Number(2.0, 3), Cell::Number(1.0, 3)]);
+        assert_eq!(write(&table, 80).lines().count(), 5);
+        let narrow = write(&table, 30);
+        assert!(narrow.lines().all(|line| line.chars().count() <= 30), "{narrow}");
+        assert!(narrow.contains("Force") && narrow.contains("(N)"), "{narrow}");
+        let narrower = write(&table, 14);
+        assert_eq!(narrower.lines().filter(|line| line.starts_with("   1")).count(), 2, "{narrower}");
     }
 
     #[test]

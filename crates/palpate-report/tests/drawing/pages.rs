@@ -78,8 +78,8 @@ fn anchors_are_unique_and_numbers_run_on() {
 #[test]
 fn tables_are_accessible_and_typeset() {
     let html = page();
-    assert!(html.contains("<th scope=\"col\" class=\"n\">Force <span class=\"unit\">(N)</span>"));
-    assert!(html.contains("<td class=\"n\">−1.5×10<sup>−7</sup></td>"));
+    assert!(html.contains("<th scope=\"col\" class=\"n\">Force <span class=\"unit\">(µN)</span>"));
+    assert!(html.contains("<td class=\"n\">−0.15</td>"));
     assert!(html.contains("<td class=\"n\">–<sup>a</sup></td>"));
     assert!(html.contains("role=\"img\""));
 }

@@ -228,8 +228,9 @@ impl Material {
         self.parameters.iter().find(|parameter| parameter.name == name).map(|parameter| &parameter.estimate)
     }
 
-    /// Whether a parameter was given, not found.
-    pub(super) fn is_given(candidate: Candidate, name: &str) -> bool {
+    /// Whether a parameter is given by the candidate, not estimated.
+    #[must_use]
+    pub fn is_given(candidate: Candidate, name: &str) -> bool {
         name == "exponent"
             && !matches!(
                 candidate.law,

@@ -9,7 +9,7 @@
 //! | `prepared.rs` | the parameters of a candidate that are searched | |
 //! | `search.rs`, `problem.rs` | a grid, then damped steps | |
 //! | `fit.rs` | from there to parameters with intervals | |
-//! | `profile.rs` | intervals by the profile of what is left over | |
+//! | `profile.rs` | intervals by the profile of the residual sum of squares | |
 //! | `material.rs` | the body with its parameters | |
 //! | `predict.rs` | what it does under any drive, with intervals | |
 //! | `error.rs` | why one could not be made | |

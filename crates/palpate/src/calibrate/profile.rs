@@ -1,6 +1,6 @@
 //! Intervals from the profile of the residual square: one parameter is held, all others are fitted again.
 //!
-//! With χ²(v) what is left over when a parameter is held at v, the interval is where
+//! With χ²(v) the residual sum of squares when a parameter is held at v, the interval is where
 //!
 //! ```text
 //! z(v) = √((χ²(v)/χ²_min − 1)(N − p)) ≤ t √w

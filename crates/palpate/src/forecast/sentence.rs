@@ -29,7 +29,7 @@ impl Comparison {
         text.push_str(match verdict.certainty {
             Certainty::Clear => "that is clear",
             Certainty::Likely => "that is likely",
-            Certainty::Open => "that is open, since most laws do as well",
+            Certainty::Open => "that is open, since most laws are not distinguishable from it",
         });
         match self.ranking {
             Ranking::Forward => text.push_str(&self.predicted(verdict)),
@@ -40,12 +40,12 @@ impl Comparison {
         let rest: Vec<String> =
             verdict.alike.iter().filter(|law| **law != verdict.law).map(|law| name_in_words(*law)).collect();
         if !rest.is_empty() {
-            let verb = if rest.len() == 1 { "does" } else { "do" };
-            text.push_str(&format!("; {} {verb} as well", listed(&rest)));
+            let verb = if rest.len() == 1 { "is" } else { "are" };
+            text.push_str(&format!("; {} {verb} not distinguishable from the best", listed(&rest)));
         }
         text.push_str(&self.cost_of_others(verdict));
         if !row.is_good() {
-            text.push_str("; no law found an optimum inside its range, so its parameters mean little");
+            text.push_str("; no law found an optimum inside its range, so its parameters are not determined");
         }
         text.push('.');
         Some(text)
@@ -58,9 +58,9 @@ impl Comparison {
         let parts: Vec<String> = self.cuts.iter().map(|cut| part_in_words(cut / self.duration)).collect();
         let (won, all) = (verdict.cuts_won, self.cuts.len());
         let won = match (won, all) {
-            (1, 1) => "where it is best or as good".to_owned(),
-            (0, _) => "though it is the best at no single cut point".to_owned(),
-            _ => format!("best or as good at {won} of {all} cut points"),
+            (1, 1) => "where no law predicts distinguishably better".to_owned(),
+            (0, _) => "though another law predicts better at every cut point".to_owned(),
+            _ => format!("and no law predicts distinguishably better at {won} of {all} cut points"),
         };
         format!(
             ". Fitted to the first {} of the hold it predicts the rest to {} of the change, {won}",

@@ -20,7 +20,7 @@
 //!
 //! A [`Law`] has its parameters free; a [`LawCurve`] has parameters put in. `law.rs` holds the list, the names and what each law is made
 //! of, `form.rs` how that stands in a signal, `basis.rs` the list of basis functions, `kernel.rs` what one of them must be able to do, `kernels.rs` that they can,
-//! `curve.rs` a law with parameters. Two rooms hold the laws themselves: `discrete/` those with single relaxation times, `continuous/` all
+//! `curve.rs` a law with its parameters, `formula.rs` that in writing. Two rooms hold the laws themselves: `discrete/` those with single relaxation times, `continuous/` all
 //! others. A hold that follows a ramp is no step: `loading.rs` holds what came before it, `superposition.rs` averages basis functions
 //! over that. `fit` fits them all; nothing here looks at data.
 
@@ -29,6 +29,7 @@ mod continuous;
 mod curve;
 mod discrete;
 mod form;
+mod formula;
 mod kernel;
 mod kernels;
 mod law;

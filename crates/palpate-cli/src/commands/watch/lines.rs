@@ -9,7 +9,7 @@ use palpate_report::result::word;
 use palpate_report::table::{Cell, Table};
 
 use super::Shown;
-use super::words::{slip, state, uncertain};
+use super::words::{slip, state, uncertain, with_normal_interval};
 
 pub(super) struct Lines {
     pub(super) slip_force: Option<f64>,
@@ -24,7 +24,7 @@ impl Shown for Lines {
         };
         write!(out, "{:>9.3} s  {:<34}  {:>8} N", seen.time, state(seen), significant(seen.force, 4))?;
         if let Some(equilibrium) = seen.equilibrium_force {
-            write!(out, "  tends to {}", uncertain(equilibrium, "N"))?;
+            write!(out, "  equilibrium force {}", uncertain(equilibrium, "N"))?;
         }
         if let Some(strain) = seen.excess_strain {
             write!(out, "  excess strain {}", uncertain(strain, ""))?;
@@ -83,23 +83,21 @@ pub(super) fn scaled(speed: palpate::fit::Estimate) -> palpate::fit::Estimate {
 /// The holds of a log.
 pub(super) fn summary(holds: &[HoldSeen], slip_force: Option<f64>) -> String {
     if holds.is_empty() {
-        return "No hold was seen.\n".to_owned();
+        return "The log has no hold.\n".to_owned();
     }
-    let unknown = |hold: &HoldSeen| if hold.held == Held::Force { "force held" } else { "not known" };
+    let unknown = |hold: &HoldSeen| if hold.held == Held::Force { "the force was held" } else { "not determined" };
     let mut table = Table::of("holds", "Holds", holds)
         .column("Held", "held", "", |hold| Cell::text(word(hold.held)))
         .column("From", "start_s", "s", |hold| Cell::Number(hold.since, 5))
         .column("To", "end_s", "s", |hold| Cell::Number(hold.until, 5))
         .column("Force at start", "force_start_n", "N", |hold| Cell::Number(hold.forces.0, 4))
         .column("at end", "force_end_n", "N", |hold| Cell::Number(hold.forces.1, 4))
-        .column("Tends to", "equilibrium_force_n", "N", |hold| {
-            Cell::number_or(hold.equilibrium.map(|force| force.value), 4, unknown(hold))
+        .estimates("Equilibrium force", "equilibrium_force_n", "N", |hold| {
+            let estimate = hold.equilibrium.map(|force| Cell::Estimate(with_normal_interval(force)));
+            estimate.unwrap_or_else(|| Cell::missing(unknown(hold)))
         })
-        .column("±", "equilibrium_force_standard_error_n", "N", |hold| {
-            Cell::number_or(hold.equilibrium.and_then(|force| force.standard_error), 2, unknown(hold))
-        })
-        .column("Creeps at", "creep_rate_um_per_s", "µm/s", |hold| {
-            Cell::number_or(hold.creep.map(|creep| 1e6 * creep.value), 3, "not held by force")
+        .column("Creep rate", "creep_rate_m_per_s", "m/s", |hold| {
+            Cell::number_or(hold.creep.map(|creep| creep.value), 3, "not held by force")
         });
     if slip_force.is_some() {
         table = table

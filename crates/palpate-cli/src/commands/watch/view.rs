@@ -89,8 +89,8 @@ impl View {
         };
         match seen.creep_rate {
             Some(creep) => rows.push(format!("creeps at    {}", uncertain(scaled(creep), "µm/s"))),
-            None if seen.held.is_some() => rows.push(format!("tends to     {}", known(seen.equilibrium_force, "N"))),
-            None => rows.push("tends to     –".to_owned()),
+            None if seen.held.is_some() => rows.push(format!("equilibrium  {}", known(seen.equilibrium_force, "N"))),
+            None => rows.push("equilibrium  –".to_owned()),
         }
         if let Some(strain) = seen.excess_strain {
             rows.push(format!("excess       {} of strain", uncertain(strain, "")));

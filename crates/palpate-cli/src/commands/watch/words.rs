@@ -2,14 +2,28 @@
 
 use palpate::fit::Estimate;
 use palpate::grip::TimeToSlip;
-use palpate::number::{significant, with_error};
+use palpate::number::{significant, with_interval};
 use palpate::observe::{Observation, Slip, SlipForecast};
 use palpate_report::result::word;
 
-/// A value ± its standard deviation, to the digits that it has.
-pub(super) fn uncertain(number: Estimate, unit: &str) -> String {
-    let text = with_error(number.value, number.standard_error.unwrap_or(0.0));
+/// A value with its 95 % interval.
+pub(super) fn uncertain(estimate: Estimate, unit: &str) -> String {
+    let text = with_interval(
+        estimate.value,
+        with_normal_interval(estimate).interval.unwrap_or((estimate.value, estimate.value)),
+    );
     if unit.is_empty() { text } else { format!("{text} {unit}") }
+}
+
+/// An estimate with the 95 % interval of a normal distribution of its standard error.
+pub(super) fn with_normal_interval(estimate: Estimate) -> Estimate {
+    /// Two-sided 95 % quantile of the standard normal distribution.
+    const QUANTILE: f64 = 1.959_964;
+    let ends = |error: f64| (estimate.value - QUANTILE * error, estimate.value + QUANTILE * error);
+    Estimate {
+        interval: estimate.standard_error.map(ends),
+        ..estimate
+    }
 }
 
 /// A time that is left.

@@ -23,7 +23,7 @@ impl MaterialFile {
     fn head(&self) -> String {
         let Self { material, origin } = self;
         format!(
-            "# Calibrated by palpate {} on {}: {}, {} samples,\n# {} N left over. palpate predict takes this file, and a protocol that says material = \"…\".\n",
+            "# Calibrated by palpate {} on {}: {}, {} samples,\n# {} N of residual noise. palpate predict takes this file, and a protocol that says material = \"…\".\n",
             origin.palpate,
             // A text that ends no comment.
             origin.record.replace(|letter: char| letter.is_control(), " "),

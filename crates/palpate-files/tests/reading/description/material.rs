@@ -51,7 +51,7 @@ fn material(law: &str, equilibrium: EquilibriumLaw, shape: Shape) -> MaterialFil
             let terms = law.split(':').nth(1).map_or(1, |count| count.parse().unwrap());
             for term in 1..=terms {
                 numbers.push(number(&format!("overshoot_{term}"), One, third * f64::from(term)));
-                numbers.push(number(&format!("time_{term}"), Second, 10.0 * third * f64::from(term)));
+                numbers.push(number(&format!("time_constant_{term}_s"), Second, 10.0 * third * f64::from(term)));
             }
         }
     }
@@ -278,7 +278,7 @@ fn what_is_no_material_is_refused_with_its_place() {
             "calibration.parameter[2].standard_error",
             "0 or more",
         ),
-        ("name = \"exponent\"", "name = \"order\"", "calibration.number", "numbers of the law latency"),
+        ("name = \"exponent\"", "name = \"order\"", "calibration.parameter", "parameters of the law latency"),
         ("confidence = 0.95", "confidence = 95.0", "calibration.confidence", "between 0 and 1"),
         ("freedom = 2057.0", "freedom = nan", "calibration.freedom", "above 0"),
         (

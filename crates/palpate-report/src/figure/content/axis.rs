@@ -14,7 +14,7 @@ pub enum Scale {
 pub struct Axis {
     /// Name of the quantity.
     pub label: String,
-    /// Unit; empty for a pure number.
+    /// Unit; empty for a dimensionless number.
     pub unit: String,
     /// Spacing of the values.
     pub scale: Scale,

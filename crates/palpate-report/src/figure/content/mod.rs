@@ -9,6 +9,7 @@
 //! | `axis.rs` | quantity, unit, spacing and limits of an axis |
 //! | `layer.rs` | lines, points, bands, spans, reference lines and heat maps |
 //! | `role.rs` | what a layer stands for, and its colour, dash and marker |
+//! | `units.rs` | the figure in units that suit its sizes |
 //! | `error.rs` | why a figure cannot be drawn |
 
 mod axis;
@@ -17,6 +18,7 @@ mod figure;
 mod layer;
 mod panel;
 mod role;
+mod units;
 
 pub(super) use axis::shows;
 pub use axis::{Axis, Scale};

@@ -35,6 +35,10 @@ impl Figure {
         for layer in self.panels.iter().flat_map(|panel| &panel.layers) {
             layer.check(&self.name)?;
         }
+        self.in_suited_units().drawn()
+    }
+
+    fn drawn(&self) -> Result<String, FigureError> {
         let legends: Vec<_> = self.panels.iter().map(legend::entries).collect();
         let frames = self.frames(&legends);
         let mut svg = Svg::default();

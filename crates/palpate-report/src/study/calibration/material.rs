@@ -1,13 +1,13 @@
 //! A whole record calibrated: tables, text and figure.
 
 use palpate::analysis::HoldoutError;
-use palpate::calibrate::{CalibrateError, Calibration, Candidate, Material, MaterialParameter, ParameterProfile};
-use palpate::fit::Interval;
+use palpate::calibrate::{CalibrateError, Calibration, Candidate, Material, ParameterProfile};
+use palpate::units::suited;
 
 use crate::figure::{Figure, Layer, Panel, Role};
-use crate::number::{counted, significant};
+use crate::number::{counted, significant, with_interval};
 use crate::page::{Block, Page, Section};
-use crate::result::{CalibratedRecord, material_unit, percent, word};
+use crate::result::{CalibratedRecord, ParameterDocument, parameters_of_material, percent, word};
 use crate::study::bundle::StudyError;
 use crate::study::grid::displacement_panel;
 use crate::table::{Cell, Table};
@@ -46,41 +46,43 @@ fn of_made(cell: impl Fn(&Calibration) -> Cell) -> impl Fn(&(Candidate, Result<C
 /// The parameters of a material with their intervals.
 #[must_use]
 pub fn material_table(material: &Material) -> Table {
-    numbers_table(material, &[])
+    parameters_text_table(material, &[])
 }
 
 /// The same with profile intervals, where there are any.
-fn numbers_table(material: &Material, profiles: &[ParameterProfile]) -> Table {
+fn parameters_text_table(material: &Material, profiles: &[ParameterProfile]) -> Table {
     const LEFT_OPEN: &str = "the record leaves it open";
-    const OPEN: &str = "the record leaves it open, or it was given";
     let share = material.uncertainty.as_ref().map_or(0.95, |uncertainty| uncertainty.confidence);
-    let for_people = |parameter: &MaterialParameter| material_unit(parameter.unit).2;
-    let interval = |parameter: &MaterialParameter, pick: fn((f64, f64)) -> f64| {
-        let (factor, _) = for_people(parameter);
-        Cell::number_or(parameter.estimate.interval.map(|ends| factor * pick(ends)), 4, OPEN)
+    let parameters = parameters_of_material(material, true);
+    // Each has a unit of its own, so that it stands in the row.
+    let suited = |parameter: &ParameterDocument| {
+        let (unit, factor) = suited(&parameter.unit, parameter.value.unwrap_or(0.0));
+        (if unit == "1" { "" } else { unit }.to_owned(), factor)
     };
-    let mut table =
-        Table::of("parameters", format!("Parameters of the law {}.", material.candidate), &material.parameters)
-            .column("Parameter", "parameter", "", |parameter| Cell::text(parameter.name.replace('_', " ")))
-            .column("Unit", "unit", "", |parameter| Cell::text(for_people(parameter).1))
-            .column("Value", "value", "", |parameter| {
-                let (factor, estimate) = (for_people(parameter).0, parameter.estimate);
-                match estimate.standard_error {
-                    Some(error) => Cell::Uncertain(factor * estimate.value, factor * error),
-                    None => Cell::Number(factor * estimate.value, 4),
-                }
-            })
-            .column(format!("{} from", percent(share)), "low", "", |parameter| interval(parameter, |ends| ends.0))
-            .column("to", "high", "", |parameter| interval(parameter, |ends| ends.1));
+    let estimate = |parameter: &ParameterDocument| {
+        let (_, factor) = suited(parameter);
+        match (parameter.role.as_str(), parameter.interval) {
+            ("given", _) => Cell::text(format!("{} (given)", parameter.cell().shown(factor))),
+            (_, None) => Cell::missing(LEFT_OPEN),
+            _ => Cell::text(parameter.cell().shown(factor)),
+        }
+    };
+    let caption = format!("Parameters of the law {} with {} intervals.", material.candidate, percent(share));
+    let mut table = Table::of("law", caption, &parameters)
+        .column("Parameter", "parameter", "", |(name, _)| Cell::text(name.as_str()))
+        .column("Value", "value", "", |(_, parameter)| estimate(parameter))
+        .column("Unit", "unit", "", |(_, parameter)| Cell::text(suited(parameter).0));
     if !profiles.is_empty() {
-        let profile = |parameter: &MaterialParameter, pick: fn(Interval) -> Option<f64>| {
-            let found = profiles.iter().find(|profile| profile.name == parameter.name);
-            let end = found.and_then(|found| pick(found.interval)).map(|end| for_people(parameter).0 * end);
-            Cell::number_or(end, 4, if found.is_some() { LEFT_OPEN } else { OPEN })
+        let profile = |name: &str, parameter: &ParameterDocument| {
+            let found = profiles.iter().find(|profile| profile.name == name);
+            let (_, factor) = suited(parameter);
+            let (low, high) = found.map(|found| (found.interval.low, found.interval.high))?;
+            let ends = (low.map_or(0.0, |low| low * factor), high.map_or(f64::INFINITY, |high| high * factor));
+            Some(with_interval(parameter.value? * factor, ends))
         };
-        table = table
-            .column("profile from", "profile_low", "", |parameter| profile(parameter, |interval| interval.low))
-            .column("to", "profile_high", "", |parameter| profile(parameter, |interval| interval.high));
+        table = table.column("Profile interval", "profile", "", |(name, parameter)| {
+            profile(name, parameter).map_or(Cell::missing(LEFT_OPEN), Cell::text)
+        });
     }
     table.table()
 }
@@ -90,7 +92,7 @@ fn numbers_table(material: &Material, profiles: &[ParameterProfile]) -> Table {
 pub fn calibration_text(record: &CalibratedRecord) -> String {
     let mut text = format!("{}\n\n{}", record.input.called(), laws(record).to_plain_text());
     if let Some(chosen) = record.chosen() {
-        text.push_str(&format!("\n{}", numbers_table(&chosen.material, &record.profiles).to_plain_text()));
+        text.push_str(&format!("\n{}", parameters_text_table(&chosen.material, &record.profiles).to_plain_text()));
     }
     text.push('\n');
     record.remarks().iter().for_each(|remark| text.push_str(&wrapped(remark)));
@@ -104,7 +106,7 @@ pub fn calibration_text(record: &CalibratedRecord) -> String {
 pub fn calibration_page(record: &CalibratedRecord) -> Result<Page, StudyError> {
     let mut section = Section::new(&record.input.title).block(Block::Table(laws(record)));
     if let Some(chosen) = record.chosen() {
-        section = section.block(Block::Table(numbers_table(&chosen.material, &record.profiles)));
+        section = section.block(Block::Table(parameters_text_table(&chosen.material, &record.profiles)));
     }
     section = section
         .block(Block::List(record.remarks()))
@@ -117,7 +119,7 @@ pub fn calibration_page(record: &CalibratedRecord) -> Result<Page, StudyError> {
         .provenance("Software", format!("palpate {}", env!("CARGO_PKG_VERSION"))))
 }
 
-/// Measured and simulated force over time, and what is left over.
+/// Measured and simulated force over time, and the residual.
 #[must_use]
 pub fn calibration_figure(record: &CalibratedRecord, name: &str) -> Figure {
     let (times, forces) = (record.data.times(), record.data.forces());
@@ -138,7 +140,7 @@ pub fn calibration_figure(record: &CalibratedRecord, name: &str) -> Figure {
         left = left.layer(Layer::vertical(at, Role::Reference));
     }
     let travel: Vec<f64> = times.iter().map(|time| motion.displacement_at(*time)).collect();
-    Figure::new(name, "A whole record with the laws calibrated on it, and what each leaves over.")
+    Figure::new(name, "A whole record with the laws calibrated on it, and the residual of each.")
         .panel(force)
         .panel(left.zero_line())
         .panel(displacement_panel(times, &travel, Role::Measured))

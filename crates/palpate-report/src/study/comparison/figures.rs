@@ -1,12 +1,12 @@
 //! Figures of compared laws.
 
 use palpate::fit::SpectrumFit;
-use palpate::forecast::{Comparison, Row, name_in_words};
+use palpate::forecast::{Comparison, Row};
 use palpate::laws::Law;
 
 use crate::figure::{Axis, Figure, Layer, Panel, Role};
-use crate::number::{counted, significant};
-use crate::result::{ComparedHold, ComparedRecord};
+use crate::number::significant;
+use crate::result::{Answer, ComparedHold, ComparedRecord};
 use crate::study::findings::entry;
 use crate::study::grid::by_hold;
 
@@ -30,10 +30,10 @@ pub(in crate::study) fn all(record: &ComparedRecord, suffix: &str) -> Vec<Figure
 /// Forward error of each law after each cut.
 fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let holds: Vec<_> = record.verdicts().filter(|(_, comparison)| !comparison.cuts.is_empty()).collect();
-    let (laws, all) = best_laws(&holds);
+    let (laws, all) = best_laws(record, &holds);
     let panel = |(hold, comparison): &(&ComparedHold, &Comparison)| {
         let mut panel =
-            Panel::new(Axis::linear("Part of the hold that was fitted", "%"), Axis::log("Error over the rest", "%"))
+            Panel::new(Axis::linear("Part of the hold that was fitted", "%"), Axis::log("Held-out error", "%"))
                 .title(hold.short_title());
         for (series, law) in laws.iter().enumerate() {
             let row = comparison.rows.iter().find(|row| row.law == *law);
@@ -45,7 +45,8 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     by_hold(
         &format!("forward_errors{suffix}"),
         format!(
-            "What each law, fitted to the first part of a hold, predicts of the rest: root mean square error in % of the change of the signal.{left}"
+            "Held-out error: each law fitted to the first part of a hold, root mean square error of its prediction of the rest in % of the change of the signal.{left}{}",
+            for_record(record)
         ),
         (1.4 * 78.0, 78.0),
         (&holds, "holds"),
@@ -53,8 +54,20 @@ fn forward_errors(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     )
 }
 
-/// The laws to show, those of the lowest mean rank first, and how many there are; every panel shows the same in the same colours.
-fn best_laws(holds: &[(&ComparedHold, &Comparison)]) -> (Vec<Law>, usize) {
+/// The law for the record, where there is one.
+fn law_for_record(record: &ComparedRecord) -> Option<Law> {
+    Answer::new(record).law?.parse().ok()
+}
+
+/// Which law a figure shows first, and why.
+fn for_record(record: &ComparedRecord) -> String {
+    law_for_record(record)
+        .map_or_else(String::new, |law| format!(" First in the legend: {law}, the law for this record."))
+}
+
+/// The laws to show, that for the record first, then those of the lowest mean rank, and how many there are; every panel shows the same in
+/// the same colours.
+fn best_laws(record: &ComparedRecord, holds: &[(&ComparedHold, &Comparison)]) -> (Vec<Law>, usize) {
     let mut ranks: Vec<(Law, usize)> = Vec::new();
     for (_, comparison) in holds {
         for (rank, row) in comparison.rows.iter().enumerate() {
@@ -62,7 +75,8 @@ fn best_laws(holds: &[(&ComparedHold, &Comparison)]) -> (Vec<Law>, usize) {
         }
     }
     let all = ranks.len();
-    ranks.sort_by_key(|(_, sum)| *sum);
+    let first = law_for_record(record);
+    ranks.sort_by_key(|(law, sum)| (Some(*law) != first, *sum));
     ranks.truncate(if holds.len() == 1 { MOST_LAWS } else { FEWER_LAWS });
     (ranks.into_iter().map(|(law, _)| law).collect(), all)
 }
@@ -80,24 +94,28 @@ fn forward_layers(row: &Row, comparison: &Comparison, series: usize) -> Vec<Laye
     vec![Layer::line(x.clone(), y.clone(), role).label(label.clone()), Layer::points(x, y, role).label(label)]
 }
 
-/// What the best laws leave over, averaged over stretches of ln t.
+/// Residuals of the best laws, averaged over stretches of ln t.
 fn law_residuals(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
     let holds: Vec<_> = record.verdicts().collect();
     let panel = |(hold, comparison): &(&ComparedHold, &Comparison)| {
-        let (unit, factor) = hold.quantity.for_people();
+        let (unit, factor) = hold.quantity.for_people(comparison.change);
         let mut panel = Panel::new(Axis::log("Time", "s"), Axis::linear("Mean residual", unit))
             .title(hold.short_title())
             .zero_line();
-        for (series, row) in comparison.rows.iter().filter(|row| row.is_good()).take(MOST_RESIDUALS).enumerate() {
+        let chosen = comparison.verdict.as_ref().map(|verdict| verdict.law);
+        let mut rows: Vec<&Row> = comparison.rows.iter().filter(|row| row.is_good()).collect();
+        rows.sort_by_key(|row| Some(row.law) != chosen);
+        for (series, row) in rows.into_iter().take(MOST_RESIDUALS).enumerate() {
             let (times, means) = averaged(hold, row, factor);
-            panel = panel.layer(Layer::line(times, means, Role::Series(series as u8)).label(row.law.to_string()));
+            let label = if Some(row.law) == chosen { format!("{}, recommended", row.law) } else { row.law.to_string() };
+            panel = panel.layer(Layer::line(times, means, Role::Series(series as u8)).label(label));
         }
         panel
     };
     by_hold(
         &format!("law_residuals{suffix}"),
         format!(
-            "What the best laws leave over when fitted to the whole hold (measured less fitted, averaged over {STRETCHES} stretches of ln t). Noise scatters about zero; a wave is shape that the law misses."
+            "Residuals of the best laws fitted to the whole hold (measured less fitted, averaged over {STRETCHES} stretches of ln t). Noise scatters about zero; a wave is shape that the law misses."
         ),
         (1.4 * 62.0, 62.0),
         (&holds, "holds"),
@@ -142,7 +160,8 @@ fn spectra(record: &ComparedRecord, suffix: &str) -> Option<Figure> {
 }
 
 fn spectrum_panel(hold: &ComparedHold, fit: &SpectrumFit) -> Panel {
-    let (unit, factor) = hold.quantity.for_people();
+    let largest = hold.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let (unit, factor) = hold.quantity.for_people(largest);
     let stems: Vec<(f64, f64)> = fit
         .times
         .iter()
@@ -171,18 +190,6 @@ fn spectrum_panel(hold: &ComparedHold, fit: &SpectrumFit) -> Panel {
         .layer(Layer::vertical(fit.duration, Role::Reference))
         .layer(Layer::line(x, y, Role::Series(0)))
         .layer(Layer::points(times, heights, Role::Series(0)))
-}
-
-/// The chosen laws in words, with how many holds each is chosen for.
-pub(super) fn chosen(record: &ComparedRecord) -> String {
-    let mut counts: Vec<(String, usize)> = Vec::new();
-    for law in record.verdicts().filter_map(|(_, comparison)| Some(comparison.verdict.as_ref()?.law)) {
-        *entry(&mut counts, name_in_words(law)) += 1;
-    }
-    counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    let told: Vec<String> =
-        counts.into_iter().map(|(name, count)| format!("{name} ({})", counted(count, "hold"))).collect();
-    told.join(", ")
 }
 
 #[cfg(test)]

@@ -6,9 +6,9 @@ use super::{figures, tables};
 use crate::document::{ComparisonDocument, ComparisonSettingsDocument};
 use crate::figure::{Figure, MOST_PANELS};
 use crate::page::{Block, Page, Section};
-use crate::result::{ComparedRecord, LeftOut};
+use crate::result::{ComparedRecord, LeftOut, parameters_table};
 use crate::study::bundle::{Bundle, Pictures, StudyError};
-use crate::study::findings;
+use crate::study::{answer, findings};
 
 /// All files of compared records: `report.html`, `comparison.json`, `comparison.md`, `tables/*.csv`, `figures/*.svg`.
 ///
@@ -27,7 +27,9 @@ pub fn comparison_bundle(
         let figures = figures::all(record, &suffix);
         bundle.figures(&figures, pictures)?;
         let found = findings::gathered_of(record, findings::MOST_LINES);
-        let mut section = Section::new(&record.input.title).blocks(blocks(record, &figures)?);
+        let mut section = Section::new(&record.input.title)
+            .blocks(answer::answer_blocks(record, &found))
+            .blocks(blocks(record, &figures)?);
         if !found.is_empty() {
             section = section
                 .block(Block::Subheading("Findings".to_owned()))
@@ -47,7 +49,9 @@ pub fn comparison_bundle(
     let laws: Vec<_> = settings.laws.iter().filter_map(|law| law.parse().ok()).collect();
     bundle.text("comparison.md", tables::comparison_markdown(records, left_out, &laws));
     bundle.text("report.html", page.to_html());
-    bundle.json("comparison.json", &ComparisonDocument::new(records, left_out, settings))?;
+    let document = ComparisonDocument::new(records, left_out, settings);
+    bundle.table(&parameters_table(&document.parameter_rows()));
+    bundle.json("comparison.json", &document)?;
     Ok(bundle)
 }
 
@@ -58,10 +62,7 @@ pub(in crate::study) fn blocks(record: &ComparedRecord, figures: &[Figure]) -> R
     match judged.as_slice() {
         [] => return Ok(vec![Block::paragraph("No hold has enough samples and change to compare laws on it.")]),
         [(_, comparison)] => blocks.extend(comparison.sentence().map(Block::Paragraph)),
-        _ => {
-            blocks.push(Block::paragraph(format!("Chosen: {}.", figures::chosen(record))));
-            blocks.extend(tables::verdicts(record).map(Block::Table));
-        }
+        _ => {}
     }
     for figure in figures {
         blocks.push(Block::figure(figure)?);

@@ -5,7 +5,7 @@ use palpate::laws::Law;
 
 use crate::number::significant;
 use crate::result::{ComparedHold, ComparedRecord, LeftOut, word};
-use crate::study::findings;
+use crate::study::{answer, findings};
 use crate::table::{Cell, Columns, Table};
 use crate::wrap::wrapped;
 
@@ -14,8 +14,8 @@ const NO_FORECAST: &str = "its first part could not be fitted, or leaves nothing
 
 /// What the columns mean; told once below all tables.
 pub(super) const NOTES: [&str; 3] = [
-    "p: numbers of the law (of the spectrum those that the data determine). RMSE: what the fit to the whole hold leaves over, in % of the change.",
-    "Errors after fits to the first part of the hold (its share stands above), over all that follows, in % of the change; score: their root mean square.",
+    "p: parameters of the law (of the spectrum those that the data determine). RMSE: root mean square residual of the fit to the whole hold, in % of the change.",
+    "Held-out errors after fits to the first part of the hold (its share stands above), over all that follows, in % of the change; score: their root mean square.",
     "ΔBIC at the effective number of samples, ΔAICc at all samples, each less the lowest. Merged: terms that the data cannot tell apart.",
 ];
 
@@ -40,7 +40,7 @@ fn row_of(comparison: &Comparison, law: Law) -> Option<&Row> {
     comparison.rows.iter().find(|row| row.law == law)
 }
 
-/// Numbers of a law: a whole one, but for a smoothed spectrum.
+/// Parameters of a law: a whole number, but for a smoothed spectrum.
 fn parameters(row: &Row) -> Cell {
     if row.spectrum.is_some() {
         Cell::Number(row.effective_parameters, 2)
@@ -82,7 +82,7 @@ fn law_columns<'a>(table: Columns<'a, LawRow<'a>>, cuts: &[f64]) -> Table {
 /// The laws on one hold, best first.
 pub(super) fn laws_of_hold(record: &ComparedRecord, hold: &ComparedHold) -> Option<Table> {
     let comparison = hold.comparison.as_ref()?;
-    let (unit, factor) = hold.quantity.for_people();
+    let (unit, factor) = hold.quantity.for_people(comparison.change);
     let change = significant(factor * comparison.change, 3);
     let caption = format!(
         "{}: {} samples of {} over {} s, which change it by {}.",
@@ -112,29 +112,7 @@ pub(in crate::study) fn laws(records: &[ComparedRecord], cuts: &[f64]) -> Table 
     law_columns(table, cuts)
 }
 
-/// Which law to use on each hold of a record: one row a hold.
-pub(in crate::study) fn verdicts(record: &ComparedRecord) -> Option<Table> {
-    let judged = record.verdicts();
-    let rows: Vec<_> = judged.filter_map(|(hold, found)| Some((hold, found, found.verdict.as_ref()?))).collect();
-    Table::of("verdicts", "Which law to use, hold by hold.", &rows)
-        .column("Hold", "hold", "", |(hold, ..)| Cell::Integer(hold.number as i64))
-        .column("Law to use", "law", "", |(.., verdict)| Cell::text(verdict.law.to_string()))
-        .column("p", "parameters", "", |(_, found, verdict)| {
-            row_of(found, verdict.law).map_or(Cell::missing(NO_FIT), parameters)
-        })
-        .column("Held-out error", "forward_score_percent", "%", |(_, found, verdict)| {
-            let score = row_of(found, verdict.law).and_then(|row| row.forward.score);
-            percent(score, 2, "too short to predict: ranked by BIC")
-        })
-        .column("Sure", "certainty", "", |(.., verdict)| Cell::text(word(verdict.certainty)))
-        .column("Laws as good", "alike", "", |(.., verdict)| Cell::Integer(verdict.alike.len() as i64 - 1))
-        .column("Best at cuts", "cuts_won", "", |(_, found, verdict)| {
-            Cell::text(format!("{} of {}", verdict.cuts_won, found.cuts.len()))
-        })
-        .unless_empty()
-}
-
-/// Which law to use, for a terminal: the table of all laws where there is one hold, else one row a hold.
+/// All laws on the one hold of a record, for a terminal; nothing where there are several, for which the answer has a line each.
 pub(in crate::study) fn verdict_text(record: &ComparedRecord) -> String {
     let judged: Vec<_> = record.verdicts().collect();
     match judged.as_slice() {
@@ -145,7 +123,7 @@ pub(in crate::study) fn verdict_text(record: &ComparedRecord) -> String {
             let sentence = comparison.sentence().map(|sentence| wrapped(&sentence)).unwrap_or_default();
             format!("{table}{sentence}{notes}\n")
         }
-        _ => verdicts(record).map(|table| format!("{}\n", table.to_plain_text())).unwrap_or_default(),
+        _ => String::new(),
     }
 }
 
@@ -154,7 +132,8 @@ pub(in crate::study) fn verdict_text(record: &ComparedRecord) -> String {
 pub fn comparison_text(records: &[ComparedRecord], left_out: &[LeftOut]) -> String {
     let mut text = String::new();
     for record in records {
-        text.push_str(&format!("{}\n\n", record.input.called()));
+        let found = findings::gathered_of(record, findings::MOST_PLAIN);
+        text.push_str(&format!("{}\n\n{}\n", record.input.called(), answer::answer_text(record, &found)));
         for hold in &record.holds {
             match laws_of_hold(record, hold) {
                 Some(table) => text.push_str(&table.to_plain_text()),
@@ -165,7 +144,7 @@ pub fn comparison_text(records: &[ComparedRecord], left_out: &[LeftOut]) -> Stri
             }
             text.push('\n');
         }
-        let found = findings::plain(&findings::gathered_of(record, findings::MOST_PLAIN));
+        let found = findings::plain(&found);
         if !found.is_empty() {
             text.push_str(&format!("Findings\n{found}\n"));
         }
@@ -250,7 +229,7 @@ fn overview(comparison: &Comparison, law: Law) -> Option<String> {
         Ranking::Information => format!("Δ{}", significant(figure, 2)),
     };
     let best = comparison.rows.iter().filter(|row| row.is_good()).find_map(|row| comparison.figure(row));
-    // What did not end at an optimum is set apart: its figure may be good, its numbers are not.
+    // What did not end at an optimum is set apart: its figure may be good, its parameters are not.
     let told = if row.is_good() { told } else { format!("({told})") };
     Some(if best == Some(figure) { format!("**{told}**") } else { told })
 }
@@ -258,6 +237,6 @@ fn overview(comparison: &Comparison, law: Law) -> Option<String> {
 fn sure(verdict: &Verdict) -> String {
     match (verdict.certainty, verdict.alike.len()) {
         (Certainty::Clear | Certainty::Likely, 1) => word(verdict.certainty),
-        (certainty, alike) => format!("{}, {} as good", word(certainty), alike - 1),
+        (certainty, alike) => format!("{}, {} not distinguishable", word(certainty), alike - 1),
     }
 }

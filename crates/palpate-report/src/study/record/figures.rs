@@ -2,6 +2,7 @@
 
 use palpate::analysis::{Analysis, HoldAnalysis, Signal};
 use palpate::fit::{ExponentChoice, LatencyFit, Termination};
+use palpate::forecast::Row;
 use palpate::segment::After;
 
 use super::cut::{MOST_NAMED, shaded};
@@ -148,10 +149,10 @@ fn rate_curve(fit: &LatencyFit, hold: &HoldAnalysis) -> (Vec<f64>, Vec<f64>) {
         .unzip()
 }
 
-/// Each hold over the logarithm of time with its fits, and what they leave over.
+/// Each hold over the logarithm of time with its fits, and their residuals.
 pub(super) fn holds(analysis: &Analysis, name: &str) -> Option<Figure> {
     let fitted: Vec<&HoldAnalysis> = analysis.holds.iter().filter(|hold| !hold.fits.is_empty()).collect();
-    let caption = "Relaxation over the logarithm of the time since the start of the fit, with the law at the common exponent and with a free exponent.";
+    let caption = "Relaxation over the logarithm of the time since the start of the fit, with the recommended law and, where they differ from it, the latency law at the exponent common to all holds and with the exponent estimated.";
     by_hold(name, caption, (95.0, 62.0), (&fitted, "fitted holds"), |hold| hold_panel(analysis, hold))
 }
 
@@ -175,44 +176,82 @@ fn hold_panel(analysis: &Analysis, hold: &HoldAnalysis) -> Panel {
         panel = panel.layer(Layer::vertical(hold.times[hold.fitted - 1], Role::Reference).label("fitted until"));
     }
     let curve: Vec<f64> = (0..CURVE).map(|i| first * (last / first).powf(i as f64 / (CURVE - 1) as f64)).collect();
-    for fit in &hold.fits {
-        let is_common = fit.choice() == ExponentChoice::Fixed(analysis.across.common_exponent.unwrap_or(f64::NAN));
-        let is_free = fit.choice() == ExponentChoice::Free;
-        if is_common || is_free {
-            let role = if is_free { Role::Alternative(0) } else { Role::Fitted };
-            let label = match fit.termination {
-                Termination::ExponentAtBound => format!("n = {} (free, at its bound)", fit.exponent().value),
-                _ if is_free => format!("n = {:.2} (free)", fit.exponent().value),
-                _ => format!("n = {}", fit.exponent().value),
-            };
-            let line = curve.iter().map(|t| fit.predict(*t)).collect();
-            panel = panel.layer(Layer::line(curve.clone(), line, role).label(label));
-        }
+    for (role, label, predict) in drawn_laws(analysis, hold) {
+        panel = panel.layer(Layer::line(curve.clone(), curve.iter().map(|t| predict(*t)).collect(), role).label(label));
     }
     panel
 }
 
-/// Residuals of the preferred fits over the logarithm of time.
+/// A law to draw: its role, its label, and the signal by the time since the start of the fit.
+type Drawn<'a> = (Role, String, Box<dyn Fn(f64) -> f64 + 'a>);
+
+/// The recommended law of a hold and, beside it, the latency law at the common exponent and with a free one.
+fn drawn_laws<'a>(analysis: &Analysis, hold: &'a HoldAnalysis) -> Vec<Drawn<'a>> {
+    let mut drawn: Vec<Drawn<'a>> = Vec::new();
+    let recommended = recommended(hold);
+    if let Some(row) = recommended {
+        drawn.push((Role::Fitted, format!("{}, recommended", row.law), Box::new(predictor(row))));
+    }
+    let common = analysis.across.common_exponent.map(ExponentChoice::Fixed);
+    for fit in hold.fits.iter().filter(|fit| Some(fit.choice()) == common || fit.choice() == ExponentChoice::Free) {
+        if recommended.is_some_and(|row| row.law == fit.law) {
+            continue;
+        }
+        let label = match fit.termination {
+            Termination::ExponentAtBound => format!("latency, n at its bound of {}", fit.exponent().value),
+            _ if fit.choice() == ExponentChoice::Free => format!("latency, n = {:.2} estimated", fit.exponent().value),
+            _ => fit.law.to_string(),
+        };
+        let role = if drawn.is_empty() { Role::Fitted } else { Role::Alternative(drawn.len() as u8 - 1) };
+        drawn.push((role, label, Box::new(move |t| fit.predict(t))));
+    }
+    drawn
+}
+
+/// The row of the law that the comparison recommends for a hold.
+fn recommended(hold: &HoldAnalysis) -> Option<&Row> {
+    let comparison = hold.comparison.as_ref()?;
+    let law = comparison.verdict.as_ref()?.law;
+    comparison.rows.iter().find(|row| row.law == law)
+}
+
+/// The signal by a law that was compared.
+fn predictor(row: &Row) -> impl Fn(f64) -> f64 + '_ {
+    move |t| match (&row.spectrum, &row.fit) {
+        (Some(spectrum), _) => spectrum.predict(t),
+        (None, Ok(fit)) => fit.predict(t),
+        (None, Err(_)) => f64::NAN,
+    }
+}
+
+/// Residuals of the recommended laws over the logarithm of time.
 pub(super) fn residuals(analysis: &Analysis, name: &str) -> Option<Figure> {
-    let all: Vec<(&HoldAnalysis, &LatencyFit)> =
-        analysis.holds.iter().filter_map(|hold| Some((hold, hold.preferred()?))).collect();
+    let all: Vec<(&HoldAnalysis, Drawn<'_>)> = analysis
+        .holds
+        .iter()
+        .filter_map(|hold| Some((hold, drawn_laws(analysis, hold).into_iter().next()?)))
+        .collect();
     // A fit without noise leaves only the rounding of its own arithmetic, which says nothing.
-    let worth: Vec<_> = all.iter().filter(|(_, fit)| fit.rmse > 1e-9 * fit.amplitude().value.abs()).collect();
+    let is_rounding = |(hold, (.., predict)): &&(&HoldAnalysis, Drawn<'_>)| {
+        let largest = hold.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        hold.times.iter().zip(&hold.values).all(|(t, y)| (y - predict(*t)).abs() <= 1e-9 * largest)
+    };
+    let worth: Vec<_> = all.iter().filter(|drawn| !is_rounding(drawn)).collect();
     let fitted = &worth[..worth.len().min(MOST_PANELS)];
     let exact = match all.len() - worth.len() {
         0 => String::new(),
         count => format!(" Left out: {count} holds that are fitted to within rounding."),
     };
     let caption = format!(
-        "What the preferred fit of each hold leaves over (measured less fitted). Noise scatters about zero; a wave is shape that the law misses.{}{exact}",
+        "Residuals of the recommended law on each hold (measured less fitted). Noise scatters about zero; a wave is shape that the law misses.{}{exact}",
         first_of(fitted.len(), worth.len(), "fitted holds")
     );
-    let panel = |(hold, fit): &(&HoldAnalysis, &LatencyFit)| {
+    let panel = |(hold, (_, label, predict)): &(&HoldAnalysis, Drawn<'_>)| {
         let visible = hold.times.partition_point(|t| *t <= 0.0);
         let (times, values) = (&hold.times[visible..], &hold.values[visible..]);
-        let left = times.iter().zip(values).map(|(t, y)| (y - fit.predict(*t)) * hold.force_per_signal);
+        let left = times.iter().zip(values).map(|(t, y)| (y - predict(*t)) * hold.force_per_signal);
         Panel::new(Axis::log("Time", "s"), Axis::linear("Residual", "N"))
-            .title(format!("Hold {}, n = {:.2}", hold.number, fit.exponent().value))
+            .title(format!("Hold {}, {}", hold.number, label.trim_end_matches(", recommended")))
             .zero_line()
             .layer(Layer::points(times.to_vec(), left.collect(), Role::Measured))
     };

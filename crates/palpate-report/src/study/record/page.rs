@@ -10,10 +10,9 @@ use super::{figures, method, tables};
 use crate::document::AnalysisDocument;
 use crate::number::significant;
 use crate::page::{Block, Page, Section};
-use crate::result::{ComparedRecord, Input};
+use crate::result::{Answer, ComparedRecord, Input, parameters_table};
 use crate::study::bundle::{Bundle, Pictures, StudyError, drawn};
-use crate::study::comparison;
-use crate::study::findings;
+use crate::study::{answer, comparison, findings};
 
 /// All files of an analysed record: `report.html`, `analysis.json`, `tables/*.csv`, `figures/*.svg`.
 ///
@@ -34,22 +33,35 @@ pub fn analysis_bundle(analysis: &Analysis, input: Input, pictures: Pictures) ->
     bundle.figures(figures.iter().chain(&of_laws), pictures)?;
     let mut which_law = None;
     if let Some(compare) = &analysis.options.compare {
-        which_law = Some(comparison::page::blocks(&compared, &of_laws)?);
+        which_law = Some(WhichLaw {
+            answer: answer::answer_blocks(&compared, &findings::gathered(analysis, findings::MOST_LINES)),
+            comparison: comparison::page::blocks(&compared, &of_laws)?,
+        });
         bundle.table(&comparison::tables::laws(slice::from_ref(&compared), &compare.cuts));
-        comparison::tables::verdicts(&compared).iter().for_each(|table| bundle.table(table));
+        let answer = Answer::new(&compared);
+        answer::verdicts(&answer).iter().for_each(|table| bundle.table(table));
+        answer::law_of_record(&compared, &answer).iter().for_each(|table| bundle.table(table));
     }
     tables::all(analysis).iter().for_each(|table| bundle.table(table));
+    let document = AnalysisDocument::new(analysis, input.clone());
+    bundle.table(&parameters_table(&document.parameter_rows()));
     let page = page(analysis, &input, &figures, which_law)?;
     bundle.text("report.html", page.to_html());
-    bundle.json("analysis.json", &AnalysisDocument::new(analysis, input))?;
+    bundle.json("analysis.json", &document)?;
     Ok(bundle)
+}
+
+/// What the page says about the choice of a law: first of all, and in full.
+struct WhichLaw {
+    answer: Vec<Block>,
+    comparison: Vec<Block>,
 }
 
 fn page(
     analysis: &Analysis,
     input: &Input,
     figures: &[crate::figure::Figure],
-    comparison: Option<Vec<Block>>,
+    which_law: Option<WhichLaw>,
 ) -> Result<Page, StudyError> {
     let record = Section::new("The record")
         .block(Block::paragraph(summary(analysis)))
@@ -66,12 +78,14 @@ fn page(
         .blocks(tables::joint(analysis).map(Block::Table))
         .blocks(tables::agreements(analysis).map(Block::Table))
         .blocks(tables::predictions(analysis).map(Block::Table));
-    let mut page = Page::new(&input.title, "Squeeze-and-hold test: phases, strains and the latency law")
-        .section(Section::new("Findings").blocks(findings(analysis)))
-        .section(record)
-        .section(laws);
+    let mut page = Page::new(&input.title, "Squeeze-and-hold test: phases, strains and the latency law");
+    let (answer, comparison) = which_law.map(|which| (which.answer, which.comparison)).unzip();
+    if let Some(blocks) = answer {
+        page = page.section(Section::new("Answer").blocks(blocks));
+    }
+    page = page.section(Section::new("Findings").blocks(findings(analysis))).section(record).section(laws);
     if let Some(blocks) = comparison {
-        page = page.section(Section::new("Which law to use").blocks(blocks));
+        page = page.section(Section::new("Comparison of laws").blocks(blocks));
     }
     page = page
         .section(Section::new("All fits").block(Block::Table(tables::fits(analysis))))
@@ -170,7 +184,7 @@ fn findings(analysis: &Analysis) -> Vec<Block> {
     let list: Vec<_> =
         findings::gathered(analysis, findings::MOST_LINES).iter().map(findings::Gathered::told).collect();
     if list.is_empty() {
-        vec![Block::paragraph("Nothing to report: the holds are long and clean enough for the numbers below.")]
+        vec![Block::paragraph("Nothing to report: the holds are long and clean enough for the estimates below.")]
     } else {
         vec![Block::Findings(list)]
     }

@@ -1,14 +1,14 @@
 //! Tables of an analysed record.
 
 use palpate::analysis::{Analysis, HoldAnalysis, HoldoutError, JointAnalysis, JointHolds, Signal};
-use palpate::fit::{Domain, Estimate, ExponentChoice, LatencyFit, SharedTrend, Termination};
+use palpate::fit::{Domain, ExponentChoice, LatencyFit, ParameterKind, SharedTrend};
 use palpate::record::Correction;
 use palpate::segment::{After, RelaxationType};
 
 use crate::number::significant;
 use crate::result::{ComparedRecord, Input, mode_word, word};
 use crate::study::comparison::tables as comparison_tables;
-use crate::study::findings;
+use crate::study::{answer, findings};
 use crate::table::{Cell, Table};
 
 /// An exponent as people write it: 5, not 5.000.
@@ -16,38 +16,13 @@ fn order(n: f64) -> Cell {
     if n.fract() == 0.0 && n.abs() < 1e6 { Cell::Integer(n as i64) } else { Cell::Number(n, 4) }
 }
 
-/// Why a cell has no number though there is a fit.
-const AT_EDGE: &str = "ended at the edge of its range";
-const UNDETERMINED: &str = "undetermined: its standard error is far larger than itself";
-
-/// An estimate, unless its error is far beyond both itself and `size`, the size of what it could be.
-fn estimate(estimate: Estimate, size: f64) -> Cell {
-    match estimate.standard_error {
-        Some(error) if error > (2.0 * estimate.value.abs()).max(size) => Cell::missing(UNDETERMINED),
-        Some(error) if error > 1e-12 * estimate.value.abs() => Cell::Uncertain(estimate.value, error),
-        _ => Cell::Number(estimate.value, 5),
-    }
-}
-
-/// A number of a fit, unless the fit ended at the edge of that number.
-fn unless_at_edge(fit: &LatencyFit, edge: Termination, number: Cell) -> Cell {
-    if fit.termination == edge { Cell::missing(AT_EDGE) } else { number }
-}
-
-/// The equilibrium: its error may exceed it where it is near zero, but not what was measured.
-fn equilibrium(hold: &HoldAnalysis, fit: &LatencyFit) -> Cell {
-    let largest = hold.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    unless_at_edge(fit, Termination::EquilibriumAtBound, estimate(fit.equilibrium(), largest))
-}
-
-/// A rate, absolute or relative.
-fn rate(fit: &LatencyFit, of: Estimate) -> Cell {
-    unless_at_edge(fit, Termination::RateAtBound, estimate(of, 0.0))
-}
-
-/// The exponent of a free fit.
-fn free_exponent(fit: &LatencyFit) -> Cell {
-    unless_at_edge(fit, Termination::ExponentAtBound, estimate(fit.exponent(), 0.0))
+/// A parameter of a fit with its interval, unless the fit ended at a bound or short of an optimum: its value is then none to copy.
+fn parameter(fit: &LatencyFit, kind: ParameterKind) -> Cell {
+    let found = fit.parameter(kind).and_then(|parameter| parameter.determined(fit.termination));
+    found.map_or_else(
+        || Cell::missing("the fit ended at a bound, or short of an optimum"),
+        |found| Cell::Estimate(*found),
+    )
 }
 
 /// A correction in words, if neither a finding nor first touch tells of it.
@@ -66,31 +41,31 @@ fn untold(done: &Correction) -> Option<String> {
 
 /// One row a hold: where it lies, what the force does.
 pub(super) fn holds(analysis: &Analysis) -> Table {
-    Table::of("holds", "The holds that were found.", &analysis.holds)
+    Table::of("holds", "Holds of the record.", &analysis.holds)
         .column("Hold", "hold", "", |hold| Cell::Integer(hold.number as i64))
         .column("After", "after", "", |hold| Cell::text(hold.after.map(word).unwrap_or_default()))
         .column("Held", "mode", "", |hold| Cell::text(hold.segment.mode.map(mode_word).unwrap_or_default()))
-        .column("From", "start_s", "s", |hold| Cell::Number(hold.start, 6))
-        .column("To", "end_s", "s", |hold| Cell::Number(hold.end, 6))
-        .column("Fit from", "fit_start_s", "s", |hold| Cell::Number(hold.fit_start, 6))
+        .column("From", "start_s", "s", |hold| Cell::Number(hold.start, 5))
+        .column("To", "end_s", "s", |hold| Cell::Number(hold.end, 5))
+        .column("Fit from", "fit_start_s", "s", |hold| Cell::Number(hold.fit_start, 5))
         .column("Displacement", "displacement_mm", "mm", displacement)
-        .column("Force at fit start", "force_start_n", "N", |hold| Cell::Number(hold.force_start, 4))
+        .column("Force at start", "force_start_n", "N", |hold| Cell::Number(hold.force_start, 4))
         .column("Force at end", "force_end_n", "N", |hold| Cell::Number(hold.force_end, 4))
-        .column("Relaxation", "relaxation", "", |hold| {
+        .column("Type", "relaxation", "", |hold| {
             Cell::text(match hold.relaxation.kind {
-                RelaxationType::TypeI => "Type I",
-                RelaxationType::TypeII => "Type II",
+                RelaxationType::TypeI => "I",
+                RelaxationType::TypeII => "II",
                 RelaxationType::None => "none",
             })
         })
-        .column("Significance", "p_value", "", |hold| match hold.relaxation.p_value {
+        .column("p", "p_value", "", |hold| match hold.relaxation.p_value {
             p if p < 1e-4 => Cell::text("< 0.0001"),
             p => Cell::Number(p, 2),
         })
         .table()
-        .note("Held: what the machine kept, the displacement (the force relaxes), the force (the displacement creeps) or neither.")
+        .note("Held: the displacement (the force relaxes), the force (the displacement creeps) or neither.")
         .note("Type I: the force falls; Type II: it rises. The laws are fitted from the time “Fit from” on, which may lie after the start of the hold.")
-        .note("Significance: probability that noise alone makes a change of the force of this size.")
+        .note("p: probability that noise alone makes a change of the force of this size.")
 }
 
 /// The displacement that was held.
@@ -109,18 +84,20 @@ pub(super) fn fits(analysis: &Analysis) -> Table {
         let fits = hold.fits.iter().chain(hold.rate_fits.iter().flatten());
         rows.extend(fits.enumerate().map(|(i, fit)| (hold, i, fit)));
     }
+    let amplitude = if unit == "N" { "excess_force_n" } else { "excess_strain" };
     let in_time = |fit: &LatencyFit| fit.domain == Domain::Time;
     let table = Table::of("fits", "Every law fitted to every hold.", &rows)
         .column("Hold", "hold", "", |(hold, ..)| Cell::Integer(hold.number as i64))
         .column("Domain", "domain", "", |(.., fit)| Cell::text(word(fit.domain)))
-        .column("n", "exponent", "", |(.., fit)| match fit.choice() {
+        .estimates("n", "exponent", "", |(.., fit)| match fit.choice() {
             ExponentChoice::Fixed(n) => order(n),
-            ExponentChoice::Free => free_exponent(fit),
+            ExponentChoice::Free => parameter(fit, ParameterKind::Exponent),
         })
-        .column("Equilibrium", key, unit, |(hold, _, fit)| equilibrium(hold, fit))
-        .column("λ", "relative_rate_per_s", "s⁻¹", |(.., fit)| rate(fit, fit.relative_rate()))
-        .column("v", "rate_coefficient_per_s", "s⁻¹", |(hold, _, fit)| match hold.signal {
-            Signal::Strain => rate(fit, fit.rate_coefficient()),
+        .estimates("Equilibrium", key, unit, |(.., fit)| parameter(fit, ParameterKind::Equilibrium))
+        .estimates("Excess at the start", amplitude, unit, |(.., fit)| parameter(fit, ParameterKind::Amplitude))
+        .estimates("λ", "relative_rate_per_s", "s⁻¹", |(.., fit)| parameter(fit, ParameterKind::RelativeRate))
+        .estimates("v", "rate_coefficient_per_s", "s⁻¹", |(hold, _, fit)| match hold.signal {
+            Signal::Strain => parameter(fit, ParameterKind::RateCoefficient),
             Signal::Force => Cell::missing("no strain"),
         })
         .column("RMSE", "rmse", "", |(.., fit)| Cell::Number(fit.rmse, 3))
@@ -128,7 +105,7 @@ pub(super) fn fits(analysis: &Analysis) -> Table {
             let order = hold.order.as_ref().filter(|_| in_time(fit));
             Cell::number_or(order.map(|order| order.candidates[*i].delta_bic), 3, "time domain only")
         })
-        .column("Beyond window", "prediction_error", "", |(hold, i, fit)| {
+        .column("Held-out error", "holdout_error", "", |(hold, i, fit)| {
             let beyond = hold.predictions.get(*i).copied().flatten().filter(|_| in_time(fit));
             let why = if in_time(fit) { "whole hold fitted" } else { "time domain only" };
             Cell::number_or(beyond.map(|prediction| prediction.relative), 3, why)
@@ -136,15 +113,15 @@ pub(super) fn fits(analysis: &Analysis) -> Table {
         .column("Ended", "termination", "", |(.., fit)| Cell::text(word(fit.termination)))
         .table();
     analysis.holds.iter().filter_map(rate_bias_note).fold(table, Table::note)
-        .note("± is one standard error for white noise; intervals widened for correlated residuals are in analysis.json.")
-        .note("v is in 1/s where the signal is strain. ΔBIC: information criterion less the lowest of the hold. Beyond window: prediction error over the drop of the hold.")
+        .note("Value [low, high]: 95 % confidence interval for residuals that correlate as they do. The CSV file has the standard errors too.")
+        .note("v is in 1/s where the signal is strain. ΔBIC: information criterion less the lowest of the hold. Held-out error: error of the prediction beyond the fitted part, as a share of the change over the hold.")
 }
 
 /// How far noise takes the rate domain from the truth in one hold.
 fn rate_bias_note(hold: &HoldAnalysis) -> Option<String> {
     let bias = hold.rate_bias.filter(|_| hold.rate_fits.iter().any(Option::is_some))?;
     Some(format!(
-        "Rate domain, hold {}: on simulated holds with the numbers of the fit in time (n = {:.3}) and this noise it finds v at {:.2} of the truth ({:.2} to {:.2} in {} of them) and the equilibrium off by {:.1} % of the relaxation.",
+        "Rate domain, hold {}: on simulated holds with the parameters of the fit in the time domain (n = {:.3}) and this noise it finds v at {:.2} of the truth ({:.2} to {:.2} in {} of them) and the equilibrium off by {:.1} % of the relaxation.",
         hold.number,
         bias.exponent,
         bias.coefficient,
@@ -176,19 +153,18 @@ fn paper_table(analysis: &Analysis, after: After) -> Option<Table> {
     let by_rate = |hold: &HoldAnalysis, cell: &dyn Fn(&LatencyFit) -> Cell| {
         hold.rate_fit_with(n).map_or(Cell::missing("no fit"), cell)
     };
-    let coefficient = |fit: &LatencyFit| rate(fit, fit.rate_coefficient());
+    let equilibrium = |fit: &LatencyFit| parameter(fit, ParameterKind::Equilibrium);
+    let coefficient = |fit: &LatencyFit| parameter(fit, ParameterKind::RateCoefficient);
     Table::of(name, caption, &rows)
         .column("Hold", "hold", "", |(hold, _)| Cell::Integer(hold.number as i64))
         .column("Displacement", "displacement_mm", "mm", |(hold, _)| displacement(hold))
-        .column("εₑ (time)", "equilibrium_strain", "", |(hold, fit)| equilibrium(hold, fit))
-        .column("v (time)", "rate_coefficient_per_s", "s⁻¹", |(_, fit)| coefficient(fit))
-        .column("εₑ (rate)", "equilibrium_strain_rate_domain", "", |(hold, _)| {
-            by_rate(hold, &|fit| equilibrium(hold, fit))
-        })
-        .column("v (rate)", "rate_coefficient_rate_domain_per_s", "s⁻¹", |(hold, _)| by_rate(hold, &coefficient))
-        .column("n (free)", "exponent_free", "", |(hold, _)| {
+        .estimates("εₑ (time)", "equilibrium_strain", "", |(_, fit)| equilibrium(fit))
+        .estimates("v (time)", "rate_coefficient_per_s", "s⁻¹", |(_, fit)| coefficient(fit))
+        .estimates("εₑ (rate)", "equilibrium_strain_rate_domain", "", |(hold, _)| by_rate(hold, &equilibrium))
+        .estimates("v (rate)", "rate_coefficient_rate_domain_per_s", "s⁻¹", |(hold, _)| by_rate(hold, &coefficient))
+        .estimates("n (free)", "exponent_free", "", |(hold, _)| {
             let free = hold.fits.iter().find(|fit| fit.choice() == ExponentChoice::Free);
-            free.map_or(Cell::missing("not asked"), free_exponent)
+            free.map_or(Cell::missing("not requested"), |fit| parameter(fit, ParameterKind::Exponent))
         })
         .unless_empty()
 }
@@ -199,7 +175,7 @@ pub(super) fn exponents(analysis: &Analysis) -> Table {
     Table::of("exponents", caption, &analysis.across.evidence)
         .column("n", "exponent", "", |(n, _)| order(*n))
         .column("ΔBIC, all holds", "delta_bic", "", |(_, delta)| Cell::Number(*delta, 4))
-        .column("Holds where it is as good as the best", "holds_as_good", "", |(n, _)| {
+        .column("Holds where it is not distinguishable from the best", "holds_indistinguishable", "", |(n, _)| {
             let orders = analysis.holds.iter().filter_map(|hold| hold.order.as_ref());
             let candidates = orders.flat_map(|order| &order.candidates);
             Cell::Integer(candidates.filter(|c| !c.free && c.exponent == *n && c.as_good_as_best).count() as i64)
@@ -207,7 +183,7 @@ pub(super) fn exponents(analysis: &Analysis) -> Table {
         .column("Verdict", "verdict", "", |(n, delta)| {
             Cell::text(match delta {
                 _ if analysis.across.common_exponent == Some(*n) => "lowest order that fits best",
-                delta if *delta <= 2.0 => "as good",
+                delta if *delta <= 2.0 => "not distinguishable from the best",
                 _ => "",
             })
         })
@@ -305,7 +281,13 @@ pub(super) fn all(analysis: &Analysis) -> Vec<Table> {
 /// The tables and findings as text for a terminal.
 #[must_use]
 pub fn analysis_text(analysis: &Analysis, input: &Input) -> String {
+    let compared = ComparedRecord::of_analysis(analysis, input.clone());
+    let gathered = findings::gathered(analysis, findings::MOST_PLAIN);
     let mut text = String::new();
+    if analysis.options.compare.is_some() {
+        text.push_str(&answer::answer_text(&compared, &gathered));
+        text.push('\n');
+    }
     let mut tables = vec![holds(analysis)];
     tables.extend(paper_tables(analysis));
     if analysis.specimen.is_none() {
@@ -329,13 +311,13 @@ pub fn analysis_text(analysis: &Analysis, input: &Input) -> String {
         ));
     }
     if analysis.options.compare.is_some() {
-        text.push_str(&comparison_tables::verdict_text(&ComparedRecord::of_analysis(analysis, input.clone())));
+        text.push_str(&comparison_tables::verdict_text(&compared));
     }
     let asked: Vec<String> = analysis.record.corrections().iter().filter_map(untold).collect();
     if !asked.is_empty() {
         text.push_str(&format!("Corrections\n  {}\n\n", asked.join("\n  ")));
     }
-    let findings = findings::plain(&findings::gathered(analysis, findings::MOST_PLAIN));
+    let findings = findings::plain(&gathered);
     if !findings.is_empty() {
         text.push_str(&format!("Findings\n{findings}\n"));
     }

@@ -1,0 +1,179 @@
+//! The answer of an analysis or a comparison: which law for the record and for each hold, with its formula and its parameters.
+
+use std::cmp::Ordering;
+
+use palpate::analysis::{Finding, Severity};
+use palpate::fit::Fit;
+use palpate::forecast::{Comparison, Ranking, name_in_words};
+use palpate::laws::Law;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::compared::{ComparedHold, ComparedRecord};
+use super::parameters::{Parameters, parameters_of};
+use super::{Quantity, word};
+use crate::number::significant;
+
+/// Findings that an answer states for a hold; all others stand below it.
+const MOST_FINDINGS: usize = 2;
+
+/// Which law to use for a record, and for each of its holds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Answer {
+    /// The law for the record as a whole; `null` where none could be fitted.
+    pub law: Option<String>,
+    /// Holds on which that law is not distinguishable from the best.
+    pub holds_agreeing: usize,
+    /// Holds on which laws could be compared.
+    pub holds_compared: usize,
+    /// All that in a sentence.
+    pub sentence: String,
+    /// The answer for each hold.
+    pub holds: Vec<HoldAnswer>,
+}
+
+/// Which law to use for a hold.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct HoldAnswer {
+    /// Number of the hold, from 1.
+    pub hold: usize,
+    /// The hold in words.
+    pub title: String,
+    /// The recommended law.
+    pub law: String,
+    /// `clear`, `likely` or `open`.
+    pub certainty: String,
+    /// The law with its values put in; t counts from the start of the fit. `null` for the spectrum.
+    pub formula: Option<String>,
+    /// Time of the record from which t counts, s.
+    pub fit_start_s: f64,
+    /// Its parameters with their intervals.
+    pub parameters: Parameters,
+    /// Why its fit ended.
+    pub termination: String,
+    /// Root mean square error of its forecasts beyond the fitted parts, as a share of the change of the signal; `null` where the hold is
+    /// too short to hold anything out.
+    pub holdout_error: Option<f64>,
+    /// Other laws that these data do not distinguish from the best.
+    pub indistinguishable: Vec<String>,
+    /// What matters most for it.
+    pub findings: Vec<String>,
+}
+
+impl Answer {
+    /// The answer for a record on which laws were compared.
+    #[must_use]
+    pub fn new(record: &ComparedRecord) -> Self {
+        let judged: Vec<_> = record.verdicts().collect();
+        let law = law_of_record(&judged);
+        let agreeing = judged.iter().filter(|(_, found)| law.is_some_and(|law| alike(found).contains(&law))).count();
+        Self {
+            law: law.map(|law| law.to_string()),
+            holds_agreeing: agreeing,
+            holds_compared: judged.len(),
+            sentence: sentence(law, agreeing, judged.len()),
+            holds: judged.iter().filter_map(|(hold, found)| HoldAnswer::new(hold, found)).collect(),
+        }
+    }
+}
+
+impl HoldAnswer {
+    fn new(hold: &ComparedHold, comparison: &Comparison) -> Option<Self> {
+        let verdict = comparison.verdict.as_ref()?;
+        let row = comparison.rows.iter().find(|row| row.law == verdict.law)?;
+        let fit = row.fit.as_ref().ok().filter(|_| row.spectrum.is_none());
+        Some(Self {
+            hold: hold.number,
+            title: hold.title(),
+            law: verdict.law.to_string(),
+            certainty: word(verdict.certainty),
+            formula: fit.map(|fit| formula(fit, hold.quantity)),
+            fit_start_s: hold.fit_start,
+            parameters: fit.map(|fit| parameters_of(fit, hold.quantity)).unwrap_or_default(),
+            termination: fit.map_or_else(|| "converged".to_owned(), |fit| word(fit.termination)),
+            holdout_error: row.forward.score.filter(|_| comparison.ranking == Ranking::Forward),
+            indistinguishable: verdict.alike.iter().filter(|law| **law != verdict.law).map(Law::to_string).collect(),
+            findings: most_severe(&hold.findings),
+        })
+    }
+
+    /// What the law predicts, how sure the choice is, and which other laws are not distinguishable from the best, in a sentence.
+    #[must_use]
+    pub fn statement(&self) -> String {
+        let mut text = match self.holdout_error {
+            Some(error) => {
+                format!("Forecasts beyond the fitted parts miss by {} % of the change", significant(100.0 * error, 2))
+            }
+            None => {
+                "The hold is too short, or changes too little, to test a forecast; the choice rests on BIC".to_owned()
+            }
+        };
+        if !self.indistinguishable.is_empty() {
+            text.push_str(&format!("; not distinguishable from the best: {}", self.indistinguishable.join(", ")));
+        }
+        text.push('.');
+        text
+    }
+}
+
+/// The law with its values put in.
+#[must_use]
+pub fn formula(fit: &Fit, quantity: Quantity) -> String {
+    match quantity {
+        Quantity::Strain => fit.curve.formula("ε", ""),
+        Quantity::Force => fit.curve.formula("F", "N"),
+        Quantity::Displacement => fit.curve.formula("u", "m"),
+    }
+}
+
+/// The laws that are not distinguishable from the best on a hold.
+fn alike(comparison: &Comparison) -> &[Law] {
+    comparison.verdict.as_ref().map_or(&[], |verdict| &verdict.alike)
+}
+
+/// The law that is not distinguishable from the best on the most holds; of several the one with the fewest parameters, then the one
+/// whose forecasts miss least. The spectrum has no parameters to carry to another test and comes last.
+fn law_of_record(judged: &[(&ComparedHold, &Comparison)]) -> Option<Law> {
+    let mut laws: Vec<Law> = Vec::new();
+    for law in judged.iter().flat_map(|(_, found)| alike(found)) {
+        if !laws.contains(law) {
+            laws.push(*law);
+        }
+    }
+    let holds = |law: Law| judged.iter().filter(|(_, found)| alike(found).contains(&law)).count();
+    let rows = |law: Law| judged.iter().filter_map(move |(_, found)| found.rows.iter().find(|row| row.law == law));
+    let parameters = |law: Law| rows(law).map(|row| row.effective_parameters).fold(0.0, f64::max);
+    let error = |law: Law| rows(law).filter_map(|row| row.forward.score).sum::<f64>();
+    let order = |a: &Law, b: &Law| -> Ordering {
+        let last = |law: &Law| *law == Law::Spectrum;
+        (last(a).cmp(&last(b)))
+            .then(holds(*b).cmp(&holds(*a)))
+            .then(parameters(*a).total_cmp(&parameters(*b)))
+            .then(error(*a).total_cmp(&error(*b)))
+    };
+    laws.into_iter().min_by(order)
+}
+
+fn sentence(law: Option<Law>, agreeing: usize, compared: usize) -> String {
+    let Some(law) = law else {
+        return "No law can be recommended: no hold has enough samples and change to compare laws on it.".to_owned();
+    };
+    let name = name_in_words(law);
+    let which = match (agreeing, compared) {
+        (_, 1) => "On the one hold compared no other law is".to_owned(),
+        (agreeing, compared) if agreeing == compared => format!("On none of the {compared} holds is another law"),
+        (agreeing, compared) => format!("On {agreeing} of {compared} holds no other law is"),
+    };
+    format!("Law for this record: {law}, {name}. {which} distinguishably better.")
+}
+
+/// The most severe findings in words, cautions and warnings alone.
+fn most_severe(findings: &[Finding]) -> Vec<String> {
+    let mut severe: Vec<&Finding> = findings.iter().filter(|finding| finding.severity() > Severity::Info).collect();
+    severe.sort_by_key(|finding| std::cmp::Reverse(finding.severity()));
+    severe
+        .iter()
+        .take(MOST_FINDINGS)
+        .map(|finding| format!("{}: {}", word(finding.severity()), finding.seen()))
+        .collect()
+}

@@ -1,0 +1,150 @@
+//! The answer of an analysis or a comparison, before everything else: as text, as tables and as blocks of a page.
+
+use palpate::fit::{Fit, Parameter, ParameterKind, ParameterRole};
+use palpate::laws::Law;
+
+use super::findings::Gathered;
+use crate::number::significant;
+use crate::page::Block;
+use crate::result::{Answer, ComparedHold, ComparedRecord, HoldAnswer, Parameters, parameters_of};
+use crate::table::{Cell, Table};
+use crate::wrap::{indented, width, wrapped};
+
+/// Up to so many holds each has its parameters below its formula; more share a table.
+const FEW: usize = 3;
+/// Findings of the record that belong to the answer.
+const MOST_FINDINGS: usize = 2;
+
+/// The answer as text.
+pub(super) fn answer_text(record: &ComparedRecord, findings: &[Gathered]) -> String {
+    let answer = Answer::new(record);
+    let mut text = wrapped(&answer.sentence);
+    let few = answer.holds.len() <= FEW;
+    for hold in &answer.holds {
+        text.push('\n');
+        text.push_str(&wrapped(&format!("{}: {} ({})", hold.title, hold.law, hold.certainty)));
+        for line in formula_line(hold).into_iter().chain([hold.statement()]) {
+            text.push_str(&indented("  ", 4, width(), &line));
+        }
+        if few {
+            text.push_str(&listed(&hold.parameters));
+        }
+    }
+    if !few {
+        text.extend(law_of_record(record, &answer).map(|table| format!("\n{}", table.to_plain_text())));
+    }
+    for finding in most_severe(findings) {
+        text.push_str(&format!("\n{}", wrapped(&finding)));
+    }
+    text
+}
+
+/// The answer as blocks of a page.
+pub(super) fn answer_blocks(record: &ComparedRecord, findings: &[Gathered]) -> Vec<Block> {
+    let answer = Answer::new(record);
+    let mut blocks = vec![Block::paragraph(answer.sentence.clone())];
+    blocks.extend(verdicts(&answer).map(Block::Table));
+    blocks.extend(law_of_record(record, &answer).map(Block::Table));
+    let lines: Vec<String> = answer
+        .holds
+        .iter()
+        .filter_map(|hold| Some(format!("Hold {}, {}: {}", hold.hold, hold.law, formula_line(hold)?)))
+        .collect();
+    if !lines.is_empty() {
+        blocks.push(Block::List(lines));
+    }
+    blocks.extend(Some(most_severe(findings)).filter(|found| !found.is_empty()).map(Block::List));
+    blocks
+}
+
+/// The formula of a hold, and from when t counts.
+fn formula_line(hold: &HoldAnswer) -> Option<String> {
+    let formula = hold.formula.as_ref()?;
+    Some(format!("{formula}, with t from {} s of the record", significant(hold.fit_start_s, 4)))
+}
+
+/// Parameters, a line each.
+fn listed(parameters: &Parameters) -> String {
+    let longest = parameters.keys().map(String::len).max().unwrap_or(0);
+    let line = |(name, parameter): (&String, &crate::result::ParameterDocument)| {
+        let (unit, factor) = palpate::units::suited(&parameter.unit, parameter.value.unwrap_or(0.0));
+        let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+        let given = if parameter.role == "given" { " (given)" } else { "" };
+        format!("    {name:<longest$}  {}{unit}{given}\n", parameter.cell().shown(factor))
+    };
+    parameters.iter().map(line).collect()
+}
+
+/// Which law to use, hold by hold.
+pub(super) fn verdicts(answer: &Answer) -> Option<Table> {
+    Table::of("answer", "Which law to use, hold by hold.", &answer.holds)
+        .column("Hold", "hold", "", |hold| Cell::Integer(hold.hold as i64))
+        .column("Recommended law", "law", "", |hold| Cell::text(&hold.law))
+        .column("Certainty", "certainty", "", |hold| Cell::text(&hold.certainty))
+        .column("Held-out error", "holdout_error_percent", "%", |hold| {
+            let reason = "too short to hold anything out: chosen by BIC";
+            Cell::number_or(hold.holdout_error.map(|error| 100.0 * error), 2, reason)
+        })
+        .column("Not distinguishable from the best", "indistinguishable", "", |hold| {
+            Cell::text(if hold.indistinguishable.is_empty() {
+                "–".to_owned()
+            } else {
+                hold.indistinguishable.join(", ")
+            })
+        })
+        .unless_empty()
+}
+
+/// The parameters of the law of the record on every hold.
+pub(super) fn law_of_record(record: &ComparedRecord, answer: &Answer) -> Option<Table> {
+    let law: Law = answer.law.as_ref()?.parse().ok()?;
+    let fits: Vec<(&ComparedHold, &Fit)> = record
+        .holds
+        .iter()
+        .filter_map(|hold| {
+            let rows = &hold.comparison.as_ref()?.rows;
+            Some((hold, rows.iter().find(|row| row.law == law)?.fit.as_ref().ok()?))
+        })
+        .collect();
+    let of_interest = |parameter: &&Parameter| {
+        parameter.role == ParameterRole::Estimated || parameter.name.kind == ParameterKind::RateCoefficient
+    };
+    let (_, first) = fits.first()?;
+    let names: Vec<String> = first.parameters.iter().filter(of_interest).map(|found| found.name.to_string()).collect();
+    let mut table = Table::of(
+        "law_of_record",
+        format!("Parameters of {law} on every hold, with 95 % intervals."),
+        &fits,
+    )
+    .column("Hold", "hold", "", |(hold, _)| Cell::Integer(hold.number as i64));
+    for name in &names {
+        let documents = |hold: &ComparedHold, fit: &Fit| parameters_of(fit, hold.quantity);
+        let unit = fits.first().and_then(|(hold, fit)| Some(documents(hold, fit).get(name)?.unit.clone()))?;
+        let unit = if unit == "1" { String::new() } else { unit };
+        table = table.estimates(heading(name), name.clone(), &unit, |(hold, fit)| {
+            documents(hold, fit)
+                .get(name)
+                .map_or(Cell::missing("not determined"), crate::result::ParameterDocument::cell)
+        });
+    }
+    Some(
+        table
+            .column("Ended", "termination", "", |(_, fit)| {
+                Cell::text(crate::result::word(fit.termination).replace('_', " "))
+            })
+            .table(),
+    )
+}
+
+/// A parameter as a heading names it: without its unit, which stands behind it.
+fn heading(name: &str) -> String {
+    let name = name.trim_end_matches("_per_s").trim_end_matches("_s").replace('_', " ");
+    let mut letters = name.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// The findings that matter most, cautions and warnings alone.
+fn most_severe(findings: &[Gathered]) -> Vec<String> {
+    let severe = findings.iter().filter(|finding| finding.severity > palpate::analysis::Severity::Info);
+    severe.take(MOST_FINDINGS).map(Gathered::briefly).collect()
+}
