@@ -95,6 +95,10 @@ pub fn with_interval(value: f64, (low, high): (f64, f64)) -> String {
     if low == 0.0 && high.is_infinite() {
         return "(0, ∞)".to_owned();
     }
+    if low > 0.0 && high.is_finite() && high > WIDE * low {
+        let two = |value: f64| significant(value, 2);
+        return format!("{} {}", two(value), brackets(&two(low), &two(high), (low, high)));
+    }
     let halves = [value - low, high - value].into_iter().filter(|half| half.is_finite() && *half > 0.0);
     let nearer = halves.fold(f64::INFINITY, f64::min);
     if !value.is_finite() || nearer.is_infinite() {
@@ -120,6 +124,9 @@ pub fn with_interval(value: f64, (low, high): (f64, f64)) -> String {
     let shown = format!("{} {}", text(value), brackets(&text(low), &text(high), (low, high)));
     if plain { shown } else { format!("({shown})×10{}", superscript(largest)) }
 }
+
+/// Ratio of the ends of an interval beyond which each has digits of its own.
+const WIDE: f64 = 100.0;
 
 /// An interval; an end that is not reached has a round bracket.
 fn brackets(low: &str, high: &str, ends: (f64, f64)) -> String {
@@ -252,6 +259,7 @@ mod tests {
         assert_eq!(with_interval(2.0, (f64::NEG_INFINITY, 3.0)), "2.0 (−∞, 3.0]");
         assert_eq!(with_interval(2.0, (0.0, f64::INFINITY)), "(0, ∞)");
         assert_eq!(with_interval(2.0, (f64::NEG_INFINITY, f64::INFINITY)), "(−∞, ∞)");
+        assert_eq!(with_interval(7200.0, (36.0, 1.42e6)), "7200 [36, 1.4×10⁶]");
         assert_eq!(with_interval(2.0, (2.0, 2.0)), "2.000");
         assert_eq!(with_interval(1.0, (1.0 - 1e-14, 1.0 + 1e-14)), "1.00000000 [1.00000000, 1.00000000]");
     }

@@ -12,7 +12,7 @@ fn page() -> String {
     let figure = Figure::new("f", HOSTILE).panel(panel);
     let table = Table::new("t", HOSTILE)
         .column(HOSTILE, "a", HOSTILE)
-        .column("Force", "force_n", "N")
+        .column("Rate", "rate_per_s", "1/s")
         .row(vec![Cell::text(HOSTILE), Cell::Number(-1.5e-7, 2)])
         .row(vec![Cell::text("b"), Cell::missing(HOSTILE)])
         .note(HOSTILE);
@@ -78,8 +78,8 @@ fn anchors_are_unique_and_numbers_run_on() {
 #[test]
 fn tables_are_accessible_and_typeset() {
     let html = page();
-    assert!(html.contains("<th scope=\"col\" class=\"n\">Force <span class=\"unit\">(µN)</span>"));
-    assert!(html.contains("<td class=\"n\">−0.15</td>"));
+    assert!(html.contains("<th scope=\"col\" class=\"n\">Rate <span class=\"unit\">(1/s)</span>"));
+    assert!(html.contains("<td class=\"n\">−1.5×10<sup>−7</sup></td>"));
     assert!(html.contains("<td class=\"n\">–<sup>a</sup></td>"));
     assert!(html.contains("role=\"img\""));
 }
