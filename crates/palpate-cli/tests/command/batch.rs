@@ -50,6 +50,12 @@ fn a_folder_becomes_one_table_of_holds_and_laws() {
     assert!((number("equilibrium_force_n", 3) - 1.0).abs() < 1e-3);
     assert!((number("relative_rate_per_s", 3) - 1.0).abs() < 1e-2);
     assert!(number("exponent_low", 5) < number("exponent", 5) && number("exponent", 5) < number("exponent_high", 5));
+    let parameters = lines(folder, "holds_parameters.csv");
+    let header = "record,hold,law,parameter,unit,value,standard_error,low,high,termination,white_standard_error,role,domain,recommended";
+    assert_eq!(parameters[0], header);
+    let of_law = |law: &str| column(&parameters, "law").iter().filter(|found| *found == law).count();
+    // Equilibrium, amplitude, λ, v, n, and in the time domain the force at the start, in four records.
+    assert_eq!((of_law("latency"), of_law("latency:5")), (44, 44));
     let text = fs::read_to_string(folder.join("holds.csv")).unwrap();
     assert!(
         text.starts_with("# palpate_batch: {") && text.contains("\"software\":\"palpate "),

@@ -3,8 +3,10 @@
 //! | file | what |
 //! |---|---|
 //! | `rows.rs` | an analysed record as rows |
-//! | `table.rs` | the rows as a file |
+//! | `parameters.rs` | its parameters as rows of a tidy table |
+//! | `table.rs` | the rows as files |
 
+mod parameters;
 mod rows;
 mod table;
 
@@ -35,7 +37,8 @@ use table::Format;
 
 /// Analyse many records into one table, a row per hold and law.
 ///
-/// It reads the records and their description, and writes the table and what is done beside it, to go on from.
+/// It reads the records and their description. Beside the table it writes the tidy table of all parameters (`holds_parameters.csv` beside
+/// `holds.csv`), a row per parameter with its unit, standard error and interval, and what is done, to go on from.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
@@ -98,6 +101,8 @@ pub struct Refused {
 struct Entry {
     /// Rows of the table.
     rows: Vec<Vec<Value>>,
+    /// Rows of the table of parameters.
+    parameters: Vec<Vec<Value>>,
     /// The tests that gave none, with why.
     failures: Vec<Refused>,
     /// How many tests there are in the file.
@@ -113,7 +118,8 @@ impl Batch {
     pub fn run(&self, records: NamedRecords, out: &Path, watch: &mut dyn Watch) -> Result<Outcome<Batched>, JobError> {
         let started = Instant::now();
         let NamedRecords { mut paths, described } = records;
-        keep_apart(&described.path, [out])?;
+        let of_parameters = table::of_parameters(out);
+        keep_apart(&described.path, [out, &of_parameters])?;
         let format = Format::of(out)?;
         let options = self.options(&described);
         if !is_written_by_batch(out) {
@@ -121,7 +127,11 @@ impl Batch {
         }
         let journal = beside(out, ".journal");
         // In the folder of the records they are no records.
-        let is_ours = |path: &Path| is_same(path, out) || path.parent().is_some_and(|folder| is_same(folder, &journal));
+        let is_ours = |path: &Path| {
+            is_same(path, out)
+                || is_same(path, &of_parameters)
+                || path.parent().is_some_and(|folder| is_same(folder, &journal))
+        };
         paths.retain(|path| !is_ours(path));
         let settings = settings(&options, &described)?;
         let store = Store::open(&journal, "batch", &sha256(settings.as_bytes()), self.restart)?;
@@ -175,7 +185,10 @@ fn file(
             entry.tests = opened.tests.parts.len();
             for part in &opened.tests.parts {
                 match document(&opened, *part, options, share) {
-                    Ok(document) => entry.rows.extend(rows::rows(&document)),
+                    Ok(document) => {
+                        entry.rows.extend(rows::rows(&document));
+                        entry.parameters.extend(parameters::rows(&document));
+                    }
                     Err(error) if error.kind == ErrorKind::Cancelled => return Err(error),
                     Err(error) => entry.failures.push(Refused::from(error)),
                 }

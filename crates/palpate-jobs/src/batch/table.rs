@@ -1,13 +1,15 @@
 //! The rows of all records as one file, written whole or not at all.
 
+use std::ffi::OsStr;
 use std::io::{self, BufWriter, Write};
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use palpate_files::parquet_table::{Field, TableError, TableWriter};
 use serde_json::Value;
 
-use super::rows::{fields, table_rows};
+use super::parameters;
+use super::rows::{self, table_rows};
 use super::{Batched, Entry};
 use crate::JobError;
 use crate::output::{check_ending, check_no_folder, place_file, unwritten_table};
@@ -40,20 +42,34 @@ pub(super) fn write<'a>(
     settings: &str,
 ) -> Result<Batched, JobError> {
     let mut batched = Batched::default();
+    let of_parameters = of_parameters(out);
     let refused = |error: TableError| unwritten_table(out, &error);
     // In the folder of the store, where the next batch clears away what a kill leaves behind.
-    place_file(out, &beside(out, ".journal"), |file| {
-        let mut sink = Sink::new(format, BufWriter::new(file), settings).map_err(refused)?;
-        for place in places {
-            let entry: Entry = serde_json::from_slice(&store.read(place)?)?;
-            batched.rows += entry.rows.len();
-            batched.tests += entry.tests;
-            batched.failures.extend(entry.failures);
-            sink.write(&entry.rows).map_err(refused)?;
-        }
+    let folder = beside(out, ".journal");
+    place_file(out, &folder, |file| {
+        let mut sink = Sink::new(format, BufWriter::new(file), rows::fields(), settings).map_err(refused)?;
+        place_file(&of_parameters, &folder, |file| {
+            let fields = parameters::fields();
+            let mut parameters = Sink::new(format, BufWriter::new(file), fields, settings).map_err(refused)?;
+            for place in places {
+                let entry: Entry = serde_json::from_slice(&store.read(place)?)?;
+                batched.rows += entry.rows.len();
+                batched.tests += entry.tests;
+                batched.failures.extend(entry.failures);
+                sink.write(&entry.rows).map_err(refused)?;
+                parameters.write(&entry.parameters).map_err(refused)?;
+            }
+            parameters.finish(settings).map_err(refused)
+        })?;
         sink.finish(settings).map_err(refused)
     })?;
     Ok(batched)
+}
+
+/// Where the table of parameters of a table lies: `holds_parameters.csv` beside `holds.csv`.
+pub(super) fn of_parameters(out: &Path) -> PathBuf {
+    let part = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    out.with_file_name(format!("{}_parameters.{}", part(out.file_stem()), part(out.extension())))
 }
 
 /// A table that takes rows.
@@ -63,8 +79,7 @@ enum Sink<W: Write + Send> {
 }
 
 impl<W: Write + Send> Sink<W> {
-    fn new(format: Format, mut out: W, settings: &str) -> Result<Self, TableError> {
-        let fields = fields();
+    fn new(format: Format, mut out: W, fields: Vec<Field>, settings: &str) -> Result<Self, TableError> {
         match format {
             Format::Csv => {
                 // A comment, which readers of CSV can be told to pass over; palpate passes over it by itself.
