@@ -5,7 +5,9 @@ use palpate::calibrate::{CalibrateError, Calibration, Candidate, ParameterProfil
 use palpate::fit::Interval;
 
 use super::software::Software;
-use crate::result::{CalibratedRecord, Input, ParameterDocument, ParameterRow, parameters_of_material, word};
+use crate::result::{
+    CalibratedRecord, Input, ParameterDocument, ParameterRow, formula_of_material, parameters_of_material, word,
+};
 
 documents! {
     /// A parameter of a calibrated law.
@@ -63,6 +65,8 @@ documents! {
         delta_bic: Option<f64> = good.map(|made| made.criteria.bic - least).filter(|delta| delta.is_finite()),
         /// What was not fitted; `null` where all was.
         holdout: Option<HoldoutDocument> = good.and_then(|made| made.holdout).map(HoldoutDocument::new),
+        /// The law with its values put in; `null` where there is none.
+        formula: Option<String> = good.and_then(|made| formula_of_material(&made.material)),
         /// Its parameters.
         parameters: Vec<CalibratedParameterDocument> =
             parameters.map(|parameter| CalibratedParameterDocument::new(parameter, profiles)).collect(),
@@ -84,6 +88,8 @@ documents! {
     } {
         /// Always `palpate.calibration/1`.
         schema: String = "palpate.calibration/1".to_owned(),
+        /// The answer in sentences; the parameters of the law are those of the first of `laws`.
+        answer: Vec<String> = record.answer(),
         /// The software that wrote it.
         software: Software = Software::this(),
         /// The record.

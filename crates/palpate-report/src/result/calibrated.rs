@@ -61,6 +61,29 @@ impl CalibratedRecord {
         })
     }
 
+    /// The answer in lines: the law with its values put in, how closely it describes the record, and what it predicts of the held-out
+    /// part.
+    #[must_use]
+    pub fn answer(&self) -> Vec<String> {
+        let Some(chosen) = self.chosen() else {
+            return vec!["The law could not be calibrated on this record.".to_owned()];
+        };
+        let mut lines = vec![format!("Law calibrated on this record: {}.", chosen.material.candidate)];
+        lines.extend(formula_of_material(&chosen.material));
+        let percent = |share: f64| significant(100.0 * share, 2);
+        let fitted = format!("Root mean square residual: {}", quantity(chosen.rmse, "N", 3));
+        lines.push(format!("{fitted}, {} % of the peak force.", percent(chosen.relative)));
+        lines.push(match chosen.holdout {
+            Some(held) => format!(
+                "Held-out error beyond the fitted part: {}, {} % of the peak force.",
+                quantity(held.rmse, "N", 3),
+                percent(held.relative)
+            ),
+            None => "No part was held out: how far the law predicts is not tested (--fit-until).".to_owned(),
+        });
+        lines
+    }
+
     /// What a calibration shows that its parameters alone do not tell.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
@@ -131,4 +154,20 @@ fn remarks_of(made: &Calibration) -> Vec<String> {
         quantity(range.largest_force, "N", 3)
     ));
     remarks
+}
+
+/// The law of a material with its values put in: the latency law as its rate, a linear law as the ratio of force and equilibrium force
+/// after a step.
+#[must_use]
+pub fn formula_of_material(material: &Material) -> Option<String> {
+    let value = |name: &str| material.estimate(name).map(|estimate| estimate.value);
+    if let (Some(rate), Some(exponent)) = (value("rate_coefficient_per_s"), value("exponent")) {
+        let (rate, exponent) = (significant(rate, 4), significant(exponent, 4));
+        return Some(format!("dε/dt = −{rate} s⁻¹ · sgn(ε − εₑ) |ε − εₑ|^{exponent}"));
+    }
+    let terms: Vec<String> = (1..)
+        .map_while(|term| Some((value(&format!("overshoot_{term}"))?, value(&format!("time_constant_{term}_s"))?)))
+        .map(|(overshoot, time)| format!("{} · exp(−t/{})", significant(overshoot, 4), quantity(time, "s", 4)))
+        .collect();
+    (!terms.is_empty()).then(|| format!("F(t)/Fₑ = 1 + {}", terms.join(" + ")))
 }

@@ -27,7 +27,7 @@ mod words;
 pub use crate::page::Check;
 pub use crate::word::word;
 pub use answer::{Answer, HoldAnswer, formula};
-pub use calibrated::CalibratedRecord;
+pub use calibrated::{CalibratedRecord, formula_of_material};
 pub use compared::{ComparedHold, ComparedRecord, LeftOut, Quantity};
 pub(crate) use grip_sentences::lasted;
 pub use gripped::GrippedBody;

@@ -87,14 +87,15 @@ fn parameters_text_table(material: &Material, profiles: &[ParameterProfile]) -> 
     table.table()
 }
 
-/// A calibration as text for a terminal.
+/// A calibration as text for a terminal: the law with its parameters, then its alternatives.
 #[must_use]
 pub fn calibration_text(record: &CalibratedRecord) -> String {
-    let mut text = format!("{}\n\n{}", record.input.called(), laws(record).to_plain_text());
+    let mut text = format!("{}\n\n", record.input.called());
+    text.extend(record.answer().iter().map(|line| wrapped(line)));
     if let Some(chosen) = record.chosen() {
         text.push_str(&format!("\n{}", parameters_text_table(&chosen.material, &record.profiles).to_plain_text()));
     }
-    text.push('\n');
+    text.push_str(&format!("\n{}\n", laws(record).to_plain_text()));
     record.remarks().iter().for_each(|remark| text.push_str(&wrapped(remark)));
     text
 }
@@ -104,11 +105,12 @@ pub fn calibration_text(record: &CalibratedRecord) -> String {
 /// # Errors
 /// [`StudyError`] when the figure cannot be drawn.
 pub fn calibration_page(record: &CalibratedRecord) -> Result<Page, StudyError> {
-    let mut section = Section::new(&record.input.title).block(Block::Table(laws(record)));
+    let mut section = Section::new(&record.input.title).block(Block::List(record.answer()));
     if let Some(chosen) = record.chosen() {
         section = section.block(Block::Table(parameters_text_table(&chosen.material, &record.profiles)));
     }
     section = section
+        .block(Block::Table(laws(record)))
         .block(Block::List(record.remarks()))
         .block(Block::figure(&calibration_figure(record, "calibration"))?);
     let page = Page::new("Calibration", "One set of parameters for a whole record, ramps and holds alike");
