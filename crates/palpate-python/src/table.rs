@@ -29,7 +29,7 @@ use crate::work::Made;
 /// --------
 /// >>> import palpate
 /// >>> table = palpate.fit_many([[0, 1, 2, 3, 4, 5, 6, 7]], [[9, 7, 6, 5.5, 5.2, 5.1, 5.05, 5.02]], law="standard-linear-solid")
-/// >>> len(table), round(float(table["time_s"][0]), 2)
+/// >>> len(table), round(float(table["time_constant_s"][0]), 2)
 /// (1, 1.46)
 #[pyclass(name = "Table", module = "palpate", frozen, eq)]
 #[derive(Clone, PartialEq)]

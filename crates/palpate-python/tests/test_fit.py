@@ -21,9 +21,9 @@ def test_known_numbers_are_found() -> None:
     t, y = relaxation()
     fit = palpate.fit_hold(t, y)
     assert fit.law == "latency" and fit.is_good and fit.termination == "converged"
-    assert fit.values["exponent"] == pytest.approx(5.0, rel=1e-6)
-    assert fit.values["relative_rate_per_s"] == pytest.approx(0.5, rel=1e-6)
-    assert fit.values["rate_coefficient_per_s"] == pytest.approx(0.5 / 0.1**4, rel=1e-4)
+    assert fit.parameters["exponent"] == pytest.approx(5.0, rel=1e-6)
+    assert fit.parameters["relative_rate_per_s"] == pytest.approx(0.5, rel=1e-6)
+    assert fit.estimates["rate_coefficient_per_s"].value == pytest.approx(0.5 / 0.1**4, rel=1e-4)
     assert fit.samples == 400 and fit.duration_s == 40.0
 
 
@@ -47,7 +47,7 @@ def test_lmfit_takes_the_law_as_a_model() -> None:
     result = model.fit(y, parameters, elapsed_s=t)
     fit = palpate.fit_hold(t, y, law="latency:5")
     assert fit.residual_square == pytest.approx(result.chisqr, rel=1e-6)
-    assert fit.values["equilibrium"] == pytest.approx(result.params["equilibrium"].value, rel=1e-5)
+    assert fit.parameters["equilibrium"] == pytest.approx(result.params["equilibrium"].value, rel=1e-5)
 
 
 def test_weights_are_those_of_lmfit() -> None:
@@ -56,15 +56,15 @@ def test_weights_are_those_of_lmfit() -> None:
     model = lmfit.Model(lambda x, a, b, c: a + b * np.exp(-x / c))
     result = model.fit(y, x=t, a=0.2, b=0.1, c=5.0, weights=weights)
     fit = palpate.fit_hold(t, y, law="standard-linear-solid", weights=weights)
-    assert fit.values["time"] == pytest.approx(result.params["c"].value, rel=1e-4)
+    assert fit.parameters["time_constant_s"] == pytest.approx(result.params["c"].value, rel=1e-4)
     assert fit.residual_square == pytest.approx(result.chisqr, rel=1e-6)
     spoiled = y.copy()
     spoiled[7] = 50.0
     left_out = np.where(np.arange(t.size) == 7, 0.0, 1.0)
     kept = left_out > 0
     without = palpate.fit_hold(t[kept], y[kept], law="standard-linear-solid")
-    assert palpate.fit_hold(t, spoiled, law="standard-linear-solid", weights=left_out).values["time"] == pytest.approx(
-        without.values["time"], rel=1e-9
+    assert palpate.fit_hold(t, spoiled, law="standard-linear-solid", weights=left_out).parameters["time_constant_s"] == pytest.approx(
+        without.parameters["time_constant_s"], rel=1e-9
     )
 
 
@@ -72,10 +72,7 @@ def test_a_prediction_is_the_law_with_the_numbers_found() -> None:
     t, y = relaxation(noise=1e-4)
     fit = palpate.fit_hold(t, y)
     at = np.array([0.0, 3.0, 400.0])
-    values = fit.values
-    law = palpate.laws.latency(
-        at, values["equilibrium"], values["amplitude"], values["relative_rate_per_s"], values["exponent"]
-    )
+    law = palpate.laws.latency(at, **fit.parameters)
     np.testing.assert_allclose(fit.predict(at), law, rtol=1e-14)
     value, low, high = fit.predict(at, interval=0.95)
     _, lower, higher = fit.predict(at, interval=0.99)
@@ -83,6 +80,19 @@ def test_a_prediction_is_the_law_with_the_numbers_found() -> None:
     assert np.array_equal(value, fit.predict(at))
     assert np.all((lower < low) & (low < value) & (value < high) & (high < higher))
     assert np.all((sample_low < low) & (high < sample_high))
+
+
+def test_a_prediction_is_on_the_clock_of_the_record() -> None:
+    t, y = relaxation(noise=1e-4)
+    fit, late = palpate.fit_hold(t, y), palpate.fit_hold(t + 100.0, y)
+    assert (fit.start_s, late.start_s) == (0.0, 100.0)
+    np.testing.assert_allclose(late.predict(t + 100.0), fit.predict(t), rtol=1e-9)
+    np.testing.assert_allclose(late.predict(elapsed_s=t), fit.predict(t), rtol=1e-9)
+    np.testing.assert_allclose(late.predict(time_s=[160.0], interval=0.9), fit.predict([60.0], interval=0.9), rtol=1e-6)
+    with pytest.raises(palpate.OptionError, match="either time_s"):
+        late.predict()
+    with pytest.raises(palpate.OptionError, match="either time_s"):
+        late.predict(t, elapsed_s=t)
 
 
 def test_a_fit_can_be_kept_sent_and_compared() -> None:
@@ -109,29 +119,29 @@ def test_numbers_can_be_held_and_bounded() -> None:
     held = palpate.fit_hold(t, y, fixed={"exponent": 3})
     assert held.estimates["exponent"].value == 3.0 and held.estimates["exponent"].standard_error is None
     bounded = palpate.fit_hold(t, y, bounds={"exponent": (1.5, 4.0)})
-    assert bounded.values["exponent"] <= 4.0 and not bounded.is_good
+    assert bounded.parameters["exponent"] <= 4.0 and not bounded.is_good
     assert bounded.covariance is None
 
 
 def test_what_is_held_is_held_or_refused() -> None:
     t, y = relaxation(noise=1e-4)
     fit = palpate.fit_hold(t, y, fixed={"equilibrium": 0.15})
-    assert fit.values["equilibrium"] == 0.15 and fit.estimates["equilibrium"].standard_error is None
-    assert "equilibrium" not in fit.parameters
+    assert fit.parameters["equilibrium"] == 0.15 and fit.estimates["equilibrium"].standard_error is None
+    assert "equilibrium" not in fit.searched
     assert palpate.fit_many(t, [y], fixed={"equilibrium": 0.15})["equilibrium"].tolist() == [0.15]
     for fixed in ({"amplitude": 0.1}, {"equilibrium": np.nan}, {"exponent": np.inf}, {"foo": 1}):
         for fitted in (lambda f: palpate.fit_hold(t, y, fixed=f), lambda f: palpate.fit_many(t, [y], fixed=f)):
             with pytest.raises(palpate.OptionError):
                 fitted(fixed)
-    with pytest.raises(palpate.OptionError, match="only equilibrium, relative_rate, exponent; give it bounds"):
+    with pytest.raises(palpate.OptionError, match="only equilibrium, relative_rate_per_s, exponent; give it bounds"):
         palpate.fit_hold(t, y, fixed={"amplitude": 0.1})
 
 
 def test_bounds_may_be_lists_and_open() -> None:
     t, y = relaxation(noise=1e-4)
-    free = palpate.fit_hold(t, y).values["exponent"]
+    free = palpate.fit_hold(t, y).parameters["exponent"]
     for pair in ([1, 10], (None, 10), (1, None), (None, None)):
-        assert palpate.fit_hold(t, y, bounds={"exponent": pair}).values["exponent"] == pytest.approx(free, rel=1e-6)
+        assert palpate.fit_hold(t, y, bounds={"exponent": pair}).parameters["exponent"] == pytest.approx(free, rel=1e-6)
 
 
 def test_intervals_rest_on_what_was_asked_for() -> None:
@@ -139,15 +149,14 @@ def test_intervals_rest_on_what_was_asked_for() -> None:
     t = np.linspace(0.0, 10.0, 400)
     y = 0.2 + 0.1 * np.exp(-t / 2.0) + np.random.default_rng(3).normal(0.0, 1e-3, t.size)
     plain = palpate.fit_hold(t, y, law="standard-linear-solid")
-    usual = plain.estimates["time"].interval
-    assert plain.profiles == {} and usual is not None
+    usual = plain.estimates["time_constant_s"].interval
+    assert usual is not None
     for intervals in ("profile", "bootstrap"):
         fit = palpate.fit_hold(t, y, law="standard-linear-solid", intervals=intervals)
-        assert fit.values == plain.values
-        found = fit.estimates["time"].interval
+        assert fit.parameters == plain.parameters
+        found = fit.estimates["time_constant_s"].interval
         assert found is not None
         assert (found[1] - found[0]) / (usual[1] - usual[0]) == pytest.approx(1.0, rel=0.15)
-        assert (fit.profiles.get("time") == found) is (intervals == "profile")
 
 
 @pytest.mark.parametrize(
@@ -214,5 +223,5 @@ def test_any_law_is_found_in_any_unit(
     t = np.linspace(0.0, 60.0, 300)
     y = unit * palpate.laws.latency(t, equilibrium, amplitude, rate, exponent)
     fit = palpate.fit_hold(t, y)
-    assert fit.values["exponent"] == pytest.approx(exponent, rel=1e-3)
+    assert fit.parameters["exponent"] == pytest.approx(exponent, rel=1e-3)
     assert np.max(np.abs(fit.predict(t) - y)) < 1e-7 * unit * amplitude

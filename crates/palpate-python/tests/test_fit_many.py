@@ -21,12 +21,12 @@ def test_each_curve_has_the_fit_that_it_has_alone() -> None:
     assert len(table) == 4 and list(table["curve"]) == [0, 1, 2, 3]
     for row, (t, y) in enumerate(CURVES):
         fit = palpate.fit_hold(t, y)
-        for name, suffix in [("equilibrium", ""), ("relative_rate_per_s", "_per_s"), ("exponent", "")]:
+        for name in ("equilibrium", "relative_rate_per_s", "exponent"):
             estimate = fit.estimates[name]
-            assert table[name + suffix][row] == estimate.value
-            assert table[f"{name}_standard_error{suffix}"][row] == estimate.standard_error
+            assert table[name][row] == estimate.value
+            assert table[f"{name}_standard_error"][row] == estimate.standard_error
             assert estimate.interval is not None
-            assert (table[f"{name}_low{suffix}"][row], table[f"{name}_high{suffix}"][row]) == estimate.interval
+            assert (table[f"{name}_low"][row], table[f"{name}_high"][row]) == estimate.interval
         assert table["rmse"][row] == fit.rmse and table["termination"][row] == fit.termination
 
 
@@ -109,25 +109,25 @@ def test_a_curve_that_is_no_column_of_numbers_stops_no_other() -> None:
     for signal, weights, told in many:
         table = palpate.fit_many(t, signal, weights=weights)
         assert table["error"] == [None, told, None]
-        assert table["exponent"][[0, 2]].tolist() == [alone.values["exponent"]] * 2
+        assert table["exponent"][[0, 2]].tolist() == [alone.parameters["exponent"]] * 2
         assert np.isnan(table["exponent"][1]) and np.isnan(table["samples"][1])
 
 
 def test_any_kind_of_number_and_list_of_arrow_is_taken() -> None:
     t, y = CURVES[0]
     single = y.astype(np.float32)
-    expected = palpate.fit_hold(t, single).values["exponent"]
+    expected = palpate.fit_hold(t, single).parameters["exponent"]
     whole = np.round(1e4 * y).astype(np.int32)
     kinds = pyarrow.list_, pyarrow.large_list, pyarrow.list_view, pyarrow.large_list_view
     for kind in kinds:
         table = palpate.fit_many(t, pyarrow.array([single, single], kind(pyarrow.float32())))
         assert table["exponent"].tolist() == [expected] * 2
         table = palpate.fit_many(t, pyarrow.array([whole], kind(pyarrow.int32())))
-        assert table["exponent"].tolist() == [palpate.fit_hold(t, whole).values["exponent"]]
+        assert table["exponent"].tolist() == [palpate.fit_hold(t, whole).parameters["exponent"]]
     assert palpate.fit_many(t, pyarrow.array(single))["exponent"].tolist() == [expected]
     # A slice of a longer column begins somewhere inside it.
     column = pyarrow.array([y + 1, y, y - 1])
-    assert palpate.fit_many(t, column[1:2])["exponent"].tolist() == [palpate.fit_hold(t, y).values["exponent"]]
+    assert palpate.fit_many(t, column[1:2])["exponent"].tolist() == [palpate.fit_hold(t, y).parameters["exponent"]]
 
 
 @pytest.mark.parametrize("law", ["latency", "latency:5", "maxwell", "standard-linear-solid", "burgers", "prony:3", "stretched"])
@@ -138,10 +138,8 @@ def test_the_columns_are_those_of_the_law_whatever_the_curves_are(law: str) -> N
         table = palpate.fit_many(t, curves, law=law)
         assert table.column_names == columns and len(table) == len(curves)
         assert table["law"] == [law] * len(curves)
-    names = palpate.fit_hold(t, y, law=law).values
-    assert [name for name in columns if name.removesuffix("_per_s").removesuffix("_s") in names] == [
-        name for name in columns[2 : 2 + 4 * len(names) : 4]
-    ]
+    names = palpate.fit_hold(t, y, law=law).estimates
+    assert columns[2 : 2 + 4 * len(names) : 4] == list(names)
 
 
 def test_a_table_is_a_mapping_of_columns_and_shows_itself() -> None:

@@ -36,7 +36,7 @@ def material() -> palpate.Material:
 
 @pytest.fixture(scope="module")
 def least(material: palpate.Material) -> palpate.Grip:
-    with pytest.warns(palpate.PalpateWarning, match="beyond the test: a hold of 60.0 s is asked for"):
+    with pytest.warns(palpate.PalpateWarning, match="beyond the test: the longest hold lasts 60.0 s"):
         return material.grip(**LOAD, band_n=(2.1, 3.0))
 
 

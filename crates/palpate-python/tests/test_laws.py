@@ -11,9 +11,6 @@ from conftest import relaxation
 from palpate import laws
 from scipy.optimize import curve_fit
 
-#: Names of the numbers of a fit, where a function says the unit as well.
-UNITS = {"relative_rate_per_s": "relative_rate_per_s"}
-
 
 @pytest.mark.parametrize(
     "law",
@@ -23,12 +20,18 @@ def test_a_function_is_the_curve_of_the_fit(law: str) -> None:
     t, y = relaxation(300, 1e-4)
     fit = palpate.fit_hold(t, y, law=law)
     function = laws.function(law)
-    numbers = {UNITS.get(name, name): value for name, value in fit.values.items()}
-    wanted = inspect.signature(function).parameters
-    given = {name: value for name, value in numbers.items() if name in wanted}
-    assert function(t, **given) == pytest.approx(fit.predict(t), rel=1e-12)
+    assert function(t, **fit.parameters) == pytest.approx(fit.predict(t), rel=1e-12)
+    assert list(inspect.signature(function).parameters)[1:] == list(fit.parameters)
     # Before the hold nothing relaxes.
-    assert function(np.array([-1.0, 0.0]), **given)[0] == function(np.array([0.0]), **given)[0]
+    assert function(np.array([-1.0, 0.0]), **fit.parameters)[0] == function(np.array([0.0]), **fit.parameters)[0]
+
+
+def test_the_exponent_of_a_law_is_no_variable_of_its_model() -> None:
+    t, y = relaxation(300, 1e-4)
+    fit = palpate.fit_hold(t, y, law="latency:5")
+    assert laws.latency(t, **fit.parameters) == pytest.approx(fit.predict(t), rel=1e-12)
+    result = laws.model("latency:5").fit(y, elapsed_s=t, equilibrium=0.2, amplitude=0.1, relative_rate_per_s=1.0)
+    assert result.nvarys == 3 and result.params["equilibrium"].value == pytest.approx(fit.parameters["equilibrium"], rel=1e-3)
 
 
 def test_scipy_takes_them() -> None:
@@ -37,7 +40,7 @@ def test_scipy_takes_them() -> None:
     order = ["equilibrium", "amplitude_1", "amplitude_2", "time_constant_1_s", "time_constant_2_s"]
     start = [0.2, 0.05, 0.05, 1.0, 8.0]
     found, _ = curve_fit(laws.function("prony:2"), t, y, p0=start)
-    assert found == pytest.approx([fit.values[name] for name in order], rel=1e-3)
+    assert found == pytest.approx([fit.parameters[name] for name in order], rel=1e-3)
 
 
 def test_lmfit_takes_them() -> None:
@@ -46,7 +49,7 @@ def test_lmfit_takes_them() -> None:
     model = laws.model("latency")
     assert model.param_names == ["equilibrium", "amplitude", "relative_rate_per_s", "exponent"]
     result = model.fit(y, elapsed_s=t, equilibrium=0.2, amplitude=0.1, relative_rate_per_s=1.0, exponent=4.0)
-    assert result.params["exponent"].value == pytest.approx(fit.values["exponent"], rel=1e-3)
+    assert result.params["exponent"].value == pytest.approx(fit.parameters["exponent"], rel=1e-3)
     assert result.params["relative_rate_per_s"].min == 0.0
 
 

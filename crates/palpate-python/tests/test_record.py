@@ -58,10 +58,13 @@ def test_tables_say_what_the_document_says(root: Path) -> None:
     assert fits.columns[:3] == ["hold", "law", "domain"]
     rows = [(hold["index"], fit) for hold in document["holds"] for fit in hold["fits"]]
     assert fits["hold"].to_list() == [hold for hold, _ in rows]
-    assert fits["exponent"].to_list() == [fit["exponent"] for _, fit in rows]
-    assert fits["rate_coefficient_per_s_low"].to_list() == [
-        fit["confidence_interval"].get("rate_coefficient_per_s", [None])[0] for _, fit in rows
-    ]
+    assert fits["law"].to_list() == [fit["law"] for _, fit in rows]
+    assert fits["exponent"].to_list() == [fit["parameters"]["exponent"]["value"] for _, fit in rows]
+    ends = [fit["parameters"]["rate_coefficient_per_s"]["interval"] for _, fit in rows]
+    assert fits["rate_coefficient_per_s_low"].to_list() == [None if pair is None else pair[0] for pair in ends]
+    tidy = polars.DataFrame(analysis.parameter_table)
+    assert tidy.columns[:5] == ["record", "hold", "law", "parameter", "unit"]
+    assert len(tidy) == sum(len(fit["parameters"]) for _, fit in rows)
     codes = {finding["code"] for finding in document["findings"]}
     codes |= {finding["code"] for hold in document["holds"] for finding in hold["findings"]}
     assert {finding.code for finding in analysis.findings} == codes
@@ -106,7 +109,7 @@ def test_a_notebook_shows_the_report() -> None:
     analysis = palpate.Record.from_arrays(time_s=t, displacement_m=d, force_n=f).analyze(compare=False)
     shown = analysis._repr_html_()
     assert shown is not None and shown.startswith("<iframe srcdoc=") and "svg" in shown
-    assert "The holds that were found" in str(analysis)
+    assert "Holds of the record" in str(analysis)
 
 
 @pytest.mark.parametrize("name", ["nothing.csv", "empty.csv", "words.csv", "unnamed.csv"])

@@ -18,7 +18,7 @@ from conftest import relaxation
 
 PAPER: dict[str, Any] = {
     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
-    "law": {"name": "latency", "exponent": 5, "rate_coefficient_per_s": "2e4 /s"},
+    "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
     "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "10 s"}],
 }
 

@@ -14,7 +14,7 @@ from conftest import relaxation
 
 MODEL: dict[str, Any] = {
     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
-    "law": {"name": "latency", "exponent": 5, "rate_coefficient_per_s": "2e4 /s"},
+    "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
 }
 PROTOCOL: dict[str, Any] = {**MODEL, "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "10 s"}]}
 
@@ -23,7 +23,7 @@ def one(radius_m: float, rate: float, hold_s: float) -> palpate.Trajectory:
     return palpate.simulate(
         {
             "specimen": {**MODEL["specimen"], "radius": f"{radius_m!r} m"},
-            "law": {**MODEL["law"], "rate_coefficient_per_s": f"{rate!r} /s"},
+            "law": {**MODEL["law"], "rate_coefficient": f"{rate!r} /s"},
             "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": f"{hold_s!r} s"}],
         }
     )

@@ -110,7 +110,7 @@ def test_ten_thousand_calls_leak_nothing() -> None:
         for _ in range(count):
             fit = palpate.fit_hold(t, y, law="standard-linear-solid")
             fit.predict(t, interval=0.9)
-            fit.estimates["time"].interval
+            fit.estimates["time_constant_s"].interval
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
     first = calls(1000)

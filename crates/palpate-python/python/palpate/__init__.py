@@ -6,7 +6,7 @@ the *nonlinear latency law* of Tsai, Kao et al. This package finds the law in a 
 >>> import numpy as np, palpate
 >>> t = np.linspace(0.0, 20.0, 200)
 >>> fit = palpate.fit_hold(t, 0.2 + 0.1 * (1 + 2 * t) ** -0.25)
->>> round(fit.values["exponent"], 4)
+>>> round(fit.parameters["exponent"], 4)
 5.0
 """
 
@@ -314,7 +314,7 @@ def fit_hold(
     >>> import numpy as np, palpate
     >>> t = np.linspace(0.0, 40.0, 400)
     >>> fit = palpate.fit_hold(t, 1 + 2 * np.exp(-t / 8), law="standard-linear-solid")
-    >>> round(fit.values["time"], 6)
+    >>> round(fit.parameters["time_constant_s"], 6)
     8.0
     """
     keywords = _keywords(law, response, fixed, bounds, loss, noise, confidence, log_spaced, intervals)
@@ -409,7 +409,7 @@ def simulate(
     >>> import palpate
     >>> trajectory = palpate.simulate({
     ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
-    ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient_per_s": "2e4 /s"},
+    ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
     ...     "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "10 s"}],
     ... })
     >>> round(float(trajectory.force_n[-1]), 2)
@@ -465,7 +465,7 @@ def simulate_many(
     >>> import palpate
     >>> protocol = {
     ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
-    ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient_per_s": "2e4 /s"},
+    ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
     ...     "step": [{"to": "5 mm", "rate": "500 mm/min", "hold": "10 s"}],
     ... }
     >>> runs = palpate.simulate_many(protocol, {"specimen.radius": [0.03, 0.035]}, times_s=[0.6, 10.6])

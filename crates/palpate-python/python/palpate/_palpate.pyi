@@ -177,6 +177,9 @@ class Analysis(_Told):
     segments: Final[Table]
     holds: Final[Table]
     fits: Final[Table]
+    parameter_table: Final[Table]
+    law: Final[str | None]
+    sentence: Final[str]
     findings: Final[list[Finding]]
     def to_arrow(self) -> Table: ...
     def report(self, folder: _Path, *, png: bool = False) -> os.PathLike[str]: ...
@@ -186,7 +189,7 @@ class Analysis(_Told):
 class Calibration(_Series, _Told):
     material: Final[Material]
     laws: Final[Table]
-    numbers: Final[Table]
+    parameter_table: Final[Table]
     sentence: Final[str | None]
     remarks: Final[list[str]]
     termination: Final[str]
@@ -209,13 +212,13 @@ class Material(_Value):
     def to_toml(self) -> str: ...
     law: Final[str]
     equilibrium: Final[str]
-    numbers: Final[Table]
+    parameter_table: Final[Table]
     estimates: Final[dict[str, Estimate]]
-    values: Final[dict[str, float]]
+    parameters: Final[dict[str, float]]
     log_covariance: Final[_Doubles | None]
     confidence: Final[float | None]
     noise_n: Final[float]
-    shown: Final[dict[str, float]]
+    calibration_range: Final[dict[str, float]]
     origin: Final[dict[str, Any]]
     def predict(
         self,
@@ -396,6 +399,7 @@ class Prediction(_Series):
 class Estimate(_Value):
     value: Final[float]
     standard_error: Final[float | None]
+    white_standard_error: Final[float | None]
     interval: Final[tuple[float, float] | None]
     unit: Final[str]
     def __float__(self) -> float: ...
@@ -404,26 +408,36 @@ class Estimate(_Value):
 class Fit(_Value):
     law: Final[str]
     estimates: Final[dict[str, Estimate]]
-    values: Final[dict[str, float]]
-    profiles: Final[dict[str, tuple[float | None, float | None]]]
-    """Intervals by profiles, where these were asked for, by name; None for an end that the data leave open."""
-    parameters: Final[list[str]]
+    parameters: Final[dict[str, float]]
+    searched: Final[list[str]]
     covariance: Final[_Doubles | None]
+    white_covariance: Final[_Doubles | None]
     correlation: Final[_Doubles | None]
     residual_square: Final[float]
     rmse: Final[float]
     residual_correlation: Final[float]
     samples: Final[int]
+    start_s: Final[float]
     duration_s: Final[float]
     termination: Final[str]
     is_good: Final[bool]
     @overload
     def predict(
-        self, elapsed_s: ArrayLike, *, interval: None = None, of: Literal["curve", "sample"] = "curve"
+        self,
+        time_s: ArrayLike | None = None,
+        *,
+        elapsed_s: ArrayLike | None = None,
+        interval: None = None,
+        of: Literal["curve", "sample"] = "curve",
     ) -> _Doubles: ...
     @overload
     def predict(
-        self, elapsed_s: ArrayLike, *, interval: float, of: Literal["curve", "sample"] = "curve"
+        self,
+        time_s: ArrayLike | None = None,
+        *,
+        elapsed_s: ArrayLike | None = None,
+        interval: float,
+        of: Literal["curve", "sample"] = "curve",
     ) -> tuple[_Doubles, _Doubles, _Doubles]: ...
     def report(self) -> str: ...
     def to_dict(self) -> dict[str, Any]: ...

@@ -1,13 +1,14 @@
 """Laws of relaxation as functions of arrays, fit for ``scipy.optimize.curve_fit``, and as models of lmfit.
 
-Their numbers have the names and the meaning that `palpate.fit_hold` gives them; the relative rate says its unit as well.
+Their parameters have the names and the meaning that `palpate.fit_hold` gives them: ``laws.latency(t, **fit.parameters)`` is the curve
+of a fit whose clock starts at 0.
 
 >>> import numpy as np
 >>> from palpate import laws
 >>> laws.latency(np.array([0.0, 2.0]), 0.2, 0.1, 0.5, 2.0)
 array([0.3 , 0.25])
 >>> laws.function("prony:2").__signature__
-<Signature (elapsed_s, equilibrium, amplitude_1, amplitude_2, time_1, time_2)>
+<Signature (elapsed_s, equilibrium, amplitude_1, amplitude_2, time_constant_1_s, time_constant_2_s)>
 """
 
 from __future__ import annotations
@@ -76,39 +77,39 @@ def _times(elapsed_s: ArrayLike) -> Doubles:
     return np.maximum(np.asarray(elapsed_s, dtype=np.float64), 0.0)
 
 
-def maxwell(elapsed_s: Any, amplitude: float, time: float) -> Doubles:
+def maxwell(elapsed_s: Any, amplitude: float, time_constant_s: float) -> Doubles:
     """Spring and dashpot in series, A exp(-t/T); T in s."""
-    return np.asarray(amplitude * np.exp(-_times(elapsed_s) / time))
+    return np.asarray(amplitude * np.exp(-_times(elapsed_s) / time_constant_s))
 
 
-def standard_linear_solid(elapsed_s: Any, equilibrium: float, amplitude: float, time: float) -> Doubles:
+def standard_linear_solid(elapsed_s: Any, equilibrium: float, amplitude: float, time_constant_s: float) -> Doubles:
     """One exponential and a constant, y_e + A exp(-t/T); T in s."""
-    return np.asarray(equilibrium + amplitude * np.exp(-_times(elapsed_s) / time))
+    return np.asarray(equilibrium + amplitude * np.exp(-_times(elapsed_s) / time_constant_s))
 
 
-def burgers(elapsed_s: Any, amplitude_1: float, amplitude_2: float, time_1: float, time_2: float) -> Doubles:
+def burgers(elapsed_s: Any, amplitude_1: float, amplitude_2: float, time_constant_1_s: float, time_constant_2_s: float) -> Doubles:
     """Maxwell and Kelvin-Voigt in series, A_1 exp(-t/T_1) + A_2 exp(-t/T_2); T in s."""
     t = _times(elapsed_s)
-    return np.asarray(amplitude_1 * np.exp(-t / time_1) + amplitude_2 * np.exp(-t / time_2))
+    return np.asarray(amplitude_1 * np.exp(-t / time_constant_1_s) + amplitude_2 * np.exp(-t / time_constant_2_s))
 
 
-def stretched(elapsed_s: Any, equilibrium: float, amplitude: float, time: float, stretching: float) -> Doubles:
+def stretched(elapsed_s: Any, equilibrium: float, amplitude: float, time_constant_s: float, stretching: float) -> Doubles:
     """Stretched exponential (Kohlrausch), y_e + A exp(-(t/T)^b); T in s."""
-    return np.asarray(equilibrium + amplitude * np.exp(-((_times(elapsed_s) / time) ** stretching)))
+    return np.asarray(equilibrium + amplitude * np.exp(-((_times(elapsed_s) / time_constant_s) ** stretching)))
 
 
-def power(elapsed_s: Any, amplitude: float, time: float, exponent: float) -> Doubles:
+def power(elapsed_s: Any, amplitude: float, time_constant_s: float, exponent: float) -> Doubles:
     """Power of time, A (1 + t/T)^(-m); T in s."""
-    return np.asarray(amplitude * (1.0 + _times(elapsed_s) / time) ** -exponent)
+    return np.asarray(amplitude * (1.0 + _times(elapsed_s) / time_constant_s) ** -exponent)
 
 
-def logarithmic(elapsed_s: Any, start: float, amplitude: float, time: float) -> Doubles:
+def logarithmic(elapsed_s: Any, start: float, amplitude: float, time_constant_s: float) -> Doubles:
     """Logarithm of time, y_0 - A ln(1 + t/T); T in s."""
-    return np.asarray(start - amplitude * np.log1p(_times(elapsed_s) / time))
+    return np.asarray(start - amplitude * np.log1p(_times(elapsed_s) / time_constant_s))
 
 
 def prony(terms: int) -> Law:
-    """A series of exponentials and a constant, y_e + sum A_k exp(-t/T_k), as a function of its 1 + 2 K numbers.
+    """A series of exponentials and a constant, y_e + sum A_k exp(-t/T_k), as a function of its 1 + 2 K parameters.
 
     Parameters
     ----------
@@ -118,7 +119,7 @@ def prony(terms: int) -> Law:
     Returns
     -------
     callable
-        ``f(elapsed_s, equilibrium, amplitude_1, ..., time_1, ...)``; T in s.
+        ``f(elapsed_s, equilibrium, amplitude_1, ..., time_constant_1_s, ...)``; T in s.
 
     Raises
     ------
@@ -127,12 +128,13 @@ def prony(terms: int) -> Law:
     """
     if terms < 1:
         raise OptionError(f"terms: expected 1 or more, found {terms}")
-    names = [f"{name}_{k}" for name in ("amplitude", "time") for k in range(1, terms + 1)]
+    terms_of = range(1, terms + 1)
+    names = [*(f"amplitude_{k}" for k in terms_of), *(f"time_constant_{k}_s" for k in terms_of)]
 
     def series(elapsed_s: Any, equilibrium: float, *given: float, **named: float) -> Doubles:
-        numbers = [*given, *(named[name] for name in names[len(given) :])]
+        values = [*given, *(named[name] for name in names[len(given) :])]
         t = _times(elapsed_s)
-        parts = (a * np.exp(-t / tau) for a, tau in zip(numbers[:terms], numbers[terms:], strict=True))
+        parts = (a * np.exp(-t / tau) for a, tau in zip(values[:terms], values[terms:], strict=True))
         return np.asarray(equilibrium + sum(parts))
 
     series.__name__ = f"prony_{terms}"
@@ -154,7 +156,7 @@ def function(law: str) -> Law:
     Returns
     -------
     callable
-        ``f(elapsed_s, ...)`` with the numbers of the law by name.
+        ``f(elapsed_s, ...)`` with the parameters of the law by name.
 
     Raises
     ------
@@ -187,11 +189,15 @@ def _latency_of(law: str, number: str) -> Law:
     except ValueError:
         raise OptionError(f"law: expected a number behind the colon, found {law!r}") from None
 
-    def fixed(elapsed_s: Any, equilibrium: float, amplitude: float, relative_rate_per_s: float) -> Doubles:
+    given = exponent
+
+    def fixed(
+        elapsed_s: Any, equilibrium: float, amplitude: float, relative_rate_per_s: float, *, exponent: float = given
+    ) -> Doubles:
         return _latency(elapsed_s, equilibrium, amplitude, relative_rate_per_s, exponent)
 
     fixed.__name__ = f"latency_{number.replace('.', '_')}"
-    fixed.__doc__ = f"The nonlinear latency law with n = {exponent:g}."
+    fixed.__doc__ = f"The nonlinear latency law with n = {given:g}."
     return fixed
 
 
@@ -204,7 +210,7 @@ _BOUNDS: dict[str, tuple[float, float]] = {
 
 
 def model(law: str) -> Any:
-    """A law as an ``lmfit.Model`` with the bounds that its numbers need; lmfit has to be installed.
+    """A law as an ``lmfit.Model`` with the bounds that its parameters need; lmfit has to be installed.
 
     Parameters
     ----------
@@ -226,6 +232,9 @@ def model(law: str) -> Any:
     import lmfit
 
     made = lmfit.Model(function(law), independent_vars=["elapsed_s"], name=law)
+    if law.startswith("latency:"):
+        # The exponent is part of the law and no variable of its model.
+        made.set_param_hint("exponent", vary=False)
     for name in made.param_names:
         low, high = _BOUNDS.get(name, (1e-12, np.inf) if name.startswith("time") else (-np.inf, np.inf))
         made.set_param_hint(name, min=low, max=high)

@@ -57,7 +57,7 @@ fn latency(scene: Result<(Option<String>, Contact), DescriptionError>) -> PyResu
 /// >>> import palpate
 /// >>> state = palpate.ContactState({
 /// ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
-/// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient_per_s": "2e4 /s"},
+/// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
 /// ... })
 /// >>> forces = [state.step(1e-3, 5e-5 * (k + 1)) for k in range(100)]
 /// >>> round(forces[-1], 3)
@@ -173,7 +173,7 @@ shown! {
 /// >>> import numpy as np, palpate
 /// >>> model = {
 /// ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
-/// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient_per_s": "2e4 /s"},
+/// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
 /// ... }
 /// >>> contacts = palpate.ContactStates(model, 3)
 /// >>> for k in range(100):

@@ -4,11 +4,11 @@ use std::borrow::Cow;
 
 use numpy::{PyArray1, PyArray2};
 use palpate::fit::{
-    BootstrapOptions, Estimate, Fit, IntervalMethod, LawOptions, NoiseChoice, Parameter, ParameterUnit, SampleChoice,
-    Samples, fit_law,
+    BootstrapOptions, Estimate, Fit, IntervalMethod, LawOptions, NoiseChoice, Parameter, ParameterRole, ParameterUnit,
+    SampleChoice, Samples, fit_law,
 };
 use palpate::laws::Law;
-use palpate::number::{significant, with_error};
+use palpate::number::{significant, with_interval};
 use palpate_report::result::word;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
@@ -43,7 +43,7 @@ shown! {
         standard_error: Option<f64> = self.estimate.standard_error,
         /// Standard error as if the residuals were white noise: what most other software states.
         white_standard_error: Option<f64> = self.estimate.white_standard_error,
-        /// Confidence interval for noise as the residuals show it.
+        /// Confidence interval for residuals that correlate as they do; an end that the data leave open is inf, or 0 of a parameter above 0.
         interval: Option<(f64, f64)> = self.estimate.interval,
         /// Unit in words: "signal", "s", "1/s", "signal/s", "1", "signal^(1-n)/s", "signal/s^alpha"; "m", "N" or "Pa" of a material.
         unit: &str = &self.unit,
@@ -58,10 +58,10 @@ shown! {
     }
 }
 
-/// A parameter with its standard error, or to so many digits where it has none.
+/// A parameter with its interval, or to so many digits where it has none.
 pub(crate) fn told(estimate: &Estimate, digits: usize) -> String {
     let plain = || significant(estimate.value, digits);
-    estimate.standard_error.map_or_else(plain, |error| with_error(estimate.value, error))
+    estimate.interval.map_or_else(plain, |ends| with_interval(estimate.value, ends))
 }
 
 fn unit_word(unit: ParameterUnit) -> &'static str {
@@ -83,7 +83,7 @@ fn unit_word(unit: ParameterUnit) -> &'static str {
 /// >>> import numpy as np, palpate
 /// >>> t = np.linspace(0.0, 40.0, 400)
 /// >>> fit = palpate.fit_hold(t, 1 + 2 * np.exp(-t / 8), law="standard-linear-solid")
-/// >>> fit.estimates["time"].unit, fit.is_good, round(float(fit.predict([80.0])[0]), 4)
+/// >>> fit.estimates["time_constant_s"].unit, fit.is_good, round(float(fit.predict([80.0])[0]), 4)
 /// ('s', True, 1.0001)
 #[pyclass(name = "Fit", module = "palpate", frozen, eq)]
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
@@ -126,6 +126,8 @@ shown! {
         residual_correlation: f64 = self.fit.residual_correlation,
         /// Samples fitted.
         samples: usize = self.fit.samples,
+        /// Time of the first sample on the clock of the samples, s.
+        start_s: f64 = self.fit.start,
         /// Time from the first to the last sample, s.
         duration_s: f64 = self.fit.duration,
         /// Why the fit ended: "converged", or what kept it from that.
@@ -139,12 +141,8 @@ shown! {
         },
         /// The parameters of the law by name, those that were held included: what its function in `palpate.laws` takes.
         parameters<'py>(py): PyResult<Bound<'py, PyDict>> = self.fit.parameters.iter()
-            .filter(|parameter| !parameter.derived)
+            .filter(|parameter| parameter.role != ParameterRole::Derived)
             .map(|parameter| (parameter.name.to_string(), parameter.estimate.value))
-            .into_py_dict(py),
-        /// Intervals by profiles, where these were asked for, by name; None for an end that the data leave open.
-        profiles<'py>(py): PyResult<Bound<'py, PyDict>> = self.fit.profiles.iter()
-            .map(|(name, interval)| (name.to_string(), (interval.low, interval.high)))
             .into_py_dict(py),
         /// Covariance of `searched` for residuals that correlate as they do; None where the data leave a parameter open.
         covariance<'py>(py): PyResult<Option<Bound<'py, PyArray2<f64>>>> =
@@ -157,12 +155,15 @@ shown! {
             self.fit.correlation().as_ref().map(|rows| square(py, rows)).transpose(),
     }
 
-    /// The signal at times after the first sample; with `interval`, also its confidence band.
+    /// The signal at times of the record; with `interval`, also its confidence band.
     ///
     /// Parameters
     /// ----------
+    /// time_s : array_like, shape (N,)
+    ///     Time on the clock of the samples that were fitted, s; before the first of them the signal is that at the start, at NaN
+    ///     it is NaN.
     /// elapsed_s : array_like, shape (N,)
-    ///     Time since the start of the hold, s; before it the signal is that at the start, at NaN it is NaN.
+    ///     Instead of `time_s`: time since the first sample, s.
     /// interval : float, optional
     ///     Coverage of the band, between 0 and 1.
     /// of : str
@@ -176,16 +177,24 @@ shown! {
     /// Raises
     /// ------
     /// OptionError
-    ///     A coverage that is no share, a word that is none of the two.
-    #[pyo3(signature = (elapsed_s, *, interval=None, of="curve"))]
+    ///     A coverage outside 0 to 1, another word, or not exactly one of `time_s` and `elapsed_s`.
+    #[pyo3(signature = (time_s=None, *, elapsed_s=None, interval=None, of="curve"))]
     fn predict<'py>(
         &self,
         py: Python<'py>,
-        elapsed_s: &Bound<'py, PyAny>,
+        time_s: Option<&Bound<'py, PyAny>>,
+        elapsed_s: Option<&Bound<'py, PyAny>>,
         interval: Option<f64>,
         of: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let elapsed = doubles(elapsed_s, "elapsed_s")?;
+        let elapsed = match (time_s, elapsed_s) {
+            (Some(times), None) => doubles(times, "time_s")?.iter().map(|time| time - self.fit.start).collect(),
+            (None, Some(elapsed)) => doubles(elapsed, "elapsed_s")?,
+            _ => {
+                let message = "predict takes either time_s, on the clock of the record, or elapsed_s, since its first sample";
+                return Err(refused_plainly::<OptionError>(message));
+            }
+        };
         let sample = match of {
             "curve" => false,
             "sample" => true,

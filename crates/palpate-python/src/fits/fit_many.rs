@@ -10,7 +10,7 @@ use arrow_buffer::ScalarBuffer;
 use arrow_cast::cast;
 use arrow_schema::{DataType, Field};
 use numpy::{PyArray1, PyArrayMethods};
-use palpate::fit::{Fit, LawOptions, Parameter, ParameterUnit, Samples, fit_law};
+use palpate::fit::{Fit, LawOptions, Parameter, Samples, fit_law};
 use palpate::laws::Response;
 use palpate::watch::Cancelled;
 use palpate_report::result::word;
@@ -30,11 +30,11 @@ type Curve = Result<ScalarBuffer<f64>, String>;
 /// Curves of any lengths. Columns of Arrow never change, and are not copied; arrays of NumPy may change, and are.
 type Ragged = Vec<Curve>;
 
-fn parameters(curve: &Curve) -> Result<&[f64], String> {
+fn numbers(curve: &Curve) -> Result<&[f64], String> {
     curve.as_deref().map_err(Clone::clone)
 }
 
-/// Lists of parameters from Arrow, or from anything that `palpate._arrays.as_ragged` understands.
+/// Lists of numbers from Arrow, or from anything that `palpate._arrays.as_ragged` understands.
 fn ragged(curves: &Bound<'_, PyAny>, name: &str) -> PyResult<Ragged> {
     if curves.hasattr("__arrow_c_stream__")? || curves.hasattr("__arrow_c_array__")? {
         return of_arrow(&curves.extract::<AnyArray>()?.into_chunked_array()?, name);
@@ -69,14 +69,14 @@ fn of_arrow(column: &PyChunkedArray, name: &str) -> PyResult<Ragged> {
             other => format!("one of {other}"),
         };
         let help = "pass one column, such as table[\"force_n\"], or the rows of table.to_numpy()";
-        refused::<OptionError>(format!("{name}: expected a column of lists of parameters, found {found}"), Some(help))
+        refused::<OptionError>(format!("{name}: expected a column of lists of numbers, found {found}"), Some(help))
     };
     let mut curves = Vec::new();
     for chunk in column.chunks() {
         let kind = chunk.data_type();
         let made_of = |to: &DataType| cast(chunk, to).map_err(|_| wrong(kind));
         match nested(kind) {
-            // Whatever kind of list of whatever kind of parameter: lists of doubles pass as they are.
+            // Whatever kind of list of whatever kind of number: lists of doubles pass as they are.
             Some(item) if item.is_numeric() || *item == DataType::Null => {
                 let rows = made_of(&DataType::LargeList(Arc::new(Field::new("item", DataType::Float64, true))))?;
                 curves.extend(rows.as_list::<i64>().iter().map(|row| whole(row, name)));
@@ -99,18 +99,18 @@ fn nested(kind: &DataType) -> Option<&DataType> {
 
 /// A curve of doubles all of which are there.
 fn whole(row: Option<ArrayRef>, name: &str) -> Curve {
-    let row = row.ok_or_else(|| format!("{name}: expected a list of parameters, found none"))?;
-    let parameters = row.as_primitive::<Float64Type>();
-    match (0..parameters.len()).find(|index| parameters.is_null(*index)) {
-        Some(index) => Err(format!("{name}: expected a parameter everywhere, found none at index {index}")),
-        None => Ok(parameters.values().clone()),
+    let row = row.ok_or_else(|| format!("{name}: expected a list of numbers, found none"))?;
+    let numbers = row.as_primitive::<Float64Type>();
+    match (0..numbers.len()).find(|index| numbers.is_null(*index)) {
+        Some(index) => Err(format!("{name}: expected a number everywhere, found none at index {index}")),
+        None => Ok(numbers.values().clone()),
     }
 }
 
 /// Whether one list stands for all curves; it is then the matter of all if it is wrong.
 fn one_for_all(times: &Ragged, curves: usize, name: &str) -> PyResult<bool> {
     match times.len() {
-        1 => parameters(&times[0]).map(|_| true).map_err(refused_plainly::<OptionError>),
+        1 => numbers(&times[0]).map(|_| true).map_err(refused_plainly::<OptionError>),
         count if count == curves => Ok(false),
         count => {
             let message = format!("{name}: expected one list for all curves or one each, {curves}, found {count}");
@@ -147,10 +147,9 @@ pub(crate) fn fit_many(
     let shape = asked.clone();
     let work = move |heard: Heard| -> Result<Vec<Fitted>, Cancelled> {
         let fit = |index: usize| {
-            let time = parameters(&times[if one_time { 0 } else { index }])?;
-            let deviations = weights.as_ref().map(|(one, found)| parameters(&found[if *one { 0 } else { index }]));
-            fitted(time, parameters(&values[index])?, deviations.transpose()?, &asked)
-                .map_err(|error| error.to_string())
+            let time = numbers(&times[if one_time { 0 } else { index }])?;
+            let deviations = weights.as_ref().map(|(one, found)| numbers(&found[if *one { 0 } else { index }]));
+            fitted(time, numbers(&values[index])?, deviations.transpose()?, &asked).map_err(|error| error.to_string())
         };
         let one = |index: usize| {
             let fit = fit(index);
@@ -175,14 +174,6 @@ fn parameters_of(asked: &Asked) -> PyResult<Vec<Parameter>> {
     Ok(fit_law(&Samples::new(&times, &values), asked.law, &plain).map_err(unfitted)?.parameters)
 }
 
-fn suffix(unit: ParameterUnit) -> &'static str {
-    match unit {
-        ParameterUnit::Second => "_s",
-        ParameterUnit::PerSecond => "_per_s",
-        _ => "",
-    }
-}
-
 /// A row a curve; parameters that a fit does not have are missing.
 fn table(asked: &Asked, fits: &[Fitted]) -> PyResult<Table> {
     let good = || fits.iter().map(|fit| fit.as_ref().ok());
@@ -193,12 +184,12 @@ fn table(asked: &Asked, fits: &[Fitted]) -> PyResult<Table> {
         ("law".to_owned(), Column::column(fits.iter().map(|_| law.as_str()))),
     ];
     for parameter in &parameters_of(asked)? {
-        let (name, suffix) = (&parameter.name.to_string(), suffix(parameter.unit));
-        columns.push((format!("{name}{suffix}"), floats(&|fit| fit.value(name))));
-        let error = |fit: &Fit| fit.estimate(name)?.standard_error;
-        columns.push((format!("{name}_standard_error{suffix}"), floats(&error)));
-        columns.push((format!("{name}_low{suffix}"), floats(&|fit| Some(fit.estimate(name)?.interval?.0))));
-        columns.push((format!("{name}_high{suffix}"), floats(&|fit| Some(fit.estimate(name)?.interval?.1))));
+        let name = parameter.name.to_string();
+        let known = |fit: &Fit| fit.parameter(parameter.name)?.determined(fit.termination).copied();
+        columns.push((name.clone(), floats(&|fit| Some(known(fit)?.value))));
+        columns.push((format!("{name}_standard_error"), floats(&|fit| known(fit)?.standard_error)));
+        columns.push((format!("{name}_low"), floats(&|fit| Some(known(fit)?.interval?.0))));
+        columns.push((format!("{name}_high"), floats(&|fit| Some(known(fit)?.interval?.1))));
     }
     columns.push(("rmse".to_owned(), floats(&|fit| Some(fit.rmse))));
     columns.push(("residual_correlation".to_owned(), floats(&|fit| Some(fit.residual_correlation))));

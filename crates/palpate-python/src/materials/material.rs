@@ -26,7 +26,7 @@ use crate::work::{Made, job};
 /// Said where intervals know nothing of the parameters.
 const OPEN: &str = "the calibration left a parameter open: the intervals hold noise alone";
 
-/// A calibrated body: shape, law and parameters with their covariance, what its test has shown, and where they come from.
+/// A calibrated body: shape, law and parameters with their covariance, the range of its test, and where they come from.
 ///
 /// Made by `Record.calibrate` or `Material.read`. Wherever a protocol, a model or a test description is taken, its ``material`` may be
 /// one, and a description may be one: ``palpate.simulate({"material": material, "step": [...]})``, ``palpate.ContactState(material)``,
@@ -125,16 +125,16 @@ shown! {
             self.source.file.material.uncertainty.as_ref().map(|uncertainty| uncertainty.confidence),
         /// Standard deviation of what the law left of the measured force, N: noise of one reading.
         noise_n: f64 = self.source.file.material.noise,
-        /// What the test has shown, beyond which predictions are extrapolations: ``longest_hold_s``, ``deepest_m``, ``fastest_m_per_s``,
+        /// The range of the test, beyond which predictions are extrapolations: ``longest_hold_s``, ``deepest_m``, ``fastest_m_per_s``,
         /// ``slowest_m_per_s``, ``largest_force_n``.
-        shown<'py>(py): PyResult<Bound<'py, PyDict>> = {
-            let shown = &self.source.file.material.range;
+        calibration_range<'py>(py): PyResult<Bound<'py, PyDict>> = {
+            let range = &self.source.file.material.range;
             let named = [
-                ("longest_hold_s", shown.longest_hold),
-                ("deepest_m", shown.deepest),
-                ("fastest_m_per_s", shown.fastest),
-                ("slowest_m_per_s", shown.slowest),
-                ("largest_force_n", shown.largest_force),
+                ("longest_hold_s", range.longest_hold),
+                ("deepest_m", range.deepest),
+                ("fastest_m_per_s", range.fastest),
+                ("slowest_m_per_s", range.slowest),
+                ("largest_force_n", range.largest_force),
             ];
             named.into_py_dict(py)
         },
@@ -326,7 +326,7 @@ shown! {
     /// >>> import palpate
     /// >>> made = palpate.simulate({
     /// ...     "specimen": {"shape": "ball", "radius": "35 mm", "modulus": "28 kPa"},
-    /// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient_per_s": "2e4 /s"},
+    /// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
     /// ...     "step": [
     /// ...         {"to": "5 mm", "rate": "500 mm/min", "hold": "20 s"},
     /// ...         {"to": "9 mm", "rate": "500 mm/min", "hold": "20 s"},
@@ -433,6 +433,6 @@ shown! {
 
     /// The parameters with their intervals, for notebooks.
     fn _repr_html_(&self) -> PyResult<String> {
-        Ok(format!("<p>Parameters of the law {}.</p>{}", self.law(), self.parameters()?._repr_html_()))
+        Ok(format!("<p>Parameters of the law {}.</p>{}", self.law(), self.parameter_table()?._repr_html_()))
     }
 }

@@ -103,7 +103,7 @@ impl Comparison {
 shown! {
     Comparison: self
     values {
-        /// The law to use: that with the fewest numbers among those that do best; None if none could be fitted.
+        /// The law to use: that with the fewest parameters among those not distinguishable from the best; None if none could be fitted.
         law: Option<&str> = self.verdict(|verdict| &verdict.law),
         /// How sure that is: "clear", "likely" or "open".
         certainty: Option<&str> = self.verdict(|verdict| &verdict.certainty),
@@ -111,7 +111,7 @@ shown! {
         sentence: Option<&str> = self.verdict(|verdict| &verdict.sentence),
         /// The laws, best first, a row each.
         laws: PyResult<Table> = Table::of(columns!(self.document.laws, law =>
-            law, parameters, rmse, delta_aicc, delta_bic, forward_score, termination, error
+            law, effective_parameters, rmse, delta_aicc, delta_bic, forward_score, termination, error
         )),
     }
 
@@ -148,7 +148,7 @@ impl RecordComparison {
 shown! {
     RecordComparison: self
     values {
-        /// The laws on every hold, best first, a row each: ``hold``, ``law``, ``parameters``, ``rmse``, ``delta_aicc``, ``delta_bic``,
+        /// The laws on every hold, best first, a row each: ``hold``, ``law``, ``effective_parameters``, ``rmse``, ``delta_aicc``, ``delta_bic``,
         /// ``forward_score``, ``termination``, ``error``.
         laws: PyResult<Table> = {
             let holds = self.document.records.iter().flat_map(|record| &record.holds);
@@ -157,7 +157,7 @@ shown! {
                 .unzip();
             let mut columns = columns!(holds, hold => hold = *hold);
             columns.extend(columns!(laws, law =>
-                law, parameters, rmse, delta_aicc, delta_bic, forward_score, termination, error
+                law, effective_parameters, rmse, delta_aicc, delta_bic, forward_score, termination, error
             ));
             Table::of(columns)
         },

@@ -459,7 +459,7 @@ shown! {
     /// >>> ball = {"shape": "ball", "radius": "35 mm"}
     /// >>> squeezed = palpate.simulate({
     /// ...     "specimen": {**ball, "modulus": "28 kPa"},
-    /// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient_per_s": "2e4 /s"},
+    /// ...     "law": {"name": "latency", "exponent": 5, "rate_coefficient": "2e4 /s"},
     /// ...     "step": [{"to": to, "rate": "500 mm/min", "hold": "20 s"} for to in ("5 mm", "10 mm")],
     /// ...     "output": {"sample_rate": "10 Hz"},
     /// ... })
@@ -467,7 +467,7 @@ shown! {
     /// ...     time_s=squeezed.time_s, displacement_m=squeezed.displacement_m, force_n=squeezed.force_n
     /// ... )
     /// >>> calibration = record.calibrate(test={"specimen": ball}, alternatives=[])
-    /// >>> round(calibration.material.values["exponent"], 2)
+    /// >>> round(calibration.material.parameters["exponent"], 2)
     /// 5.0
     /// >>> prediction = calibration.material.predict([{"to": "8 mm", "rate": "500 mm/min", "hold": "20 s"}], at_s=[10.0])
     /// >>> round(float(prediction.force_n[0]), 2)

@@ -173,6 +173,7 @@ impl Scaled {
             noise: assessed.noise,
             uncertainty: None,
             samples: strains.len(),
+            start: 0.0,
             duration: 0.0,
             termination: solution.termination,
             ghosts: Vec::new(),

@@ -106,6 +106,9 @@ pub struct Fit {
     pub uncertainty: Option<Uncertainty>,
     /// Samples fitted.
     pub samples: usize,
+    /// Time of the first sample on the clock of the samples, s; 0 in the rate domain.
+    #[serde(default)]
+    pub start: f64,
     /// Time from the first to the last sample, s; 0 in the rate domain, which knows no time.
     pub duration: f64,
     /// Why it ended.
@@ -157,6 +160,12 @@ impl Fit {
     #[must_use]
     pub fn predict(&self, elapsed: f64) -> f64 {
         self.predict_many(&[elapsed])[0]
+    }
+
+    /// The signal at times on the clock of the samples that were fitted, s.
+    #[must_use]
+    pub fn predict_at(&self, times: &[f64]) -> Vec<f64> {
+        self.predict_many(&times.iter().map(|time| time - self.start).collect::<Vec<f64>>())
     }
 
     /// The signal at many times, as [`predict`](Self::predict).

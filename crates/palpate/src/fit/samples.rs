@@ -91,6 +91,8 @@ pub(crate) struct Scaled {
     pub(crate) roots: Option<Vec<f64>>,
     /// Root mean square of 1/σ: what the roots were divided by; 1 without deviations.
     pub(crate) precision: f64,
+    /// Time of the first sample, s.
+    pub(crate) start: f64,
     pub(crate) duration: f64,
     pub(crate) center: f64,
     pub(crate) range: f64,
@@ -130,6 +132,7 @@ impl Scaled {
             values: scaled,
             roots,
             precision,
+            start,
             duration,
             center,
             range,

@@ -145,12 +145,13 @@ fn trend(holds: &[Samples<'_>], joint: &JointFit, strains: Option<&[f64]>) -> Re
         }
     };
     let log = |fit: &Fit| fit.value(&name).map_or(f64::NAN, f64::ln);
+    let constant = joint.law.form(joint.response).map(|form| form.constant_name());
     let mut points = Vec::new();
     for (index, fit) in fits.iter().enumerate() {
         let error = fit.estimate(&name).and_then(|estimate| Some(estimate.standard_error? / estimate.value));
         // A constant that was not found has no error.
-        let level = fit.parameters.first().filter(|parameter| parameter.estimate.standard_error.is_some());
-        let strain = strains.map(|strains| strains[index]).or(level.map(|parameter| parameter.estimate.value));
+        let level = constant.and_then(|name| fit.estimate(name)).filter(|estimate| estimate.standard_error.is_some());
+        let strain = strains.map(|strains| strains[index]).or(level.map(|estimate| estimate.value));
         let (Some(error), Some(abscissa)) = (error, strain) else {
             continue;
         };

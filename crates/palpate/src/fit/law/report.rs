@@ -68,6 +68,7 @@ impl Fitted {
             noise: assessed.noise,
             uncertainty: assessed.uncertainty,
             samples,
+            start: self.scaled.start,
             duration: self.scaled.duration,
             termination: solution.termination,
             ghosts: ghosts(&self.model, solution),
@@ -112,7 +113,10 @@ impl Fitted {
             true => (level(0), ParameterRole::Estimated),
             false => (Estimate::fixed(self.scaled.center), ParameterRole::Given),
         };
-        add(model.form.constant_name(), ParameterUnit::Signal, constant, role);
+        // A law without a constant has none to report.
+        if model.constant || model.form.constant || self.scaled.center != 0.0 {
+            add(model.form.constant_name(), ParameterUnit::Signal, constant, role);
+        }
         for (i, name) in model.form.amplitude_names().iter().enumerate() {
             add(name, ParameterUnit::Signal, level(i + constants), ParameterRole::Estimated);
         }
