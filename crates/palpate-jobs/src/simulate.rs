@@ -9,7 +9,7 @@ use palpate::simulate::{
     Contact, ContactModel, Drive, Energy, ForceHistory, Memory, Motion, Sampling, SimulateError, StepWork, StrainWave,
     Trajectory, WAVE_TOLERANCE, cycles, energy_watched, simulate_watched, strain_wave_within, work_by_step_watched,
 };
-use palpate::test_problems::Noise;
+use palpate::test_problems::Rng;
 use palpate::watch::Watch;
 use palpate_files::description::{Protocol, read_protocol, read_scene};
 use palpate_report::figure::Figure;
@@ -223,7 +223,7 @@ impl Simulated {
         let Simulate { seed, .. } = self.job;
         let (force_noise, displacement_noise) =
             (self.job.force_noise_n.unwrap_or(0.0), self.job.displacement_noise_m.unwrap_or(0.0));
-        let (mut noise, trajectory) = (Noise::new(seed), &self.trajectory);
+        let (mut noise, trajectory) = (Rng::new(seed), &self.trajectory);
         let mut out = format!(
             "Origin,\"simulated by palpate {}, not measured\"\nForce noise,\"{force_noise}\",N\nDisplacement noise,\"{}\",mm\nSeed,\"{seed}\"\n",
             env!("CARGO_PKG_VERSION"),

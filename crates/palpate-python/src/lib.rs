@@ -47,7 +47,7 @@ mod _palpate {
         fits::laws::{latency, law_names},
         materials::calibration::Calibration,
         materials::grip::Grip,
-        materials::grip_parts::{BackOff, ForceHeld, Holding, Schedule},
+        materials::grip_parts::{BackOff, ForceHold, PositionHold, Schedule},
         materials::material::Material,
         materials::prediction::Prediction,
         observers::observation::Observation,

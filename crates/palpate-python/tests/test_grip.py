@@ -102,7 +102,7 @@ def seconds(lasts: dict[str, Any]) -> float:
 def test_every_number_of_the_document_is_an_attribute(least: palpate.Grip) -> None:
     document = least.to_dict()
 
-    def held(found: palpate.Holding, expected: dict[str, Any]) -> None:
+    def held(found: palpate.PositionHold, expected: dict[str, Any]) -> None:
         for key, value in expected.items():
             if key == "lasts":
                 assert found.time_to_slip_s == seconds(value)

@@ -4,12 +4,12 @@ use palpate::analysis::{AnalysisOptions, Geometry, analyze};
 use palpate::contact::{Shape, Sides};
 use palpate::record::Record;
 use palpate::simulate::{Sampling, Separation, simulate};
-use palpate::test_problems::{Noise, paper_ball, paper_test_b};
+use palpate::test_problems::{Rng, paper_ball, paper_test_b};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A record as a machine would write it: the paper's test (b) with 0.02 N of noise.
     let series = simulate(&paper_test_b(), &paper_ball(Separation::Bonded), &Sampling::Rate(50.0))?;
-    let mut noise = Noise::new(3);
+    let mut noise = Rng::new(3);
     let force = series.force.iter().map(|force| force + 0.02 * noise.normal()).collect();
     let record = Record::new(series.time, Some(series.displacement), force)?;
 

@@ -3,14 +3,14 @@
 use palpate::analysis::Geometry;
 use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, calibrate};
 use palpate::simulate::{ProtocolStep, Sampling, Separation, protocol, simulate_force};
-use palpate::test_problems::{Noise, PAPER_RATE, paper_ball, paper_test_a};
+use palpate::test_problems::{PAPER_RATE, Rng, paper_ball, paper_test_a};
 use palpate::watch::Unwatched;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The paper's test (a) on its ball, at 10 Hz, with a load cell good to 0.2 N.
     let (motion, ball) = (paper_test_a(), paper_ball(Separation::Unilateral));
     let times: Vec<f64> = (0..=660).map(|i| 0.1 * f64::from(i)).collect();
-    let mut noise = Noise::new(1);
+    let mut noise = Rng::new(1);
     let forces: Vec<f64> = simulate_force(&motion, &ball, &times)?
         .into_iter()
         .map(|force| force + 0.2 * noise.normal())

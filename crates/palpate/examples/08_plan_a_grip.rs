@@ -6,14 +6,14 @@ use palpate::analysis::Geometry;
 use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, Material, calibrate};
 use palpate::grip::{Band, Grasp, Grip, Limits, Objective, Plan, Regrip, TimeToSlip};
 use palpate::simulate::{Separation, simulate_force};
-use palpate::test_problems::{Noise, PAPER_RATE, paper_ball, paper_test_a};
+use palpate::test_problems::{PAPER_RATE, Rng, paper_ball, paper_test_a};
 use palpate::watch::Unwatched;
 
 /// The paper's ball, calibrated on the paper's test (a) at 10 Hz with a load cell good to 0.05 N.
 fn calibrated() -> Result<Material, Box<dyn std::error::Error>> {
     let (motion, ball) = (paper_test_a(), paper_ball(Separation::Unilateral));
     let times: Vec<f64> = (0..=660).map(|i| 0.1 * f64::from(i)).collect();
-    let mut noise = Noise::new(1);
+    let mut noise = Rng::new(1);
     let forces = simulate_force(&motion, &ball, &times)?
         .into_iter()
         .map(|force| force + 0.05 * noise.normal())

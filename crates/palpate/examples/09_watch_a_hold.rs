@@ -7,12 +7,12 @@ use std::time::Instant;
 use palpate::grip::TimeToSlip;
 use palpate::observe::{ContactPhase, Observer, ObserverOptions, Slip, SlipForecast};
 use palpate::simulate::{ContactState, Separation};
-use palpate::test_problems::{Noise, paper_ball};
+use palpate::test_problems::{Rng, paper_ball};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = paper_ball(Separation::Unilateral);
     let mut contact = ContactState::default();
-    let mut noise = Noise::new(1);
+    let mut noise = Rng::new(1);
     // A gripper at 1 kHz: 5 mm within 0.6 s, then a hold; what it holds slips below 1.6 N.
     let mut observer = Observer::new(ObserverOptions {
         slip_force: Some(1.6),
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if seen.began {
             println!("{time:.3} s: a hold began at {:.3} s", seen.held_since.unwrap_or(time));
         }
-        if seen.phase == ContactPhase::Holding && time > 0.7 + 2.0 * f64::from(told) && told < 4 {
+        if seen.phase == ContactPhase::PositionHold && time > 0.7 + 2.0 * f64::from(told) && told < 4 {
             told += 1;
             match seen.time_to_slip {
                 Some(SlipForecast::Known {

@@ -9,7 +9,7 @@ use palpate::analysis::{AnalysisOptions, Geometry};
 use palpate::calibrate::{CalibrationData, Candidate, EquilibriumLaw, calibrate};
 use palpate::record::Record;
 use palpate::simulate::{Motion, Separation, simulate_force};
-use palpate::test_problems::{Noise, paper_ball, paper_test_a, paper_test_b};
+use palpate::test_problems::{Rng, paper_ball, paper_test_a, paper_test_b};
 use palpate::watch::Unwatched;
 
 const RATE: f64 = 20.0;
@@ -92,7 +92,7 @@ fn counts(motion: &Motion, law: &str, seeds: std::ops::Range<u64>) -> BTreeMap<&
 /// A record of the motion, cut and prepared as that of a machine is.
 fn data(motion: &Motion, seed: u64) -> CalibrationData {
     let model = paper_ball(Separation::Unilateral);
-    let mut random = Noise::new(seed + 1);
+    let mut random = Rng::new(seed + 1);
     let count = (motion.end() * RATE) as u32;
     let time: Vec<f64> = (0..=count).map(|i| f64::from(i) / RATE).collect();
     let force = simulate_force(motion, &model, &time).expect("a simulation");

@@ -14,7 +14,7 @@ use palpate::laws::Law;
 use palpate::simulate::{
     ContactModel, ContactState, Motion, Sampling, Separation, simulate, simulate_force, strain_wave_within,
 };
-use palpate::test_problems::{Noise, noisy_hold, paper_ball, paper_test_a};
+use palpate::test_problems::{Rng, noisy_hold, paper_ball, paper_test_a};
 use palpate::watch::Unwatched;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
@@ -112,7 +112,7 @@ fn fit_laws() {
 
 /// 1 + Σ Δ exp(−λt) over 10 s with noise of 10⁻³; pairs are (Δ, λ).
 fn exponentials(samples: usize, terms: &[(f64, f64)]) -> (Vec<f64>, Vec<f64>) {
-    let mut noise = Noise::new(7);
+    let mut noise = Rng::new(7);
     let times: Vec<f64> = (0..samples).map(|i| 10.0 * i as f64 / (samples - 1) as f64).collect();
     let signal = |t: f64| 1.0 + terms.iter().map(|(amplitude, rate)| amplitude * (-rate * t).exp()).sum::<f64>();
     let values = times.iter().map(|t| signal(*t) + 1e-3 * noise.normal()).collect();

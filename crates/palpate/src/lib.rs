@@ -1,16 +1,16 @@
 //! Soft contact that remembers: squeeze-and-hold tests turned into laws, and laws into forces.
 //!
 //! A soft body is pressed, held and released. In the hold its strain drifts to equilibrium at a rate set by how far it
-//! has to go: strain rate = −v (ε − ε_e)ⁿ, the *nonlinear latency law*. This crate finds the law in a measured record,
-//! says how sure it is, and simulates the contact. It computes only: no files, no terminal, no network.
+//! has to go: strain rate = −v (ε − ε_e)ⁿ, the *nonlinear latency law*. This crate estimates the law from a measured record,
+//! with confidence intervals, and simulates the contact. It computes only: no files, no terminal, no network.
 //!
 //! The modules stand in the order of the data's way.
 //!
 //! | module | what |
 //! |---|---|
+//! | [`prelude`] | the types and functions of the main jobs, with an example of each |
 //! | [`units`] | quantities as people write them, turned into SI |
 //! | [`watch`] | progress of long work, and its cancellation |
-//! | [`number`] | numbers written for people and for machines |
 //! | [`record`] | a measured record, checked |
 //! | [`segment`] | its phases: loading, hold, unloading; first touch; Type I and II |
 //! | [`strain`] | strain and strain rate, equations (6) to (9) |
@@ -24,7 +24,6 @@
 //! | [`batch`] | thousands of contacts at once |
 //! | [`analysis`] | all of it for one record, with findings in plain words |
 //! | [`observe`] | a contact watched tick by tick: holds, their equilibrium, time to slip |
-//! | [`test_problems`] | known problems with known answers |
 //!
 //! | feature | what |
 //! |---|---|
@@ -78,6 +77,7 @@ pub mod latency;
 #[cfg(feature = "std")]
 pub mod laws;
 #[cfg(feature = "std")]
+#[doc(hidden)]
 pub mod number;
 #[cfg(feature = "std")]
 pub mod observe;
@@ -86,6 +86,9 @@ mod ode;
 #[cfg(feature = "std")]
 mod optimise;
 #[cfg(feature = "std")]
+pub mod prelude;
+#[cfg(feature = "std")]
+#[doc(hidden)]
 pub mod random;
 #[cfg(feature = "std")]
 pub mod record;
@@ -99,6 +102,7 @@ mod statistics;
 #[cfg(feature = "std")]
 pub mod strain;
 #[cfg(feature = "std")]
+#[doc(hidden)]
 pub mod test_problems;
 #[cfg(feature = "std")]
 pub mod units;

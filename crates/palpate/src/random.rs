@@ -19,11 +19,11 @@ pub fn seed_of(seed: u64, number: u64) -> u64 {
 
 /// A reproducible source of normal numbers (SplitMix64 and Box–Muller), so that simulated records are the same everywhere.
 #[derive(Debug, Clone)]
-pub struct Noise {
+pub struct Rng {
     state: u64,
 }
 
-impl Noise {
+impl Rng {
     /// A source that always gives the same numbers for the same seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
@@ -107,9 +107,9 @@ mod tests {
 
     #[test]
     fn a_source_can_begin_anywhere() {
-        let mut all = Noise::new(7);
+        let mut all = Rng::new(7);
         for count in 0..50 {
-            assert_eq!(Noise::after(7, count).uniform(), all.uniform(), "{count}");
+            assert_eq!(Rng::after(7, count).uniform(), all.uniform(), "{count}");
         }
     }
 

@@ -195,7 +195,7 @@ mod tests {
     /// Rounding to steps as wide as the noise adds a twelfth of their square to its variance, and takes nothing away.
     #[test]
     fn noise_of_rounded_values_is_that_of_the_values() {
-        let mut random = crate::random::Noise::new(5);
+        let mut random = crate::random::Rng::new(5);
         for step in [0.5, 0.8, 1.0, 1.3, 2.0] {
             let level = |i: i32| if i < 2000 { 0.0 } else { 200.0 };
             let values: Vec<f64> = (0..4000).map(|i| ((level(i) + random.normal()) / step).round() * step).collect();

@@ -4,7 +4,7 @@
 //! see `validation/` in the repository; they are not read off this library.
 
 use crate::contact::{Layers, Shape, Sides, Specimen};
-pub use crate::random::Noise;
+pub use crate::random::Rng;
 
 use crate::latency::{LatencyLaw, decay};
 use crate::simulate::{ContactModel, Motion, ProtocolStep, Separation, protocol};
@@ -93,7 +93,7 @@ const fn golden(time: f64, excess_strain: f64, force: f64) -> Golden {
 #[must_use]
 pub fn noisy_hold(samples: usize, exponent: f64, noise: f64) -> (Vec<f64>, Vec<f64>) {
     let rate = 2e4 * 0.13f64.powi(4);
-    let mut random = Noise::new(1);
+    let mut random = Rng::new(1);
     let times: Vec<f64> = (0..samples).map(|i| 10.0 * i as f64 / (samples - 1) as f64).collect();
     let value = |t: &f64| 0.2 + 0.13 * (decay(rate * t, exponent) + noise * random.normal());
     let values = times.iter().map(value).collect();

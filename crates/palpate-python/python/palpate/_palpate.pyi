@@ -19,9 +19,9 @@ __all__ = [
     "Finding",
     "Fit",
     "FitError",
-    "ForceHeld",
+    "ForceHold",
     "Grip",
-    "Holding",
+    "PositionHold",
     "Material",
     "ModelError",
     "Observation",
@@ -264,13 +264,13 @@ class Grip(_Told):
     remarks: Final[list[str]]
     extrapolations: Final[list[str]]
     confidence: Final[float]
-    squeeze: Final[Holding | None]
+    squeeze: Final[PositionHold | None]
     squeeze_m: Final[float | None]
     time_to_slip_s: Final[float | None]
     time_to_slip_interval_s: Final[tuple[float, float] | None]
     neighbours: Final[Table]
     back_off: Final[BackOff | None]
-    force_held: Final[ForceHeld | None]
+    force_held: Final[ForceHold | None]
     schedule: Final[Schedule | None]
     refused: Final[dict[str, str]]
     def to_svg(self) -> str: ...
@@ -278,7 +278,7 @@ class Grip(_Told):
     def _repr_html_(self) -> str | None: ...
 
 @final
-class Holding(_Value):
+class PositionHold(_Value):
     kind: Final[Literal["squeeze", "settle", "back_off"]]
     over_m: Final[float | None]
     settling_force_n: Final[float | None]
@@ -298,15 +298,15 @@ class Holding(_Value):
 
 @final
 class BackOff(_Value):
-    backed: Final[Holding]
-    plain: Final[Holding]
+    backed: Final[PositionHold]
+    plain: Final[PositionHold]
     duration_s: Final[float]
     drift_n: Final[float]
     plain_drift_n: Final[float]
     sensitivities: Final[Table]
 
 @final
-class ForceHeld(_Value):
+class ForceHold(_Value):
     force_n: Final[float]
     duration_s: Final[float]
     needed_force_n: Final[float]

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::errors::{unwritten, warn};
 use crate::html::framed;
-use crate::materials::grip_parts::{BackOff, ForceHeld, Holding, Schedule, seconds, slip_interval};
+use crate::materials::grip_parts::{BackOff, ForceHold, PositionHold, Schedule, seconds, slip_interval};
 use crate::shown::shown;
 use crate::table::{Table, columns};
 use crate::work::{job, plain, printed};
@@ -85,7 +85,7 @@ shown! {
         /// Coverage of the intervals.
         confidence: f64 = self.document.confidence,
         /// The squeeze with the displacement held: the one that was asked about, or the least; None if there is none.
-        squeeze: Option<Holding> = self.of_squeeze(|found| Holding::new(found.clone(), self.squeeze.clone())),
+        squeeze: Option<PositionHold> = self.of_squeeze(|found| PositionHold::new(found.clone(), self.squeeze.clone())),
         /// Displacement of that squeeze, m.
         squeeze_m: Option<f64> = self.of_squeeze(|found| found.displacement_m),
         /// From the start of its hold until it slips, s; infinite for always (longer than ten years), 0 if it slips at once.
@@ -95,7 +95,7 @@ shown! {
         /// Squeeze and back off, so that the hold begins relaxed; None if there is none.
         back_off: Option<BackOff> = Some(BackOff::new(self.document.back_off.clone()?, self.back_off.clone()?)),
         /// The force held; None if there is none.
-        force_held: Option<ForceHeld> = Some(ForceHeld::new(self.document.force_held.clone()?, self.force_held.clone()?)),
+        force_held: Option<ForceHold> = Some(ForceHold::new(self.document.force_held.clone()?, self.force_held.clone()?)),
         /// Squeezes that keep the force in a band; None if none was asked for, or none does.
         schedule: Option<Schedule> = Some(Schedule::new(self.document.schedule.clone()?, self.schedule.clone()?)),
         /// How long squeezes a little less and more deep hold: ``displacement_m`` and ``time_to_slip_s``.

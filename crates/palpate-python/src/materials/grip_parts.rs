@@ -58,7 +58,7 @@ macro_rules! part {
 
 part! {
     /// A grip with the displacement held; SI units.
-    Holding(HoldingDocument, Option<Predicted>): self {
+    PositionHold(HoldingDocument, Option<Predicted>): self {
         /// How the jaws close: "squeeze", "settle" (a force is kept before they are locked) or "back_off".
         kind: String,
         /// Where the jaws turn, m; None but for a retreat.
@@ -100,7 +100,7 @@ part! {
             Some(time) => format!("for {} s", significant(time, 3)),
         };
         format!(
-            "<palpate.Holding {}: {} mm, {} N, {} N relaxed, {} N needed; holds {time}>",
+            "<palpate.PositionHold {}: {} mm, {} N, {} N relaxed, {} N needed; holds {time}>",
             found.kind,
             significant(1e3 * found.displacement_m, 4),
             significant(found.start_force_n, 4),
@@ -120,9 +120,9 @@ part! {
         /// The same after the plain squeeze, N.
         plain_drift_n: f64,
         /// The retreat: its hold begins relaxed.
-        backed: Holding = Holding::new(self.found.backed.clone(), Some(self.course.clone())),
+        backed: PositionHold = PositionHold::new(self.found.backed.clone(), Some(self.course.clone())),
         /// The plain squeeze.
-        plain: Holding = Holding::new(self.found.plain.clone(), None),
+        plain: PositionHold = PositionHold::new(self.found.plain.clone(), None),
         /// What 1 % more of a parameter of the material does to it: ``parameter``, its ``relative_error``, by how much the force at the start of the
         /// hold misses the relaxed one (``missed_n``), by how much farther the jaws would have to go (``over_m``).
         sensitivities: PyResult<Table> =
@@ -142,7 +142,7 @@ part! {
 
 part! {
     /// The force held: it does not relax, the body creeps; SI units.
-    ForceHeld(PressedDocument, Predicted): self {
+    ForceHold(PressedDocument, Predicted): self {
         /// The force, N.
         force_n: f64,
         /// How long it is held, s.
@@ -170,7 +170,7 @@ part! {
     fn __repr__(&self) -> String {
         let found = &self.found;
         format!(
-            "<palpate.ForceHeld: {} N, {} N needed; {} mm to {} mm in {} s>",
+            "<palpate.ForceHold: {} N, {} N needed; {} mm to {} mm in {} s>",
             significant(found.force_n, 4),
             significant(found.needed_force_n, 4),
             significant(1e3 * found.displacement_start_m, 4),

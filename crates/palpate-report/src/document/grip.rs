@@ -1,7 +1,8 @@
 //! `palpate.grip/1`: a planned grip.
 
 use palpate::grip::{
-    BackOff, ForceHold, Grasp, GripError, Holding, Limits, Move, PlanKind, Regrip, Schedule, Sensitivity, TimeToSlip,
+    BackOff, ForceHold, Grasp, GripError, Limits, Move, PlanKind, PositionHold, Regrip, Schedule, Sensitivity,
+    TimeToSlip,
 };
 
 use super::software::Software;
@@ -56,7 +57,7 @@ documents! {
     }
 
     /// A grip with the displacement held.
-    HoldingDocument(found: &Holding) with {
+    HoldingDocument(found: &PositionHold) with {
         let (kind, over, settling_force, settling) = match found.plan.kind {
             PlanKind::Squeeze { .. } => ("squeeze", None, None, None),
             PlanKind::Settle { force, settling, .. } => ("settle", None, Some(force), Some(settling)),

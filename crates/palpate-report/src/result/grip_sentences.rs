@@ -2,7 +2,7 @@
 
 use palpate::contact::Sides;
 use palpate::grip::{
-    BackOff, Control, ForceHold, Grasp, GripError, Holding, Objective, PlanKind, Regrip, Schedule, TimeToSlip,
+    BackOff, Control, ForceHold, Grasp, GripError, Objective, PlanKind, PositionHold, Regrip, Schedule, TimeToSlip,
 };
 use palpate::number::significant;
 
@@ -138,7 +138,7 @@ fn load(grasp: &Grasp) -> String {
     parts.join(", ")
 }
 
-fn of_squeeze(body: &GrippedBody<'_>, found: &Holding, holds: bool) -> String {
+fn of_squeeze(body: &GrippedBody<'_>, found: &PositionHold, holds: bool) -> String {
     let what = match found.plan.kind {
         PlanKind::Squeeze { displacement, speed } => {
             format!("a squeeze of {} at {} mm/s", mm(displacement), significant(1e3 * speed, 3))
@@ -198,7 +198,7 @@ fn of_pressed(found: &ForceHold, holds: bool) -> String {
     }
 }
 
-fn on_squeeze(found: &Holding) -> Option<String> {
+fn on_squeeze(found: &PositionHold) -> Option<String> {
     let sharpness = found.sharpness?;
     let more = (sharpness * 0.01 * found.displacement).exp();
     Some(if more < 2.0 {
@@ -208,7 +208,7 @@ fn on_squeeze(found: &Holding) -> Option<String> {
     })
 }
 
-fn both_ways(squeeze: &Holding, pressed: &ForceHold, shown: f64) -> String {
+fn both_ways(squeeze: &PositionHold, pressed: &ForceHold, shown: f64) -> String {
     let surplus = 100.0 * (squeeze.peak_force / squeeze.needed_force - 1.0);
     let standing = if surplus > 0.0 {
         format!("they squeeze {} % harder than is needed, and wait", significant(surplus, 2))

@@ -186,7 +186,7 @@ pub(super) fn names(candidate: Candidate, rows: usize) -> Vec<(String, MaterialU
 impl Material {
     /// Checks that the parameters make a contact; needed of what was read from a file.
     #[must_use]
-    pub fn is_whole(&self) -> bool {
+    pub fn is_valid(&self) -> bool {
         let names = names(self.candidate, self.body.levels.len());
         let named = names.len() == self.parameters.len()
             && names.iter().zip(&self.parameters).all(|((name, _), parameter)| *name == parameter.name);
@@ -200,7 +200,7 @@ impl Material {
     /// The contact with the best parameters.
     ///
     /// # Panics
-    /// If the parameters make no contact, which [`is_whole`](Self::is_whole) would have said.
+    /// If the parameters make no contact, which [`is_valid`](Self::is_valid) would have said.
     #[must_use]
     #[expect(clippy::expect_used, reason = "a material that exists is whole")]
     pub fn contact(&self) -> Contact {

@@ -46,7 +46,7 @@ const MOST_STEPS: usize = 40;
 /// use palpate::test_problems::{Noise, paper_ball, paper_test_a};
 /// use palpate::watch::Unwatched;
 /// let (motion, model) = (paper_test_a(), paper_ball(Separation::Unilateral));
-/// let mut noise = Noise::new(1);
+/// let mut noise = Rng::new(1);
 /// let times: Vec<f64> = (0..=220).map(|i| 0.3 * f64::from(i)).collect();
 /// let forces = simulate_force(&motion, &model, &times)?.iter().map(|force| force + 0.2 * noise.normal()).collect();
 /// let ball = Geometry { shape: model.specimen.shape().clone(), sides: model.specimen.sides(), modulus: None };

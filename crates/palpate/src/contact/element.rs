@@ -347,7 +347,7 @@ impl Ramp {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Noise;
+    use crate::random::Rng;
 
     #[test]
     fn a_ramp_from_rest_follows_the_hyperbolic_tangent_for_n_2() {
@@ -392,7 +392,7 @@ mod tests {
 
     #[test]
     fn ramps_from_and_through_rest_keep_their_time_for_any_exponent() {
-        let mut noise = Noise::new(5);
+        let mut noise = Rng::new(5);
         let mut worst: (f64, String) = (0.0, String::new());
         for i in 0..20_000 {
             let n = if i % 10 == 0 { f64::from(1 + i / 10 % 7) } else { 0.5 + 7.5 * noise.uniform() };

@@ -55,8 +55,10 @@ pub use options::{
     BootstrapOptions, ConstantChoice, FitOptions, IntervalMethod, LawOptions, Loss, NoiseChoice, SampleChoice,
 };
 pub use parameter::{Estimate, Interval, ParameterKind, ParameterName};
-pub use problem::Ghost;
-use problem::{Condensed, Model, ModelParameter, Sampled, build, condense, condense_to, ghosts, searched_name};
+pub use problem::RedundantTerm;
+use problem::{
+    Condensed, Model, ModelParameter, Sampled, build, condense, condense_to, redundant_terms, searched_name,
+};
 pub use rate_domain::fit_rates;
 pub use result::{Domain, Fit, Parameter, ParameterRole, ParameterUnit};
 pub use samples::Samples;

@@ -176,7 +176,7 @@ impl Scaled {
             start: 0.0,
             duration: 0.0,
             termination: solution.termination,
-            ghosts: Vec::new(),
+            redundant_terms: Vec::new(),
             work,
         }
     }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Estimate, Ghost, NoiseModel, ParameterName, Uncertainty};
+use super::{Estimate, NoiseModel, ParameterName, RedundantTerm, Uncertainty};
 use crate::laws::{Law, LawCurve, Loading, Response};
 use crate::optimise::{Termination, Work};
 
@@ -114,7 +114,7 @@ pub struct Fit {
     /// Why it ended.
     pub termination: Termination,
     /// Terms that are none: merged or vanishing ones.
-    pub ghosts: Vec<Ghost>,
+    pub redundant_terms: Vec<RedundantTerm>,
     /// What it cost.
     pub work: Work,
 }

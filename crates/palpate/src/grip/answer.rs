@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use serde::{Deserialize, Serialize};
 
 use super::least::check_duration;
-use super::{BackOff, Band, ForceHold, Grip, GripError, Holding, Objective, Plan, Regrip, Schedule, TimeToSlip};
+use super::{BackOff, Band, ForceHold, Grip, GripError, Objective, Plan, PositionHold, Regrip, Schedule, TimeToSlip};
 use crate::calibrate::Prediction;
 use crate::watch::{Cancelled, Stages, Unwatched, Watch};
 
@@ -44,7 +44,7 @@ pub struct Question {
 
 /// A grip with its course over time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Followed<T> {
+pub struct WithPrediction<T> {
     /// The grip.
     pub found: T,
     /// Its course, with bands.
@@ -59,15 +59,15 @@ pub struct Answer {
     /// How long the courses go on behind the squeeze, s.
     pub shown: f64,
     /// The squeeze with the displacement held.
-    pub squeeze: Result<Followed<Holding>, GripError>,
+    pub squeeze: Result<WithPrediction<PositionHold>, GripError>,
     /// How long squeezes a little less and more deep hold, by displacement in m.
     pub neighbours: Vec<(f64, TimeToSlip)>,
     /// Squeeze and back off, to the same place if that holds relaxed.
-    pub back_off: Result<Followed<BackOff>, GripError>,
+    pub back_off: Result<WithPrediction<BackOff>, GripError>,
     /// The force held.
-    pub force_hold: Result<Followed<ForceHold>, GripError>,
+    pub force_hold: Result<WithPrediction<ForceHold>, GripError>,
     /// Squeezes that keep the force in the band, if one was asked for.
-    pub schedule: Option<Result<Followed<Schedule>, GripError>>,
+    pub schedule: Option<Result<WithPrediction<Schedule>, GripError>>,
 }
 
 /// How long the least squeeze holds if nothing is said, s.
@@ -122,7 +122,7 @@ impl Grip<'_> {
             None => self.least(question.objective, wanted, question.assured),
         };
         let shown = shown(question, squeeze.as_ref().ok());
-        let around = |found: &Holding| {
+        let around = |found: &PositionHold| {
             let places = [0.9, 0.95, 1.0, 1.05, 1.1].map(|share| share * found.displacement);
             self.neighbours(&places, found.plan.speed())
         };
@@ -196,13 +196,13 @@ impl Answer {
     }
 }
 
-fn followed<T>(found: T, course: impl Fn(&T) -> Result<Prediction, GripError>) -> Result<Followed<T>, GripError> {
+fn followed<T>(found: T, course: impl Fn(&T) -> Result<Prediction, GripError>) -> Result<WithPrediction<T>, GripError> {
     let course = course(&found)?;
-    Ok(Followed { found, course })
+    Ok(WithPrediction { found, course })
 }
 
 /// How long courses are: the time that is asked for, beyond the slip if none is, an hour for always.
-fn shown(question: &Question, squeeze: Option<&Holding>) -> f64 {
+fn shown(question: &Question, squeeze: Option<&PositionHold>) -> f64 {
     const HOUR: f64 = 3600.0;
     match (question.duration, squeeze.map(|found| found.lasts)) {
         (Some(wanted), _) if wanted.is_finite() => wanted,

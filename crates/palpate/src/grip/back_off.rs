@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ALWAYS, Grip, GripError, Holding, Plan, bisected, check_duration};
+use super::{ALWAYS, Grip, GripError, Plan, PositionHold, bisected, check_duration};
 use crate::number::significant;
 use crate::simulate::step_ends;
 
@@ -23,9 +23,9 @@ pub struct Sensitivity {
 #[derive(Debug, Clone, PartialEq)]
 pub struct BackOff {
     /// The retreat.
-    pub backed: Holding,
+    pub backed: PositionHold,
     /// The plain squeeze.
-    pub plain: Holding,
+    pub plain: PositionHold,
     /// How far the jaw goes before it turns, m.
     pub over: f64,
     /// Time over which drifts are told, s.

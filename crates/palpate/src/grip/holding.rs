@@ -52,7 +52,7 @@ pub struct Grip<'a> {
 
 /// What becomes of a plan whose end is held in displacement; SI units.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Holding {
+pub struct PositionHold {
     /// The plan.
     pub plan: Plan,
     /// How long it takes to close, s.
@@ -145,7 +145,7 @@ impl<'a> Grip<'a> {
     ///
     /// # Errors
     /// [`GripError::BeyondLimit`] for a plan that the gripper may not take, [`GripError::Simulate`] for one that cannot be simulated.
-    pub fn holding(&self, plan: &Plan) -> Result<Holding, GripError> {
+    pub fn holding(&self, plan: &Plan) -> Result<PositionHold, GripError> {
         self.check_reach(plan.farthest())?;
         let ends = self.ends(&plan.steps)?;
         let (Some(end), peak_force) = (ends.last(), peak(&ends)) else {
@@ -154,7 +154,7 @@ impl<'a> Grip<'a> {
         self.within_limits(&ends)?;
         let needed_force = self.needed_force(end.displacement);
         let (lasts, interval) = self.slips(plan, end, needed_force)?;
-        Ok(Holding {
+        Ok(PositionHold {
             closing: end.time,
             displacement: end.displacement,
             needed_force,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ALWAYS, Grip, GripError, Holding, Plan, check, peak};
+use super::{ALWAYS, Grip, GripError, Plan, PositionHold, check, peak};
 use crate::number::significant;
 
 /// What a plan should have least of.
@@ -30,7 +30,7 @@ impl Grip<'_> {
     ///
     /// # Errors
     /// [`GripError::NoSqueeze`] if none holds, [`GripError::Number`] for a duration that is not above zero.
-    pub fn least(&self, objective: Objective, duration: f64, assured: bool) -> Result<Holding, GripError> {
+    pub fn least(&self, objective: Objective, duration: f64, assured: bool) -> Result<PositionHold, GripError> {
         check_duration(duration)?;
         self.check_assured(assured)?;
         let closing = |i: f64| self.limits.slowest_closing() * 10f64.powf(2.0 * (i / f64::from(TRIED - 1) - 1.0));

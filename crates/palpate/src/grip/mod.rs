@@ -29,13 +29,13 @@ mod plan;
 mod regrip;
 mod time_to_slip;
 
-pub use answer::{Answer, Control, Followed, Question};
+pub use answer::{Answer, Control, Question, WithPrediction};
 pub use back_off::{BackOff, Sensitivity};
 pub use error::GripError;
 use error::{above_zero, at_least, check};
 pub use force_hold::ForceHold;
 pub use grasp::{Grasp, STANDARD_GRAVITY};
-pub use holding::{Grip, Holding};
+pub use holding::{Grip, PositionHold};
 use holding::{beyond, peak};
 pub use least::Objective;
 use least::{bisected, check_duration};

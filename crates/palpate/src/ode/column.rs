@@ -78,7 +78,7 @@ impl Column {
     }
 
     /// Whether all numbers are followed.
-    pub(crate) fn is_whole(&self) -> bool {
+    pub(crate) fn is_valid(&self) -> bool {
         self.active == self.state.len()
     }
 
@@ -108,7 +108,7 @@ impl Column {
                 self.stage(simd, stage, width, rhs);
             }
             self.evaluations += STAGES as u64 - 1;
-            if !self.is_whole() && rhs.passes_on(self.point[self.active - 1]) {
+            if !self.is_valid() && rhs.passes_on(self.point[self.active - 1]) {
                 self.active += WIDTH;
                 self.has_slope = false;
                 continue;

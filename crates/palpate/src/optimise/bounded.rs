@@ -246,7 +246,7 @@ mod tests {
 
     use super::*;
     use crate::statistics::dot;
-    use crate::test_problems::Noise;
+    use crate::test_problems::Rng;
 
     struct Owned {
         gram: Vec<f64>,
@@ -266,7 +266,7 @@ mod tests {
         }
 
         /// Columns of random numbers that lean towards each other by `shared`, and bounds of every kind.
-        fn random(noise: &mut Noise, size: usize, shared: f64) -> Self {
+        fn random(noise: &mut Rng, size: usize, shared: f64) -> Self {
             let rows = 2 * size + 2;
             let common: Vec<f64> = (0..rows).map(|_| noise.normal()).collect();
             let mut column = |share: f64| -> Vec<f64> { common.iter().map(|c| share * c + noise.normal()).collect() };
@@ -352,7 +352,7 @@ mod tests {
 
     #[test]
     fn finds_the_best_of_all_sets_of_bounds() {
-        let mut noise = Noise::new(7);
+        let mut noise = Rng::new(7);
         let mut bound = 0;
         for trial in 0..600 {
             let owned = Owned::random(&mut noise, 1 + trial % 6, [0.0, 1.0, 30.0][trial % 3]);
@@ -368,7 +368,7 @@ mod tests {
 
     #[test]
     fn many_numbers_keep_the_conditions_of_an_optimum() {
-        let mut noise = Noise::new(11);
+        let mut noise = Rng::new(11);
         for (size, shared) in [(10, 0.0), (30, 3.0), (60, 0.0), (60, 10.0)] {
             let owned = Owned::random(&mut noise, size, shared);
             let mut solver = BoundedSolver::new(size);
@@ -380,7 +380,7 @@ mod tests {
 
     #[test]
     fn a_warm_start_ends_where_a_cold_one_does() {
-        let mut noise = Noise::new(5);
+        let mut noise = Rng::new(5);
         let mut warm = BoundedSolver::new(12);
         let mut owned = Owned::random(&mut noise, 12, 1.0);
         warm.solve(&owned.problem()).unwrap();

@@ -144,11 +144,11 @@ fn without_line(values: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::{Noise, seed_of};
+    use crate::random::{Rng, seed_of};
 
     /// Noise whose neighbours correlate by `rho`, with deviation 1.
     fn slow(rho: f64, count: usize, seed: u64) -> Vec<f64> {
-        let mut random = Noise::new(seed);
+        let mut random = Rng::new(seed);
         let mut last = random.normal();
         let mut next = || {
             last = rho * last + (1.0 - rho * rho).sqrt() * random.normal();

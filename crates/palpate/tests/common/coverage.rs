@@ -2,7 +2,7 @@
 
 use palpate::fit::{BootstrapOptions, IntervalMethod, LawOptions, Samples, fit_law, profile_interval};
 use palpate::laws::{BasisFunction, ExponentChoice, Law, LawCurve, Response, Term};
-use palpate::test_problems::Noise;
+use palpate::test_problems::Rng;
 
 /// A law whose parameters are known, and how noisy its holds are.
 pub(crate) struct Case {
@@ -82,7 +82,7 @@ pub(crate) fn cases() -> Vec<Case> {
 }
 
 /// Noise that correlates by ρ^k over k samples, with standard deviation 1.
-pub(crate) fn autoregressive(random: &mut Noise, correlation: f64, count: usize) -> Vec<f64> {
+pub(crate) fn autoregressive(random: &mut Rng, correlation: f64, count: usize) -> Vec<f64> {
     let fresh = (1.0 - correlation * correlation).sqrt();
     let mut last = random.normal();
     let mut next = || {
@@ -97,7 +97,7 @@ impl Case {
     /// Times and values of hold number `index`.
     pub(crate) fn hold(&self, index: u64) -> (Vec<f64>, Vec<f64>) {
         let times: Vec<f64> = (0..SAMPLES).map(|i| 10.0 * i as f64 / (SAMPLES - 1) as f64).collect();
-        let mut random = Noise::new(0xC0_FFEE + (index << 20));
+        let mut random = Rng::new(0xC0_FFEE + (index << 20));
         let noise = autoregressive(&mut random, self.correlation, SAMPLES);
         let values = self.curve.values(&times).iter().zip(noise).map(|(y, e)| y + self.deviation * e).collect();
         (times, values)

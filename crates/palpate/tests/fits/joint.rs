@@ -11,7 +11,7 @@ use palpate::latency::decay;
 use palpate::laws::{Law, Response};
 use palpate::simulate::{Sampling, Separation, simulate};
 use palpate::strain::contact_strain;
-use palpate::test_problems::{Noise, paper_ball, paper_test_a};
+use palpate::test_problems::{Rng, paper_ball, paper_test_a};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -225,7 +225,7 @@ fn deviations_and_noisy_holds_count_less() {
 /// Holds of 10 s at 100 Hz with a drop of 0.13 and noise of 3·10⁻⁴, at five equilibrium strains; ln v = ln 2·10⁴ + slope (ε_e − 0.3).
 fn body(slope: f64, seed: u64) -> (Vec<f64>, Vec<Vec<f64>>) {
     let times: Vec<f64> = (0..1000).map(|i| 0.01 * f64::from(i)).collect();
-    let mut noise = Noise::new(seed);
+    let mut noise = Rng::new(seed);
     let mut hold = |strain: f64| {
         let drop = 0.1 + 0.2 * strain;
         let rate = 2e4 * (slope * (strain - 0.3)).exp() * drop.powi(4);
@@ -280,7 +280,7 @@ fn intervals_of_the_trend_cover_and_equal_bodies_are_told_apart_by_chance_only()
 /// Strains in the five holds of the paper's test (a) after loading, 500 samples each, from simulated force.
 fn paper_holds(noise: f64) -> Vec<(Vec<f64>, Vec<f64>)> {
     let (model, motion) = (paper_ball(Separation::Bonded), paper_test_a());
-    let mut random = Noise::new(7);
+    let mut random = Rng::new(7);
     let mut hold = |knot: usize| {
         let (start, end) = (motion.times()[knot], motion.times()[knot + 1]);
         let times: Vec<f64> = (0..500).map(|i| start + (end - start) * f64::from(i) / 499.0).collect();

@@ -7,7 +7,7 @@ use palpate::fit::{ExponentChoice, FitOptions, LatencyFit, Termination, fit_hold
 use palpate::latency::{LatencyLaw, decay, decay_many};
 use palpate::simulate::{ContactModel, Motion, ProtocolStep, Sampling, Separation, protocol, simulate};
 use palpate::strain::contact_strain;
-use palpate::test_problems::Noise;
+use palpate::test_problems::Rng;
 
 const EXPONENTS: [f64; 7] = [0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 7.3];
 
@@ -34,7 +34,7 @@ fn hold_strains(
     model: &ContactModel,
     knot: usize,
     noise: f64,
-    random: &mut Noise,
+    random: &mut Rng,
 ) -> (Vec<f64>, Vec<f64>) {
     const SAMPLES: u32 = 250;
     let (start, end) = (motion.times()[knot], motion.times()[knot + 1]);
@@ -62,7 +62,7 @@ fn noise_free_contacts_give_back_their_law() {
             let m = [2.0, 8.0, 8.5, 64.0][(i + (decade + 2) as usize) % 4];
             let (motion, model, _) = squeeze(n, v, m);
             for knot in HOLDS {
-                let (times, strains) = hold_strains(&motion, &model, knot, 0.0, &mut Noise::new(1));
+                let (times, strains) = hold_strains(&motion, &model, knot, 0.0, &mut Rng::new(1));
                 let share = model.specimen.contact_displacement(motion.displacements()[knot]);
                 let equilibrium = model.specimen.equilibrium_strain(share);
                 for (choice, worst) in
@@ -105,7 +105,7 @@ fn distances(fit: &LatencyFit, truth: [f64; 4]) -> Vec<f64> {
 
 #[test]
 fn noisy_contacts_give_back_their_law_within_the_errors() {
-    let mut random = Noise::new(7);
+    let mut random = Rng::new(7);
     let (mut squares, mut count, mut worst) = (0.0, 0.0, 0.0f64);
     for (i, n) in EXPONENTS.into_iter().enumerate() {
         for decade in -2..=4 {
@@ -143,8 +143,8 @@ struct Problem {
     text: String,
 }
 
-fn random_problem(random: &mut Noise) -> Problem {
-    let between = |random: &mut Noise, low: f64, high: f64| (low.ln() + (high / low).ln() * random.uniform()).exp();
+fn random_problem(random: &mut Rng) -> Problem {
+    let between = |random: &mut Rng, low: f64, high: f64| (low.ln() + (high / low).ln() * random.uniform()).exp();
     let samples = between(random, 30.0, 3000.0) as usize;
     let duration = between(random, 0.1, 1e4);
     let n = between(random, 0.3, 12.0);
@@ -221,7 +221,7 @@ impl<'a> Brute<'a> {
     }
 
     /// Lowest residual square found, with its ln λT and n.
-    fn search(&mut self, random: &mut Noise) -> (f64, [f64; 2]) {
+    fn search(&mut self, random: &mut Rng) -> (f64, [f64; 2]) {
         const RATES: usize = 48;
         const RANDOM_STARTS: usize = 8;
         let (low, high) = self.exponents;
@@ -300,7 +300,7 @@ fn no_search_finds_a_better_fit() {
     let options = FitOptions::default();
     let (mut worse, mut largest, mut converged) = (Vec::new(), [f64::NEG_INFINITY; 2], 0);
     for index in (0..problems).chain(KINKED) {
-        let mut random = Noise::new(u64::from(index));
+        let mut random = Rng::new(u64::from(index));
         let problem = random_problem(&mut random);
         let fixed = (index % 3 == 0).then_some(EXPONENTS[index as usize / 3 % 7]);
         let choice = fixed.map_or(ExponentChoice::Free, ExponentChoice::Fixed);
@@ -334,7 +334,7 @@ fn no_search_finds_a_better_fit() {
 fn intervals_cover_the_truth_as_often_as_they_say() {
     const HOLDS: u32 = 400;
     const NAMES: [&str; 5] = ["n", "y_e", "Δ", "λ", "v"];
-    let mut random = Noise::new(5);
+    let mut random = Rng::new(5);
     for (n, choice) in [(3.0, ExponentChoice::Free), (5.0, ExponentChoice::Fixed(5.0)), (0.7, ExponentChoice::Free)] {
         let (level, amplitude, rate) = (0.2, -0.13, 1.5);
         let law = [n, level, amplitude, rate, rate / f64::powf(0.13, n - 1.0)];
@@ -364,7 +364,7 @@ fn intervals_cover_the_truth_as_often_as_they_say() {
 
 #[test]
 fn no_unit_changes_the_answer() {
-    let mut random = Noise::new(11);
+    let mut random = Rng::new(11);
     let mut worst = 0.0f64;
     for n in [0.6, 1.0, 2.0, 5.0, 7.3] {
         for choice in [ExponentChoice::Free, ExponentChoice::Fixed(n)] {

@@ -15,7 +15,7 @@ use palpate::simulate::{
     strain_wave,
 };
 use palpate::strain::{RateWindow, contact_strain, strain_rates};
-use palpate::test_problems::Noise;
+use palpate::test_problems::Rng;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -370,7 +370,7 @@ proptest! {
         };
         let motion = protocol(&steps).unwrap();
         let result = simulate(&motion, &model, &Sampling::Rate(rate)).unwrap();
-        let mut random = Noise::new(seed);
+        let mut random = Rng::new(seed);
         let (range, force) = (largest(&result.displacement), largest(&result.force));
         let displacement = result.displacement.iter().map(|d| d + noise * range * random.normal()).collect();
         let measured: Vec<f64> = result.force.iter().map(|f| f + noise * force * random.normal()).collect();
@@ -480,7 +480,7 @@ proptest! {
         n in 0.3..10.0f64, scaled_rate in decades(-3.0, 4.0), noise in decades(-6.0, 0.0), samples in 6..80usize,
         seed in any::<u64>(), free in any::<bool>(), digits in 1..6i32,
     ) {
-        let mut random = Noise::new(seed);
+        let mut random = Rng::new(seed);
         let times: Vec<f64> = (0..samples).map(|i| i as f64 / (samples - 1) as f64).collect();
         let grid = 10f64.powi(digits);
         let value = |t: &f64| ((1.0 + decay(scaled_rate * t, n) + noise * random.normal()) * grid).round() / grid;

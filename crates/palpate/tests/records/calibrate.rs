@@ -9,14 +9,14 @@ use palpate::calibrate::{
 };
 use palpate::contact::{RateDependence, Shape, Sides};
 use palpate::simulate::{Contact, Motion, ProtocolStep, Sampling, Separation, protocol, simulate_force};
-use palpate::test_problems::{Noise, PAPER_RATE, paper_ball, paper_test_a, paper_test_b};
+use palpate::test_problems::{PAPER_RATE, Rng, paper_ball, paper_test_a, paper_test_b};
 use palpate::watch::{Cancelled, Progress, Unwatched, Watch};
 
 /// A test of the paper's ball as a machine would have recorded it, at 10 Hz.
 fn measured(motion: &Motion, seed: u64, noise: f64) -> CalibrationData {
     let model = paper_ball(Separation::Unilateral);
     let times: Vec<f64> = (0..).map(|i| 0.1 * f64::from(i)).take_while(|t| *t <= motion.end()).collect();
-    let mut random = Noise::new(seed);
+    let mut random = Rng::new(seed);
     let forces = simulate_force(motion, &model, &times).unwrap();
     let forces = forces.iter().map(|force| force + noise * random.normal()).collect();
     let held: Vec<f64> = motion.displacements().windows(2).filter(|d| d[0] == d[1]).map(|d| d[0]).collect();
@@ -82,7 +82,7 @@ fn varying(rate: RateDependence, motion: &Motion, noise: f64) -> CalibrationData
         rate,
     };
     let plain = measured(motion, 1, 0.0);
-    let mut random = Noise::new(5);
+    let mut random = Rng::new(5);
     let forces = simulate_force(motion, &contact, plain.times()).unwrap();
     let forces = forces.iter().map(|force| force + noise * random.normal()).collect();
     CalibrationData::new(ball(), Separation::Unilateral, motion.clone(), plain.times().to_vec(), forces, plain.levels())
@@ -259,7 +259,7 @@ fn a_table_of_equilibrium_forces_is_that_of_the_body() {
             "{u}: {estimate:?} {truth}"
         );
     }
-    assert!(found.material.is_whole());
+    assert!(found.material.is_valid());
 }
 
 /// The linear laws are in the same machine: a body of one exponential gives back its own parameters.
@@ -376,7 +376,7 @@ fn long_record() -> CalibrationData {
             hold: 130.0,
         })
         .collect();
-    let (motion, mut random) = (protocol(&steps).unwrap(), Noise::new(3));
+    let (motion, mut random) = (protocol(&steps).unwrap(), Rng::new(3));
     let times: Vec<f64> = (0..).map(|i| 0.01 * f64::from(i)).take_while(|t| *t <= motion.end()).collect();
     let forces = simulate_force(&motion, &paper_ball(Separation::Unilateral), &times).unwrap();
     let forces = forces.iter().map(|force| force + 0.05 * random.normal()).collect();

@@ -7,7 +7,7 @@ use palpate::latency::LatencyLaw;
 use palpate::record::{Baseline, Compliance, Correction, CorrectionOptions, Record, SkewChoice};
 use palpate::segment::{ContactChoice, SegmentOptions, TouchMethod, find_contact_of, find_phases};
 use palpate::simulate::{ContactModel, Motion, ProtocolStep, Separation, protocol, simulate_force};
-use palpate::test_problems::{Noise, PAPER_RATE, paper_ball};
+use palpate::test_problems::{PAPER_RATE, Rng, paper_ball};
 
 /// A strip that relaxes over seconds, stretched in stairs.
 fn strip() -> ContactModel {
@@ -28,7 +28,7 @@ fn stairs(rate: f64, noise: f64, skew: f64, seed: u64) -> Record {
     let step = |to: f64, rate: f64| ProtocolStep { to, rate, hold: 4.0 };
     let ups = (1..=6).map(|i| step(2e-3 * f64::from(i), 2e-3));
     let motion = protocol(&ups.chain([step(0.0, 6e-3)]).collect::<Vec<_>>()).unwrap();
-    let mut random = Noise::new(seed);
+    let mut random = Rng::new(seed);
     let end = motion.end() - 0.5;
     let late = skew.max(0.0);
     let stamp = |i: u32| (f64::from(i) + 0.6 * random.uniform()) / rate + 0.2 + if late > 0.1 { late } else { 0.0 };
@@ -184,7 +184,7 @@ fn a_skew_that_cannot_be_told_is_not_told() {
     );
     assert_eq!(skew_of(&short.unwrap()), None);
     // A force that is noise alone bends nowhere.
-    let mut random = Noise::new(9);
+    let mut random = Rng::new(9);
     let force = record.time().iter().map(|_| random.normal()).collect();
     let noise = Record::new(record.time().to_vec(), record.displacement().map(<[f64]>::to_vec), force).unwrap();
     assert!(skew_of(&noise).is_none_or(|skew| !skew.is_seen()));
@@ -211,7 +211,7 @@ fn ball(air: f64, zero: f64, drift: f64, noise: f64, seed: u64) -> Record {
         separation: Separation::Unilateral,
         ..paper_ball(Separation::Unilateral)
     };
-    let mut random = Noise::new(seed);
+    let mut random = Rng::new(seed);
     let time: Vec<f64> = (0..((touching.end() + late + 3.5) * 100.0) as u32).map(|i| f64::from(i) / 100.0).collect();
     let clean = simulate_force(&motion, &model, &time.iter().map(|t| t - late).collect::<Vec<_>>()).unwrap();
     let away = touching.end() + late;

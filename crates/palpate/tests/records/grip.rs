@@ -52,7 +52,7 @@ fn ball(errors: Option<[f64; 4]>) -> Material {
             largest_force: 14.3,
         },
     };
-    assert!(material.is_whole());
+    assert!(material.is_valid());
     material
 }
 
@@ -72,7 +72,7 @@ fn linear(terms: usize) -> Material {
             });
         }
     }
-    assert!(material.is_whole());
+    assert!(material.is_valid());
     material
 }
 

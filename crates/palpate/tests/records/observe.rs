@@ -5,7 +5,7 @@ use palpate::fit::Estimate;
 use palpate::grip::TimeToSlip;
 use palpate::observe::{ContactPhase, Held, Observation, ObserveError, Observer, ObserverOptions, Slip, SlipForecast};
 use palpate::simulate::{ContactModel, ContactState, Separation};
-use palpate::test_problems::{Noise, paper_ball};
+use palpate::test_problems::{Rng, paper_ball};
 
 use crate::repeats::repeats;
 
@@ -50,7 +50,7 @@ fn squeeze(hold: f64) -> Vec<(f64, f64, f64)> {
 
 /// What is seen of it with 0.05 N and 1 µm of noise.
 fn watched(course: &[(f64, f64, f64)], seed: u64, options: &ObserverOptions) -> Vec<Observation> {
-    let (mut observer, mut noise) = (Observer::new(options.clone()).unwrap(), Noise::new(seed));
+    let (mut observer, mut noise) = (Observer::new(options.clone()).unwrap(), Rng::new(seed));
     let see = |(time, displacement, force): &(f64, f64, f64)| {
         let displacement = displacement + 1e-6 * noise.normal();
         observer.feed(*time, Some(displacement), force + 0.05 * noise.normal()).unwrap()
@@ -81,7 +81,7 @@ fn a_hold_is_told_within_a_few_ticks_and_once() {
         assert!((began[0].held_since.unwrap() - STOP).abs() < 2.5 / RATE, "{seed}: {began:?}");
         assert_eq!(began[0].held, Some(Held::Displacement));
         assert!(
-            seen.iter().all(|seen| (seen.time >= began[0].time) == (seen.phase == ContactPhase::Holding)),
+            seen.iter().all(|seen| (seen.time >= began[0].time) == (seen.phase == ContactPhase::PositionHold)),
             "{seed}"
         );
     }
@@ -154,7 +154,7 @@ fn the_warning_comes_before_slip() {
         let (mut early, mut all) = (0.0, 0.0);
         for seed in 0..100 {
             let seen = watched(&course, seed, &options);
-            let holding = || seen.iter().filter(|seen| seen.phase == ContactPhase::Holding);
+            let holding = || seen.iter().filter(|seen| seen.phase == ContactPhase::PositionHold);
             let first = holding().find(|seen| seen.slip != Slip::None).unwrap().time;
             // The lower end of an interval of 95 % comes after the truth in every fortieth.
             let due = STOP + slip_after - 0.8 * options.warn_before;
@@ -194,7 +194,7 @@ fn an_equilibrium_above_slip_is_never_and_below_is_not() {
 
 #[test]
 fn a_force_that_is_held_creeps_and_never_slips() {
-    let (model, mut contact, mut noise) = (model(), ContactState::default(), Noise::new(5));
+    let (model, mut contact, mut noise) = (model(), ContactState::default(), Rng::new(5));
     let mut observer = Observer::new(slipping_at(1.0)).unwrap();
     let (mut began, mut last, mut displacement, mut before) = (0, None, 0.0, 0.0);
     for i in 1..=8000 {
@@ -209,7 +209,7 @@ fn a_force_that_is_held_creeps_and_never_slips() {
         last = Some(seen);
     }
     let seen = last.unwrap();
-    assert_eq!((seen.phase, seen.held, began), (ContactPhase::Holding, Some(Held::Force), 1));
+    assert_eq!((seen.phase, seen.held, began), (ContactPhase::PositionHold, Some(Held::Force), 1));
     assert_eq!((seen.time_to_slip, seen.slip), (Some(NEVER), Slip::None));
     let (creep, truth) = (seen.creep_rate.unwrap(), (displacement - before) * RATE / 500.0);
     // the line goes through the later half, over which the creep slows down
@@ -226,7 +226,7 @@ fn unloading_and_a_second_squeeze_are_told_apart() {
         t if t < 7.6 => (t - 7.0) / 0.12,
         _ => 5.0,
     };
-    let (model, mut contact, mut noise) = (model(), ContactState::default(), Noise::new(1));
+    let (model, mut contact, mut noise) = (model(), ContactState::default(), Rng::new(1));
     let mut observer = Observer::new(ObserverOptions::default()).unwrap();
     let mut seen = Vec::new();
     for i in 1..=6000 {
@@ -240,11 +240,11 @@ fn unloading_and_a_second_squeeze_are_told_apart() {
         [0.3, 2.0, 5.04, 6.5, 7.55, 11.0].map(at),
         [
             ContactPhase::Loading,
-            ContactPhase::Holding,
+            ContactPhase::PositionHold,
             ContactPhase::Unloading,
             ContactPhase::Free,
             ContactPhase::Loading,
-            ContactPhase::Holding
+            ContactPhase::PositionHold
         ]
     );
     assert_eq!(seen.iter().filter(|seen| seen.began).count(), 2);
@@ -253,7 +253,7 @@ fn unloading_and_a_second_squeeze_are_told_apart() {
 #[test]
 fn a_force_without_displacement_is_enough_for_a_squeeze_and_a_hold() {
     for seed in 0..50 {
-        let mut noise = Noise::new(seed);
+        let mut noise = Rng::new(seed);
         let mut observer = Observer::new(slipping_at(1.0)).unwrap();
         let mut last = None;
         let mut began = Vec::new();
@@ -318,7 +318,7 @@ fn bad_ticks_are_refused_and_change_nothing() {
 #[test]
 fn a_gap_in_a_hold_is_bridged() {
     let course = squeeze(60.0);
-    let (mut observer, mut noise) = (Observer::new(slipping_at(1.0)).unwrap(), Noise::new(2));
+    let (mut observer, mut noise) = (Observer::new(slipping_at(1.0)).unwrap(), Rng::new(2));
     let (mut began, mut last) = (0, None);
     for (time, displacement, force) in course.iter().filter(|(time, ..)| !(5.0..45.0).contains(time)) {
         let seen = observer.feed(*time, Some(*displacement), force + 0.05 * noise.normal()).unwrap();
@@ -326,14 +326,14 @@ fn a_gap_in_a_hold_is_bridged() {
         last = Some(seen);
     }
     let seen = last.unwrap();
-    assert_eq!((began, seen.phase), (1, ContactPhase::Holding));
+    assert_eq!((began, seen.phase), (1, ContactPhase::PositionHold));
     assert!((seen.force - course.last().unwrap().2).abs() < 0.02);
 }
 
 #[test]
 fn a_million_ticks_and_strange_ones_stay_finite() {
     let mut observer = Observer::new(slipping_at(1.0)).unwrap();
-    let mut noise = Noise::new(9);
+    let mut noise = Rng::new(9);
     let finite = |seen: &Observation| {
         let pair = |pair: Option<Estimate>| pair.is_none_or(|pair| pair.value.is_finite() && error(pair).is_finite());
         let slip = match seen.time_to_slip {
@@ -554,7 +554,7 @@ fn an_observer_goes_on_elsewhere_to_the_last_bit() {
     };
     for options in [slipping_at(1.7), informed] {
         for cut in [0, 7, 290, 330, 2000] {
-            let (mut here, mut noise) = (Observer::new(options.clone()).unwrap(), Noise::new(1));
+            let (mut here, mut noise) = (Observer::new(options.clone()).unwrap(), Rng::new(1));
             let noisy: Vec<(f64, f64)> =
                 course.iter().map(|tick| (tick.1 + 1e-6 * noise.normal(), tick.2 + 0.05 * noise.normal())).collect();
             for index in 0..cut {
@@ -578,7 +578,7 @@ fn an_observer_goes_on_elsewhere_to_the_last_bit() {
 /// A material that never saw the jaw said that there is no force, and that what is held slips.
 #[test]
 fn a_material_says_nothing_where_no_displacement_is_read() {
-    let (course, mut noise) = (squeeze(10.0), Noise::new(5));
+    let (course, mut noise) = (squeeze(10.0), Rng::new(5));
     let forces: Vec<(f64, f64)> = course.iter().map(|tick| (tick.0, tick.2 + 0.02 * noise.normal())).collect();
     let informed = ObserverOptions {
         material: Some(material(1.0)),
@@ -597,7 +597,7 @@ fn a_material_says_nothing_where_no_displacement_is_read() {
 #[test]
 fn a_hold_is_told_of_where_it_was_held_to_its_last_tick() {
     let model = model();
-    let (mut contact, mut noise) = (ContactState::default(), Noise::new(6));
+    let (mut contact, mut noise) = (ContactState::default(), Rng::new(6));
     let options = ObserverOptions {
         material: Some(material(1.0)),
         ..ObserverOptions::default()
@@ -611,7 +611,7 @@ fn a_hold_is_told_of_where_it_was_held_to_its_last_tick() {
         let force = contact.step(&model, 0.05, place.min(20e-3)).unwrap();
         let seen = observer.feed(time, Some(place.min(20e-3) + 1e-6 * noise.normal()), force + 0.01 * noise.normal());
         let seen = seen.unwrap();
-        if time > 1.5 && time < 5.5 && seen.phase == ContactPhase::Holding {
+        if time > 1.5 && time < 5.5 && seen.phase == ContactPhase::PositionHold {
             if let Some(before) = held {
                 let equilibrium = |seen: &Observation| seen.equilibrium_force.unwrap().value;
                 assert!((equilibrium(&seen) / equilibrium(&before) - 1.0).abs() < 0.01, "{time}: {seen:?}");
@@ -630,7 +630,7 @@ fn a_warning_does_not_flutter() {
     let mut changes = 0;
     for seed in 0..20 {
         let seen = watched(&course, seed, &slipping_at(1.7));
-        let held = seen.iter().filter(|seen| seen.phase == ContactPhase::Holding && seen.time > 1.0);
+        let held = seen.iter().filter(|seen| seen.phase == ContactPhase::PositionHold && seen.time > 1.0);
         let slips: Vec<Slip> = held.map(|seen| seen.slip).collect();
         changes += slips.windows(2).filter(|pair| pair[0] != pair[1]).count();
         assert_eq!(slips.last(), Some(&Slip::Slipping));

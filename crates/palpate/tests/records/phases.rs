@@ -3,7 +3,7 @@
 
 use palpate::record::Record;
 use palpate::segment::{After, HoldMode, Phase, SegmentError, SegmentOptions, Segmentation, find_phases};
-use palpate::test_problems::Noise;
+use palpate::test_problems::Rng;
 
 /// A step: to mm, at mm/s, hold s.
 type Step = (f64, f64, f64);
@@ -30,7 +30,7 @@ fn path(steps: &[Step]) -> (impl Fn(f64) -> f64, Vec<(f64, f64, After)>) {
 
 /// A record of a displacement in mm, with noise and quantum in µm.
 fn record(shape: impl Fn(f64) -> f64, duration: f64, rate: f64, noise: f64, quantum: f64) -> Record {
-    let mut numbers = Noise::new(7);
+    let mut numbers = Rng::new(7);
     let count = (duration * rate + 1e-6) as usize + 1;
     let time: Vec<f64> = (0..count).map(|i| i as f64 / rate).collect();
     let rounded = |d: f64| if quantum > 0.0 { (d / quantum).round() * quantum } else { d };
@@ -144,7 +144,7 @@ fn a_few_odd_rows_are_no_motion() {
 /// A creep under 10 N that ripples by 0.3 N at 3 Hz was one long ramp.
 #[test]
 fn a_controller_that_hunts_holds_the_force() {
-    let (mut noise, mut creep) = (Noise::new(1), 0.0);
+    let (mut noise, mut creep) = (Rng::new(1), 0.0);
     let held = |t: f64| match t {
         t if t < 2.0 => 0.0,
         t if t < 4.0 => 5.0 * (t - 2.0),
@@ -177,7 +177,7 @@ fn a_controller_that_hunts_holds_the_force() {
 /// Rest, a ramp of 1 s and 20 s of relaxation from 9.5 to 5.1 N, by the force alone: no hold was found.
 #[test]
 fn a_slow_relaxation_is_a_hold_of_the_force_alone() {
-    let mut noise = Noise::new(2);
+    let mut noise = Rng::new(2);
     let time: Vec<f64> = (0..2600).map(|i| 0.01 * f64::from(i)).collect();
     let force = time.iter().map(|t| {
         let held = match *t {
@@ -241,7 +241,7 @@ enum Drive {
 
 /// The record of a body under a drive, at 20 Hz, with 2 µm and 0.05 N of noise.
 fn driven(duration: f64, drive: impl Fn(f64) -> Drive) -> Record {
-    let (mut body, mut random) = (Body::new(), Noise::new(11));
+    let (mut body, mut random) = (Body::new(), Rng::new(11));
     let (mut time, mut jaw, mut force) = (Vec::new(), Vec::new(), Vec::new());
     for step in 0..(duration / Body::STEP) as u32 {
         let t = Body::STEP * f64::from(step);

@@ -7,7 +7,7 @@ use palpate::latency::LatencyLaw;
 use palpate::record::Record;
 use palpate::segment::{ContactChoice, ContactPoint, HoldStart, SegmentOptions, find_contact_of, find_phases};
 use palpate::simulate::{ContactModel, Motion, ProtocolStep, Separation, protocol, simulate_force};
-use palpate::test_problems::{Noise, PAPER_RATE, paper_ball};
+use palpate::test_problems::{PAPER_RATE, Rng, paper_ball};
 
 use crate::repeats::repeats;
 
@@ -61,7 +61,7 @@ impl Bench {
         let touching = protocol(&steps).unwrap();
         let late = self.rest + self.air / self.speed;
         let end = touching.end() + late;
-        let mut random = Noise::new(seed);
+        let mut random = Rng::new(seed);
         let time: Vec<f64> = (0..=(end * self.rate) as u32).map(|i| f64::from(i) / self.rate).collect();
         let motion = Motion::new(
             std::iter::once(-1.0).chain(touching.times().iter().copied()).collect(),
@@ -214,7 +214,7 @@ fn a_first_step_through_air_alone_is_no_first_touch() {
     let time: Vec<f64> = before.clone().chain(record.time().iter().map(|t| t + shift)).collect();
     let approach = before.clone().map(|t| (PAPER_RATE * t).min(0.004));
     let displacement: Vec<f64> = approach.chain(record.displacement().unwrap().iter().map(|d| d + 0.004)).collect();
-    let mut random = Noise::new(9);
+    let mut random = Rng::new(9);
     let force: Vec<f64> = before.map(|_| 0.01 * random.normal()).chain(record.force().iter().copied()).collect();
     let touch = stopped.touch(&Record::new(time, Some(displacement), force).unwrap());
     assert!((touch.tare.displacement - 0.006).abs() < 5e-5, "{touch:?}");
@@ -368,7 +368,7 @@ fn what_cannot_be_fitted_says_why() {
     );
     let quiet = Bench::paper(0.0, 0.0);
     let (time, d) = (record.time().to_vec(), record.displacement().unwrap().to_vec());
-    let mut random = Noise::new(4);
+    let mut random = Rng::new(4);
     let still = d.iter().map(|d| 200.0 * d + 0.05 * random.normal()).collect();
     let error = analyze(&Record::new(time, Some(d), still).unwrap(), &ball(Some(quiet.model.specimen.modulus())));
     assert!(error.unwrap_err().to_string().contains("does not change in any hold"));
@@ -418,7 +418,7 @@ fn touch_and_overlay_that_cannot_be_trusted_are_said() {
 /// A body that loads as Hertz's does, and relaxes, behind 3 mm of air: the loading curve of palpate's own ball begins half a millimetre early.
 #[test]
 fn a_loading_curve_that_stands_alone_is_said_and_its_error_is_as_large() {
-    let mut random = Noise::new(3);
+    let mut random = Rng::new(3);
     let time: Vec<f64> = (0..1200).map(|i| 0.05 * f64::from(i)).collect();
     let jaw = |t: f64| (1e-3 * (t - 2.0)).clamp(0.0, 9e-3);
     let force = |t: f64| {

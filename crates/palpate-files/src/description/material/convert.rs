@@ -77,7 +77,7 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
         noise: source.number("calibration.residual", residual, "0 N or more", |noise| noise >= 0.0)?,
         range: range(source, &table.range)?,
     };
-    if !material.is_whole() {
+    if !material.is_valid() {
         let expected = format!("the parameters of the law {law}, each above 0, and a covariance with a row for each");
         let names: Vec<&str> = table.parameter.iter().map(|parameter| parameter.name.as_str()).collect();
         return Err(source.value("calibration.parameter", expected, &names.join(", ")));

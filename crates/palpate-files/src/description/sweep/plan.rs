@@ -1,6 +1,6 @@
 //! Which values stand together in which run.
 
-use palpate::random::{Noise, Shuffle, seed_of};
+use palpate::random::{Rng, Shuffle, seed_of};
 
 /// How runs are put together. Any run is computed on its own, so that a sweep of any length takes no memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -61,7 +61,7 @@ impl Plan {
             Self::LatinHypercube { samples, seed } => {
                 let share = |number: u64| {
                     let slices = Shuffle::new(seed_of(*seed, 2 * number), *samples);
-                    let inside = Noise::after(seed_of(*seed, 2 * number + 1), run).uniform();
+                    let inside = Rng::after(seed_of(*seed, 2 * number + 1), run).uniform();
                     At::Share((slices.at(run) as f64 + inside) / *samples as f64)
                 };
                 (0..numbers as u64).map(share).collect()

@@ -1,6 +1,6 @@
 //! A planned grip: tables and text.
 
-use palpate::grip::{Holding, Move, TimeToSlip};
+use palpate::grip::{Move, PositionHold, TimeToSlip};
 
 use crate::number::significant;
 use crate::result::{GrippedBody, lasted, percent};
@@ -29,7 +29,7 @@ pub fn grip_table(body: &GrippedBody<'_>) -> Table {
         .column("to", "lasts_high_s", "s")
         .column("Work", "work_mj", "mJ");
     let end = |course: &palpate::calibrate::Prediction| course.trajectory.force.last().copied().unwrap_or(0.0);
-    let holding = |name: &str, found: &Holding, end: f64| {
+    let holding = |name: &str, found: &PositionHold, end: f64| {
         let interval = |pick: fn((TimeToSlip, TimeToSlip)) -> TimeToSlip| {
             found.interval.map_or_else(|| Cell::missing(NO_INTERVAL), |interval| lasts(pick(interval)))
         };

@@ -25,7 +25,7 @@ pub(super) fn comparison_findings(comparison: &Comparison) -> Vec<Finding> {
     };
     let at_bound = laws(&|fit| matches!(fit.termination, Termination::RateAtBound | Termination::ExponentAtBound));
     let merged = laws(&|fit| {
-        matches!(fit.termination, Termination::Singular | Termination::TermsMerged) || !fit.ghosts.is_empty()
+        matches!(fit.termination, Termination::Singular | Termination::TermsMerged) || !fit.redundant_terms.is_empty()
     });
     // A law that contains the chosen one must do as well.
     let alike = comparison.verdict.as_ref().map_or_else(Vec::new, |verdict| {

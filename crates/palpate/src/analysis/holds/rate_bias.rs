@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::options::AnalysisOptions;
 use crate::fit::{ExponentChoice, LatencyFit, Samples, fit_rates};
-use crate::random::Noise;
+use crate::random::Rng;
 use crate::statistics::{noise_in_time, quantile};
 use crate::strain::strain_rates;
 
@@ -41,7 +41,7 @@ pub(super) fn rate_bias(samples: Samples<'_>, fit: &LatencyFit, options: &Analys
     let exponent = fit.exponent().value;
     let (mut ratios, mut shifts) = (Vec::new(), Vec::new());
     for seed in 0..REPETITIONS {
-        let mut random = Noise::new(seed);
+        let mut random = Rng::new(seed);
         let signal: Vec<f64> = times.iter().map(|t| fit.predict(*t) + noise * random.normal()).collect();
         let rates = strain_rates(&times, &signal, &options.rate_window);
         if let Ok(by_rate) = fit_rates(&rates.strain, &rates.rate, ExponentChoice::Fixed(exponent), &options.fit) {

@@ -85,7 +85,7 @@ fn fitted<const N: usize>(times: &[f64], values: &[f64], at: f64, scale: f64) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Noise;
+    use crate::random::Rng;
 
     #[test]
     fn kinks_between_samples_are_found() {
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn the_error_is_that_of_many_trials() {
         let times: Vec<f64> = (0..40).map(|i| 0.1 * f64::from(i)).collect();
-        let mut random = Noise::new(11);
+        let mut random = Rng::new(11);
         let mut ratios = Vec::new();
         for _ in 0..200 {
             let line = |t: &f64| if *t < 2.03 { 3.0 * (t - 2.03) } else { -0.5 * (t - 2.03) } + 0.1 * random.normal();

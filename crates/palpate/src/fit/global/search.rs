@@ -1,7 +1,7 @@
 //! From a model and samples to the global optimum.
 
 use super::{ends, exact, grown, inflation, local, near_kinks, starts, thorough};
-use crate::fit::{Condensed, Ghost, Model, Sampled, Scaled, condense, ghosts};
+use crate::fit::{Condensed, Model, RedundantTerm, Sampled, Scaled, condense, redundant_terms};
 use crate::optimise::{
     Ending, Near, Refined, Solution, Square, Target, Termination, Work, curvature, descend, distance, polished, refine,
     standing, stepped,
@@ -30,7 +30,7 @@ pub(crate) fn search(model: &Model, scaled: &Scaled, most_iterations: usize, wor
     solution = settled_between_kinks(model, scaled, solution, work);
     let inflation = inflation(&solution);
     let doubtful = solution.termination != Termination::Converged
-        || !ghosts(model, &solution).is_empty()
+        || !redundant_terms(model, &solution).is_empty()
         || inflation > BEYOND
         || model.is_series() && widest(&solution) > WIDE
         || is_hasty(model, scaled, &solution);
@@ -101,7 +101,7 @@ const ALIKE_AT_ALL: f64 = 1e-12;
 /// Says so if what ended well, or could not be told apart, are merged terms.
 fn mark_merged(model: &Model, solution: &mut Solution) {
     let open = matches!(solution.termination, Termination::Converged | Termination::Singular);
-    if open && ghosts(model, solution).iter().any(|ghost| matches!(ghost, Ghost::Merged { .. })) {
+    if open && redundant_terms(model, solution).iter().any(|term| matches!(term, RedundantTerm::Merged { .. })) {
         solution.termination = Termination::TermsMerged;
     }
 }

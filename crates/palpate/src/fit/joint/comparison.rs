@@ -60,7 +60,7 @@ const NOTABLE: f64 = std::f64::consts::LN_2;
 /// use palpate::test_problems::Noise;
 /// // Three holds at strains of 0.1, 0.2 and 0.3 whose v falls: ln v = 10 − 6 ε_e.
 /// let times: Vec<f64> = (0..200).map(|i| 0.1 * f64::from(i)).collect();
-/// let mut noise = Noise::new(3);
+/// let mut noise = Rng::new(3);
 /// let mut hold = |strain: f64| -> Vec<f64> {
 ///     let rate = (10.0 - 6.0 * strain).exp() * 0.13f64.powi(4);
 ///     times.iter().map(|t| strain + 0.13 * decay(rate * t, 5.0) + 1e-4 * noise.normal()).collect()

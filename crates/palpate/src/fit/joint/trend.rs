@@ -115,7 +115,7 @@ impl Line {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_problems::Noise;
+    use crate::test_problems::Rng;
 
     fn point(hold: usize, abscissa: f64, log_value: f64, standard_error: f64) -> TrendPoint {
         TrendPoint {
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn intervals_cover_as_often_as_they_say() {
-        let mut random = Noise::new(5);
+        let mut random = Rng::new(5);
         for between in [0.0, 0.3] {
             let runs = 2000;
             let mut covered = 0;

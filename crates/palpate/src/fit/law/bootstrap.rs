@@ -19,7 +19,7 @@ use crate::fit::{
 };
 use crate::laws::Law;
 use crate::optimise::{Ending, Work, refine};
-use crate::random::Noise as Random;
+use crate::random::Rng;
 use crate::watch::{Progress, Watch};
 
 impl Fitted {
@@ -43,7 +43,7 @@ impl Fitted {
                 values: self.scaled.values.iter().zip(&self.solution.residuals).map(|(y, r)| y - r).collect(),
                 block,
             };
-            let mut random = Random::new(how.seed);
+            let mut random = Rng::new(how.seed);
             for done in 0..how.repetitions {
                 watch.report(Progress::counted("resampling residuals", done, how.repetitions))?;
                 let values = urn.draw(&mut random);
@@ -97,7 +97,7 @@ struct Urn {
 
 impl Urn {
     /// Fitted values with blocks of residuals.
-    fn draw(&self, random: &mut Random) -> Vec<f64> {
+    fn draw(&self, random: &mut Rng) -> Vec<f64> {
         let starts = self.values.len() - self.block + 1;
         let mut values = self.values.clone();
         for part in values.chunks_mut(self.block) {

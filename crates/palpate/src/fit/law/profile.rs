@@ -371,7 +371,7 @@ mod tests {
     fn correlated_residuals_widen_profiles_as_they_widen_intervals() {
         let (times, mut values) = noisy_hold(1000, 1.0, 1e-3);
         let mut drift = 0.0;
-        let mut random = crate::test_problems::Noise::new(5);
+        let mut random = crate::test_problems::Rng::new(5);
         for value in &mut values {
             drift = 0.9 * drift + 1e-4 * random.normal();
             *value += drift;

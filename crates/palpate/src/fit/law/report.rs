@@ -3,7 +3,7 @@
 use super::derived::{Estimating, derived};
 use crate::fit::{
     Assessed, Domain, Estimate, Fit, Fitted, LawOptions, Loss, Parameter, ParameterKind, ParameterRole, ParameterUnit,
-    Scale, ghosts,
+    Scale, redundant_terms,
 };
 use crate::laws::{ExponentChoice, Law, ShapeParameterKind};
 use crate::optimise::{Few, Shapes, Termination, Work};
@@ -71,7 +71,7 @@ impl Fitted {
             start: self.scaled.start,
             duration: self.scaled.duration,
             termination: solution.termination,
-            ghosts: ghosts(&self.model, solution),
+            redundant_terms: redundant_terms(&self.model, solution),
             work,
         }
     }

@@ -113,7 +113,7 @@ mod tests {
     /// Noise of this model from a fixed sequence.
     fn simulated(model: NoiseModel, samples: usize, seed: u64) -> Vec<f64> {
         let (rho, share) = model.parameters();
-        let mut random = crate::test_problems::Noise::new(seed);
+        let mut random = crate::test_problems::Rng::new(seed);
         let mut state = random.normal();
         let mut next = || {
             let now = share.sqrt() * state + (1.0 - share).sqrt() * random.normal();

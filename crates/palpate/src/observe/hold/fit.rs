@@ -277,7 +277,7 @@ fn best(node: &impl Fn(f64) -> Node, (low, high): (f64, f64)) -> Option<Node> {
 mod tests {
     use super::*;
     use crate::observe::hold::Bins;
-    use crate::random::Noise;
+    use crate::random::Rng;
 
     fn hold(seed: u64, exponent: f64, noise: f64, seconds: f64) -> HoldFit {
         let given = Normal::new(exponent, 0.0);
@@ -285,7 +285,7 @@ mod tests {
     }
 
     fn fitted_at(given: Normal, seed: u64, exponent: f64, noise: f64, seconds: f64) -> HoldFit {
-        let (mut bins, mut noise_source) = (Bins::default(), Noise::new(seed));
+        let (mut bins, mut noise_source) = (Bins::default(), Rng::new(seed));
         for i in 0..(seconds * 500.0) as usize {
             let t = i as f64 / 500.0;
             bins.push(t, 1.2 + 1.7 * decay(6.0 * t, exponent) + noise * noise_source.normal());
@@ -306,7 +306,7 @@ mod tests {
     fn an_exponent_that_is_known_to_a_deviation_widens_the_interval_until_it_holds_the_truth() {
         for noise in [0.001, 0.02] {
             for (deviation, expected) in [(0.0, 0..=230), (0.6, 366..=400)] {
-                let mut spread = Noise::new(7);
+                let mut spread = Rng::new(7);
                 let inside = (0..400)
                     .filter(|seed| {
                         // The body's exponent is one of N(5, 0.6²), the fit knows no more of it.

@@ -92,11 +92,11 @@ impl NoiseMeter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Noise;
+    use crate::random::Rng;
 
     #[test]
     fn noise_on_a_ramp_with_uneven_clock_is_found() {
-        let (mut meter, mut noise, mut time) = (NoiseMeter::new(None), Noise::new(1), 0.0);
+        let (mut meter, mut noise, mut time) = (NoiseMeter::new(None), Rng::new(1), 0.0);
         for _ in 0..1000 {
             time += 1e-3 * (0.5 + noise.uniform());
             meter.feed(time, 3.0 * time + 0.05 * noise.normal());

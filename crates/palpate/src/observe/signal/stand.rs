@@ -136,13 +136,13 @@ impl Stand {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Noise;
+    use crate::random::Rng;
 
     #[test]
     fn a_stop_is_told_within_a_few_readings_and_no_ramp_is_a_stop() {
         for (speed, rate) in [(8e-3, 1000.0), (8e-3, 20.0), (2e-4, 100.0)] {
             for seed in 0..50 {
-                let (mut stand, mut noise) = (Stand::default(), Noise::new(seed));
+                let (mut stand, mut noise) = (Stand::default(), Rng::new(seed));
                 let stop = 5e-3 / speed;
                 let mut told = None;
                 for i in 0..((stop + 2.0) * rate) as usize {

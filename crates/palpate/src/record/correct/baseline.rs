@@ -59,11 +59,11 @@ impl Record {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Noise;
+    use crate::random::Rng;
 
     /// A drifting load cell, touched between samples 200 and 700; two rows of the free part are wrong.
     fn drifting() -> Record {
-        let mut random = Noise::new(3);
+        let mut random = Rng::new(3);
         let time: Vec<f64> = (0..900).map(|i| 7.0 + 0.01 * f64::from(i)).collect();
         let touched = |i: usize| if (200..700).contains(&i) { 5.0 } else { 0.0 };
         let drift = |i: usize| 0.3 + 0.05 * (time[i] - 7.0);

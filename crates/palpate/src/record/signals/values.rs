@@ -220,7 +220,7 @@ fn noise_vanishes(values: &[f64], level: f64, longest: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Noise;
+    use crate::random::Rng;
 
     /// A ramp and a relaxing hold.
     fn squeeze() -> (Vec<f64>, Vec<f64>) {
@@ -253,7 +253,7 @@ mod tests {
     #[test]
     fn without_a_displacement_vanished_noise_tells() {
         let (_, force) = squeeze();
-        let mut random = Noise::new(5);
+        let mut random = Rng::new(5);
         let noisy: Vec<f64> = force.iter().map(|f| f + 0.05 * random.normal()).collect();
         assert_eq!(Values::of(Column::Force, &noisy, None).saturation, None);
         let clipped: Vec<f64> = noisy.iter().map(|f| f.min(8.0)).collect();
@@ -262,8 +262,8 @@ mod tests {
 
     #[test]
     fn a_jaw_that_stands_without_noise_is_held_and_not_clipped() {
-        let mut random = Noise::new(5);
-        let noisy = |level: f64, random: &mut Noise| level + 1e-5 * random.normal();
+        let mut random = Rng::new(5);
+        let noisy = |level: f64, random: &mut Rng| level + 1e-5 * random.normal();
         let mut jaw: Vec<f64> = (0..300).map(|i| noisy(1e-5 * f64::from(i), &mut random)).collect();
         jaw.extend([0.004; 300]);
         jaw.extend((0..300).map(|_| noisy(0.002, &mut random)));
@@ -280,7 +280,7 @@ mod tests {
         broken[200] = 0.03;
         let strays = Values::of(Column::Force, &broken, None).strays;
         assert_eq!((strays.count, strays.zeros, strays.rows), (2, 1, vec![150, 200]));
-        let mut random = Noise::new(7);
+        let mut random = Rng::new(7);
         let noise: Vec<f64> = (0..3000).map(|_| random.normal()).collect();
         assert_eq!(Values::of(Column::Force, &noise, None).strays.count, 0);
     }

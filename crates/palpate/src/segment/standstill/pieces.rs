@@ -288,7 +288,7 @@ fn split(time: &[f64], values: &[f64], left: &mut Piece, right: &mut Piece) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Noise;
+    use crate::random::Rng;
 
     fn cut(values: &[f64], roughness: Roughness) -> Vec<usize> {
         let time: Vec<f64> = (0..values.len()).map(|i| i as f64).collect();
@@ -314,7 +314,7 @@ mod tests {
     /// What a long column is joined from in runs has its corners where a short one has them.
     #[test]
     fn long_columns_are_cut_at_their_corners() {
-        let mut random = Noise::new(4);
+        let mut random = Rng::new(4);
         let (count, every) = (12 * MANY, 3 * MANY + 17);
         let shape = |i: usize| {
             let (step, rest) = (i / every, i % every);
@@ -340,7 +340,7 @@ mod tests {
     /// A kink of slope change s with n samples on either side is seen where s² n³/24 exceeds 25 σ².
     #[test]
     fn noise_alone_is_hardly_ever_cut() {
-        let mut random = Noise::new(3);
+        let mut random = Rng::new(3);
         let values: Vec<f64> = (0..20_000).map(|_| random.normal()).collect();
         let ends = cut(
             &values,

@@ -209,11 +209,11 @@ fn fitted(travel: &[f64], force: &[f64], columns: &dyn Fn(f64) -> [f64; 3]) -> O
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Noise;
+    use crate::random::Rng;
 
     /// A ramp of 2 mm that meets the body at 0.8 mm; force `law`(d − d₀ in mm) in N.
     fn approach(law: impl Fn(f64) -> f64, noise: f64, tilt: f64, seed: u64) -> Approach {
-        let mut random = Noise::new(seed);
+        let mut random = Rng::new(seed);
         let travel = |i: u32| 2e-3 * f64::from(i.saturating_sub(100)) / 400.0;
         let displacement: Vec<f64> = (0..500).map(travel).collect();
         let force: Vec<f64> = displacement

@@ -147,7 +147,7 @@ impl Tile {
             }
             nodes.cap(chain.longest_step(along.steepest(simd, nodes)));
             nodes.step(simd, duration, &along);
-            if nodes.is_whole() && !self.is_innermost {
+            if nodes.is_valid() && !self.is_innermost {
                 let ends = nodes.ends_of_last().map(|(time, value, slope)| Knot { time, value, slope });
                 knots.extend_from_slice(if knots.is_empty() { &ends } else { &ends[1..] });
             }

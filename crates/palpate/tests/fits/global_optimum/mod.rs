@@ -11,7 +11,7 @@ mod double_double;
 use brute::{Subject, free_parameters, has_reference};
 use palpate::fit::{Fit, LawOptions, Samples, Termination, fit_law};
 use palpate::laws::{BasisFunction, Law, LawCurve, Response, Term};
-use palpate::test_problems::Noise;
+use palpate::test_problems::Rng;
 
 /// Shapes, whether there is a constant, and the range of the dimensionless parameter, of a law in a response.
 fn parts(law: Law, response: Response) -> (Vec<BasisFunction>, bool, Option<(f64, f64)>) {
@@ -53,11 +53,11 @@ struct Problem {
     truth: Vec<f64>,
 }
 
-fn between(random: &mut Noise, low: f64, high: f64) -> f64 {
+fn between(random: &mut Rng, low: f64, high: f64) -> f64 {
     low + (high - low) * random.uniform()
 }
 
-fn times(random: &mut Noise) -> (Vec<f64>, &'static str) {
+fn times(random: &mut Rng) -> (Vec<f64>, &'static str) {
     let count = 30.0 * 100f64.powf(random.uniform());
     let samples = count as usize;
     match (random.uniform() * 3.0) as u32 {
@@ -78,7 +78,7 @@ fn times(random: &mut Noise) -> (Vec<f64>, &'static str) {
 }
 
 /// A hold drawn from the law: rates over six decades, both signs, 30 to 3000 samples, signal-to-noise from 10 to 10⁵.
-fn problem(law: Law, response: Response, random: &mut Noise) -> Problem {
+fn problem(law: Law, response: Response, random: &mut Rng) -> Problem {
     let (shapes, constant, pure) = parts(law, response);
     let (times, spacing) = times(random);
     let mut truth = Vec::new();
@@ -157,7 +157,7 @@ fn challenge_with(name: &str, response: Response, indices: impl IntoIterator<Ite
     let mut spent = std::time::Duration::ZERO;
     for index in indices {
         problems += 1;
-        let mut random = Noise::new(index * 7919 + name.len() as u64 * 104_729 + response as u64);
+        let mut random = Rng::new(index * 7919 + name.len() as u64 * 104_729 + response as u64);
         let problem = problem(law, response, &mut random);
         let begun = std::time::Instant::now();
         let fit = fit_law(&Samples::new(&problem.times, &problem.values), law, &options).unwrap();

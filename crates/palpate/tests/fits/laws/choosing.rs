@@ -5,11 +5,11 @@
 use palpate::fit::{LawOptions, Samples, forecast};
 use palpate::forecast::{Certainty, CompareOptions, Comparison, Ranking, compare_laws};
 use palpate::laws::Law;
-use palpate::test_problems::Noise;
+use palpate::test_problems::Rng;
 
 /// `samples` samples of `signal` over `duration` s with noise.
 fn hold(samples: usize, duration: f64, noise: f64, signal: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
-    let mut random = Noise::new(11);
+    let mut random = Rng::new(11);
     let times: Vec<f64> = (0..samples).map(|i| duration * i as f64 / (samples - 1) as f64).collect();
     let values = times.iter().map(|t| signal(*t) + noise * random.normal()).collect();
     (times, values)

@@ -8,7 +8,7 @@ mod any_hold;
 use any_hold::{LAWS, fit_any, is_whole};
 use palpate::fit::{FitError, LawOptions, Loss, Samples, Termination, fit_law};
 use palpate::laws::{Law, Response};
-use palpate::test_problems::Noise;
+use palpate::test_problems::Rng;
 use proptest::prelude::*;
 
 fn forms() -> impl Iterator<Item = (Law, LawOptions)> {
@@ -89,7 +89,7 @@ fn deviations_that_are_none_are_refused_and_infinite_ones_leave_samples_out() {
 #[test]
 fn signals_without_a_law_end_with_a_reason() {
     let times = times(80);
-    let mut random = Noise::new(9);
+    let mut random = Rng::new(9);
     let ramp: Vec<f64> = times.iter().map(|t| 3.0 - 0.1 * t).collect();
     let step: Vec<f64> = times.iter().map(|t| if *t < 5.0 { 1.0 } else { 0.0 }).collect();
     let spike: Vec<f64> = times.iter().map(|t| if *t == 0.0 { 1.0 } else { 0.0 }).collect();

@@ -4,11 +4,11 @@
 
 use palpate::fit::{ConstantChoice, Fit, LawOptions, ParameterUnit, Samples, Termination, fit_law};
 use palpate::laws::{Law, Response};
-use palpate::test_problems::Noise;
+use palpate::test_problems::Rng;
 
 /// A wide relaxation with two times and some noise: no law is exact on it.
 fn hold(noise: f64) -> (Vec<f64>, Vec<f64>) {
-    let mut random = Noise::new(3);
+    let mut random = Rng::new(3);
     let times: Vec<f64> = (0..300).map(|i| 30.0 * (f64::from(i) / 299.0).powi(2)).collect();
     let value = |t: &f64| 2.0 + 0.7 * (-t / 0.8).exp() + 0.6 * (-t / 9.0).exp() + noise * random.normal();
     let values = times.iter().map(value).collect();

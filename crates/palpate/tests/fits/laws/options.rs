@@ -4,11 +4,11 @@
 
 use palpate::fit::{ConstantChoice, Fit, FitError, LawOptions, SampleChoice, Samples, Termination, fit_law};
 use palpate::laws::{Law, Response};
-use palpate::test_problems::Noise;
+use palpate::test_problems::Rng;
 
 /// 2 + 3 exp(−t/4) + noise over 40 s.
 fn hold(noise: f64) -> (Vec<f64>, Vec<f64>) {
-    let mut random = Noise::new(3);
+    let mut random = Rng::new(3);
     let times: Vec<f64> = (0..400).map(|i| 0.1 * f64::from(i)).collect();
     let values = times.iter().map(|t| 2.0 + 3.0 * (-t / 4.0).exp() + noise * random.normal()).collect();
     (times, values)
@@ -136,7 +136,7 @@ fn a_number_may_be_held() {
 }
 
 #[test]
-fn amplitudes_of_one_sign_make_no_ghosts() {
+fn amplitudes_of_one_sign_make_no_redundant_terms() {
     let (times, values) = hold(3e-3);
     for sign in [1.0, -1.0] {
         let signal: Vec<f64> = values.iter().map(|y| sign * y).collect();

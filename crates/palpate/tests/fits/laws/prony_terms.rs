@@ -1,16 +1,16 @@
-//! The parameter of exponentials found from the data, and the ghosts of series that are too long.
+//! The parameter of exponentials found from the data, and the redundant_terms of series that are too long.
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the verdict")]
 
-use palpate::fit::{Ghost, LawOptions, Samples, Termination, fit_law};
+use palpate::fit::{LawOptions, RedundantTerm, Samples, Termination, fit_law};
 use palpate::forecast::{CompareOptions, compare_laws};
 use palpate::laws::Law;
-use palpate::test_problems::Noise;
+use palpate::test_problems::Rng;
 
 use crate::repeats::repeats;
 
 fn hold(amplitudes: &[f64], noise: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
-    let mut random = Noise::new(seed);
+    let mut random = Rng::new(seed);
     let times: Vec<f64> = (0..500).map(|i| 100.0 * (f64::from(i) / 499.0).powi(2)).collect();
     let taus = [0.5, 5.0, 50.0];
     let value = |t: &f64| {
@@ -52,17 +52,18 @@ fn an_exact_series_is_not_made_longer() {
 }
 
 #[test]
-fn a_term_too_many_is_a_ghost_or_no_answer() {
+fn a_term_too_many_is_redundant_or_no_answer() {
     let mut merged = 0;
     for seed in 0..40 {
         let (times, values) = hold(&[1.0], 1e-3, seed);
         let fit = fit_law(&Samples::new(&times, &values), Law::Prony { terms: 2 }, &LawOptions::default()).unwrap();
         let amplitudes: Vec<f64> = fit.curve.terms.iter().map(|term| term.amplitude.abs()).collect();
-        // Whatever is called good and free of ghosts has amplitudes of the size of the signal.
-        let sound = fit.termination == Termination::Converged && fit.ghosts.is_empty();
+        // Whatever is called good and free of redundant_terms has amplitudes of the size of the signal.
+        let sound = fit.termination == Termination::Converged && fit.redundant_terms.is_empty();
         assert!(!sound || amplitudes.iter().all(|amplitude| *amplitude < 10.0), "{fit:?}");
         assert!(fit.termination != Termination::TermsMerged || fit.white_covariance.is_none());
-        merged += usize::from(fit.ghosts.iter().any(|ghost| matches!(ghost, Ghost::Merged { a: 1, b: 2 })));
+        merged +=
+            usize::from(fit.redundant_terms.iter().any(|term| matches!(term, RedundantTerm::Merged { a: 1, b: 2 })));
     }
     println!("{merged} of 40 merged");
     assert!(merged > 0);

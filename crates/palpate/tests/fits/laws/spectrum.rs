@@ -4,7 +4,7 @@
 
 use palpate::fit::{FitError, Smoothing, SpectrumFit, SpectrumOptions, fit_spectrum};
 use palpate::latency::decay;
-use palpate::test_problems::Noise;
+use palpate::test_problems::Rng;
 
 fn times(count: u32, duration: f64) -> Vec<f64> {
     (0..count).map(|i| duration * f64::from(i) / f64::from(count - 1)).collect()
@@ -12,7 +12,7 @@ fn times(count: u32, duration: f64) -> Vec<f64> {
 
 /// `signal` at `times` with noise of this standard deviation.
 fn noisy(times: &[f64], noise: f64, seed: u64, signal: impl Fn(f64) -> f64) -> Vec<f64> {
-    let mut random = Noise::new(seed);
+    let mut random = Rng::new(seed);
     times.iter().map(|t| signal(*t) + noise * random.normal()).collect()
 }
 

@@ -4,7 +4,7 @@
 
 use palpate::fit::{Fit, LawOptions, Samples, fit_law};
 use palpate::laws::{BasisFunction, ExponentChoice, Law, LawCurve, Loading, LoadingError, Response, Term};
-use palpate::test_problems::Noise;
+use palpate::test_problems::Rng;
 
 fn relaxation(constant: f64, terms: Vec<Term>) -> LawCurve {
     LawCurve {
@@ -101,7 +101,7 @@ fn amplitudes_are_wrong_only_where_the_ramp_is_ignored() {
         .into_iter()
         .filter(|(name, _)| ["standard-linear-solid", "stretched", "prony:2"].contains(name))
     {
-        let mut noise = Noise::new(7);
+        let mut noise = Rng::new(7);
         let values: Vec<f64> = curve.after(&irregular(), &times).iter().map(|y| y + 0.01 * noise.normal()).collect();
         let law: Law = name.parse().unwrap();
         let (known, ignored) = (fit(&times, &values, law, Some(&irregular())), fit(&times, &values, law, None));

@@ -6,13 +6,13 @@ use palpate::analysis::{AnalysisOptions, analyze};
 use palpate::fit::{ExponentChoice, FitOptions, fit_hold, fit_rates};
 use palpate::record::Record;
 use palpate::strain::{RateWindow, strain_rates};
-use palpate::test_problems::Noise;
+use palpate::test_problems::Rng;
 
 const TRUTH: f64 = 2e4;
 
 /// 10 s at `rate` Hz: ε_e = 0.357, Δ = 0.133, n = 5, v = 2·10⁴ 1/s, noise as a share of Δ.
 fn hold(rate: f64, noise: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
-    let mut random = Noise::new(seed);
+    let mut random = Rng::new(seed);
     let lambda = TRUTH * 0.133f64.powi(4);
     let times: Vec<f64> = (0..(10.0 * rate) as u32).map(|i| f64::from(i) / rate).collect();
     let strain = |t: &f64| 0.357 + 0.133 * ((1.0 + 4.0 * lambda * t).powf(-0.25) + noise * random.normal());

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
-use palpate::random::Noise;
+use palpate::random::Rng;
 use palpate::segment::After;
 use palpate::simulate::{ContactModel, ForceHistory, Sampling, Separation, simulate};
 
@@ -17,7 +17,7 @@ const HUNTED: f64 = 0.002;
 const HUNTING: f64 = 0.02;
 
 /// Force ramped and held by a controller that falls short at first and hunts; the displacement creeps.
-pub fn press(noise: f64, random: &mut Noise) -> Labelled {
+pub fn press(noise: f64, random: &mut Rng) -> Labelled {
     let machine = Machine {
         dropouts: 0.0,
         skew: 0.0,
@@ -87,7 +87,7 @@ pub fn press(noise: f64, random: &mut Noise) -> Labelled {
 }
 
 /// A record without a hold.
-pub fn none(kind: Kind, noise: f64, random: &mut Noise) -> Labelled {
+pub fn none(kind: Kind, noise: f64, random: &mut Rng) -> Labelled {
     let machine = Machine::drawn(noise, random);
     let samples = log_uniform(300.0, 20_000.0, random);
     let cycles = log_uniform(1.0, 12.0, random).min(samples / 40.0);

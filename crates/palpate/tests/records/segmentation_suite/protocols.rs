@@ -9,7 +9,7 @@
 
 use palpate::contact::{Layers, Shape, Sides, Specimen};
 use palpate::latency::LatencyLaw;
-use palpate::random::Noise;
+use palpate::random::Rng;
 use palpate::segment::After;
 use palpate::simulate::{ContactModel, Motion, Separation, simulate_force};
 
@@ -36,7 +36,7 @@ struct Step {
 }
 
 /// A record of holds of constant displacement.
-pub fn squeeze(kind: Kind, noise: f64, random: &mut Noise) -> Labelled {
+pub fn squeeze(kind: Kind, noise: f64, random: &mut Rng) -> Labelled {
     let machine = Machine::drawn(noise, random);
     let levels = levels(kind, machine.unsure(), random);
     let steps = steps(kind, &levels, machine.unsure(), random);
@@ -102,7 +102,7 @@ fn forces(motion: &Motion, model: &ContactModel, times: &[f64]) -> Vec<f64> {
 }
 
 /// How deep the jaw goes, step by step, from 0 to 1.
-fn levels(kind: Kind, unsure: f64, random: &mut Noise) -> Vec<f64> {
+fn levels(kind: Kind, unsure: f64, random: &mut Rng) -> Vec<f64> {
     let least = (TRAVEL * unsure).max(0.01) * 1.05;
     let count = log_uniform(2.0, 60.9, random) as usize;
     match kind {
@@ -146,7 +146,7 @@ fn levels(kind: Kind, unsure: f64, random: &mut Noise) -> Vec<f64> {
 }
 
 /// Ramps and holds in samples, all of which can be told.
-fn steps(kind: Kind, levels: &[f64], unsure: f64, random: &mut Noise) -> Vec<Step> {
+fn steps(kind: Kind, levels: &[f64], unsure: f64, random: &mut Rng) -> Vec<Step> {
     let spread = if kind == Kind::UnevenHolds { 10.0 } else { 2.0 };
     let holds: Vec<f64> = levels.iter().map(|_| log_uniform(1.0 / spread, spread, random)).collect();
     let total = holds.iter().sum::<f64>();
@@ -176,7 +176,7 @@ fn steps(kind: Kind, levels: &[f64], unsure: f64, random: &mut Noise) -> Vec<Ste
 }
 
 /// A servo that overshoots by up to 2 % of its ramp and comes back.
-fn settle(knots: &mut Vec<(f64, f64)>, start: f64, rise: f64, step: &Step, unsure: f64, random: &mut Noise) {
+fn settle(knots: &mut Vec<(f64, f64)>, start: f64, rise: f64, step: &Step, unsure: f64, random: &mut Rng) {
     let high = rise * 10f64.powf(-3.0 + 1.3 * random.uniform());
     // The way beyond the level is slower than the ramp, else the corner is none.
     let lag = (0.05 * step.hold * random.uniform()).max(6.0 * high.abs() * step.ramp / rise.abs()).max(0.5);
@@ -191,7 +191,7 @@ fn settle(knots: &mut Vec<(f64, f64)>, start: f64, rise: f64, step: &Step, unsur
 }
 
 /// A body whose relaxation can be seen in these holds.
-fn body(steps: &[Step], interval: f64, random: &mut Noise) -> ContactModel {
+fn body(steps: &[Step], interval: f64, random: &mut Rng) -> ContactModel {
     let is_ball = random.uniform() < 0.5;
     let (shape, sides) = if is_ball {
         (

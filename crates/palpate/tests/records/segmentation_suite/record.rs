@@ -1,6 +1,6 @@
 //! What a machine makes of a motion: a labelled record.
 
-use palpate::random::Noise;
+use palpate::random::Rng;
 use palpate::record::Record;
 use palpate::segment::After;
 
@@ -38,7 +38,7 @@ pub struct Machine {
 
 impl Machine {
     /// A machine with this much noise, drawn by lot.
-    pub fn drawn(noise: f64, random: &mut Noise) -> Self {
+    pub fn drawn(noise: f64, random: &mut Rng) -> Self {
         let mut quantum = || if random.uniform() < 0.4 { 10f64.powf(-4.0 + 1.7 * random.uniform()) } else { 0.0 };
         let quanta = [quantum(), quantum()];
         let mut drift = |most: f64| if random.uniform() < 0.4 { most * (2.0 * random.uniform() - 1.0) } else { 0.0 };
@@ -71,14 +71,14 @@ impl Machine {
     }
 
     /// The times of its samples, from 0 to `duration`.
-    pub fn times(&self, interval: f64, duration: f64, random: &mut Noise) -> Vec<f64> {
+    pub fn times(&self, interval: f64, duration: f64, random: &mut Rng) -> Vec<f64> {
         let count = (duration / interval) as usize + 1;
-        let off = |i: usize, random: &mut Noise| if i == 0 { 0.0 } else { self.jitter * (random.uniform() - 0.5) };
+        let off = |i: usize, random: &mut Rng| if i == 0 { 0.0 } else { self.jitter * (random.uniform() - 0.5) };
         (0..count).map(|i| (i as f64 + off(i, random)) * interval).filter(|t| *t <= duration).collect()
     }
 
     /// The columns as they are written, from the true ones at the same times.
-    pub fn measured(&self, time: Vec<f64>, columns: [Vec<f64>; 2], random: &mut Noise) -> Record {
+    pub fn measured(&self, time: Vec<f64>, columns: [Vec<f64>; 2], random: &mut Rng) -> Record {
         let last = time[time.len() - 1];
         let mut columns = columns;
         for (index, column) in columns.iter_mut().enumerate() {
@@ -109,7 +109,7 @@ impl Machine {
 }
 
 /// A number between two others, drawn evenly on a logarithmic scale.
-pub fn log_uniform(low: f64, high: f64, random: &mut Noise) -> f64 {
+pub fn log_uniform(low: f64, high: f64, random: &mut Rng) -> f64 {
     (low.ln() + (high / low).ln() * random.uniform()).exp()
 }
 

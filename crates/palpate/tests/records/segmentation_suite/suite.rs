@@ -1,6 +1,6 @@
 //! The records of the suite, by number.
 
-use palpate::random::{Noise, seed_of};
+use palpate::random::{Rng, seed_of};
 use palpate::record::Record;
 
 use super::others::{none, press};
@@ -101,7 +101,7 @@ pub const NOISES: [f64; 5] = [0.0, 1e-4, 1e-3, 3e-3, 1e-2];
 
 /// Record `number` of the suite; every one is its own source of chance.
 pub fn labelled(number: u64) -> Labelled {
-    let mut random = Noise::new(seed_of(20_240, number));
+    let mut random = Rng::new(seed_of(20_240, number));
     let turn = (number / 20) as usize;
     let kind = match TURNS[(number % 20) as usize] {
         Kind::Ramps if turn % 3 == 1 => Kind::Still,

@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use super::model::Model;
 use crate::optimise::Solution;
 
-/// A term of a series of exponentials that is none of its own.
+/// A term of a series of exponentials that adds nothing to the others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Ghost {
+pub enum RedundantTerm {
     /// Two terms, counted from 1, whose times the data cannot tell apart: ln τ differs by less than the standard error of the
     /// difference. Their amplitudes are free to grow without bounds against each other.
     Merged {
@@ -27,8 +27,8 @@ pub enum Ghost {
 /// Difference of ln τ below which terms are merged where there are no standard errors.
 const ALIKE: f64 = 0.05;
 
-/// The ghosts among the exponentials of a solution, in the order of its terms.
-pub(crate) fn ghosts(model: &Model, solution: &Solution) -> Vec<Ghost> {
+/// The redundant terms among the exponentials of a solution, in the order of its terms.
+pub(crate) fn redundant_terms(model: &Model, solution: &Solution) -> Vec<RedundantTerm> {
     if !model.is_series() {
         return Vec::new();
     }
@@ -43,7 +43,7 @@ pub(crate) fn ghosts(model: &Model, solution: &Solution) -> Vec<Ghost> {
             let spread = || Some((variance(i, i)? + variance(j, j)? - 2.0 * variance(i, j)?).max(0.0).sqrt());
             let apart = (solution.nonlinear[a] - solution.nonlinear[b]).abs();
             if apart < spread().unwrap_or(ALIKE) {
-                all.push(Ghost::Merged { a: a + 1, b: b + 1 });
+                all.push(RedundantTerm::Merged { a: a + 1, b: b + 1 });
             }
         }
     }
@@ -51,7 +51,7 @@ pub(crate) fn ghosts(model: &Model, solution: &Solution) -> Vec<Ghost> {
         let place = usize::from(model.constant) + shape;
         let amplitude = solution.linear[place].abs();
         if variance(place, place).is_some_and(|variance| amplitude <= variance.sqrt()) || amplitude == 0.0 {
-            all.push(Ghost::Vanishing { term: term + 1 });
+            all.push(RedundantTerm::Vanishing { term: term + 1 });
         }
     }
     all
