@@ -213,7 +213,7 @@ fn a_given_hold_that_the_record_does_not_contain_is_refused() {
     let record = file(folder, "press.csv", ramp_and_hold(7.0, 20.0));
     file(folder, "given.toml", "[[phases.hold]]\nfrom = \"2 s\"\nto = \"80 s\"\n");
     let error = failed_but_told(folder, &["inspect", &record, "--test", "given.toml"]);
-    assert!(error.contains("given hold 1 lasts from 2 s to 80 s, the record from 0 s to 8.00000 s"), "{error}");
+    assert!(error.contains("given hold 1 is from 2 s to 80 s, the record from 0 s to 8.00000 s"), "{error}");
 }
 
 #[test]
@@ -293,7 +293,7 @@ fn a_plain_table_is_corrected_as_described() {
     file(folder, "test.toml", "[machine]\ncompliance = \"100 um/N\"\n");
     done(folder, &["convert", "press.csv", "--out", "raw.csv"]);
     let output = palpate(folder, &["convert", "press.csv", "--test", "test.toml", "--out", "net.csv"]);
-    assert!(String::from_utf8(output.stderr).unwrap().contains("of the machine taken off the displacement"));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("of machine compliance subtracted from the displacement"));
     let cells = |name: &str| -> Vec<Vec<f64>> {
         let text = fs::read_to_string(folder.join(name)).unwrap();
         text.lines()

@@ -142,10 +142,10 @@ fn numbers_that_make_no_record_name_their_line() {
         "Time (s),Force (N)\n0,1\n\n2,2\n1,3\n",
         "",
         &[
-            "line 5: time must rise from row to row, found a clock that goes back by up to 1 s (1 of 3 rows",
+            "line 5: time must rise from row to row, found a clock that steps back by up to 1 s (1 of 3 rows",
             "to 1 s after 2 s",
         ],
-        &["several runs stand in one file: split it there"],
+        &["the file holds several runs: split it there"],
     );
     assert!(!error.to_string().contains("in row"), "{error}");
     says("Time (s),Force (N)\n0,1\n1,1\n", "", &["press.csv: the force is 1 N in all 2 rows"], &["load cell"]);
@@ -158,7 +158,7 @@ fn numbers_that_make_no_record_name_their_line() {
         "0,1,10,1\n1,2,11,2\n2,3,12,3\n",
         clocks,
         &["share no time"],
-        &["units and the columns of the two clocks"],
+        &["units and columns of the two clocks"],
     );
 }
 

@@ -365,7 +365,7 @@ impl Finding {
                 caution(
                     "sign_suspicious",
                     format!("the {column} falls first, to {} {unit} below its start", significant(fall, 3)),
-                    "compression, or stretch of a strip, is positive in displacement and force; with the other sign loading reads as unloading",
+                    "compression, or stretch of a strip, must be positive; with the other sign loading reads as unloading",
                     "if the file has the opposite sign, set sign = -1 for that column in the test description",
                 )
             }
