@@ -166,7 +166,7 @@ fn what_cannot_be_calibrated_or_predicted_is_said_and_nothing_is_written() {
         ("hold.toml", "hold.toml", &[], "expected a material file, found a protocol"),
         ("ball.toml", "deep.toml", &[], "step[1].to"),
         ("ball.toml", "hold.toml", &["--at", "99 s"], "99"),
-        ("ball.toml", "hold.toml", &["--out", "ball.toml"], "another file"),
+        ("ball.toml", "hold.toml", &["--out", "ball.toml"], "an output file"),
     ] {
         let told = refused(folder, &[&["predict", material, "--protocol", protocol], more].concat());
         assert!(told.contains(expected), "{material} {protocol} {more:?}: {told}");

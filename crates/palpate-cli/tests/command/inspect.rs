@@ -293,7 +293,11 @@ fn a_plain_table_is_corrected_as_described() {
     file(folder, "test.toml", "[machine]\ncompliance = \"100 um/N\"\n");
     done(folder, &["convert", "press.csv", "--out", "raw.csv"]);
     let output = palpate(folder, &["convert", "press.csv", "--test", "test.toml", "--out", "net.csv"]);
-    assert!(String::from_utf8(output.stderr).unwrap().contains("of machine compliance subtracted from the displacement"));
+    assert!(
+        String::from_utf8(output.stderr)
+            .unwrap()
+            .contains("of machine compliance subtracted from the displacement")
+    );
     let cells = |name: &str| -> Vec<Vec<f64>> {
         let text = fs::read_to_string(folder.join(name)).unwrap();
         text.lines()
