@@ -77,7 +77,8 @@ fn a_first_description_gives_the_same_record() {
         let before = phases(folder, &["inspect", &record, "--write-test", &test]);
         assert_eq!(phases(folder, &["inspect", &record, "--test", &test]), before);
         let written = fs::read_to_string(folder.join(&test)).unwrap();
-        for expected in ["# guessed", "[columns.force]", "# from the file", "# Holds found: 1.", "# radius = \"35 mm\""]
+        for expected in
+            ["# guessed", "[columns.force]", "# from the file", "# Detected holds: 1.", "# radius = \"35 mm\""]
         {
             assert!(written.contains(expected), "{expected}: {written}");
         }

@@ -193,7 +193,7 @@ fn absurd_values_name_their_keys() {
             "\"5 mm\"\nrate = \"500 mm/min\"\nhold = \"10 s\"",
             "\"0 mm\"\nrate = \"1 mm/s\"",
             "step[1].to",
-            "another displacement than before, or a hold",
+            "a displacement different from the previous one, or a hold",
         ),
         ("[output]", "[output]\nsample_rate = \"0 Hz\"", "output.sample_rate", "a frequency above 0 Hz"),
         (
