@@ -14,7 +14,7 @@ use palpate_report::document::{
 use schemars::{JsonSchema, schema_for};
 use serde_json::Value;
 
-/// Soft contact that remembers: squeeze-and-hold tests turned into laws, and laws into forces.
+/// Viscoelastic contact: laws from squeeze-and-hold tests, and forces from laws.
 #[derive(Debug, Parser)]
 #[command(name = "palpate", version, about, max_term_width = 100, after_help = AFTER_HELP)]
 pub(crate) struct Arguments {
@@ -25,19 +25,19 @@ pub(crate) struct Arguments {
 const AFTER_HELP: &str = "\
 Examples:
   palpate reproduce                              the paper's study, into palpate-reproduction/
-  palpate inspect test.csv                       what is in a file, and which phases it has
+  palpate inspect test.csv                       columns, units and phases of a record
   palpate analyze test.csv --out study           phases, laws, tables, figures, report.html
-  palpate analyze test.csv --test ball.toml      the same with geometry: strains and v in 1/s
+  palpate analyze test.csv --test ball.toml      with geometry: also strains, and v in 1/s
   palpate batch curves --out holds.parquet       thousands of records, one table
-  palpate compare test.csv                       which law of relaxation to use, and how sure that is
-  palpate calibrate test.csv --test ball.toml --out material.toml   one set of numbers for it all
-  palpate predict material.toml --protocol grip.toml --at \"60 s\"    force then, with its interval
-  palpate grip material.toml --mass 150g --friction 0.6   will it hold, and how to squeeze
-  palpate watch gripper.csv --slip-force \"2 N\"    a log as if live: holds, and time to slip
+  palpate compare test.csv                       which law of relaxation to use, with its certainty
+  palpate calibrate test.csv --test ball.toml --out material.toml   one parameter set for the record
+  palpate predict material.toml --protocol grip.toml --at \"60 s\"    force at 60 s, with its interval
+  palpate grip material.toml --mass 150g --friction 0.6   the least squeeze that holds, time to slip
+  palpate watch gripper.csv --slip-force \"2 N\"    holds and time to slip from a log, as if live
   palpate simulate squeeze.toml --out force.csv  force of a squeeze protocol
-  palpate sweep sweep.toml --figure peak.svg     the same for many numbers at once
+  palpate sweep sweep.toml --figure peak.svg     the same over many parameter values
 
-Exit codes: 0 done, 1 done but the verdict is negative, 2 could not run.";
+Exit codes: 0 done, 1 done with a negative verdict, 2 not run (error).";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
@@ -57,21 +57,21 @@ pub(crate) enum Command {
     Completions(CompletionsArguments),
 }
 
-/// Reproduce the paper's study: its tests simulated, re-identified and checked.
+/// Reproduce the paper's study: simulate its tests, identify the law again, check the results.
 #[derive(Debug, Args)]
 pub(crate) struct ReproduceArguments {
     /// Folder for the report, figures, tables and series
     #[arg(long, value_name = "DIR", default_value = "palpate-reproduction")]
     pub(crate) out: PathBuf,
-    /// Write figures as PNG too
+    /// Also write figures as PNG
     #[arg(long)]
     pub(crate) png: bool,
-    /// What to print on standard output
+    /// Format of standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,
 }
 
-/// Simulate squeeze, hold, creep and release by a protocol.
+/// Simulate squeeze, hold, creep and release under a protocol.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -81,18 +81,18 @@ Examples:
   palpate simulate cycles.toml --hysteresis loop.svg --energy-by-cycle loop.csv
   palpate simulate squeeze.toml --force-noise \"0.05 N\" --out record.csv   a record to analyse
   palpate simulate ball.toml --drive gripper.csv --drive-by force   a measured force, replayed
-  palpate schema protocol                        what a protocol may say")]
+  palpate schema protocol                        the fields of a protocol")]
 pub(crate) struct SimulateArguments {
     /// Protocol (TOML): specimen, law, contact and steps
     #[arg(value_name = "PROTOCOL.toml")]
     pub(crate) protocol: PathBuf,
-    /// Record to replay instead of the steps: its displacement, or its force
+    /// Record to replay instead of the steps: its displacement or its force
     #[arg(long, value_name = "RECORD")]
     pub(crate) drive: Option<PathBuf>,
     /// Which column of the record drives the contact
     #[arg(long, value_parser = one_of(DRIVES), default_value = "displacement", requires = "drive")]
     pub(crate) drive_by: jobs::DriveBy,
-    /// Test description (TOML) of the record that drives
+    /// Test description (TOML) of the replayed record
     #[arg(long, value_name = "TEST.toml", requires = "drive")]
     pub(crate) test: Option<PathBuf>,
     /// File for the series (CSV); standard output if not given
@@ -101,31 +101,31 @@ pub(crate) struct SimulateArguments {
     /// File for a figure (.svg or .png)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
-    /// File for a figure of force against displacement, with what every cycle cost (.svg or .png)
+    /// File for a figure of force against displacement, with the loss per cycle (.svg or .png)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) hysteresis: Option<PathBuf>,
-    /// File for the strain of every layer (CSV); needs a whole number of layers
+    /// File for the strain of each layer (CSV); requires an integer number of layers
     #[arg(long, visible_alias = "layers-out", value_name = "FILE.csv")]
     pub(crate) wave: Option<PathBuf>,
-    /// File for a figure of the strain of every layer over time (.svg or .png); likewise
+    /// File for a figure of the strain of each layer over time (.svg or .png); requires an integer number of layers
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) strain_map: Option<PathBuf>,
-    /// File for the work of the jaw over time (CSV): done, given back and, at constant section, stored and lost
+    /// File for the work of the jaw over time (CSV): done, recovered and, at constant section, stored and dissipated
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) energy: Option<PathBuf>,
-    /// File for the same step by step (CSV)
+    /// File for the work of each step (CSV)
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) energy_by_step: Option<PathBuf>,
-    /// File for what every cycle of squeeze and release cost (CSV)
+    /// File for the work of each cycle of squeeze and release (CSV)
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) energy_by_cycle: Option<PathBuf>,
-    /// Write a record as a machine would, with noise of this standard deviation on the force
+    /// Write the series as a measured record, with noise of this standard deviation on the force
     #[arg(long, value_name = "FORCE", value_parser = force, allow_hyphen_values = true)]
     pub(crate) force_noise: Option<f64>,
-    /// Likewise on the displacement
+    /// Standard deviation of the noise on the displacement of such a record
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub(crate) displacement_noise: Option<f64>,
-    /// Which noise: the same seed gives the same record
+    /// Seed of the noise; the same seed gives the same record
     #[arg(long, value_name = "N", default_value_t = jobs::Simulate::default().seed)]
     pub(crate) seed: u64,
 }
@@ -141,17 +141,17 @@ impl SimulateArguments {
     }
 }
 
-/// Simulate a protocol for many values of its numbers, to one table.
+/// Simulate a protocol for many values of its parameters and write one table.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The table [sweep] of the protocol says which numbers take which values:
+The table [sweep] of the protocol lists the swept parameters and their values:
   [sweep]
   law.rate_coefficient = \"log 1e3..1e6 /s, 50\"
   specimen.radius = \"linear 20..40 mm, 9\"
   step.1.hold = \"1, 10, 100 s\"
-Every value meets every other, unless method = \"latin hypercube\" with samples = N.
+The sweep is a full grid, unless method = \"latin hypercube\" with samples = N.
 
-A sweep that was killed goes on where it stopped: its finished parts lie in TABLE.parquet.parts.
+An interrupted sweep resumes from its finished parts, which are in TABLE.parquet.parts.
 
 Examples:
   palpate sweep examples/protocols/sweep.toml --out ball.parquet --figure ball.svg
@@ -160,7 +160,7 @@ pub(crate) struct SweepArguments {
     /// Protocol (TOML) with a table named sweep
     #[arg(value_name = "PROTOCOL.toml")]
     pub(crate) protocol: PathBuf,
-    /// File for the table (Parquet), one row a run; PROTOCOL.parquet in this folder if not given
+    /// File for the table (Parquet), one row per run; default: PROTOCOL.parquet in the current folder
     #[arg(long, value_name = "FILE.parquet")]
     pub(crate) out: Option<PathBuf>,
     /// File for a figure (.svg or .png): a curve, a heat map, several heat maps, or points
@@ -170,48 +170,48 @@ pub(crate) struct SweepArguments {
     pub(crate) job: jobs::Sweep,
 }
 
-/// Show what is in a record: columns, units, sampling, phases. Changes nothing.
+/// Show the columns, units, sampling and phases of a record. No file is changed.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  palpate inspect press.csv                            columns, units, the cut into phases
-  palpate inspect press.csv --figure cut.svg           the cut as a figure
+  palpate inspect press.csv                            columns, units and phases
+  palpate inspect press.csv --figure phases.svg        the phases as a figure
   palpate inspect book.xlsx --part \"Specimen 3\"        one sheet of a workbook
-  palpate inspect press.csv --write-test press.toml    a first test description, guesses marked
-  palpate inspect --machines                           machines and grippers whose files are known")]
+  palpate inspect press.csv --write-test press.toml    a draft test description, guesses marked
+  palpate inspect --machines                           machines and grippers with a preset")]
 pub(crate) struct InspectArguments {
-    /// Record with time, force and, if possible, displacement, in any format that is known
+    /// Record with time, force and, if possible, displacement, in any supported format
     #[arg(value_name = "RECORD", required_unless_present = "machines")]
     pub(crate) record: Option<PathBuf>,
-    /// List the machines and grippers that a test description can name, and nothing else
+    /// List the machines and grippers that a test description can name, and exit
     #[arg(long, conflicts_with_all = ["record", "test", "part", "figure", "write_test"])]
     pub(crate) machines: bool,
     /// Test description (TOML): columns, units, geometry
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
-    /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
+    /// Test of a file with several tests: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
-    /// File for a figure of the cut into phases (.svg or .png)
+    /// File for a figure of the phases (.svg or .png)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
-    /// File for a first test description, with every guess commented; never over a file that is there
+    /// File for a draft test description, with each guess commented; an existing file is not overwritten
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) write_test: Option<PathBuf>,
 }
 
-/// Write a record of any format as a plain table in SI, with where it comes from.
+/// Convert a record of any format to a plain table in SI units, with its provenance.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Columns: time_s, displacement_m (if recorded), force_n; loading is positive. Inside the file stands
-what it was made from: the record's path and SHA-256, the columns and units taken, the test
-description, the version of palpate (in a CSV as a first line that begins with #).
+Columns: time_s, displacement_m (if recorded), force_n; loading is positive. The file contains its
+provenance: path and SHA-256 of the record, the columns and units read, the test description and
+the version of palpate (in a CSV as a first line that begins with #).
 
 Examples:
   palpate convert press.xlsx --part \"Specimen 3\" --out press-3.csv
   palpate convert cell.jpk-force --out cell.parquet")]
 pub(crate) struct ConvertArguments {
-    /// Record in any format that is known
+    /// Record in any supported format
     #[arg(value_name = "RECORD")]
     pub(crate) record: PathBuf,
     /// File to write (.csv, .parquet or .json)
@@ -220,7 +220,7 @@ pub(crate) struct ConvertArguments {
     /// Test description (TOML): columns, units
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
-    /// The one test of a file that holds several: its name, or its number from 1
+    /// Test of a file with several tests: its name, or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
 }
@@ -231,8 +231,8 @@ pub(crate) struct ConvertArguments {
 Examples:
   palpate analyze press.csv                               tables on the terminal
   palpate analyze press.csv --test ball.toml --out study  report, JSON, tables, figures
-  palpate analyze tape.csv --fit-until \"600 s\"            does each law predict the rest?
-  palpate analyze *.csv --test strip.toml --out studies   one folder a record
+  palpate analyze tape.csv --fit-until \"600 s\"            held-out errors after 600 s
+  palpate analyze *.csv --test strip.toml --out studies   one folder per record
   palpate analyze press.csv --format json | jq '.holds[].fits[0]'")]
 pub(crate) struct AnalyzeArguments {
     /// Records with time, force and, if possible, displacement: files, folders, or patterns in quotes
@@ -241,16 +241,16 @@ pub(crate) struct AnalyzeArguments {
     /// Test description (TOML): columns, units, geometry, options
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
-    /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
+    /// Test of a file with several tests: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
     /// Folder for report.html, analysis.json, tables and figures
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// What to print on standard output
+    /// Format of standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,
-    /// Write figures as PNG too
+    /// Also write figures as PNG
     #[arg(long, requires = "out")]
     pub(crate) png: bool,
     #[command(flatten)]
@@ -258,7 +258,7 @@ pub(crate) struct AnalyzeArguments {
     /// Record of the same motion without a body; its force is subtracted
     #[arg(long, value_name = "RECORD")]
     pub(crate) air_run: Option<PathBuf>,
-    /// Leave out the comparison of laws, which takes most of the time
+    /// Omit the comparison of laws, which takes most of the time
     #[arg(long)]
     pub(crate) no_compare: bool,
 }
@@ -266,15 +266,15 @@ pub(crate) struct AnalyzeArguments {
 /// Analyse thousands of records into one table, a row per hold and law.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-A batch that was killed, or that finds new files in its folder, goes on where it stopped: what is
-done stands in the folder TABLE.journal. A file counts as done while its bytes, the description, the
-options and palpate stay the same. A record that fails does not stop the others; failures are listed
-at the end (exit code 1).
+An interrupted batch, or one with new files in its folder, resumes from the folder TABLE.journal. A
+file is not analysed again while its bytes, the description, the options and the version of palpate
+are unchanged. A record that fails does not stop the others; failures are listed at the end (exit
+code 1).
 
 Examples:
-  palpate batch curves --out holds.parquet --test cell.toml        a folder and all below it
+  palpate batch curves --out holds.parquet --test cell.toml        a folder and its subfolders
   palpate batch \"run-*/**/*.csv\" --out holds.csv                 a pattern
-  palpate batch curves --out laws.parquet --laws latency,prony:2   other laws besides")]
+  palpate batch curves --out laws.parquet --laws latency,prony:2   further laws")]
 pub(crate) struct BatchArguments {
     /// Records: files, folders, or patterns in quotes
     #[arg(value_name = "RECORD", required = true)]
@@ -289,7 +289,7 @@ pub(crate) struct BatchArguments {
     pub(crate) job: jobs::Batch,
 }
 
-/// Compare laws: which one predicts a hold, how sure that is, and what another would cost.
+/// Compare laws: which one predicts a hold, with what certainty, and how much worse others predict.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Laws: latency, latency:N (n given), maxwell, kelvin-voigt, standard-linear-solid, burgers,
@@ -297,24 +297,24 @@ prony:K (K terms), spectrum, fung:K, fung-continuous, stretched, power, logarith
 fractional-zener, diffusion.
 
 Examples:
-  palpate compare press.csv                               a table and a sentence for every hold
+  palpate compare press.csv                               a table and a verdict for each hold
   palpate compare press.csv --test ball.toml --out laws   report, JSON, tables, figures
   palpate compare records --format markdown               one table of all records in a folder
   palpate compare press.csv --laws latency,prony:2,prony:3 --cuts 0.1,0.2
   palpate compare gripper.csv --creep                     displacement at constant force")]
 pub(crate) struct CompareArguments {
-    /// Records, or folders of records (searched with what lies below; TOML files are passed over)
+    /// Records, or folders of records (searched with their subfolders; TOML files are skipped)
     #[arg(value_name = "RECORD", required = true)]
     pub(crate) records: Vec<PathBuf>,
     /// Test description (TOML): columns, units, geometry, options; for all records
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
-    /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
+    /// Test of a file with several tests: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
     #[command(flatten)]
     pub(crate) job: jobs::Compare,
-    /// What to print on standard output
+    /// Format of standard output
     #[arg(long, value_enum, default_value_t = TableFormat::Text)]
     pub(crate) format: TableFormat,
     /// Folder for report.html, comparison.json, tables and figures
@@ -322,21 +322,22 @@ pub(crate) struct CompareArguments {
     pub(crate) out: Option<PathBuf>,
 }
 
-/// Calibrate a body on a whole record, ramps and holds alike: one set of numbers that predicts.
+/// Calibrate a body on a whole record, ramps and holds: one set of parameters for prediction.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The numbers are those of the law and of the equilibrium force: with the latency law n, v, the layer
-thickness and a modulus (or a table of forces). A material file holds them with their intervals;
-palpate predict takes it, --test takes it for the body, and a protocol names it: material = \"FILE\".
+The parameters are those of the law and of the equilibrium force: for the latency law n, v, the
+layer thickness and a modulus (or a table of forces). A material file stores them with their
+intervals; palpate predict reads it, --test accepts it for the body, and a protocol refers to it by
+material = \"FILE\".
 
 Laws: latency, latency:N (n given), standard-linear-solid, prony:K (K terms), fung:K.
 
 Examples:
   palpate calibrate press.csv --test ball.toml --out material.toml
-  palpate calibrate press.csv --test ball.toml --fit-until \"60 s\"     does it predict the rest?
-  palpate calibrate press.csv --test ball.toml --equilibrium table     no law of the equilibrium force
-  palpate calibrate steps.csv --test ball.toml --rate by-strain        has v a trend with the strain?
-  palpate schema material                                             what a material file holds")]
+  palpate calibrate press.csv --test ball.toml --fit-until \"60 s\"     held-out error after 60 s
+  palpate calibrate press.csv --test ball.toml --equilibrium table     equilibrium forces as a table
+  palpate calibrate steps.csv --test ball.toml --rate by-strain        v as a function of strain
+  palpate schema material                                             the fields of a material file")]
 pub(crate) struct CalibrateArguments {
     /// Record with time, displacement and force
     #[arg(value_name = "RECORD")]
@@ -344,34 +345,34 @@ pub(crate) struct CalibrateArguments {
     /// Test description (TOML): columns, units, the body
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
-    /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
+    /// Test of a file with several tests: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
     /// Law of the material
     #[arg(long, value_name = "LAW", default_value_t = jobs::Calibrate::default().law, value_parser = law)]
     pub(crate) law: Law,
-    /// Laws to hold against it on the same record
+    /// Alternative laws to fit to the same record
     #[arg(long, value_name = "LAW,…", value_delimiter = ',', value_parser = law, default_value = named(&jobs::Calibrate::default().alternatives))]
     pub(crate) alternatives: Vec<Law>,
-    /// Calibrate the one law alone
+    /// Calibrate without alternatives
     #[arg(long, conflicts_with = "alternatives")]
     pub(crate) no_alternatives: bool,
-    /// Law of the force once relaxation is over
+    /// Law of the equilibrium force
     #[arg(long, value_enum, default_value_t)]
     pub(crate) equilibrium: jobs::Equilibrium,
     /// Poisson's ratio for Hertz's law; 0.5 if not given
     #[arg(long, value_name = "NUMBER")]
     pub(crate) poisson_ratio: Option<f64>,
-    /// What the rate coefficient v of the latency law depends on, by one more number; the other choices are alternatives then
+    /// Dependence of the rate coefficient v of the latency law, with one more parameter; the other choices become alternatives
     #[arg(long, value_parser = one_of(RATES), default_value = "constant")]
     pub(crate) rate: RateLaw,
-    /// Fit only up to this time of the record and predict the rest
+    /// Fit up to this time of the record and report the held-out error after it
     #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true)]
     pub(crate) fit_until: Option<f64>,
-    /// Add profile intervals: asymmetric, and open where the record leaves a number open
+    /// Add profile intervals, which are asymmetric, and unbounded where the record does not determine a parameter
     #[arg(long)]
     pub(crate) profile: bool,
-    /// Coverage of the intervals, between 0 and 1; 0.95 if nothing is said
+    /// Coverage of the intervals, between 0 and 1; if not given, that of the description, or 0.95
     #[arg(long, value_name = "SHARE", value_parser = coverage, allow_hyphen_values = true)]
     pub(crate) confidence: Option<f64>,
     /// File for the material (TOML)
@@ -380,7 +381,7 @@ pub(crate) struct CalibrateArguments {
     /// File for a figure of the record with the laws (.svg or .png)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
-    /// What to print on standard output
+    /// Format of standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,
 }
@@ -400,12 +401,12 @@ impl CalibrateArguments {
     }
 }
 
-/// Predict what a calibrated body does under a protocol, with intervals.
+/// Predict the response of a calibrated body to a protocol, with intervals.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Two intervals: of the mean (what the calibration leaves open) and of one reading (noise besides).
-A question beyond what the test has shown (a longer hold, a deeper squeeze, a faster ramp, a force
-that is held) is answered all the same, and said on standard error.
+Each prediction has two intervals: that of the mean (uncertainty of the calibration) and that of a
+single reading (noise included). A protocol beyond the range of the calibration (a longer hold, a
+deeper squeeze, a faster ramp, a force hold) is extrapolated, with a warning on standard error.
 
 Examples:
   palpate predict material.toml --protocol grip.toml --at \"60 s\"
@@ -414,7 +415,7 @@ pub(crate) struct PredictArguments {
     /// Material file of palpate calibrate
     #[arg(value_name = "MATERIAL.toml")]
     pub(crate) material: PathBuf,
-    /// Protocol (TOML) with steps; a body in it is left aside
+    /// Protocol (TOML) with steps; its body is ignored
     #[arg(long, value_name = "PROTOCOL.toml")]
     pub(crate) protocol: PathBuf,
     #[command(flatten)]
@@ -427,23 +428,22 @@ pub(crate) struct PredictArguments {
     pub(crate) figure: Option<PathBuf>,
 }
 
-/// Plan a grip of a calibrated body between two jaws: how long it holds, and how to squeeze.
+/// Plan a grip of a calibrated body between two jaws: the least squeeze that holds, and the time to slip.
 ///
-/// Coulomb friction at both jaws carries the load, with the torsion that a soft contact bears. Shown beside one another: the squeeze
-/// with the displacement held, which loses force; squeeze and back off, which does not; the force held, under which the body creeps; and,
-/// where a band is given, when to squeeze again.
+/// Coulomb friction at both jaws carries the load, including torsion. The plan compares a position hold, whose force relaxes; overshoot
+/// and back off, whose force does not; a force hold, under which the body creeps; and, for a given band, the times of regrips.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Without --squeeze the least one that holds for --hold is found; with it, how long it holds.
+Without --squeeze the plan finds the least squeeze that holds for --hold; with it, the time to slip.
 
 Examples:
   palpate grip ball.toml --mass 250g --friction 0.6 --hold \"60 s\"
-  palpate grip ball.toml --mass 250g --friction 0.6 --squeeze \"5 mm\"      how long does this hold
+  palpate grip ball.toml --mass 250g --friction 0.6 --squeeze \"5 mm\"      time to slip
   palpate grip ball.toml --mass 250g --friction 0.6 --hold always --objective peak-force
   palpate grip ball.toml --mass 250g --friction 0.6 --control force --stroke \"8 mm\"
   palpate grip ball.toml --mass 250g --friction 0.6 --hold \"1 h\" --band \"2.1..3 N\" --out plan
 
-Exit codes: 0 it holds, 1 it does not or no squeeze within the limits does, 2 could not run.")]
+Exit codes: 0 it holds, 1 it slips or no squeeze within the limits holds, 2 not run (error).")]
 pub(crate) struct GripArguments {
     /// Material file of palpate calibrate
     #[arg(value_name = "MATERIAL.toml")]
@@ -456,56 +456,56 @@ pub(crate) struct GripArguments {
     /// File for a figure (.svg or .png)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
-    /// What to print on standard output
+    /// Format of standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,
 }
 
-/// Watch a recorded log as if it came in live: holds, where they tend, time to slip.
+/// Replay a recorded log as if live: holds, equilibrium forces, time to slip.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-On a terminal a small view is drawn in place, at ten times real time; elsewhere there is one line
-an event and one each --every. The end is a table of the holds.
+A terminal displays a live view at ten times real time. Other output is one line per event and one
+per interval --every. A table of the holds follows at the end.
 
 Examples:
   palpate watch gripper.csv --test gripper.toml --slip-force \"2 N\" --warn-before \"1 s\"
   palpate watch gripper.csv --speed 1
   palpate watch gripper.csv --format jsonl --every \"0.1 s\" | jq .time_to_slip_s")]
 pub(crate) struct WatchArguments {
-    /// Log with time, force and, best, displacement
+    /// Log with time, force and, preferably, displacement
     #[arg(value_name = "LOG")]
     pub(crate) log: PathBuf,
     /// Test description (TOML): columns and units
     #[arg(long, value_name = "TEST.toml")]
     pub(crate) test: Option<PathBuf>,
-    /// The one test of a file that holds several: its name (a sheet, a curve, a `test_id`), or its number from 1
+    /// Test of a file with several tests: its name (a sheet, a curve, a `test_id`), or its number from 1
     #[arg(long, value_name = "NAME")]
     pub(crate) part: Option<String>,
-    /// Material file of palpate calibrate: the excess strain is then known from first touch on
+    /// Material file of palpate calibrate; it determines the excess strain from first touch
     #[arg(long, value_name = "MATERIAL.toml", conflicts_with = "exponent")]
     pub(crate) material: Option<PathBuf>,
-    /// Exponent of the law where no material says it, from 1 to 30
+    /// Exponent of the law if no material is given, from 1 to 30
     #[arg(long, value_name = "N", default_value_t = jobs::WatchLog::default().exponent, value_parser = exponent, allow_hyphen_values = true)]
     pub(crate) exponent: f64,
-    /// Standard deviation to which that exponent is known; intervals are as much wider
+    /// Standard error of that exponent, which the intervals include
     #[arg(long, value_name = "NUMBER", default_value_t = jobs::WatchLog::default().exponent_standard_error, value_parser = deviation, conflicts_with = "material", allow_hyphen_values = true)]
     pub(crate) exponent_standard_error: f64,
-    /// Normal force at which what is held slips
+    /// Normal force below which the held object slips
     #[arg(long, value_name = "FORCE", value_parser = force, allow_hyphen_values = true)]
     pub(crate) slip_force: Option<f64>,
-    /// How long before slip to warn
+    /// Time before the predicted slip at which to warn
     #[arg(long, value_name = "TIME", default_value = seconds(jobs::WatchLog::default().warn_before_s), value_parser = time, requires = "slip_force", allow_hyphen_values = true)]
     pub(crate) warn_before: f64,
     /// Coverage of the intervals, between 0 and 1
     #[arg(long, value_name = "SHARE", default_value_t = jobs::WatchLog::default().confidence, value_parser = coverage, allow_hyphen_values = true)]
     pub(crate) confidence: f64,
-    /// Times real time, or max; 10 on a terminal and max elsewhere if not given
+    /// Replay speed as a multiple of real time, or max; default: 10 on a terminal, otherwise max
     #[arg(long, value_name = "NUMBER|max", value_parser = replay_speed, allow_hyphen_values = true)]
     pub(crate) speed: Option<f64>,
-    /// Time of the log between two lines
+    /// Interval of log time between two lines
     #[arg(long, value_name = "TIME", default_value = seconds(jobs::WatchLog::default().every_s), value_parser = time, allow_hyphen_values = true)]
     pub(crate) every: f64,
-    /// What to print on standard output
+    /// Format of standard output
     #[arg(long, value_enum, default_value_t = WatchFormat::Text)]
     pub(crate) format: WatchFormat,
 }
@@ -526,16 +526,16 @@ impl WatchArguments {
 /// Output of `watch` on standard output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum WatchFormat {
-    /// A view on a terminal, lines elsewhere
+    /// A live view on a terminal, otherwise lines
     Text,
-    /// One JSON object a line
+    /// One JSON object per line
     Jsonl,
 }
 
 /// Output of `compare` on standard output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum TableFormat {
-    /// Tables and sentences for people
+    /// Tables and sentences
     Text,
     /// One JSON object (see `palpate schema comparison`)
     Json,
@@ -546,16 +546,16 @@ pub(crate) enum TableFormat {
 /// Output of `analyze` on standard output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
-    /// Tables for people
+    /// Tables
     Text,
-    /// One JSON object a record or question (`palpate schema` prints what is in it)
+    /// One JSON object per record or query (`palpate schema` prints its schema)
     Json,
 }
 
 /// Print the JSON Schema of a description or result.
 #[derive(Debug, Args)]
 pub(crate) struct SchemaArguments {
-    /// Which one
+    /// Name of the description or result
     #[arg(value_parser = one_of(SCHEMAS))]
     pub(crate) name: fn() -> Value,
 }
@@ -566,7 +566,7 @@ pub(crate) struct SchemaArguments {
 Example:
   palpate completions bash > ~/.local/share/bash-completion/completions/palpate")]
 pub(crate) struct CompletionsArguments {
-    /// Which shell
+    /// Shell
     #[arg(value_enum)]
     pub(crate) shell: clap_complete::Shell,
 }
@@ -608,11 +608,11 @@ const DRIVES: &[Choice<jobs::DriveBy>] = &[
 
 /// What the rate coefficient v depends on.
 const RATES: &[Choice<RateLaw>] = &[
-    ("constant", "Nothing: one number", RateLaw::Constant),
-    ("by-strain", "The equilibrium strain: v f^(ε_e/0.1)", RateLaw::ByStrain),
+    ("constant", "Constant v", RateLaw::Constant),
+    ("by-strain", "Equilibrium strain: v f^(ε_e/0.1)", RateLaw::ByStrain),
     (
         "by-direction",
-        "Whether strain falls (after loading, v) or rises (after unloading, f v)",
+        "Direction of the strain: falling (after loading, v) or rising (after unloading, f v)",
         RateLaw::ByDirection,
     ),
 ];

@@ -15,40 +15,40 @@ use crate::input::Measurement;
 use crate::options::checked_confidence;
 use crate::{ErrorKind, JobError, Outcome, Results};
 
-/// Analyse a record: phases, strains, laws. What is not given is as its description says.
+/// Analyse a record: phases, strains, laws. Options that are not given follow its description.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct Analyze {
-    /// Fit only this long from the start of each hold and predict the rest.
+    /// Fit only this time from the start of each hold and report the held-out error after it.
     #[cfg_attr(feature = "clap", arg(
         long = "fit-until", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true,
-        help = "Fit only this long from the start of each hold and predict the rest",
+        help = "Fit only this time from the start of each hold and report the held-out error after it",
     ))]
     pub fit_until_s: Option<f64>,
-    /// Exponents to try, besides a free one.
+    /// Fixed exponents to fit, besides a free one.
     #[cfg_attr(feature = "clap", arg(
         long, value_name = "N,…", value_delimiter = ',', value_parser = crate::typed::exponent,
     ))]
     pub exponents: Option<Vec<f64>>,
-    /// Whether a free exponent is tried.
+    /// Whether to fit a free exponent.
     #[cfg_attr(feature = "clap", arg(skip))]
     pub free_exponent: Option<bool>,
     /// Coverage of the intervals, between 0 and 1.
     #[cfg_attr(feature = "clap", arg(skip))]
     pub confidence: Option<f64>,
-    /// What the intervals of fits rest on: "curvature", "profile", or "bootstrap" with its options.
+    /// Method of the intervals: "curvature", "profile", or "bootstrap" with its options.
     #[schemars(with = "serde_json::Value")]
     #[cfg_attr(feature = "clap", arg(
         long, value_parser = crate::typed::one_of(crate::typed::INTERVALS),
-        help = "What intervals rest on; curvature if not given",
+        help = "Method of the intervals; curvature if not given",
     ))]
     pub intervals: Option<IntervalMethod>,
-    /// From where in a hold to fit: "peak", "settled", or so many seconds after the peak.
+    /// Start of the fit in a hold: "peak", "settled", or a time in seconds after the peak.
     #[schemars(with = "serde_json::Value")]
     #[cfg_attr(feature = "clap", arg(
         long, value_name = "WHERE", value_parser = palpate_files::description::parse_hold_start,
-        help = "From where in a hold to fit: peak, settled, or \"peak + 0.5 s\"",
+        help = "Start of the fit in a hold: peak, settled, or \"peak + 0.5 s\"",
     ))]
     pub hold_start: Option<HoldStart>,
     /// First touch: "auto", "as_recorded", a displacement in m, or a rule.
@@ -58,7 +58,7 @@ pub struct Analyze {
         help = "First touch: auto, \"as recorded\", or a displacement",
     ))]
     pub touch: Option<ContactChoice>,
-    /// How far the displacement may stray in a hold.
+    /// Largest deviation of the displacement within a hold.
     #[cfg_attr(feature = "clap", arg(
         long = "tolerance", value_name = "LENGTH", value_parser = crate::typed::length, allow_hyphen_values = true,
     ))]
@@ -68,7 +68,7 @@ pub struct Analyze {
         long = "minimum-hold", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true,
     ))]
     pub minimum_hold_s: Option<f64>,
-    /// Whether laws are compared, which takes most of the time.
+    /// Whether to compare laws, which takes most of the time.
     #[cfg_attr(feature = "clap", arg(skip = true))]
     pub compare: bool,
 }
@@ -106,7 +106,7 @@ impl Analyze {
         options.fit_until = self.fit_until_s.or(options.fit_until);
         if let Some(exponents) = &self.exponents {
             if exponents.is_empty() || exponents.iter().any(|n| !(n.is_finite() && *n > 0.0)) {
-                let message = format!("⟨exponents⟩ are numbers above 0, found {exponents:?}");
+                let message = format!("⟨exponents⟩ must be above 0, found {exponents:?}");
                 return Err(JobError::option(message, ""));
             }
             options.exponents.clone_from(exponents);

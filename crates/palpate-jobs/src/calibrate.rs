@@ -15,32 +15,32 @@ use crate::input::Measurement;
 use crate::options::checked_confidence;
 use crate::{ErrorKind, JobError, Outcome, Results};
 
-/// Calibrate a body on a whole record, ramps and holds alike: one set of parameters that predicts.
+/// Calibrate a body on a whole record, ramps and holds: one set of parameters for prediction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Calibrate {
     /// Law of the material.
     #[schemars(with = "String")]
     pub law: Law,
-    /// Laws to hold against it on the same record.
+    /// Alternative laws to fit to the same record.
     #[schemars(with = "Vec<String>")]
     pub alternatives: Vec<Law>,
-    /// Law of the force once relaxation is over.
+    /// Law of the equilibrium force.
     pub equilibrium: Equilibrium,
     /// Poisson's ratio for Hertz's law; 0.5 if not given.
     pub poisson_ratio: Option<f64>,
-    /// What the rate coefficient v of the latency law depends on, by one more parameter.
+    /// Dependence of the rate coefficient v of the latency law, with one more parameter.
     #[schemars(with = "String", extend("enum" = ["constant", "by_strain", "by_direction"]))]
     pub rate: RateLaw,
-    /// Fit only up to this time of the record and predict the rest.
+    /// Fit up to this time of the record and report the held-out error after it.
     pub fit_until_s: Option<f64>,
     /// Add profile intervals.
     pub profile: bool,
-    /// Coverage of the intervals, between 0 and 1; as the description says, or 0.95, if not given.
+    /// Coverage of the intervals, between 0 and 1; if not given, that of the description, or 0.95.
     pub confidence: Option<f64>,
 }
 
-/// Law of the force once relaxation is over, by its name.
+/// Law of the equilibrium force, by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
@@ -48,9 +48,9 @@ pub enum Equilibrium {
     /// Modulus × displacement/depth × contact area.
     #[default]
     UniformStrain,
-    /// Hertz's, for balls and pads.
+    /// Hertz's law, for balls and pads.
     Hertz,
-    /// A monotone table with a row where the jaw was held.
+    /// A monotone table with one row per held displacement.
     Table,
 }
 
@@ -93,8 +93,8 @@ impl Calibrate {
                 poisson_ratio: ratio.unwrap_or(0.5),
             }),
             (_, Some(_)) => Err(JobError::option(
-                "⟨poisson_ratio⟩ is for Hertz's law, which is not asked for",
-                "add ⟨equilibrium=hertz⟩, or leave ⟨poisson_ratio⟩ out",
+                "⟨poisson_ratio⟩ applies to Hertz's law only",
+                "add ⟨equilibrium=hertz⟩, or omit ⟨poisson_ratio⟩",
             )),
             (Equilibrium::UniformStrain, None) => Ok(EquilibriumLaw::UniformStrain),
             (Equilibrium::Table, None) => Ok(EquilibriumLaw::Table),
@@ -118,7 +118,7 @@ impl Calibrate {
     /// Calibrates the laws on a record.
     ///
     /// # Errors
-    /// [`JobError`] where the law that is asked for cannot be calibrated, or the watch ends it.
+    /// [`JobError`] where the requested law cannot be calibrated, or the watch ends it.
     pub fn run(&self, measured: Measurement, watch: &mut dyn Watch) -> Result<Outcome<Calibrated>, JobError> {
         let candidates = self.candidates()?;
         let Measurement {
@@ -144,7 +144,7 @@ impl Calibrate {
             _ => Vec::new(),
         };
         let (used, samples) = (data.times().len(), data.samples());
-        let few = (samples > used).then(|| format!("{used} of {samples} samples are used, evenly chosen"));
+        let few = (samples > used).then(|| format!("the fit uses {used} of {samples} samples, evenly spaced"));
         let record = CalibratedRecord {
             input,
             data,
@@ -157,7 +157,7 @@ impl Calibrate {
 }
 
 impl Calibrated {
-    /// The material of the law that was asked for, with where it comes from.
+    /// The material of the requested law, with its provenance.
     #[must_use]
     pub fn material(&self) -> Option<MaterialFile> {
         let (record, chosen) = (&self.record, self.record.chosen()?);

@@ -1,4 +1,4 @@
-//! Records to the law that is to be used, and how sure that is.
+//! Comparison of laws on records: the law to use and its certainty.
 
 use palpate::analysis::{AnalysisOptions, CreepError, analyze_watched, corrected, creep_holds};
 use palpate::fit::{IntervalMethod, Loss, SampleChoice};
@@ -16,55 +16,55 @@ use crate::error::without;
 use crate::input::{Measurement, NamedRecords, called};
 use crate::{ErrorKind, JobError, Outcome, Results};
 
-/// Compare laws: which one predicts a hold, how sure that is, and what another would cost.
+/// Compare laws: which one predicts a hold, with what certainty, and how much worse others predict.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct Compare {
-    /// Laws to compare; all that suit if not given.
+    /// Laws to compare; all applicable laws if not given.
     #[schemars(with = "Option<Vec<String>>")]
     #[cfg_attr(feature = "clap", arg(
         long, value_name = "LAW,…", value_delimiter = ',', value_parser = crate::typed::law,
     ))]
     pub laws: Option<Vec<Law>>,
-    /// Parts of a hold that are fitted to predict the rest, as shares of its duration.
+    /// Cut points, as shares of the hold: each law is fitted up to a cut and predicts the rest.
     #[cfg_attr(feature = "clap", arg(
         long, value_name = "SHARE,…", value_delimiter = ',', value_parser = crate::typed::share,
         allow_hyphen_values = true,
-        help = "Parts of a hold that are fitted to predict the rest, as shares of its duration",
+        help = "Cut points, as shares of the hold: each law is fitted up to a cut and predicts the rest",
     ))]
     pub cuts: Option<Vec<f64>>,
     /// Compare laws of creep: displacement in holds of constant force.
     #[cfg_attr(feature = "clap", arg(long))]
     pub creep: bool,
-    /// How residuals count.
+    /// Loss function of the residuals.
     #[schemars(with = "String", extend("enum" = ["squares", "huber", "tukey"]))]
     #[cfg_attr(feature = "clap", arg(
         long, value_parser = crate::typed::one_of(crate::typed::LOSSES), default_value = "squares",
-        help = "How residuals count; huber and tukey bear outliers",
+        help = "Loss function of the residuals; huber and tukey are robust against outliers",
     ))]
     pub loss: Loss,
-    /// Which samples are fitted: "all", or about so many spaced evenly in ln t.
+    /// Samples to fit: "all", or about this number spaced evenly in ln t.
     #[schemars(with = "serde_json::Value")]
     #[cfg_attr(feature = "clap", arg(
         long, value_name = "all|log:N", default_value = "all", value_parser = crate::typed::samples,
-        help = "Which samples are fitted: all, or log:400 for about 400 spaced evenly in ln t",
+        help = "Samples to fit: all, or log:400 for about 400 spaced evenly in ln t",
     ))]
     pub samples: SampleChoice,
-    /// What the intervals of fits rest on: "curvature", "profile", or "bootstrap" with its options.
+    /// Method of the intervals: "curvature", "profile", or "bootstrap" with its options.
     #[schemars(with = "serde_json::Value")]
     #[cfg_attr(feature = "clap", arg(
         long, value_parser = crate::typed::one_of(crate::typed::INTERVALS),
-        help = "What intervals rest on; curvature if not given",
+        help = "Method of the intervals; curvature if not given",
     ))]
     pub intervals: Option<IntervalMethod>,
-    /// What linear laws take the loading before a hold for.
+    /// Loading history before a hold, as linear laws take it.
     #[schemars(with = "String", extend("enum" = ["step", "measured"]))]
     #[cfg_attr(feature = "clap", arg(
         long, value_parser = crate::typed::one_of(crate::typed::RAMPS), default_value = "step",
     ))]
     pub ramps: RampChoice,
-    /// Compare only over this long from the start of each hold.
+    /// Compare only over this time from the start of each hold.
     #[cfg_attr(feature = "clap", arg(
         long = "fit-until", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true,
     ))]
@@ -107,8 +107,8 @@ impl Compare {
         if let Some(law) = compared.laws.iter().find(|law| !law.describes(compared.fit.response)) {
             let (has, other) = if self.creep { ("creep", "without") } else { ("relaxation", "with") };
             return Err(JobError::option(
-                format!("⟨laws⟩: {law} has no form for {has}"),
-                &format!("leave it out, or compare {other} ⟨creep⟩"),
+                format!("⟨laws⟩: {law} does not describe {has}"),
+                &format!("omit it, or compare {other} ⟨creep⟩"),
             ));
         }
         if let Some(cuts) = &self.cuts {

@@ -19,7 +19,7 @@ use crate::{JobError, Outcome};
 /// Under which the file says where its numbers come from.
 const MARK: &str = "palpate_record";
 
-/// Write a record of any format as a plain table in SI, with where it comes from.
+/// Convert a record of any format to a plain table in SI units, with its provenance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Convert {}
@@ -47,7 +47,7 @@ impl Convert {
         let mut notes: Vec<String> = averaged(&file).into_iter().chain(done(&file, 0)).collect();
         notes.extend(suspicious_signs(&file.record).iter().map(|sign| format!("{}; {}", sign.seen(), sign.remedy())));
         if file.record.displacement().is_none() {
-            notes.push("no column of displacement was found: the table has time and force alone".to_owned());
+            notes.push("the record has no displacement column: the table has time and force only".to_owned());
         }
         let options = opened.described.options();
         if options.corrections != CorrectionOptions::default() {

@@ -28,8 +28,8 @@ pub fn keep_apart<R: AsRef<Path>, W: AsRef<Path>>(
     let reads: Vec<R> = reads.into_iter().collect();
     match writes.into_iter().find(|out| reads.iter().any(|read| is_same(read.as_ref(), out.as_ref()))) {
         Some(out) => Err(JobError::option(
-            "expected another file than those that are read, found one of them",
-            "choose another name for what is written",
+            "expected an output file that is not an input, found an input",
+            "choose another name for the output",
         )
         .of(out.as_ref().display())),
         None => Ok(()),
@@ -47,10 +47,10 @@ pub(crate) fn is_same(one: &Path, other: &Path) -> bool {
 /// What the operating system says about a file to be written, and what would help.
 pub(crate) fn unwritten(path: &Path, error: &io::Error) -> JobError {
     let hint = match error.kind() {
-        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => "choose a folder that you may write to",
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => "choose a folder with write permission",
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "free some space; nothing was written",
         io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => {
-            "a file stands where the folder should go; choose another name with ⟨out⟩"
+            "a file has the name of the folder; choose another name with ⟨out⟩"
         }
         _ => "",
     };
@@ -114,7 +114,7 @@ pub(crate) fn unwritten_table(path: &Path, error: &TableError) -> JobError {
 /// Refuses a table in the place of a folder.
 pub(crate) fn check_no_folder(out: &Path) -> Result<(), JobError> {
     if out.is_dir() {
-        let message = "expected a file to write the table to, found a directory";
+        let message = "expected a file for the table, found a directory";
         return Err(JobError::option(message, "choose another name with ⟨out⟩").of(out.display()));
     }
     Ok(())
@@ -211,8 +211,8 @@ pub(crate) fn check_ending(path: &Path, endings: &[&str], expected: &str, hint: 
         return Err(JobError::option(format!("expected {expected}"), hint).of(path.display()));
     }
     if let Some((_, feature)) = NOT_IN_THIS_BUILD.iter().find(|(absent, _)| *absent == ending) {
-        let message = format!("expected a file that this build writes, found one for the feature `{feature}`");
-        let hint = format!("build palpate with its feature `{feature}`, which is on by default");
+        let message = format!("expected a format of this build, found one that needs the feature `{feature}`");
+        let hint = format!("build palpate with the feature `{feature}`, which is enabled by default");
         return Err(JobError::option(message, &hint).of(path.display()));
     }
     Ok(())
@@ -241,7 +241,7 @@ pub fn check_series(path: &Path) -> Result<(), JobError> {
 pub fn check_new(path: &Path) -> Result<(), JobError> {
     if path.exists() {
         let hint = "choose another name with ⟨write_test⟩, or remove the file first";
-        let message = "expected the name of a new file, found one that is there";
+        let message = "expected the name of a new file, found an existing file";
         return Err(JobError::option(message, hint).of(path.display()));
     }
     Ok(())
@@ -295,7 +295,7 @@ mod tests {
             let checked = check_ending(Path::new(name), &["parquet", "png"], "a table or a figure", "");
             let refused = checked.err().map(|error| error.to_string());
             let expected =
-                format!("{name}: expected a file that this build writes, found one for the feature `{feature}`");
+                format!("{name}: expected a format of this build, found one that needs the feature `{feature}`");
             assert_eq!(refused, (!is_there).then_some(expected));
         }
         let other = check_ending(Path::new("a.txt"), &["csv"], "a table ending in .csv", "").unwrap_err();

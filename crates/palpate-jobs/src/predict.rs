@@ -14,15 +14,15 @@ use serde::{Deserialize, Serialize};
 use crate::options::checked_confidence;
 use crate::{JobError, Outcome};
 
-/// Predict what a calibrated body does under a protocol, with intervals.
+/// Predict the response of a calibrated body to a protocol, with intervals.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct Predict {
-    /// Times at which the force is wanted; the whole course if there are none.
+    /// Times at which to predict the force; the whole series if empty.
     #[cfg_attr(feature = "clap", arg(
         long = "at", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true,
-        help = "A time at which the force is wanted; may be given several times",
+        help = "Time at which to predict the force; may be repeated",
     ))]
     pub at_s: Vec<f64>,
     /// Coverage of the intervals, between 0 and 1.
@@ -72,7 +72,7 @@ impl Predict {
         let mut predict = |sampling: &Sampling| {
             material.predict_watched(protocol.drive(), sampling, confidence, watch).map_err(|error| {
                 let beyond = matches!(error, SimulateError::SampleTime { .. });
-                let hint = beyond.then(|| "ask for times inside the protocol, or lengthen its last hold".to_owned());
+                let hint = beyond.then(|| "give times within the protocol, or extend its last hold".to_owned());
                 let refused = JobError::simulation(error).of(place);
                 JobError { hint, ..refused }
             })
@@ -85,7 +85,7 @@ impl Predict {
         let open = material.uncertainty.is_none().then(|| open.to_owned());
         let beyond = prediction.extrapolations.iter().map(|beyond| format!("beyond the test: {beyond}"));
         let notes = open.into_iter().chain(beyond).collect();
-        let caption = format!("What {name} does, by its calibrated law.");
+        let caption = format!("Response of {name}, predicted by its calibrated law.");
         let caption = protocol.title.as_deref().map_or(caption.clone(), |title| format!("{title}. {caption}"));
         let predicted = Predicted {
             prediction,
@@ -106,7 +106,7 @@ impl Predicted {
     /// Writes the series as CSV.
     ///
     /// # Errors
-    /// Whatever the writer says.
+    /// An error of the writer.
     pub fn write_series(&self, out: &mut dyn Write) -> io::Result<()> {
         write_prediction(out, &self.prediction)
     }

@@ -23,7 +23,7 @@ const LAST_UNLOADING: f64 = 53.0;
 /// Samples a second of the simulated records.
 const SAMPLE_RATE: f64 = 100.0;
 
-/// Reproduce the paper's study: its tests simulated, re-identified and checked.
+/// Reproduce the paper's study: simulate its tests, identify the law again, check the results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Reproduce {}
@@ -124,8 +124,8 @@ fn amounts(study: &Reproduction) -> Check {
     let drops: Vec<f64> = study.test_a.loaded().map(|hold| hold.force_start - hold.force_end).collect();
     let shown: Vec<String> = drops.iter().map(|drop| significant(*drop, 3)).collect();
     check(
-        "The amount of relaxation grows with displacement",
-        "drop of the force larger at every step of test (a)",
+        "The amount of relaxation increases with displacement",
+        "larger force drop at each step of test (a)",
         format!("{} N", shown.join(", ")),
         drops.len() == 5 && drops.windows(2).all(|pair| pair[1] > pair[0]),
     )
@@ -162,7 +162,7 @@ fn lowest_order(study: &Reproduction) -> Check {
     let n = study.model.law.exponent();
     let shown = found.map(|n| n.map_or("none".to_owned(), |n| n.to_string()));
     check(
-        "n = 5 is the lowest odd order that fits best",
+        "n = 5 is the lowest odd order with the best fit",
         "chosen from 1, 3, 5, 7 in both tests",
         format!("(a) n = {}, (b) n = {}", shown[0], shown[1]),
         found == [Some(n), Some(n)],
@@ -172,7 +172,7 @@ fn lowest_order(study: &Reproduction) -> Check {
 fn identified(study: &Reproduction) -> Check {
     let error = study.largest_coefficient_error();
     check(
-        "The law is found again in the simulated records",
+        "The fit recovers the law from the simulated records",
         "v within 0.1 % in every hold",
         format!("largest error {} %", significant(100.0 * error, 2)),
         error < 1e-3,
@@ -187,7 +187,7 @@ fn last_unloading(study: &Reproduction) -> Check {
     let never_pulls = test.unilateral.force.iter().all(|force| *force >= 0.0);
     check(
         "The last unloading of test (a) begins at t ≈ 53 s",
-        "at 53 s; there the bonded contact goes into tension and the free jaw leaves the ball",
+        "at 53 s; the bonded contact goes into tension and the free jaw leaves the ball",
         format!(
             "begins at {} s; bonded force down to {} N; jaw leaves at {} s",
             significant(begins, 4),

@@ -24,17 +24,17 @@ use serde::{Deserialize, Serialize};
 use crate::output::stem;
 use crate::{ErrorKind, JobError, Outcome};
 
-/// Simulate squeeze, hold, creep and release by a protocol, or by a measured drive.
+/// Simulate squeeze, hold, creep and release under a protocol or a measured motion or force.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Simulate {
     /// Which column of a record drives the contact.
     pub drive_by: DriveBy,
-    /// The series is a record as a machine would write it, with noise of this standard deviation on the force.
+    /// Write the series as a measured record, with noise of this standard deviation on the force.
     pub force_noise_n: Option<f64>,
-    /// Likewise on the displacement.
+    /// Standard deviation of the noise on the displacement of such a record.
     pub displacement_noise_m: Option<f64>,
-    /// Which noise: the same seed gives the same record.
+    /// Seed of the noise; the same seed gives the same record.
     pub seed: u64,
 }
 
@@ -103,7 +103,8 @@ impl Simulate {
         let driver = match self.drive_by {
             DriveBy::Displacement => {
                 let displacement = record.displacement().ok_or_else(|| {
-                    let hint = "replay the force with ⟨drive_by=force⟩, or name the column in a test description";
+                    let hint =
+                        "replay the force with ⟨drive_by=force⟩, or name the displacement column in a test description";
                     let message = "expected a displacement to replay, found none";
                     JobError::new(ErrorKind::Record, message, hint.to_owned()).of(place)
                 })?;
@@ -130,7 +131,7 @@ impl Simulated {
     /// Writes the series as CSV, as a record of a machine where noise was asked for.
     ///
     /// # Errors
-    /// Whatever the writer says.
+    /// An error of the writer.
     pub fn write_series(&self, out: &mut dyn Write) -> io::Result<()> {
         match (self.job.force_noise_n, self.job.displacement_noise_m) {
             (None, None) => write_trajectory(out, &self.trajectory),
@@ -150,7 +151,7 @@ impl Simulated {
     /// # Errors
     /// [`JobError`] where the work of a step cannot be computed, or the watch ends it.
     pub fn hysteresis(&self, path: &Path, watch: &mut dyn Watch) -> Result<Figure, JobError> {
-        let what = "Force against displacement of the jaw; the area of a loop is what the cycle lost";
+        let what = "Force against displacement of the jaw; the area of a loop is the energy loss of the cycle";
         let cycles = cycles(&self.scene.steps(watch)?);
         Ok(hysteresis_figure(&self.trajectory, &cycles, &stem(path), &self.scene.caption(what)))
     }
@@ -188,8 +189,8 @@ impl Simulated {
     pub fn wave(&self, watch: &mut dyn Watch) -> Result<StrainWave, JobError> {
         let scene = &self.scene;
         let layered = scene.contact.latency().ok_or_else(|| {
-            let hint = "name the latency law in [law], or leave ⟨layers_out⟩ and ⟨strain_map⟩ out";
-            JobError::option("a linear law has no layers whose strain could be shown", hint).of(&scene.place)
+            let hint = "use the latency law in [law], or omit ⟨layers_out⟩ and ⟨strain_map⟩";
+            JobError::option("a linear law has no layers, hence no strain of layers", hint).of(&scene.place)
         })?;
         strain_wave_within(scene.drive(), layered, &scene.sampling, WAVE_TOLERANCE, watch)
             .map_err(|error| scene.refused(error))
@@ -199,7 +200,7 @@ impl Simulated {
     #[must_use]
     pub fn wave_csv(wave: &StrainWave) -> String {
         let rows: Vec<usize> = (0..wave.time.len()).collect();
-        let mut table = Table::of("wave", "Strain of every layer.", &rows)
+        let mut table = Table::of("wave", "Strain of each layer.", &rows)
             .column("Time", "time_s", "s", |row| Cell::Number(wave.time[*row], 6));
         for (index, strain) in wave.strain.iter().enumerate() {
             let (heading, key) = (format!("Layer {}", index + 1), format!("strain_layer_{}", index + 1));
@@ -211,11 +212,7 @@ impl Simulated {
     /// The same as the figure in the file at `path`.
     #[must_use]
     pub fn wave_figure(&self, wave: &StrainWave, path: &Path) -> Figure {
-        wave_figure(
-            &stem(path),
-            wave,
-            &self.scene.caption("Strain of every layer over time, and of some of them as lines"),
-        )
+        wave_figure(&stem(path), wave, &self.scene.caption("Strain of each layer over time; lines for selected layers"))
     }
 
     /// The series as a machine would have recorded it: three columns, noise, and a preamble that says it is none.
@@ -283,7 +280,7 @@ impl Scene {
 /// The body and the steps of a protocol, and what to know of them.
 fn stepped(path: &Path) -> Result<(Scene, Vec<String>), JobError> {
     let protocol = read_protocol(path)?;
-    let one = "one run, with the numbers as they stand: the table [sweep] is for palpate sweep";
+    let one = "one run with the parameters of the protocol: only palpate sweep uses the table [sweep]";
     let notes = if protocol.has_sweep { vec![one.to_owned()] } else { Vec::new() };
     let scene = Scene {
         place: path.display().to_string(),
@@ -329,7 +326,7 @@ fn latency(model: &ContactModel) -> String {
 fn energy_table(energy: &Energy) -> Table {
     let rows: Vec<usize> = (0..energy.time.len()).collect();
     let at = |row: usize, series: &[f64]| Cell::Number(series[row], 9);
-    let mut table = Table::of("energy", "Work of the jaw and what becomes of it.", &rows)
+    let mut table = Table::of("energy", "Work of the jaw: stored, recovered and dissipated.", &rows)
         .column("Time", "time_s", "s", |row| at(*row, &energy.time))
         .column("Work", "work_j", "J", |row| at(*row, &energy.work))
         .column("Given back", "given_back_j", "J", |row| at(*row, &energy.given_back));

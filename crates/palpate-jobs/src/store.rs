@@ -198,7 +198,7 @@ fn locked(path: &Path, work: &str) -> Result<File, JobError> {
     match file.try_lock() {
         Ok(()) => Ok(file),
         Err(TryLockError::WouldBlock) => Err(JobError::option(
-            format!("expected no other {work} at work here, found one"),
+            format!("expected no other running {work} here, found one"),
             "wait for it, or name another table with ⟨out⟩",
         )
         .of(path.display())),

@@ -12,43 +12,43 @@ pub type Choice<T> = (&'static str, &'static str, T);
 
 /// What the gripper holds.
 pub(crate) const CONTROLS: &[Choice<Control>] = &[
-    ("position", "The place of its jaws: the force relaxes", Control::Position),
-    ("force", "Its force: the body creeps", Control::Force),
+    ("position", "Position hold: the force relaxes", Control::Position),
+    ("force", "Force hold: the body creeps", Control::Force),
 ];
 
 /// What a squeeze should have least of.
 pub(crate) const OBJECTIVES: &[Choice<Objective>] = &[
-    ("squeeze", "Way of the jaws", Objective::Squeeze),
-    ("peak-force", "The largest force: do not bruise", Objective::PeakForce),
+    ("squeeze", "Travel of the jaws", Objective::Squeeze),
+    ("peak-force", "Peak force, to avoid bruising", Objective::PeakForce),
     ("work", "Work of the jaws", Objective::Work),
 ];
 
-/// What linear laws take the loading before a hold for.
+/// Loading history before a hold, as linear laws take it.
 pub(crate) const RAMPS: &[Choice<RampChoice>] = &[
     ("step", "A step at the start of the fit", RampChoice::Step),
-    ("measured", "The displacement that was measured", RampChoice::Measured),
+    ("measured", "The measured displacement", RampChoice::Measured),
 ];
 
 /// What intervals rest on.
 pub(crate) const INTERVALS: &[Choice<IntervalMethod>] = &[
-    ("curvature", "The curvature of the residual square at the optimum", IntervalMethod::Curvature),
+    ("curvature", "Curvature of the residual sum of squares at the optimum", IntervalMethod::Curvature),
     (
         "profile",
-        "The profile of the residual square: asymmetric, open where the data leave it open",
+        "Profile likelihood: asymmetric, unbounded where the data do not determine a parameter",
         IntervalMethod::Profile,
     ),
     (
         "bootstrap",
-        "Fits to resampled residuals, which takes long",
+        "Refits to resampled residuals, which take long",
         IntervalMethod::Bootstrap(BootstrapOptions::USUAL),
     ),
 ];
 
-/// How residuals count.
+/// Loss function of the residuals.
 pub(crate) const LOSSES: &[Choice<Loss>] = &[
     ("squares", "Least squares", Loss::Squares),
-    ("huber", "Squares, but large ones by their size", Loss::Huber),
-    ("tukey", "Squares, but large ones not at all", Loss::Tukey),
+    ("huber", "Quadratic for small residuals, linear for large ones", Loss::Huber),
+    ("tukey", "Quadratic for small residuals, constant for large ones", Loss::Tukey),
 ];
 
 /// One of such values.
@@ -56,7 +56,7 @@ pub fn one_of<T: Clone + Send + Sync>(choices: &'static [Choice<T>]) -> impl Typ
     let names = choices.iter().map(|(name, about, _)| PossibleValue::new(*name).help(*about));
     PossibleValuesParser::new(names).try_map(|typed| {
         let chosen = choices.iter().find(|(name, ..)| *name == typed).map(|(.., value)| value.clone());
-        chosen.ok_or("no such choice")
+        chosen.ok_or("unknown choice")
     })
 }
 

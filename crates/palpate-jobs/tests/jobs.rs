@@ -206,5 +206,5 @@ fn a_cancelled_batch_keeps_what_is_done_and_goes_on() {
     assert!(error.kind == ErrorKind::Cancelled && !out.exists(), "{error}");
     let outcome = job.run(records, &out, &mut Unwatched).unwrap();
     assert_eq!((outcome.result.tests, outcome.result.failures.len()), (40, 0));
-    assert!(outcome.notes[0].contains("were done before"), "{:?}", outcome.notes);
+    assert!(outcome.notes[0].contains(" done before"), "{:?}", outcome.notes);
 }

@@ -148,7 +148,7 @@ fn a_record_is_not_written_over() {
         &["inspect", &name, "--figure", &name],
     ] {
         let text = refused(folder.path(), arguments);
-        assert!(text.contains("expected another file than those that are read"), "{arguments:?}: {text}");
+        assert!(text.contains("expected an output file that is not an input"), "{arguments:?}: {text}");
         assert_eq!(std::fs::read(folder.path().join(&name)).unwrap(), before, "{arguments:?}");
     }
 }

@@ -170,7 +170,7 @@ fn bad_records_are_listed_and_do_not_stop_the_others() {
     file(folder, "curves/c001.csv", ramp_and_hold(3.0, 30.0));
     let output = palpate(folder, &["batch", "curves", "--out", "holds.csv"]);
     let error = String::from_utf8(output.stderr).unwrap();
-    assert!(error.contains("24 rows of 4 tests in 6 files (4 were done before), 2 of 6 tests failed"), "{error}");
+    assert!(error.contains("24 rows of 4 tests in 6 files (4 done before), 2 of 6 tests failed"), "{error}");
 }
 
 #[test]

@@ -139,11 +139,11 @@ fn what_cannot_be_calibrated_or_predicted_is_said_and_nothing_is_written() {
     assert!(told.contains("needs the geometry of the body") && told.contains("[specimen]"), "{told}");
     let test = example("records/ball.toml");
     for (more, expected) in [
-        (&["--law", "power"][..], "no law of a whole contact"),
+        (&["--law", "power"][..], "not a law of a whole contact"),
         (&["--law", "latency:-1"], "latency:-1"),
         (&["--poisson-ratio", "0.3"], "Hertz"),
         (&["--equilibrium", "hertz", "--poisson-ratio", "0.7"], "Poisson"),
-        (&["--fit-until", "200 s"], "inside the record"),
+        (&["--fit-until", "200 s"], "within the record"),
         (&["--confidence", "95"], "between 0 and 1"),
         (&["--figure", "x.pdf"], ".svg"),
     ] {
@@ -166,7 +166,7 @@ fn what_cannot_be_calibrated_or_predicted_is_said_and_nothing_is_written() {
         ("hold.toml", "hold.toml", &[], "expected a material file, found a protocol"),
         ("ball.toml", "deep.toml", &[], "step[1].to"),
         ("ball.toml", "hold.toml", &["--at", "99 s"], "99"),
-        ("ball.toml", "hold.toml", &["--out", "ball.toml"], "another file"),
+        ("ball.toml", "hold.toml", &["--out", "ball.toml"], "an output file"),
     ] {
         let told = refused(folder, &[&["predict", material, "--protocol", protocol], more].concat());
         assert!(told.contains(expected), "{material} {protocol} {more:?}: {told}");

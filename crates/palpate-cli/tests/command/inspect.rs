@@ -77,7 +77,8 @@ fn a_first_description_gives_the_same_record() {
         let before = phases(folder, &["inspect", &record, "--write-test", &test]);
         assert_eq!(phases(folder, &["inspect", &record, "--test", &test]), before);
         let written = fs::read_to_string(folder.join(&test)).unwrap();
-        for expected in ["# guessed", "[columns.force]", "# from the file", "# Holds found: 1.", "# radius = \"35 mm\""]
+        for expected in
+            ["# guessed", "[columns.force]", "# from the file", "# Detected holds: 1.", "# radius = \"35 mm\""]
         {
             assert!(written.contains(expected), "{expected}: {written}");
         }
@@ -213,7 +214,7 @@ fn a_given_hold_that_the_record_does_not_contain_is_refused() {
     let record = file(folder, "press.csv", ramp_and_hold(7.0, 20.0));
     file(folder, "given.toml", "[[phases.hold]]\nfrom = \"2 s\"\nto = \"80 s\"\n");
     let error = failed_but_told(folder, &["inspect", &record, "--test", "given.toml"]);
-    assert!(error.contains("given hold 1 lasts from 2 s to 80 s, the record from 0 s to 8.00000 s"), "{error}");
+    assert!(error.contains("given hold 1 is from 2 s to 80 s, the record from 0 s to 8.00000 s"), "{error}");
 }
 
 #[test]
@@ -293,7 +294,11 @@ fn a_plain_table_is_corrected_as_described() {
     file(folder, "test.toml", "[machine]\ncompliance = \"100 um/N\"\n");
     done(folder, &["convert", "press.csv", "--out", "raw.csv"]);
     let output = palpate(folder, &["convert", "press.csv", "--test", "test.toml", "--out", "net.csv"]);
-    assert!(String::from_utf8(output.stderr).unwrap().contains("of the machine taken off the displacement"));
+    assert!(
+        String::from_utf8(output.stderr)
+            .unwrap()
+            .contains("of machine compliance subtracted from the displacement")
+    );
     let cells = |name: &str| -> Vec<Vec<f64>> {
         let text = fs::read_to_string(folder.join(name)).unwrap();
         text.lines()

@@ -34,13 +34,13 @@ impl fmt::Display for CellPlace {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum DecimalDoubt {
     /// Commas seem to stand both between cells and inside numbers.
-    #[error("expected commas either between cells or inside numbers, they seem to be both")]
+    #[error("expected commas either between cells or within numbers, found both")]
     CommaSplitsNumbers,
     /// Every comma is followed by three digits, as between thousands.
-    #[error("expected a decimal comma, but every comma could also set off thousands")]
+    #[error("expected a decimal comma, but every comma could also separate thousands")]
     Thousands,
     /// Every point is followed by three digits, as between thousands, beside whole numbers or semicolons.
-    #[error("expected a decimal point, but every point could also set off thousands")]
+    #[error("expected a decimal point, but every point could also separate thousands")]
     PointThousands,
     /// Some numbers have a decimal point, others a decimal comma.
     #[error("expected one decimal mark, found both points and commas")]
@@ -111,7 +111,7 @@ pub enum FileProblem {
     #[error(": expected a file without a password, found an encrypted one")]
     Encrypted,
     /// More than is read of any file.
-    #[error(": {what} has more than {}, which is the most that is read", bytes(*most_bytes))]
+    #[error(": {what} exceeds the limit of {}", bytes(*most_bytes))]
     TooLarge {
         /// What is too large.
         what: &'static str,
@@ -119,13 +119,13 @@ pub enum FileProblem {
         most_bytes: u64,
     },
     /// A small file that unpacks to more than this many times its size.
-    #[error(": expected a file that unpacks to at most {0} times its size, found one of more")]
+    #[error(": expected a file that unpacks to at most {0} times its size, found more")]
     DecompressionLimit(u64),
     /// No part of the file is a table of numbers: the parts that were looked at, with why they are none.
     #[error(": expected a test, found none{}", skipped(.0))]
     NoParts(Vec<(String, String)>),
     /// A line is longer than any row of a table would be.
-    #[error(", line {line}: expected lines of at most {limit} bytes, this one is longer")]
+    #[error(", line {line}: expected lines of at most {limit} bytes, found a longer line")]
     LineTooLong {
         /// Line, from 1.
         line: usize,

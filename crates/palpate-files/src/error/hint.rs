@@ -15,34 +15,34 @@ impl FileError {
         let help = match &self.problem {
             FileProblem::NotFound(_) => "check the spelling of the path",
             FileProblem::Directory => "name one file inside it",
-            FileProblem::NoFile => "write what comes through the pipe to a file first",
+            FileProblem::NoFile => "write the output of the pipe to a file first",
             FileProblem::Unreadable(source) if source.kind() == io::ErrorKind::PermissionDenied => {
-                "check who owns the file and that you may read it"
+                "check the owner of the file and its read permission"
             }
             FileProblem::Unreadable(_) => return None,
             FileProblem::Empty => "export the record again",
             FileProblem::Foreign(looks_like) => foreign(*looks_like),
             FileProblem::Archive(members) if members.is_empty() => "pack the record again",
-            FileProblem::Archive(_) => "unpack it and name the files one by one, or their folder",
+            FileProblem::Archive(_) => "unpack it and name the files or their folder",
             FileProblem::Unlike { hint, .. } => hint,
-            FileProblem::Encrypted => "open it where it was made and save it without a password",
-            FileProblem::TooLarge { .. } => "split the file, or export less of it",
+            FileProblem::Encrypted => "open it in its program and save it without a password",
+            FileProblem::TooLarge { .. } => "split the file, or export a part of it",
             FileProblem::DecompressionLimit(_) => {
-                "copy or export it again; if you trust it, unpack it, or write it anew without compression"
+                "copy or export it again; if you trust it, unpack it, or write it without compression"
             }
             FileProblem::NoParts(_) => "a test needs a table of numbers with time and force side by side",
-            FileProblem::LineTooLong { .. } => "check that the file has line ends and the right encoding",
+            FileProblem::LineTooLong { .. } => "check line ends and encoding of the file",
             FileProblem::OneColumn { delimiter, .. } => match delimiter {
-                Some(by) => return Some(format!("the delimiter was fixed to {by}: leave it to be found out")),
+                Some(by) => return Some(format!("the delimiter is fixed to {by}: omit it to have it detected")),
                 None => "a record needs a time and a force side by side, separated by tab, semicolon, comma or blanks",
             },
             FileProblem::NoDataRows {
                 header_line: Some(line),
                 ..
             } => {
-                return Some(format!("line {line} looks like names of columns, but no numbers follow"));
+                return Some(format!("line {line} looks like column names, but no numbers follow"));
             }
-            FileProblem::NoDataRows { .. } => "check that this is the record itself, or skip the lines before it",
+            FileProblem::NoDataRows { .. } => "check that this file is the record, or skip the lines before the table",
             FileProblem::AmbiguousDecimal { doubt, .. } => doubtful(*doubt),
             FileProblem::NoSuchColumn { .. } => "columns count from 1 at the left",
             FileProblem::TextInNumbers { found, decimal, .. } => hint_of_text(found, *decimal),
@@ -50,10 +50,8 @@ impl FileError {
             FileProblem::CellCount { expected, found, .. } if found < expected => {
                 "the row is cut off or lacks a cell: complete it or remove it"
             }
-            FileProblem::CellCount { .. } => {
-                "look for a delimiter inside a cell, such as a decimal comma, that wants quotes"
-            }
-            FileProblem::Interrupted { .. } => "where the file holds several records, split it into one file each",
+            FileProblem::CellCount { .. } => "quote cells that contain the delimiter, such as a decimal comma",
+            FileProblem::Interrupted { .. } => "if the file holds several records, split it into one file each",
         };
         Some(help.to_owned())
     }
@@ -65,7 +63,7 @@ fn foreign(looks_like: Foreign) -> &'static str {
         Foreign::OpenDocument => "save it as an Excel workbook (.xlsx), or the sheet as CSV",
         Foreign::Sqlite => "export the record as delimited text; `ros2 bag convert` turns a bag of ROS 2 into MCAP",
         Foreign::Zip | Foreign::Compressed => "unpack it first, or export the record as text",
-        Foreign::Picture | Foreign::Pdf => "a record of numbers is needed, not a document",
+        Foreign::Picture | Foreign::Pdf => "give a record of numbers, not a document",
         Foreign::Binary => "export the record as text, or fix its encoding if it is text",
         _ => "export the record as delimited text",
     }
@@ -76,8 +74,8 @@ fn doubtful(doubt: DecimalDoubt) -> &'static str {
         DecimalDoubt::CommaSplitsNumbers => {
             "export with semicolons or tabs between cells; if the commas only separate whole numbers, fix the decimal mark to point"
         }
-        DecimalDoubt::Thousands => "fix the decimal mark to comma, or export without marks between thousands",
-        DecimalDoubt::PointThousands => "fix the decimal mark to point, or export without marks between thousands",
+        DecimalDoubt::Thousands => "fix the decimal mark to comma, or export without thousands separators",
+        DecimalDoubt::PointThousands => "fix the decimal mark to point, or export without thousands separators",
         DecimalDoubt::Mixed => "export with one decimal mark, or fix the decimal mark",
     }
 }
@@ -87,16 +85,16 @@ pub(crate) fn hint_of_text(found: &str, decimal: DecimalMark) -> &'static str {
     let cell = found.as_bytes();
     let gaps = |letter: char| matches!(letter, '\u{a0}' | '\u{202f}' | '\u{2009}' | '\'' | '\u{2019}' | ' ');
     match (number::classify(cell), decimal) {
-        _ if found.contains('\u{2212}') => "the minus sign is U+2212: replace it by a hyphen",
+        _ if found.contains('\u{2212}') => "the minus sign is U+2212: replace it with a hyphen",
         (Cell::Comma | Cell::Point, _) if number::has_thousands(cell) => {
-            "export without marks between thousands; if the mark sets off decimals, fix the decimal mark to it"
+            "export without thousands separators; if the mark is decimal, fix the decimal mark to it"
         }
         (Cell::Comma, DecimalMark::Point) => "fix the decimal mark to comma",
         (Cell::Point, DecimalMark::Comma) => "fix the decimal mark to point",
         _ if number::has_thousands(cell) || number::looks_numeric(found) && found.contains(gaps) => {
-            "export without marks between thousands"
+            "export without thousands separators"
         }
-        _ if number::looks_numeric(found) => "these are numbers kept as texts: export them as numbers",
-        _ => "mend or remove the line; where the data begin further down, set skip_lines",
+        _ if number::looks_numeric(found) => "these numbers are stored as texts: export them as numbers",
+        _ => "repair or remove the line; if the data begin further down, set skip_lines",
     }
 }

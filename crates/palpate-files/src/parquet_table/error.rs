@@ -13,10 +13,10 @@ pub enum TableError {
     Io(#[from] io::Error),
     /// This build has no Parquet.
     #[cfg(not(feature = "arrow"))]
-    #[error("expected a build that knows Parquet, found one without the feature `arrow`")]
+    #[error("expected a build with Parquet, found one without the feature `arrow`")]
     NotInThisBuild,
     /// The file is no Parquet, or a damaged one; what the reader says.
-    #[error("expected a whole Parquet file ({0})")]
+    #[error("expected a complete Parquet file ({0})")]
     Parquet(String),
     /// A column of this name that palpate does not write.
     #[error("expected columns of whole numbers, numbers or texts, found {0} of another kind")]

@@ -108,5 +108,5 @@ impl TableReader {
 
 /// The reader of the format takes some places in a file at their word and then panics.
 fn out_of_bounds() -> TableError {
-    TableError::Parquet("places in the file that are out of bounds".to_owned())
+    TableError::Parquet("file offsets that are out of bounds".to_owned())
 }

@@ -37,8 +37,8 @@ pub fn describe(
     let about = &contents.parts[part];
     let mut out = String::new();
     let name = contents.input.name.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let _ = writeln!(out, "# A first test description of {name}, from what the file says of itself.");
-    let _ = writeln!(out, "# Check the lines marked \"guessed\" and answer those with \"{ASK}\".\n");
+    let _ = writeln!(out, "# Draft test description of {name}, derived from the file.");
+    let _ = writeln!(out, "# Check the lines marked \"guessed\" and replace each \"{ASK}\".\n");
     let title = contents.input.name.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let title = about.name.as_ref().map_or_else(|| title.clone(), |part| format!("{title}, {part}"));
     let _ = writeln!(out, "[about]\ntitle = {}\n", quoted(&title));
@@ -62,8 +62,8 @@ fn write_machines(out: &mut String, part: &Part) {
         return;
     }
     out.push_str(
-        "# The columns are named as a machine names them that is known. If it was that one, its line can stand\n\
-         # in place of the tables [columns.…] below:\n\
+        "# The column names match a machine with a preset. If the file is from that machine, its line can replace\n\
+         # the tables [columns.…] below:\n\
          # [machine]\n",
     );
     for machine in machines {
@@ -84,10 +84,14 @@ fn write_file(out: &mut String, contents: &Contents, part: &Part) {
     }
     if let Some(layout) = layout {
         let _ = writeln!(out, "encoding = \"{}\"    # guessed from the bytes", layout.encoding);
-        let _ = writeln!(out, "delimiter = \"{}\"    # guessed: it cuts all rows alike", layout.delimiter);
+        let _ = writeln!(
+            out,
+            "delimiter = \"{}\"    # guessed: it splits all rows into the same number of cells",
+            layout.delimiter
+        );
         let _ = writeln!(out, "decimal = \"{}\"    # guessed from the numbers", layout.decimal);
         let header = layout.header_line;
-        let why = header.map_or("no line of names was seen".to_owned(), |line| format!("line {line} looks like names"));
+        let why = header.map_or("no line looks like names".to_owned(), |line| format!("line {line} looks like names"));
         let _ = writeln!(out, "header = {}    # guessed: {why}", header.is_some());
     }
     out.push('\n');
@@ -113,7 +117,7 @@ fn write_columns(out: &mut String, part: &Part, columns: &[ColumnUse]) {
         };
         let info = &part.columns[column.number - 1];
         let _ = writeln!(out, "[columns.{table}]");
-        let why = if info.name.is_some() { "guessed by its name" } else { "as described" };
+        let why = if info.name.is_some() { "guessed from its name" } else { "as described" };
         let _ = writeln!(out, "column = {}    # {why}; starts with {}", reference(part, info), info.sample.trim());
         write_unit(out, column, info);
         if column.offset != 0.0 {
@@ -163,14 +167,14 @@ fn write_questions(out: &mut String, part: &Part) {
     for quantity in [Quantity::Time, Quantity::Displacement, Quantity::Force] {
         let candidates = recognise::candidates(&part.columns, quantity);
         let column = match candidates[..] {
-            [only] => format!("{}    # guessed by its name", reference(part, only)),
+            [only] => format!("{}    # guessed from its name", reference(part, only)),
             [] if quantity == Quantity::Displacement => {
-                format!("\"{ASK}\"    # no name says which; remove the table if there is none")
+                format!("\"{ASK}\"    # no column name matches; remove the table if there is none")
             }
-            [] => format!("\"{ASK}\"    # no name says which"),
+            [] => format!("\"{ASK}\"    # no column name matches"),
             ref several => {
                 let numbers: Vec<String> = several.iter().map(|column| column.number.to_string()).collect();
-                format!("\"{ASK}\"    # {} could all hold it", numbers.join(", "))
+                format!("\"{ASK}\"    # {} are all candidates", numbers.join(", "))
             }
         };
         let unit = asked_unit(quantity, &candidates);
@@ -189,23 +193,25 @@ fn asked_unit(quantity: Quantity, possible: &[&ColumnInfo]) -> String {
         }
         [Some(unit)] => {
             let (said, meant) = (quoted(unit), quantity.unit_meant(unit));
-            format!("\"{ASK}\"    # the file says {said}, no unit of {quantity}; \"{meant}\", or one of {accepted}")
+            format!(
+                "\"{ASK}\"    # the file gives {said}, which is no unit of {quantity}; \"{meant}\", or one of {accepted}"
+            )
         }
-        _ => format!("\"{ASK}\"    # the file does not say; one of {accepted}"),
+        _ => format!("\"{ASK}\"    # the file gives no unit; one of {accepted}"),
     }
 }
 
 fn write_body(out: &mut String, part: &Part) {
-    let _ = writeln!(out, "# The body is needed for strains and for v in 1/s; without it forces are fitted.");
+    let _ = writeln!(out, "# Strains, and v in 1/s, need the body; without it palpate fits forces.");
     for entry in part.metadata.iter().filter(|entry| entry.unit.is_some()) {
         let unit = entry.unit.as_deref().unwrap_or_default();
-        let _ = writeln!(out, "#   the file says: {} = {} {unit}", entry.name.trim(), entry.value.trim());
+        let _ = writeln!(out, "#   from the file: {} = {} {unit}", entry.name.trim(), entry.value.trim());
     }
     let _ = writeln!(out, "# [specimen]\n# shape = \"ball\"\n# radius = \"35 mm\"\n# modulus = \"28 kPa\"\n");
 }
 
 fn write_phases(out: &mut String, file: &RecordFile, segmentation: &Segmentation) {
-    let _ = writeln!(out, "# If the holds below are not what you see, say what a hold is:");
+    let _ = writeln!(out, "# If the holds below are wrong, change the criteria of a hold:");
     let _ = writeln!(out, "# [phases]");
     if segmentation.settings.from_displacement {
         let _ = writeln!(out, "# tolerance = \"{} mm\"", short(1e3 * segmentation.settings.tolerance));
@@ -213,9 +219,11 @@ fn write_phases(out: &mut String, file: &RecordFile, segmentation: &Segmentation
     let _ = writeln!(out, "# minimum_hold = \"{} s\"\n", short(segmentation.settings.minimum_hold));
     let holds: Vec<_> = segmentation.segments.iter().filter(|segment| segment.phase == Phase::Hold).collect();
     let count = holds.len();
-    let _ =
-        writeln!(out, "# Holds found: {count}. To correct a limit, uncomment the tables of all of them: where any is");
-    let _ = writeln!(out, "# given, no others are sought.");
+    let _ = writeln!(
+        out,
+        "# Detected holds: {count}. To correct a limit, uncomment the tables of all holds: if one is given,"
+    );
+    let _ = writeln!(out, "# no others are detected.");
     let time = file.record.time();
     let places = decimals(file.record.sample_interval());
     for hold in holds {
@@ -230,7 +238,7 @@ fn write_phases(out: &mut String, file: &RecordFile, segmentation: &Segmentation
             Some(HoldMode::Neither) => "neither",
             None => continue,
         };
-        let _ = writeln!(out, "# mode = \"{held}\"    # seen from the record: what the machine held");
+        let _ = writeln!(out, "# mode = \"{held}\"    # from the record: the quantity that the machine held");
     }
 }
 

@@ -29,7 +29,7 @@ pub enum ColumnError {
     Ambiguous(Quantity, Vec<NamedColumn>),
     /// No column is named as the displacement, but some could hold it.
     #[error(
-        "expected a name that says whether {} {}, found none that is known",
+        "expected a name that indicates whether {} {}, found no known name",
         listed(candidates, " and "),
         is_displacement(candidates)
     )]
@@ -67,14 +67,14 @@ pub enum ColumnError {
     #[error("{0}: expected one quantity in a column, found {1} and {2}")]
     Twice(NamedColumn, Quantity, Quantity),
     /// A column is to be added to one that was stamped by another clock.
-    #[error("expected two columns of one clock to add up, found {0} and {1}")]
+    #[error("expected two columns of one clock to add, found {0} and {1}")]
     ClocksDiffer(NamedColumn, NamedColumn),
     /// The description says that a time counts from 1970, but in no unit does its first value, this one, lie in our days.
     #[error("{0}: expected a time since 1970 (of 2000 to 2100, in s, ms, us or ns), found {1}")]
     NoEpoch(NamedColumn, String),
     /// A deflection is to be taken off a column of which it is off already.
     #[error(
-        "{0}: expected the height of the cantilever's base, of which its deflection is taken off, found a column that is named as if it were off already"
+        "{0}: expected the height of the cantilever's base, found a column whose name indicates that the deflection is already subtracted"
     )]
     NoHeight(NamedColumn),
     /// Stress on a ball, which has no section that would turn it into force.
@@ -99,7 +99,7 @@ pub enum UnitProblem {
         written: String,
     },
     /// A scale is given for a column in this unit, which is not volts.
-    #[error("expected volts, which `scale` is for, found {0}")]
+    #[error("expected volts for `scale`, found {0}")]
     NoVolts(String),
     /// The file says two units: one in the name, the other beside it.
     #[error("expected one unit, found {0} in its name and {1} beside it")]
@@ -117,7 +117,7 @@ impl ColumnError {
     pub fn hint(&self) -> String {
         match self {
             Self::Missing(_, columns) => {
-                format!("say which column holds what in a test description:\n{}", snippet::of_columns(columns))
+                format!("assign the columns in a test description:\n{}", snippet::of_columns(columns))
             }
             Self::TimeAsText(..) => {
                 "write seconds, or 2024-03-12 10:11:12.5, 12.03.2024 10:11:12.5 or 10:11:12.5 in every row".to_owned()
@@ -131,13 +131,13 @@ impl ColumnError {
             Self::NoUnit(columns) => {
                 let lines = columns.iter().map(|(key, unit, column)| snippet::of_unit(key, unit, column));
                 let lines: Vec<String> = lines.collect();
-                format!("say it in a test description:\n{}", lines.join("\n"))
+                format!("state it in a test description:\n{}", lines.join("\n"))
             }
             Self::Unit { column, key, problem } => problem.hint(column, key),
-            Self::NoSuchColumn { .. } => "columns count from 1 at the left; a name may go without its unit".to_owned(),
+            Self::NoSuchColumn { .. } => "columns count from 1 at the left; the unit of a name is optional".to_owned(),
             Self::Twice(_, one, other) => format!("correct columns.{one} or columns.{other}"),
             Self::ClocksDiffer(..) => "name two columns of one topic".to_owned(),
-            Self::NoEpoch(..) => "give the unit that the time has, such as \"s\"".to_owned(),
+            Self::NoEpoch(..) => "give the unit of the time, such as \"s\"".to_owned(),
             Self::NoHeight(..) => {
                 "remove [columns.deflection], or name the column of the height in columns.displacement".to_owned()
             }
@@ -154,7 +154,7 @@ impl UnitProblem {
         match self {
             Self::Unknown(quantity, unit) if unit_factor(unit, Dimension::Voltage).is_none() => {
                 let lines = snippet::of_unit_and_column(key, quantity.unit_meant(unit), column);
-                format!("if another unit is meant, say it in a test description:\n{lines}")
+                format!("if another unit is meant, give it in a test description:\n{lines}")
             }
             Self::Unknown(_, unit) if key == "columns.force.unit" && column.name.as_deref() == Some(UNCALIBRATED) => {
                 snippet::of_bending(column, unit)
@@ -162,22 +162,22 @@ impl UnitProblem {
             Self::Unknown(quantity, unit) => {
                 let table = key.rsplit_once('.').map_or("columns", |(table, _)| table);
                 format!(
-                    "say what a volt stands for in a test description:\n[{table}]\nunit = \"{unit}\"\nscale = \"1 {}/V\"\ncolumn = {}",
+                    "give the scale of a volt in a test description:\n[{table}]\nunit = \"{unit}\"\nscale = \"1 {}/V\"\ncolumn = {}",
                     quantity.usual_unit(),
                     column.number
                 )
             }
             Self::OfMachine { written, .. } => format!(
-                "choose another of `palpate inspect --machines`, or say in the test description:\n{}",
+                "choose another of `palpate inspect --machines`, or write in the test description:\n{}",
                 snippet::of_unit(key, written, column)
             ),
             Self::NoVolts(_) => format!(
-                "remove `scale`; if the header is wrong and the column holds volts, say so:\n{}",
+                "remove `scale`; if the header is wrong and the column holds volts, write:\n{}",
                 snippet::of_unit_and_column(key, "V", column)
             ),
             Self::Two(_, beside) => {
                 let lines = snippet::of_unit_and_column(key, beside, column);
-                format!("say which one holds in a test description:\n{lines}")
+                format!("choose one in a test description:\n{lines}")
             }
         }
     }
@@ -195,7 +195,7 @@ fn is_displacement(columns: &[NamedColumn]) -> &'static str {
 fn none(columns: &[(String, &'static str, NamedColumn)]) -> &'static str {
     let bracketed = |name: &str| name.trim_end().ends_with(')');
     if columns.iter().any(|(_, _, column)| column.name.as_deref().is_some_and(bracketed)) {
-        "none that is understood in the header"
+        "no known unit in the header"
     } else {
         "none in the header"
     }
@@ -279,9 +279,7 @@ impl ReadError {
                     "choose one by its name or number: --part \"{first}\", or in a test description:\n[file]\npart = \"{first}\""
                 ))
             }
-            Self::NoSuchPart { .. } => {
-                Some("name a part as the file does, or give its number, counted from 1".to_owned())
-            }
+            Self::NoSuchPart { .. } => Some("give the name of a part as in the file, or its number from 1".to_owned()),
         }
     }
 }

@@ -69,7 +69,7 @@ pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
             .or_else(|| rest.iter().position(|column| may_be(column, quantity)));
         let Some(column) = known.or_else(|| place.map(|place| rest.remove(place))) else {
             if quantity != Quantity::Displacement {
-                lines.push(format!("# {quantity}: no column is left that could hold it"));
+                lines.push(format!("# {quantity}: no candidate column remains"));
             }
             continue;
         };
@@ -81,7 +81,7 @@ pub(super) fn of_columns(columns: &[ColumnInfo]) -> String {
         };
         let line = format!("{quantity} = {{ column = {}, {unit} }}", column.number);
         let name = column.name.as_deref().map_or_else(String::new, |name| format!("{name}, which "));
-        let optional = if quantity == Quantity::Displacement { "; leave out if there is none" } else { "" };
+        let optional = if quantity == Quantity::Displacement { "; omit if there is none" } else { "" };
         lines.push(format!("{line}  # check: {name}starts with {}{optional}", column.sample));
     }
     lines.join("\n")
@@ -112,7 +112,7 @@ pub(super) fn of_unclear(candidates: &[NamedColumn], columns: &[ColumnInfo]) -> 
         _ => "",
     };
     format!(
-        "if it is, say so in a test description:\n[columns.displacement]\ncolumn = {number}\nunit = \"{unit}\"{sign}{without}"
+        "if it is, state this in a test description:\n[columns.displacement]\ncolumn = {number}\nunit = \"{unit}\"{sign}{without}"
     )
 }
 
@@ -133,7 +133,7 @@ pub(super) fn of_unit(key: &str, unit: &str, column: &NamedColumn) -> String {
 pub(super) fn of_bending(column: &NamedColumn, unit: &str) -> String {
     let number = column.number;
     format!(
-        "the file lacks a sensitivity (m/V) or a spring constant (N/m): say in a test description what a volt stands for, \
+        "the file lacks a sensitivity (m/V) or a spring constant (N/m): give the scale of a volt in a test description, \
          for 50 nm/V and 0.04 N/m\n[columns.force]\ncolumn = {number}\nunit = \"{unit}\"\nscale = \"2 nN/V\"\n\
          [columns.displacement]\ncolumn = \"measuredHeight\"\nsign = -1\n\
          [columns.deflection]\ncolumn = {number}\nunit = \"{unit}\"\nscale = \"50 nm/V\""

@@ -35,43 +35,43 @@ use crate::written_by_batch::is_written_by_batch;
 use crate::{ErrorKind, JobError, Outcome};
 use table::Format;
 
-/// Analyse many records into one table, a row per hold and law.
+/// Analyse many records into one table, one row per hold and law.
 ///
 /// It reads the records and their description. Beside the table it writes the tidy table of all parameters (`holds_parameters.csv` beside
-/// `holds.csv`), a row per parameter with its unit, standard error and interval, and what is done, to go on from.
+/// `holds.csv`), one row per parameter with its unit, standard error and interval, and the finished parts from which it can resume.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct Batch {
-    /// Laws to fit besides the latency law.
+    /// Laws to fit in addition to the latency law.
     #[schemars(with = "Option<Vec<String>>")]
     #[cfg_attr(feature = "clap", arg(
         long, value_name = "LAW,…", value_delimiter = ',', value_parser = crate::typed::law,
     ))]
     pub laws: Option<Vec<Law>>,
-    /// Fit only this long from the start of each hold.
+    /// Fit only this time from the start of each hold.
     #[cfg_attr(feature = "clap", arg(
         long = "fit-until", value_name = "TIME", value_parser = crate::typed::time, allow_hyphen_values = true,
     ))]
     pub fit_until_s: Option<f64>,
-    /// What the intervals of fits rest on: "curvature", "profile", or "bootstrap" with its options.
+    /// Method of the intervals: "curvature", "profile", or "bootstrap" with its options.
     #[schemars(with = "serde_json::Value")]
     #[cfg_attr(feature = "clap", arg(
         long, value_parser = crate::typed::one_of(crate::typed::INTERVALS),
-        help = "What intervals rest on; curvature if not given",
+        help = "Method of the intervals; curvature if not given",
     ))]
     pub intervals: Option<IntervalMethod>,
-    /// From where in a hold to fit: "peak", "settled", or so many seconds after the peak.
+    /// Start of the fit in a hold: "peak", "settled", or a time in seconds after the peak.
     #[schemars(with = "serde_json::Value")]
     #[cfg_attr(feature = "clap", arg(
         long, value_name = "WHERE", value_parser = palpate_files::description::parse_hold_start,
-        help = "From where in a hold to fit: peak, settled, or \"peak + 0.5 s\"",
+        help = "Start of the fit in a hold: peak, settled, or \"peak + 0.5 s\"",
     ))]
     pub hold_start: Option<HoldStart>,
-    /// How many records at once; all processors if not given. The table is the same for any number.
+    /// Number of records analysed in parallel; all processors if not given. The table does not depend on it.
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub threads: Option<NonZeroUsize>,
-    /// Analyse all records again, whatever was done before.
+    /// Analyse all records again, and ignore earlier results.
     #[cfg_attr(feature = "clap", arg(long))]
     pub restart: bool,
 }
@@ -81,9 +81,9 @@ pub struct Batch {
 pub struct Batched {
     /// How many rows it has.
     pub rows: usize,
-    /// How many tests there are in the files.
+    /// Number of tests in the files.
     pub tests: usize,
-    /// The tests that gave no rows.
+    /// The tests without rows.
     pub failures: Vec<Refused>,
 }
 
@@ -251,7 +251,7 @@ impl Batched {
         if let [hint] = hints[..] {
             notes.push(format!("hint: {hint}"));
         }
-        let kept = if before > 0 { format!(" ({before} were done before)") } else { String::new() };
+        let kept = if before > 0 { format!(" ({before} done before)") } else { String::new() };
         let failed = match failures.len() {
             0 => String::new(),
             count => format!(", {count} of {} tests failed", self.tests),

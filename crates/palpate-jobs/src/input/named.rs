@@ -57,8 +57,8 @@ impl NamedRecords {
                 if paths.len() == before {
                     return Err(unmatched(
                         path,
-                        "expected a folder with records, found none in it or below",
-                        "name a file, or a folder that holds some (TOML and hidden files are passed over)",
+                        "expected a folder with records, found none in it or its subfolders",
+                        "name a file, or a folder with records (TOML and hidden files are skipped)",
                     ));
                 }
             } else if is_pattern(path) && !path.exists() {

@@ -148,7 +148,7 @@ pub(crate) fn averaged(file: &RecordFile) -> Option<String> {
     (file.averaged > 1).then(|| {
         let kept = file.rows.div_ceil(file.averaged);
         format!(
-            "{}: {} rows are more than are kept; every {} successive ones became their mean ({kept} samples)",
+            "{}: {} rows exceed the limit; each {} successive rows are averaged ({kept} samples)",
             file.path.display(),
             file.rows,
             file.averaged

@@ -172,7 +172,7 @@ impl Cut {
             let rules: Vec<String> = contact.estimates.iter().map(rule).collect();
             let _ = writeln!(
                 out,
-                "rules for first touch scatter by {} mm (robust standard deviation): {}",
+                "the rules for first touch scatter by {} mm (robust standard deviation): {}",
                 significant(1e3 * spread, 2),
                 rules.join(", ")
             );

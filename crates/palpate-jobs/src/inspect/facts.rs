@@ -104,8 +104,7 @@ pub(super) fn signal_facts(file: &RecordFile, aligned: Option<&SignalReport>) ->
         let _ = writeln!(out, "done: {done}");
     }
     if let Some(footer) = &file.ignored.footer {
-        let _ =
-            writeln!(out, "{} lines after the data were passed over, from line {}", footer.lines, footer.first_line);
+        let _ = writeln!(out, "{} lines after the data were skipped, from line {}", footer.lines, footer.first_line);
     }
     out.push('\n');
     out
@@ -151,6 +150,6 @@ fn value_facts(out: &mut String, name: &str, values: &Values, (scale, unit): (f6
     }
     if values.strays.count > 0 {
         let zeros = values.strays.zeros;
-        let _ = writeln!(out, "{} rows of the {name} stray alone, {zeros} of them to zero", values.strays.count);
+        let _ = writeln!(out, "{} single rows of the {name} are outliers, {zeros} of them zero", values.strays.count);
     }
 }

@@ -122,7 +122,7 @@ pub fn machines_text() -> String {
         .column("Name", "name", "", |machine| Cell::text(machine.name))
         .column("What", "about", "", |machine| Cell::text(machine.about().trim_end_matches('.')))
         .table()
-        .note("in a test description: [machine] preset = \"NAME\"; what the description says itself goes before")
+        .note("in a test description: [machine] preset = \"NAME\"; fields of the description take precedence")
         .to_plain_text()
 }
 

@@ -31,10 +31,10 @@ impl Chart {
         let Some(result) = results.iter().find(|result| result.name == column) else {
             let names: Vec<&str> = results.iter().map(|result| result.name.as_str()).collect();
             let hint = format!("show one of {}", names.join(", "));
-            return Err(JobError::option(format!("⟨show={column}⟩: no such result"), &hint));
+            return Err(JobError::option(format!("⟨show={column}⟩: unknown result"), &hint));
         };
         if let Plan::Grid { counts } = &sweep.plan {
-            let hint = "draw the columns of the table with another program, or sweep fewer numbers";
+            let hint = "draw the columns of the table with another program, or sweep fewer parameters";
             let refused = |message: String| Err(JobError::option(message, hint).of(path.display()));
             match counts.as_slice() {
                 [_] | [_, _] => {}
@@ -42,11 +42,11 @@ impl Chart {
                 [_, _, panels] => {
                     let third = &sweep.parameters[2].path;
                     return refused(format!(
-                        "expected at most {MOST_PANELS} values of {third}, each of which takes a panel, found {panels}"
+                        "expected at most {MOST_PANELS} values of {third}, with one panel each, found {panels}"
                     ));
                 }
                 more => {
-                    return refused(format!("expected a grid of one to three swept numbers, found {}", more.len()));
+                    return refused(format!("expected a grid of one to three swept parameters, found {}", more.len()));
                 }
             }
             if sweep.runs > MOST_CELLS {
@@ -85,7 +85,7 @@ impl Chart {
             Some(sweep_points_figure(&name, &caption, &axes, &result))
         };
         let figure = figure.ok_or_else(|| {
-            JobError::new(ErrorKind::Report, "expected one row a run, found others", None).of(table.display())
+            JobError::new(ErrorKind::Report, "expected one row per run, found others", None).of(table.display())
         })?;
         picture(&self.path, &figure)
     }

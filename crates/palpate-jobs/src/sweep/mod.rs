@@ -29,22 +29,22 @@ use crate::{JobError, Outcome};
 use chart::Chart;
 use rows::refusals;
 
-/// Simulate a protocol for many values of its numbers, to one table.
+/// Simulate a protocol for many values of its parameters and write one table.
 ///
-/// It reads the protocol, and writes the table, the figure and, until the table is whole, its finished parts beside it.
+/// It reads the protocol, and writes the table, the figure and, until the table is complete, its finished parts beside it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct Sweep {
-    /// Which result the figure shows, by the name of its column.
+    /// Result to draw in the figure, by the name of its column.
     #[cfg_attr(feature = "clap", arg(
         long, value_name = "COLUMN", default_value_t = Sweep::default().show, requires = "figure",
     ))]
     pub show: String,
-    /// How many runs at once; all processors if not given. The table is the same for any number.
+    /// Number of runs in parallel; all processors if not given. The table does not depend on it.
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub threads: Option<NonZeroUsize>,
-    /// Compute all runs again, whatever was computed before.
+    /// Compute all runs again, and ignore earlier results.
     #[cfg_attr(feature = "clap", arg(long))]
     pub restart: bool,
 }
@@ -101,8 +101,8 @@ impl Sweep {
         let first = first.map(|(run, reason)| format!("{refused} of {runs} runs refused, first run {run}: {reason}"));
         let before = match computed_before {
             0 => String::new(),
-            all if all == runs => ", all of them computed before".to_owned(),
-            some => format!(", {some} of them computed before"),
+            all if all == runs => ", all computed before".to_owned(),
+            some => format!(", {some} computed before"),
         };
         let seconds = started.elapsed().as_secs_f64();
         let done = format!("{}: {runs} runs in {seconds:.1} s{before}", out.display());
@@ -129,7 +129,7 @@ impl Sweep {
         }
         if !self.restart && found.is_some_and(|found| found != digest) {
             return Err(JobError::option(
-                "expected parts of this sweep, found those of another: the protocol or palpate changed since",
+                "expected parts of this sweep, found those of another: the protocol or the version of palpate has changed",
                 "compute all runs with ⟨restart⟩, or name another table with ⟨out⟩",
             )
             .of(folder.display()));

@@ -33,7 +33,7 @@ const WHOLE_RUN: [OfRun; 12] = [
     ("strain_end", "Strain at the end", "", |run| Some(run.strain)),
     ("excess_strain_end", "Excess strain at the end", "", |run| Some(run.excess_strain)),
     ("work_j", "Work of the jaw", "J", |run| Some(run.work)),
-    ("given_back_j", "Work given back", "J", |run| Some(run.given_back)),
+    ("given_back_j", "Recovered work", "J", |run| Some(run.given_back)),
     ("stored_j", "Energy stored", "J", |run| run.stored),
     ("lost_j", "Energy lost", "J", |run| run.lost),
     ("contact_lost_s", "Contact lost", "s", contact_lost),

@@ -19,21 +19,21 @@ pub use holds::{Event, HoldSeen};
 use crate::{ErrorKind, JobError, Outcome};
 use holds::Holds;
 
-/// Watch a recorded log as if it came in live.
+/// Replay a recorded log as if live.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct WatchLog {
-    /// Exponent of the law where no material says it, from 1 to 30.
+    /// Exponent of the law if no material is given, from 1 to 30.
     pub exponent: f64,
-    /// Standard error of that exponent; intervals are as much wider.
+    /// Standard error of that exponent, which the intervals include.
     pub exponent_standard_error: f64,
-    /// Normal force at which what is held slips.
+    /// Normal force below which the held object slips.
     pub slip_force_n: Option<f64>,
-    /// How long before slip to warn.
+    /// Time before the predicted slip at which to warn.
     pub warn_before_s: f64,
     /// Coverage of the intervals, between 0 and 1.
     pub confidence: f64,
-    /// Time of the log between two observations that are reported.
+    /// Interval of log time between two reported observations.
     pub every_s: f64,
 }
 

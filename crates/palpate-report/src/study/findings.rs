@@ -229,7 +229,7 @@ mod tests {
         let told = gather(Severity::Info, &low, all, MOST_LINES).told();
         assert_eq!(
             told.seen,
-            "Holds 2, 3: the exponents 2, 3 fit equally well.\nHolds 6, 10: the exponents 5, 7 fit equally well."
+            "Holds 2, 3: the exponents 2, 3 are not distinguishable.\nHolds 6, 10: the exponents 5, 7 are not distinguishable."
         );
     }
 

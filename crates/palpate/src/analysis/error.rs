@@ -22,7 +22,7 @@ pub enum AnalysisError {
     Specimen(#[from] SpecimenError),
     /// The jaw goes further than the body is deep.
     #[error(
-        "sample {sample} (t = {time} s) is {:.4} mm beyond first touch, the {limit_name} allows less than {:.4} mm", 1e3 * found, 1e3 * limit
+        "sample {sample} (t = {time} s) is {:.4} mm beyond first touch; the limit of the {limit_name} is {:.4} mm", 1e3 * found, 1e3 * limit
     )]
     BeyondBody {
         /// Number of the sample, from 1.
@@ -37,7 +37,7 @@ pub enum AnalysisError {
         limit_name: &'static str,
     },
     /// A first touch that the jaw does not reach.
-    #[error("first touch is given at {:.4} mm, the jaw goes no farther than {:.4} mm", 1e3 * asked, 1e3 * farthest)]
+    #[error("first touch is given at {:.4} mm; the largest displacement of the jaw is {:.4} mm", 1e3 * asked, 1e3 * farthest)]
     TouchBeyond {
         /// What was given, m.
         asked: f64,
@@ -70,7 +70,7 @@ impl AnalysisError {
                     .to_owned()
             }
             Self::TouchBeyond { .. } => {
-                "displacements count compression as positive, from the zero of the column; leave touch out to have it found".to_owned()
+                "compression is positive, measured from the zero of the column; omit touch to have it estimated".to_owned()
             }
             Self::NothingToFit { hint, .. } => (*hint).to_owned(),
         }
@@ -79,7 +79,7 @@ impl AnalysisError {
 
 fn none_of(holds: usize) -> String {
     match holds {
-        1 => "the hold that was found cannot be fitted".to_owned(),
+        1 => "the detected hold cannot be fitted".to_owned(),
         _ => format!("none of the {holds} holds can be fitted"),
     }
 }

@@ -1,4 +1,4 @@
-//! What the user should know; `told.rs` has the words, a row for each finding.
+//! Findings of an analysis; `told.rs` has their texts, one row each.
 
 mod told;
 
@@ -9,60 +9,60 @@ use crate::laws::Law;
 use crate::record::Column;
 use crate::segment::{Ripple, Rupture, TouchMethod};
 
-/// How much a finding matters.
+/// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Severity {
-    /// Good to know.
+    /// Information; no action is needed.
     Info,
-    /// Read the numbers with care.
+    /// The results need care.
     Caution,
-    /// A number is missing or must not be used.
+    /// A result is missing or must not be used.
     Warning,
 }
 
-/// Something suspicious but usable. Each has a stable code; the words may change.
+/// An observation that affects the use of the results. Each has a stable code; the text may change.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "code", rename_all = "snake_case")]
 pub enum Finding {
-    /// The fitted equilibrium lies well beyond what the hold reached.
+    /// The fitted equilibrium lies well beyond the end of the hold.
     EquilibriumExtrapolated {
         /// Share of the fitted relaxation that lies beyond the end of the hold.
         beyond: f64,
     },
     /// The data do not determine the exponent.
     ExponentUndetermined {
-        /// What the free fit says, if it ended well.
+        /// Interval of the free exponent, if the fit converged.
         interval: Option<(f64, f64)>,
     },
-    /// Several listed exponents fit equally well.
+    /// Several listed exponents are not distinguishable.
     ExponentsAlike {
         /// Those exponents.
         exponents: Vec<f64>,
     },
-    /// The fit ended at the edge of its range.
+    /// The relative rate of a fit is at its bound.
     RateAtBound {
         /// The exponent of that fit.
         exponent: f64,
     },
-    /// Laws of the comparison ended at the edge of their range.
+    /// Laws of the comparison have a parameter at its bound.
     ParametersAtBound {
         /// Those laws.
         laws: Vec<Law>,
     },
-    /// Exponent and equilibrium go together.
+    /// The estimates of exponent and equilibrium are strongly correlated.
     ExponentConfounded {
         /// Correlation of their estimates.
         correlation: f64,
     },
-    /// Terms of a series are none.
+    /// Terms of a series are redundant.
     TermsIndistinguishable {
         /// Those laws.
         laws: Vec<Law>,
     },
-    /// Several laws do equally well.
+    /// Several laws are not distinguishable.
     LawsIndistinguishable {
-        /// Those laws, the one with the fewest numbers first.
+        /// Those laws, the one with the fewest parameters first.
         laws: Vec<Law>,
     },
     /// The force rises again in a hold after loading.
@@ -72,7 +72,7 @@ pub enum Finding {
         /// How far it fell before, N.
         fall: f64,
     },
-    /// The jaw moves in the hold while the force stands still.
+    /// The jaw moves in the hold while the force is constant.
     FeedbackControlled {
         /// How far it moves, m.
         travel: f64,
@@ -86,16 +86,16 @@ pub enum Finding {
         /// How much the force changes, N.
         change: f64,
     },
-    /// The body broke while it was loaded.
+    /// The body ruptured during loading.
     Ruptured(Rupture),
-    /// Residuals of neighbouring samples go together.
+    /// Residuals of neighbouring samples are correlated.
     ResidualsCorrelated {
         /// Their correlation.
         correlation: f64,
-        /// Samples that count as independent.
+        /// Equivalent number of independent samples.
         independent: f64,
     },
-    /// The signal does not change in the hold as far as its noise lets one see.
+    /// The change of the signal in the hold does not exceed its noise.
     NoRelaxation {
         /// Change, in the unit of the force.
         change: f64,
@@ -116,24 +116,24 @@ pub enum Finding {
     },
     /// The jaw had left the body when the hold began.
     ContactOpen {
-        /// Time at which they met again, s.
+        /// Time at which contact returns, s.
         until: f64,
     },
     /// No contact area at this displacement, hence no strain.
     NoContactArea,
-    /// More samples than are fitted.
+    /// The hold has more samples than the fit uses.
     Thinned {
         /// One in this many is fitted.
         every: usize,
     },
-    /// Dropouts of a single row.
+    /// Single rows were outliers and were replaced.
     DropoutsRepaired {
         /// Of which column.
         column: Column,
         /// How many.
         count: usize,
     },
-    /// Single rows of the force that leave their neighbours and come back, and were left as they are.
+    /// Single rows of the force are outliers; they were kept.
     RowsStray {
         /// How many.
         count: usize,
@@ -142,7 +142,7 @@ pub enum Finding {
         /// Force there, N.
         force: f64,
     },
-    /// The file is so long that successive rows became their mean.
+    /// The file exceeds the row limit: successive rows were averaged.
     RowsAveraged {
         /// Rows of the file.
         rows: usize,
@@ -151,14 +151,14 @@ pub enum Finding {
     },
     /// The record is one of stress, and no section was given.
     StressAsForce,
-    /// Rows with one time stamp.
+    /// Rows with the same time stamp were merged.
     StampsMerged {
         /// Rows before.
         rows: usize,
-        /// Rows that went.
+        /// Rows removed.
         merged: usize,
     },
-    /// Rows that were written too late.
+    /// Rows were out of order and were sorted by time.
     StampsSorted {
         /// How many.
         rows: usize,
@@ -174,7 +174,7 @@ pub enum Finding {
         /// When it begins, s.
         from: f64,
     },
-    /// A column stands at its extreme value while the other goes on, or loses its noise there.
+    /// A column is at its extreme value while the other continues, or loses its noise there.
     Saturated {
         /// Which.
         column: Column,
@@ -185,14 +185,14 @@ pub enum Finding {
         /// Numbers of the holds with such rows, from 1.
         holds: Vec<usize>,
     },
-    /// A column has few levels, and its noise does not smooth them.
+    /// A column moves in steps that its noise does not smooth.
     Quantised {
         /// Which.
         column: Column,
         /// Step between the levels, m or N.
         step: f64,
     },
-    /// No displacement column: phases come from the force.
+    /// No displacement column: phases are derived from the force.
     PhasesFromForce,
     /// The jaw travelled through air first.
     AirTravel {
@@ -201,7 +201,7 @@ pub enum Finding {
     },
     /// The modulus was not given.
     ModulusEstimated {
-        /// What the equilibrium forces say, Pa.
+        /// Modulus implied by the equilibrium forces, Pa.
         modulus: f64,
         /// Its standard error, Pa.
         standard_error: Option<f64>,
@@ -213,11 +213,11 @@ pub enum Finding {
         /// Implied by the equilibrium forces, Pa.
         implied: f64,
     },
-    /// First touch is known less well than the fits.
+    /// First touch is less certain than the fits.
     TouchUncertain {
         /// Standard error of first touch, m of jaw travel.
         error: f64,
-        /// The hold whose equilibrium strain suffers most.
+        /// The hold whose equilibrium strain is affected most.
         hold: usize,
         /// By how much that error moves its equilibrium strain, as a share of it.
         shift: f64,
@@ -226,12 +226,12 @@ pub enum Finding {
     },
     /// The rules for first touch disagree.
     TouchSpread {
-        /// Robust standard deviation of what they say, m.
+        /// Robust standard deviation of their displacements, m.
         spread: f64,
         /// Largest displacement since first touch, m.
         squeeze: f64,
     },
-    /// The rule that was asked for finds no first touch.
+    /// The requested rule finds no first touch.
     TouchNotFound {
         /// The rule.
         method: TouchMethod,
@@ -243,30 +243,30 @@ pub enum Finding {
         /// Its standard error, s.
         standard_error: f64,
     },
-    /// A skew was to be found, and could not be told.
+    /// The skew of the clocks was requested and is not determined.
     ClocksOpen {
-        /// What the edges say with its standard error, s; `None` where too few show in both columns.
+        /// Skew from the edges of ramps with its standard error, s; `None` where too few appear in both columns.
         skew: Option<(f64, f64)>,
     },
-    /// The jaw swings about the places that it holds.
+    /// The jaw oscillates about the positions it holds.
     JawHunts(Ripple),
-    /// The loading curve puts first touch far from where all other rules do.
+    /// First touch of the loading curve is far from that of all other rules.
     TouchApart {
-        /// How far behind (above 0) or before the middle of the others, m.
+        /// Distance behind (positive) or before the median of the others, m.
         apart: f64,
         /// The largest squeeze, m.
         squeeze: f64,
     },
-    /// A column seems to count the other way round.
+    /// A column seems to have the opposite sign.
     SignSuspicious {
         /// `displacement` or `force`.
         column: String,
         /// How far it goes below its start, m or N.
         fall: f64,
     },
-    /// v is not known to be one number for all holds after loading.
+    /// The holds after loading do not establish one common v.
     RateCoefficientTrend {
-        /// Whether it falls, rises, or neither can be told.
+        /// Whether v falls, rises, or is undecided.
         verdict: TrendVerdict,
         /// Holds.
         holds: usize,
@@ -275,7 +275,7 @@ pub enum Finding {
         /// Its confidence interval.
         interval: (f64, f64),
     },
-    /// The simulated record is not the measured one.
+    /// The simulated record differs from the measured one.
     OverlayPoor {
         /// Root mean square of the difference as a share of the largest force.
         relative: f64,
@@ -294,25 +294,25 @@ impl Finding {
         self.told().0
     }
 
-    /// How much it matters.
+    /// Severity.
     #[must_use]
     pub fn severity(&self) -> Severity {
         self.told().1
     }
 
-    /// What was seen.
+    /// The observation.
     #[must_use]
     pub fn seen(&self) -> String {
         self.told().2
     }
 
-    /// What it may mean.
+    /// Its possible meaning.
     #[must_use]
     pub fn meaning(&self) -> &'static str {
         self.told().3
     }
 
-    /// What helps; options stand between `⟨` and `⟩`, to be written as users of a program write them.
+    /// The remedy; options stand between `⟨` and `⟩`, for each interface to spell.
     #[must_use]
     pub fn remedy(&self) -> &'static str {
         self.told().4

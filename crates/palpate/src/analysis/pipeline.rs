@@ -199,7 +199,7 @@ fn nothing_to_fit(holds: &[HoldAnalysis]) -> Result<(), AnalysisError> {
     let (reason, hint) = if let Some(hold) = late {
         let left = hold.segment.end - hold.segment.fit_start;
         (
-            format!("the fit starts so late that it leaves {left} of the {} samples of a hold", hold.segment.len()),
+            format!("the fit starts so late that only {left} of the {} samples of a hold remain", hold.segment.len()),
             "start the fit earlier: hold_start = \"settled\", or a shorter time after the peak",
         )
     } else if let Some((_, held)) = with("feedback_controlled") {
@@ -211,21 +211,21 @@ fn nothing_to_fit(holds: &[HoldAnalysis]) -> Result<(), AnalysisError> {
         if hold.fitted < hold.times.len() && hold.times.len() >= needed {
             (format!("{seen} (up to the time set with until)"), "raise until (⟨fit_until⟩)")
         } else {
-            (seen, "hold longer or sample faster; `palpate inspect` shows the phases that were found")
+            (seen, "hold longer or sample faster; `palpate inspect` shows the detected phases")
         }
     } else if let Some((_, area)) = with("no_contact_area") {
         (area.seen(), "check first touch (touch), the radius, and the unit and sign of the displacement")
     } else if let Some(force) = constant_force(holds) {
-        let reason = format!("the force is {} N throughout: nothing relaxes", significant(force, 4));
-        let hint = "check that the force column is the right one and that the load cell was connected; a body that creeps is for `⟨compare/creep⟩`";
+        let reason = format!("the force is {} N throughout: there is no relaxation", significant(force, 4));
+        let hint = "check the force column and that the load cell was connected; for creep use `⟨compare/creep⟩`";
         (reason, hint)
     } else if let Some((_, still)) = with("no_relaxation") {
         let reason = format!("the force does not change in any hold ({} in the first)", still.seen());
-        (reason, "check the force column and its unit; a body that does not relax has no law to fit")
+        (reason, "check the force column and its unit; without relaxation there is no law to fit")
     } else {
         let seen = findings().next().map(|(_, finding)| finding.seen());
-        let reason = seen.unwrap_or_else(|| "no fit ended".to_owned());
-        (reason, "`palpate inspect` shows the phases that were found")
+        let reason = seen.unwrap_or_else(|| "no fit converged".to_owned());
+        (reason, "`palpate inspect` shows the detected phases")
     };
     Err(AnalysisError::NothingToFit {
         holds: holds.len(),

@@ -56,10 +56,8 @@ impl RateLaw {
     pub(super) fn needs(self) -> Option<&'static str> {
         match self {
             Self::Constant => None,
-            Self::ByStrain => Some("nothing relaxes while the body is squeezed"),
-            Self::ByDirection => {
-                Some("no strain rises to equilibrium, as it does where the jaw has gone back and stands")
-            }
+            Self::ByStrain => Some("the force does not relax under compression"),
+            Self::ByDirection => Some("no strain rises to equilibrium, as it does in a hold after unloading"),
         }
     }
 

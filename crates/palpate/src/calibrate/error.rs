@@ -18,7 +18,7 @@ pub enum CalibrateError {
         forces: usize,
     },
     /// A sample that is NaN or infinite.
-    #[error("times and forces must be finite; those of sample {sample} are not")]
+    #[error("times and forces must be finite; sample {sample} is not")]
     NotFinite {
         /// Which, from 1.
         sample: usize,
@@ -36,7 +36,7 @@ pub enum CalibrateError {
         until: f64,
     },
     /// Too little to fit or to predict.
-    #[error("a calibration up to {at} s has {before} samples before and {after} after it; each part needs 8 at least")]
+    #[error("a calibration up to {at} s has {before} samples before and {after} after it; each part needs at least 8")]
     Split {
         /// The time, s.
         at: f64,
@@ -52,19 +52,19 @@ pub enum CalibrateError {
     #[error("a calibration needs the displacement of the jaw, which the record does not have")]
     NoDisplacement,
     /// A law that no contact is simulated with.
-    #[error("{law} is no law of a whole contact: it describes single holds")]
+    #[error("{law} describes single holds; it is not a law of a whole contact")]
     NotALaw {
         /// Which.
         law: Law,
     },
     /// A rate coefficient that depends on the state, of a law that has none.
-    #[error("{law} has no rate coefficient that could depend on strain or direction")]
+    #[error("{law} has no rate coefficient, so it cannot depend on strain or direction")]
     RateOf {
         /// Which.
         law: Law,
     },
     /// A factor of the rate coefficient that no sample feels.
-    #[error("the record does not show by what factor v differs: {missing}")]
+    #[error("the record does not determine the factor by which v differs: {missing}")]
     FactorUnseen {
         /// What it lacks.
         missing: &'static str,
@@ -76,7 +76,7 @@ pub enum CalibrateError {
         found: f64,
     },
     /// Fewer samples than parameters to find.
-    #[error("{parameters} parameters are to be found, which needs more samples than the {samples} there are")]
+    #[error("estimating {parameters} parameters needs more than the {samples} samples of the record")]
     TooFewSamples {
         /// Samples to fit.
         samples: usize,
@@ -84,7 +84,7 @@ pub enum CalibrateError {
         parameters: usize,
     },
     /// A body that never pushes back.
-    #[error("the force does not rise with the squeeze: no stiffness above 0 N fits the record")]
+    #[error("the force does not rise with the displacement: no positive stiffness fits the record")]
     NoStiffness,
     /// A body that is none, or that the jaw goes through.
     #[error(transparent)]
@@ -113,18 +113,18 @@ impl CalibrateError {
         match self {
             Self::NoGeometry => "describe the body in [specimen] of the test description: shape and size".to_owned(),
             Self::NoDisplacement => {
-                "name the column of the displacement in [columns]; without it holds alone can be fitted, each by itself"
-                    .to_owned()
+                "name the displacement column in [columns]; without it palpate can only fit single holds".to_owned()
             }
             Self::NotALaw { .. } => {
-                "laws of a whole contact are latency, latency:N, standard-linear-solid, prony:K and fung:K".to_owned()
+                "the laws of a whole contact are latency, latency:N, standard-linear-solid, prony:K and fung:K"
+                    .to_owned()
             }
-            Self::RateOf { .. } => "leave the dependence of v out, or ask for the law latency".to_owned(),
-            Self::FactorUnseen { .. } => "calibrate with a constant rate coefficient, or on a longer record".to_owned(),
-            Self::Split { .. } => "choose a time inside the record".to_owned(),
-            Self::NoStiffness => "check the signs of force and displacement, and which of them is loading".to_owned(),
+            Self::RateOf { .. } => "omit the dependence of v, or use the law latency".to_owned(),
+            Self::FactorUnseen { .. } => "use a constant rate coefficient, or calibrate on a longer record".to_owned(),
+            Self::Split { .. } => "choose a time within the record".to_owned(),
+            Self::NoStiffness => "check the signs of force and displacement".to_owned(),
             Self::Specimen(_) => "check the geometry in the test description and its units".to_owned(),
-            Self::Equilibrium(_) => "ask for another equilibrium law: uniform-strain, hertz or table".to_owned(),
+            Self::Equilibrium(_) => "use another equilibrium law: uniform-strain, hertz or table".to_owned(),
             Self::Analysis(error) => error.hint(),
             _ => String::new(),
         }

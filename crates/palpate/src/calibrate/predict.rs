@@ -50,13 +50,13 @@ impl std::fmt::Display for Extrapolation {
         match *self {
             Self::LongerHold { requested, tested } => write!(
                 f,
-                "the longest hold lasts {} s, that of the test {} s: forces after that rest on the law alone",
+                "the longest hold lasts {} s, that of the test {} s: later forces are extrapolated by the law",
                 digits(requested),
                 digits(tested)
             ),
             Self::DeeperSqueeze { requested, tested } => write!(
                 f,
-                "the deepest squeeze is {} mm, that of the test {} mm: the equilibrium force beyond rests on its law alone",
+                "the largest displacement is {} mm, that of the test {} mm: the equilibrium force beyond it is extrapolated",
                 digits(1e3 * requested),
                 digits(1e3 * tested)
             ),
@@ -69,7 +69,7 @@ impl std::fmt::Display for Extrapolation {
             Self::LargerForce { requested, tested } => {
                 write!(
                     f,
-                    "the largest force is {} N, that of the test {} N: the equilibrium force beyond rests on its law alone",
+                    "the largest force is {} N, that of the test {} N: the equilibrium force beyond it is extrapolated",
                     digits(requested),
                     digits(tested)
                 )
@@ -77,7 +77,7 @@ impl std::fmt::Display for Extrapolation {
             Self::ForceHeld => {
                 write!(
                     f,
-                    "the force is held, while the test held the displacement: creep is predicted by the law and was not observed"
+                    "the protocol holds the force, the test held the displacement: the law predicts creep that was not observed"
                 )
             }
         }

@@ -43,13 +43,13 @@ pub enum EquilibriumError {
         found: f64,
     },
     /// Hertz's law for a body that is not round.
-    #[error("Hertz's law needs a ball or a pad: the radius of its contact comes from theirs")]
+    #[error("Hertz's law needs a ball or a pad, whose radius determines that of the contact")]
     NotRound,
     /// A table whose rows make no law.
     #[error("table of equilibrium forces, {0}")]
     Table(#[from] CurveError),
     /// A force where nothing touches.
-    #[error("table of equilibrium forces, row 1: the force at first touch is 0 N, found {found} N")]
+    #[error("table of equilibrium forces, row 1: the force at first touch must be 0 N, found {found} N")]
     Touch {
         /// What was given, N.
         found: f64,

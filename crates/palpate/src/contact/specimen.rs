@@ -49,9 +49,7 @@ pub enum SpecimenError {
         found: f64,
     },
     /// A body whose contact grows, pulled away beyond the first touch while bonded to the jaw.
-    #[error(
-        "a body whose contact grows has none beyond first touch: contact displacement must be 0 m or more, found {found} m"
-    )]
+    #[error("contact displacement must be 0 m or more where the contact area grows with it, found {found} m")]
     PulledOff {
         /// The contact displacement asked for, in m.
         found: f64,

@@ -33,7 +33,7 @@ pub enum FitError {
         found: f64,
     },
     /// A law that says nothing about what was measured.
-    #[error("the law {law} has no form for {}", match response { Response::Relaxation => "relaxation", Response::Creep => "creep" })]
+    #[error("the law {law} does not describe {}", match response { Response::Relaxation => "relaxation", Response::Creep => "creep" })]
     NoForm {
         /// The law.
         law: Law,
@@ -49,7 +49,7 @@ pub enum FitError {
         known: String,
     },
     /// A parameter held at a value it cannot have.
-    #[error("{name} cannot be held at {found}")]
+    #[error("{name} cannot be fixed at {found}")]
     FixedParameter {
         /// Which.
         name: String,
@@ -57,7 +57,7 @@ pub enum FitError {
         found: f64,
     },
     /// An amplitude that is to be held.
-    #[error("{name} cannot be held, only {held}; give it bounds instead")]
+    #[error("{name} cannot be fixed, only {held}; give it bounds instead")]
     HeldAmplitude {
         /// Which.
         name: String,
@@ -65,7 +65,7 @@ pub enum FitError {
         held: String,
     },
     /// Bounds that leave nothing between them.
-    #[error("the bounds of {name} must rise and leave room for what a hold can show, found {low} to {high}")]
+    #[error("the bounds of {name} must rise and overlap the range that a hold determines, found {low} to {high}")]
     Bounds {
         /// Which parameter.
         name: String,
@@ -85,13 +85,13 @@ pub enum FitError {
         found: f64,
     },
     /// Times that do not rise.
-    #[error("times must rise, sample {index} does not")]
+    #[error("times must rise; sample {index} does not")]
     TimeNotRising {
         /// Which sample.
         index: usize,
     },
     /// All values are the same: nothing relaxes.
-    #[error("all {samples} samples have the value {value}: nothing relaxes")]
+    #[error("all {samples} samples have the value {value}: there is no relaxation")]
     Constant {
         /// The value.
         value: f64,
@@ -105,10 +105,10 @@ pub enum FitError {
         found: f64,
     },
     /// Values or times that span more than double precision can hold.
-    #[error("the samples span more than double precision holds")]
+    #[error("the samples exceed the range of double precision")]
     OutOfRange,
     /// A range of exponents that is none.
-    #[error("the range of n must run upwards from a number above 0, found {low} to {high}")]
+    #[error("the range of n must rise from a value above 0, found {low} to {high}")]
     ExponentRange {
         /// Lower end.
         low: f64,
@@ -122,7 +122,7 @@ pub enum FitError {
         found: f64,
     },
     /// A square root of a weight that is not a finite number of zero or more.
-    #[error("weight {index} is not a finite number of zero or more")]
+    #[error("weight {index} must be a finite number of 0 or more")]
     Weight {
         /// Which sample.
         index: usize,
@@ -150,19 +150,19 @@ pub enum FitError {
         found: usize,
     },
     /// A joint fit of holds that share no parameter.
-    #[error("the law {law} has no parameter that holds could share")]
+    #[error("the law {law} has no parameter that holds can share")]
     NothingShared {
         /// The law.
         law: Law,
     },
     /// Samples with deviations beside samples without cannot be weighed against each other.
-    #[error("all holds of a joint fit must have standard deviations, or none; hold {hold} has none")]
+    #[error("either all holds of a joint fit or no hold must have standard deviations; hold {hold} has none")]
     DeviationsOfSome {
         /// Number of the first hold without, from 1.
         hold: usize,
     },
     /// No parameter of the law brings the rates nearer than zero does: they point away from every equilibrium.
-    #[error("the strain rates do not point towards any equilibrium strain")]
+    #[error("the strain rates do not indicate an equilibrium strain")]
     NoDecay,
     /// The watch ended it.
     #[error(transparent)]

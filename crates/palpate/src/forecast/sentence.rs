@@ -34,7 +34,7 @@ impl Comparison {
         match self.ranking {
             Ranking::Forward => text.push_str(&self.predicted(verdict)),
             Ranking::Information => text.push_str(
-                ". The hold is too short, or changes too little, to tell what a law predicts: laws are ranked by how closely they fit for their parameters (BIC)",
+                ". The hold is too short, or changes too little, for held-out errors: laws are ranked by the BIC",
             ),
         }
         let rest: Vec<String> =

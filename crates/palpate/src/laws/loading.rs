@@ -53,25 +53,25 @@ pub enum LoadingError {
         found: usize,
     },
     /// NaN or infinity.
-    #[error("sample {index} of the loading is not a finite number")]
+    #[error("sample {index} of the loading must be a finite number")]
     NotFinite {
         /// Which sample.
         index: usize,
     },
     /// Times that do not rise.
-    #[error("times of the loading must rise, sample {index} does not")]
+    #[error("times of the loading must rise; sample {index} does not")]
     TimeNotRising {
         /// Which sample.
         index: usize,
     },
     /// It ends where it began.
-    #[error("the loading ends at {value}, where it began: nothing was imposed")]
+    #[error("the loading starts and ends at {value}: it imposes no change")]
     Unchanged {
         /// First and last value.
         value: f64,
     },
     /// A time to load in that is none.
-    #[error("a ramp must take a time above 0 s, found {found} s")]
+    #[error("the duration of a ramp must be above 0 s, found {found} s")]
     Duration {
         /// What was given.
         found: f64,

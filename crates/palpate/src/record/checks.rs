@@ -35,7 +35,7 @@ pub enum RecordError {
     },
     /// A number that no sensor measures.
     #[error(
-        "{column} must be a measured number, found {found:e} in row {row}, which instruments write where they have none"
+        "{column} must be a measured value, found {found:e} in row {row}, which instruments write for a missing value"
     )]
     NoMeasurement {
         /// Which column.
@@ -65,7 +65,8 @@ pub enum RecordError {
     },
     /// More than a slip of a buffer: nothing says which stamps are right.
     #[error(
-        "time must rise from row to row, found a clock that goes back by up to {largest} s ({late} of {rows} rows are stamped earlier than one before them), first to {found} s after {before} s in row {row}"
+        "time must rise from row to row, found a clock that steps back by up to {largest} s ({late} of {rows} rows are earlier \
+         than a preceding row), first to {found} s after {before} s in row {row}"
     )]
     ClockGoesBack {
         /// First row that is stamped earlier than one before it.
@@ -82,7 +83,7 @@ pub enum RecordError {
         largest: f64,
     },
     /// A rate that makes too few rows, or too many.
-    #[error("{rate} samples a second of {duration} s make no record: expected 2 to 100000000 rows")]
+    #[error("{rate} samples per second over {duration} s give no valid record: expected 2 to 100000000 rows")]
     Rate {
         /// Samples a second, Hz.
         rate: f64,
@@ -90,7 +91,7 @@ pub enum RecordError {
         duration: f64,
     },
     /// A force that the table of a machine's compliance does not reach.
-    #[error("the force must lie in the table of compliance, {low} to {high} N, found {found} N in row {row}")]
+    #[error("the force must lie within the table of compliance, {low} to {high} N, found {found} N in row {row}")]
     OutsideTable {
         /// Which row.
         row: usize,
@@ -103,7 +104,7 @@ pub enum RecordError {
     },
     /// An air run that is not the same motion.
     #[error(
-        "the air run must be the same motion: at {time} s the jaw has gone {} mm, in the air run {} mm",
+        "the air run must repeat the motion: at {time} s the jaw has moved {} mm, in the air run {} mm",
         significant(1e3 * expected, 4),
         significant(1e3 * found, 4)
     )]
@@ -124,7 +125,7 @@ pub enum RecordError {
         needed: f64,
     },
     /// Nothing shows the force without contact.
-    #[error("a baseline needs {needed} samples without contact or more, found {found}")]
+    #[error("a baseline needs {needed} or more samples without contact, found {found}")]
     NoBaseline {
         /// Least number.
         needed: usize,
@@ -132,7 +133,7 @@ pub enum RecordError {
         found: usize,
     },
     /// A force that never changes says nothing about relaxation.
-    #[error("the force is {found} N in all {rows} rows: nothing relaxes")]
+    #[error("the force is {found} N in all {rows} rows: there is no relaxation")]
     ConstantForce {
         /// The one value, N.
         found: f64,
@@ -141,7 +142,7 @@ pub enum RecordError {
     },
     /// Two clocks that share no time.
     #[error(
-        "displacement ({displacement_from} to {displacement_until} s) and force ({force_from} to {force_until} s) share no time"
+        "displacement ({displacement_from} to {displacement_until} s) and force ({force_from} to {force_until} s) do not overlap in time"
     )]
     ClocksApart {
         /// First time stamp of the displacement, s.
@@ -173,38 +174,35 @@ impl RecordError {
     #[must_use]
     pub fn hint(&self) -> &'static str {
         match self {
-            Self::Lengths { .. } => "give every column the same number of rows",
-            Self::TooShort { .. } => "check that the whole table was exported, and that the right table was read",
+            Self::Lengths { .. } => "give all columns the same number of rows",
+            Self::TooShort { .. } => "check that the whole table was exported and that the right table is read",
             Self::NotFinite { .. } | Self::NoMeasurement { .. } => {
                 "remove the row, or export the record again without gaps"
             }
-            Self::ClockStands { .. } => "choose the column that holds the time, or write the time with more digits",
-            Self::TimeNotRising { .. } => {
-                "sort the rows by time and drop repeated stamps, or check that the time column is the right one"
-            }
+            Self::ClockStands { .. } => "choose the time column, or write the time with more digits",
+            Self::TimeNotRising { .. } => "sort the rows by time and drop repeated stamps, or check the time column",
             Self::ClockGoesBack { largest, .. } if (80_000.0..86_400.5).contains(largest) => {
-                "the test ran over midnight: export dates with the times of day, or seconds"
+                "the test ran past midnight: export dates with the times of day, or seconds"
             }
             Self::ClockGoesBack { late, rows, .. } if late + 1 >= *rows => {
-                "the rows stand in reverse order: turn them round, or check that the time column is the right one"
+                "the rows are in reverse order: reverse them, or check the time column"
             }
             Self::ClockGoesBack { .. } => {
-                "where the clock starts again, several runs stand in one file: split it there; else check that the time column is the right one"
+                "if the clock restarts, the file holds several runs: split it there; otherwise check the time column"
             }
-            Self::Rate { .. } => "resample at a rate between that of the record and one sample a second or so",
+            Self::Rate { .. } => "resample at a rate between about one sample per second and the rate of the record",
             Self::OutsideTable { .. } => {
-                "measure the compliance over all forces of the test, take the zero off the force, or give one number for it"
+                "measure the compliance over all forces of the test, tare the force, or give a constant compliance"
             }
             Self::AirRunDiffers { .. } | Self::AirRunShort { .. } => {
-                "record the air run with the program of the test, from its start to its end"
+                "record the air run with the complete program of the test"
             }
-            Self::NoBaseline { .. } => {
-                "say from when to when there is no contact (baseline_window), or leave the baseline out"
-            }
+            Self::NoBaseline { .. } => "give a time window without contact (baseline_window), or omit the baseline",
             Self::ConstantForce { .. } => {
-                "check that the force column is the right one and that the load cell was connected; a body that creeps under a constant force needs a column of displacement (of a strain, say the length it stands for: travel_per_unit)"
+                "check the force column and that the load cell was connected; creep under constant force needs a \
+                 displacement column (for a strain, give travel_per_unit)"
             }
-            Self::ClocksApart { .. } => "check the units and the columns of the two clocks",
+            Self::ClocksApart { .. } => "check units and columns of the two clocks",
         }
     }
 }

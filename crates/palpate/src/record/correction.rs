@@ -165,7 +165,7 @@ impl fmt::Display for Correction {
         match self {
             Self::StampsSorted { clock, rows, largest } => {
                 let late = significant(*largest, 3);
-                write!(f, "{clock}: {} that came up to {late} s late put into order", counted(*rows, "row"))
+                write!(f, "{clock}: {} up to {late} s late sorted by time", counted(*rows, "row"))
             }
             Self::StampsMerged {
                 clock,
@@ -177,9 +177,9 @@ impl fmt::Display for Correction {
                 "{clock}: {merged} of {rows} rows merged with the row of the same stamp ({identical} identical)"
             ),
             Self::RowsAveraged { rows, averaged } => {
-                write!(f, "{rows} rows of the file averaged as they were read, {averaged} to a sample")
+                write!(f, "{rows} rows of the file averaged while reading, {averaged} per sample")
             }
-            Self::StressAsForce => f.write_str("stress taken for the force on 1 m²: N stands for Pa"),
+            Self::StressAsForce => f.write_str("stress read as the force on 1 m²: N stands for Pa"),
             Self::ClocksJoined { left_out } => {
                 let left_out = counted(*left_out, "row");
                 write!(f, "displacement interpolated at the times of the force, {left_out} of the force left out")
@@ -191,12 +191,12 @@ impl fmt::Display for Correction {
             }
             Self::Tared(tare) => {
                 let (displacement, force) = (significant(1e3 * tare.displacement, 4), significant(tare.force, 4));
-                write!(f, "counted from first touch at {displacement} mm and {force} N")
+                write!(f, "measured from first touch at {displacement} mm and {force} N")
             }
             Self::AirRunSubtracted => f.write_str("force of the air run subtracted"),
             Self::SkewRemoved { skew, left_out, .. } => {
                 let (moved, left_out) = (significant(1e3 * skew, 4), counted(*left_out, "row"));
-                write!(f, "force moved by {moved} ms towards earlier times, {left_out} left out")
+                write!(f, "force shifted by {moved} ms towards earlier times, {left_out} left out")
             }
             Self::Resampled {
                 rate,
@@ -207,10 +207,14 @@ impl fmt::Display for Correction {
                 write!(f, "resampled to {rate} Hz by {how}, from a sample every {} s", significant(*interval, 3))
             }
             Self::ComplianceRemoved { largest } => {
-                write!(f, "up to {} µm of the machine taken off the displacement", significant(1e6 * largest, 4))
+                write!(
+                    f,
+                    "up to {} µm of machine compliance subtracted from the displacement",
+                    significant(1e6 * largest, 4)
+                )
             }
             Self::DeflectionRemoved { largest } => {
-                write!(f, "up to {} µm of deflection taken off the displacement", significant(1e6 * largest, 4))
+                write!(f, "up to {} µm of deflection subtracted from the displacement", significant(1e6 * largest, 4))
             }
             Self::BaselineRemoved {
                 baseline,
@@ -223,7 +227,7 @@ impl fmt::Display for Correction {
                     Baseline::Constant => String::new(),
                     Baseline::Sloped => format!(" and {} N/s", significant(*slope, 3)),
                 };
-                write!(f, "baseline of {level} N{slope} taken off the force ({})", counted(*samples, "sample"))
+                write!(f, "baseline of {level} N{slope} subtracted from the force ({})", counted(*samples, "sample"))
             }
         }
     }

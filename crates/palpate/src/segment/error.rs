@@ -16,7 +16,7 @@ pub enum SegmentError {
     },
     /// The displacement (or force) never leaves its noise.
     #[error(
-        "nothing moves: the {column} stays within {}, its noise is {}",
+        "there is no motion: the {column} stays within {}, its noise is {}",
         told(*range, unit),
         told(*noise, unit)
     )]
@@ -44,7 +44,7 @@ pub enum SegmentError {
     },
     /// The jaw stands still only after the body broke.
     #[error(
-        "no hold found: at {} the body broke under {}, and {} are left where the jaw then stands",
+        "no hold found: at {} the body ruptured under {}, and {} remain where the jaw then stops",
         told(.0.time, "s"),
         told(.0.before, "N"),
         told(.0.after, "N")
@@ -52,7 +52,7 @@ pub enum SegmentError {
     Ruptured(Rupture),
     /// A given hold that the record does not contain.
     #[error(
-        "given hold {number} lasts from {from} s to {to} s, the record from {} s to {} s",
+        "given hold {number} is from {from} s to {to} s, the record from {} s to {} s",
         significant(*begin, 6),
         significant(*last, 6)
     )]
@@ -69,7 +69,7 @@ pub enum SegmentError {
         last: f64,
     },
     /// A given hold with hardly a sample.
-    #[error("given hold {number}, from {from} s to {to} s, has {samples} samples, a hold needs {needed}")]
+    #[error("given hold {number}, from {from} s to {to} s, has {samples} samples; a hold needs {needed}")]
     GivenShort {
         /// Which, from 1.
         number: usize,
@@ -98,16 +98,17 @@ impl SegmentError {
     pub fn hint(&self) -> &'static str {
         match self {
             Self::GivenOutside { .. } => {
-                "times count as in the record, which need not begin at 0; `palpate inspect` shows them"
+                "give times on the clock of the record, which need not begin at 0; `palpate inspect` shows them"
             }
-            Self::GivenShort { .. } => "give an end that is later than the start by some samples",
-            Self::GivenOverlap { .. } => "end the earlier hold before the later one begins",
+            Self::GivenShort { .. } => "give an end several samples after the start",
+            Self::GivenOverlap { .. } => "end the earlier hold before the later one starts",
             Self::TooShort { .. } => "check that the whole test was exported",
             Self::NoMotion { .. } => {
-                "check the displacement column and its unit; a record without motion has no relaxation to fit"
+                "check the displacement column and its unit; a record without motion has no relaxation"
             }
             Self::Ruptured(_) => {
-                "what stands after a rupture does not relax; if nothing broke, give the hold by hand ([[phases.hold]] in the test description)"
+                "data after the rupture are not fitted; if nothing broke, give the limits of the hold ([[phases.hold]] in the \
+                 test description)"
             }
             Self::NoHold {
                 samples,
@@ -115,13 +116,14 @@ impl SegmentError {
                 longest,
                 minimum_hold,
             } if samples < minimum_samples && longest >= minimum_hold => {
-                "the hold has too few samples: record faster, or set a shortest hold (⟨minimum_hold⟩), for which 3 samples do"
+                "the hold has too few samples: sample faster, or set the shortest hold (⟨minimum_hold⟩), which then needs 3 samples"
             }
             Self::NoHold { longest: 0.0, .. } => {
-                "a cyclic test has no hold; a tolerance (⟨tolerance⟩) beyond the range of the test hides every ramp: lower it"
+                "a cyclic test has no hold; a tolerance (⟨tolerance⟩) above the range of the test hides every ramp: reduce it"
             }
             Self::NoHold { .. } => {
-                "a cyclic test has no hold; for a short one lower the shortest hold (⟨minimum_hold⟩), for a drifting one raise the tolerance (⟨tolerance⟩)"
+                "a cyclic test has no hold; for short holds reduce the shortest hold (⟨minimum_hold⟩), for drifting \
+                 holds increase the tolerance (⟨tolerance⟩)"
             }
         }
     }
@@ -131,13 +133,13 @@ impl SegmentError {
 fn no_hold((longest, samples): (f64, usize), (minimum, minimum_samples): (f64, usize)) -> String {
     let slowest = format!("{} ({samples} samples)", told(longest, "s"));
     if longest == 0.0 {
-        "it moves all the time, or stands from the start".to_owned()
+        "the jaw always moves, or is at rest from the start".to_owned()
     } else if longest >= minimum && samples >= minimum_samples {
-        format!("where it moves slowest, for {slowest}, it drifts or turns without a stop")
+        format!("at its slowest, for {slowest}, the jaw drifts or reverses without a stop")
     } else {
         let needed = told(minimum, "s");
         format!(
-            "the longest standstill after a ramp lasts {slowest}, a hold needs {needed} and {minimum_samples} samples"
+            "the longest standstill after a ramp lasts {slowest}; a hold needs {needed} and {minimum_samples} samples"
         )
     }
 }

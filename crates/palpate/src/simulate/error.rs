@@ -17,7 +17,7 @@ pub enum SimulateError {
         source: SpecimenError,
     },
     /// A force that no displacement of the body carries.
-    #[error("at t = {time} s no displacement that the body can take carries {force} N")]
+    #[error("at t = {time} s no displacement within the range of the body carries {force} N")]
     Force {
         /// Time, s.
         time: f64,
@@ -39,7 +39,7 @@ pub enum SimulateError {
     },
     /// A force that changes so slowly, or a law so fast, that too many steps would be needed.
     #[error(
-        "the law relaxes too fast beside the change of force at t = {time} s: raise force_rate, or hold the force, whose simulation \
+        "the law relaxes too fast for the change of force at t = {time} s: increase force_rate, or hold the force, whose simulation \
          takes any law"
     )]
     TooStiff {
@@ -48,7 +48,7 @@ pub enum SimulateError {
     },
     /// Layers that relax too fast for all of them to be followed.
     #[error(
-        "the layers relax too fast to be followed from t = {time} s on: ask for the contact alone, whose simulation takes any law, or for \
+        "the layers relax too fast to integrate from t = {time} s: simulate the contact alone, which takes any law, or use \
          fewer layers"
     )]
     StiffLayers {
@@ -65,7 +65,7 @@ pub enum SimulateError {
         time: f64,
     },
     /// A program without a step that takes time.
-    #[error("a program needs a step that takes time, found none")]
+    #[error("a program needs a step of positive duration, found none")]
     EmptyProgram,
     /// A number that makes no step.
     #[error("step {step}: {name} must be finite and, but for a target, above 0 {unit}, found {found} {unit}")]
@@ -80,7 +80,7 @@ pub enum SimulateError {
         found: f64,
     },
     /// A force that a moving jaw never meets.
-    #[error("step {step}: the jaw never meets a force of {target} N: it ends at {most} N")]
+    #[error("step {step}: the jaw never reaches a force of {target} N: it ends at {most} N")]
     Unreachable {
         /// Number of the step, from 1.
         step: usize,
@@ -90,7 +90,7 @@ pub enum SimulateError {
         most: f64,
     },
     /// A force asked for while the jaw is off the body.
-    #[error("step {step}: at t = {time} s the jaw is off the body and can keep no force: move it to a force first")]
+    #[error("step {step}: at t = {time} s the jaw is off the body and cannot hold a force: move it to a force first")]
     NoContact {
         /// Number of the step, from 1.
         step: usize,
@@ -110,7 +110,7 @@ pub enum SimulateError {
         index: usize,
     },
     /// More samples than a trajectory holds.
-    #[error("{found:.3e} samples are asked for, at most {limit:.0e} are made: lower the sample rate")]
+    #[error("{found:.3e} samples exceed the limit of {limit:.0e}: reduce the sample rate")]
     TooManySamples {
         /// How many are asked for.
         found: f64,
@@ -132,7 +132,7 @@ pub enum SimulateError {
         found: f64,
     },
     /// The numbers ran out of the range of doubles.
-    #[error("the simulation left the range of double precision at t = {time} s")]
+    #[error("the simulation exceeds the range of double precision at t = {time} s")]
     OutOfRange {
         /// Time, s.
         time: f64,

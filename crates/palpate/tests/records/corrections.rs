@@ -167,7 +167,7 @@ fn a_record_of_averaged_rows_says_so() {
     let finding = analysis.findings.iter().find(|finding| finding.code() == "rows_averaged").unwrap();
     let seen = finding.seen();
     assert!(
-        seen.contains("40000000 rows") && seen.contains("every 4 ") && seen.contains("10000000 samples"),
+        seen.contains("40000000 rows") && seen.contains("each 4 ") && seen.contains("10000000 samples"),
         "{seen}"
     );
 }

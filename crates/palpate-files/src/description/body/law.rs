@@ -60,7 +60,7 @@ impl LawTable {
             LinearLawError::Order { found } => source.value("law.order", "an order from 0.05 to below 1", &found),
             LinearLawError::Empty => source.missing(format!("law.{}", self.name.numbers()[0]), "one term or more"),
             LinearLawError::NotPositive { term: 0, found, .. } => {
-                let expected = "shares that leave something at rest, less than 1 together";
+                let expected = "shares with a sum below 1";
                 source.value("law.shares", expected, &(1.0 - found))
             }
             error => refused(&error),
@@ -77,7 +77,7 @@ impl LawTable {
                 above("law.unloading_factor", factor).map(|factor| RateDependence::Direction { factor })
             }
             (Some(_), Some(_)) => {
-                let reason = "with strain_factor: v depends on one of them";
+                let reason = "with strain_factor: v depends on only one of them";
                 Err(source.unused("law.unloading_factor", reason, "remove strain_factor or unloading_factor"))
             }
         }

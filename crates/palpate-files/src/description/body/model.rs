@@ -37,7 +37,7 @@ pub(crate) fn model(
         Law::Linear(law, memory) => {
             let given = [("layers", contact.layers.is_some()), ("layer_thickness", contact.layer_thickness.is_some())];
             if let Some((name, _)) = given.iter().find(|(_, given)| *given) {
-                let reason = "with a linear law, whose overshoot is a number of its own";
+                let reason = "with a linear law, whose overshoot is a parameter of its own";
                 return Err(source.unused(format!("contact.{name}"), reason, format!("remove {name}")));
             }
             Ok(Contact::Linear(LinearContact {

@@ -78,7 +78,7 @@ impl SpecimenTable {
         let (key, equilibrium) = self.equilibrium(source)?;
         specimen
             .with_equilibrium(equilibrium)
-            .map_err(|error| source.value(key, "a law that goes with the body", &error))
+            .map_err(|error| source.value(key, "a law that applies to the body", &error))
     }
 
     /// The law of the equilibrium force, and the key that says so.
@@ -88,11 +88,11 @@ impl SpecimenTable {
         match (self.equilibrium, self.poisson_ratio, &self.equilibrium_forces) {
             (Some(_), _, Some(_)) => Err(source.both(measured, named)),
             (None | Some(EquilibriumName::UniformStrain), Some(_), _) => {
-                let reason = "without equilibrium = \"hertz\", the only law that asks for it";
+                let reason = "without equilibrium = \"hertz\", the only law that uses it";
                 Err(source.unused(ratio, reason, "remove poisson_ratio"))
             }
             (Some(EquilibriumName::Hertz), None, _) => {
-                Err(source.missing(ratio, "Poisson's ratio for Hertz's law, 0.5 of a body that keeps its volume"))
+                Err(source.missing(ratio, "Poisson's ratio for Hertz's law, 0.5 for an incompressible body"))
             }
             (Some(EquilibriumName::Hertz), Some(found), None) => {
                 let allowed = |found| (0.0..=0.5).contains(&found);
@@ -118,7 +118,7 @@ impl SpecimenTable {
         ];
         match given.iter().find(|(_, given)| *given) {
             Some((name, _)) => {
-                let reason = "in a test, whose strains are those of force over modulus and area";
+                let reason = "in a test, whose strains are force over modulus and area";
                 Err(source.unused(format!("specimen.{name}"), reason, format!("keep {name} for a protocol")))
             }
             None => Ok(()),

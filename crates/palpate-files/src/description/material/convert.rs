@@ -78,13 +78,13 @@ pub fn parse_material(text: &str, path: &Path) -> Result<MaterialFile, Descripti
         range: range(source, &table.range)?,
     };
     if !material.is_valid() {
-        let expected = format!("the parameters of the law {law}, each above 0, and a covariance with a row for each");
+        let expected = format!("the parameters of the law {law}, each above 0, and a covariance with one row each");
         let names: Vec<&str> = table.parameter.iter().map(|parameter| parameter.name.as_str()).collect();
         return Err(source.value("calibration.parameter", expected, &names.join(", ")));
     }
     if let Some((key, there, here)) = disagreement(&model, &material.contact()) {
         let expected =
-            format!("{here}, the parameter of [calibration]; what was changed by hand is calibrated no more");
+            format!("{here}, the parameter of [calibration]; a value edited by hand is no longer calibrated");
         return Err(source.value(key, expected, &there));
     }
     Ok(MaterialFile {
@@ -105,7 +105,7 @@ fn version(source: &Source<'_>) -> Result<(), DescriptionError> {
     source.refuse(&[DescriptionKind::Test, DescriptionKind::Protocol], DescriptionKind::Material)?;
     let tables: toml::Table = source.tables()?;
     let Some(calibration) = tables.get("calibration") else {
-        let expected = "the table that palpate calibrate writes; a body without it is a protocol's";
+        let expected = "the table that palpate calibrate writes; a body without it belongs in a protocol";
         return Err(source.missing("calibration", expected));
     };
     let key = "calibration.version";
@@ -138,7 +138,7 @@ fn equilibrium(
     if name == of_body {
         return Ok((law, levels));
     }
-    let expected = format!("\"{of_body}\" as in [specimen], what was changed by hand is calibrated no more");
+    let expected = format!("\"{of_body}\" as in [specimen], a value edited by hand is no longer calibrated");
     Err(source.value("calibration.equilibrium", expected, &format!("\"{name}\"")))
 }
 
@@ -240,7 +240,7 @@ fn agrees_with(
 ) -> Result<(), DescriptionError> {
     /// Room for rounding, and for a degree of freedom or few.
     const ROOM: f64 = 0.5;
-    const HAND: &str = "what was changed by hand is calibrated no more";
+    const HAND: &str = "a value edited by hand is no longer calibrated";
     let key = |name: &str| format!("calibration.parameter[{}].{name}", index + 1);
     if let Some(error) = parameter.standard_error.filter(|error| ROOM * error / parameter.value > deviation) {
         let expected = format!("an error of {} at most by the covariance, {HAND}", deviation * parameter.value);

@@ -151,7 +151,7 @@ pub(crate) fn check(source: &Source<'_>, tables: &ProtocolTables) -> Result<Prot
         None => {
             let ends = step_ends(&program, &contact).map_err(|error| {
                 let found = error.in_step(|number| written[number - 1]);
-                source.value("step", "steps that can be simulated", &found)
+                source.value("step", "valid steps of a simulation", &found)
             })?;
             ends.last().map_or(0.0, |end| end.time)
         }

@@ -34,7 +34,7 @@ pub(crate) fn steps(source: &Source<'_>, tables: &[StepTable], model: &Contact) 
             && at == Some(to)
             && let Some(written) = &table.to
         {
-            return Err(source.value(key("to"), "another displacement than before, or a hold", written));
+            return Err(source.value(key("to"), "a displacement different from the previous one, or a hold", written));
         }
         let to = match ramp {
             Some(ProgramStep::Move { to, .. }) => Some(to),
@@ -137,7 +137,7 @@ fn check_displacement(
             let most = limit / specimen.contact_displacement(1.0) * 1e3;
             let why = match limit_name {
                 table if table.contains("table") => format!("the {table}"),
-                _ => "where nothing of the body would be left".to_owned(),
+                _ => "where the body would have no thickness".to_owned(),
             };
             format!("a displacement below {most} mm, {why}")
         }

@@ -193,7 +193,7 @@ pub fn parse_sweep(text: &str, path: &Path) -> Result<Sweep, DescriptionError> {
     sweep(text, path, "sweep", |source, known| {
         let table = table::table(source)?;
         if table.entries.is_empty() {
-            return Err(source.missing("sweep", "a number and its values, such as law.exponent = \"1, 2, 5\""));
+            return Err(source.missing("sweep", "a parameter and its values, such as law.exponent = \"1, 2, 5\""));
         }
         let mut swept: Vec<SweptParameter> = Vec::with_capacity(table.entries.len());
         for entry in &table.entries {
@@ -237,7 +237,7 @@ pub fn parse_runs(text: &str, path: &Path, columns: &[(&str, Vec<f64>)]) -> Resu
                 return Err(unknown(source, path, path, known));
             };
             if values.len() != runs {
-                let expected = format!("{runs} values, as the other numbers have");
+                let expected = format!("{runs} values, as the other parameters have");
                 return Err(source.value(*path, expected, &values.len()));
             }
             let value = |si: &f64| Value::of(*si, format!("{si} {}", si_unit(*dimension)));
@@ -299,7 +299,7 @@ fn swept_parameter(
             return Err(unknown(source, &entry.key, &entry.path, known));
         }
         let accepted: Vec<&str> = known.iter().map(|(path, _)| path.as_str()).collect();
-        let expected = format!("a number of the protocol ({})", accepted.join(", "));
+        let expected = format!("a parameter of the protocol ({})", accepted.join(", "));
         return Err(source.value(&entry.key, expected, &format!("{}, which is none", entry.path)));
     };
     let (values, found) = match &entry.written {
@@ -318,7 +318,7 @@ fn swept_parameter(
     {
         let expected = match method {
             Method::Grid => "the number of values after a comma, as in \"log 1e3..1e6 /s, 50\"",
-            Method::LatinHypercube => "a range without a number of values: a latin hypercube has samples of its own",
+            Method::LatinHypercube => "a range without a number of values: method = \"latin hypercube\" uses samples",
         };
         return Err(source.value(&entry.key, expected, &found));
     }
@@ -330,7 +330,7 @@ fn plan(source: &Source<'_>, table: &Table, numbers: &[SweptParameter]) -> Resul
         Method::Grid => {
             for (key, given) in [("samples", table.samples), ("seed", table.seed)] {
                 if let Some(given) = given {
-                    let reason = format!("by a grid, whose runs are counted by its values (found {given})");
+                    let reason = format!("by a grid, whose values determine the number of runs (found {given})");
                     let remedy = format!("remove {key}, or set method = \"latin hypercube\"");
                     return Err(source.unused(format!("sweep.{key}"), &reason, &remedy));
                 }

@@ -68,7 +68,7 @@ pub(super) fn list(parts: &[&str], dimension: Option<Dimension>) -> Result<Value
     for part in parts {
         let value = value(part, unit, dimension)?;
         if values.iter().any(|before| before.si == value.si) {
-            return Err(Wrong::Expected(format!("each value once ({part} stands here twice)")));
+            return Err(Wrong::Expected(format!("each value once ({part} appears twice)")));
         }
         values.push(value);
     }
@@ -99,7 +99,7 @@ fn range(text: &str, dimension: Option<Dimension>) -> Result<Range, Wrong> {
         return Err(expected("ends above 0 for log"));
     }
     if first >= last {
-        return Err(expected("a range that rises: its second end above the first"));
+        return Err(expected("a rising range: its second end above the first"));
     }
     if !(last - first).is_finite() {
         return Err(expected("ends whose difference is finite"));

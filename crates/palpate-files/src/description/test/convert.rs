@@ -55,14 +55,14 @@ pub fn parse_test(text: &str, path: &Path) -> Result<TestDescription, Descriptio
     source.refuse(&[DescriptionKind::Protocol], DescriptionKind::Test)?;
     let tables = preset::over_preset(&source, source.tables()?)?;
     if tables.law.is_some() && tables.calibration.is_none() {
-        let reason = "in a test, whose laws are found from its record";
+        let reason = "in a test, whose laws are identified from its record";
         return Err(source.unused("law", reason, "remove [law], or keep it for a protocol"));
     }
     let geometry = geometry(&source, &tables)?;
     let columns = tables.columns.checked(&source, tables.machine.preset.as_deref())?;
     let grows = geometry.as_ref().is_some_and(|body| !matches!(body.shape, Shape::Prism { .. }));
     if grows && columns.stress.is_some() {
-        let reason = "for a body whose contact area changes with the squeeze";
+        let reason = "for a body whose contact area changes with displacement";
         return Err(source.unused("columns.stress", reason, "give columns.force"));
     }
     let contact = &tables.contact;

@@ -23,7 +23,7 @@ pub(super) fn checked(
         Some(BaselineName::Sloped) => Some(Baseline::Sloped),
     };
     if baseline.is_none() && force.baseline_window.is_some() {
-        let reason = "without a baseline that is taken off";
+        let reason = "without a baseline to subtract";
         return Err(source.unused("force.baseline_window", reason, "set baseline = \"constant\" or \"sloped\""));
     }
     let skew = clock.skew.as_deref().map_or(Ok(SkewChoice::Report), |text| skew(source, text))?;

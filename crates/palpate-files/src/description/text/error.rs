@@ -94,7 +94,7 @@ pub enum KeyProblem {
     #[error(": unknown key (accepted: {})", .0.join(", "))]
     Unknown(Vec<String>),
     /// A sweep over a number that does not stand in the protocol.
-    #[error(": no such number in this protocol (its numbers: {})", accepted.join(", "))]
+    #[error(": unknown parameter of this protocol (its parameters: {})", accepted.join(", "))]
     UnknownParameter {
         /// The path of the number that it names.
         number: String,
@@ -168,9 +168,9 @@ impl KeyProblem {
     /// What would help, of a key by its last name.
     fn help(&self, key: &str) -> String {
         match self {
-            Self::Unknown(accepted) => meant(key, accepted, "remove the key, or write one of those that are accepted"),
+            Self::Unknown(accepted) => meant(key, accepted, "remove the key, or use an accepted one"),
             Self::UnknownParameter { number, accepted } => {
-                let otherwise = "a sweep replaces numbers that stand in the file: write it where it belongs first";
+                let otherwise = "a sweep replaces parameters of the file: add this one to its table first";
                 meant(number, accepted, otherwise)
             }
             Self::Missing(expected) => match expected.split_once("such as ") {
@@ -190,29 +190,30 @@ impl KeyProblem {
 /// The line that most often goes wrong is a quantity without quotes.
 fn syntax(line: &str, message: &str) -> String {
     if message.starts_with("duplicate key") {
-        return "the key stands here a second time: remove one of the two".to_owned();
+        return "the key appears twice: remove one of the two".to_owned();
     }
     let written = line.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
     match written {
         Some((key, value)) if value.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first)) => {
             let value = value.split('#').next().unwrap_or(value).trim_end();
-            format!("a quantity stands in quotes: {key} = \"{value}\"")
+            format!("write a quantity in quotes: {key} = \"{value}\"")
         }
-        _ => "every line is a [table], a key = value, a # comment or blank; texts and quantities stand in quotes"
-            .to_owned(),
+        _ => {
+            "each line is a [table], a key = value, a # comment or blank; texts and quantities are in quotes".to_owned()
+        }
     }
 }
 
 /// What helps against a value that is not accepted.
 fn value(key: &str, expected: &str, found: &str) -> String {
     if expected.contains(" above 0 ") {
-        return format!("{key} must be above zero: check its sign and its number");
+        return format!("{key} must be above zero: check its sign and value");
     }
     if expected.contains(BELIEVABLE) {
-        return format!("check the number and the unit of {key}");
+        return format!("check the value and the unit of {key}");
     }
-    if expected.contains("calibrated no more") {
-        return format!("put back {}, or calibrate again", expected.split(", ").next().unwrap_or(expected));
+    if expected.contains("no longer calibrated") {
+        return format!("restore {}, or calibrate again", expected.split(", ").next().unwrap_or(expected));
     }
     if expected.contains("calibrate again") {
         return "calibrate again with this version of palpate".to_owned();
@@ -225,7 +226,7 @@ fn value(key: &str, expected: &str, found: &str) -> String {
     }
     match key {
         "shape" if names.iter().any(|name| name == "none") => {
-            "a body of constant section is a \"block\"; with \"none\" forces stay forces".to_owned()
+            "a body of constant section is a \"block\"; with \"none\" palpate fits forces".to_owned()
         }
         _ if names.len() > 1 => format!("write {expected}"),
         _ => match expected.rsplit_once("such as ") {
@@ -257,7 +258,7 @@ fn quantity(key: &str, error: &UnitError, found: &str) -> String {
             let volts = key == "unit" && crate::naming::unit_factor(unit, Dimension::Voltage).is_some();
             match same {
                 _ if volts => {
-                    format!("say what a volt stands for as well, such as scale = \"12.5 {}/V\"", usual(*dimension).0)
+                    format!("also give the scale of a volt, such as scale = \"12.5 {}/V\"", usual(*dimension).0)
                 }
                 _ if digits => {
                     format!("write a decimal point: {}", named(&found.trim_matches('"').replacen(',', ".", 1)))

@@ -40,7 +40,9 @@ impl DescriptionKind {
             (Self::Material, _) => "give a material file that palpate calibrate wrote",
             (Self::Protocol, Self::Material) => "write a protocol with material = \"FILE\" and the steps as [[step]]",
             (Self::Protocol, _) => "add [law] and [[step]]; records of this test are for palpate analyze and calibrate",
-            (Self::Test, _) => "give a file with [specimen] and [columns]; palpate inspect writes one for a record",
+            (Self::Test, _) => {
+                "give a file with [specimen] and [columns]; palpate inspect --write-test drafts one for a record"
+            }
         }
     }
 }

@@ -25,7 +25,7 @@ pub(crate) fn explain(message: &str, at: &str) -> (String, KeyProblem) {
         return value(any_of(&names), format!("\"{found}\""));
     }
     if message.ends_with("overflowed") {
-        let expected = "a number that is not beyond all others, such as 1e300";
+        let expected = "a finite number, such as 1e300";
         return value(expected.to_owned(), "one beyond 1.8e308".to_owned());
     }
     if let Some((said, expected)) = message.split_once(", expected ") {
@@ -57,7 +57,9 @@ fn quoted(message: &str) -> Vec<String> {
 fn needed(key: &str) -> &'static str {
     match key {
         "specimen" => "a table [specimen] with the shape and size of the body",
-        "law" => "a table [law] with name and the numbers of that law (exponent and rate_coefficient of \"latency\")",
+        "law" => {
+            "a table [law] with name and the parameters of that law (exponent and rate_coefficient of \"latency\")"
+        }
         "step" => "one or more [[step]] tables with to and rate",
         "shape" => "\"ball\", \"pad\", \"strip\", \"cylinder\" or \"block\"",
         "name" => "a law: \"latency\", \"standard-linear-solid\", \"prony\", \"fung\" or \"fractional-zener\"",

@@ -47,6 +47,6 @@ pub(crate) fn look_into(
 ) -> Result<crate::table::Found, crate::FileError> {
     Err(input.not_in_this_build(
         "a build that reads Parquet and Arrow",
-        "build palpate with its feature `arrow`, which is on by default",
+        "build palpate with the feature `arrow`, which is enabled by default",
     ))
 }

@@ -83,7 +83,7 @@ fn written(kind: Kind, by: Option<&str>, test: &Test, passed: &[&str]) -> String
         written.push_str(&format!(", rows with {by} {name}"));
     }
     if !passed.is_empty() {
-        written.push_str(&format!(", columns that hold no single values passed over: {}", passed.join(", ")));
+        written.push_str(&format!(", skipped columns without single values: {}", passed.join(", ")));
     }
     written
 }

@@ -64,7 +64,7 @@ pub(super) fn told_apart(source: &Source, column: usize) -> Result<(Vec<Test>, u
     let (mut stretches, mut without) = (0, 0);
     let name = source.schema.field(column).name();
     let too_many = |what: &str, most: usize| {
-        let hint = "rename the column if it does not tell tests apart, or sort the rows by it";
+        let hint = "rename the column if it does not identify tests, or sort the rows by it";
         let expected = format!("at most {most} {what}");
         source.input.wrong(FileProblem::bad_cell(&format!("column {name}"), expected, "more", hint))
     };

@@ -70,6 +70,6 @@ pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, 
 pub(crate) fn look_into(input: &Input, _options: &ReadOptions) -> Result<Found, FileError> {
     Err(input.not_in_this_build(
         "a build that reads logs of robots",
-        "build palpate with its feature `robot-log`, which is on by default",
+        "build palpate with the feature `robot-log`, which is enabled by default",
     ))
 }

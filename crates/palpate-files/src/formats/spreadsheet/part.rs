@@ -141,8 +141,8 @@ fn part((sheet, name): (&str, &str), table: &Table, several: bool, beside: usize
     };
     let beside = match beside {
         0 => String::new(),
-        1 => ", 1 cell beside passed over".to_owned(),
-        count => format!(", {count} cells beside passed over"),
+        1 => ", 1 cell beside the table skipped".to_owned(),
+        count => format!(", {count} cells beside the table skipped"),
     };
     Part {
         name: Some(if several { format!("{name}, {}", table.range()) } else { name.to_owned() }),

@@ -131,7 +131,7 @@ impl Reading<'_> {
             let cell = format!("sheet {}, cell {}{}", self.name, letters(place), u64::from(row) + 1);
             self.input.wrong(FileProblem::bad_cell(&cell, expected, found, hint))
         };
-        const MEND: &str = "mend or empty the row, or choose another column";
+        const MEND: &str = "repair or clear the row, or choose another column";
         let quoted = |text: &str| format!("`{}`", shorten(text));
         match &self.row[column] {
             // A number that a spreadsheet took for a date, 12.3 for the 12th of March, is lost.

@@ -175,7 +175,7 @@ fn stored_numbers_become_forces_and_heights() {
     assert_eq!(metadata(part, "spring constant"), Some("2.5e-1"));
     assert_eq!(metadata(part, "sensitivity"), Some("1e-7"));
     assert_eq!(metadata(part, "force-scan-series.description.instrument"), Some("JPK00001"));
-    assert!(metadata(part, "time").unwrap().starts_with("made of the durations"));
+    assert!(metadata(part, "time").unwrap().starts_with("computed from the durations"));
     assert_eq!(metadata(part, "time-stamp"), Some("2018-11-22 11:55:44.157 +0100"));
 }
 

@@ -236,7 +236,7 @@ fn time_without_a_series_is_put_together() {
     let contents = opened(whole.as_bytes());
     // 8 s for four points is 2 s a point, though fewer were recorded.
     assert_eq!(column(&contents, "time"), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0]);
-    assert!(metadata(&contents.parts[0], "time").unwrap().starts_with("made of the durations"));
+    assert!(metadata(&contents.parts[0], "time").unwrap().starts_with("computed from the durations"));
 }
 
 fn refused_as_record(exports: &[Export]) -> ReadError {
@@ -309,7 +309,7 @@ fn the_lines_that_are_asked_for_make_volts_a_force_and_an_indentation() {
     let without = lines.replace("\nscale = \"50 nm/V\"", "");
     let error = parse_test(&without, Path::new("test.toml")).unwrap_err();
     assert_eq!(error.key(), Some("columns.deflection.unit"));
-    assert_eq!(error.hint().unwrap(), "say what a volt stands for as well, such as scale = \"12.5 mm/V\"");
+    assert_eq!(error.hint().unwrap(), "also give the scale of a volt, such as scale = \"12.5 mm/V\"");
     let without = without.strip_suffix("unit = \"V\"").unwrap();
     let error = record(&exports, without).unwrap_err();
     assert!(error.hint().unwrap().contains("[columns.deflection]\nunit = \"V\"\nscale = "), "{:?}", error.hint());

@@ -150,14 +150,14 @@ fn a_rate_coefficient_that_depends_on_the_state_is_written_and_read() {
         assert_eq!(protocol.contact, file.material.contact());
         let changed = text.replacen(&format!("{name} = 0.3"), &format!("{name} = 0.4"), 1);
         let error = parse_material(&changed, Path::new("m.toml")).unwrap_err().to_string();
-        assert!(error.contains(&format!("law.{name}")) && error.contains("calibrated no more"), "{error}");
+        assert!(error.contains(&format!("law.{name}")) && error.contains("no longer calibrated"), "{error}");
         let none = text.replacen(&format!("{name} = 0.3"), &format!("{name} = -0.3"), 1);
         let error = parse_material(&none, Path::new("m.toml")).unwrap_err().to_string();
         assert!(error.contains(&format!("law.{name}")) && error.contains("above 0"), "{error}");
     }
     let both = "specimen = { shape = \"ball\", radius = \"35 mm\", modulus = \"28 kPa\" }\nlaw = { name = \"latency\", exponent = 5, rate_coefficient = \"2e4 /s\", strain_factor = 2, unloading_factor = 3 }\nstep = [{ to = \"5 mm\", rate = \"10 mm/s\" }]";
     let error = parse_protocol(both, Path::new("p.toml")).unwrap_err().to_string();
-    assert!(error.contains("v depends on one of them"), "{error}");
+    assert!(error.contains("v depends on only one of them"), "{error}");
     let linear = both.replace(
         "name = \"latency\", exponent = 5, rate_coefficient = \"2e4 /s\", strain_factor = 2, unloading_factor = 3",
         "name = \"standard-linear-solid\", overshoot = 2, time = \"1 s\", strain_factor = 2",
@@ -257,7 +257,7 @@ fn what_is_no_material_is_refused_with_its_place() {
     let cases = [
         ("version = 1", "version = 2", "calibration.version", "calibrate again"),
         ("version = 1\n", "", "calibration.version", "the version of the table"),
-        ("exponent = 5.0", "exponent = 4.0", "law.exponent", "calibrated no more"),
+        ("exponent = 5.0", "exponent = 4.0", "law.exponent", "no longer calibrated"),
         ("radius = \"0.035 m\"", "radius = \"0.035\"", "specimen.radius", "unit"),
         (
             "interval = [4.9, 5.1]",
@@ -308,13 +308,13 @@ fn what_is_no_material_is_refused_with_its_place() {
             "standard_error = 0.05\n",
             "standard_error = 50.0\n",
             "calibration.parameter[2].standard_error",
-            "calibrated no more",
+            "no longer calibrated",
         ),
         (
             "covariance = [\n  [",
             "covariance = [\n  [100",
             "calibration.parameter[1].interval",
-            "calibrated no more",
+            "no longer calibrated",
         ),
         ("slowest = \"", "slowest = \"900", "calibration.range.slowest", "no more than the fastest"),
         ("sha256 = \"ab12\"\n", "", "calibration.sha256", "missing"),

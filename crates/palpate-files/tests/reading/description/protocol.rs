@@ -193,7 +193,7 @@ fn absurd_values_name_their_keys() {
             "\"5 mm\"\nrate = \"500 mm/min\"\nhold = \"10 s\"",
             "\"0 mm\"\nrate = \"1 mm/s\"",
             "step[1].to",
-            "another displacement than before, or a hold",
+            "a displacement different from the previous one, or a hold",
         ),
         ("[output]", "[output]\nsample_rate = \"0 Hz\"", "output.sample_rate", "a frequency above 0 Hz"),
         (
@@ -324,7 +324,7 @@ fn what_a_simulation_refuses_names_the_step_as_it_was_written() {
          hold_force = \"2 s\"\n[[step]]\nto_force = \"500 N\"\nrate = \"1 mm/s\"",
     );
     let error = protocol(&text).unwrap_err().to_string();
-    assert!(error.contains("step 3: the jaw never meets a force of 500 N"), "{error}");
+    assert!(error.contains("step 3: the jaw never reaches a force of 500 N"), "{error}");
 }
 
 #[test]
@@ -337,7 +337,7 @@ fn steps_that_say_too_much_or_too_little() {
         ("hold = \"1 s\"\nhold_force = \"1 s\"", "step[1].hold_force", "step[1].hold"),
         ("to_force = \"5 kPa\"\nrate = \"1 mm/s\"", "step[1].to_force", "N, kN"),
         ("to_force = \"1 N\"\nforce_rate = \"0 N/s\"", "step[1].force_rate", "a rate of force above 0 N/s"),
-        ("to_force = \"10 kN\"\nrate = \"1 mm/s\"", "step", "never meets a force of 10000 N"),
+        ("to_force = \"10 kN\"\nrate = \"1 mm/s\"", "step", "never reaches a force of 10000 N"),
         ("to_force = \"-1 N\"\nrate = \"1 mm/s\"", "step", "a jaw that is not bonded"),
     ] {
         let result = protocol(&with(STEP, step));

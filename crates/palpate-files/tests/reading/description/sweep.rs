@@ -100,8 +100,13 @@ fn a_run_that_makes_no_protocol_says_so() {
 #[test]
 fn sweeps_over_what_is_no_number() {
     refuses("law.exponnt = \"1, 2\"", "sweep.law.exponnt", "law.exponent, law.rate_coefficient", "law.exponent?");
-    refuses("contact.layers = \"4, 8\"", "sweep.contact.layers", "no such number", "write it where it belongs");
-    refuses("step.2.hold = \"1, 2 s\"", "sweep.step.2.hold", "no such number", "step[1].hold?");
+    refuses(
+        "contact.layers = \"4, 8\"",
+        "sweep.contact.layers",
+        "unknown parameter",
+        "add this one to its table",
+    );
+    refuses("step.2.hold = \"1, 2 s\"", "sweep.step.2.hold", "unknown parameter", "step[1].hold?");
     refuses("specimen.shape = \"1, 2\"", "sweep.specimen.shape", "specimen.shape, which is none", "");
     refuses("law.name = \"1, 2\"", "sweep.law.name", "expected a number of the protocol", "");
     refuses("law.exponent = 5", "sweep.law.exponent", "values in quotes", "");
@@ -147,7 +152,7 @@ fn values_that_make_no_sweep() {
     refuses("law.exponent = \"1, 2\"\nsamples = 9", "sweep.samples", "not used by a grid", "latin hypercube");
     refuses("law.exponent = \"1, 2\"\nmethod = \"random\"", "sweep.method", "found \"random\"", "");
     let error = sweep("law.exponent = \"1, 2\"\nlaw.exponent = \"1, 2\"").unwrap_err();
-    assert!(error.hint().unwrap_or_default().contains("second time"), "{error}");
+    assert!(error.hint().unwrap_or_default().contains("appears twice"), "{error}");
 }
 
 #[test]

@@ -229,8 +229,8 @@ fn likely_slips_have_a_hint() {
         ("35 mm", "-28 kPa", "modulus must be above zero"),
         ("35,0 mm", "28 kPa", "write a decimal point: radius = \"35.0 mm\""),
         ("35 mm", "28 kpa", "did you mean kPa?"),
-        ("1e300 m", "28 kPa", "check the number and the unit of radius"),
-        ("35 mm", "28e30 GPa", "check the number and the unit of modulus"),
+        ("1e300 m", "28 kPa", "check the value and the unit of radius"),
+        ("35 mm", "28e30 GPa", "check the value and the unit of modulus"),
     ] {
         let found = hint(&ball(radius, modulus));
         assert!(found.contains(help), "{radius}, {modulus}: {found}");

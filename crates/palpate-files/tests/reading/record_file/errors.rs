@@ -39,7 +39,7 @@ fn without_names_the_columns_are_shown() {
         &[
             "in a test description:\n[columns]\n",
             "time = { column = 1, unit = \"s\" }  # check: starts with 0\n",
-            "displacement = { column = 2, unit = \"mm\" }  # check: starts with 0.5; leave out if there is none",
+            "displacement = { column = 2, unit = \"mm\" }  # check: starts with 0.5; omit if there is none",
             "force = { column = 3, unit = \"N\" }",
         ],
     );
@@ -60,7 +60,7 @@ fn names_that_say_nothing() {
         "Last (N),Force (N)\n0,1\n1,2\n",
         "",
         &["expected a column of time"],
-        &["# time: no column is left that could hold it", "force = { column = 2"],
+        &["# time: no candidate column remains", "force = { column = 2"],
     );
     says("Zeit (s),U (V)\n0,1\n1,2\n", "columns.stress = {}", &["expected a column of stress"], &[]);
 }
@@ -142,10 +142,10 @@ fn numbers_that_make_no_record_name_their_line() {
         "Time (s),Force (N)\n0,1\n\n2,2\n1,3\n",
         "",
         &[
-            "line 5: time must rise from row to row, found a clock that goes back by up to 1 s (1 of 3 rows",
+            "line 5: time must rise from row to row, found a clock that steps back by up to 1 s (1 of 3 rows",
             "to 1 s after 2 s",
         ],
-        &["several runs stand in one file: split it there"],
+        &["the file holds several runs: split it there"],
     );
     assert!(!error.to_string().contains("in row"), "{error}");
     says("Time (s),Force (N)\n0,1\n1,1\n", "", &["press.csv: the force is 1 N in all 2 rows"], &["load cell"]);
@@ -158,7 +158,7 @@ fn numbers_that_make_no_record_name_their_line() {
         "0,1,10,1\n1,2,11,2\n2,3,12,3\n",
         clocks,
         &["share no time"],
-        &["units and the columns of the two clocks"],
+        &["units and columns of the two clocks"],
     );
 }
 
@@ -207,7 +207,7 @@ fn a_length_of_unknown_name_is_asked_about() {
     let error = says(
         table,
         "",
-        &["expected a name that says whether column 2 (Vorschub) is the displacement, found none that is known"],
+        &["expected a name that indicates whether column 2 (Vorschub) is the displacement, found no known name"],
         &["[columns.displacement]\ncolumn = 2\nunit = \"mm\"", "[columns.force]\ncolumn = 3"],
     );
     let hint = error.hint().unwrap();
@@ -256,7 +256,7 @@ fn numbers_written_as_texts_are_named() {
     let minus = "Time (s),Weg (mm),Force (N)\n0,0,\u{2212}1\n1,1,\u{2212}2\n2,1,\u{2212}1\n";
     says(minus, "", &["column 3 (Force): expected numbers in every row, found `\u{2212}1`"], &["U+2212"]);
     let thousands = "Time (s);Weg (mm);Force (N)\n0;0;1\n1;1;1 002,5\n2;1;1 001,5\n";
-    says(thousands, "", &["column 3 (Force)", "found `1 002,5`"], &["without marks between thousands"]);
+    says(thousands, "", &["column 3 (Force)", "found `1 002,5`"], &["without thousands separators"]);
     // A displacement was left out.
     let travel = "Time (s),Weg (mm),Force (N)\n0,\u{2212}0,1\n1,\u{2212}1,2\n2,\u{2212}1,1\n";
     says(travel, "", &["column 2 (Weg): expected numbers"], &["U+2212"]);
@@ -267,7 +267,7 @@ fn a_scale_is_for_volts() {
     says(
         "Time (s),Force (N)\n0,1\n1,2\n2,1\n",
         "columns.force.scale = \"2 N/V\"",
-        &["column 2 (Force): expected volts, which `scale` is for, found N"],
+        &["column 2 (Force): expected volts for `scale`, found N"],
         &["remove `scale`", "unit = \"V\""],
     );
 }

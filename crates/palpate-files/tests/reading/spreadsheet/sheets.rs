@@ -75,7 +75,7 @@ fn named_values_above_and_remarks_below_and_beside() {
     let contents = open(&Book::of(&[("one", &table)]).bytes()).expect("a workbook");
     let part = &contents.parts[0];
     assert_eq!(part.columns.len(), 2);
-    assert_eq!(part.written, "sheet one, columns A–B, rows 4 to 7, 1 cell beside passed over");
+    assert_eq!(part.written, "sheet one, columns A–B, rows 4 to 7, 1 cell beside the table skipped");
     let value = &part.metadata[0];
     assert_eq!(
         (value.name.as_str(), value.value.as_str(), value.unit.as_deref()),

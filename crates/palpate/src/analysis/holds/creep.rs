@@ -44,13 +44,13 @@ pub enum CreepError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// No displacement was recorded.
-    #[error("creep is a displacement at constant force, but the record has no displacement")]
+    #[error("creep is displacement at constant force, but the record has no displacement")]
     NoDisplacement,
     /// A displacement that never changes.
     #[error("the displacement cannot creep: {0}")]
     Still(RecordError),
     /// Where the force stays, the displacement stays, too.
-    #[error("the displacement is held wherever the force stays: nothing creeps")]
+    #[error("the displacement is constant wherever the force is constant: there is no creep")]
     DisplacementHeld,
     /// No hold of constant force.
     #[error("of the force: {0}")]
@@ -69,7 +69,7 @@ impl CreepError {
             Self::Cancelled(_) => "",
             Self::Given(error) => error.hint(),
             Self::DisplacementHeld | Self::Segment(_) => {
-                "a hold of constant force is needed; without ⟨creep⟩ holds of constant displacement are sought"
+                "creep needs a hold of constant force; without ⟨creep⟩ palpate fits holds of constant displacement"
             }
         }
     }

@@ -75,7 +75,7 @@ pub(in crate::analysis) fn overlay(
         Some(choice) => (choice.layers(specimen.depth()).map_err(|error| error.to_string())?, false),
         None => {
             let error = |layers: Layers| simulated(layers).map_or(f64::INFINITY, |(_, force)| rms(&measured, &force));
-            (fitted_layers(error).ok_or("no number of layers can be simulated")?, true)
+            (fitted_layers(error).ok_or("the simulation fails for every number of layers")?, true)
         }
     };
     let (model, force) = simulated(layers)?;

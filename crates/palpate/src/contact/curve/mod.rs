@@ -35,7 +35,7 @@ pub enum CurveError {
         value: f64,
     },
     /// Places that do not begin at first touch.
-    #[error("row 1: a table begins at a contact displacement of 0, found {found}")]
+    #[error("row 1: a table must begin at a contact displacement of 0, found {found}")]
     Start {
         /// The first place.
         found: f64,

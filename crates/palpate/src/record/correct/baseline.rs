@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn too_little_free_force_is_an_error() {
         let error = drifting().without_baseline(Baseline::Constant, std::slice::from_ref(&(0..3))).unwrap_err();
-        assert_eq!(error.to_string(), "a baseline needs 5 samples without contact or more, found 3");
+        assert_eq!(error.to_string(), "a baseline needs 5 or more samples without contact, found 3");
         assert!(drifting().without_baseline(Baseline::Sloped, std::slice::from_ref(&(899..5000))).is_err());
     }
 }

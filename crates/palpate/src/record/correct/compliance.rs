@@ -206,7 +206,10 @@ mod tests {
         assert!(matches!(net.corrections(), [Correction::ComplianceRemoved { .. }]));
         let short = Compliance::Table(ComplianceTable::new(vec![(0.0, 0.0), (7.0, 1e-4)]).unwrap());
         let error = record().without_compliance(&short).unwrap_err();
-        assert_eq!(error.to_string(), "the force must lie in the table of compliance, 0 to 7 N, found 8 N in row 1");
+        assert_eq!(
+            error.to_string(),
+            "the force must lie within the table of compliance, 0 to 7 N, found 8 N in row 1"
+        );
     }
 
     /// A table that begins at 0 N refused every record whose zero has noise.

@@ -202,6 +202,6 @@ mod tests {
             assert!(matches!(record.resampled(rate), Err(RecordError::Rate { .. })), "{rate}");
         }
         let error = record.resampled(0.1).unwrap_err().to_string();
-        assert_eq!(error, "0.1 samples a second of 2 s make no record: expected 2 to 100000000 rows");
+        assert_eq!(error, "0.1 samples per second over 2 s give no valid record: expected 2 to 100000000 rows");
     }
 }

@@ -46,9 +46,7 @@ pub enum LinearLawError {
         found: f64,
     },
     /// Times that span no range.
-    #[error(
-        "a fractional law is summed up from a shortest to a longest time above it, found {shortest} s and {longest} s"
-    )]
+    #[error("a fractional law needs a shortest time and a longer longest time, found {shortest} s and {longest} s")]
     Window {
         /// Shortest time, s.
         shortest: f64,

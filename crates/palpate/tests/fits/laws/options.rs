@@ -211,7 +211,7 @@ fn what_no_fit_can_follow_is_refused() {
     };
     assert!(matches!(fit("sls", &held, 1e-3), Err(FitError::FixedParameter { .. })));
     let form = fit("kelvin-voigt", &LawOptions::default(), 1e-3).unwrap_err();
-    assert_eq!(form.to_string(), "the law kelvin-voigt has no form for relaxation");
+    assert_eq!(form.to_string(), "the law kelvin-voigt does not describe relaxation");
     assert!("prony:9".parse::<Law>().is_err() && "latency:-1".parse::<Law>().is_err());
 }
 

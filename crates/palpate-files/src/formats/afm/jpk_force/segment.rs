@@ -245,5 +245,5 @@ pub(super) fn set_clocks(segments: &mut [StoredSegment]) -> &'static str {
             None => return "none: a segment lacks its duration",
         }
     }
-    "made of the durations and numbers of points of the segments, one behind the other"
+    "computed from the durations and numbers of points of consecutive segments"
 }

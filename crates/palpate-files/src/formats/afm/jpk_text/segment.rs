@@ -121,8 +121,8 @@ fn set_clocks(blocks: &[Block], drafts: &mut [Draft]) -> &'static str {
         }
     }
     match by_segment {
-        true => "time of the file, the segments one behind the other",
-        false => "made of the durations and numbers of points that were asked for, the segments one behind the other",
+        true => "time of the file, for consecutive segments",
+        false => "computed from the requested durations and numbers of points of consecutive segments",
     }
 }
 

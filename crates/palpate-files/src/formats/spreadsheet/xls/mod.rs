@@ -79,12 +79,12 @@ fn sifted(input: &Input) -> Result<Sifted, FileError> {
     }
     let Some(stream) = compound.stream("Workbook") else {
         let found = if compound.has("Book") { "one of Excel 95 or older" } else { "none" };
-        let hint = "open it where it was made and save its table as .xlsx or CSV";
+        let hint = "open it in its program and save its table as .xlsx or CSV";
         return Err(input.wrong(FileProblem::unfit("compound file", "a workbook of Excel 97 or later", found, hint)));
     };
     let sifted = sift::sift(&stream).map_err(|(place, expected)| match expected.starts_with("at most") {
         true => {
-            let hint = "clear what stands far away from the table, or save the workbook as .xlsx";
+            let hint = "clear cells far from the table, or save the workbook as .xlsx";
             input.wrong(FileProblem::unfit(place, expected, "more", hint))
         }
         false => input.damaged(place, expected, "other bytes, or their end"),

@@ -178,7 +178,7 @@ impl Checked<'_> {
         match kind {
             "officeDocument" if lower.ends_with(".bin") => {
                 let (expected, found) = ("a workbook of XML parts (.xlsx)", "one of binary parts (.xlsb)");
-                let hint = "open it where it was made and save it as .xlsx";
+                let hint = "open it in its program and save it as .xlsx";
                 return Err(self.package.input.wrong(FileProblem::unfit("zip archive", expected, found, hint)));
             }
             "officeDocument" if self.path == "_rels/.rels" => target.as_ref().clone_into(&mut self.found.document),
@@ -222,7 +222,7 @@ impl Checked<'_> {
                     None => (rows.row, rows.column),
                     Some(text) => match reference(&text) {
                         Some(place) => place,
-                        None => return damaged("the place of a cell", &text),
+                        None => return damaged("the position of a cell", &text),
                     },
                 };
                 rows.column = place.1;

@@ -43,7 +43,7 @@ impl Xlsx {
     pub(super) fn open(input: &Input) -> Result<Self, FileError> {
         let found = guard::check(&Package::open(input)?)?;
         if !found.has_sheets {
-            let hint = "name a workbook, or open this file where it was made and save its table as .xlsx or CSV";
+            let hint = "name a workbook, or open this file in its program and save its table as .xlsx or CSV";
             return Err(input.wrong(FileProblem::unfit("zip archive", "a workbook with sheets", found.document, hint)));
         }
         let reading: Reading = contained(input, || {

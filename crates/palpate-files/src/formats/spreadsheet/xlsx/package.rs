@@ -124,7 +124,7 @@ mod tests {
         let most = package.read("a.xml", 1_100_000, &mut count);
         assert_eq!(
             most.map_err(|error| error.to_string()),
-            Err("book: a part of the workbook has more than 1 MiB, which is the most that is read".to_owned())
+            Err("book: a part of the workbook exceeds the limit of 1 MiB".to_owned())
         );
         assert!((90_000..100_001).contains(&texts), "{texts}");
         assert!(package.read("a.xml", 1_100_007, &mut |_, _| Ok(())).is_ok());
